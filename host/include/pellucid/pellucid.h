@@ -1,0 +1,510 @@
+/* Pellucid: subsurface scattering for deferred renderers, on OpenCL.
+ *
+ * This header is the only binary interface. pellucid.hpp wraps it for C++.
+ *
+ * Conventions that hold everywhere
+ * - Lengths (positions, radii, widths, thickness) are in any one unit, the same for all; curvature is in 1/length.
+ *   Defaults are in millimetres.
+ * - Colours are linear RGB.
+ * - Matrices are 16 floats in row-major order and multiply column vectors: clip = M * (x, y, z, 1).
+ * - Every structure that may grow starts with structSize; the pel*Defaults() functions fill it and every other field.
+ * - Handles are counted: each Create or Retain is paired with a Release. Objects keep what they use alive.
+ * - A function that can fail returns PelError. On an error no output is written and all objects stay usable;
+ *   pelGetErrorMessage() says what was wrong, where, and what would be right.
+ * - Functions may be called from any thread. One object may be used by several threads at a time, except that a
+ *   PelShader is set, committed and executed by one thread at a time.
+ */
+#ifndef PELLUCID_H
+#define PELLUCID_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define PEL_VERSION_MAJOR 0
+#define PEL_VERSION_MINOR 1
+#define PEL_VERSION_PATCH 0
+
+#if defined(_WIN32)
+#ifdef PELLUCID_BUILD
+#define PEL_API __declspec(dllexport)
+#else
+#define PEL_API __declspec(dllimport)
+#endif
+#else
+#define PEL_API __attribute__((visibility("default")))
+#endif
+
+/* ---- Errors ------------------------------------------------------------------------------------------------- */
+
+typedef enum PelError {
+    PEL_SUCCESS = 0,
+    PEL_ERROR_INVALID_ARGUMENT = 1, /* a value, a size or a combination that the documentation excludes */
+    PEL_ERROR_INVALID_STATE = 2,    /* the call is right, but not now (execute before commit) */
+    PEL_ERROR_NO_DEVICE = 3,        /* no OpenCL device, or none that matches the selector */
+    PEL_ERROR_OUT_OF_MEMORY = 4,    /* host or device */
+    PEL_ERROR_DEVICE = 5,           /* OpenCL reported a failure, or a kernel did not build */
+    PEL_ERROR_UNSUPPORTED = 6,      /* right, but this device or this build cannot */
+    PEL_ERROR_CANCELLED = 7,        /* a progress callback returned 0 */
+    PEL_ERROR_UNKNOWN = 8           /* a fault in the library */
+} PelError;
+
+/* The name of an error code, such as "PEL_ERROR_NO_DEVICE". Never NULL; static storage. */
+PEL_API const char* pelErrorName(PelError error);
+
+/* The message of the last failed call on this thread, or "" if none failed yet. Valid until this thread's next call. */
+PEL_API const char* pelGetErrorMessage(void);
+
+/* Called, on the failing thread, with each error as it is returned. NULL removes it. One for the whole process. */
+typedef void (*PelErrorCallback)(void* user, PelError error, const char* message);
+PEL_API void pelSetErrorCallback(PelErrorCallback callback, void* user);
+
+/* The library's version as one number: major * 10000 + minor * 100 + patch. */
+PEL_API uint32_t pelVersion(void);
+
+/* ---- Devices ------------------------------------------------------------------------------------------------ */
+
+typedef struct PelDeviceObject* PelDevice;
+typedef struct PelEventObject* PelEvent;
+
+typedef enum PelDeviceType { PEL_DEVICE_CPU = 0, PEL_DEVICE_GPU = 1, PEL_DEVICE_ACCELERATOR = 2 } PelDeviceType;
+
+typedef struct PelDeviceInfo {
+    uint32_t structSize;
+    uint32_t index;         /* position in the list, as selectors use it; UINT32_MAX for a host's own context */
+    PelDeviceType type;
+    uint32_t computeUnits;
+    uint32_t clockMhz;
+    uint32_t preferredFloatWidth; /* CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT, lanes */
+    uint32_t mathWidth;           /* lanes per work-item that Pellucid's kernels use here: 1, 8 or 16 */
+    uint32_t sharedMemory;        /* 1: host and device share memory, buffers from host memory are not copied */
+    uint64_t globalMemoryBytes;
+    uint64_t maxAllocationBytes;
+    uint64_t localMemoryBytes;
+    uint64_t maxWorkGroupSize;
+    char name[128];
+    char vendor[128];
+    char platform[128];
+    char version[128]; /* CL_DEVICE_VERSION */
+    char driver[128];
+    char quirks[256]; /* workarounds in force here, "; " between them; "" if none */
+} PelDeviceInfo;
+
+/* Counts the OpenCL devices of this machine. 0 devices is a success here. */
+PEL_API PelError pelDeviceCount(uint32_t* count);
+
+/* Describes device `index` (0 <= index < count). Set info->structSize first (pelDeviceInfoDefaults). */
+PEL_API PelError pelDeviceEnumerate(uint32_t index, PelDeviceInfo* info);
+
+/* Makes a device. `selector`: a number in the list; "gpu", "cpu" or "accelerator"; or a part of the name or platform,
+ * letter case ignored. NULL or "": the environment variable PELLUCID_DEVICE, and without it the best GPU, else the best
+ * CPU. Errors: PEL_ERROR_NO_DEVICE (the message lists the devices found, or names the package that brings one). */
+PEL_API PelError pelDeviceCreate(const char* selector, PelDevice* device);
+
+/* Makes a device from the caller's own cl_context, cl_device_id and in-order cl_command_queue (retained; all needed).
+ * Work goes to that queue and nowhere else. */
+PEL_API PelError pelDeviceCreateFromCl(void* clContext, void* clDeviceId, void* clCommandQueue, PelDevice* device);
+
+PEL_API void pelDeviceRetain(PelDevice device);
+PEL_API void pelDeviceRelease(PelDevice device); /* NULL does nothing, as for every Release */
+PEL_API PelError pelDeviceGetInfo(PelDevice device, PelDeviceInfo* info);
+
+/* The OpenCL objects behind a device; any pointer may be NULL. Not retained for the caller. */
+PEL_API PelError pelDeviceGetCl(PelDevice device, void** clContext, void** clDeviceId, void** clCommandQueue);
+
+/* Waits until everything submitted to this device has finished. */
+PEL_API PelError pelDeviceFinish(PelDevice device);
+
+/* Counters of a device since it was made, and the time its kernels ran. Monotonic: subtract two readings. */
+typedef struct PelDeviceStats {
+    uint32_t structSize;
+    uint32_t programsBuilt; /* OpenCL programs compiled or loaded from a cache */
+    uint64_t launches;      /* kernels enqueued */
+    uint64_t bytesToDevice; /* copied from the host; memory shared in place is not counted */
+    uint64_t bytesToHost;
+    uint64_t bytesAllocated;   /* device memory allocated by the library, in total over time */
+    double kernelMilliseconds; /* device time of finished kernels, from OpenCL profiling; 0 on a queue without it */
+    double buildMilliseconds;  /* host time spent in building programs */
+} PelDeviceStats;
+/* Waits for submitted work first, so that kernelMilliseconds is whole. */
+PEL_API PelError pelDeviceGetStats(PelDevice device, PelDeviceStats* stats);
+
+/* Called from long work, on the calling thread, with a fraction in [0, 1] and what is being done. Return 0 to cancel:
+ * the call then returns PEL_ERROR_CANCELLED. One per device; NULL removes it. */
+typedef int (*PelProgressCallback)(void* user, double fraction, const char* what);
+PEL_API PelError pelDeviceSetProgress(PelDevice device, PelProgressCallback callback, void* user);
+
+/* ---- Submission --------------------------------------------------------------------------------------------- */
+
+/* How a call that does work is submitted. NULL: it blocks until the result is there. Otherwise it returns once the work
+ * is queued after `waits`; memory given to it stays valid until `done` (or, with done NULL, pelDeviceFinish) says it is
+ * finished. */
+typedef struct PelSubmit {
+    const PelEvent* waits; /* numWaits events, of this device */
+    uint32_t numWaits;
+    PelEvent* done; /* NULL, or receives an event that the caller releases */
+} PelSubmit;
+
+PEL_API PelError pelEventCreateFromCl(PelDevice device, void* clEvent, PelEvent* event); /* retains clEvent */
+PEL_API PelError pelEventGetCl(PelEvent event, void** clEvent); /* not retained for the caller */
+/* Waits for the work. Errors: PEL_ERROR_DEVICE if it failed. */
+PEL_API PelError pelEventWait(PelEvent event);
+PEL_API PelError pelEventIsDone(PelEvent event, int* done);
+PEL_API void pelEventRetain(PelEvent event);
+PEL_API void pelEventRelease(PelEvent event);
+
+/* ---- Buffers ------------------------------------------------------------------------------------------------ */
+
+typedef struct PelBufferObject* PelBuffer;
+
+/* Memory of the library's own, `bytes` > 0 long; `initial` (bytes long, or NULL for zeros) is copied. */
+PEL_API PelError pelBufferCreate(PelDevice device, size_t bytes, const void* initial, PelBuffer* buffer);
+
+/* The caller's host memory, in place. The caller keeps it alive until the buffer is released and its work is done, and
+ * touches it only while the buffer is mapped (pelBufferMap). Where host and device share memory nothing is copied;
+ * elsewhere mapping and unmapping move it. Alignment to 4096 bytes avoids a copy on some devices. */
+PEL_API PelError pelBufferCreateFromHost(PelDevice device, void* memory, size_t bytes, PelBuffer* buffer);
+
+/* The caller's cl_mem buffer, of the device's context (retained). */
+PEL_API PelError pelBufferCreateFromCl(PelDevice device, void* clMem, PelBuffer* buffer);
+
+PEL_API void pelBufferRetain(PelBuffer buffer);
+PEL_API void pelBufferRelease(PelBuffer buffer);
+PEL_API PelError pelBufferGetSize(PelBuffer buffer, size_t* bytes);
+PEL_API PelError pelBufferGetCl(PelBuffer buffer, void** clMem); /* not retained for the caller */
+PEL_API PelError pelBufferRead(PelBuffer buffer, size_t offset, size_t bytes, void* destination,
+                               const PelSubmit* submit);
+PEL_API PelError pelBufferWrite(PelBuffer buffer, size_t offset, size_t bytes, const void* source,
+                                const PelSubmit* submit);
+/* Makes the whole buffer visible to the host until pelBufferUnmap; for a buffer from host memory it is that memory.
+ * Waits for submitted work. Maps nest. */
+PEL_API PelError pelBufferMap(PelBuffer buffer, void** memory);
+PEL_API PelError pelBufferUnmap(PelBuffer buffer);
+
+/* ---- Images ------------------------------------------------------------------------------------------------- */
+
+/* Components are stored in the order named. A component that a slot needs and the format lacks is an error;
+ * additional ones are ignored, and kept in outputs. */
+typedef enum PelFormat {
+    PEL_FORMAT_UNDEFINED = 0,
+    PEL_FORMAT_R32F = 1,
+    PEL_FORMAT_RG32F = 2,
+    PEL_FORMAT_RGB32F = 3,
+    PEL_FORMAT_RGBA32F = 4,
+    PEL_FORMAT_R16F = 5,
+    PEL_FORMAT_RG16F = 6,
+    PEL_FORMAT_RGB16F = 7,
+    PEL_FORMAT_RGBA16F = 8,
+    PEL_FORMAT_R8_UNORM = 9,
+    PEL_FORMAT_RGBA8_UNORM = 10, /* as a vector: 2 * value - 1 */
+    PEL_FORMAT_RGBA8_SRGB = 11,  /* RGB decoded from sRGB, A linear */
+    PEL_FORMAT_R16_UNORM = 12,
+    PEL_FORMAT_OCT16X2_SNORM = 13,      /* a unit vector as two signed 16-bit octahedral coordinates */
+    PEL_FORMAT_A2B10G10R10_UNORM = 14,  /* one uint32, R in the lowest 10 bits; as a vector: 2 * value - 1 */
+    PEL_FORMAT_R8_UINT = 15,
+    PEL_FORMAT_R16_UINT = 16,
+    PEL_FORMAT_R32_UINT = 17,
+    PEL_FORMAT_PLANAR_RGB32F = 18 /* three float32 planes, planeStride bytes apart */
+} PelFormat;
+
+/* A view of an image inside a buffer, in the layout it already has. */
+typedef struct PelImageDesc {
+    uint32_t structSize;
+    PelFormat format;
+    PelBuffer buffer; /* retained by the object that keeps the view */
+    uint32_t width;   /* pixels */
+    uint32_t height;
+    uint64_t byteOffset;  /* of the first pixel; a multiple of the component size */
+    uint64_t pixelStride; /* bytes; 0: tightly packed */
+    uint64_t rowStride;   /* bytes; 0: width * pixelStride */
+    uint64_t planeStride; /* bytes, planar formats only; 0: height * rowStride */
+} PelImageDesc;
+
+/* ---- Meshes ------------------------------------------------------------------------------------------------- */
+
+typedef struct PelMeshTopologyObject* PelMeshTopology;
+
+/* What was found in a mesh, and what was done about it. */
+typedef struct PelMeshReport {
+    uint32_t structSize;
+    uint32_t vertices;
+    uint32_t triangles;
+    uint32_t uniquePositions; /* after welding; equals vertices when welding is off */
+    uint32_t edges;
+    uint32_t borderEdges;          /* of one triangle */
+    uint32_t nonManifoldEdges;     /* of three or more triangles: kept, every triangle counts */
+    uint32_t unreferencedVertices; /* in no triangle: their curvature is 0 */
+    uint32_t degenerateTriangles;  /* a repeated index: skipped */
+    uint32_t zeroLengthEdges;      /* too short to measure: skipped; set by curvature */
+    uint32_t nonFinitePositions;   /* NaN or Inf: edges to them are skipped, their own curvature is 0; set by curvature */
+    uint32_t nonFiniteNormals;     /* NaN, Inf or zero, likewise; set by curvature */
+} PelMeshReport;
+
+typedef enum PelWeld { PEL_WELD_NONE = 0, PEL_WELD_EXACT = 1, PEL_WELD_TOLERANCE = 2 } PelWeld;
+
+typedef struct PelMeshTopologyDesc {
+    uint32_t structSize;
+    uint32_t numVertices;
+    const uint32_t* indices; /* numIndices, three per triangle; read during the call only */
+    uint64_t numIndices;     /* a multiple of 3 */
+    PelWeld weld;            /* vertices at the same place are one vertex to the topology; default none */
+    float weldTolerance;     /* length; PEL_WELD_TOLERANCE only */
+    const float* positions;  /* needed when welding: xyz per vertex, positionStride bytes apart; read during the call */
+    uint32_t positionStride; /* bytes; 0: 12 */
+} PelMeshTopologyDesc;
+
+/* Analyses the connectivity once; curvature for any positions then reuses it. Errors: PEL_ERROR_INVALID_ARGUMENT for an
+ * index count that is no multiple of 3 or an index >= numVertices (the message names the triangle). `report` may be
+ * NULL. */
+PEL_API PelError pelMeshTopologyCreate(PelDevice device, const PelMeshTopologyDesc* desc, PelMeshTopology* topology,
+                                       PelMeshReport* report);
+PEL_API void pelMeshTopologyRetain(PelMeshTopology topology);
+PEL_API void pelMeshTopologyRelease(PelMeshTopology topology);
+
+/* Vertex data inside a buffer. */
+typedef struct PelVertexView {
+    PelBuffer buffer;
+    uint64_t byteOffset; /* a multiple of 4 */
+    uint32_t byteStride; /* a multiple of 4; 0: tightly packed */
+    uint32_t count;      /* vertices */
+} PelVertexView;
+
+typedef enum PelCurvatureEstimator {
+    PEL_CURVATURE_EDGE = 0 /* (min + max) / 2 of |dn| / |dp| over a vertex's triangle edges [FaceWorks] */
+} PelCurvatureEstimator;
+
+typedef struct PelCurvatureParams {
+    uint32_t structSize;
+    PelCurvatureEstimator estimator;
+    uint32_t smoothingPasses; /* each vertex becomes the mean of its triangles' other two vertices; typical 2 */
+    float scale;              /* multiplies the result; 1 when mesh and LUT share their unit of length */
+} PelCurvatureParams;
+
+/* Curvature at each vertex. `positions`, `normals`: xyz float32 per vertex, as many as the topology has; normals are of
+ * unit length. `curvature`: float32 per vertex, 1/length, >= 0, finite. A given `report` makes the call block. Same input,
+ * same bits. Source: FaceWorks 1.0. */
+PEL_API PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* params,
+                                  const PelVertexView* positions, const PelVertexView* normals,
+                                  const PelVertexView* curvature, PelMeshReport* report, const PelSubmit* submit);
+
+/* Geometric mean over triangles of longest edge / longest UV edge, in length per UV unit. `uvs`: two float32 per vertex.
+ * Triangles where either edge is below 1e-6 of the mesh's largest are skipped. Blocks. Errors:
+ * PEL_ERROR_INVALID_ARGUMENT when no triangle is left. */
+PEL_API PelError pelMeshUvScale(PelMeshTopology topology, const PelVertexView* positions, const PelVertexView* uvs,
+                                float* uvScale);
+
+/* ---- Look-up tables ----------------------------------------------------------------------------------------- */
+
+typedef struct PelLutObject* PelLut;
+
+typedef enum PelLutKind { PEL_LUT_CURVATURE = 0, PEL_LUT_SHADOW = 1 } PelLutKind;
+
+typedef enum PelCurvatureForm {
+    PEL_FORM_ARC = 0 /* the line spread along the arc of a circle, cut at 10 mm * radius / 2.7 [FaceWorks] */
+} PelCurvatureForm;
+
+typedef struct PelCurvatureLutDesc {
+    uint32_t structSize;
+    uint32_t width;  /* texels along N.L from -1 to 1; 1 to 16384; typical 512 */
+    uint32_t height; /* texels along curvature from 1/radiusMax to 1/radiusMin; typical 512 */
+    PelCurvatureForm form;
+    float diffusionRadius; /* length, sigma of the widest Gaussian; 2.7 mm for skin */
+    float radiusMin;       /* length, smallest radius of curvature; typical 1 mm */
+    float radiusMax;       /* length; typical 100 mm */
+} PelCurvatureLutDesc;
+
+typedef struct PelShadowLutDesc {
+    uint32_t structSize;
+    uint32_t width;        /* texels along the wide-filtered shadow from 0 to 1; 1 to 16384; typical 512 */
+    uint32_t height;       /* texels along 1/penumbra width, from widest to narrowest; typical 512 */
+    float diffusionRadius; /* length; 2.7 mm for skin */
+    float widthMin;        /* length, narrowest penumbra; typical 8 mm */
+    float widthMax;        /* length; typical 100 mm */
+    float sharpening;      /* >= 1: how much narrower the shadow gets than the wide filter; typical 10 */
+} PelShadowLutDesc;
+
+/* Integrates a curvature LUT of the skin profile: texel (x, y) holds D(N.L, r) per channel, row 0 the smallest
+ * curvature. Sources: FaceWorks 1.0; Penner, SIGGRAPH 2011. */
+PEL_API PelError pelCurvatureLutCreate(PelDevice device, const PelCurvatureLutDesc* desc, PelLut* lut,
+                                       const PelSubmit* submit);
+/* Integrates a shadow LUT of the skin profile: texel (x, y) holds the light transmitted per channel, row 0 the widest
+ * penumbra. Source: FaceWorks 1.0. */
+PEL_API PelError pelShadowLutCreate(PelDevice device, const PelShadowLutDesc* desc, PelLut* lut,
+                                    const PelSubmit* submit);
+PEL_API void pelLutRetain(PelLut lut);
+PEL_API void pelLutRelease(PelLut lut);
+
+typedef struct PelLutInfo {
+    uint32_t structSize;
+    PelLutKind kind;
+    PelCurvatureLutDesc curvature; /* of a PEL_LUT_CURVATURE */
+    PelShadowLutDesc shadow;       /* of a PEL_LUT_SHADOW */
+} PelLutInfo;
+PEL_API PelError pelLutGetInfo(PelLut lut, PelLutInfo* info);
+
+typedef enum PelLutEncoding {
+    PEL_LUT_FLOAT = 0,     /* RGB float32, the values themselves */
+    PEL_LUT_HALF = 1,      /* RGB float16, the same */
+    PEL_LUT_FACEWORKS8 = 2 /* RGBA8: curvature sat(2 (D - max(u, 0)) + 1/2); shadow faded at the left edge, then sRGB */
+} PelLutEncoding;
+
+/* Bytes that pelLutRead writes: width * height * 12, 6 or 4. */
+PEL_API PelError pelLutGetSize(PelLut lut, PelLutEncoding encoding, size_t* bytes);
+/* The texels, row-major, top row first. `destination` holds `bytes` >= pelLutGetSize. */
+PEL_API PelError pelLutRead(PelLut lut, PelLutEncoding encoding, void* destination, size_t bytes,
+                            const PelSubmit* submit);
+/* A LUT from texels that were integrated before: RGB float32, width * height * 12 bytes, described by info. */
+PEL_API PelError pelLutCreateFromTexels(PelDevice device, const PelLutInfo* info, const float* texels, size_t bytes,
+                                        PelLut* lut);
+
+/* ---- Shading ------------------------------------------------------------------------------------------------ */
+
+typedef struct PelShaderObject* PelShader;
+
+/* The images of a G-buffer. A slot that is not set is a feature that is off. All set images have one size. */
+typedef enum PelImageSlot {
+    PEL_SLOT_RADIANCE = 0,          /* output, RGB or RGBA, float or half: the shaded pixels. Needed */
+    PEL_SLOT_MATERIAL = 1,          /* id per pixel, uint or float; 0 is background. Not set: all are material 1 */
+    PEL_SLOT_POSITION = 2,          /* xyz, world. Needed by thickness, specular and positional lights */
+    PEL_SLOT_DEPTH = 3,             /* device depth, with PelCamera.inverseViewProjection, instead of positions */
+    PEL_SLOT_NORMAL_GEOMETRIC = 4,  /* Ng, unit. Not set: the shading normal */
+    PEL_SLOT_NORMAL_SHADING = 5,    /* N, unit. Needed */
+    PEL_SLOT_NORMAL_BLURRED = 6,    /* Nb, unit. Not set: the geometric normal */
+    PEL_SLOT_CURVATURE = 7,         /* 1/length. With a curvature LUT: direct scattering */
+    PEL_SLOT_ALBEDO = 8,            /* RGB. Not set: PelMaterial.albedo */
+    PEL_SLOT_AMBIENT_OCCLUSION = 9, /* 0 to 1, multiplies the ambient term */
+    PEL_SLOT_THICKNESS = 10,        /* length, from the host, instead of shadow map taps */
+    PEL_SLOT_ROUGHNESS = 11,        /* multiplies PelMaterial.roughness */
+    PEL_SLOT_SPECULAR = 12,         /* multiplies PelMaterial.specular */
+    PEL_SLOT_COUNT = 13
+} PelImageSlot;
+
+/* The images of one light. */
+typedef enum PelLightSlot {
+    PEL_LIGHT_WIDE_SHADOW = 0, /* w per pixel, 0 shadow to 1 lit, filtered over PelMaterial.shadowFilterWidth */
+    PEL_LIGHT_SHADOW_MAP = 1,  /* depth in [0, 1], any size, one component: thickness by taps */
+    PEL_LIGHT_SLOT_COUNT = 2
+} PelLightSlot;
+
+typedef enum PelLightType { PEL_LIGHT_DIRECTIONAL = 0, PEL_LIGHT_POINT = 1, PEL_LIGHT_SPOT = 2 } PelLightType;
+
+typedef enum PelShadowProjection { PEL_SHADOW_PARALLEL = 0, PEL_SHADOW_PERSPECTIVE = 1 } PelShadowProjection;
+
+typedef struct PelLight {
+    uint32_t structSize;
+    PelLightType type;
+    float toLight[3];       /* directional: unit vector from the surface to the light */
+    float position[3];      /* point, spot: world */
+    float spotDirection[3]; /* spot: unit vector the way the light looks */
+    float spotCosInner;     /* cosine of the angle from spotDirection up to which the spot is fully bright */
+    float spotCosOuter;     /* and from which it is dark; between them a smoothstep of the cosine */
+    float color[3];         /* directional: irradiance / pi at normal incidence; point, spot: that at distance 1 */
+    float range;            /* point, spot: no light beyond it; 0: no limit */
+    /* The rest describes the shadow map, if PEL_LIGHT_SHADOW_MAP is set. */
+    float worldToShadow[16]; /* to homogeneous (u, v, z): u, v in [0, 1] over the map, row 0 at v = 0; z as in the map */
+    PelShadowProjection shadowProjection;
+    float shadowDepthRange; /* parallel: length that z from 0 to 1 spans; negative when z falls away from the light */
+    float shadowDepthA;     /* perspective: distance along the light = 1 / (A * z + B), from its projection matrix */
+    float shadowDepthB;
+} PelLight;
+
+typedef struct PelMaterial {
+    uint32_t structSize;
+    float albedo[3];       /* used when PEL_SLOT_ALBEDO is not set */
+    float diffusionRadius; /* length; 2.7 mm for skin. Where it differs from the LUT's, look-ups are rescaled */
+    float normalBlend[3];  /* how far the blurred normal replaces the shading normal, per channel; 1, 0.3, 0 for skin:
+                              the channel that scatters widest sees the blurred normal only */
+    float shadowFilterWidth;       /* length: penumbra of the wide shadow where the surface faces the light; 8 mm */
+    float deepScatterColor[3];     /* 0: no deep scatter */
+    float deepScatterRadius;       /* length, sigma of the transmission through thickness; 6 mm */
+    float deepScatterNormalOffset; /* length the position moves inwards before thickness is measured; 0.2 mm */
+    float thicknessFilterRadius;   /* radius of the disk of taps, in UV of the shadow map; 0.02 */
+    uint32_t thicknessTaps;        /* 8 or 32; 0: thickness is not measured */
+    float specular;                /* rho_s; 0: no specular */
+    float roughness;               /* m of Beckmann; 0.3 */
+    float f0;                      /* reflectance at normal incidence; 0.028 */
+} PelMaterial;
+
+/* Light from everywhere: E(n) = constant + sum of sh[i] * basis_i(n) over the 9 orthonormal real spherical harmonics of
+ * orders 0 to 2, in the order 1; y, z, x; xy, yz, 3z^2-1, xz, x^2-y^2. The values are irradiance / pi (the cosine already
+ * convolved in), so that albedo * E is radiance. Negative sums count as 0. All zero: no ambient. */
+typedef struct PelAmbient {
+    uint32_t structSize;
+    float constant[3];
+    float sh[9][3];
+} PelAmbient;
+
+typedef struct PelCamera {
+    uint32_t structSize;
+    float position[3];               /* world; needed by specular */
+    float inverseViewProjection[16]; /* clip to world, for PEL_SLOT_DEPTH. x and y in [-1, 1], y up, row 0 on top; z as in
+                                        the depth image, so that ordinary and reversed depth both work */
+} PelCamera;
+
+typedef enum PelFeature {
+    PEL_FEATURE_DIRECT_SCATTER = 1 << 0, /* curvature image and a curvature LUT */
+    PEL_FEATURE_SHADOW = 1 << 1,         /* a wide shadow image */
+    PEL_FEATURE_SHADOW_LUT = 1 << 2,     /* and a shadow LUT */
+    PEL_FEATURE_AMBIENT = 1 << 3,
+    PEL_FEATURE_DEEP_SCATTER = 1 << 4,   /* deepScatterColor, and thickness from an image or taps */
+    PEL_FEATURE_THICKNESS_TAPS = 1 << 5, /* deep scatter with a shadow map */
+    PEL_FEATURE_SPECULAR = 1 << 6
+} PelFeature;
+
+/* What a shader did: counts of its last execution unless they say total. */
+typedef struct PelShaderStats {
+    uint32_t structSize;
+    uint32_t features;      /* PelFeature bits, derived at commit */
+    uint64_t programsBuilt; /* total */
+    uint64_t launches;
+    uint64_t scratchBytes;    /* device memory held beside the caller's images */
+    uint64_t bytesUploaded;   /* constants and tables sent since the execution before */
+    uint64_t tilesTotal;
+    uint64_t tilesShaded;     /* with at least one pixel of a material */
+    uint64_t pixelsTotal;
+    uint64_t pixelsShaded;    /* of a material. This and the following need PelShaderOptions.countPixels */
+    uint64_t pixelsShadowLut; /* that read the shadow LUT, summed over lights, like the next two */
+    uint64_t pixelsThickness; /* that took thickness taps */
+    uint64_t pixelsSpecular;
+    uint64_t pixelsInvalid;    /* with a NaN or Inf input */
+    double deviceMilliseconds; /* kernels; 0 on a queue without profiling */
+} PelShaderStats;
+
+typedef struct PelShaderOptions {
+    uint32_t structSize;
+    uint32_t accumulate;      /* 1: radiance is added to the output image; 0: it replaces pixels that have a material */
+    uint32_t disableSkipping; /* 1: shade every tile and evaluate every term; the same bits come out, for tests */
+    uint32_t countPixels;     /* 1: fill the pixel counters of PelShaderStats, at some cost */
+    float invalidColor[3];    /* radiance of a pixel with a NaN or Inf input; default 0 */
+} PelShaderOptions;
+
+PEL_API PelError pelShaderCreate(PelDevice device, PelShader* shader);
+PEL_API void pelShaderRetain(PelShader shader);
+PEL_API void pelShaderRelease(PelShader shader);
+PEL_API PelError pelShaderSetOptions(PelShader shader, const PelShaderOptions* options);
+/* A NULL image clears the slot. */
+PEL_API PelError pelShaderSetImage(PelShader shader, PelImageSlot slot, const PelImageDesc* image);
+/* Material `id`, 1 to 255; a NULL material removes it. Either LUT may be NULL: no direct scattering, plain shadow. */
+PEL_API PelError pelShaderSetMaterial(PelShader shader, uint32_t id, const PelMaterial* material, PelLut curvatureLut,
+                                      PelLut shadowLut);
+/* Replaces all lights, 0 to 64 of them; images of lights beyond the count are cleared. */
+PEL_API PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t count);
+PEL_API PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot, const PelImageDesc* image);
+PEL_API PelError pelShaderSetAmbient(PelShader shader, const PelAmbient* ambient);
+PEL_API PelError pelShaderSetCamera(PelShader shader, const PelCamera* camera);
+/* Checks that everything fits together, derives the features and builds what they need. */
+PEL_API PelError pelShaderCommit(PelShader shader);
+/* Shades. Errors: PEL_ERROR_INVALID_STATE when something was set after the last commit. */
+PEL_API PelError pelShaderExecute(PelShader shader, const PelSubmit* submit);
+/* Waits for the last execution. */
+PEL_API PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats);
+
+#include "pellucid_defaults.h"
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,88 @@
+/* Defaults for the structures of pellucid.h, which includes this file. Inline, so that structSize is the size that the
+ * caller compiled with. */
+#ifndef PELLUCID_DEFAULTS_H
+#define PELLUCID_DEFAULTS_H
+#include <string.h>
+
+#define PEL_ZEROED_(Type, value)    \
+    Type value;                     \
+    memset(&value, 0, sizeof value); \
+    value.structSize = (uint32_t)sizeof value
+
+/* clang-format off */
+static inline PelDeviceInfo pelDeviceInfoDefaults(void) { PEL_ZEROED_(PelDeviceInfo, s); return s; }
+static inline PelDeviceStats pelDeviceStatsDefaults(void) { PEL_ZEROED_(PelDeviceStats, s); return s; }
+static inline PelImageDesc pelImageDescDefaults(void) { PEL_ZEROED_(PelImageDesc, s); return s; }
+static inline PelMeshReport pelMeshReportDefaults(void) { PEL_ZEROED_(PelMeshReport, s); return s; }
+static inline PelMeshTopologyDesc pelMeshTopologyDescDefaults(void) { PEL_ZEROED_(PelMeshTopologyDesc, s); return s; }
+static inline PelCurvatureParams pelCurvatureParamsDefaults(void) {
+    PEL_ZEROED_(PelCurvatureParams, s);
+    s.smoothingPasses = 2;
+    s.scale = 1.0f;
+    return s;
+}
+static inline PelCurvatureLutDesc pelCurvatureLutDescDefaults(void) {
+    PEL_ZEROED_(PelCurvatureLutDesc, s);
+    s.width = 512;
+    s.height = 512;
+    s.diffusionRadius = 2.7f;
+    s.radiusMin = 1.0f;
+    s.radiusMax = 100.0f;
+    return s;
+}
+static inline PelShadowLutDesc pelShadowLutDescDefaults(void) {
+    PEL_ZEROED_(PelShadowLutDesc, s);
+    s.width = 512;
+    s.height = 512;
+    s.diffusionRadius = 2.7f;
+    s.widthMin = 8.0f;
+    s.widthMax = 100.0f;
+    s.sharpening = 10.0f;
+    return s;
+}
+static inline PelLutInfo pelLutInfoDefaults(void) {
+    PEL_ZEROED_(PelLutInfo, s);
+    s.curvature = pelCurvatureLutDescDefaults();
+    s.shadow = pelShadowLutDescDefaults();
+    return s;
+}
+static inline PelLight pelLightDefaults(void) {
+    PEL_ZEROED_(PelLight, s);
+    s.toLight[2] = 1.0f;
+    s.spotDirection[2] = -1.0f;
+    s.spotCosInner = 0.9f;
+    s.spotCosOuter = 0.8f;
+    s.color[0] = s.color[1] = s.color[2] = 1.0f;
+    s.worldToShadow[0] = s.worldToShadow[5] = 1.0f;
+    s.worldToShadow[10] = s.worldToShadow[15] = 1.0f;
+    s.shadowDepthRange = 1.0f;
+    return s;
+}
+static inline PelMaterial pelMaterialDefaults(void) {
+    PEL_ZEROED_(PelMaterial, s);
+    s.albedo[0] = s.albedo[1] = s.albedo[2] = 0.5f;
+    s.diffusionRadius = 2.7f;
+    s.normalBlend[0] = 1.0f;
+    s.normalBlend[1] = 0.3f;
+    s.shadowFilterWidth = 8.0f;
+    s.deepScatterRadius = 6.0f;
+    s.deepScatterNormalOffset = 0.2f;
+    s.thicknessFilterRadius = 0.02f;
+    s.thicknessTaps = 32;
+    s.roughness = 0.3f;
+    s.f0 = 0.028f;
+    return s;
+}
+static inline PelAmbient pelAmbientDefaults(void) { PEL_ZEROED_(PelAmbient, s); return s; }
+static inline PelCamera pelCameraDefaults(void) {
+    PEL_ZEROED_(PelCamera, s);
+    s.inverseViewProjection[0] = s.inverseViewProjection[5] = 1.0f;
+    s.inverseViewProjection[10] = s.inverseViewProjection[15] = 1.0f;
+    return s;
+}
+static inline PelShaderStats pelShaderStatsDefaults(void) { PEL_ZEROED_(PelShaderStats, s); return s; }
+static inline PelShaderOptions pelShaderOptionsDefaults(void) { PEL_ZEROED_(PelShaderOptions, s); return s; }
+/* clang-format on */
+
+#undef PEL_ZEROED_
+#endif
