@@ -1,0 +1,40 @@
+// The one exception that crosses the library's layers; host/api turns it into a PelError and a message.
+#pragma once
+#include <pellucid/pellucid.h>
+
+#include <locale>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace pel {
+
+class Error : public std::runtime_error {
+  public:
+    Error(PelError code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    PelError code() const { return code_; }
+
+  private:
+    PelError code_;
+};
+
+// Joins values into one text, the same in every locale.
+template <class... Parts>
+std::string text(const Parts&... parts) {
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    (out << ... << parts);
+    return out.str();
+}
+
+template <class... Parts>
+[[noreturn]] void fail(PelError code, const Parts&... parts) {
+    throw Error(code, text(parts...));
+}
+
+template <class... Parts>
+[[noreturn]] void invalidArgument(const Parts&... parts) {
+    fail(PEL_ERROR_INVALID_ARGUMENT, parts...);
+}
+
+}  // namespace pel

@@ -1,0 +1,20 @@
+// The text of every file under kernels/, embedded at build time (cmake/EmbedKernels.cmake).
+#pragma once
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace pel::cl {
+
+struct KernelFile {
+    std::string_view name;  // relative to kernels/, such as "lib/vector.clh"
+    std::string_view text;
+};
+
+std::span<const KernelFile> kernelFiles();
+const char* kernelsHash();  // changes with any byte of any file
+
+// The file with its #include "..." lines replaced by the files they name (relative to kernels/), each once.
+std::string kernelSource(std::string_view name);
+
+}  // namespace pel::cl

@@ -1,0 +1,42 @@
+// One kernel launch: arguments by position, checked sizes, a padded range.
+#pragma once
+#include <array>
+#include <string>
+
+#include "cl/handle.h"
+
+namespace pel::cl {
+
+// `items` work-items in each dimension, rounded up to whole work-groups of `group` (a kernel's
+// reqd_work_group_size): kernels test their index against the item count that they get as an argument.
+struct Range {
+    std::array<size_t, 3> items{1, 1, 1};
+    std::array<size_t, 3> group{1, 1, 1};
+};
+
+class Launch {
+  public:
+    // A fresh cl_kernel: making one costs about a microsecond and needs no lock.
+    Launch(const Program& program, const char* kernel);
+
+    Launch& arg(cl_mem memory) { return raw(&memory, sizeof memory); }
+    Launch& arg(const Memory& memory) { return arg(memory.get()); }
+    Launch& local(size_t bytes) { return raw(nullptr, bytes); }
+    // Numbers and structures of kernels/shared, passed by value.
+    template <class T>
+    requires std::is_trivially_copyable_v<T> &&(!std::is_pointer_v<T>)Launch& arg(const T& value) {
+        return raw(&value, sizeof value);
+    }
+
+    // No launch happens (and an empty event returns) when a dimension has no items.
+    Event enqueue(cl_command_queue queue, const Range& range);
+
+  private:
+    Launch& raw(const void* value, size_t bytes);
+
+    Kernel kernel_;
+    const char* name_;
+    cl_uint next_ = 0;
+};
+
+}  // namespace pel::cl

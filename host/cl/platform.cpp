@@ -1,0 +1,150 @@
+#include "cl/platform.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <cstring>
+
+namespace pel::cl {
+namespace {
+
+constexpr const char* missingPackage =
+    "no OpenCL device was found: install a driver, for example PoCL for the CPU (Debian: apt-get install "
+    "pocl-opencl-icd), or the one of your GPU's vendor";
+
+template <class T>
+T info(cl_device_id device, cl_device_info what) {
+    T value{};
+    check(clGetDeviceInfo(device, what, sizeof value, &value, nullptr), "clGetDeviceInfo");
+    return value;
+}
+
+std::string platformName(cl_device_id device) {
+    const auto platform = info<cl_platform_id>(device, CL_DEVICE_PLATFORM);
+    size_t size = 0;
+    check(clGetPlatformInfo(platform, CL_PLATFORM_NAME, 0, nullptr, &size), "clGetPlatformInfo");
+    std::string name(size, '\0');
+    check(clGetPlatformInfo(platform, CL_PLATFORM_NAME, size, name.data(), nullptr), "clGetPlatformInfo");
+    return name.c_str();
+}
+
+template <size_t N>
+void copyText(char (&to)[N], const std::string& from) {
+    std::strncpy(to, from.c_str(), N - 1);
+    to[N - 1] = '\0';
+}
+
+std::string lower(std::string s) {
+    std::transform(s.begin(), s.end(), s.begin(), [](unsigned char c) { return std::tolower(c); });
+    return s;
+}
+
+std::string list(const std::vector<PelDeviceInfo>& devices) {
+    std::string out;
+    for (const PelDeviceInfo& d : devices) out += text("\n  ", d.index, ": ", d.name, " (", d.platform, ")");
+    return out;
+}
+
+// Better devices have more peak arithmetic; clock and units are all that OpenCL tells about it.
+uint64_t strength(const PelDeviceInfo& d) {
+    const uint64_t kind = d.type == PEL_DEVICE_GPU ? 2 : d.type == PEL_DEVICE_CPU ? 1 : 0;
+    return kind << 48 | uint64_t(d.computeUnits) * std::max(1u, d.clockMhz);
+}
+
+}  // namespace
+
+std::string infoString(cl_device_id device, cl_device_info what) {
+    size_t size = 0;
+    check(clGetDeviceInfo(device, what, 0, nullptr, &size), "clGetDeviceInfo");
+    std::string value(size, '\0');
+    check(clGetDeviceInfo(device, what, size, value.data(), nullptr), "clGetDeviceInfo");
+    return value.c_str();
+}
+
+std::vector<cl_device_id> allDevices() {
+    cl_uint count = 0;
+    // A loader without platforms answers with an error; that is no failure here.
+    if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS || count == 0) return {};
+    std::vector<cl_platform_id> platforms(count);
+    check(clGetPlatformIDs(count, platforms.data(), nullptr), "clGetPlatformIDs");
+    std::vector<cl_device_id> all;
+    for (cl_platform_id platform : platforms) {
+        cl_uint devices = 0;
+        if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &devices) != CL_SUCCESS) continue;
+        const size_t first = all.size();
+        all.resize(first + devices);
+        check(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, devices, all.data() + first, nullptr),
+              "clGetDeviceIDs");
+    }
+    return all;
+}
+
+PelDeviceInfo describe(cl_device_id device, uint32_t index) {
+    PelDeviceInfo d = pelDeviceInfoDefaults();
+    d.index = index;
+    const auto type = info<cl_device_type>(device, CL_DEVICE_TYPE);
+    d.type = type & CL_DEVICE_TYPE_GPU   ? PEL_DEVICE_GPU
+             : type & CL_DEVICE_TYPE_CPU ? PEL_DEVICE_CPU
+                                         : PEL_DEVICE_ACCELERATOR;
+    d.computeUnits = info<cl_uint>(device, CL_DEVICE_MAX_COMPUTE_UNITS);
+    d.clockMhz = info<cl_uint>(device, CL_DEVICE_MAX_CLOCK_FREQUENCY);
+    d.preferredFloatWidth = info<cl_uint>(device, CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT);
+    d.sharedMemory = info<cl_bool>(device, CL_DEVICE_HOST_UNIFIED_MEMORY);
+    d.globalMemoryBytes = info<cl_ulong>(device, CL_DEVICE_GLOBAL_MEM_SIZE);
+    d.maxAllocationBytes = info<cl_ulong>(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
+    d.localMemoryBytes = info<cl_ulong>(device, CL_DEVICE_LOCAL_MEM_SIZE);
+    d.maxWorkGroupSize = info<size_t>(device, CL_DEVICE_MAX_WORK_GROUP_SIZE);
+    copyText(d.name, infoString(device, CL_DEVICE_NAME));
+    copyText(d.vendor, infoString(device, CL_DEVICE_VENDOR));
+    copyText(d.version, infoString(device, CL_DEVICE_VERSION));
+    copyText(d.driver, infoString(device, CL_DRIVER_VERSION));
+    const std::string platform = platformName(device);
+    copyText(d.platform, platform);
+
+    // CPUs vectorise explicit vector types, GPUs vectorise across work-items (docs/dataflow.md, "Widths").
+    d.mathWidth = d.type != PEL_DEVICE_CPU ? 1 : d.preferredFloatWidth >= 16 ? 16 : 8;
+    std::string quirks;
+    if (d.type == PEL_DEVICE_CPU) quirks += text("explicit ", d.mathWidth, "-wide arithmetic; ");
+    if (platform == "Portable Computing Language")
+        quirks +=
+            "fixed work-group sizes and no global offsets (each is compiled anew); no program binaries (own "
+            "cache); ";
+    if (!quirks.empty()) quirks.resize(quirks.size() - 2);
+    copyText(d.quirks, quirks);
+    return d;
+}
+
+uint32_t selectDevice(const char* selector) {
+    const char* source = "the device selector";
+    if (!selector || !*selector) {
+        selector = std::getenv("PELLUCID_DEVICE");
+        source = "PELLUCID_DEVICE";
+    }
+    const std::vector<cl_device_id> ids = allDevices();
+    if (ids.empty()) fail(PEL_ERROR_NO_DEVICE, missingPackage);
+    std::vector<PelDeviceInfo> devices;
+    for (size_t i = 0; i < ids.size(); ++i) devices.push_back(describe(ids[i], uint32_t(i)));
+
+    std::vector<PelDeviceInfo> matches;
+    const std::string wanted = lower(selector ? selector : "");
+    const bool number = !wanted.empty() && std::all_of(wanted.begin(), wanted.end(),
+                                                       [](unsigned char c) { return std::isdigit(c); });
+    for (const PelDeviceInfo& d : devices) {
+        const char* type = d.type == PEL_DEVICE_GPU   ? "gpu"
+                           : d.type == PEL_DEVICE_CPU ? "cpu"
+                                                      : "accelerator";
+        if (wanted.empty() || (number && wanted == std::to_string(d.index)) || (!number && wanted == type))
+            matches.push_back(d);
+    }
+    if (matches.empty() && !number)
+        for (const PelDeviceInfo& d : devices)
+            if (lower(text(d.name, " ", d.platform)).find(wanted) != std::string::npos) matches.push_back(d);
+    if (matches.empty())
+        fail(PEL_ERROR_NO_DEVICE, source, " \"", selector,
+             "\" matches no OpenCL device; there are:", list(devices));
+    return std::max_element(matches.begin(), matches.end(),
+                            [](const auto& a, const auto& b) { return strength(a) < strength(b); })
+        ->index;
+}
+
+}  // namespace pel::cl

@@ -1,0 +1,21 @@
+// Which OpenCL devices there are, which one is meant, and what is peculiar about it.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "cl/handle.h"
+
+namespace pel::cl {
+
+// Every device of every platform, GPUs and CPUs alike, in the order OpenCL lists them.
+std::vector<cl_device_id> allDevices();
+
+// Describes a device; index is its position in allDevices(), or UINT32_MAX.
+PelDeviceInfo describe(cl_device_id device, uint32_t index);
+
+// The position in allDevices() that a selector means (see pelDeviceCreate).
+uint32_t selectDevice(const char* selector);
+
+std::string infoString(cl_device_id device, cl_device_info what);
+
+}  // namespace pel::cl

@@ -1,0 +1,74 @@
+#include "core/buffer.h"
+
+namespace pel {
+
+Buffer::Buffer(Ref<Device> device, cl::Memory memory, size_t bytes)
+    : Object(kind), device_(std::move(device)), memory_(std::move(memory)), bytes_(bytes) {}
+
+Buffer::~Buffer() {
+    if (mapped_) clEnqueueUnmapMemObject(device_->queue(), memory_.get(), mapped_, 0, nullptr, nullptr);
+}
+
+Ref<Buffer> Buffer::create(Ref<Device> device, size_t bytes, const void* initial) {
+    if (bytes == 0) invalidArgument("a buffer of 0 bytes was asked for; at least 1 is needed");
+    cl::Memory memory = device->allocate(bytes, initial);
+    if (!initial) {
+        const cl_uchar zero = 0;
+        cl::check(clEnqueueFillBuffer(device->queue(), memory.get(), &zero, 1, 0, bytes, 0, nullptr, nullptr),
+                  "clEnqueueFillBuffer");
+    }
+    return make<Buffer>(std::move(device), std::move(memory), bytes);
+}
+
+Ref<Buffer> Buffer::createFromHost(Ref<Device> device, void* host, size_t bytes) {
+    if (!host || bytes == 0) invalidArgument("a buffer from host memory needs a pointer and at least 1 byte");
+    cl_int code = CL_SUCCESS;
+    cl::Memory memory(
+        clCreateBuffer(device->context(), CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, host, &code));
+    cl::check(code, "clCreateBuffer(from host memory)");
+    return make<Buffer>(std::move(device), std::move(memory), bytes);
+}
+
+Ref<Buffer> Buffer::createFromCl(Ref<Device> device, cl_mem mem) {
+    if (!mem) invalidArgument("a cl_mem is needed, not NULL");
+    cl_context context = nullptr;
+    cl_mem_object_type type = 0;
+    size_t bytes = 0;
+    cl::check(clGetMemObjectInfo(mem, CL_MEM_CONTEXT, sizeof context, &context, nullptr),
+              "clGetMemObjectInfo");
+    cl::check(clGetMemObjectInfo(mem, CL_MEM_TYPE, sizeof type, &type, nullptr), "clGetMemObjectInfo");
+    cl::check(clGetMemObjectInfo(mem, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr), "clGetMemObjectInfo");
+    if (context != device->context())
+        invalidArgument("the cl_mem belongs to another cl_context than the device");
+    if (type != CL_MEM_OBJECT_BUFFER) invalidArgument("the cl_mem is an image; a buffer is needed");
+    return make<Buffer>(std::move(device), cl::Memory::retained(mem), bytes);
+}
+
+void Buffer::checkRange(uint64_t offset, uint64_t bytes, const char* what) const {
+    if (offset > bytes_ || bytes > bytes_ - offset)
+        invalidArgument(what, " needs bytes ", offset, " to ", offset + bytes, " of a buffer of ", bytes_,
+                        " bytes");
+}
+
+void* Buffer::map() {
+    std::lock_guard lock(mutex_);
+    if (mapCount_ == 0) {
+        cl_int code = CL_SUCCESS;
+        mapped_ = clEnqueueMapBuffer(device_->queue(), memory_.get(), CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
+                                     bytes_, 0, nullptr, nullptr, &code);
+        cl::check(code, "clEnqueueMapBuffer");
+    }
+    ++mapCount_;
+    return mapped_;
+}
+
+void Buffer::unmap() {
+    std::lock_guard lock(mutex_);
+    if (mapCount_ == 0) fail(PEL_ERROR_INVALID_STATE, "pelBufferUnmap on a buffer that is not mapped");
+    if (--mapCount_ > 0) return;
+    cl::check(clEnqueueUnmapMemObject(device_->queue(), memory_.get(), std::exchange(mapped_, nullptr), 0,
+                                      nullptr, nullptr),
+              "clEnqueueUnmapMemObject");
+}
+
+}  // namespace pel

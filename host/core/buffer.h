@@ -1,0 +1,35 @@
+// Memory that both sides know: the library's own, the caller's host memory in place, or the caller's cl_mem.
+#pragma once
+#include "core/device.h"
+
+namespace pel {
+
+class Buffer final : public Object {
+  public:
+    static constexpr Kind kind = Kind::buffer;
+    static Ref<Buffer> create(Ref<Device> device, size_t bytes, const void* initial);
+    static Ref<Buffer> createFromHost(Ref<Device> device, void* memory, size_t bytes);
+    static Ref<Buffer> createFromCl(Ref<Device> device, cl_mem memory);
+
+    Device& device() const { return *device_; }
+    size_t bytes() const { return bytes_; }
+    const cl::Memory& memory() const { return memory_; }
+
+    // Throws unless [offset, offset + bytes) lies inside.
+    void checkRange(uint64_t offset, uint64_t bytes, const char* what) const;
+    void* map();
+    void unmap();
+
+    Buffer(Ref<Device> device, cl::Memory memory, size_t bytes);
+
+  private:
+    ~Buffer() override;
+    Ref<Device> device_;
+    cl::Memory memory_;
+    size_t bytes_;
+    std::mutex mutex_;
+    void* mapped_ = nullptr;
+    uint32_t mapCount_ = 0;
+};
+
+}  // namespace pel

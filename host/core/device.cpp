@@ -1,0 +1,164 @@
+#include "core/device.h"
+
+#include "cl/platform.h"
+
+namespace pel {
+
+Ref<Device> Device::create(const char* selector) {
+    const uint32_t index = cl::selectDevice(selector);
+    cl_device_id id = cl::allDevices().at(index);
+    cl_int code = CL_SUCCESS;
+    cl::Context context(clCreateContext(nullptr, 1, &id, nullptr, nullptr, &code));
+    cl::check(code, "clCreateContext");
+    cl::Queue queue(clCreateCommandQueue(context.get(), id, CL_QUEUE_PROFILING_ENABLE, &code));
+    cl::check(code, "clCreateCommandQueue");
+    return make<Device>(context, id, queue, cl::describe(id, index));
+}
+
+Ref<Device> Device::createFromCl(cl_context context, cl_device_id id, cl_command_queue queue) {
+    if (!context || !id || !queue)
+        invalidArgument(
+            "a device from the caller's OpenCL objects needs all of cl_context, cl_device_id and "
+            "cl_command_queue");
+    cl_command_queue_properties properties = 0;
+    cl_context queueContext = nullptr;
+    cl_device_id queueDevice = nullptr;
+    cl::check(clGetCommandQueueInfo(queue, CL_QUEUE_PROPERTIES, sizeof properties, &properties, nullptr),
+              "clGetCommandQueueInfo");
+    cl::check(clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof queueContext, &queueContext, nullptr),
+              "clGetCommandQueueInfo");
+    cl::check(clGetCommandQueueInfo(queue, CL_QUEUE_DEVICE, sizeof queueDevice, &queueDevice, nullptr),
+              "clGetCommandQueueInfo");
+    if (queueContext != context)
+        invalidArgument("the cl_command_queue belongs to another cl_context than the one given");
+    if (queueDevice != id)
+        invalidArgument("the cl_command_queue belongs to another cl_device_id than the one given");
+    if (properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE)
+        invalidArgument("the cl_command_queue is out of order; an in-order queue is needed");
+    return make<Device>(cl::Context::retained(context), id, cl::Queue::retained(queue),
+                        cl::describe(id, UINT32_MAX));
+}
+
+Device::Device(cl::Context context, cl_device_id id, cl::Queue queue, const PelDeviceInfo& info)
+    : Object(kind),
+      context_(context),
+      id_(id),
+      queue_(std::move(queue)),
+      info_(info),
+      programs_(std::move(context), id, info.mathWidth),
+      stats_(pelDeviceStatsDefaults()) {
+    cl_command_queue_properties properties = 0;
+    clGetCommandQueueInfo(queue_.get(), CL_QUEUE_PROPERTIES, sizeof properties, &properties, nullptr);
+    profiling_ = properties & CL_QUEUE_PROFILING_ENABLE;
+}
+
+Device::~Device() {
+    clFinish(queue_.get());
+}
+
+cl::Event Device::launch(cl::Launch& launch, const cl::Range& range) {
+    cl::Event event = launch.enqueue(queue_.get(), range);
+    if (!event) return event;
+    std::lock_guard lock(mutex_);
+    ++stats_.launches;
+    if (profiling_) {
+        pending_.push_back(event);
+        if (pending_.size() > 512) foldEvents(false);
+    }
+    return event;
+}
+
+cl::Memory Device::allocate(size_t bytes, const void* initial) {
+    if (bytes > info_.maxAllocationBytes)
+        fail(PEL_ERROR_OUT_OF_MEMORY, bytes, " bytes are more than this device allocates at once (",
+             info_.maxAllocationBytes, ")");
+    cl_int code = CL_SUCCESS;
+    cl_mem_flags flags = CL_MEM_READ_WRITE | (initial ? CL_MEM_COPY_HOST_PTR : 0);
+    cl::Memory memory(clCreateBuffer(context_.get(), flags, bytes, const_cast<void*>(initial), &code));
+    if (code != CL_SUCCESS) cl::check(code, text("clCreateBuffer(", bytes, " bytes)").c_str());
+    std::lock_guard lock(mutex_);
+    stats_.bytesAllocated += bytes;
+    if (initial) stats_.bytesToDevice += bytes;
+    return memory;
+}
+
+void Device::countTransfer(size_t toDevice, size_t toHost) {
+    std::lock_guard lock(mutex_);
+    stats_.bytesToDevice += toDevice;
+    stats_.bytesToHost += toHost;
+}
+
+void Device::read(cl_mem memory, size_t offset, size_t bytes, void* destination, bool blocking) {
+    cl::check(
+        clEnqueueReadBuffer(queue_.get(), memory, blocking, offset, bytes, destination, 0, nullptr, nullptr),
+        "clEnqueueReadBuffer");
+    countTransfer(0, bytes);
+}
+
+void Device::write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking) {
+    cl::check(
+        clEnqueueWriteBuffer(queue_.get(), memory, blocking, offset, bytes, source, 0, nullptr, nullptr),
+        "clEnqueueWriteBuffer");
+    countTransfer(bytes, 0);
+}
+
+void Device::finish() {
+    cl::check(clFinish(queue_.get()), "clFinish");
+}
+
+PelDeviceStats Device::stats() {
+    finish();
+    std::lock_guard lock(mutex_);
+    foldEvents(true);
+    PelDeviceStats result = stats_;
+    result.programsBuilt = programs_.built();
+    result.buildMilliseconds = programs_.buildMilliseconds();
+    return result;
+}
+
+// Adds the time of finished launches to the total and forgets them; unfinished ones are kept unless the queue
+// is empty.
+void Device::foldEvents(bool finished) {
+    std::vector<cl::Event> kept;
+    for (cl::Event& event : pending_) {
+        cl_int status = CL_QUEUED;
+        clGetEventInfo(event.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr);
+        if (status > CL_COMPLETE && !finished)
+            kept.push_back(event);
+        else
+            stats_.kernelMilliseconds += eventMilliseconds(event);
+    }
+    pending_ = std::move(kept);
+}
+
+void Device::setProgress(PelProgressCallback callback, void* user) {
+    std::lock_guard lock(mutex_);
+    progress_ = callback;
+    progressUser_ = user;
+}
+
+void Device::progress(double fraction, const char* what) {
+    PelProgressCallback callback;
+    void* user;
+    {
+        std::lock_guard lock(mutex_);
+        callback = progress_;
+        user = progressUser_;
+    }
+    if (callback && !callback(user, fraction, what))
+        fail(PEL_ERROR_CANCELLED, "cancelled by the caller during: ", what);
+}
+
+double eventMilliseconds(const cl::Event& event) {
+    cl_ulong start = 0, end = 0;
+    if (!event ||
+        clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_START, sizeof start, &start, nullptr) !=
+            CL_SUCCESS ||
+        clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr) !=
+            CL_SUCCESS ||
+        end < start)
+        return 0;
+    return double(end - start) * 1e-6;
+}
+
+}  // namespace pel

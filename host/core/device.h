@@ -1,0 +1,66 @@
+// One OpenCL device with its context, queue, programs and counters.
+#pragma once
+#include <atomic>
+#include <mutex>
+#include <vector>
+
+#include "cl/launch.h"
+#include "cl/program_cache.h"
+#include "core/object.h"
+
+namespace pel {
+
+class Device final : public Object {
+  public:
+    static constexpr Kind kind = Kind::device;
+
+    static Ref<Device> create(const char* selector);
+    static Ref<Device> createFromCl(cl_context context, cl_device_id device, cl_command_queue queue);
+
+    const PelDeviceInfo& info() const { return info_; }
+    cl_context context() const { return context_.get(); }
+    cl_device_id id() const { return id_; }
+    cl_command_queue queue() const { return queue_.get(); }
+    cl::ProgramCache& programs() { return programs_; }
+
+    // Enqueues on the in-order queue and counts it. Returns the launch's event (empty for an empty range).
+    cl::Event launch(cl::Launch& launch, const cl::Range& range);
+
+    // Device memory, uninitialised unless `initial` is given (copied during the call).
+    cl::Memory allocate(size_t bytes, const void* initial = nullptr);
+    void countTransfer(size_t toDevice, size_t toHost);
+    // Non-NULL `destination`/`source`; blocking ones return when the bytes are there.
+    void read(cl_mem memory, size_t offset, size_t bytes, void* destination, bool blocking);
+    void write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking);
+
+    void finish();
+    PelDeviceStats stats();
+
+    void setProgress(PelProgressCallback callback, void* user);
+    // Tells the caller how far long work is; throws PEL_ERROR_CANCELLED when the caller wants no more of it.
+    void progress(double fraction, const char* what);
+
+    Device(cl::Context context, cl_device_id id, cl::Queue queue, const PelDeviceInfo& info);
+
+  private:
+    ~Device() override;
+    void foldEvents(bool wait);
+
+    cl::Context context_;
+    cl_device_id id_;
+    cl::Queue queue_;
+    PelDeviceInfo info_;
+    cl::ProgramCache programs_;
+    bool profiling_;
+
+    std::mutex mutex_;  // guards the rest
+    std::vector<cl::Event> pending_;
+    PelDeviceStats stats_;
+    PelProgressCallback progress_ = nullptr;
+    void* progressUser_ = nullptr;
+};
+
+// Device time of finished commands, in milliseconds; 0 without profiling.
+double eventMilliseconds(const cl::Event& event);
+
+}  // namespace pel

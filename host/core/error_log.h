@@ -1,0 +1,14 @@
+// The last error of each thread and the process's error callback.
+#pragma once
+#include <string>
+
+#include "cl/error.h"
+
+namespace pel {
+
+void setErrorCallback(PelErrorCallback callback, void* user);
+const char* lastErrorMessage();
+// Keeps the message for this thread, tells the callback, returns the code.
+PelError report(PelError code, const char* message) noexcept;
+
+}  // namespace pel

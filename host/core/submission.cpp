@@ -1,0 +1,46 @@
+#include "core/submission.h"
+
+namespace pel {
+
+Event::Event(Ref<Device> device, cl::Event event)
+    : Object(kind), device_(std::move(device)), event_(std::move(event)) {}
+
+void Event::wait() const {
+    cl_event event = event_.get();
+    cl::check(clWaitForEvents(1, &event), "clWaitForEvents");
+}
+
+bool Event::isDone() const {
+    cl_int status = CL_QUEUED;
+    cl::check(
+        clGetEventInfo(event_.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr),
+        "clGetEventInfo");
+    if (status < 0) cl::check(status, "the submitted work");
+    return status == CL_COMPLETE;
+}
+
+Submission::Submission(Device& device, const PelSubmit* submit) : device_(device), submit_(submit) {
+    if (!submit || submit->numWaits == 0) return;
+    if (!submit->waits) invalidArgument("PelSubmit.numWaits is ", submit->numWaits, " but waits is NULL");
+    std::vector<cl_event> waits;
+    for (uint32_t i = 0; i < submit->numWaits; ++i)
+        waits.push_back(fromHandle<Event>(submit->waits[i]).cl().get());
+    cl::check(clEnqueueBarrierWithWaitList(device.queue(), cl_uint(waits.size()), waits.data(), nullptr),
+              "clEnqueueBarrierWithWaitList");
+}
+
+void Submission::finish() {
+    if (!submit_) {
+        device_.finish();
+        return;
+    }
+    if (submit_->done) {
+        cl_event event = nullptr;
+        cl::check(clEnqueueMarkerWithWaitList(device_.queue(), 0, nullptr, &event),
+                  "clEnqueueMarkerWithWaitList");
+        *submit_->done = toHandle<PelEvent>(make<Event>(Ref<Device>(&device_), cl::Event(event)));
+    }
+    cl::check(clFlush(device_.queue()), "clFlush");
+}
+
+}  // namespace pel

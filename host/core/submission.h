@@ -1,0 +1,35 @@
+// PelEvent, and the frame round every call that does work: wait first, then enqueue, then block or hand out
+// an event.
+#pragma once
+#include "core/device.h"
+
+namespace pel {
+
+class Event final : public Object {
+  public:
+    static constexpr Kind kind = Kind::event;
+    Event(Ref<Device> device, cl::Event event);
+    const cl::Event& cl() const { return event_; }
+    void wait() const;
+    bool isDone() const;
+
+  private:
+    ~Event() override = default;
+    Ref<Device> device_;
+    cl::Event event_;
+};
+
+// Construct before the first command of a call, finish() after the last. The queue is in order, so that
+// commands between the two need no event lists of their own.
+class Submission {
+  public:
+    Submission(Device& device, const PelSubmit* submit);
+    bool blocking() const { return submit_ == nullptr; }
+    void finish();
+
+  private:
+    Device& device_;
+    const PelSubmit* submit_;
+};
+
+}  // namespace pel

@@ -1,0 +1,241 @@
+// C++ over pellucid.h: handles that count themselves, exceptions for errors. Header only; no binary interface
+// of its own. The C header documents every call; the names here are the same without the prefix.
+#pragma once
+#include <pellucid/pellucid.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pellucid {
+
+class Error : public std::runtime_error {
+  public:
+    Error(PelError code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    PelError code() const { return code_; }
+
+  private:
+    PelError code_;
+};
+
+inline void check(PelError code) {
+    if (code != PEL_SUCCESS) throw Error(code, pelGetErrorMessage());
+}
+
+// Shared ownership of one C handle.
+template <class H, void (*Retain)(H), void (*Release)(H)>
+class Handle {
+  public:
+    Handle() = default;
+    explicit Handle(H owned) : h_(owned) {}
+    Handle(const Handle& other) : h_(other.h_) {
+        if (h_) Retain(h_);
+    }
+    Handle(Handle&& other) noexcept : h_(std::exchange(other.h_, nullptr)) {}
+    Handle& operator=(Handle other) noexcept {
+        std::swap(h_, other.h_);
+        return *this;
+    }
+    ~Handle() {
+        if (h_) Release(h_);
+    }
+    H get() const { return h_; }
+    explicit operator bool() const { return h_ != nullptr; }
+
+  protected:
+    H* out() {
+        *this = Handle();
+        return &h_;
+    }
+    H h_ = nullptr;
+};
+
+class Event : public Handle<PelEvent, pelEventRetain, pelEventRelease> {
+  public:
+    using Handle::Handle;
+    void wait() const { check(pelEventWait(h_)); }
+    bool isDone() const {
+        int done = 0;
+        check(pelEventIsDone(h_, &done));
+        return done != 0;
+    }
+};
+
+class Device : public Handle<PelDevice, pelDeviceRetain, pelDeviceRelease> {
+  public:
+    using Handle::Handle;
+    explicit Device(const char* selector) { check(pelDeviceCreate(selector, out())); }
+    explicit Device(const std::string& selector) : Device(selector.c_str()) {}
+    static Device fromCl(void* context, void* deviceId, void* queue) {
+        Device device;
+        check(pelDeviceCreateFromCl(context, deviceId, queue, device.out()));
+        return device;
+    }
+    static std::vector<PelDeviceInfo> all() {
+        uint32_t count = 0;
+        check(pelDeviceCount(&count));
+        std::vector<PelDeviceInfo> infos(count, pelDeviceInfoDefaults());
+        for (uint32_t i = 0; i < count; ++i) check(pelDeviceEnumerate(i, &infos[i]));
+        return infos;
+    }
+    PelDeviceInfo info() const {
+        PelDeviceInfo info = pelDeviceInfoDefaults();
+        check(pelDeviceGetInfo(h_, &info));
+        return info;
+    }
+    PelDeviceStats stats() const {
+        PelDeviceStats stats = pelDeviceStatsDefaults();
+        check(pelDeviceGetStats(h_, &stats));
+        return stats;
+    }
+    void finish() const { check(pelDeviceFinish(h_)); }
+    void setProgress(PelProgressCallback callback, void* user) const {
+        check(pelDeviceSetProgress(h_, callback, user));
+    }
+};
+
+class Buffer : public Handle<PelBuffer, pelBufferRetain, pelBufferRelease> {
+  public:
+    using Handle::Handle;
+    Buffer(const Device& device, size_t bytes, const void* initial = nullptr) {
+        check(pelBufferCreate(device.get(), bytes, initial, out()));
+    }
+    template <class T>
+    Buffer(const Device& device, const std::vector<T>& initial)
+        : Buffer(device, initial.size() * sizeof(T), initial.data()) {}
+    static Buffer fromHost(const Device& device, void* memory, size_t bytes) {
+        Buffer buffer;
+        check(pelBufferCreateFromHost(device.get(), memory, bytes, buffer.out()));
+        return buffer;
+    }
+    static Buffer fromCl(const Device& device, void* clMem) {
+        Buffer buffer;
+        check(pelBufferCreateFromCl(device.get(), clMem, buffer.out()));
+        return buffer;
+    }
+    size_t bytes() const {
+        size_t bytes = 0;
+        check(pelBufferGetSize(h_, &bytes));
+        return bytes;
+    }
+    void read(void* destination, size_t bytes, size_t offset = 0, const PelSubmit* submit = nullptr) const {
+        check(pelBufferRead(h_, offset, bytes, destination, submit));
+    }
+    template <class T>
+    std::vector<T> readAll() const {
+        std::vector<T> values(bytes() / sizeof(T));
+        read(values.data(), values.size() * sizeof(T));
+        return values;
+    }
+    void write(const void* source, size_t bytes, size_t offset = 0, const PelSubmit* submit = nullptr) const {
+        check(pelBufferWrite(h_, offset, bytes, source, submit));
+    }
+    void* map() const {
+        void* memory = nullptr;
+        check(pelBufferMap(h_, &memory));
+        return memory;
+    }
+    void unmap() const { check(pelBufferUnmap(h_)); }
+};
+
+inline PelImageDesc imageDesc(const Buffer& buffer, PelFormat format, uint32_t width, uint32_t height,
+                              uint64_t byteOffset = 0) {
+    PelImageDesc desc = pelImageDescDefaults();
+    desc.buffer = buffer.get();
+    desc.format = format;
+    desc.width = width;
+    desc.height = height;
+    desc.byteOffset = byteOffset;
+    return desc;
+}
+
+inline PelVertexView vertexView(const Buffer& buffer, uint32_t count, uint64_t byteOffset = 0,
+                                uint32_t byteStride = 0) {
+    return PelVertexView{buffer.get(), byteOffset, byteStride, count};
+}
+
+class MeshTopology : public Handle<PelMeshTopology, pelMeshTopologyRetain, pelMeshTopologyRelease> {
+  public:
+    using Handle::Handle;
+    MeshTopology(const Device& device, const PelMeshTopologyDesc& desc, PelMeshReport* report = nullptr) {
+        check(pelMeshTopologyCreate(device.get(), &desc, out(), report));
+    }
+    void curvature(const PelCurvatureParams& params, const PelVertexView& positions,
+                   const PelVertexView& normals, const PelVertexView& result, PelMeshReport* report = nullptr,
+                   const PelSubmit* submit = nullptr) const {
+        check(pelMeshCurvature(h_, &params, &positions, &normals, &result, report, submit));
+    }
+    float uvScale(const PelVertexView& positions, const PelVertexView& uvs) const {
+        float scale = 0;
+        check(pelMeshUvScale(h_, &positions, &uvs, &scale));
+        return scale;
+    }
+};
+
+class Lut : public Handle<PelLut, pelLutRetain, pelLutRelease> {
+  public:
+    using Handle::Handle;
+    Lut(const Device& device, const PelCurvatureLutDesc& desc, const PelSubmit* submit = nullptr) {
+        check(pelCurvatureLutCreate(device.get(), &desc, out(), submit));
+    }
+    Lut(const Device& device, const PelShadowLutDesc& desc, const PelSubmit* submit = nullptr) {
+        check(pelShadowLutCreate(device.get(), &desc, out(), submit));
+    }
+    Lut(const Device& device, const PelLutInfo& info, const std::vector<float>& texels) {
+        check(
+            pelLutCreateFromTexels(device.get(), &info, texels.data(), texels.size() * sizeof(float), out()));
+    }
+    PelLutInfo info() const {
+        PelLutInfo info = pelLutInfoDefaults();
+        check(pelLutGetInfo(h_, &info));
+        return info;
+    }
+    // The texels in the element type of the encoding: float, uint16_t (half) or uint8_t.
+    template <class T>
+    std::vector<T> read(PelLutEncoding encoding) const {
+        size_t bytes = 0;
+        check(pelLutGetSize(h_, encoding, &bytes));
+        std::vector<T> texels(bytes / sizeof(T));
+        check(pelLutRead(h_, encoding, texels.data(), bytes, nullptr));
+        return texels;
+    }
+};
+
+class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
+  public:
+    using Handle::Handle;
+    explicit Shader(const Device& device) { check(pelShaderCreate(device.get(), out())); }
+    Shader& set(const PelShaderOptions& options) { return done(pelShaderSetOptions(h_, &options)); }
+    Shader& set(PelImageSlot slot, const PelImageDesc& image) {
+        return done(pelShaderSetImage(h_, slot, &image));
+    }
+    Shader& clear(PelImageSlot slot) { return done(pelShaderSetImage(h_, slot, nullptr)); }
+    Shader& setMaterial(uint32_t id, const PelMaterial& material, const Lut& curvature = {},
+                        const Lut& shadow = {}) {
+        return done(pelShaderSetMaterial(h_, id, &material, curvature.get(), shadow.get()));
+    }
+    Shader& set(const std::vector<PelLight>& lights) {
+        return done(pelShaderSetLights(h_, lights.data(), uint32_t(lights.size())));
+    }
+    Shader& set(uint32_t light, PelLightSlot slot, const PelImageDesc& image) {
+        return done(pelShaderSetLightImage(h_, light, slot, &image));
+    }
+    Shader& set(const PelAmbient& ambient) { return done(pelShaderSetAmbient(h_, &ambient)); }
+    Shader& set(const PelCamera& camera) { return done(pelShaderSetCamera(h_, &camera)); }
+    Shader& commit() { return done(pelShaderCommit(h_)); }
+    void execute(const PelSubmit* submit = nullptr) const { check(pelShaderExecute(h_, submit)); }
+    PelShaderStats stats() const {
+        PelShaderStats stats = pelShaderStatsDefaults();
+        check(pelShaderGetStats(h_, &stats));
+        return stats;
+    }
+
+  private:
+    Shader& done(PelError code) {
+        check(code);
+        return *this;
+    }
+};
+
+}  // namespace pellucid

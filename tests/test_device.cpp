@@ -1,0 +1,154 @@
+// Devices, buffers, errors, events: what every other object stands on.
+#include <gtest/gtest.h>
+
+#include <pellucid/pellucid.hpp>
+
+#include <cstdlib>
+#include <cstring>
+
+using namespace pellucid;
+
+TEST(Device, EnumeratesAndSelects) {
+    const std::vector<PelDeviceInfo> all = Device::all();
+    ASSERT_FALSE(all.empty()) << "no OpenCL device: install pocl-opencl-icd";
+    for (const PelDeviceInfo& info : all) {
+        EXPECT_GT(info.computeUnits, 0u) << info.name;
+        EXPECT_GT(info.globalMemoryBytes, 0u) << info.name;
+        EXPECT_TRUE(info.mathWidth == 1 || info.mathWidth == 8 || info.mathWidth == 16) << info.name;
+        EXPECT_EQ(Device(std::to_string(info.index)).info().index, info.index);
+        EXPECT_STREQ(Device(std::string(info.name)).info().name, info.name);
+    }
+}
+
+TEST(Device, UnknownSelectorListsWhatThereIs) {
+    try {
+        Device device("no such device");
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.code(), PEL_ERROR_NO_DEVICE);
+        EXPECT_NE(std::string(e.what()).find("no such device"), std::string::npos);
+        EXPECT_NE(std::string(e.what()).find(Device::all()[0].name), std::string::npos) << e.what();
+    }
+    EXPECT_THROW(Device("4000000000"), Error);
+}
+
+TEST(Device, EnvironmentSelects) {
+    const char* before = std::getenv("PELLUCID_DEVICE");
+    const std::string saved = before ? before : "";
+    setenv("PELLUCID_DEVICE", "no such device", 1);
+    EXPECT_THROW(Device(static_cast<const char*>(nullptr)), Error);
+    EXPECT_NO_THROW(Device("0")) << "a selector goes before the environment";
+    setenv("PELLUCID_DEVICE", "0", 1);
+    EXPECT_EQ(Device(static_cast<const char*>(nullptr)).info().index, 0u);
+    if (before)
+        setenv("PELLUCID_DEVICE", saved.c_str(), 1);
+    else
+        unsetenv("PELLUCID_DEVICE");
+}
+
+TEST(Device, CallersContextAndQueue) {
+    const Device first(nullptr);
+    void *context = nullptr, *id = nullptr, *queue = nullptr;
+    check(pelDeviceGetCl(first.get(), &context, &id, &queue));
+    const Device second = Device::fromCl(context, id, queue);
+    const Buffer buffer(second, std::vector<float>{1, 2, 3});
+    EXPECT_EQ(buffer.readAll<float>(), (std::vector<float>{1, 2, 3}));
+    EXPECT_EQ(second.info().index, UINT32_MAX);
+    EXPECT_THROW(Device::fromCl(context, id, nullptr), Error);
+}
+
+TEST(Handles, WrongOnesAreErrorsNotCrashes) {
+    PelDeviceInfo info = pelDeviceInfoDefaults();
+    EXPECT_EQ(pelDeviceGetInfo(nullptr, &info), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(std::strstr(pelGetErrorMessage(), "PelDevice"), nullptr);
+
+    const Device device(nullptr);
+    const Buffer buffer(device, 16);
+    EXPECT_EQ(pelDeviceGetInfo(reinterpret_cast<PelDevice>(buffer.get()), &info), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(std::strstr(pelGetErrorMessage(), "PelBuffer"), nullptr) << pelGetErrorMessage();
+
+    PelBuffer released = nullptr;
+    check(pelBufferCreate(device.get(), 16, nullptr, &released));
+    pelBufferRelease(released);
+    pelBufferRelease(released);
+    size_t bytes = 0;
+    EXPECT_EQ(pelBufferGetSize(released, &bytes), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(pelDeviceGetInfo(device.get(), nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    info.structSize = 0;
+    EXPECT_EQ(pelDeviceGetInfo(device.get(), &info), PEL_ERROR_INVALID_ARGUMENT);
+}
+
+TEST(Handles, OlderCallersGetTheFieldsTheyKnow) {
+    const Device device(nullptr);
+    PelDeviceInfo info = pelDeviceInfoDefaults();
+    info.structSize = offsetof(PelDeviceInfo, clockMhz);
+    info.clockMhz = 12345;
+    check(pelDeviceGetInfo(device.get(), &info));
+    EXPECT_GT(info.computeUnits, 0u);
+    EXPECT_EQ(info.clockMhz, 12345u) << "written beyond the caller's structure";
+}
+
+TEST(Buffers, ReadWriteMapAndRanges) {
+    const Device device(nullptr);
+    const Buffer buffer(device, 4 * sizeof(int));
+    EXPECT_EQ(buffer.readAll<int>(), (std::vector<int>{0, 0, 0, 0}));
+    const int values[2] = {7, 8};
+    buffer.write(values, sizeof values, sizeof(int));
+    int* mapped = static_cast<int*>(buffer.map());
+    EXPECT_EQ(mapped[1], 7);
+    mapped[3] = 9;
+    buffer.unmap();
+    EXPECT_EQ(buffer.readAll<int>(), (std::vector<int>{0, 7, 8, 9}));
+    EXPECT_EQ(pelBufferUnmap(buffer.get()), PEL_ERROR_INVALID_STATE);
+    EXPECT_EQ(pelBufferWrite(buffer.get(), 12, 8, values, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(pelBufferWrite(buffer.get(), SIZE_MAX, 8, values, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    PelBuffer none = nullptr;
+    EXPECT_EQ(pelBufferCreate(device.get(), 0, nullptr, &none), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(none, nullptr);
+    EXPECT_EQ(pelBufferCreate(device.get(), SIZE_MAX / 2, nullptr, &none), PEL_ERROR_OUT_OF_MEMORY);
+}
+
+TEST(Buffers, HostMemoryInPlace) {
+    const Device device(nullptr);
+    alignas(4096) static int memory[1024];
+    for (int i = 0; i < 1024; ++i) memory[i] = i;
+    const Buffer buffer = Buffer::fromHost(device, memory, sizeof memory);
+    EXPECT_EQ(buffer.readAll<int>()[1023], 1023);
+    const int value = -5;
+    buffer.write(&value, sizeof value, 40);
+    EXPECT_EQ(buffer.map(), memory);
+    EXPECT_EQ(memory[10], -5);
+    buffer.unmap();
+}
+
+TEST(Events, DoneAndWaits) {
+    const Device device(nullptr);
+    const Buffer buffer(device, 1 << 20);
+    std::vector<char> source(1 << 20, 3), back(1 << 20);
+    PelEvent written = nullptr, read = nullptr;
+    const PelSubmit write{nullptr, 0, &written};
+    buffer.write(source.data(), source.size(), 0, &write);
+    const PelSubmit then{&written, 1, &read};
+    buffer.read(back.data(), back.size(), 0, &then);
+    check(pelEventWait(read));
+    int done = 0;
+    check(pelEventIsDone(written, &done));
+    EXPECT_EQ(done, 1);
+    EXPECT_EQ(back, source);
+    pelEventRelease(written);
+    pelEventRelease(read);
+    const PelSubmit broken{nullptr, 2, nullptr};
+    EXPECT_EQ(pelBufferRead(buffer.get(), 0, 4, back.data(), &broken), PEL_ERROR_INVALID_ARGUMENT);
+}
+
+TEST(Errors, CallbackGetsTheMessage) {
+    std::string heard;
+    pelSetErrorCallback(
+        [](void* user, PelError, const char* message) { *static_cast<std::string*>(user) = message; },
+        &heard);
+    pelDeviceGetInfo(nullptr, nullptr);
+    pelSetErrorCallback(nullptr, nullptr);
+    EXPECT_EQ(heard, pelGetErrorMessage());
+    EXPECT_FALSE(heard.empty());
+    EXPECT_STREQ(pelErrorName(PEL_ERROR_NO_DEVICE), "PEL_ERROR_NO_DEVICE");
+}
