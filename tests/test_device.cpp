@@ -36,10 +36,10 @@ TEST(Device, EnvironmentSelects) {
     const char* before = std::getenv("PELLUCID_DEVICE");
     const std::string saved = before ? before : "";
     setenv("PELLUCID_DEVICE", "no such device", 1);
-    EXPECT_THROW(Device(static_cast<const char*>(nullptr)), Error);
+    EXPECT_THROW(Device(std::string()), Error);
     EXPECT_NO_THROW(Device("0")) << "a selector goes before the environment";
     setenv("PELLUCID_DEVICE", "0", 1);
-    EXPECT_EQ(Device(static_cast<const char*>(nullptr)).info().index, 0u);
+    EXPECT_EQ(Device(std::string()).info().index, 0u);
     if (before)
         setenv("PELLUCID_DEVICE", saved.c_str(), 1);
     else
@@ -47,7 +47,7 @@ TEST(Device, EnvironmentSelects) {
 }
 
 TEST(Device, CallersContextAndQueue) {
-    const Device first(nullptr);
+    const Device first("");
     void *context = nullptr, *id = nullptr, *queue = nullptr;
     check(pelDeviceGetCl(first.get(), &context, &id, &queue));
     const Device second = Device::fromCl(context, id, queue);
@@ -62,7 +62,7 @@ TEST(Handles, WrongOnesAreErrorsNotCrashes) {
     EXPECT_EQ(pelDeviceGetInfo(nullptr, &info), PEL_ERROR_INVALID_ARGUMENT);
     EXPECT_NE(std::strstr(pelGetErrorMessage(), "PelDevice"), nullptr);
 
-    const Device device(nullptr);
+    const Device device("");
     const Buffer buffer(device, 16);
     EXPECT_EQ(pelDeviceGetInfo(reinterpret_cast<PelDevice>(buffer.get()), &info), PEL_ERROR_INVALID_ARGUMENT);
     EXPECT_NE(std::strstr(pelGetErrorMessage(), "PelBuffer"), nullptr) << pelGetErrorMessage();
@@ -79,7 +79,7 @@ TEST(Handles, WrongOnesAreErrorsNotCrashes) {
 }
 
 TEST(Handles, OlderCallersGetTheFieldsTheyKnow) {
-    const Device device(nullptr);
+    const Device device("");
     PelDeviceInfo info = pelDeviceInfoDefaults();
     info.structSize = offsetof(PelDeviceInfo, clockMhz);
     info.clockMhz = 12345;
@@ -89,7 +89,7 @@ TEST(Handles, OlderCallersGetTheFieldsTheyKnow) {
 }
 
 TEST(Buffers, ReadWriteMapAndRanges) {
-    const Device device(nullptr);
+    const Device device("");
     const Buffer buffer(device, 4 * sizeof(int));
     EXPECT_EQ(buffer.readAll<int>(), (std::vector<int>{0, 0, 0, 0}));
     const int values[2] = {7, 8};
@@ -109,7 +109,7 @@ TEST(Buffers, ReadWriteMapAndRanges) {
 }
 
 TEST(Buffers, HostMemoryInPlace) {
-    const Device device(nullptr);
+    const Device device("");
     alignas(4096) static int memory[1024];
     for (int i = 0; i < 1024; ++i) memory[i] = i;
     const Buffer buffer = Buffer::fromHost(device, memory, sizeof memory);
@@ -122,7 +122,7 @@ TEST(Buffers, HostMemoryInPlace) {
 }
 
 TEST(Events, DoneAndWaits) {
-    const Device device(nullptr);
+    const Device device("");
     const Buffer buffer(device, 1 << 20);
     std::vector<char> source(1 << 20, 3), back(1 << 20);
     PelEvent written = nullptr, read = nullptr;

@@ -64,9 +64,9 @@ class Event : public Handle<PelEvent, pelEventRetain, pelEventRelease> {
 
 class Device : public Handle<PelDevice, pelDeviceRetain, pelDeviceRelease> {
   public:
-    using Handle::Handle;
-    explicit Device(const char* selector) { check(pelDeviceCreate(selector, out())); }
-    explicit Device(const std::string& selector) : Device(selector.c_str()) {}
+    Device() = default;
+    // "": the standard device; see pelDeviceCreate.
+    explicit Device(const std::string& selector) { check(pelDeviceCreate(selector.c_str(), out())); }
     static Device fromCl(void* context, void* deviceId, void* queue) {
         Device device;
         check(pelDeviceCreateFromCl(context, deviceId, queue, device.out()));
