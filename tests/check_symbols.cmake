@@ -1,4 +1,5 @@
 # The library exports exactly the functions that pellucid.h declares. Arguments: NM, LIBRARY, HEADER.
+cmake_minimum_required(VERSION 3.20)
 execute_process(COMMAND ${NM} -D --defined-only ${LIBRARY} OUTPUT_VARIABLE listing RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "nm failed on ${LIBRARY}")

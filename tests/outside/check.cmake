@@ -1,5 +1,6 @@
 # Installs the build into a fresh prefix and uses it from a project that knows nothing else of it, by find_package and by
-# pkg-config. Arguments: BUILD, SOURCE, WORK.
+# pkg-config. Arguments: BUILD, SOURCE, WORK, C_FLAGS.
+cmake_minimum_required(VERSION 3.20)
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result)
   if(NOT result EQUAL 0)
