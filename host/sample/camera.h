@@ -1,0 +1,52 @@
+// The view of the stand-in renderer, and where to put camera and light round a head.
+#pragma once
+#include "sample/mesh.h"
+#include "sample/vector.h"
+
+namespace pellucid::sample {
+
+// A perspective camera. View space is right-handed: x right, y up, the camera looks along -z. Clip space has
+// x and y in
+// [-w, w], y up (row 0 of an image on top), and z from 0 at the near plane to w at the far plane.
+struct Camera {
+    Vec3 eye{0, -1000, 0};    // mm
+    Vec3 target{0, 0, 0};     // mm
+    Vec3 up{0, 0, 1};         // need not be across the view direction
+    double verticalFov = 20;  // degrees; 20: a portrait from two head heights away
+    double nearPlane = 100;   // mm
+    double farPlane = 2000;   // mm
+
+    Vec3 forward() const { return normalize(target - eye, {0, 1, 0}); }
+    Matrix4 view() const;                         // world to view
+    Matrix4 projection(double aspect) const;      // view to clip; aspect: width / height
+    Matrix4 viewProjection(double aspect) const;  // world to clip
+    Matrix4 inverseViewProjection(double aspect) const;
+};
+
+// Which way a head looks. The default is that of most scans on a z-up axis, such as CGAL's mannequin; {y, z}
+// suits y-up files.
+struct HeadPose {
+    Vec3 up{0, 0, 1};      // unit, towards the crown
+    Vec3 front{0, -1, 0};  // unit, across up, where the nose points
+};
+
+// Unit vector away from the head: azimuth 0 is the front, 90 its left ear (on the right of a frontal
+// picture), 180 the back; elevation 90 is straight up. Degrees.
+Vec3 headDirection(const HeadPose& pose, double azimuth, double elevation);
+
+struct Framing {
+    double azimuth = 0;       // degrees, as in headDirection
+    double elevation = 0;     // degrees
+    double verticalFov = 20;  // degrees
+    double fill = 0.94;  // part of the image's height or width that the box takes, whichever is reached first
+};
+
+// The camera that sees the whole box as large as `framing` says. Near and far plane enclose the box.
+Camera frameHead(const Bounds& box, const HeadPose& pose, const Framing& framing, double aspect);
+
+// Where a key light stands: to the front and above, so that most of the face is lit; to the side, so that the
+// terminator crosses the face; behind, so that ears and other thin parts glow.
+enum class KeyLight { Front, Side, Back };
+Vec3 keyLightDirection(const HeadPose& pose, KeyLight where);  // unit, towards the light
+
+}  // namespace pellucid::sample

@@ -1,0 +1,180 @@
+#include "sample/gbuffer.h"
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include "sample/waves.h"
+
+namespace pellucid::sample {
+
+namespace {
+
+// The view's rays.
+struct View {
+    View(const Camera& camera, int width, int height)
+        : eye(camera.eye),
+          forward(camera.forward()),
+          up(perpendicular(forward, camera.up)),
+          right(cross(forward, up)) {
+        pixel = 2 * std::tan(camera.verticalFov * std::numbers::pi / 360) / height;
+        x0 = 0.5 - 0.5 * width;
+        y0 = 0.5 - 0.5 * height;
+    }
+    Ray ray(int x, int y) const {
+        return {eye, normalize(forward + right * ((x0 + x) * pixel) - up * ((y0 + y) * pixel))};
+    }
+
+    Vec3 eye, forward, up, right;
+    double pixel;  // size at distance 1
+    double x0, y0;
+};
+
+struct Detail {
+    explicit Detail(const SkinDetail& s)
+        : settings(s),
+          pores(s.poreWavelength, s.seed),
+          folds(s.foldWavelength, s.seed + 1),
+          blood(s.blotchWavelength, s.seed + 2),
+          pigment(0.6 * s.blotchWavelength, s.seed + 3) {}
+
+    SkinDetail settings;
+    WaveField pores, folds, blood, pigment;
+};
+
+class Renderer {
+  public:
+    Renderer(const Scene& scene, const Camera& camera, const GBufferOptions& options, GBuffer& out)
+        : mesh_(scene.mesh()), view_(camera, out.width, out.height), options_(options), out_(out) {
+        toClip_ = camera.viewProjection(double(out.width) / out.height);
+        if (options.detail.enabled) detail_.emplace(options.detail);
+    }
+
+    void row(const Scene& scene, int y) {
+        Ray rays[Scene::packetSize];
+        Hit hits[Scene::packetSize];
+        for (int x0 = 0; x0 < out_.width; x0 += Scene::packetSize) {
+            const int count = std::min(Scene::packetSize, out_.width - x0);
+            for (int i = 0; i < count; ++i) rays[i] = view_.ray(x0 + i, y);
+            scene.intersect(rays, hits, count);
+            for (int i = 0; i < count; ++i)
+                if (hits[i].triangle != Hit::none) pixel(x0 + i, y, rays[i], hits[i]);
+        }
+    }
+
+  private:
+    double interpolate(const std::vector<float>& values, const Hit& hit, int stride, int component) const {
+        double sum = 0;
+        for (int i = 0; i < 3; ++i) {
+            const size_t vertex = mesh_.triangles[3 * size_t(hit.triangle) + i];
+            sum += hit.weights[i] * values[vertex * size_t(stride) + size_t(component)];
+        }
+        return sum;
+    }
+    Vec3 interpolate3(const std::vector<float>& values, const Hit& hit) const {
+        return {interpolate(values, hit, 3, 0), interpolate(values, hit, 3, 1),
+                interpolate(values, hit, 3, 2)};
+    }
+    Vec3 faceNormal(const Hit& hit) const {
+        Vec3 p[3];
+        for (int i = 0; i < 3; ++i) {
+            Hit corner = hit;
+            for (int k = 0; k < 3; ++k) corner.weights[k] = k == i;
+            p[i] = interpolate3(mesh_.positions, corner);
+        }
+        return normalize(cross(p[1] - p[0], p[2] - p[0]));
+    }
+    static void store(Image& image, int x, int y, Vec3 v) {
+        image.at(0, x, y) = float(v.x);
+        image.at(1, x, y) = float(v.y);
+        image.at(2, x, y) = float(v.z);
+    }
+
+    void pixel(int x, int y, const Ray& ray, const Hit& hit) {
+        const Vec3 position = ray.origin + ray.direction * hit.distance;
+        const Vec3 face = faceNormal(hit);
+        const Vec3 geometric =
+            mesh_.normals.empty() ? face : normalize(interpolate3(mesh_.normals, hit), face);
+        const double depth = hit.distance * dot(ray.direction, view_.forward);
+        store(out_.position, x, y, position);
+        store(out_.geometricNormal, x, y, geometric);
+        if (!mesh_.curvature.empty())
+            out_.curvature.at(0, x, y) = float(interpolate(mesh_.curvature, hit, 1, 0));
+        for (int c = 0; c < out_.uv.channels; ++c)
+            out_.uv.at(c, x, y) = float(interpolate(mesh_.uvs, hit, 2, c));
+        out_.viewDepth.at(0, x, y) = float(depth);
+        out_.deviceDepth.at(0, x, y) = float(toClip_.project(position).z);
+        out_.coverage.at(0, x, y) = 1;
+        out_.material[size_t(y) * size_t(out_.width) + size_t(x)] =
+            mesh_.materials.empty() ? 1 : mesh_.materials[hit.triangle];
+        surface(x, y, position, geometric, ray.direction, depth);
+    }
+
+    void surface(int x, int y, Vec3 position, Vec3 geometric, Vec3 direction, double depth) {
+        Vec3 shading = geometric, blurred = geometric;
+        Vec3 albedo{options_.albedo[0], options_.albedo[1], options_.albedo[2]};
+        if (detail_) {
+            // Half a pixel of standard deviation, longer where the surface is seen at a slant.
+            const double facing = dot(direction, geometric);
+            const Footprint pixel{geometric, 0.5 * view_.pixel * depth,
+                                  normalize(direction - geometric * facing, Vec3{}),
+                                  1 / std::max(std::abs(facing), 0.05)};
+            const Footprint blur{geometric, std::hypot(pixel.sigma, 0.5 * options_.diffusionRadius)};
+            const Footprint both[2] = {pixel, blur};
+            Vec3 pores[2], folds[2];
+            detail_->pores.slope(position, both, 2, pores);
+            detail_->folds.slope(position, both, 2, folds);
+            const SkinDetail& s = detail_->settings;
+            shading = normalize(geometric - pores[0] * s.poreSlope - folds[0] * s.foldSlope);
+            blurred = normalize(geometric - pores[1] * s.poreSlope - folds[1] * s.foldSlope);
+            // Blood takes green and blue, pigment takes blue most and red least.
+            const double blood = s.blotchAmount * detail_->blood.value(position, pixel);
+            const double pigment = s.blotchAmount * detail_->pigment.value(position, pixel);
+            albedo.x *= std::exp(-0.1 * blood - 0.3 * pigment);
+            albedo.y *= std::exp(-0.9 * blood - 0.6 * pigment);
+            albedo.z *= std::exp(-0.8 * blood - 0.9 * pigment);
+            albedo = {std::min(albedo.x, 1.0), std::min(albedo.y, 1.0), std::min(albedo.z, 1.0)};
+        }
+        store(out_.shadingNormal, x, y, shading);
+        store(out_.blurredNormal, x, y, blurred);
+        store(out_.albedo, x, y, albedo);
+    }
+
+    const Mesh& mesh_;
+    View view_;
+    Matrix4 toClip_;
+    GBufferOptions options_;
+    std::optional<Detail> detail_;
+    GBuffer& out_;
+};
+
+}  // namespace
+
+GBuffer renderGBuffer(const Scene& scene, const Camera& camera, int width, int height,
+                      const GBufferOptions& options) {
+    if (width < 0 || height < 0)
+        throw std::invalid_argument("G-buffer: a size of " + std::to_string(width) + " x " +
+                                    std::to_string(height) + "; both must be 0 or more");
+    GBuffer out;
+    out.width = width;
+    out.height = height;
+    for (Image* image :
+         {&out.position, &out.geometricNormal, &out.shadingNormal, &out.blurredNormal, &out.albedo})
+        *image = Image(width, height, 3);
+    out.curvature = Image(width, height, 1);
+    out.coverage = Image(width, height, 1);
+    if (!scene.mesh().uvs.empty()) out.uv = Image(width, height, 2);
+    out.viewDepth = Image(width, height, 1, backgroundDepth);
+    out.deviceDepth = Image(width, height, 1, 1);
+    out.material.assign(size_t(width) * size_t(height), 0);
+    if (out.material.empty()) return out;
+
+    Renderer renderer(scene, camera, options, out);
+#pragma omp parallel for schedule(dynamic, 4)
+    for (int y = 0; y < height; ++y) renderer.row(scene, y);
+    return out;
+}
+
+}  // namespace pellucid::sample

@@ -1,0 +1,56 @@
+// Renders what a deferred renderer hands to Pellucid: one sample through each pixel's centre.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "sample/camera.h"
+#include "sample/image.h"
+#include "sample/scene.h"
+
+namespace pellucid::sample {
+
+// Fine relief and colour that a head mesh lacks, from random fields in world space.
+struct SkinDetail {
+    bool enabled = true;
+    double poreWavelength = 1.2;  // mm
+    double poreSlope = 0.16;      // root mean square of the slope
+    double foldWavelength = 9;    // mm: what is left in the blurred normal
+    double foldSlope = 0.05;
+    double blotchWavelength = 14;  // mm, of pigment and blood
+    double blotchAmount = 0.06;    // root mean square of their relative change
+    uint32_t seed = 1;
+};
+
+struct GBufferOptions {
+    SkinDetail detail;
+    double diffusionRadius = 2.7;                      // mm: what the blurred normal is blurred over
+    std::array<float, 3> albedo{0.72f, 0.49f, 0.39f};  // linear; the mean where detail varies it
+};
+
+constexpr float backgroundDepth = 1e10f;  // mm, of viewDepth where nothing was hit
+
+// Background pixels have 0 everywhere, but for the two depths. Unit vectors, mm.
+struct GBuffer {
+    int width = 0, height = 0;
+    Image position;         // 3, world, mm
+    Image geometricNormal;  // 3, Ng: the vertex normals interpolated, not turned to the viewer
+    Image shadingNormal;    // 3, N: Ng bent by pores and folds, band-limited to the pixel
+    Image blurredNormal;  // 3, Nb: Ng bent by the same relief blurred with a Gaussian of diffusionRadius / 2.
+                          // That is the blur of a normal map read bilinearly at the mip whose texels are one
+                          // diffusion radius wide (box and tent: rho^2/12 + rho^2/6 = (rho/2)^2)
+    Image curvature;                 // 1, 1/mm, interpolated from the vertices
+    Image albedo;                    // 3, linear
+    Image uv;                        // 2, or empty when the mesh has none
+    Image viewDepth;                 // 1, mm along the camera's axis; backgroundDepth where nothing was hit
+    Image deviceDepth;               // 1, z / w of Camera::projection, 0 near to 1 far and background
+    Image coverage;                  // 1, 1 or 0
+    std::vector<uint32_t> material;  // id per pixel, 0 background
+};
+
+// Pixels are independent of each other and of the number of threads. Throws std::invalid_argument for a
+// negative size.
+GBuffer renderGBuffer(const Scene& scene, const Camera& camera, int width, int height,
+                      const GBufferOptions& options = {});
+
+}  // namespace pellucid::sample

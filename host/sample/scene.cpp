@@ -1,0 +1,124 @@
+#include "sample/scene.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace pellucid::sample {
+
+struct Scene::Device {
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+
+    ~Device() {
+        if (scene) rtcReleaseScene(scene);
+        if (device) rtcReleaseDevice(device);
+    }
+};
+
+namespace {
+
+[[noreturn]] void fail(RTCDevice device, const char* doing) {
+    throw std::runtime_error(std::string("Embree failed while ") + doing + ", error code " +
+                             std::to_string(int(rtcGetDeviceError(device))));
+}
+
+Mesh copyOf(const MeshView& view) {
+    checkMesh(view);
+    const auto copy = [](auto span) { return std::vector(span.begin(), span.end()); };
+    return {copy(view.positions), copy(view.normals),   copy(view.uvs),
+            copy(view.curvature), copy(view.triangles), copy(view.materials)};
+}
+
+}  // namespace
+
+Scene::Scene(const MeshView& view)
+    : mesh_(copyOf(view)), bounds_(boundsOf(mesh_.view())), device_(std::make_unique<Device>()) {
+    // One thread builds the tree, so that it is the same tree every time: on edges shared by two triangles it
+    // decides which of them is hit.
+    RTCDevice device = device_->device = rtcNewDevice("threads=1");
+    if (!device) fail(nullptr, "starting");
+    RTCScene scene = device_->scene = rtcNewScene(device);
+    if (!scene) fail(device, "making a scene");
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+    if (!mesh_.triangles.empty()) {
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        void* positions = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
+                                                  mesh_.positions.size() / 3);
+        void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
+                                                mesh_.triangles.size() / 3);
+        if (positions && indices) {
+            std::copy(mesh_.positions.begin(), mesh_.positions.end(), static_cast<float*>(positions));
+            std::copy(mesh_.triangles.begin(), mesh_.triangles.end(), static_cast<uint32_t*>(indices));
+            rtcCommitGeometry(geometry);
+            rtcAttachGeometry(scene, geometry);
+        }
+        rtcReleaseGeometry(geometry);
+        if (!positions || !indices) fail(device, "copying the mesh");
+    }
+    rtcCommitScene(scene);
+    if (rtcGetDeviceError(device) != RTC_ERROR_NONE) fail(device, "building the scene");
+}
+
+Scene::~Scene() = default;
+
+void Scene::intersect(const Ray* rays, Hit* hits, int count) const {
+    alignas(64) int valid[packetSize];
+    alignas(64) RTCRayHit16 packet;
+    for (int i = 0; i < packetSize; ++i) {
+        valid[i] = i < count ? -1 : 0;
+        const Ray& ray = rays[std::min(i, count - 1)];
+        packet.ray.org_x[i] = float(ray.origin.x);
+        packet.ray.org_y[i] = float(ray.origin.y);
+        packet.ray.org_z[i] = float(ray.origin.z);
+        packet.ray.dir_x[i] = float(ray.direction.x);
+        packet.ray.dir_y[i] = float(ray.direction.y);
+        packet.ray.dir_z[i] = float(ray.direction.z);
+        packet.ray.tnear[i] = 0;
+        packet.ray.tfar[i] = INFINITY;
+        packet.ray.time[i] = 0;
+        packet.ray.mask[i] = ~0u;
+        packet.ray.flags[i] = 0;
+        packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        packet.hit.primID[i] = RTC_INVALID_GEOMETRY_ID;
+        packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid, device_->scene, &context, &packet);
+    for (int i = 0; i < count; ++i) {
+        hits[i] = {};
+        if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+        hits[i].triangle = packet.hit.primID[i];
+        hits[i].distance = packet.ray.tfar[i];
+        hits[i].weights[1] = packet.hit.u[i];
+        hits[i].weights[2] = packet.hit.v[i];
+        refine(rays[i], hits[i]);
+    }
+}
+
+void Scene::refine(const Ray& ray, Hit& hit) const {
+    const auto vertex = [&](int corner) {
+        const float* p = &mesh_.positions[3 * size_t(mesh_.triangles[3 * size_t(hit.triangle) + corner])];
+        return Vec3{p[0], p[1], p[2]};
+    };
+    const Vec3 a = vertex(0), ab = vertex(1) - a, ac = vertex(2) - a, across = cross(ray.direction, ac);
+    const double determinant = dot(ab, across);
+    // A triangle seen edge-on keeps what Embree found.
+    if (std::abs(determinant) > 1e-9 * length(ab) * length(ac)) {
+        const Vec3 s = ray.origin - a, q = cross(s, ab);
+        hit.weights[1] = dot(s, across) / determinant;
+        hit.weights[2] = dot(ray.direction, q) / determinant;
+        hit.distance = dot(ac, q) / determinant;
+    }
+    // A ray that Embree counts in through an edge may pass a hair outside of it.
+    hit.weights[1] = std::clamp(hit.weights[1], 0.0, 1.0);
+    hit.weights[2] = std::clamp(hit.weights[2], 0.0, 1 - hit.weights[1]);
+    hit.weights[0] = 1 - hit.weights[1] - hit.weights[2];
+}
+
+}  // namespace pellucid::sample

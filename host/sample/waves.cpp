@@ -1,0 +1,74 @@
+#include "sample/waves.h"
+
+#include <numbers>
+
+namespace pellucid::sample {
+
+namespace {
+
+constexpr double tau = 2 * std::numbers::pi;
+
+// A 32-bit linear congruential generator with a mixed output; the standard's distributions differ between
+// libraries.
+class Random {
+  public:
+    explicit Random(uint32_t seed) : state_(seed * 2654435769u + 1u) {}
+    double unit() {
+        state_ = state_ * 1664525u + 1013904223u;
+        uint32_t x = state_;
+        x = (x ^ (x >> 16)) * 0x7feb352du;
+        x = (x ^ (x >> 15)) * 0x846ca68bu;
+        return (x ^ (x >> 16)) * 0x1p-32;
+    }
+
+  private:
+    uint32_t state_;
+};
+
+// Log of how much a Gaussian footprint weakens wave k.
+double attenuation(Vec3 k, const Footprint& f) {
+    const double kn = dot(k, f.normal), ka = dot(k, f.along);
+    const double tangential = dot(k, k) - kn * kn + ka * ka * (f.stretch * f.stretch - 1);
+    return -0.5 * f.sigma * f.sigma * tangential;
+}
+
+// Weaker than this (e^-12), a wave is not worth a sine.
+constexpr double negligible = -12;
+
+}  // namespace
+
+WaveField::WaveField(double wavelength, uint32_t seed) {
+    Random random(seed);
+    for (int i = 0; i < waveCount; ++i) {
+        const double z = 2 * (i + 0.5) / waveCount - 1, phi = tau * random.unit(), r = std::sqrt(1 - z * z);
+        const double k = tau / wavelength * std::exp2(random.unit() - 0.5);
+        waves_.push_back({Vec3{r * std::cos(phi), r * std::sin(phi), z} * k, tau * random.unit()});
+    }
+}
+
+double WaveField::value(Vec3 p, const Footprint& footprint) const {
+    double sum = 0;
+    for (const Wave& wave : waves_) {
+        const double weaker = attenuation(wave.k, footprint);
+        if (weaker > negligible) sum += std::cos(dot(wave.k, p) + wave.phase) * std::exp(weaker);
+    }
+    return sum * std::sqrt(2.0 / waveCount);
+}
+
+void WaveField::slope(Vec3 p, const Footprint* footprints, int count, Vec3* out) const {
+    for (int i = 0; i < count; ++i) out[i] = {};
+    for (const Wave& wave : waves_) {
+        double sine = 2;  // not computed yet
+        for (int i = 0; i < count; ++i) {
+            const double weaker = attenuation(wave.k, footprints[i]);
+            if (weaker <= negligible) continue;
+            if (sine > 1) sine = std::sin(dot(wave.k, p) + wave.phase);
+            const Vec3 n = footprints[i].normal, tangential = wave.k - n * dot(wave.k, n);
+            out[i] = out[i] - tangential * (sine * std::exp(weaker) / length(wave.k));
+        }
+    }
+    // sin^2 averages 1/2, the tangential part of a random direction 2/3.
+    for (int i = 0; i < count; ++i) out[i] = out[i] * std::sqrt(3.0 / waveCount);
+}
+
+}  // namespace pellucid::sample

@@ -1,0 +1,42 @@
+// Smooth random fields in space: sums of plane waves. Their blur by a Gaussian is exact (each wave only gets
+// weaker), so one field gives the sharp surface, its band limit at the pixel's size and its blur over the
+// diffusion radius alike.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "sample/vector.h"
+
+namespace pellucid::sample {
+
+// What a point on a surface averages over, in its tangent plane: a Gaussian of standard deviation sigma,
+// longer by `stretch` along `along`.
+struct Footprint {
+    Vec3 normal;          // unit
+    double sigma = 0;     // mm
+    Vec3 along{0, 0, 0};  // unit in the tangent plane, or zero
+    double stretch = 1;   // >= 1: the view's foreshortening
+};
+
+class WaveField {
+  public:
+    static constexpr int waveCount = 40;
+
+    // Wavelengths spread over the octave around `wavelength` (mm). Same seed, same field.
+    WaveField(double wavelength, uint32_t seed);
+
+    // Height of mean square 1 over a surface, blurred over the footprint.
+    double value(Vec3 p, const Footprint& footprint) const;
+    // Slope along the tangent plane, of mean square 1 over a surface, blurred over each footprint; out[i] for
+    // footprints[i].
+    void slope(Vec3 p, const Footprint* footprints, int count, Vec3* out) const;
+
+  private:
+    struct Wave {
+        Vec3 k;        // rad/mm
+        double phase;  // rad
+    };
+    std::vector<Wave> waves_;
+};
+
+}  // namespace pellucid::sample
