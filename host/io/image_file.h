@@ -1,0 +1,67 @@
+// Images of named float channels: multi-part, multi-layer EXR in; EXR, 8-bit formats and NPY out.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace pellucid::io {
+
+enum class ChannelType { Float, Half };  // how a channel is stored in a file; in memory all are float32
+
+struct Channel {
+    std::string name;  // full: "ViewLayer.Normal.X", with the part's name before it in a multi-part file
+    ChannelType type = ChannelType::Float;
+    std::vector<float> pixels;  // width * height, row 0 on top
+};
+
+using Attribute = std::variant<int, float, std::string, std::vector<float>>;
+
+struct Image {
+    int width = 0;  // pixels
+    int height = 0;
+    std::vector<Channel> channels;
+    std::vector<std::pair<std::string, Attribute>> attributes;  // of the file's first part
+    std::string source;                                         // the file, for messages
+
+    size_t pixelCount() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
+
+    // The channel of that full name or, if there is none, the only one whose name ends with "." + name.
+    // Throws FileError when none or several fit; the message lists the channels found.
+    const Channel& channel(const std::string& name) const;
+    bool has(const std::string& name) const;  // channel() would find exactly one
+
+    // Those channels side by side in each pixel: names.size() * width * height values.
+    std::vector<float> interleaved(std::span<const std::string> names) const;
+
+    // Appends channels from interleaved values (names.size() * width * height of them).
+    void addInterleaved(std::span<const std::string> names, std::span<const float> values,
+                        ChannelType type = ChannelType::Float);
+
+    const Attribute* attribute(const std::string& name) const;  // nullptr if there is none
+};
+
+// Reads all parts and channels of an image file at full precision (8- and 16-bit integers come as 0 to 1).
+// Each part is placed by its data window into the display window; pixels outside its data window are 0, those
+// outside the display window are dropped. Throws FileError: missing, broken or deep file, parts of different
+// display windows.
+Image readImage(const std::string& path);
+
+// Writes a single-part scan-line EXR with ZIP compression, each channel in its own type; float32 values keep
+// their bits.
+void writeExr(const std::string& path, const Image& image);
+
+// Writes interleaved 8-bit pixels (1, 3 or 4 channels) as .png, .bmp or .tga, the bytes as they are. `srgb`
+// says only what a PNG should declare the bytes to be: sRGB-encoded, or linear.
+void writeImage8(const std::string& path, int width, int height, int channels,
+                 std::span<const uint8_t> pixels, bool srgb = true);
+
+// Writes a NumPy array, C order, float32 or float16 from float32 values, or uint8.
+void writeNpy(const std::string& path, std::span<const size_t> shape, std::span<const float> values,
+              ChannelType type = ChannelType::Float);
+void writeNpy(const std::string& path, std::span<const size_t> shape, std::span<const uint8_t> values);
+
+}  // namespace pellucid::io

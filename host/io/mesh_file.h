@@ -1,0 +1,56 @@
+// Triangle meshes from OFF, OBJ, PLY and STL files, as plain arrays in the file's vertex order.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace pellucid::io {
+
+struct MeshData {
+    std::vector<float> positions;     // xyz per vertex, in the file's unit of length
+    std::vector<float> normals;       // unit xyz per vertex, or empty
+    std::vector<float> uvs;           // u, v per vertex, or empty
+    std::vector<uint32_t> triangles;  // three indices each; polygons come as fans round their first corner
+    std::vector<uint32_t>
+        splitFrom;  // vertices beyond the file's own, made at UV seams: which one each copies
+    std::vector<std::string> warnings;  // what was left out or repaired, one sentence each
+    std::string source;                 // the file, for messages
+
+    size_t vertexCount() const { return positions.size() / 3; }
+    size_t triangleCount() const { return triangles.size() / 3; }
+};
+
+struct MeshLoadOptions {
+    // OBJ files give UVs per corner. True: a vertex whose corners differ is copied, copies after all of the
+    // file's own vertices (see splitFrom), so that a renderer can use them. False: UVs that differ are an
+    // average nobody wants, so none are loaded, and the vertices are exactly the file's.
+    bool splitUvSeams = false;
+};
+
+// Parses with OpenMesh, but keeps every face, also those that make an edge non-manifold, which an OpenMesh
+// mesh refuses. Throws FileError: file missing or broken (with its line in text files), extension unknown, a
+// position not finite, an index out of range, no face.
+MeshData loadMesh(const std::string& path, const MeshLoadOptions& options = {});
+
+// Unit normals: face normals weighted with the corner's angle, summed over all vertices at the same position,
+// so that seams do not show. Vertices of no triangle get (0, 0, 1).
+void computeNormals(MeshData& mesh);
+
+// `levels` times four triangles from one, with OpenMesh's Loop scheme; UVs are interpolated linearly, normals
+// are dropped. Vertices of the mesh keep their indices. Throws FileError when the mesh is not manifold,
+// naming the triangle.
+void loopSubdivide(MeshData& mesh, int levels);
+
+// Scales and moves so that the largest extent along `axis` (0 x, 1 y, 2 z) is `height` and the bounding box
+// is centred on the origin. Returns the factor. Throws FileError when the mesh has no extent there.
+float scaleToHeight(MeshData& mesh, float height, int axis);
+
+// Writes a binary PLY: positions, normals if present, `quality` per vertex (vertexCount() values) and colours
+// that show quality from `low` to `high` with the project's colour map. Complete or not at all; throws
+// FileError.
+void writePly(const std::string& path, const MeshData& mesh, std::span<const float> quality, float low,
+              float high);
+
+}  // namespace pellucid::io

@@ -1,0 +1,23 @@
+// A strict look at the text of a mesh file before OpenMesh's lenient readers see it. They take "nan" for the
+// end of the file, skip a broken vertex and so shift all later indices, and take trailing face colours for
+// faces.
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string>
+
+namespace pellucid::io {
+
+struct MeshText {
+    size_t faces = 0;  // faces that the file lists
+    std::optional<std::string>
+        canonical;  // the same mesh without what OpenMesh cannot read, when there was such a thing
+};
+
+// Each throws FileError with the line of the first number that is missing, not finite, or an index out of
+// range.
+MeshText checkOff(const std::string& path, const std::string& text);  // ASCII: not "OFF BINARY"
+MeshText checkObj(const std::string& path, const std::string& text);
+MeshText checkStl(const std::string& path, const std::string& text);  // ASCII and binary
+
+}  // namespace pellucid::io
