@@ -1,0 +1,93 @@
+#include "command.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+
+namespace pellucid::cli {
+namespace {
+
+std::atomic<bool> interrupted{false};
+
+// The first Ctrl-C cancels at the next step of progress, the second one kills.
+void onInterrupt(int signal) {
+    interrupted = true;
+    std::signal(signal, SIG_DFL);
+}
+
+}  // namespace
+
+Run::Run(const Options& options)
+    : options_(options),
+      device_(options.device),
+      before_(device_.stats()),
+      start_(std::chrono::steady_clock::now()) {
+    std::signal(SIGINT, onInterrupt);
+    device_.setProgress(&Run::onProgress, this);
+    report["device"] = device_.info().name;
+}
+
+Run::~Run() {
+    if (progressShown_) std::fputs("\n", stderr);
+    pelDeviceSetProgress(device_.get(), nullptr, nullptr);
+}
+
+int Run::onProgress(void* user, double fraction, const char* what) {
+    Run& run = *static_cast<Run*>(user);
+    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - run.start_;
+    if (isatty(2) && since.count() > 1) {
+        std::fprintf(stderr, "\r%3.0f %% %-60.60s", fraction * 100, what);
+        run.progressShown_ = fraction < 1;
+        if (fraction >= 1) std::fputs("\n", stderr);
+    }
+    return !interrupted;
+}
+
+double Run::deviceMilliseconds() const {
+    return device_.stats().kernelMilliseconds - before_.kernelMilliseconds;
+}
+
+void Run::note(const std::string& text) const {
+    std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+void Run::warn(const std::string& text) {
+    warnings_.push_back(text);
+    std::fprintf(stderr, "warning: %s\n", text.c_str());
+}
+
+void Run::finish() {
+    const std::chrono::duration<double, std::milli> total = std::chrono::steady_clock::now() - start_;
+    report["device_ms"] = deviceMilliseconds();
+    report["total_ms"] = total.count();
+    report["warnings"] = warnings_;
+    if (options_.json) {
+        std::cout << report.dump(2) << std::endl;
+        return;
+    }
+    for (const auto& [key, value] : report.items()) {
+        if (value.is_array() && value.empty()) continue;
+        std::cout << key << ": " << (value.is_string() ? value.get<std::string>() : value.dump()) << "\n";
+    }
+    std::cout << std::flush;
+}
+
+void addRunOptions(CLI::App& command, Run::Options& options) {
+    command.add_option("--device", options.device,
+                       "OpenCL device: number, name or type (default: PELLUCID_DEVICE, best GPU, CPU)");
+    command.add_flag("--json", options.json, "print one JSON object on standard output");
+}
+
+void parseSize(const std::string& text, uint32_t& width, uint32_t& height) {
+    char rest = 0;
+    unsigned w = 0, h = 0;
+    if (std::sscanf(text.c_str(), "%5ux%5u%c", &w, &h, &rest) != 2 || w == 0 || h == 0)
+        throw UsageError("--size " + text + ": two whole numbers from 1 on are needed, such as 512x512");
+    width = w;
+    height = h;
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,70 @@
+// What every subcommand of `pellucid` shares: the device, the report, progress, exit codes.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <pellucid/pellucid.hpp>
+#include <stdexcept>
+#include <string>
+
+namespace pellucid::cli {
+
+enum ExitCode { exitDone = 0, exitWrongUse = 2, exitBadInput = 3, exitNoDevice = 4 };
+
+// Wrong use that only shows once the arguments are looked at together.
+class UsageError : public std::runtime_error {
+    using runtime_error::runtime_error;
+};
+
+// A bad input file found by the library: the message names the file.
+class InputError : public std::runtime_error {
+    using runtime_error::runtime_error;
+};
+
+// One run of a subcommand: opens the device, shows progress on stderr, prints the report on stdout at the
+// end.
+class Run {
+  public:
+    struct Options {
+        std::string device;  // selector; "" for the standard one
+        bool json = false;
+    };
+    explicit Run(const Options& options);
+    ~Run();
+    Run(const Run&) = delete;
+
+    const Device& device() const { return device_; }
+    double deviceMilliseconds() const;  // kernels since this run began
+
+    void note(const std::string& text) const;  // to stderr, for people
+    void warn(const std::string& text);        // to stderr, and into the report
+    // Key and value of the report, in this order. Numbers, texts, arrays and objects alike.
+    nlohmann::ordered_json report;
+
+    // Prints the report: one JSON object with --json, else a line per entry.
+    void finish();
+
+  private:
+    Options options_;
+    Device device_;
+    PelDeviceStats before_;
+    std::chrono::steady_clock::time_point start_;
+    nlohmann::ordered_json warnings_ = nlohmann::ordered_json::array();
+    bool progressShown_ = false;
+    static int onProgress(void* user, double fraction, const char* what);
+};
+
+// Adds --device and --json.
+void addRunOptions(CLI::App& command, Run::Options& options);
+
+// "WxH" to two numbers; throws UsageError.
+void parseSize(const std::string& text, uint32_t& width, uint32_t& height);
+
+// Each file of this folder adds one subcommand.
+void addDevices(CLI::App& app);
+void addCurvature(CLI::App& app);
+void addLut(CLI::App& app);
+void addShade(CLI::App& app);
+void addDemo(CLI::App& app);
+
+}  // namespace pellucid::cli
