@@ -1,0 +1,24 @@
+// Curvature of a loaded mesh on the device, as `curvature` and `demo` need it.
+#pragma once
+#include <vector>
+
+#include "command.h"
+#include "io/mesh_file.h"
+
+namespace pellucid::cli {
+
+struct MeshCurvature {
+    std::vector<float> values;  // per vertex, 1/length of the mesh's unit, times params.scale
+    PelMeshReport report;
+};
+
+// Throws InputError, naming the file, when the library refuses the mesh.
+MeshCurvature meshCurvature(Run& run, const io::MeshData& mesh, const PelCurvatureParams& params);
+
+// Adds the counts of the mesh to the report, and a warning for each thing that was skipped.
+void reportMesh(Run& run, const PelMeshReport& report);
+
+// The value that a share (0 to 1) of the values does not exceed; 0 for none.
+float percentile(std::vector<float> values, double share);
+
+}  // namespace pellucid::cli

@@ -1,0 +1,25 @@
+// Look-up tables as files: EXR carries what the table is, so that it can be read back and checked; the others
+// are pixels.
+#pragma once
+#include <optional>
+#include <pellucid/pellucid.hpp>
+#include <string>
+
+namespace pellucid::io {
+
+// Writes texels with the top row first. The extension chooses the container: .exr (float or half; with the
+// description in attributes named "pellucid:..."), .npy (any encoding; height x width x 3 or 4), .png and
+// .bmp (faceworks8). Without an encoding: float for .exr and .npy, faceworks8 for .png and .bmp. Complete or
+// not at all. Throws FileError when it cannot be written, std::invalid_argument when container and encoding
+// do not go together.
+void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncoding> encoding = {});
+
+// What writeLut will choose; throws like it, and when the file cannot be written. For checks before long
+// work.
+PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncoding> encoding);
+
+// Reads what writeLut wrote as .exr. Throws FileError: no such file, no or incomplete description, wrong
+// size.
+Lut readLut(const Device& device, const std::string& path);
+
+}  // namespace pellucid::io
