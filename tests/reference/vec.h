@@ -1,0 +1,73 @@
+// Three doubles with the arithmetic that the oracle needs: a vector in space or an RGB triple.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace reference {
+
+struct Vec3 {
+    double x = 0, y = 0, z = 0;
+    double operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
+    double& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
+};
+using Rgb = Vec3;
+
+struct Vec2 {
+    double x = 0, y = 0;
+};
+
+inline Vec3 operator+(Vec3 a, Vec3 b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vec3 operator-(Vec3 a, Vec3 b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vec3 operator*(Vec3 a, Vec3 b) {
+    return {a.x * b.x, a.y * b.y, a.z * b.z};
+}
+inline Vec3 operator*(double k, Vec3 a) {
+    return {k * a.x, k * a.y, k * a.z};
+}
+inline Vec3 operator*(Vec3 a, double k) {
+    return k * a;
+}
+inline Vec3 operator/(Vec3 a, double k) {
+    return {a.x / k, a.y / k, a.z / k};
+}
+
+inline double dot(Vec3 a, Vec3 b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline Vec3 cross(Vec3 a, Vec3 b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double length(Vec3 a) {
+    return std::sqrt(dot(a, a));
+}
+inline Vec3 normalized(Vec3 a) {
+    return a / length(a);
+}
+inline Vec3 mix(Vec3 a, Vec3 b, double t) {
+    return (1 - t) * a + t * b;
+}
+
+inline double saturate(double x) {
+    return std::clamp(x, 0.0, 1.0);
+}
+inline double max0(double x) {
+    return std::max(x, 0.0);
+}
+inline double smoothstep01(double t) {
+    return t * t * (3 - 2 * t);
+}
+
+// Largest magnitude: the norm that the adaptive quadrature steers by.
+inline double magnitude(double a) {
+    return std::abs(a);
+}
+inline double magnitude(Vec3 a) {
+    return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
+}
+
+}  // namespace reference

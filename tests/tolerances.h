@@ -1,0 +1,49 @@
+// Every tolerance of the tests, with the reason for its size. No test holds a number of its own.
+// Use: EXPECT_NEAR(a, b, tolerance::lutTexel) - an entry converts to its value.
+#pragma once
+
+namespace tolerance {
+
+struct Tolerance {
+    const char* name;
+    double value;
+    const char* reason;
+    constexpr operator double() const { return value; }
+};
+
+// --- look-up tables, absolute, against the exact integral ---
+inline constexpr Tolerance lutTexel{"lutTexel", 1e-5, "any float LUT texel: well below half a 10-bit step"};
+inline constexpr Tolerance lutTexelGaussians{
+    "lutTexelGaussians", 2e-6,
+    "Gaussian sums have closed forms; a few float roundings of values near 1 remain"};
+inline constexpr Tolerance lutTexelOther{"lutTexelOther", 1e-5,
+                                         "profiles that need a quadrature on the device"};
+inline constexpr Tolerance lutRoundingBoundary{
+    "lutRoundingBoundary", 1e-4, "in 8-bit steps: truth this near to x.5 may round to either side"};
+inline constexpr Tolerance sphereMean{"sphereMean", 1e-5,
+                                      "energy: the mean of the form sphere is exactly 1/4"};
+
+// --- curvature, relative to the mesh's largest value ---
+inline constexpr Tolerance edgeCurvature{"edgeCurvature", 1e-5,
+                                         "differences of float positions and normals, then a mean per pass"};
+
+// --- shading, absolute per channel, from the same inputs and tables ---
+inline constexpr Tolerance shadeTerm{"shadeTerm", 5e-5,
+                                     "one term alone: bilinear weights and a few dozen float operations"};
+inline constexpr Tolerance shadeSum{"shadeSum", 2e-4, "all terms added and multiplied by light and albedo"};
+
+// --- the oracle against itself (double precision, two methods) ---
+inline constexpr Tolerance oracleQuadrature{"oracleQuadrature", 1e-11,
+                                            "two adaptive quadratures of one integral, each asked for 1e-13"};
+inline constexpr Tolerance oracleLineSpread{"oracleLineSpread", 1e-11,
+                                            "relative: line spread by quadrature against a closed form"};
+inline constexpr Tolerance oracleEnergy{"oracleEnergy", 1e-11, "profiles integrate to 1"};
+inline constexpr Tolerance oracleClosedForm{
+    "oracleClosedForm", 1e-10, "quadrature against Bessel, Fourier or erf closed form, series cut at 1e-14"};
+inline constexpr Tolerance oracleExact{"oracleExact", 1e-13, "the same sum in another order of operations"};
+inline constexpr Tolerance publishedWidth{"publishedWidth", 6e-4,
+                                          "mm: the published sigmas are rounded to three digits"};
+inline constexpr Tolerance publishedWeights{"publishedWeights", 1e-12,
+                                            "the published weights add up to 1 in each channel"};
+
+}  // namespace tolerance
