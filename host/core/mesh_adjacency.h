@@ -1,0 +1,23 @@
+// One-ring lists of a triangle mesh (shared/mesh.h says how they lie in memory), from raw index arrays: any
+// connectivity, manifold or not.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace pel {
+
+struct MeshAdjacency {
+    std::vector<uint32_t> offsets;     // slots + 1
+    std::vector<uint32_t> neighbours;  // ascending in each list
+    uint32_t edges = 0;
+    uint32_t borderEdges = 0;
+    uint32_t nonManifoldEdges = 0;
+    uint32_t unreferencedSlots = 0;
+};
+
+// `triangles`: three slots each, all different and < slots. `progress` is told a fraction in [0, 1].
+MeshAdjacency buildAdjacency(const std::vector<uint32_t>& triangles, uint32_t slots,
+                             const std::function<void(double)>& progress);
+
+}  // namespace pel

@@ -1,0 +1,52 @@
+// What a mesh's indices say, analysed once and kept on the device; and the scratch memory of the passes over
+// it.
+#pragma once
+#include "core/buffer.h"
+#include "shared/mesh.h"
+
+namespace pel {
+
+class MeshTopology final : public Object {
+  public:
+    static constexpr Kind kind = Kind::meshTopology;
+    static Ref<MeshTopology> create(Ref<Device> device, const PelMeshTopologyDesc& desc,
+                                    PelMeshReport& report);
+
+    Device& device() const { return *device_; }
+    uint32_t vertices() const { return report_.vertices; }
+    uint32_t slots() const { return report_.uniquePositions; }
+    uint32_t triangles() const { return report_.triangles; }
+    bool welded() const { return bool(slotOf_); }
+    const PelMeshReport& report() const { return report_; }
+
+    // Device arrays; empty when they would have no elements. The weld's are empty unless welded().
+    const cl::Memory& indices() const { return indices_; }  // the caller's, three vertices per triangle
+    const cl::Memory& slotOf() const { return slotOf_; }
+    const cl::Memory& memberOffsets() const { return memberOffsets_; }
+    const cl::Memory& members() const { return members_; }
+    const cl::Memory& offsets() const { return offsets_; }
+    const cl::Memory& neighbours() const { return neighbours_; }
+
+    // Memory between the passes of one call, at least `bytes` long, kept for the next call. The queue is in
+    // order, so that calls may share it as long as each enqueues its passes together: hold lock() meanwhile.
+    enum Scratch { scratchRows, scratchFrom, scratchTo, scratchReduce, scratchCount };
+    std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
+    const cl::Memory& scratch(Scratch which, size_t bytes);
+
+    explicit MeshTopology(Ref<Device> device) : Object(kind), device_(std::move(device)) {}
+
+  private:
+    ~MeshTopology() override = default;
+    cl::Memory upload(const std::vector<uint32_t>& values);
+
+    Ref<Device> device_;
+    PelMeshReport report_ = pelMeshReportDefaults();
+    cl::Memory indices_, slotOf_, memberOffsets_, members_, offsets_, neighbours_;
+    std::mutex mutex_;
+    struct {
+        cl::Memory memory;
+        size_t bytes = 0;
+    } scratch_[scratchCount];
+};
+
+}  // namespace pel

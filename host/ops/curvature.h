@@ -1,0 +1,14 @@
+// Curvature at the vertices of a mesh: kernels/mesh_rows.cl and kernels/curvature.cl.
+#pragma once
+#include "core/mesh_topology.h"
+#include "core/vertex_view.h"
+
+namespace pel {
+
+void checkCurvatureParams(const PelCurvatureParams& params);
+
+// Enqueues everything. With `counts`, waits and fills it.
+void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, const VertexView& positions,
+                   const VertexView& normals, const VertexView& curvature, MeshCounts* counts);
+
+}  // namespace pel

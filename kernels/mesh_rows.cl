@@ -1,0 +1,61 @@
+// Gathers the caller's strided positions and normals into one packed row per slot (lib/mesh_vertex.clh), so
+// that every later pass loads a neighbour with one aligned access; and counts what is wrong with the data
+// when asked to.
+//
+// Inputs: positions (length), normals (unit), one of each per vertex of the caller.
+// One work-item: one slot (mesh_rows), one vertex or slot (mesh_count).
+// Variants: MESH_WELDED 1: a slot has members, several vertices of the caller. It stands at the first; its
+// normal is the mean direction of theirs.
+
+#include "lib/mesh_vertex.clh"
+
+__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_rows(
+    uint slots, __global const uint* memberOffsets, __global const uint* members,
+    __global const float* positions, VertexLayout positionLayout, __global const float* normals,
+    VertexLayout normalLayout, __global float* rows) {
+    const uint slot = get_global_id(0);
+    if (slot >= slots) return;
+#if MESH_WELDED
+    const uint begin = memberOffsets[slot], end = memberOffsets[slot + 1];
+    const float3 position = vertex_load3(positions, positionLayout, members[begin]);
+    float3 normal = mesh_usable_normal(vertex_load3(normals, normalLayout, members[begin]));
+    if (end - begin > 1) {
+        float3 sum = (float3)(0.0f);
+        for (uint m = begin; m < end; ++m) {
+            const float3 n = mesh_usable_normal(vertex_load3(normals, normalLayout, members[m]));
+            if (n.x == n.x) sum += n;
+        }
+        normal = dot(sum, sum) > 1e-6f ? sum / sqrt(dot(sum, sum)) : mesh_nan3();
+    }
+#else
+    const float3 position = vertex_load3(positions, positionLayout, slot);
+    const float3 normal = mesh_usable_normal(vertex_load3(normals, normalLayout, slot));
+#endif
+    vstore8((float8)(mesh_usable_position(position), 0.0f, normal, 0.0f), slot, rows);
+}
+
+// Whole numbers only, so that the order of the additions does not show.
+__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_count(
+    uint vertices, __global const float* positions, VertexLayout positionLayout,
+    __global const float* normals, VertexLayout normalLayout, uint slots, __global const uint* offsets,
+    __global const uint* neighbours, __global const float* rows, __global MeshCounts* counts) {
+    const uint i = get_global_id(0);
+    if (i < vertices) {
+        const float3 p = mesh_usable_position(vertex_load3(positions, positionLayout, i));
+        const float3 n = mesh_usable_normal(vertex_load3(normals, normalLayout, i));
+        if (p.x != p.x) atomic_inc(&counts->nonFinitePositions);
+        if (n.x != n.x) atomic_inc(&counts->nonFiniteNormals);
+    }
+    if (i < slots) {
+        const float4 self = vload4(2 * (size_t)i, rows);
+        uint previous = MESH_SLOT, found = 0;
+        for (uint e = offsets[i]; e < offsets[i + 1]; ++e) {
+            const uint other = neighbours[e] & MESH_SLOT;
+            if (other < i || other == previous) continue;
+            previous = other;
+            const float4 d = vload4(2 * (size_t)other, rows) - self;
+            if (dot(d, d) < MESH_MIN_LENGTH2) ++found;
+        }
+        if (found) atomic_add(&counts->zeroLengthEdges, found);
+    }
+}

@@ -1,0 +1,57 @@
+// How meshes lie in device memory; compiled by host and device.
+//
+// A slot is a vertex of the topology: one vertex of the caller's mesh, or all those that were welded into
+// one. Kernels work on slots; only the first and the last pass of an operation know the caller's vertices and
+// their strides.
+#ifndef PEL_SHARED_MESH
+#define PEL_SHARED_MESH
+
+// A slot's one-ring is a list of neighbours, ascending, offsets[slot] to offsets[slot + 1]. A neighbour
+// stands there once for every two triangles that its edge belongs to, and once more with this bit for one
+// that is left over: an interior edge is one plain entry, a border edge one marked entry. Half the memory of
+// a list per triangle, and the smoothing pass reads its weights from it.
+#define MESH_SINGLE 0x80000000u
+#define MESH_SLOT 0x7fffffffu
+
+// Edges shorter than the root of this (a length squared) are too short to measure: their square is no normal
+// float.
+#define MESH_MIN_LENGTH2 1.17549435e-38f
+
+// A normal whose squared length is off by more than this is brought to unit length; nearer ones are taken as
+// they are, so that their last bits stay the caller's.
+#define MESH_UNIT_TOLERANCE 1e-3f
+
+#define MESH_GROUP 64  // work-items in a work-group of every mesh kernel
+
+// Where the caller's vertex data stands, in 4-byte words: element i begins at offset + i * stride.
+typedef struct VertexLayout {
+    unsigned int count;   // vertices
+    unsigned int offset;  // words
+    unsigned int stride;  // words
+    unsigned int pad;
+} VertexLayout;
+
+// What a pass over the data found, beside the results.
+typedef struct MeshCounts {
+    unsigned int zeroLengthEdges;
+    unsigned int nonFinitePositions;  // vertices of the caller
+    unsigned int nonFiniteNormals;    // likewise; also zero normals
+    unsigned int pad;
+} MeshCounts;
+
+// The triangles are dealt out to this many work-items, on every device, so that their sums come out the same.
+#define UV_SCALE_ITEMS 4096
+
+// The sum over a share of the triangles of log2(longest edge^2 / longest UV edge^2), in two parts.
+typedef struct UvScaleShare {
+    float mantissas;
+    int exponents;
+    unsigned int triangles;  // that were counted
+    unsigned int pad;
+} UvScaleShare;
+
+#ifdef __cplusplus
+static_assert(sizeof(VertexLayout) == 16 && sizeof(MeshCounts) == 16 && sizeof(UvScaleShare) == 16);
+#endif
+
+#endif
