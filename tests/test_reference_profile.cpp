@@ -48,7 +48,7 @@ TEST(ReferenceQuadrature, HandlesKinksAndSingularEnds) {
 }
 
 TEST(ReferenceProfile, SkinHasThePublishedSigmas) {
-    // Sigma of the widest Gaussian 2.722 mm; weights of each channel add up to 1 as printed.
+    // Variances are printed beside the sigmas, both rounded; weights of each channel add up to 1 as printed.
     const double v[6] = {0.0064, 0.0484, 0.187, 0.567, 1.99, 7.41};
     const double sigma[6] = {0.080, 0.220, 0.432, 0.753, 1.411, 2.722};
     const Rgb weight[6] = {{.233, .455, .649}, {.100, .336, .344}, {.118, .198, 0},
@@ -57,7 +57,7 @@ TEST(ReferenceProfile, SkinHasThePublishedSigmas) {
     for (int i = 0; i < 6; ++i) {
         EXPECT_NEAR(std::sqrt(v[i]), sigma[i], tolerance::publishedWidth);
         sum = sum + weight[i];
-        atZero = atZero + weight[i] / (2 * pi * v[i]);
+        atZero = atZero + weight[i] / (2 * pi * sigma[i] * sigma[i]);
     }
     const Rgb actual = skinProfile()->radial(0);
     for (int c = 0; c < 3; ++c) {

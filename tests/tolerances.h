@@ -40,6 +40,19 @@ inline constexpr Tolerance oracleLineSpread{"oracleLineSpread", 1e-11,
 inline constexpr Tolerance oracleEnergy{"oracleEnergy", 1e-11, "profiles integrate to 1"};
 inline constexpr Tolerance oracleClosedForm{
     "oracleClosedForm", 1e-10, "quadrature against Bessel, Fourier or erf closed form, series cut at 1e-14"};
+inline constexpr Tolerance oracleSingular{
+    "oracleSingular", 1e-8, "as oracleQuadrature, where the second method meets a logarithm unprepared"};
+inline constexpr Tolerance oracleFloatTable{"oracleFloatTable", 1e-7,
+                                            "a table stored as float, values up to 1"};
+inline constexpr Tolerance flatLimit{
+    "flatLimit", 5e-5, "at r = 1e4 sigma scattering moves light by sigma/r next to the terminator"};
+inline constexpr Tolerance smallRadiusLimit{"smallRadiusLimit", 1e-7,
+                                            "at r = 1e-4 sigma the first mode is r²/2 sigma²"};
+inline constexpr Tolerance widePenumbra{
+    "widePenumbra", 1e-3, "reciprocal width 1e-3: the smoothstep's foot, and the symmetry of the centre"};
+inline constexpr Tolerance srgbInverse{"srgbInverse", 1e-6, "the standard's two pieces meet to seven digits"};
+inline constexpr Tolerance peerRoundedApart{
+    "peerRoundedApart", 0.1, "share of 8-bit values: an error of 7.7e-4 moves a fifth of a step at most"};
 inline constexpr Tolerance oracleExact{"oracleExact", 1e-13, "the same sum in another order of operations"};
 inline constexpr Tolerance publishedWidth{"publishedWidth", 6e-4,
                                           "mm: the published sigmas are rounded to three digits"};

@@ -134,14 +134,15 @@ Rgb Profile::lineSpread(double offset) const {
 }
 
 ProfilePtr skinProfile() {
-    // d'Eon & Luebke, GPU Gems 3, ch. 14, table of the six-Gaussian fit of three-layer skin; mm².
-    return std::make_shared<GaussiansProfile>(std::vector<Gaussian>{{0.0064, {0.233, 0.455, 0.649}},
-                                                                    {0.0484, {0.100, 0.336, 0.344}},
-                                                                    {0.187, {0.118, 0.198, 0}},
-                                                                    {0.567, {0.113, 0.007, 0.007}},
-                                                                    {1.99, {0.358, 0.004, 0}},
-                                                                    {7.41, {0.078, 0, 0}}},
-                                              2.7);
+    // d'Eon & Luebke, GPU Gems 3, ch. 14: the six-Gaussian fit of three-layer skin, by its sigmas in mm as
+    // FaceWorks takes them. (The variances printed beside them are their squares, rounded; the difference is
+    // 3e-5 in a LUT.)
+    const double sigma[6] = {0.080, 0.220, 0.432, 0.753, 1.411, 2.722};
+    const Rgb weight[6] = {{0.233, 0.455, 0.649}, {0.100, 0.336, 0.344}, {0.118, 0.198, 0},
+                           {0.113, 0.007, 0.007}, {0.358, 0.004, 0},     {0.078, 0, 0}};
+    std::vector<Gaussian> gaussians;
+    for (int i = 0; i < 6; ++i) gaussians.push_back({sigma[i] * sigma[i], weight[i]});
+    return std::make_shared<GaussiansProfile>(std::move(gaussians), 2.7);
 }
 
 ProfilePtr gaussiansProfile(std::vector<Gaussian> gaussians) {
