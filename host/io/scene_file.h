@@ -1,0 +1,59 @@
+// The scene file of `pellucid shade`: TOML that says what the channels of a G-buffer are, and what shines on
+// them. Every key, with units, is in docs/scene-file.md; the fields are those of pellucid.h.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pellucid/pellucid.h"
+
+namespace pellucid::io {
+
+// A look-up table by name: read from a file, or integrated from its description.
+struct SceneLut {
+    std::string name;                        // materials refer to it
+    PelLutInfo info = pelLutInfoDefaults();  // kind; and what to integrate if `file` is empty
+    std::string file;                        // a float or half EXR written by `pellucid lut`
+    int line = 0;                            // of the scene file; 0: made by a program
+};
+
+struct SceneMaterial {
+    uint32_t id = 1;  // value in the material channel, 1 to 255
+    PelMaterial material = pelMaterialDefaults();
+    std::string curvatureLut;  // name of a SceneLut; "": no direct scattering
+    std::string shadowLut;     // likewise; "": plain shadow
+    int line = 0;
+};
+
+struct SceneLight {
+    PelLight light = pelLightDefaults();
+    std::string wideShadow;        // channel of the G-buffer; "": the light casts no shadow
+    std::string shadowMapFile;     // image of depths seen from the light; "": no thickness from this light
+    std::string shadowMapChannel;  // its channel; "": the only one
+    int line = 0;
+};
+
+struct SceneFile {
+    std::string source;  // the file, for messages
+    std::array<std::vector<std::string>, PEL_SLOT_COUNT>
+        channels;  // of the G-buffer per image slot; empty: slot not set
+    PelCamera camera = pelCameraDefaults();
+    PelAmbient ambient = pelAmbientDefaults();
+    std::vector<SceneLight> lights;
+    std::vector<SceneMaterial> materials;
+    std::vector<SceneLut> luts;
+
+    const SceneLut* lut(const std::string& name, PelLutKind kind) const;  // nullptr if there is none
+};
+
+// Reads and checks a scene; paths in it come back relative to the working folder. Throws FileError with the
+// line: bad TOML, unknown key (with the key that was perhaps meant), wrong type, value out of its range,
+// wrong number of values, a name that nothing has.
+SceneFile readScene(const std::string& path);
+
+// Writes a scene that readScene reads back to the same values, floats to the bit. File paths are written as
+// they are.
+void writeScene(const std::string& path, const SceneFile& scene);
+
+}  // namespace pellucid::io

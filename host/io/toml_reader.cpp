@@ -1,0 +1,241 @@
+#include "io/toml_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+#include "io/file_error.h"
+
+namespace pellucid::io {
+namespace {
+
+std::string typeName(const toml::node& node) {
+    std::ostringstream text;
+    const bool vowel = node.is_array() || node.is_integer();
+    text << (vowel ? "an " : "a ") << node.type();
+    return text.str();
+}
+
+std::string quoted(std::string_view text) {
+    std::string out(1, '\'');
+    out += text;
+    out += '\'';
+    return out;
+}
+
+// Edits (insert, delete, replace) between two words [Levenshtein 1966].
+size_t distance(std::string_view a, std::string_view b) {
+    std::vector<size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), size_t{0});
+    for (size_t i = 0; i < a.size(); ++i) {
+        size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (size_t j = 0; j < b.size(); ++j) {
+            const size_t replaced = diagonal + (a[i] != b[j]);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, replaced});
+        }
+    }
+    return row.back();
+}
+
+const char* rangeText(Range range) {
+    switch (range) {
+        case Range::Any:
+            return "a finite number";
+        case Range::NotNegative:
+            return "0 or more";
+        case Range::Positive:
+            return "more than 0";
+        case Range::AtLeastOne:
+            return "1 or more";
+        case Range::ZeroToOne:
+            return "from 0 to 1";
+    }
+    return "";
+}
+
+bool inRange(float x, Range range) {
+    if (!std::isfinite(x)) return false;
+    switch (range) {
+        case Range::Any:
+            return true;
+        case Range::NotNegative:
+            return x >= 0;
+        case Range::Positive:
+            return x > 0;
+        case Range::AtLeastOne:
+            return x >= 1;
+        case Range::ZeroToOne:
+            return x >= 0 && x <= 1;
+    }
+    return false;
+}
+
+}  // namespace
+
+int TomlReader::lineOf(std::string_view key) const {
+    for (const auto& [k, node] : table_) {
+        if (k.str() == key) return static_cast<int>(k.source().begin.line);
+    }
+    return line();
+}
+
+void TomlReader::fail(std::string_view key, const std::string& message) const {
+    throw FileError(file_, quoted(key) + " in " + where_ + " " + message, lineOf(key));
+}
+
+const toml::node* TomlReader::find(std::string_view key) {
+    known_.emplace_back(key);
+    return table_.get(key);
+}
+
+float TomlReader::toFloat(std::string_view key, const toml::node& node, Range range) const {
+    if (!node.is_number()) fail(key, "is " + typeName(node) + "; a number would be right");
+    const auto value = static_cast<float>(node.is_integer() ? static_cast<double>(node.as_integer()->get())
+                                                            : node.as_floating_point()->get());
+    if (!inRange(value, range)) {
+        std::ostringstream text;
+        text << "is " << value << "; it must be " << rangeText(range);
+        fail(key, text.str());
+    }
+    return value;
+}
+
+void TomlReader::number(std::string_view key, float& value, Range range) {
+    if (const toml::node* node = find(key)) value = toFloat(key, *node, range);
+}
+
+void TomlReader::numbers(std::string_view key, float* values, size_t count, Range range) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    const std::string wanted = "an array of " + std::to_string(count) + " numbers";
+    if (!node->is_array()) fail(key, "is " + typeName(*node) + "; " + wanted + " would be right");
+    const toml::array& array = *node->as_array();
+    if (array.size() != count) {
+        fail(key, "has " + std::to_string(array.size()) + " values; " + wanted + " would be right" +
+                      (count == 16 ? " (a matrix, row by row)" : ""));
+    }
+    for (size_t i = 0; i < count; ++i) values[i] = toFloat(key, array[i], range);
+}
+
+void TomlReader::rows(std::string_view key, float* values, size_t rows, size_t columns) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    const std::string wanted = std::to_string(rows) + " arrays of " + std::to_string(columns) + " numbers";
+    if (!node->is_array()) fail(key, "is " + typeName(*node) + "; " + wanted + " would be right");
+    const toml::array& array = *node->as_array();
+    if (array.size() != rows)
+        fail(key, "has " + std::to_string(array.size()) + " rows; " + wanted + " would be right");
+    for (size_t r = 0; r < rows; ++r) {
+        if (!array[r].is_array() || array[r].as_array()->size() != columns) {
+            fail(key, "has a row " + std::to_string(r) + " (counted from 0) that is no array of " +
+                          std::to_string(columns) + "; " + wanted + " would be right");
+        }
+        for (size_t c = 0; c < columns; ++c)
+            values[r * columns + c] = toFloat(key, (*array[r].as_array())[c], Range::Any);
+    }
+}
+
+void TomlReader::integer(std::string_view key, uint32_t& value, uint32_t low, uint32_t high) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    const std::string wanted = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+    if (!node->is_integer()) fail(key, "is " + typeName(*node) + "; " + wanted + " would be right");
+    const int64_t given = node->as_integer()->get();
+    if (given < low || given > high) fail(key, "is " + std::to_string(given) + "; it must be " + wanted);
+    value = static_cast<uint32_t>(given);
+}
+
+void TomlReader::text(std::string_view key, std::string& value) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    if (!node->is_string()) fail(key, "is " + typeName(*node) + "; a string in quotes would be right");
+    value = node->as_string()->get();
+}
+
+void TomlReader::texts(std::string_view key, std::vector<std::string>& values, size_t count) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    const std::string wanted = count == 1 ? std::string("one channel name")
+                                          : "an array of " + std::to_string(count) + " channel names";
+    values.clear();
+    if (node->is_string() && count == 1) {
+        values.push_back(node->as_string()->get());
+        return;
+    }
+    if (!node->is_array()) fail(key, "is " + typeName(*node) + "; " + wanted + " would be right");
+    for (const toml::node& entry : *node->as_array()) {
+        if (!entry.is_string()) fail(key, "holds " + typeName(entry) + "; " + wanted + " would be right");
+        values.push_back(entry.as_string()->get());
+    }
+    if (values.size() != count) {
+        fail(key, "has " + std::to_string(values.size()) + " names; " + wanted + " would be right");
+    }
+}
+
+void TomlReader::choiceIndex(std::string_view key, uint32_t& index, std::span<const std::string_view> names) {
+    if (!has(key)) {
+        find(key);
+        return;
+    }
+    std::string given, list;
+    text(key, given);
+    for (size_t i = 0; i < names.size(); ++i) {
+        if (names[i] == given) {
+            index = static_cast<uint32_t>(i);
+            return;
+        }
+        list.append(i ? ", " : "").append(quoted(names[i]));
+    }
+    fail(key, "is " + quoted(given) + "; one of " + list + " would be right");
+}
+
+const toml::table* TomlReader::subTable(std::string_view key) {
+    const toml::node* node = find(key);
+    if (!node) return nullptr;
+    if (!node->is_table()) fail(key, "is " + typeName(*node) + "; a table would be right");
+    return node->as_table();
+}
+
+std::string TomlReader::innerName(std::string_view key) const {
+    std::string name = where_;  // "[[light]]" to "[light.shadow_map]"
+    std::erase_if(name, [](char c) { return c == '[' || c == ']'; });
+    name = where_.front() == '[' ? name + '.' : std::string();
+    name += key;
+    name.insert(name.begin(), '[');
+    name += ']';
+    return name;
+}
+
+void TomlReader::tables(std::string_view key, const std::function<void(TomlReader&)>& function) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    const std::string name = "[[" + std::string(key) + "]]";
+    if (!node->is_array())
+        fail(key, "is " + typeName(*node) + "; tables that start with " + name + " would be right");
+    for (const toml::node& entry : *node->as_array()) {
+        if (!entry.is_table()) fail(key, "holds " + typeName(entry) + "; tables " + name + " would be right");
+        TomlReader reader(file_, *entry.as_table(), name);
+        function(reader);
+        reader.finish();
+    }
+}
+
+void TomlReader::finish() const {
+    for (const auto& [key, node] : table_) {
+        const std::string_view given = key.str();
+        if (std::find(known_.begin(), known_.end(), given) != known_.end()) continue;
+        const auto nearest = std::min_element(
+            known_.begin(), known_.end(),
+            [&](const auto& a, const auto& b) { return distance(a, given) < distance(b, given); });
+        std::string list;
+        for (const std::string& k : known_) list += (list.empty() ? "" : ", ") + k;
+        const bool close = nearest != known_.end() && distance(*nearest, given) <= 1 + given.size() / 3;
+        fail(given, close ? "is not known; did you mean " + quoted(*nearest) + "? Known: " + list
+                          : "is not known; known: " + list);
+    }
+}
+
+}  // namespace pellucid::io

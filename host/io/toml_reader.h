@@ -1,0 +1,66 @@
+// Reads one TOML table key by key, and knows which keys it was asked for: the rest are errors.
+#pragma once
+#include <toml++/toml.h>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/scene_keys.h"
+
+namespace pellucid::io {
+
+class TomlReader {
+  public:
+    // `where` names the table in messages: "[[light]]", or "the scene" for the whole file.
+    TomlReader(std::string file, const toml::table& table, std::string where)
+        : file_(std::move(file)), table_(table), where_(std::move(where)) {}
+
+    void number(std::string_view key, float& value, Range range);
+    void numbers(std::string_view key, float* values, size_t count, Range range);
+    void rows(std::string_view key, float* values, size_t rows, size_t columns);
+    void integer(std::string_view key, uint32_t& value, uint32_t low, uint32_t high);
+    void text(std::string_view key, std::string& value);
+    void texts(std::string_view key, std::vector<std::string>& values,
+               size_t count);  // one text will do for count 1
+
+    template <class Enum>
+    void choice(std::string_view key, Enum& value, std::span<const std::string_view> names) {
+        uint32_t index = static_cast<uint32_t>(value);
+        choiceIndex(key, index, names);
+        value = static_cast<Enum>(index);
+    }
+    template <class Function>
+    void table(std::string_view key, bool, Function&& function) {
+        if (const toml::table* inner = subTable(key)) {
+            TomlReader reader(file_, *inner, innerName(key));
+            function(reader);
+            reader.finish();
+        }
+    }
+
+    // The tables [[key]], in order; each is given to `function(reader)` and then finished.
+    void tables(std::string_view key, const std::function<void(TomlReader&)>& function);
+
+    void finish() const;  // throws FileError for the first key that nobody asked for
+    int line() const { return static_cast<int>(table_.source().begin.line); }
+    int lineOf(std::string_view key) const;
+    bool has(std::string_view key) const { return table_.contains(key); }
+    [[noreturn]] void fail(std::string_view key, const std::string& message) const;
+
+  private:
+    const toml::node* find(std::string_view key);  // remembers that the key is known
+    float toFloat(std::string_view key, const toml::node& node, Range range) const;
+    void choiceIndex(std::string_view key, uint32_t& index, std::span<const std::string_view> names);
+    const toml::table* subTable(std::string_view key);
+    std::string innerName(std::string_view key) const;
+
+    std::string file_;
+    const toml::table& table_;
+    std::string where_;
+    std::vector<std::string> known_;
+};
+
+}  // namespace pellucid::io
