@@ -27,6 +27,20 @@ inline constexpr Tolerance sphereMean{"sphereMean", 1e-5,
 inline constexpr Tolerance edgeCurvature{"edgeCurvature", 1e-5,
                                          "differences of float positions and normals, then a mean per pass"};
 
+inline constexpr Tolerance peerUvScale{"peerUvScale", 1e-5, "the peer adds up logarithms in float"};
+inline constexpr Tolerance scaledMesh{"scaledMesh", 1e-9,
+                                      "a mesh scaled by k: the same numbers but for rounding"};
+inline constexpr Tolerance finiteDifference{"finiteDifference", 2e-6, "second differences at a step of 1e-4"};
+inline constexpr Tolerance countedArea{"countedArea", 5e-3, "areas by counting 400² points"};
+inline constexpr Tolerance icosphereTensor{"icosphereTensor", 1e-11,
+                                           "exact normals of a sphere: II is 1/r on every face"};
+inline constexpr Tolerance tensorOnAnalytic{
+    "tensorOnAnalytic", 0.05, "relative RMS on 96 x 48 cells, worst of all surfaces and tessellations"};
+inline constexpr Tolerance edgeOnTorus{"edgeOnTorus", 0.2,
+                                       "the edge estimator misses by at least this, at any density"};
+inline constexpr Tolerance sampledDeviation{"sampledDeviation", 0.03,
+                                            "a standard deviation from 1e4 samples"};
+
 // --- shading, absolute per channel, from the same inputs and tables ---
 inline constexpr Tolerance shadeTerm{"shadeTerm", 5e-5,
                                      "one term alone: bilinear weights and a few dozen float operations"};

@@ -1,0 +1,88 @@
+#include "reference/curvature.h"
+
+#include <limits>
+
+namespace reference {
+
+std::vector<double> edgeCurvature(const Mesh& mesh) {
+    const double none = std::numeric_limits<double>::infinity();
+    std::vector<double> least(mesh.positions.size(), none), most(mesh.positions.size(), -none);
+    for (const Triangle& triangle : mesh.triangles)
+        for (int i = 0; i < 3; ++i) {
+            const int a = triangle[i], b = triangle[(i + 1) % 3];
+            const double distance = length(mesh.positions[b] - mesh.positions[a]);
+            if (!(distance > 0)) continue;
+            const double curvature = length(mesh.normals[b] - mesh.normals[a]) / distance;
+            for (int v : {a, b}) {
+                least[v] = std::min(least[v], curvature);
+                most[v] = std::max(most[v], curvature);
+            }
+        }
+    std::vector<double> values(mesh.positions.size(), 0.0);
+    for (size_t v = 0; v < values.size(); ++v)
+        if (most[v] >= 0) values[v] = 0.5 * (least[v] + most[v]);
+    return values;
+}
+
+std::vector<double> smoothed(const Mesh& mesh, std::vector<double> values, int passes) {
+    for (int pass = 0; pass < passes; ++pass) {
+        std::vector<double> sum(values.size(), 0.0);
+        std::vector<int> count(values.size(), 0);
+        for (const Triangle& triangle : mesh.triangles)
+            for (int i = 0; i < 3; ++i) {
+                sum[triangle[i]] += values[triangle[(i + 1) % 3]] + values[triangle[(i + 2) % 3]];
+                count[triangle[i]] += 2;
+            }
+        for (size_t v = 0; v < values.size(); ++v) values[v] = count[v] > 0 ? sum[v] / count[v] : 0.0;
+    }
+    return values;
+}
+
+double uvScale(const Mesh& mesh) {
+    if (mesh.positions.empty() || mesh.uvs.size() != mesh.positions.size()) return 0;
+    Vec3 low = mesh.positions[0], high = low;
+    Vec3 uvLow{mesh.uvs[0].x, mesh.uvs[0].y, 0}, uvHigh = uvLow;
+    for (size_t v = 0; v < mesh.positions.size(); ++v)
+        for (int i = 0; i < 3; ++i) {
+            low[i] = std::min(low[i], mesh.positions[v][i]);
+            high[i] = std::max(high[i], mesh.positions[v][i]);
+            const Vec3 uv{mesh.uvs[v].x, mesh.uvs[v].y, 0};
+            uvLow[i] = std::min(uvLow[i], uv[i]);
+            uvHigh[i] = std::max(uvHigh[i], uv[i]);
+        }
+    const double leastEdge = 1e-6 * length(high - low), leastUvEdge = 1e-6 * length(uvHigh - uvLow);
+    double logarithms = 0;
+    int count = 0;
+    for (const Triangle& triangle : mesh.triangles) {
+        double edge = 0, uvEdge = 0;
+        for (int i = 0; i < 3; ++i) {
+            const int a = triangle[i], b = triangle[(i + 1) % 3];
+            edge = std::max(edge, length(mesh.positions[b] - mesh.positions[a]));
+            uvEdge =
+                std::max(uvEdge, std::hypot(mesh.uvs[b].x - mesh.uvs[a].x, mesh.uvs[b].y - mesh.uvs[a].y));
+        }
+        if (edge <= leastEdge || uvEdge <= leastUvEdge) continue;
+        logarithms += std::log(edge / uvEdge);
+        ++count;
+    }
+    return count > 0 ? std::exp(logarithms / count) : 0.0;
+}
+
+std::vector<Vec3> estimatedNormals(const Mesh& mesh) {
+    std::vector<Vec3> normals(mesh.positions.size());
+    for (const Triangle& triangle : mesh.triangles)
+        for (int i = 0; i < 3; ++i) {
+            const Vec3 corner = mesh.positions[triangle[i]];
+            const Vec3 one = mesh.positions[triangle[(i + 1) % 3]] - corner;
+            const Vec3 two = mesh.positions[triangle[(i + 2) % 3]] - corner;
+            const Vec3 across = cross(one, two);
+            if (!(length(across) > 0)) continue;
+            const double angle = std::atan2(length(across), dot(one, two));
+            normals[triangle[i]] = normals[triangle[i]] + angle * normalized(across);
+        }
+    for (Vec3& normal : normals)
+        if (length(normal) > 0) normal = normalized(normal);
+    return normals;
+}
+
+}  // namespace reference

@@ -1,0 +1,54 @@
+// Mesh data (section 5 of the mathematics) in double precision: curvature per vertex, its smoothing, UV
+// scale.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "reference/vec.h"
+
+namespace reference {
+
+using Triangle = std::array<int, 3>;
+struct Mesh {
+    std::vector<Vec3> positions;  // length
+    std::vector<Vec3> normals;    // unit, as many as positions
+    std::vector<Vec2> uvs;        // as many as positions, or none
+    std::vector<Triangle> triangles;
+};
+
+// (least + largest)/2 of |dn|/|dp| over the edges that meet in a vertex, 1/length. Edges of no length are
+// skipped; a vertex without any other edge has 0.
+std::vector<double> edgeCurvature(const Mesh& mesh);
+
+// One pass replaces each vertex by the mean over the corners it has in triangles of the other two corners'
+// values, so that an interior edge counts twice and a border edge once. A vertex in no triangle becomes 0.
+std::vector<double> smoothed(const Mesh& mesh, std::vector<double> values, int passes);
+
+// Principal curvatures, first >= second, 1/length; positive where the surface bends away from the normal (a
+// sphere with outward normals has two positive ones).
+struct PrincipalCurvatures {
+    double first = 0, second = 0;
+    double mean() const { return 0.5 * (first + second); }
+    double gaussian() const { return first * second; }
+};
+
+// Rusinkiewicz, Estimating Curvatures and Their Derivatives on Triangle Meshes, 3DPVT 2004: each triangle's
+// second fundamental form by least squares on its three normal differences, turned into each corner's tangent
+// plane and averaged with the part of the triangle's area that lies nearest to the corner. Triangles of no
+// area are skipped; a vertex without any other has 0, 0.
+std::vector<PrincipalCurvatures> tensorCurvature(const Mesh& mesh);
+
+// Share of the triangle's area nearest to each of its corners.
+std::array<double, 3> voronoiAreas(Vec3 a, Vec3 b, Vec3 c);
+
+// Geometric mean over triangles of longest edge / longest UV edge, length per UV unit. Triangles are skipped
+// when their longest edge is below 1e-6 of the bounding box's diagonal or their longest UV edge below 1e-6 of
+// the UV bounding box's. 0 when none is left.
+double uvScale(const Mesh& mesh);
+
+// Unit normals per vertex from the triangles around it, weighted by their angle there (Thuermer & Wuethrich
+// 1998).
+std::vector<Vec3> estimatedNormals(const Mesh& mesh);
+
+}  // namespace reference
