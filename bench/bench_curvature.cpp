@@ -1,0 +1,166 @@
+// Curvature: the device against a plain loop, the analysis of a topology, and the copy bandwidth to compare
+// with.
+#include <benchmark/benchmark.h>
+
+#include <pellucid/pellucid.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <random>
+
+#include "baseline_curvature.h"
+#include "mesh_shapes.h"
+
+using namespace pellucid;
+
+namespace {
+
+const Device& device() {
+    static const Device device("");
+    return device;
+}
+
+enum Order { ordered = 0, shuffled = 1 };
+
+// A torus with 2:1 rings of about `vertices`; shuffled: neighbours in space are strangers in memory.
+fixture::Mesh makeMesh(int64_t vertices, Order order) {
+    const uint32_t sides = uint32_t(std::lround(std::sqrt(double(vertices) / 2)));
+    fixture::Mesh mesh = fixture::torus(2 * sides, sides);
+    if (order == ordered) return mesh;
+    std::vector<uint32_t> newOf(mesh.vertices());
+    for (uint32_t i = 0; i < newOf.size(); ++i) newOf[i] = i;
+    std::mt19937 random(1);
+    std::shuffle(newOf.begin(), newOf.end(), random);
+    fixture::Mesh result = mesh;
+    for (uint32_t v = 0; v < newOf.size(); ++v)
+        for (int k = 0; k < 3; ++k) {
+            result.positions[3 * newOf[v] + k] = mesh.positions[3 * v + k];
+            result.normals[3 * newOf[v] + k] = mesh.normals[3 * v + k];
+        }
+    for (uint32_t& index : result.indices) index = newOf[index];
+    for (size_t t = 0; t < result.indices.size() / 3; ++t) {
+        const size_t other = t + random() % (result.indices.size() / 3 - t);
+        std::swap_ranges(&result.indices[3 * t], &result.indices[3 * t] + 3, &result.indices[3 * other]);
+    }
+    return result;
+}
+
+// A mesh with everything that it needs on the device, made once per size and order.
+struct Case {
+    fixture::Mesh mesh;
+    MeshTopology topology;
+    Buffer positions, normals, curvature;
+    uint32_t vertices;
+};
+
+PelMeshTopologyDesc describe(const fixture::Mesh& mesh) {
+    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
+    desc.numVertices = mesh.vertices();
+    desc.indices = mesh.indices.data();
+    desc.numIndices = mesh.indices.size();
+    desc.positions = mesh.positions.data();
+    return desc;
+}
+
+Case& prepared(const benchmark::State& state) {
+    static std::map<std::pair<int64_t, int64_t>, std::unique_ptr<Case>> cases;
+    std::unique_ptr<Case>& slot = cases[{state.range(0), state.range(1)}];
+    if (!slot) {
+        slot = std::make_unique<Case>();
+        slot->mesh = makeMesh(state.range(0), Order(state.range(1)));
+        slot->topology = MeshTopology(device(), describe(slot->mesh));
+        slot->positions = Buffer(device(), slot->mesh.positions);
+        slot->normals = Buffer(device(), slot->mesh.normals);
+        slot->vertices = slot->mesh.vertices();
+        slot->curvature = Buffer(device(), slot->vertices * sizeof(float));
+    }
+    return *slot;
+}
+
+void perVertex(benchmark::State& state, uint32_t vertices) {
+    state.counters["ns_per_vertex"] = benchmark::Counter(
+        double(vertices) * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void run(const Case& c, const PelCurvatureParams& params) {
+    c.topology.curvature(params, vertexView(c.positions, c.vertices), vertexView(c.normals, c.vertices),
+                         vertexView(c.curvature, c.vertices));
+}
+
+PelCurvatureParams edgeParams(uint32_t passes) {
+    PelCurvatureParams params = pelCurvatureParamsDefaults();
+    params.estimator = PEL_CURVATURE_EDGE;
+    params.smoothingPasses = passes;
+    return params;
+}
+
+void edgeDevice(benchmark::State& state) {
+    const Case& c = prepared(state);
+    const PelCurvatureParams params = edgeParams(uint32_t(state.range(2)));
+    run(c, params);
+    for (auto _ : state) run(c, params);
+    perVertex(state, c.vertices);
+}
+
+void edgeBaseline(benchmark::State& state) {
+    const Case& c = prepared(state);
+    baseline::CurvatureScratch scratch;
+    std::vector<float> result;
+    for (auto _ : state)
+        baseline::edgeCurvature(c.mesh.positions, c.mesh.normals, c.mesh.indices, uint32_t(state.range(2)),
+                                scratch, result);
+    perVertex(state, c.vertices);
+    // The speed of a wrong answer is worth nothing.
+    run(c, edgeParams(uint32_t(state.range(2))));
+    const std::vector<float> ours = c.curvature.readAll<float>();
+    double difference = 0, largest = 0;
+    for (size_t v = 0; v < ours.size(); ++v) {
+        difference = std::max(difference, double(std::abs(ours[v] - result[v])));
+        largest = std::max(largest, double(result[v]));
+    }
+    state.counters["difference"] = difference / largest;
+}
+
+void topologyAnalysis(benchmark::State& state) {
+    const Case& c = prepared(state);
+    PelMeshTopologyDesc desc = describe(c.mesh);
+    desc.weld = PelWeld(state.range(2));
+    for (auto _ : state) MeshTopology(device(), desc);
+    perVertex(state, c.vertices);
+}
+
+// What a pass that only moved its memory would take: reads and writes at the same rate.
+void copyBandwidth(benchmark::State& state) {
+    const size_t bytes = size_t(state.range(0));
+    std::vector<char> a(bytes, 1), b(bytes, 2);
+    for (auto _ : state) {
+        std::copy(a.begin(), a.end(), b.begin());
+        benchmark::DoNotOptimize(b.data());
+        benchmark::ClobberMemory();
+    }
+    state.SetBytesProcessed(int64_t(state.iterations()) * int64_t(2 * bytes));
+}
+
+BENCHMARK(edgeDevice)
+    ->ArgNames({"vertices", "shuffled", "passes"})
+    ->ArgsProduct({{100000, 1000000}, {0, 1}, {0, 2}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(edgeBaseline)
+    ->ArgNames({"vertices", "shuffled", "passes"})
+    ->ArgsProduct({{100000, 1000000}, {0, 1}, {0, 2}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(topologyAnalysis)
+    ->ArgNames({"vertices", "shuffled", "weld"})
+    ->ArgsProduct({{1000000}, {0, 1}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()->UseRealTime();
+BENCHMARK(copyBandwidth)->Arg(64 << 20)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+
+}  // namespace
+
+BENCHMARK_MAIN();
