@@ -1,53 +1,76 @@
 // Curvature at the vertices of a mesh and its uniform smoothing (mathematics, section 5).
 //
-// Inputs: rows of position (length) and unit normal, the one-ring of each slot (shared/mesh.h).
+// Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h).
 // Results between passes: one float per slot, 1/length; NaN where nothing could be measured. Such a slot
 // stays out of its neighbours' means, and the last pass writes 0 for it, so that no NaN ever spreads or
-// leaves. One work-item: one slot; curvature_store: one vertex of the caller. Variants: MESH_WELDED 1:
+// leaves. One work-item: PEL_WIDTH slots; curvature_store: one vertex of the caller. Variants: MESH_MAPPED 1:
 // vertices find their slot in slotOf.
 
-#include "lib/mesh_vertex.clh"
+#include "lib/mesh_ring.clh"
+
+// Unit normals as they are, others brought to unit length, NaN for those that have no direction. The common
+// case is one comparison for all lanes.
+inline void usable_normals(floatw* x, floatw* y, floatw* z) {
+    const maskw odd = !(fabs(fma(*x, *x, fma(*y, *y, *z * *z)) - 1.0f) <= MESH_UNIT_TOLERANCE);
+    if (!anyw(odd)) return;
+    const floatw largest = fmax(fabs(*x), fmax(fabs(*y), fabs(*z)));
+    const floatw sx = *x / largest, sy = *y / largest, sz = *z / largest;
+    const floatw length = sqrt(fma(sx, sx, fma(sy, sy, sz * sz)));
+    *x = selectw(*x, sx / length, odd);
+    *y = selectw(*y, sy / length, odd);
+    *z = selectw(*z, sz / length, odd);
+}
 
 // (min + max) / 2 of |dn| / |dp| over the edges of a slot [FaceWorks 1.0].
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_edge(
-    uint slots, __global const uint* offsets, __global const uint* neighbours, __global const float* rows,
+    uint slots, __global const uint* slices, __global const uint* rings, __global const float* positions,
+    VertexLayout positionLayout, __global const float* normals, VertexLayout normalLayout,
     __global float* curvature) {
-    const uint slot = get_global_id(0);
-    if (slot >= slots) return;
-    const float8 self = vload8(slot, rows);
+    const uint first = get_global_id(0) * PEL_WIDTH;
+    if (first >= slots) return;
+    RingCursor ring = ring_begin(first, slots, slices);
+    floatw px, py, pz, nx, ny, nz;
+    gather3(positions, positionLayout, ring.self, &px, &py, &pz);
+    gather3(normals, normalLayout, ring.self, &nx, &ny, &nz);
+    usable_normals(&nx, &ny, &nz);
     // Squares order as their roots do: two roots at the end instead of two per edge.
-    float low = INFINITY, high = -1.0f;
-    const uint end = offsets[slot + 1];
-    for (uint e = offsets[slot]; e < end; ++e) {
-        const float8 d = vload8(neighbours[e] & MESH_SLOT, rows) - self;
-        const float length2 = dot(d.lo, d.lo);
-        const float ratio = dot(d.hi, d.hi) / length2;
-        // Both fail for NaN, that is for neighbours without a usable position or normal.
-        if (length2 >= MESH_MIN_LENGTH2 && ratio < INFINITY) {
-            low = fmin(low, ratio);
-            high = fmax(high, ratio);
-        }
+    floatw low = INFINITY, high = -1.0f;
+    for (; ring.row < ring.end; ++ring.row) {
+        const intw other = RING_SLOT(ring_entry(&ring, rings));
+        floatw dx, dy, dz, mx, my, mz;
+        gather3(positions, positionLayout, other, &dx, &dy, &dz);
+        gather3(normals, normalLayout, other, &mx, &my, &mz);
+        usable_normals(&mx, &my, &mz);
+        dx -= px, dy -= py, dz -= pz;
+        mx -= nx, my -= ny, mz -= nz;
+        const floatw length2 = fma(dx, dx, fma(dy, dy, dz * dz));
+        const floatw ratio = fma(mx, mx, fma(my, my, mz * mz)) / length2;
+        // Fails for edges without length (fillers among them) and for whatever is not finite at either end.
+        const maskw usable = (length2 >= MESH_MIN_LENGTH2) & (length2 < INFINITY) & (ratio < INFINITY);
+        low = selectw(low, fmin(low, ratio), usable);
+        high = selectw(high, fmax(high, ratio), usable);
     }
-    curvature[slot] = high >= 0.0f ? 0.5f * (sqrt(low) + sqrt(high)) : NAN;
+    storew(selectw((floatw)(NAN), 0.5f * (sqrt(low) + sqrt(high)), high >= 0.0f), first, curvature);
 }
 
 // The mean over a slot's triangles of their other two slots' values, itself not included.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_smooth(
-    uint slots, __global const uint* offsets, __global const uint* neighbours, __global const float* from,
+    uint slots, __global const uint* slices, __global const uint* rings, __global const float* from,
     __global float* to) {
-    const uint slot = get_global_id(0);
-    if (slot >= slots) return;
-    const float self = from[slot];
-    float sum = 0.0f, weight = 0.0f;
-    const uint end = offsets[slot + 1];
-    for (uint e = offsets[slot]; e < end; ++e) {
-        const uint neighbour = neighbours[e];
-        const float value = from[neighbour & MESH_SLOT];
-        const float w = value == value ? (float)(2 - (neighbour >> 31)) : 0.0f;
-        sum += w > 0.0f ? w * value : 0.0f;
-        weight += w;
+    const uint first = get_global_id(0) * PEL_WIDTH;
+    if (first >= slots) return;
+    RingCursor ring = ring_begin(first, slots, slices);
+    const floatw self = loadw(first, from);
+    floatw sum = 0.0f, weight = 0.0f;
+    for (; ring.row < ring.end; ++ring.row) {
+        const intw entry = ring_entry(&ring, rings);
+        const intw other = RING_SLOT(entry);
+        const floatw value = gather1(from, other);
+        const maskw counts = (value == value) & (other != ring.self);
+        sum = selectw(sum, fma(selectw((floatw)(2.0f), (floatw)(1.0f), entry < 0), value, sum), counts);
+        weight = selectw(weight, weight + selectw((floatw)(2.0f), (floatw)(1.0f), entry < 0), counts);
     }
-    to[slot] = self == self && weight > 0.0f ? sum / weight : self;
+    storew(selectw(self, sum / weight, (self == self) & (weight > 0.0f)), first, to);
 }
 
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_store(
@@ -55,7 +78,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     VertexLayout layout) {
     const uint vertex = get_global_id(0);
     if (vertex >= layout.count) return;
-#if MESH_WELDED
+#if MESH_MAPPED
     const float value = curvature[slotOf[vertex]] * scale;
 #else
     const float value = curvature[vertex] * scale;

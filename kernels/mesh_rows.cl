@@ -4,8 +4,8 @@
 //
 // Inputs: positions (length), normals (unit), one of each per vertex of the caller.
 // One work-item: one slot (mesh_rows), one vertex or slot (mesh_count).
-// Variants: MESH_WELDED 1: a slot has members, several vertices of the caller. It stands at the first; its
-// normal is the mean direction of theirs.
+// A slot has members, one or several vertices of the caller. It stands at the first; its normal is the mean
+// direction of theirs.
 
 #include "lib/mesh_vertex.clh"
 
@@ -15,7 +15,6 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_rows(
     VertexLayout normalLayout, __global float* rows) {
     const uint slot = get_global_id(0);
     if (slot >= slots) return;
-#if MESH_WELDED
     const uint begin = memberOffsets[slot], end = memberOffsets[slot + 1];
     const float3 position = vertex_load3(positions, positionLayout, members[begin]);
     float3 normal = mesh_usable_normal(vertex_load3(normals, normalLayout, members[begin]));
@@ -27,18 +26,15 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_rows(
         }
         normal = dot(sum, sum) > 1e-6f ? sum / sqrt(dot(sum, sum)) : mesh_nan3();
     }
-#else
-    const float3 position = vertex_load3(positions, positionLayout, slot);
-    const float3 normal = mesh_usable_normal(vertex_load3(normals, normalLayout, slot));
-#endif
     vstore8((float8)(mesh_usable_position(position), 0.0f, normal, 0.0f), slot, rows);
 }
 
 // Whole numbers only, so that the order of the additions does not show.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_count(
     uint vertices, __global const float* positions, VertexLayout positionLayout,
-    __global const float* normals, VertexLayout normalLayout, uint slots, __global const uint* offsets,
-    __global const uint* neighbours, __global const float* rows, __global MeshCounts* counts) {
+    __global const float* normals, VertexLayout normalLayout, uint slots, __global const uint* slices,
+    __global const uint* rings, __global const float* slotPositions, VertexLayout slotLayout,
+    __global MeshCounts* counts) {
     const uint i = get_global_id(0);
     if (i < vertices) {
         const float3 p = mesh_usable_position(vertex_load3(positions, positionLayout, i));
@@ -47,13 +43,14 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_count
         if (n.x != n.x) atomic_inc(&counts->nonFiniteNormals);
     }
     if (i < slots) {
-        const float4 self = vload4(2 * (size_t)i, rows);
-        uint previous = MESH_SLOT, found = 0;
-        for (uint e = offsets[i]; e < offsets[i + 1]; ++e) {
-            const uint other = neighbours[e] & MESH_SLOT;
-            if (other < i || other == previous) continue;
+        const float3 self = mesh_usable_position(vertex_load3(slotPositions, slotLayout, i));
+        uint previous = i, found = 0;
+        for (uint row = slices[i / MESH_LANES]; row < slices[i / MESH_LANES + 1]; ++row) {
+            const uint other = rings[(size_t)row * MESH_LANES + i % MESH_LANES] & MESH_SLOT;
+            // Each edge from its smaller end only; an edge of several entries has them in a row.
+            if (other <= i || other == previous) continue;
             previous = other;
-            const float4 d = vload4(2 * (size_t)other, rows) - self;
+            const float3 d = mesh_usable_position(vertex_load3(slotPositions, slotLayout, other)) - self;
             if (dot(d, d) < MESH_MIN_LENGTH2) ++found;
         }
         if (found) atomic_add(&counts->zeroLengthEdges, found);

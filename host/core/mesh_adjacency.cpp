@@ -75,4 +75,32 @@ MeshAdjacency buildAdjacency(const std::vector<uint32_t>& triangles, uint32_t sl
     return mesh;
 }
 
+MeshSlices sliceAdjacency(const MeshAdjacency& adjacency) {
+    MeshSlices result;
+    const uint32_t slots = uint32_t(adjacency.offsets.size() - 1);
+    const auto degree = [&](uint32_t slot) { return adjacency.offsets[slot + 1] - adjacency.offsets[slot]; };
+    result.slices.push_back(0);
+    for (uint32_t first = 0; first < slots; first += MESH_LANES) {
+        uint32_t longest = 0;
+        for (uint32_t slot = first; slot < std::min(first + MESH_LANES, slots); ++slot)
+            longest = std::max(longest, degree(slot));
+        if (result.slices.back() > UINT32_MAX - longest)
+            fail(PEL_ERROR_UNSUPPORTED, "the neighbour lists of this mesh exceed ", UINT32_MAX,
+                 " rows: split it");
+        result.slices.push_back(result.slices.back() + longest);
+    }
+    result.rows.resize(size_t(result.slices.back()) * MESH_LANES);
+    for (uint32_t first = 0, slice = 0; first < slots; first += MESH_LANES, ++slice)
+        for (uint32_t lane = 0; lane < MESH_LANES; ++lane) {
+            const uint32_t slot = std::min(first + lane, slots - 1);
+            const uint32_t entries = first + lane < slots ? degree(slot) : 0;
+            const uint32_t* list = adjacency.neighbours.data() + adjacency.offsets[slot];
+            uint32_t* out = result.rows.data() + size_t(result.slices[slice]) * MESH_LANES + lane;
+            const uint32_t rows = result.slices[slice + 1] - result.slices[slice];
+            for (uint32_t row = 0; row < rows; ++row)
+                out[size_t(row) * MESH_LANES] = row < entries ? list[row] : slot;
+        }
+    return result;
+}
+
 }  // namespace pel

@@ -1,5 +1,4 @@
-// One-ring lists of a triangle mesh (shared/mesh.h says how they lie in memory), from raw index arrays: any
-// connectivity, manifold or not.
+// One-ring lists of a triangle mesh from raw index arrays: any connectivity, manifold or not.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -9,7 +8,7 @@ namespace pel {
 
 struct MeshAdjacency {
     std::vector<uint32_t> offsets;     // slots + 1
-    std::vector<uint32_t> neighbours;  // ascending in each list
+    std::vector<uint32_t> neighbours;  // entries as in shared/mesh.h, ascending in each list
     uint32_t edges = 0;
     uint32_t borderEdges = 0;
     uint32_t nonManifoldEdges = 0;
@@ -19,5 +18,12 @@ struct MeshAdjacency {
 // `triangles`: three slots each, all different and < slots. `progress` is told a fraction in [0, 1].
 MeshAdjacency buildAdjacency(const std::vector<uint32_t>& triangles, uint32_t slots,
                              const std::function<void(double)>& progress);
+
+// The lists in the layout that shared/mesh.h describes.
+struct MeshSlices {
+    std::vector<uint32_t> slices;
+    std::vector<uint32_t> rows;
+};
+MeshSlices sliceAdjacency(const MeshAdjacency& adjacency);
 
 }  // namespace pel

@@ -74,8 +74,9 @@ Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopology
     topology->slotOf_ = topology->upload(weld.slotOf);
     topology->memberOffsets_ = topology->upload(weld.memberOffsets);
     topology->members_ = topology->upload(weld.members);
-    topology->offsets_ = topology->upload(adjacency.offsets);
-    topology->neighbours_ = topology->upload(adjacency.neighbours);
+    const MeshSlices rings = sliceAdjacency(adjacency);
+    topology->slices_ = topology->upload(rings.slices);
+    topology->rings_ = topology->upload(rings.rows);
     progress(1.0);
     return topology;
 }

@@ -16,16 +16,18 @@ class MeshTopology final : public Object {
     uint32_t vertices() const { return report_.vertices; }
     uint32_t slots() const { return report_.uniquePositions; }
     uint32_t triangles() const { return report_.triangles; }
-    bool welded() const { return bool(slotOf_); }
+    // Slots are not simply the caller's vertices: slotOf, memberOffsets and members say how they belong
+    // together.
+    bool mapped() const { return bool(slotOf_); }
     const PelMeshReport& report() const { return report_; }
 
-    // Device arrays; empty when they would have no elements. The weld's are empty unless welded().
+    // Device arrays; empty when they would have no elements. Those of the mapping are empty unless mapped().
     const cl::Memory& indices() const { return indices_; }  // the caller's, three vertices per triangle
     const cl::Memory& slotOf() const { return slotOf_; }
     const cl::Memory& memberOffsets() const { return memberOffsets_; }
     const cl::Memory& members() const { return members_; }
-    const cl::Memory& offsets() const { return offsets_; }
-    const cl::Memory& neighbours() const { return neighbours_; }
+    const cl::Memory& slices() const { return slices_; }
+    const cl::Memory& rings() const { return rings_; }
 
     // Memory between the passes of one call, at least `bytes` long, kept for the next call. The queue is in
     // order, so that calls may share it as long as each enqueues its passes together: hold lock() meanwhile.
@@ -41,7 +43,7 @@ class MeshTopology final : public Object {
 
     Ref<Device> device_;
     PelMeshReport report_ = pelMeshReportDefaults();
-    cl::Memory indices_, slotOf_, memberOffsets_, members_, offsets_, neighbours_;
+    cl::Memory indices_, slotOf_, memberOffsets_, members_, slices_, rings_;
     std::mutex mutex_;
     struct {
         cl::Memory memory;

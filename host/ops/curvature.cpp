@@ -9,30 +9,49 @@ cl::Range over(size_t items) {
     return {{items, 1, 1}, {MESH_GROUP, 1, 1}};
 }
 
-cl::Defines variant(const MeshTopology& topology) {
-    return {{"MESH_WELDED", topology.welded() ? "1" : "0"}};
+// Mesh passes take a slice of slots at a time where wide arithmetic pays, else one slot.
+uint32_t width(const Device& device) {
+    return device.info().mathWidth > 1 ? MESH_LANES : 1;
 }
 
-// One row of position and normal per slot.
-const cl::Memory& gatherRows(MeshTopology& topology, const VertexView& positions, const VertexView& normals) {
+cl::Program program(const MeshTopology& topology) {
+    return topology.device().programs().get("curvature.cl",
+                                            {{"MESH_MAPPED", topology.mapped() ? "1" : "0"},
+                                             {"PEL_WIDTH", std::to_string(width(topology.device()))}});
+}
+
+cl::Range overSlots(const MeshTopology& topology) {
+    const uint32_t lanes = width(topology.device());
+    return over((topology.slots() + lanes - 1) / lanes);
+}
+
+// Positions and normals by slot: the caller's own memory, or rows gathered from it.
+struct SlotData {
+    VertexView positions, normals;
+};
+
+SlotData bySlot(MeshTopology& topology, const VertexView& positions, const VertexView& normals) {
+    if (!topology.mapped()) return {positions, normals};
     Device& device = topology.device();
-    const cl::Memory& rows = topology.scratch(MeshTopology::scratchRows, topology.slots() * 32ull);
-    cl::Launch gather(device.programs().get("mesh_rows.cl", variant(topology)), "mesh_rows");
-    gather.arg(topology.slots()).arg(topology.memberOffsets()).arg(topology.members());
+    const uint32_t slots = topology.slots();
+    const cl::Memory& rows = topology.scratch(MeshTopology::scratchRows, slots * 32ull);
+    cl::Launch gather(device.programs().get("mesh_rows.cl", {}), "mesh_rows");
+    gather.arg(slots).arg(topology.memberOffsets()).arg(topology.members());
     gather.arg(positions.memory).arg(positions.layout).arg(normals.memory).arg(normals.layout).arg(rows);
-    device.launch(gather, over(topology.slots()));
-    return rows;
+    device.launch(gather, over(slots));
+    return {{rows, {slots, 0, 8, 0}}, {rows, {slots, 4, 8, 0}}};
 }
 
 MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, const VertexView& normals,
-                       const cl::Memory& rows) {
+                       const SlotData& data) {
     Device& device = topology.device();
     const MeshCounts none{};
     const cl::Memory memory = device.allocate(sizeof none, &none);
-    cl::Launch count(device.programs().get("mesh_rows.cl", variant(topology)), "mesh_count");
+    cl::Launch count(device.programs().get("mesh_rows.cl", {}), "mesh_count");
     count.arg(topology.vertices());
     count.arg(positions.memory).arg(positions.layout).arg(normals.memory).arg(normals.layout);
-    count.arg(topology.slots()).arg(topology.offsets()).arg(topology.neighbours()).arg(rows).arg(memory);
+    count.arg(topology.slots()).arg(topology.slices()).arg(topology.rings());
+    count.arg(data.positions.memory).arg(data.positions.layout).arg(memory);
     device.launch(count, over(topology.vertices()));
     MeshCounts counts;
     device.read(memory.get(), 0, sizeof counts, &counts, true);
@@ -58,27 +77,30 @@ void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, con
     if (counts) *counts = {};
     if (topology.vertices() == 0) return;
     Device& device = topology.device();
-    const cl::Program program = device.programs().get("curvature.cl", variant(topology));
+    const cl::Program passes = program(topology);
     const uint32_t slots = topology.slots();
+    // Whole slices are written.
+    const size_t bytes = (size_t(slots) + MESH_LANES - 1) / MESH_LANES * MESH_LANES * sizeof(float);
     const auto lock = topology.lock();
-    const cl::Memory& rows = gatherRows(topology, positions, normals);
-    cl::Memory from = topology.scratch(MeshTopology::scratchFrom, slots * 4ull);
-    cl::Memory to =
-        params.smoothingPasses ? topology.scratch(MeshTopology::scratchTo, slots * 4ull) : cl::Memory();
+    const SlotData data = bySlot(topology, positions, normals);
+    cl::Memory from = topology.scratch(MeshTopology::scratchFrom, bytes);
+    cl::Memory to = params.smoothingPasses ? topology.scratch(MeshTopology::scratchTo, bytes) : cl::Memory();
 
-    cl::Launch edge(program, "curvature_edge");
-    edge.arg(slots).arg(topology.offsets()).arg(topology.neighbours()).arg(rows).arg(from);
-    device.launch(edge, over(slots));
+    cl::Launch edge(passes, "curvature_edge");
+    edge.arg(slots).arg(topology.slices()).arg(topology.rings());
+    edge.arg(data.positions.memory).arg(data.positions.layout);
+    edge.arg(data.normals.memory).arg(data.normals.layout).arg(from);
+    device.launch(edge, overSlots(topology));
     for (uint32_t pass = 0; pass < params.smoothingPasses; ++pass) {
-        cl::Launch smooth(program, "curvature_smooth");
-        smooth.arg(slots).arg(topology.offsets()).arg(topology.neighbours()).arg(from).arg(to);
-        device.launch(smooth, over(slots));
+        cl::Launch smooth(passes, "curvature_smooth");
+        smooth.arg(slots).arg(topology.slices()).arg(topology.rings()).arg(from).arg(to);
+        device.launch(smooth, overSlots(topology));
         std::swap(from, to);
     }
-    cl::Launch store(program, "curvature_store");
+    cl::Launch store(passes, "curvature_store");
     store.arg(topology.slotOf()).arg(from).arg(params.scale).arg(curvature.memory).arg(curvature.layout);
     device.launch(store, over(topology.vertices()));
-    if (counts) *counts = countFaults(topology, positions, normals, rows);
+    if (counts) *counts = countFaults(topology, positions, normals, data);
 }
 
 }  // namespace pel

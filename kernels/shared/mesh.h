@@ -6,10 +6,15 @@
 #ifndef PEL_SHARED_MESH
 #define PEL_SHARED_MESH
 
-// A slot's one-ring is a list of neighbours, ascending, offsets[slot] to offsets[slot + 1]. A neighbour
-// stands there once for every two triangles that its edge belongs to, and once more with this bit for one
-// that is left over: an interior edge is one plain entry, a border edge one marked entry. Half the memory of
-// a list per triangle, and the smoothing pass reads its weights from it.
+// One-rings lie in slices of MESH_LANES slots. A slice has as many rows as its longest list; a row holds one
+// neighbour of each of its slots side by side, so that a vector of slots, or neighbouring work-items, read
+// one contiguous piece. slices[i] is the first row of slice i, slices[count] the number of rows.
+//
+// A neighbour is listed once for every two triangles that its edge belongs to, and once more with MESH_SINGLE
+// for one that is left over: an interior edge is one plain entry, a border edge one marked entry. Half the
+// memory of a list per triangle, and the smoothing pass reads its weights from it. Shorter lists are filled
+// up with the slot itself, which no real list contains; the lanes behind the last slot with the last slot.
+#define MESH_LANES 8
 #define MESH_SINGLE 0x80000000u
 #define MESH_SLOT 0x7fffffffu
 
