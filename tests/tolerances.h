@@ -26,6 +26,9 @@ inline constexpr Tolerance sphereMean{"sphereMean", 1e-5,
 // --- curvature, relative to the mesh's largest value ---
 inline constexpr Tolerance edgeCurvature{"edgeCurvature", 1e-5,
                                          "differences of float positions and normals, then a mean per pass"};
+inline constexpr Tolerance uvScale{
+    "uvScale", 2e-6,
+    "relative: float edge lengths; their logarithms add up without loss and errors average out"};
 
 inline constexpr Tolerance peerUvScale{"peerUvScale", 1e-5, "the peer adds up logarithms in float"};
 inline constexpr Tolerance scaledMesh{"scaledMesh", 1e-9,
