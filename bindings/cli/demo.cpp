@@ -1,0 +1,172 @@
+// pellucid demo: the whole chain on a real mesh. Load, curvature, look-up tables, G-buffer of the stand-in
+// host, shading, pictures.
+#include <filesystem>
+#include <optional>
+
+#include "demo_pictures.h"
+#include "demo_view.h"
+#include "io/atomic_file.h"
+#include "io/file_error.h"
+#include "mesh_curvature.h"
+#include "stages.h"
+
+namespace pellucid::cli {
+namespace {
+
+constexpr float headHeight = 240;  // mm, chin to crown of an adult with some neck
+
+struct Arguments {
+    Run::Options run;
+    std::string mesh, output = "out/demo", size = "1280x720", up = "z";
+    uint32_t smoothing = 4;
+    std::optional<int> subdivide;
+    float height = headHeight;
+};
+
+// The head of Debian's libcgal-demo, where `./run demo` unpacks it.
+std::string standardMesh() {
+    const char* named = std::getenv("PELLUCID_DEMO_MESH");
+    if (named && *named) return named;
+    throw UsageError(
+        "no mesh given: name an OFF, OBJ, PLY or STL file, or use ./run demo, which unpacks one");
+}
+
+io::MeshData loadHead(Run& run, const Arguments& a) {
+    io::MeshData mesh = io::loadMesh(a.mesh);
+    for (const std::string& warning : mesh.warnings) run.warn(warning);
+    io::scaleToHeight(mesh, a.height, a.up == "y" ? 1 : 2);
+    const int levels = a.subdivide.value_or(1);
+    if (levels > 0) {
+        try {
+            io::loopSubdivide(mesh, levels);
+        } catch (const io::FileError& e) {
+            if (a.subdivide) throw;  // asked for by name
+            run.warn(std::string("shown without subdivision: ") + e.what());
+        }
+    }
+    if (mesh.normals.empty()) io::computeNormals(mesh);
+    return mesh;
+}
+
+std::vector<DemoViewRequest> requests(const Arguments& a) {
+    DemoViewRequest side, back;
+    parseSize(a.size, side.width, side.height);
+    if (a.up == "y") side.pose = {{0, 1, 0}, {0, 0, 1}};
+    side.name = "key";
+    side.framing.azimuth = 20;
+    side.keyLight = sample::KeyLight::Side;
+    side.keyIrradiance = 1.5f;
+    side.skyScale = 0.25f;
+    back = side;
+    back.name = "backlit";
+    back.keyLight = sample::KeyLight::Back;
+    back.keyIrradiance = 3.0f;
+    back.skyScale = 0.12f;
+    return {side, back};
+}
+
+// One view: G-buffer, three shadings, files.
+ShadedView shadeView(Run& run, Stages& stages, LutStore& luts, const sample::Scene& scene,
+                     const DemoViewRequest& request, const std::string& folder) {
+    DemoView view = renderDemoView(scene, request, [](double, const char*) {});
+    const uint64_t pixels = view.gbuffer.pixelCount();
+    const uint64_t gbufferBytes = pixels * view.gbuffer.channels.size() * sizeof(float);
+    stages.add(view.name + ": G-buffer (sample host)", view.gbufferMilliseconds, 0, pixels, "pixels",
+               gbufferBytes);
+    const io::Image& map = view.shadowMaps.begin()->second;
+    stages.add(view.name + ": shadow map (sample host)", view.shadowMapMilliseconds, 0, map.pixelCount(),
+               "texels", map.pixelCount() * sizeof(float));
+    stages.add(view.name + ": wide shadow (sample host)", view.wideShadowMilliseconds, 0, pixels, "pixels",
+               pixels * sizeof(float));
+
+    ShadedView shaded;
+    const io::SceneFile variants[] = {withoutScattering(view.scene), withoutDeepScatter(view.scene),
+                                      view.scene};
+    const char* names[] = {"Lambert", "scattering", "scattering + deep scatter"};
+    for (int i = 0; i < 3; ++i) {
+        Frame frame(run.device(), view.gbuffer, variants[i], luts, view.shadowMaps);
+        stages.measure(view.name + ": shade, " + names[i], pixels, "pixels",
+                       frame.inputBytes() + pixels * 3 * sizeof(float), [&] { frame.shade(); });
+        shaded.pictures.push_back({names[i], frame.radiance()});
+    }
+    const auto path = [&](const std::string& suffix) { return folder + "/" + view.name + suffix; };
+    io::writeExr(path("_gbuffer.exr"), view.gbuffer);
+    io::writeExr(path("_shadowmap.exr"), map);
+    io::writeScene(path(".toml"), view.scene);
+    writeRadiance(path(".exr"), view.gbuffer.width, view.gbuffer.height, shaded.pictures.back().radiance);
+    shaded.view = std::move(view);
+    return shaded;
+}
+
+void run(Arguments a) {
+    if (a.mesh.empty()) a.mesh = standardMesh();
+    try {
+        std::filesystem::create_directories(a.output);
+        io::checkWritable(a.output + "/demo.png");
+    } catch (const std::exception& e) {
+        throw UsageError("-o " + a.output + ": " + e.what());
+    }
+    Run run(a.run);
+    Stages stages(run);
+    run.note(std::string("device: ") + run.device().info().name);
+
+    io::MeshData mesh;
+    stages.measure("load, subdivide, normals", 0, "", 0, [&] { mesh = loadHead(run, a); });
+    PelCurvatureParams params = pelCurvatureParamsDefaults();
+    params.smoothingPasses = a.smoothing;
+    MeshCurvature curvature;
+    stages.measure("curvature", mesh.vertexCount(), "vertices",
+                   mesh.vertexCount() * 28 + mesh.triangles.size() * 4,
+                   [&] { curvature = meshCurvature(run, mesh, params); });
+    reportMesh(run, curvature.report);
+
+    LutStore luts(run.device());
+    const io::SceneFile standard = standardLuts();
+    const uint64_t texels = 512 * 512;
+    Lut curvatureLut, shadowLut;
+    stages.measure("curvature LUT", texels, "texels", texels * 16,
+                   [&] { curvatureLut = luts.get(standard, standard.luts[0].name, PEL_LUT_CURVATURE); });
+    stages.measure("shadow LUT", texels, "texels", texels * 16,
+                   [&] { shadowLut = luts.get(standard, standard.luts[1].name, PEL_LUT_SHADOW); });
+
+    const sample::Scene scene(
+        sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, curvature.values, mesh.triangles, {}});
+    std::vector<ShadedView> views;
+    for (const DemoViewRequest& request : requests(a))
+        views.push_back(shadeView(run, stages, luts, scene, request, a.output));
+
+    const std::vector<std::string> files = writePictures(a.output, views, curvatureLut, shadowLut);
+    stages.print();
+    run.report["output"] = a.output;
+    run.report["pictures"] = files;
+    run.report["stages"] = stages.json();
+    run.finish();
+}
+
+}  // namespace
+
+void addDemo(CLI::App& app) {
+    CLI::App* command = app.add_subcommand(
+        "demo", "The whole chain on a mesh: curvature, tables, G-buffer, shading, pictures");
+    auto a = std::make_shared<Arguments>();
+    command->add_option("mesh", a->mesh, "OFF, OBJ, PLY or STL file (default: $PELLUCID_DEMO_MESH)");
+    command->add_option("-o,--output", a->output, "folder for the pictures")->capture_default_str();
+    command->add_option("--size", a->size, "pixels, WxH")->capture_default_str();
+    command->add_option("--height", a->height, "mm that the mesh is scaled to, along its up axis")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->add_option("--up", a->up, "the mesh's up axis: z (it looks to -y) or y (it looks to +z)")
+        ->check(CLI::IsMember({"y", "z"}))
+        ->capture_default_str();
+    command
+        ->add_option("--subdivide", a->subdivide,
+                     "levels of Loop subdivision (default: 1 where the mesh allows it)")
+        ->check(CLI::Range(0, 4));
+    command->add_option("--smooth", a->smoothing, "smoothing passes of the curvature")
+        ->check(CLI::Range(0, 1000))
+        ->capture_default_str();
+    addRunOptions(*command, a->run);
+    command->callback([a] { run(*a); });
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,41 @@
+// One view of the demo: what the stand-in host renders, as a G-buffer image and a scene file.
+#pragma once
+#include <functional>
+#include <string>
+
+#include "frame.h"
+#include "sample/camera.h"
+#include "sample/scene.h"
+
+namespace pellucid::cli {
+
+struct DemoView {
+    std::string name;
+    io::Image gbuffer;
+    io::SceneFile scene;
+    ShadowMaps shadowMaps;
+    double gbufferMilliseconds = 0, shadowMapMilliseconds = 0, wideShadowMilliseconds = 0;
+};
+
+struct DemoViewRequest {
+    std::string name;
+    sample::HeadPose pose;
+    sample::Framing framing;
+    sample::KeyLight keyLight = sample::KeyLight::Side;
+    float keyIrradiance = 1;  // irradiance / pi of the key light
+    float skyScale = 1;       // of the ambient light
+    uint32_t width = 1280, height = 720;
+};
+
+// A scene of nothing but the two tables that the views use, curvature and shadow.
+io::SceneFile standardLuts();
+
+// Renders with the stand-in host. `report` is called with a fraction and what is being done.
+DemoView renderDemoView(const sample::Scene& mesh, const DemoViewRequest& request,
+                        const std::function<void(double, const char*)>& progress);
+
+// The same scene with less in it: plain Lambert, or everything but deep scatter.
+io::SceneFile withoutScattering(io::SceneFile scene);
+io::SceneFile withoutDeepScatter(io::SceneFile scene);
+
+}  // namespace pellucid::cli

@@ -1,0 +1,116 @@
+#include "frame.h"
+
+#include <cstring>
+
+#include "io/file_error.h"
+#include "io/lut_file.h"
+
+namespace pellucid::cli {
+
+namespace {
+
+// Equal requests give equal bits, so that the description is the key. Its structures have no padding.
+bool sameTable(const io::SceneLut& a, const io::SceneLut& b) {
+    if (a.file != b.file || a.info.kind != b.info.kind) return false;
+    return !a.file.empty() || std::memcmp(&a.info, &b.info, sizeof a.info) == 0;
+}
+
+Lut make(const Device& device, const io::SceneLut& request) {
+    if (!request.file.empty()) return io::readLut(device, request.file);
+    return request.info.kind == PEL_LUT_CURVATURE ? Lut(device, request.info.curvature)
+                                                  : Lut(device, request.info.shadow);
+}
+
+}  // namespace
+
+Lut LutStore::get(const io::SceneFile& scene, const std::string& name, PelLutKind kind) {
+    if (name.empty()) return {};
+    const io::SceneLut* request = scene.lut(name, kind);
+    if (!request)
+        throw io::FileError(scene.source, "no look-up table of this kind is named \"" + name + "\"");
+    for (const auto& [known, lut] : luts_)
+        if (sameTable(known, *request)) return lut;
+    luts_.emplace_back(*request, make(device_, *request));
+    return luts_.back().second;
+}
+
+Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene, LutStore& luts,
+             const ShadowMaps& shadowMaps, const PelShaderOptions& options)
+    : shader_(device), radiance_(device, gbuffer.pixelCount() * 3 * sizeof(float)) {
+    shader_.set(options);
+    shader_.set(PEL_SLOT_RADIANCE,
+                imageDesc(radiance_, PEL_FORMAT_RGB32F, uint32_t(gbuffer.width), uint32_t(gbuffer.height)));
+    for (size_t slot = 0; slot < scene.channels.size(); ++slot)
+        if (!scene.channels[slot].empty())
+            shader_.set(PelImageSlot(slot), upload(device, gbuffer, scene.channels[slot]));
+    for (const io::SceneMaterial& m : scene.materials)
+        shader_.setMaterial(m.id, m.material, luts.get(scene, m.curvatureLut, PEL_LUT_CURVATURE),
+                            luts.get(scene, m.shadowLut, PEL_LUT_SHADOW));
+    std::vector<PelLight> lights;
+    for (const io::SceneLight& l : scene.lights) lights.push_back(l.light);
+    shader_.set(lights);
+    for (uint32_t i = 0; i < scene.lights.size(); ++i) {
+        const io::SceneLight& l = scene.lights[i];
+        if (!l.wideShadow.empty())
+            shader_.set(i, PEL_LIGHT_WIDE_SHADOW, upload(device, gbuffer, {l.wideShadow}));
+        if (l.shadowMapFile.empty()) continue;
+        const auto known = shadowMaps.find(l.shadowMapFile);
+        const io::Image read = known == shadowMaps.end() ? io::readImage(l.shadowMapFile) : io::Image();
+        const io::Image& map = known == shadowMaps.end() ? read : known->second;
+        const std::string channel = l.shadowMapChannel.empty() && map.channels.size() == 1
+                                        ? map.channels[0].name
+                                        : l.shadowMapChannel;
+        shader_.set(i, PEL_LIGHT_SHADOW_MAP, upload(device, map, {channel}));
+    }
+    shader_.set(scene.ambient);
+    shader_.set(scene.camera);
+    shader_.commit();
+}
+
+PelImageDesc Frame::upload(const Device& device, const io::Image& image,
+                           const std::vector<std::string>& channels) {
+    static constexpr PelFormat formats[] = {PEL_FORMAT_R32F, PEL_FORMAT_RG32F, PEL_FORMAT_RGB32F,
+                                            PEL_FORMAT_RGBA32F};
+    inputs_.emplace_back(device, image.interleaved(channels));
+    inputBytes_ += inputs_.back().bytes();
+    return imageDesc(inputs_.back(), formats[channels.size() - 1], uint32_t(image.width),
+                     uint32_t(image.height));
+}
+
+void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance) {
+    io::Image image;
+    image.width = width;
+    image.height = height;
+    image.addInterleaved(std::vector<std::string>{"R", "G", "B"}, radiance);
+    io::writeExr(path, image);
+}
+
+nlohmann::ordered_json toJson(const PelShaderStats& s) {
+    static constexpr std::pair<PelFeature, const char*> names[] = {
+        {PEL_FEATURE_DIRECT_SCATTER, "direct_scatter"},
+        {PEL_FEATURE_SHADOW, "shadow"},
+        {PEL_FEATURE_SHADOW_LUT, "shadow_lut"},
+        {PEL_FEATURE_AMBIENT, "ambient"},
+        {PEL_FEATURE_DEEP_SCATTER, "deep_scatter"},
+        {PEL_FEATURE_THICKNESS_TAPS, "thickness_taps"},
+        {PEL_FEATURE_SPECULAR, "specular"}};
+    nlohmann::ordered_json features = nlohmann::ordered_json::array();
+    for (const auto& [bit, name] : names)
+        if (s.features & bit) features.push_back(name);
+    return {{"features", features},
+            {"programs_built", s.programsBuilt},
+            {"launches", s.launches},
+            {"scratch_bytes", s.scratchBytes},
+            {"bytes_uploaded", s.bytesUploaded},
+            {"tiles_total", s.tilesTotal},
+            {"tiles_shaded", s.tilesShaded},
+            {"pixels_total", s.pixelsTotal},
+            {"pixels_shaded", s.pixelsShaded},
+            {"pixels_shadow_lut", s.pixelsShadowLut},
+            {"pixels_thickness", s.pixelsThickness},
+            {"pixels_specular", s.pixelsSpecular},
+            {"pixels_invalid", s.pixelsInvalid},
+            {"shade_ms", s.deviceMilliseconds}};
+}
+
+}  // namespace pellucid::cli

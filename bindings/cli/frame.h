@@ -1,0 +1,56 @@
+// A G-buffer, a scene and their look-up tables on the device, ready to be shaded.
+#pragma once
+#include <utility>
+#include <vector>
+
+#include "command.h"
+#include "io/image_file.h"
+#include "io/scene_file.h"
+
+namespace pellucid::cli {
+
+// The look-up tables of scenes: each distinct one is read or integrated once.
+class LutStore {
+  public:
+    explicit LutStore(const Device& device) : device_(device) {}
+    // An empty handle for an empty name.
+    Lut get(const io::SceneFile& scene, const std::string& name, PelLutKind kind);
+
+  private:
+    Device device_;
+    std::vector<std::pair<io::SceneLut, Lut>> luts_;
+};
+
+// Depth images of shadow maps by file, in memory or read on demand.
+using ShadowMaps = std::map<std::string, io::Image>;
+
+class Frame {
+  public:
+    // Uploads what the scene names and commits. `shadowMaps` holds maps that are in memory already, by the
+    // name that the scene gives them; others are read from files. Throws FileError when a channel is missing.
+    Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene, LutStore& luts,
+          const ShadowMaps& shadowMaps = {}, const PelShaderOptions& options = pelShaderOptionsDefaults());
+
+    void shade() { shader_.execute(); }
+    // RGB per pixel, interleaved; 0 where there is no material.
+    std::vector<float> radiance() const { return radiance_.readAll<float>(); }
+    PelShaderStats stats() const { return shader_.stats(); }
+    uint64_t inputBytes() const { return inputBytes_; }
+
+  private:
+    PelImageDesc upload(const Device& device, const io::Image& image,
+                        const std::vector<std::string>& channels);
+
+    Shader shader_;
+    Buffer radiance_;
+    std::vector<Buffer> inputs_;
+    uint64_t inputBytes_ = 0;
+};
+
+// Writes RGB radiance as R, G, B of a float EXR.
+void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance);
+
+// The counters as an object of a report.
+nlohmann::ordered_json toJson(const PelShaderStats& stats);
+
+}  // namespace pellucid::cli

@@ -1,0 +1,47 @@
+// The table of stages that a long command prints: what each took, moved and got done.
+#pragma once
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "command.h"
+
+namespace pellucid::cli {
+
+class Stages {
+  public:
+    explicit Stages(const Run& run) : run_(run) {}
+
+    // Runs `work` as a stage and measures wall and device time. `count` things of kind `unit` were done,
+    // `bytes` were read and written; both are counted by the caller.
+    template <class Work>
+    void measure(const std::string& name, uint64_t count, const char* unit, uint64_t bytes, Work&& work) {
+        const double device = run_.deviceMilliseconds();
+        const auto start = std::chrono::steady_clock::now();
+        work();
+        const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
+        add(name, wall.count(), run_.deviceMilliseconds() - device, count, unit, bytes);
+    }
+    // A stage that was measured elsewhere; deviceMilliseconds is 0 for work of the host.
+    void add(const std::string& name, double wallMilliseconds, double deviceMilliseconds, uint64_t count,
+             const char* unit, uint64_t bytes);
+
+    nlohmann::ordered_json json() const;
+    void print() const;  // to stderr
+
+  private:
+    struct Stage {
+        std::string name, unit;
+        double wall, device;  // ms
+        uint64_t count, bytes;
+        // Per second of device time where there is any, else of wall time.
+        double perSecond(double what) const {
+            return what * 1000 / std::max(device > 0 ? device : wall, 1e-6);
+        }
+    };
+    const Run& run_;
+    std::vector<Stage> stages_;
+};
+
+}  // namespace pellucid::cli
