@@ -25,8 +25,8 @@ int main(int argc, char** argv) {
     addDevices(app);
     addCurvature(app);
     addLut(app);
-    // addShade(app);
-    // addDemo(app);
+    addShade(app);
+    addDemo(app);
     try {
         app.parse(argc, argv);
         return exitDone;
