@@ -25,7 +25,7 @@ io::Picture curvatureMap(const DemoView& view) {
     const float high = std::max(percentile(seen, 0.98), 1e-6f);
     const io::Picture map =
         io::colored(view.gbuffer.width, view.gbuffer.height, curvature, 0, high, material);
-    io::Picture withBar(map.width, map.height + 64, {20, 20, 20});
+    io::Picture withBar(map.width, map.height + 64, io::Srgb8{20, 20, 20});
     withBar.paste(0, 0, map);
     withBar.paste(map.width / 8, map.height + 8, io::colorBar(map.width * 3 / 4, 0, high, "1/mm"));
     return withBar;
