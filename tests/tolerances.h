@@ -20,6 +20,11 @@ inline constexpr Tolerance lutTexelOther{"lutTexelOther", 1e-5,
                                          "profiles that need a quadrature on the device"};
 inline constexpr Tolerance lutRoundingBoundary{
     "lutRoundingBoundary", 1e-4, "in 8-bit steps: truth this near to x.5 may round to either side"};
+inline constexpr Tolerance lutSecondDifference{
+    "lutSecondDifference", 5e-4,
+    "between neighbours of a 512-texel row away from the terminator; a kink or a band would show as 1e-3"};
+inline constexpr Tolerance peerBytes{"peerBytes", 2,
+                                     "8-bit steps: the peer samples its integrals at 200 points"};
 inline constexpr Tolerance sphereMean{"sphereMean", 1e-5,
                                       "energy: the mean of the form sphere is exactly 1/4"};
 

@@ -1,0 +1,18 @@
+// Makes look-up tables on the device, and packs them for the host.
+#pragma once
+#include "core/lut.h"
+
+namespace pel {
+
+// Each throws PEL_ERROR_INVALID_ARGUMENT, naming the field, for a description outside of what pellucid.h
+// documents; work is enqueued, not waited for.
+Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& desc);
+Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc);
+// From texels that were packed as PEL_LUT_FLOAT; `bytes` is checked against the size in `info`.
+Ref<Lut> uploadLut(Ref<Device> device, const PelLutInfo& info, const float* texels, size_t bytes);
+
+size_t packedBytes(const Lut& lut, PelLutEncoding encoding);
+// Encodes on the device and reads packedBytes() bytes.
+void readLut(const Lut& lut, PelLutEncoding encoding, void* destination, bool blocking);
+
+}  // namespace pel

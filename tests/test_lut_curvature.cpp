@@ -1,0 +1,161 @@
+// The curvature LUT that the device integrates, against the oracle's adaptive quadrature and against data of
+// others.
+#include <gtest/gtest.h>
+
+#include <pellucid/pellucid.hpp>
+
+#include <cmath>
+#include <random>
+
+#include "npy.h"
+#include "reference/lut.h"
+#include "tolerances.h"
+
+using namespace pellucid;
+
+namespace {
+
+PelCurvatureLutDesc describe(uint32_t width, uint32_t height, float radiusMin, float radiusMax,
+                             float diffusionRadius) {
+    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    desc.width = width;
+    desc.height = height;
+    desc.radiusMin = radiusMin;
+    desc.radiusMax = radiusMax;
+    desc.diffusionRadius = diffusionRadius;
+    return desc;
+}
+
+reference::CurvatureLutSpec specOf(const PelCurvatureLutDesc& desc) {
+    reference::CurvatureLutSpec spec;
+    spec.width = int(desc.width);
+    spec.height = int(desc.height);
+    spec.radiusMin = desc.radiusMin;
+    spec.radiusMax = desc.radiusMax;
+    return spec;
+}
+
+// Compares up to `samples` texels, the corners always among them.
+void compareTexels(const Device& device, const PelCurvatureLutDesc& desc, int samples) {
+    const std::vector<float> texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+    const auto profile = reference::profileForRadius(reference::skinProfile(), desc.diffusionRadius);
+    const auto spec = specOf(desc);
+    std::mt19937 random(7);
+    for (int i = 0; i < samples; ++i) {
+        const int x = i < 4 ? (i & 1) * (spec.width - 1) : int(random() % desc.width);
+        const int y = i < 4 ? (i >> 1) * (spec.height - 1) : int(random() % desc.height);
+        const reference::Rgb truth = reference::curvatureTexel(spec, *profile, x, y);
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(texels[(size_t(y) * desc.width + x) * 3 + c], truth[c], tolerance::lutTexelGaussians)
+                << "texel (" << x << ", " << y << ") channel " << c << ", r = " << spec.radius(y);
+    }
+}
+
+}  // namespace
+
+TEST(CurvatureLut, TexelsEqualTheIntegral) {
+    compareTexels(Device(""), pelCurvatureLutDescDefaults(), 600);
+}
+
+TEST(CurvatureLut, OtherSizesAndUnits) {
+    const Device device("");
+    compareTexels(device, describe(1, 1, 1, 100, 2.7f), 1);
+    compareTexels(device, describe(1, 9, 2, 50, 2.7f), 9);
+    compareTexels(device, describe(37, 3, 2, 50, 2.7f), 60);
+    compareTexels(device, describe(64, 64, 5, 5, 2.7f), 60);
+    compareTexels(device, describe(32, 33, 0.001f, 0.1f, 0.0027f), 60);  // metres
+}
+
+TEST(CurvatureLut, SharpAndFlatSurfaces) {
+    const Device device("");
+    // 0.05 to 10,000 times the widest sigma
+    compareTexels(device, describe(64, 16, 0.135f, 0.135f, 2.7f), 100);
+    compareTexels(device, describe(64, 16, 0.135f, 27000, 2.7f), 150);
+    compareTexels(device, describe(64, 16, 1000, 27000, 2.7f), 150);
+    compareTexels(device, describe(1024, 4, 27000, 27000, 2.7f), 150);
+    compareTexels(device, describe(33, 7, 1, 100, 270), 60);
+    compareTexels(device, describe(33, 7, 1, 100, 0.01f), 60);
+}
+
+TEST(CurvatureLut, LimitsOfRadius) {
+    const Device device("");
+    // A plane scatters nothing into the dark: all of the profile within the cut arrives, times N.L.
+    const auto plane = Lut(device, describe(16, 2, 3e37f, 3e38f, 1e-3f)).read<float>(PEL_LUT_FLOAT);
+    for (int x = 0; x < 16; ++x) {
+        const double u = -1 + (x + 0.5) / 8;
+        EXPECT_NEAR(plane[x * 3 + 2], std::max(0.0, u), tolerance::lutTexelGaussians) << "column " << x;
+    }
+    for (const auto& desc : {describe(16, 4, 1e-38f, 1e38f, 1), describe(16, 4, 1e-38f, 1e-38f, 1e38f)})
+        for (float texel : Lut(device, desc).read<float>(PEL_LUT_FLOAT)) {
+            EXPECT_TRUE(std::isfinite(texel));
+            EXPECT_GE(texel, 0);
+            EXPECT_LE(texel, 1 + tolerance::lutTexelGaussians);
+        }
+}
+
+TEST(CurvatureLut, RisesWithTheLightAndHasNoKinks) {
+    const Device device("");
+    const auto desc = pelCurvatureLutDescDefaults();
+    const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+    double roughest = 0;
+    for (uint32_t y = 0; y < desc.height; ++y)
+        for (uint32_t x = 1; x + 1 < desc.width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const float* t = texels.data() + (size_t(y) * desc.width + x) * 3 + c;
+                ASSERT_GE(t[0] - t[-3], -tolerance::lutTexelGaussians) << x << ", " << y;
+                // D bends most where u = 0, at the flattest row: there it is all but max0(u).
+                if (x < 240 || x > 270)
+                    roughest = std::max(roughest, double(std::fabs(t[3] - 2 * t[0] + t[-3])));
+            }
+    EXPECT_LT(roughest, tolerance::lutSecondDifference);
+}
+
+TEST(CurvatureLut, EncodingsRoundTruth) {
+    const Device device("");
+    const auto desc = describe(256, 64, 1, 100, 2.7f);
+    const Lut lut(device, desc);
+    const auto texels = lut.read<float>(PEL_LUT_FLOAT);
+    const auto bytes = lut.read<uint8_t>(PEL_LUT_FACEWORKS8);
+    const auto profile = reference::skinProfile();
+    const auto spec = specOf(desc);
+    ASSERT_EQ(bytes.size(), 256u * 64 * 4);
+    int clipped = 0;
+    for (int y = 0; y < 64; y += 3)
+        for (int x = 0; x < 256; x += 3) {
+            const reference::Rgb truth = reference::curvatureTexel(spec, *profile, x, y);
+            const reference::Rgb steps = reference::faceworksCurvatureSteps(truth, spec.u(x));
+            clipped += reference::faceworksCurvatureClips(truth, spec.u(x));
+            const size_t at = (size_t(y) * 256 + x) * 4;
+            EXPECT_EQ(bytes[at + 3], 255);
+            for (int c = 0; c < 3; ++c) {
+                const double fromBoundary = std::abs(steps[c] - std::floor(steps[c]) - 0.5);
+                if (fromBoundary > tolerance::lutRoundingBoundary) {
+                    EXPECT_EQ(bytes[at + c], reference::roundedSteps(steps)[c])
+                        << x << ", " << y << ": " << steps[c];
+                }
+            }
+        }
+    EXPECT_GT(clipped, 0) << "the narrowest radii exceed what the peer's residual holds";
+    EXPECT_EQ(lut.read<uint16_t>(PEL_LUT_HALF).size(), texels.size());
+}
+
+TEST(CurvatureLut, EqualsTheExactTableOfThePeersProfile) {
+    REQUIRE_ORACLE_DIRECTORY(directory);
+    const auto truth = npy::read<float>(directory / "truth_lut_curv_A_arc10_f32.npy");
+    const Lut lut(Device(""), pelCurvatureLutDescDefaults());
+    const auto texels = lut.read<float>(PEL_LUT_FLOAT);
+    ASSERT_EQ(texels.size(), truth.data.size());
+    double worst = 0;
+    for (size_t i = 0; i < texels.size(); ++i)
+        worst = std::max(worst, std::abs(double(texels[i]) - truth.data[i]));
+    EXPECT_LT(worst, tolerance::lutTexelGaussians);
+
+    // The peer's own table is sampled and clipped: near, but not the same.
+    const auto peer = npy::read<uint8_t>(directory / "fw_lut_curv_A_u8.npy");
+    const auto bytes = lut.read<uint8_t>(PEL_LUT_FACEWORKS8);
+    ASSERT_EQ(bytes.size(), peer.data.size());
+    int furthest = 0;
+    for (size_t i = 0; i < bytes.size(); ++i)
+        furthest = std::max(furthest, std::abs(int(bytes[i]) - peer.data[i]));
+    EXPECT_LE(furthest, int(tolerance::peerBytes.value));
+}

@@ -1,0 +1,135 @@
+// The shadow LUT that the device integrates, against the oracle's adaptive quadrature and against data of
+// others.
+#include <gtest/gtest.h>
+
+#include <pellucid/pellucid.hpp>
+
+#include <cmath>
+#include <random>
+
+#include "npy.h"
+#include "reference/lut.h"
+#include "tolerances.h"
+
+using namespace pellucid;
+
+namespace {
+
+struct Case {
+    uint32_t width, height;
+    float widthMin, widthMax, diffusionRadius, sharpening;
+};
+
+PelShadowLutDesc describe(const Case& c) {
+    PelShadowLutDesc desc = pelShadowLutDescDefaults();
+    desc.width = c.width;
+    desc.height = c.height;
+    desc.widthMin = c.widthMin;
+    desc.widthMax = c.widthMax;
+    desc.diffusionRadius = c.diffusionRadius;
+    desc.sharpening = c.sharpening;
+    return desc;
+}
+
+reference::ShadowLutSpec specOf(const PelShadowLutDesc& desc) {
+    return {int(desc.width), int(desc.height),     desc.widthMin,
+            desc.widthMax,   desc.diffusionRadius, desc.sharpening};
+}
+
+void compareTexels(const Device& device, const PelShadowLutDesc& desc, int samples) {
+    const std::vector<float> texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+    const auto profile = reference::skinProfile();
+    const auto spec = specOf(desc);
+    std::mt19937 random(11);
+    for (int i = 0; i < samples; ++i) {
+        const int x = i < 4 ? (i & 1) * (spec.width - 1) : int(random() % desc.width);
+        const int y = i < 4 ? (i >> 1) * (spec.height - 1) : int(random() % desc.height);
+        const reference::Rgb truth = reference::shadowTexel(spec, *profile, x, y);
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(texels[(size_t(y) * desc.width + x) * 3 + c], truth[c], tolerance::lutTexelGaussians)
+                << "texel (" << x << ", " << y << ") channel " << c << ", sharpening " << desc.sharpening
+                << ", widths " << desc.widthMin << " to " << desc.widthMax;
+    }
+}
+
+}  // namespace
+
+TEST(ShadowLut, TexelsEqualTheIntegral) {
+    compareTexels(Device(""), pelShadowLutDescDefaults(), 1000);
+}
+
+TEST(ShadowLut, OtherSizesAndUnits) {
+    const Device device("");
+    for (const Case& c :
+         {Case{1, 1, 8, 100, 2.7f, 10}, Case{1, 5, 8, 100, 2.7f, 10}, Case{2, 2, 8, 100, 2.7f, 10},
+          Case{37, 3, 8, 100, 2.7f, 10}, Case{64, 64, 20, 20, 2.7f, 10},
+          Case{64, 64, 0.008f, 0.1f, 0.0027f, 10}, Case{64, 64, 3, 40, 1, 4}})
+        compareTexels(device, describe(c), 60);
+}
+
+TEST(ShadowLut, SharpBluntNarrowAndWide) {
+    const Device device("");
+    for (float sharpening : {1.0f, 3.0f, 100.0f, 1e6f})
+        for (auto [widthMin, widthMax] : {std::pair{8.0f, 100.0f}, {0.1f, 8.0f}, {100.0f, 30000.0f}})
+            compareTexels(device, describe({128, 16, widthMin, widthMax, 2.7f, sharpening}), 120);
+}
+
+TEST(ShadowLut, LimitsAreFiniteAndMonotone) {
+    const Device device("");
+    for (const Case& c : {Case{16, 4, 1e-38f, 1e38f, 1, 1}, Case{16, 4, 1e-38f, 1e-38f, 1e38f, 1e6f},
+                          Case{16, 4, 1e38f, 1e38f, 1e-38f, 3e38f}, Case{64, 16, 8, 100, 2.7f, 10}}) {
+        const auto texels = Lut(device, describe(c)).read<float>(PEL_LUT_FLOAT);
+        for (size_t i = 0; i < texels.size(); ++i) {
+            ASSERT_TRUE(std::isfinite(texels[i])) << i;
+            EXPECT_GE(texels[i], -tolerance::lutTexelGaussians);
+            EXPECT_LE(texels[i], 1 + tolerance::lutTexelGaussians);
+            if (i / 3 % c.width > 0) {
+                EXPECT_GE(texels[i] - texels[i - 3], -tolerance::lutTexelGaussians);
+            }
+        }
+    }
+}
+
+TEST(ShadowLut, EncodingRoundsTruth) {
+    const auto desc = describe({256, 64, 8, 100, 2.7f, 10});
+    const Lut lut(Device(""), desc);
+    const auto bytes = lut.read<uint8_t>(PEL_LUT_FACEWORKS8);
+    ASSERT_EQ(bytes.size(), 256u * 64 * 4);
+    const auto profile = reference::skinProfile();
+    for (int y = 0; y < 64; y += 3)
+        for (int x = 0; x < 256; x += 3) {
+            const auto steps =
+                reference::faceworksShadowSteps(reference::shadowTexel(specOf(desc), *profile, x, y), x, 256);
+            const size_t at = (size_t(y) * 256 + x) * 4;
+            EXPECT_EQ(bytes[at + 3], 255);
+            for (int c = 0; c < 3; ++c) {
+                const double fromBoundary = std::abs(steps[c] - std::floor(steps[c]) - 0.5);
+                if (fromBoundary > tolerance::lutRoundingBoundary) {
+                    EXPECT_EQ(bytes[at + c], reference::roundedSteps(steps)[c])
+                        << x << ", " << y << ": " << steps[c];
+                }
+            }
+        }
+}
+
+TEST(ShadowLut, EqualsTheExactTableOfThePeersProfile) {
+    REQUIRE_ORACLE_DIRECTORY(directory);
+    const auto truth = npy::read<float>(directory / "truth_lut_shadow_A_withfade_f32.npy");
+    const Lut lut(Device(""), pelShadowLutDescDefaults());
+    const auto texels = lut.read<float>(PEL_LUT_FLOAT);
+    ASSERT_EQ(texels.size(), truth.data.size());
+    double worst = 0;
+    for (size_t i = 0; i < texels.size(); ++i) {
+        const double faded = reference::shadowFade(int(i / 3 % 512), 512) * texels[i];
+        worst = std::max(worst, std::abs(faded - truth.data[i]));
+    }
+    EXPECT_LT(worst, tolerance::lutTexelGaussians);
+
+    const auto peer = npy::read<uint8_t>(directory / "fw_lut_shadow_A_u8.npy");
+    const auto bytes = lut.read<uint8_t>(PEL_LUT_FACEWORKS8);
+    ASSERT_EQ(bytes.size(), peer.data.size());
+    int furthest = 0;
+    for (size_t i = 0; i < bytes.size(); ++i)
+        furthest = std::max(furthest, std::abs(int(bytes[i]) - peer.data[i]));
+    EXPECT_LE(furthest, int(tolerance::peerBytes.value));
+}
