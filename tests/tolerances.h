@@ -81,4 +81,30 @@ inline constexpr Tolerance publishedWidth{"publishedWidth", 6e-4,
 inline constexpr Tolerance publishedWeights{"publishedWeights", 1e-12,
                                             "the published weights add up to 1 in each channel"};
 
+// --- the stand-in renderer, against analytic surfaces; lengths in mm on a sphere of radius 50 ---
+inline constexpr Tolerance samplePosition{"samplePosition", 1e-4,
+                                          "mm: float vertices and images at coordinates up to 300"};
+inline constexpr Tolerance sampleFromDepth{
+    "sampleFromDepth", 0.02, "mm: half an ulp of float depth near 1, between planes at 100 and 2000"};
+inline constexpr Tolerance sampleFacetNormal{
+    "sampleFacetNormal", 1e-4,
+    "the ray meets a facet, whose interpolated normal is the sphere's to 2nd order"};
+inline constexpr Tolerance sampleUnit{"sampleUnit", 1e-6, "float rounding of values up to 1"};
+inline constexpr Tolerance samplePixel{"samplePixel", 1e-4,
+                                       "pixels: float rounding of a position, projected"};
+inline constexpr Tolerance sampleMatrix{"sampleMatrix", 1e-9, "double-precision matrices and closed forms"};
+inline constexpr Tolerance sampleDerivative{"sampleDerivative", 1e-6,
+                                            "relative: a central difference of step 1e-5"};
+inline constexpr Tolerance sampleRandomField{"sampleRandomField", 0.15,
+                                             "relative: a sum of 100 waves over a few hundred wavelengths"};
+inline constexpr Tolerance sampleAlbedoMean{"sampleAlbedoMean", 0.03,
+                                            "the mean of few, wide random blotches"};
+inline constexpr Tolerance sampleWaves{"sampleWaves", 1e-4, "single-precision sines with phases up to 100"};
+inline constexpr Tolerance sampleQuadrature{"sampleQuadrature", 1e-5,
+                                            "a midpoint rule of 4000 steps over a square root's end"};
+inline constexpr Tolerance sampleWideShadow{
+    "sampleWideShadow", 0.003, "texels of 1/200 of the filter: where the edge falls between two of them"};
+inline constexpr Tolerance sampleSky{"sampleSky", 0.02,
+                                     "what orders above 2 carry of a sky with a soft lamp"};
+
 }  // namespace tolerance

@@ -35,10 +35,10 @@ struct View {
 struct Detail {
     explicit Detail(const SkinDetail& s)
         : settings(s),
-          pores(s.poreWavelength, s.seed),
-          folds(s.foldWavelength, s.seed + 1),
-          blood(s.blotchWavelength, s.seed + 2),
-          pigment(0.6 * s.blotchWavelength, s.seed + 3) {}
+          pores(s.poreWavelength, 100, s.seed),
+          folds(s.foldWavelength, 32, s.seed + 1),
+          blood(s.blotchWavelength, 32, s.seed + 2),
+          pigment(0.6 * s.blotchWavelength, 32, s.seed + 3) {}
 
     SkinDetail settings;
     WaveField pores, folds, blood, pigment;

@@ -14,7 +14,7 @@ namespace pellucid::sample {
 struct SkinDetail {
     bool enabled = true;
     double poreWavelength = 1.2;  // mm
-    double poreSlope = 0.16;      // root mean square of the slope
+    double poreSlope = 0.12;      // root mean square of the slope
     double foldWavelength = 9;    // mm: what is left in the blurred normal
     double foldSlope = 0.05;
     double blotchWavelength = 14;  // mm, of pigment and blood
@@ -39,12 +39,12 @@ struct GBuffer {
     Image blurredNormal;  // 3, Nb: Ng bent by the same relief blurred with a Gaussian of diffusionRadius / 2.
                           // That is the blur of a normal map read bilinearly at the mip whose texels are one
                           // diffusion radius wide (box and tent: rho^2/12 + rho^2/6 = (rho/2)^2)
-    Image curvature;                 // 1, 1/mm, interpolated from the vertices
-    Image albedo;                    // 3, linear
-    Image uv;                        // 2, or empty when the mesh has none
-    Image viewDepth;                 // 1, mm along the camera's axis; backgroundDepth where nothing was hit
-    Image deviceDepth;               // 1, z / w of Camera::projection, 0 near to 1 far and background
-    Image coverage;                  // 1, 1 or 0
+    Image curvature;      // 1, 1/mm, interpolated from the vertices
+    Image albedo;         // 3, linear
+    Image uv;             // 2, or empty when the mesh has none
+    Image viewDepth;      // 1, mm along the camera's axis; backgroundDepth where nothing was hit
+    Image deviceDepth;    // 1, z / w of Camera::projection, 0 near to 1 far and background
+    Image coverage;       // 1, 1 or 0
     std::vector<uint32_t> material;  // id per pixel, 0 background
 };
 

@@ -25,22 +25,23 @@ class Random {
     uint32_t state_;
 };
 
-// Log of how much a Gaussian footprint weakens wave k.
-double attenuation(Vec3 k, const Footprint& f) {
+// Log of how much a Gaussian footprint weakens wave k. Single precision from here on is plenty for relief,
+// and faster.
+float attenuation(Vec3 k, const Footprint& f) {
     const double kn = dot(k, f.normal), ka = dot(k, f.along);
     const double tangential = dot(k, k) - kn * kn + ka * ka * (f.stretch * f.stretch - 1);
-    return -0.5 * f.sigma * f.sigma * tangential;
+    return float(-0.5 * f.sigma * f.sigma * tangential);
 }
 
 // Weaker than this (e^-12), a wave is not worth a sine.
-constexpr double negligible = -12;
+constexpr float negligible = -12;
 
 }  // namespace
 
-WaveField::WaveField(double wavelength, uint32_t seed) {
+WaveField::WaveField(double wavelength, int waves, uint32_t seed) {
     Random random(seed);
-    for (int i = 0; i < waveCount; ++i) {
-        const double z = 2 * (i + 0.5) / waveCount - 1, phi = tau * random.unit(), r = std::sqrt(1 - z * z);
+    for (int i = 0; i < waves; ++i) {
+        const double z = 2 * (i + 0.5) / waves - 1, phi = tau * random.unit(), r = std::sqrt(1 - z * z);
         const double k = tau / wavelength * std::exp2(random.unit() - 0.5);
         waves_.push_back({Vec3{r * std::cos(phi), r * std::sin(phi), z} * k, tau * random.unit()});
     }
@@ -49,26 +50,26 @@ WaveField::WaveField(double wavelength, uint32_t seed) {
 double WaveField::value(Vec3 p, const Footprint& footprint) const {
     double sum = 0;
     for (const Wave& wave : waves_) {
-        const double weaker = attenuation(wave.k, footprint);
-        if (weaker > negligible) sum += std::cos(dot(wave.k, p) + wave.phase) * std::exp(weaker);
+        const float weaker = attenuation(wave.k, footprint);
+        if (weaker > negligible) sum += std::cos(float(dot(wave.k, p) + wave.phase)) * std::exp(weaker);
     }
-    return sum * std::sqrt(2.0 / waveCount);
+    return sum * std::sqrt(2.0 / double(waves_.size()));
 }
 
 void WaveField::slope(Vec3 p, const Footprint* footprints, int count, Vec3* out) const {
     for (int i = 0; i < count; ++i) out[i] = {};
     for (const Wave& wave : waves_) {
-        double sine = 2;  // not computed yet
+        float sine = 2;  // not computed yet
         for (int i = 0; i < count; ++i) {
-            const double weaker = attenuation(wave.k, footprints[i]);
+            const float weaker = attenuation(wave.k, footprints[i]);
             if (weaker <= negligible) continue;
-            if (sine > 1) sine = std::sin(dot(wave.k, p) + wave.phase);
+            if (sine > 1) sine = std::sin(float(dot(wave.k, p) + wave.phase));
             const Vec3 n = footprints[i].normal, tangential = wave.k - n * dot(wave.k, n);
             out[i] = out[i] - tangential * (sine * std::exp(weaker) / length(wave.k));
         }
     }
     // sin^2 averages 1/2, the tangential part of a random direction 2/3.
-    for (int i = 0; i < count; ++i) out[i] = out[i] * std::sqrt(3.0 / waveCount);
+    for (int i = 0; i < count; ++i) out[i] = out[i] * std::sqrt(3.0 / double(waves_.size()));
 }
 
 }  // namespace pellucid::sample

@@ -20,10 +20,9 @@ struct Footprint {
 
 class WaveField {
   public:
-    static constexpr int waveCount = 40;
-
-    // Wavelengths spread over the octave around `wavelength` (mm). Same seed, same field.
-    WaveField(double wavelength, uint32_t seed);
+    // Wavelengths spread over the octave around `wavelength` (mm). Same seed, same field. Few waves show as a
+    // weave where the light picks out those of one direction: about 100 look random, 32 do for soft fields.
+    WaveField(double wavelength, int waves, uint32_t seed);
 
     // Height of mean square 1 over a surface, blurred over the footprint.
     double value(Vec3 p, const Footprint& footprint) const;

@@ -10,8 +10,8 @@ namespace pellucid::sample {
 // line spread is (1 - q^2) / sqrt(2 - q^2) on [-1, 1]. The round filter with that line spread (its inverse
 // Abel transform) is
 //     f(r) = (sqrt(T) / (1 + T) + atan(sqrt(T))) / pi,   T = 1 - r^2,   r in [0, 1],
-// and the part of it outside of radius r is sqrt(T) + (T - 1) atan(sqrt(T)). Taps are drawn from f, so that
-// they count alike.
+// and the part of it outside of radius r is sqrt(T) + (T - 1) atan(sqrt(T)). A sharpened table makes a step
+// of w ten times larger, so w is not sampled: every texel under the filter is weighed.
 double wideFilterDensity(double r);  // f(r), per area of the unit disk
 double wideFilterOutside(double r);  // integral of f beyond r; 1 at r = 0
 double wideFilterEdge(double p);     // w at position p across a straight edge, p in [0, 1], 0 in shadow
@@ -19,16 +19,18 @@ double wideFilterEdge(double p);     // w at position p across a straight edge, 
 struct WideShadowOptions {
     double filterWidth =
         8;  // mm across the light: the whole penumbra, p from 0 to 1. As PelMaterial.shadowFilterWidth
-    int taps = 192;             // on a golden-angle spiral, each bilinear over four texels
-    double normalOffset = 0.2;  // times filterWidth: how far a point at the terminator moves along its normal
-                                // before it is looked up; a point that faces the light does not move
+    int maxTexels = 96;      // across the filter; of a finer map every 2nd, 3rd, ... texel a side is read
     double depthBias = 0.5;  // mm
-    double coneSlope = 0.5;  // an occluder counts when it stands this many times its sideways distance above
-                             // the tangent plane, so that folds and facets do not shade themselves
+    double softness =
+        0.25;  // times filterWidth: an occluder starts to count at the bias and counts in full this much
+               // closer to the light, so that round bodies do not shade themselves with a hard edge
+    double coneSlope =
+        0.5;  // an occluder counts when it stands this many times its sideways distance above the tangent
+              // plane (measured as the plane's own tilt is), so that folds and facets do not shade themselves
 };
 
-// w per pixel: 0 shadow, 1 lit; 1 on background and outside of the map. For each tap the surface is taken to
-// go on in its tangent plane, whose tilt against the light is limited.
+// w per pixel: 0 shadow, 1 lit; 1 on background and outside of the map. For each texel the surface is taken
+// to go on in its tangent plane, whose tilt against the light is limited.
 Image filterWideShadow(const GBuffer& gbuffer, const ShadowMap& map, const WideShadowOptions& options = {});
 
 }  // namespace pellucid::sample

@@ -1,0 +1,354 @@
+// The stand-in renderer's G-buffer against surfaces whose every pixel is known.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <stdexcept>
+
+#include "sample/gbuffer.h"
+#include "sample/waves.h"
+#include "tolerances.h"
+
+namespace sample = pellucid::sample;
+using sample::Vec3;
+
+namespace {
+
+constexpr double sphereRadius = 50;
+constexpr int rings = 256;
+// How far the middle of a facet lies inside of the sphere: half an edge subtends pi / (2 rings) both ways.
+const double facetSag = sphereRadius * (1 - std::pow(std::cos(std::numbers::pi / (2 * rings)), 2));
+
+sample::Mesh sphere() {
+    return sample::makeSphere(sphereRadius, rings, 2 * rings);
+}
+
+Vec3 vectorAt(const sample::Image& image, int x, int y) {
+    return {image.at(0, x, y), image.at(1, x, y), image.at(2, x, y)};
+}
+
+sample::GBufferOptions plain() {
+    sample::GBufferOptions options;
+    options.detail.enabled = false;
+    return options;
+}
+
+struct SphereView {
+    int width, height;
+    sample::Camera camera{.eye = {210, -180, 90}, .target = {3, -2, 1}};
+    sample::GBuffer gbuffer;
+
+    SphereView(int w, int h) : width(w), height(h) {
+        gbuffer = sample::renderGBuffer(sample::Scene(sphere().view()), camera, w, h, plain());
+    }
+    double aspect() const { return double(width) / height; }
+    template <class F>
+    void forEachCovered(F f) const {
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x)
+                if (gbuffer.coverage.at(0, x, y) > 0) f(x, y);
+    }
+};
+
+// Where the ray through clip position (x, y) passes the origin: the length of the perpendicular.
+double missDistance(const SphereView& view, double ndcX, double ndcY) {
+    const sample::Matrix4 inverse = view.camera.inverseViewProjection(view.aspect());
+    const Vec3 direction = sample::normalize(inverse.project({ndcX, ndcY, 1}) - view.camera.eye);
+    return length(cross(view.camera.eye, direction));
+}
+
+bool sameBits(const sample::GBuffer& a, const sample::GBuffer& b) {
+    using sample::GBuffer;
+    for (auto image : {&GBuffer::position, &GBuffer::geometricNormal, &GBuffer::shadingNormal,
+                       &GBuffer::blurredNormal, &GBuffer::curvature, &GBuffer::albedo, &GBuffer::uv,
+                       &GBuffer::viewDepth, &GBuffer::deviceDepth, &GBuffer::coverage})
+        if ((a.*image).data != (b.*image).data) return false;
+    return a.material == b.material;
+}
+
+}  // namespace
+
+TEST(SampleGBuffer, SpherePositionsNormalsAndCurvature) {
+    const SphereView view(160, 120);
+    int covered = 0;
+    view.forEachCovered([&](int x, int y) {
+        ++covered;
+        const Vec3 p = vectorAt(view.gbuffer.position, x, y),
+                   n = vectorAt(view.gbuffer.geometricNormal, x, y);
+        EXPECT_LE(length(p), sphereRadius + tolerance::samplePosition);
+        EXPECT_GE(length(p), sphereRadius - facetSag - tolerance::samplePosition);
+        EXPECT_LT(length(n - normalize(p)), tolerance::sampleFacetNormal);
+        EXPECT_NEAR(length(n), 1, tolerance::sampleUnit);
+        EXPECT_FLOAT_EQ(view.gbuffer.curvature.at(0, x, y), float(1 / sphereRadius));
+        EXPECT_LT(dot(n, p - view.camera.eye), 0) << "the near side is seen";
+    });
+    EXPECT_GT(covered, 1000);
+}
+
+TEST(SampleGBuffer, CoverageIsTheSphereSeenFromTheCamera) {
+    const SphereView view(161, 97);
+    for (int y = 0; y < view.height; ++y)
+        for (int x = 0; x < view.width; ++x) {
+            const double miss =
+                missDistance(view, 2 * (x + 0.5) / view.width - 1, 1 - 2 * (y + 0.5) / view.height);
+            const bool covered = view.gbuffer.coverage.at(0, x, y) == 1;
+            if (miss < sphereRadius - facetSag) {
+                EXPECT_TRUE(covered) << x << ", " << y;
+            }
+            if (miss > sphereRadius) {
+                EXPECT_FALSE(covered) << x << ", " << y;
+            }
+            EXPECT_EQ(view.gbuffer.material[size_t(y) * view.width + x], covered ? 1u : 0u);
+            if (covered) continue;
+            EXPECT_EQ(view.gbuffer.viewDepth.at(0, x, y), sample::backgroundDepth);
+            EXPECT_EQ(view.gbuffer.deviceDepth.at(0, x, y), 1);
+            EXPECT_EQ(length(vectorAt(view.gbuffer.position, x, y)), 0);
+            EXPECT_EQ(length(vectorAt(view.gbuffer.shadingNormal, x, y)), 0);
+        }
+}
+
+TEST(SampleGBuffer, PositionsLieOnTheRaysAndDepthsGiveThemBack) {
+    const SphereView view(96, 128);
+    const sample::Matrix4 toClip = view.camera.viewProjection(view.aspect());
+    const sample::Matrix4 inverse = view.camera.inverseViewProjection(view.aspect());
+    view.forEachCovered([&](int x, int y) {
+        const Vec3 p = vectorAt(view.gbuffer.position, x, y), clip = toClip.project(p);
+        EXPECT_NEAR((clip.x + 1) / 2 * view.width, x + 0.5, tolerance::samplePixel);
+        EXPECT_NEAR((1 - clip.y) / 2 * view.height, y + 0.5, tolerance::samplePixel);
+        EXPECT_NEAR(view.gbuffer.viewDepth.at(0, x, y), dot(p - view.camera.eye, view.camera.forward()),
+                    tolerance::samplePosition);
+        const double z = view.gbuffer.deviceDepth.at(0, x, y);
+        EXPECT_GT(z, 0);
+        EXPECT_LT(z, 1);
+        const Vec3 back =
+            inverse.project({2 * (x + 0.5) / view.width - 1, 1 - 2 * (y + 0.5) / view.height, z});
+        EXPECT_LT(length(back - p), tolerance::sampleFromDepth);
+    });
+}
+
+TEST(SampleGBuffer, UvAndMaterialsFollowTheSurface) {
+    sample::Mesh mesh = sample::makeRectangle(-10, 10, -10, 10, 0);
+    mesh.append(sample::makeRectangle(10, 30, -10, 10, 0));
+    mesh.materials = {3, 3, 7, 7};
+    const sample::Camera camera{.eye = {9, 1, 100}, .target = {9, 1, 0}, .up = {0, 1, 0}, .nearPlane = 10};
+    const sample::GBuffer g = sample::renderGBuffer(sample::Scene(mesh.view()), camera, 64, 48, plain());
+    int seen[2] = {0, 0};
+    for (int y = 0; y < 48; ++y)
+        for (int x = 0; x < 64; ++x) {
+            if (g.coverage.at(0, x, y) == 0) continue;
+            const Vec3 p = vectorAt(g.position, x, y);
+            const bool second = p.x > 10;
+            ++seen[second];
+            EXPECT_EQ(g.material[size_t(y) * 64 + x], second ? 7u : 3u);
+            EXPECT_NEAR(g.uv.at(0, x, y), (p.x - (second ? 10 : -10)) / 20, tolerance::sampleUnit);
+            EXPECT_NEAR(g.uv.at(1, x, y), (10 - p.y) / 20, tolerance::sampleUnit);
+            EXPECT_EQ(vectorAt(g.geometricNormal, x, y).z, 1);
+        }
+    EXPECT_GT(seen[0], 100);
+    EXPECT_GT(seen[1], 100);
+}
+
+TEST(SampleGBuffer, WithoutNormalsTheFaceNormalIsTaken) {
+    sample::Mesh mesh = sphere();
+    mesh.normals.clear();
+    mesh.uvs.clear();
+    const sample::GBuffer g =
+        sample::renderGBuffer(sample::Scene(mesh.view()), {.eye = {200, 0, 0}}, 40, 40, plain());
+    EXPECT_TRUE(g.uv.data.empty());
+    const Vec3 n = vectorAt(g.geometricNormal, 20, 20), p = vectorAt(g.position, 20, 20);
+    EXPECT_GT(dot(n, normalize(p)), std::cos(std::numbers::pi / rings));
+    EXPECT_NE(length(n - normalize(p)), 0);
+}
+
+TEST(SampleGBuffer, ClosedMeshesHaveNoCracks) {
+    for (const sample::Mesh& mesh : {sphere(), sample::makeTorus(40, 15, 37, 91)}) {
+        const bool torus = mesh.positions.size() != sphere().positions.size();
+        const sample::Camera inside{
+            .eye = {torus ? 40.0 : 0.0, 0, 0}, .target = {40, 5, 0}, .verticalFov = 120};
+        const sample::GBuffer g =
+            sample::renderGBuffer(sample::Scene(mesh.view()), inside, 512, 256, plain());
+        EXPECT_EQ(std::count(g.coverage.data.begin(), g.coverage.data.end(), 0.0f), 0);
+    }
+}
+
+TEST(SampleDetail, ShadingDiffersFromGeometricAsAsked) {
+    // A close view, so that a pixel is much smaller than a pore.
+    const sample::Mesh mesh = sample::makeRectangle(-50, 50, -50, 50, 0);
+    const sample::Camera camera{.eye = {0, 0, 200}, .up = {0, 1, 0}, .nearPlane = 10};
+    sample::GBufferOptions options;
+    options.detail.foldSlope = 0;
+    const auto meanSquareSlope = [&](const sample::Image& normals) {
+        double sum = 0;
+        for (size_t i = 0; i < normals.planeSize(); ++i) {
+            const double z = normals.plane(2)[i];
+            sum += (1 - z * z) / (z * z);
+        }
+        return sum / double(normals.planeSize());
+    };
+    const sample::Scene scene(mesh.view());
+    const sample::GBuffer g = sample::renderGBuffer(scene, camera, 400, 400, options);
+    EXPECT_NEAR(std::sqrt(meanSquareSlope(g.shadingNormal)), options.detail.poreSlope,
+                tolerance::sampleRandomField * options.detail.poreSlope);
+    // Pores are much finer than the diffusion radius.
+    EXPECT_LT(meanSquareSlope(g.blurredNormal), 0.01 * meanSquareSlope(g.shadingNormal));
+
+    options.detail.foldSlope = 0.1;
+    const double wide =
+        meanSquareSlope(sample::renderGBuffer(scene, camera, 100, 100, options).blurredNormal);
+    options.diffusionRadius = 1;
+    const double narrow =
+        meanSquareSlope(sample::renderGBuffer(scene, camera, 100, 100, options).blurredNormal);
+    EXPECT_GT(wide, 0);
+    EXPECT_GT(narrow, 1.5 * wide);
+
+    const sample::GBuffer off = sample::renderGBuffer(scene, camera, 20, 20, plain());
+    EXPECT_EQ(off.shadingNormal.data, off.geometricNormal.data);
+    EXPECT_EQ(off.blurredNormal.data, off.geometricNormal.data);
+}
+
+TEST(SampleDetail, AlbedoVariesAboutItsMean) {
+    const sample::Scene scene(sphere().view());
+    sample::GBufferOptions options;
+    const sample::GBuffer g = sample::renderGBuffer(scene, {.eye = {0, -300, 0}}, 200, 200, options);
+    for (int c = 0; c < 3; ++c) {
+        double sum = 0, count = 0, low = 1, high = 0;
+        for (size_t i = 0; i < g.albedo.planeSize(); ++i) {
+            if (g.coverage.data[i] == 0) continue;
+            const double a = g.albedo.plane(c)[i];
+            sum += a;
+            ++count;
+            low = std::min(low, a);
+            high = std::max(high, a);
+        }
+        EXPECT_NEAR(sum / count, options.albedo[c], tolerance::sampleAlbedoMean);
+        EXPECT_LT(low, high);
+        EXPECT_GT(low, 0);
+        EXPECT_LE(high, 1);
+    }
+}
+
+// The blurred field against a quadrature of the sharp one over the footprint.
+TEST(SampleWaves, BlurIsAGaussianInTheTangentPlane) {
+    const sample::WaveField field(6, 24, 5);
+    const Vec3 normal = sample::normalize({0.3, -0.8, 0.5});
+    const Vec3 along = sample::perpendicular(normal, {1, 0, 0}), across = cross(normal, along);
+    const sample::Footprint sharp{normal}, blurred{normal, 1.1, along, 1.7};
+    for (const Vec3 p : {Vec3{1, 2, 3}, Vec3{-20, 7, 0.5}, Vec3{100, -40, 31}}) {
+        double value = 0, total = 0;
+        Vec3 slope;
+        for (int i = -60; i <= 60; ++i)
+            for (int j = -60; j <= 60; ++j) {
+                const double a = i / 10.0, b = j / 10.0, weight = std::exp(-0.5 * (a * a + b * b));
+                const Vec3 q =
+                    p + along * (a * blurred.sigma * blurred.stretch) + across * (b * blurred.sigma);
+                Vec3 s;
+                field.slope(q, &sharp, 1, &s);
+                value += weight * field.value(q, sharp);
+                slope = slope + s * weight;
+                total += weight;
+            }
+        Vec3 result;
+        field.slope(p, &blurred, 1, &result);
+        EXPECT_NEAR(field.value(p, blurred), value / total, tolerance::sampleWaves);
+        EXPECT_LT(length(result - slope * (1 / total)), tolerance::sampleWaves);
+        EXPECT_NEAR(dot(result, normal), 0, tolerance::sampleWaves);
+    }
+}
+
+TEST(SampleGBuffer, EmptyAndTinySizes) {
+    const sample::Scene scene(sphere().view()), nothing((sample::MeshView()));
+    const sample::Camera camera{.eye = {0, -300, 0}};
+    EXPECT_TRUE(sample::renderGBuffer(scene, camera, 0, 0).position.data.empty());
+    EXPECT_TRUE(sample::renderGBuffer(scene, camera, 5, 0).material.empty());
+    EXPECT_THROW(sample::renderGBuffer(scene, camera, -1, 4), std::invalid_argument);
+    const sample::GBuffer one = sample::renderGBuffer(scene, camera, 1, 1);
+    EXPECT_NEAR(one.viewDepth.at(0, 0, 0), 300 - sphereRadius, facetSag + tolerance::samplePosition);
+    EXPECT_EQ(sample::renderGBuffer(scene, camera, 1, 33).coverage.at(0, 0, 16), 1);
+    const sample::GBuffer none = sample::renderGBuffer(nothing, camera, 20, 3);
+    EXPECT_EQ(std::count(none.coverage.data.begin(), none.coverage.data.end(), 0.0f), 60);
+}
+
+TEST(SampleGBuffer, TwoRunsAreTheSameToTheBit) {
+    const sample::Mesh mesh = sample::makeTorus(40, 15, 37, 91);
+    const sample::Camera camera{.eye = {60, -200, 80}};
+    const auto run = [&] { return sample::renderGBuffer(sample::Scene(mesh.view()), camera, 120, 90); };
+    const sample::GBuffer first = run();
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(sameBits(first, run()));
+    EXPECT_GT(std::count(first.coverage.data.begin(), first.coverage.data.end(), 1.0f), 500);
+}
+
+TEST(SampleMesh, BrokenMeshesAreRefusedWithAReason) {
+    const auto message = [](sample::Mesh mesh) -> std::string {
+        try {
+            sample::Scene scene(mesh.view());
+        } catch (const std::invalid_argument& error) {
+            return error.what();
+        }
+        return "";
+    };
+    sample::Mesh mesh = sample::makeRectangle(0, 1, 0, 1, 0);
+    EXPECT_EQ(message(mesh), "");
+    mesh.triangles[4] = 17;
+    EXPECT_NE(message(mesh).find("triangle 1 has vertex 17, but there are only 4"), std::string::npos);
+    mesh = sample::makeRectangle(0, 1, 0, 1, 0);
+    mesh.positions[0] = NAN;
+    EXPECT_NE(message(mesh).find("vertex 0, whose position is not finite"), std::string::npos);
+    mesh = sample::makeRectangle(0, 1, 0, 1, 0);
+    mesh.triangles.pop_back();
+    EXPECT_NE(message(mesh).find("triangles holds 5 values"), std::string::npos);
+    mesh = sample::makeRectangle(0, 1, 0, 1, 0);
+    mesh.normals.pop_back();
+    EXPECT_NE(message(mesh).find("normals holds 11 values"), std::string::npos);
+}
+
+TEST(SampleMesh, TestSurfacesPointOutwards) {
+    for (const sample::Mesh& mesh :
+         {sphere(), sample::makeTorus(40, 15, 30, 60), sample::makeRectangle(0, 2, 0, 3, 1)})
+        for (size_t t = 0; t < mesh.triangles.size(); t += 3) {
+            Vec3 p[3], n;
+            for (int k = 0; k < 3; ++k) {
+                const float* q = &mesh.positions[3 * size_t(mesh.triangles[t + k])];
+                const float* m = &mesh.normals[3 * size_t(mesh.triangles[t + k])];
+                p[k] = {q[0], q[1], q[2]};
+                n = n + Vec3{m[0], m[1], m[2]};
+            }
+            ASSERT_GT(dot(cross(p[1] - p[0], p[2] - p[0]), n), 0) << "triangle " << t / 3;
+        }
+}
+
+TEST(SampleCamera, FramingFitsTheBox) {
+    sample::Bounds box;
+    box.add({-40, -55, -120});
+    box.add({60, 70, 120});
+    for (double azimuth : {0.0, 30.0, 90.0, 180.0, 250.0})
+        for (double aspect : {16.0 / 9, 1.0, 0.4}) {
+            const sample::Framing framing{.azimuth = azimuth, .elevation = 10};
+            const sample::Camera camera = sample::frameHead(box, {}, framing, aspect);
+            const sample::Matrix4 toClip = camera.viewProjection(aspect);
+            double reach = 0;
+            for (int i = 0; i < 8; ++i) {
+                const Vec3 c = toClip.project(box.corner(i));
+                reach = std::max({reach, std::abs(c.x), std::abs(c.y)});
+                EXPECT_GT(c.z, 0);
+                EXPECT_LT(c.z, 1);
+            }
+            EXPECT_NEAR(reach, framing.fill, tolerance::sampleMatrix);
+            const sample::Matrix4 identity = toClip * camera.inverseViewProjection(aspect);
+            for (int i = 0; i < 16; ++i)
+                EXPECT_NEAR(identity.m[i], i % 5 == 0 ? 1 : 0, tolerance::sampleMatrix);
+        }
+    EXPECT_THROW(sample::Matrix4{{}}.inverse(), std::domain_error);
+}
+
+TEST(SampleCamera, DirectionsRoundTheHead) {
+    const sample::HeadPose pose;
+    EXPECT_NEAR(length(sample::headDirection(pose, 0, 0) - Vec3{0, -1, 0}), 0, tolerance::sampleMatrix);
+    EXPECT_NEAR(length(sample::headDirection(pose, 90, 0) - Vec3{1, 0, 0}), 0, tolerance::sampleMatrix);
+    EXPECT_NEAR(length(sample::headDirection(pose, 200, 90) - Vec3{0, 0, 1}), 0, tolerance::sampleMatrix);
+    // Seen from the front, the left ear is on the right of the picture.
+    const sample::Camera camera{.eye = {0, -500, 0}};
+    EXPECT_GT(camera.viewProjection(1).project(sample::headDirection(pose, 90, 0)).x, 0);
+    EXPECT_GT(camera.viewProjection(1).project({0, 0, 1}).y, 0);
+    EXPECT_GT(dot(sample::keyLightDirection(pose, sample::KeyLight::Front), pose.front), 0.5);
+    EXPECT_LT(dot(sample::keyLightDirection(pose, sample::KeyLight::Back), pose.front), -0.5);
+}
