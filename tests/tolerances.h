@@ -54,6 +54,14 @@ inline constexpr Tolerance shadeTerm{"shadeTerm", 5e-5,
                                      "one term alone: bilinear weights and a few dozen float operations"};
 inline constexpr Tolerance shadeSum{"shadeSum", 2e-4, "all terms added and multiplied by light and albedo"};
 
+inline constexpr Tolerance peerTerm{"peerTerm", 1e-6,
+                                    "the peer's float arithmetic and float LUT coordinates"};
+inline constexpr Tolerance peerSharpened{"peerSharpened", 1e-6, "the same, steeper by the sharpening"};
+inline constexpr Tolerance peerThicknessMean{"peerThicknessMean", 1e-3,
+                                             "relative: means over 20,000 pixels, other taps"};
+inline constexpr Tolerance peerThicknessRms{"peerThicknessRms", 0.05,
+                                            "of the mean: pixel by pixel with other taps"};
+
 // --- the oracle against itself (double precision, two methods) ---
 inline constexpr Tolerance oracleQuadrature{"oracleQuadrature", 1e-11,
                                             "two adaptive quadratures of one integral, each asked for 1e-13"};
@@ -75,6 +83,8 @@ inline constexpr Tolerance widePenumbra{
 inline constexpr Tolerance srgbInverse{"srgbInverse", 1e-6, "the standard's two pieces meet to seven digits"};
 inline constexpr Tolerance peerRoundedApart{
     "peerRoundedApart", 0.1, "share of 8-bit values: an error of 7.7e-4 moves a fifth of a step at most"};
+inline constexpr Tolerance sampledSphere{"sampledSphere", 1e-3, "averages over 20,000 even directions"};
+inline constexpr Tolerance sampledDisk{"sampledDisk", 2e-3, "an edge through a disk of 5000 even taps"};
 inline constexpr Tolerance oracleExact{"oracleExact", 1e-13, "the same sum in another order of operations"};
 inline constexpr Tolerance publishedWidth{"publishedWidth", 6e-4,
                                           "mm: the published sigmas are rounded to three digits"};

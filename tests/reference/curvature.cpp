@@ -39,29 +39,26 @@ std::vector<double> smoothed(const Mesh& mesh, std::vector<double> values, int p
 }
 
 double uvScale(const Mesh& mesh) {
-    if (mesh.positions.empty() || mesh.uvs.size() != mesh.positions.size()) return 0;
-    Vec3 low = mesh.positions[0], high = low;
-    Vec3 uvLow{mesh.uvs[0].x, mesh.uvs[0].y, 0}, uvHigh = uvLow;
-    for (size_t v = 0; v < mesh.positions.size(); ++v)
-        for (int i = 0; i < 3; ++i) {
-            low[i] = std::min(low[i], mesh.positions[v][i]);
-            high[i] = std::max(high[i], mesh.positions[v][i]);
-            const Vec3 uv{mesh.uvs[v].x, mesh.uvs[v].y, 0};
-            uvLow[i] = std::min(uvLow[i], uv[i]);
-            uvHigh[i] = std::max(uvHigh[i], uv[i]);
-        }
-    const double leastEdge = 1e-6 * length(high - low), leastUvEdge = 1e-6 * length(uvHigh - uvLow);
+    if (mesh.uvs.size() != mesh.positions.size()) return 0;
+    auto longest = [&](const Triangle& triangle, const auto& distance) {
+        double edge = 0;
+        for (int i = 0; i < 3; ++i) edge = std::max(edge, distance(triangle[i], triangle[(i + 1) % 3]));
+        return edge;
+    };
+    auto inSpace = [&](int a, int b) { return length(mesh.positions[b] - mesh.positions[a]); };
+    auto inUv = [&](int a, int b) {
+        return std::hypot(mesh.uvs[b].x - mesh.uvs[a].x, mesh.uvs[b].y - mesh.uvs[a].y);
+    };
+    double largest = 0, largestUv = 0;
+    for (const Triangle& triangle : mesh.triangles) {
+        largest = std::max(largest, longest(triangle, inSpace));
+        largestUv = std::max(largestUv, longest(triangle, inUv));
+    }
     double logarithms = 0;
     int count = 0;
     for (const Triangle& triangle : mesh.triangles) {
-        double edge = 0, uvEdge = 0;
-        for (int i = 0; i < 3; ++i) {
-            const int a = triangle[i], b = triangle[(i + 1) % 3];
-            edge = std::max(edge, length(mesh.positions[b] - mesh.positions[a]));
-            uvEdge =
-                std::max(uvEdge, std::hypot(mesh.uvs[b].x - mesh.uvs[a].x, mesh.uvs[b].y - mesh.uvs[a].y));
-        }
-        if (edge <= leastEdge || uvEdge <= leastUvEdge) continue;
+        const double edge = longest(triangle, inSpace), uvEdge = longest(triangle, inUv);
+        if (!(edge > 0 && uvEdge > 0 && edge >= 1e-6 * largest && uvEdge >= 1e-6 * largestUv)) continue;
         logarithms += std::log(edge / uvEdge);
         ++count;
     }

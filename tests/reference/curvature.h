@@ -42,9 +42,8 @@ std::vector<PrincipalCurvatures> tensorCurvature(const Mesh& mesh);
 // Share of the triangle's area nearest to each of its corners.
 std::array<double, 3> voronoiAreas(Vec3 a, Vec3 b, Vec3 c);
 
-// Geometric mean over triangles of longest edge / longest UV edge, length per UV unit. Triangles are skipped
-// when their longest edge is below 1e-6 of the bounding box's diagonal or their longest UV edge below 1e-6 of
-// the UV bounding box's. 0 when none is left.
+// Geometric mean over triangles of longest edge / longest UV edge, length per UV unit. Triangles where either
+// is 0 or below 1e-6 of the mesh's largest of its kind are skipped. 0 when none is left.
 double uvScale(const Mesh& mesh);
 
 // Unit normals per vertex from the triangles around it, weighted by their angle there (Thuermer & Wuethrich
