@@ -44,12 +44,12 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_count
     }
     if (i < slots) {
         const float3 self = mesh_usable_position(vertex_load3(slotPositions, slotLayout, i));
-        uint previous = i, found = 0;
+        uint found = 0;
         for (uint row = slices[i / MESH_LANES]; row < slices[i / MESH_LANES + 1]; ++row) {
-            const uint other = rings[(size_t)row * MESH_LANES + i % MESH_LANES] & MESH_SLOT;
-            // Each edge from its smaller end only; an edge of several entries has them in a row.
-            if (other <= i || other == previous) continue;
-            previous = other;
+            const uint entry = rings[(size_t)row * MESH_LANES + i % MESH_LANES];
+            const uint other = entry & MESH_SLOT;
+            if (other <= i || (entry & MESH_REPEAT))
+                continue;  // each edge once, from its smaller end; no fillers
             const float3 d = mesh_usable_position(vertex_load3(slotPositions, slotLayout, other)) - self;
             if (dot(d, d) < MESH_MIN_LENGTH2) ++found;
         }

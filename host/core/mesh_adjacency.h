@@ -8,11 +8,10 @@ namespace pel {
 
 struct MeshAdjacency {
     std::vector<uint32_t> offsets;     // slots + 1
-    std::vector<uint32_t> neighbours;  // entries as in shared/mesh.h, ascending in each list
+    std::vector<uint32_t> neighbours;  // entries as in shared/mesh.h
     uint32_t edges = 0;
     uint32_t borderEdges = 0;
     uint32_t nonManifoldEdges = 0;
-    uint32_t unreferencedSlots = 0;
 };
 
 // `triangles`: three slots each, all different and < slots. `progress` is told a fraction in [0, 1].

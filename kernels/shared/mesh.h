@@ -8,15 +8,24 @@
 
 // One-rings lie in slices of MESH_LANES slots. A slice has as many rows as its longest list; a row holds one
 // neighbour of each of its slots side by side, so that a vector of slots, or neighbouring work-items, read
-// one contiguous piece. slices[i] is the first row of slice i, slices[count] the number of rows.
+// one contiguous piece. slices[i] is the first row of slice i, slices[count] the number of rows. Shorter
+// lists are filled up with the slot itself, which no real list contains; the lanes behind the last slot with
+// the last slot.
 //
-// A neighbour is listed once for every two triangles that its edge belongs to, and once more with MESH_SINGLE
-// for one that is left over: an interior edge is one plain entry, a border edge one marked entry. Half the
-// memory of a list per triangle, and the smoothing pass reads its weights from it. Shorter lists are filled
-// up with the slot itself, which no real list contains; the lanes behind the last slot with the last slot.
+// A list walks round its slot from triangle to triangle: two entries that follow one another are the other
+// two corners of a triangle, in the triangle's own order. A walk that comes back to its first entry is closed
+// (its last entry and its first are a triangle too); one that ends at a border is open. An ordinary vertex
+// has one walk; any other set of triangles falls into several, each triangle in just one of them (an Euler
+// trail through the graph whose nodes are the neighbours and whose edges are the triangles). So a list holds
+// neighbours and triangles in the memory of the neighbours alone: an edge of two triangles is one entry, an
+// edge of one triangle an end of an open walk.
 #define MESH_LANES 8
-#define MESH_SINGLE 0x80000000u
-#define MESH_SLOT 0x7fffffffu
+#define MESH_SINGLE \
+    0x80000000u                 // an end of an open walk: stands for one triangle of its edge, others for two
+#define MESH_START 0x40000000u  // the first entry of a walk
+#define MESH_FLIPPED 0x20000000u  // the triangle from this entry to the next has the opposite order
+#define MESH_REPEAT 0x10000000u   // the neighbour stands further up in this list already
+#define MESH_SLOT 0x0fffffffu     // the neighbour
 
 // Edges shorter than the root of this (a length squared) are too short to measure: their square is no normal
 // float.

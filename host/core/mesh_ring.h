@@ -1,0 +1,43 @@
+// The walks round one vertex (shared/mesh.h), from the triangles that meet there.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+namespace pel {
+
+// The other two corners of a triangle at a slot, in the triangle's order.
+struct Corner {
+    uint32_t from, to;
+};
+
+class RingBuilder {
+  public:
+    struct Edges {
+        uint32_t all = 0, border = 0, nonManifold = 0;  // to slots above `slot`
+    };
+    // Appends the list of `slot` to `out`. `corners` (count of them) may be reordered.
+    Edges build(uint32_t slot, Corner* corners, uint32_t count, std::vector<uint32_t>& out);
+
+  private:
+    bool buildFan(Corner* corners, uint32_t count, std::vector<uint32_t>& out);
+    void buildTrails(const Corner* corners, uint32_t count, std::vector<uint32_t>& out);
+
+    // One end of a triangle's edge opposite to the slot.
+    struct End {
+        uint32_t node, backward, other, triangle;
+        bool operator<(const End& b) const;
+    };
+    struct Node {
+        uint32_t slot, next, end;  // its ends that may still be free: next to end
+        uint32_t free;             // how many of them are
+        bool visited;
+    };
+    Node& node(uint32_t slot);
+    void walk(Node& start, std::vector<uint32_t>& out);
+
+    std::vector<End> ends_;
+    std::vector<Node> nodes_;
+    std::vector<char> used_;  // per triangle
+};
+
+}  // namespace pel
