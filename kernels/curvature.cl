@@ -24,22 +24,23 @@ inline void usable_normals(floatw* x, floatw* y, floatw* z) {
 // (min + max) / 2 of |dn| / |dp| over the edges of a slot [FaceWorks 1.0].
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_edge(
     uint slots, __global const uint* slices, __global const uint* rings, __global const float* positions,
-    VertexLayout positionLayout, __global const float* normals, VertexLayout normalLayout,
-    __global float* curvature) {
+    uint positionOffset, __global const float* normals, uint normalOffset, __global float* curvature) {
     const uint first = get_global_id(0) * PEL_WIDTH;
     if (first >= slots) return;
     RingCursor ring = ring_begin(first, slots, slices);
     floatw px, py, pz, nx, ny, nz;
-    gather3(positions, positionLayout, ring.self, &px, &py, &pz);
-    gather3(normals, normalLayout, ring.self, &nx, &ny, &nz);
+    positions += positionOffset;
+    normals += normalOffset;
+    gather3(positions, ring.self, &px, &py, &pz);
+    gather3(normals, ring.self, &nx, &ny, &nz);
     usable_normals(&nx, &ny, &nz);
     // Squares order as their roots do: two roots at the end instead of two per edge.
     floatw low = INFINITY, high = -1.0f;
     for (; ring.row < ring.end; ++ring.row) {
-        const intw other = RING_SLOT(ring_entry(&ring, rings));
+        const uintw other = RING_SLOT(ring_entry(&ring, rings));
         floatw dx, dy, dz, mx, my, mz;
-        gather3(positions, positionLayout, other, &dx, &dy, &dz);
-        gather3(normals, normalLayout, other, &mx, &my, &mz);
+        gather3(positions, other, &dx, &dy, &dz);
+        gather3(normals, other, &mx, &my, &mz);
         usable_normals(&mx, &my, &mz);
         dx -= px, dy -= py, dz -= pz;
         mx -= nx, my -= ny, mz -= nz;
@@ -63,12 +64,14 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     const floatw self = loadw(first, from);
     floatw sum = 0.0f, weight = 0.0f;
     for (; ring.row < ring.end; ++ring.row) {
-        const intw entry = ring_entry(&ring, rings);
-        const intw other = RING_SLOT(entry);
+        const uintw entry = ring_entry(&ring, rings);
+        const uintw other = RING_SLOT(entry);
         const floatw value = gather1(from, other);
         const maskw counts = (value == value) & (other != ring.self);
-        sum = selectw(sum, fma(selectw((floatw)(2.0f), (floatw)(1.0f), entry < 0), value, sum), counts);
-        weight = selectw(weight, weight + selectw((floatw)(2.0f), (floatw)(1.0f), entry < 0), counts);
+        sum = selectw(sum, fma(selectw((floatw)(2.0f), (floatw)(1.0f), as_intw(entry) < 0), value, sum),
+                      counts);
+        weight =
+            selectw(weight, weight + selectw((floatw)(2.0f), (floatw)(1.0f), as_intw(entry) < 0), counts);
     }
     storew(selectw(self, sum / weight, (self == self) & (weight > 0.0f)), first, to);
 }

@@ -1,11 +1,12 @@
-// Gathers the caller's strided positions and normals into one packed row per slot (lib/mesh_vertex.clh), so
-// that every later pass loads a neighbour with one aligned access; and counts what is wrong with the data
-// when asked to.
+// Gathers the caller's positions and normals into one packed row per slot, where slots are not the caller's
+// vertices in their order or these are not packed; and counts what is wrong with the data when asked to. A
+// row is 8 floats: position x y z 0, normal x y z 0; what cannot be used (NaN, Inf, normals without
+// direction) is NaN in it.
 //
 // Inputs: positions (length), normals (unit), one of each per vertex of the caller.
 // One work-item: one slot (mesh_rows), one vertex or slot (mesh_count).
-// A slot has members, one or several vertices of the caller. It stands at the first; its normal is the mean
-// direction of theirs.
+// Variants: MESH_MAPPED 1: a slot has members, one or several vertices of the caller. It stands at the first;
+// its normal is the mean direction of theirs.
 
 #include "lib/mesh_vertex.clh"
 
@@ -15,9 +16,14 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_rows(
     VertexLayout normalLayout, __global float* rows) {
     const uint slot = get_global_id(0);
     if (slot >= slots) return;
-    const uint begin = memberOffsets[slot], end = memberOffsets[slot + 1];
-    const float3 position = vertex_load3(positions, positionLayout, members[begin]);
-    float3 normal = mesh_usable_normal(vertex_load3(normals, normalLayout, members[begin]));
+#if MESH_MAPPED
+    const uint begin = memberOffsets[slot], end = memberOffsets[slot + 1], vertex = members[begin];
+#else
+    const uint vertex = slot;
+#endif
+    const float3 position = vertex_load3(positions, positionLayout, vertex);
+    float3 normal = mesh_usable_normal(vertex_load3(normals, normalLayout, vertex));
+#if MESH_MAPPED
     if (end - begin > 1) {
         float3 sum = (float3)(0.0f);
         for (uint m = begin; m < end; ++m) {
@@ -26,6 +32,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_rows(
         }
         normal = dot(sum, sum) > 1e-6f ? sum / sqrt(dot(sum, sum)) : mesh_nan3();
     }
+#endif
     vstore8((float8)(mesh_usable_position(position), 0.0f, normal, 0.0f), slot, rows);
 }
 

@@ -14,10 +14,15 @@ uint32_t width(const Device& device) {
     return device.info().mathWidth > 1 ? MESH_LANES : 1;
 }
 
-cl::Program program(const MeshTopology& topology) {
+cl::Program program(const MeshTopology& topology, uint32_t stride) {
     return topology.device().programs().get("curvature.cl",
                                             {{"MESH_MAPPED", topology.mapped() ? "1" : "0"},
+                                             {"MESH_STRIDE", std::to_string(stride)},
                                              {"PEL_WIDTH", std::to_string(width(topology.device()))}});
+}
+
+cl::Program rowsProgram(const MeshTopology& topology) {
+    return topology.device().programs().get("mesh_rows.cl", {{"MESH_MAPPED", topology.mapped() ? "1" : "0"}});
 }
 
 cl::Range overSlots(const MeshTopology& topology) {
@@ -25,21 +30,24 @@ cl::Range overSlots(const MeshTopology& topology) {
     return over((topology.slots() + lanes - 1) / lanes);
 }
 
-// Positions and normals by slot: the caller's own memory, or rows gathered from it.
+// Positions and normals by slot, both `stride` words apart: the caller's own memory, or rows gathered from
+// it.
 struct SlotData {
     VertexView positions, normals;
+    uint32_t stride;
 };
 
 SlotData bySlot(MeshTopology& topology, const VertexView& positions, const VertexView& normals) {
-    if (!topology.mapped()) return {positions, normals};
+    if (!topology.mapped() && positions.layout.stride == 3 && normals.layout.stride == 3)
+        return {positions, normals, 3};
     Device& device = topology.device();
     const uint32_t slots = topology.slots();
     const cl::Memory& rows = topology.scratch(MeshTopology::scratchRows, slots * 32ull);
-    cl::Launch gather(device.programs().get("mesh_rows.cl", {}), "mesh_rows");
+    cl::Launch gather(rowsProgram(topology), "mesh_rows");
     gather.arg(slots).arg(topology.memberOffsets()).arg(topology.members());
     gather.arg(positions.memory).arg(positions.layout).arg(normals.memory).arg(normals.layout).arg(rows);
     device.launch(gather, over(slots));
-    return {{rows, {slots, 0, 8, 0}}, {rows, {slots, 4, 8, 0}}};
+    return {{rows, {slots, 0, 8, 0}}, {rows, {slots, 4, 8, 0}}, 8};
 }
 
 MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, const VertexView& normals,
@@ -47,7 +55,7 @@ MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, cons
     Device& device = topology.device();
     const MeshCounts none{};
     const cl::Memory memory = device.allocate(sizeof none, &none);
-    cl::Launch count(device.programs().get("mesh_rows.cl", {}), "mesh_count");
+    cl::Launch count(rowsProgram(topology), "mesh_count");
     count.arg(topology.vertices());
     count.arg(positions.memory).arg(positions.layout).arg(normals.memory).arg(normals.layout);
     count.arg(topology.slots()).arg(topology.slices()).arg(topology.rings());
@@ -77,19 +85,19 @@ void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, con
     if (counts) *counts = {};
     if (topology.vertices() == 0) return;
     Device& device = topology.device();
-    const cl::Program passes = program(topology);
     const uint32_t slots = topology.slots();
     // Whole slices are written.
     const size_t bytes = (size_t(slots) + MESH_LANES - 1) / MESH_LANES * MESH_LANES * sizeof(float);
     const auto lock = topology.lock();
     const SlotData data = bySlot(topology, positions, normals);
+    const cl::Program passes = program(topology, data.stride);
     cl::Memory from = topology.scratch(MeshTopology::scratchFrom, bytes);
     cl::Memory to = params.smoothingPasses ? topology.scratch(MeshTopology::scratchTo, bytes) : cl::Memory();
 
     cl::Launch edge(passes, "curvature_edge");
     edge.arg(slots).arg(topology.slices()).arg(topology.rings());
-    edge.arg(data.positions.memory).arg(data.positions.layout);
-    edge.arg(data.normals.memory).arg(data.normals.layout).arg(from);
+    edge.arg(data.positions.memory).arg(data.positions.layout.offset);
+    edge.arg(data.normals.memory).arg(data.normals.layout.offset).arg(from);
     device.launch(edge, overSlots(topology));
     for (uint32_t pass = 0; pass < params.smoothingPasses; ++pass) {
         cl::Launch smooth(passes, "curvature_smooth");
