@@ -105,6 +105,16 @@ void edgeDevice(benchmark::State& state) {
     perVertex(state, c.vertices);
 }
 
+void estimatorDevice(benchmark::State& state) {
+    const Case& c = prepared(state);
+    PelCurvatureParams params = pelCurvatureParamsDefaults();
+    params.estimator = PelCurvatureEstimator(state.range(2));
+    params.smoothingPasses = 0;
+    run(c, params);
+    for (auto _ : state) run(c, params);
+    perVertex(state, c.vertices);
+}
+
 void edgeBaseline(benchmark::State& state) {
     const Case& c = prepared(state);
     baseline::CurvatureScratch scratch;
@@ -148,18 +158,33 @@ BENCHMARK(edgeDevice)
     ->ArgNames({"vertices", "shuffled", "passes"})
     ->ArgsProduct({{100000, 1000000}, {0, 1}, {0, 2}})
     ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime()->UseRealTime();
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 BENCHMARK(edgeBaseline)
     ->ArgNames({"vertices", "shuffled", "passes"})
     ->ArgsProduct({{100000, 1000000}, {0, 1}, {0, 2}})
     ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime()->UseRealTime();
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+BENCHMARK(estimatorDevice)
+    ->ArgNames({"vertices", "shuffled", "estimator"})
+    ->ArgsProduct({{100000, 1000000},
+                   {0, 1},
+                   {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 BENCHMARK(topologyAnalysis)
     ->ArgNames({"vertices", "shuffled", "weld"})
     ->ArgsProduct({{1000000}, {0, 1}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime()->UseRealTime();
-BENCHMARK(copyBandwidth)->Arg(64 << 20)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+BENCHMARK(copyBandwidth)
+    ->Arg(64 << 20)
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 
 }  // namespace
 

@@ -1,30 +1,20 @@
 // Curvature at the vertices of a mesh and its uniform smoothing (mathematics, section 5).
 //
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h).
-// Results between passes: one float per slot, 1/length; NaN where nothing could be measured. Such a slot
-// stays out of its neighbours' means, and the last pass writes 0 for it, so that no NaN ever spreads or
-// leaves. One work-item: PEL_WIDTH slots; curvature_store: one vertex of the caller. Variants: MESH_MAPPED 1:
-// vertices find their slot in slotOf.
+// Results between passes: planes of one float per slot, 1/length (lib/principal.clh); NaN where nothing could
+// be measured. Such a slot stays out of its neighbours' means, and the last pass writes 0 for it, so that no
+// NaN ever spreads or leaves. One work-item: PEL_WIDTH slots (of plane get_global_id(1)); curvature_store:
+// one vertex of the caller. Variants: MESH_MAPPED 1: vertices find their slot in slotOf. MESH_STRIDE:
+// lib/mesh_ring.clh. MESH_PLANES, MESH_QUANTITY (a PelCurvatureQuantity): what curvature_store reads and
+// writes.
 
 #include "lib/mesh_ring.clh"
-
-// Unit normals as they are, others brought to unit length, NaN for those that have no direction. The common
-// case is one comparison for all lanes.
-inline void usable_normals(floatw* x, floatw* y, floatw* z) {
-    const maskw odd = !(fabs(fma(*x, *x, fma(*y, *y, *z * *z)) - 1.0f) <= MESH_UNIT_TOLERANCE);
-    if (!anyw(odd)) return;
-    const floatw largest = fmax(fabs(*x), fmax(fabs(*y), fabs(*z)));
-    const floatw sx = *x / largest, sy = *y / largest, sz = *z / largest;
-    const floatw length = sqrt(fma(sx, sx, fma(sy, sy, sz * sz)));
-    *x = selectw(*x, sx / length, odd);
-    *y = selectw(*y, sy / length, odd);
-    *z = selectw(*z, sz / length, odd);
-}
 
 // (min + max) / 2 of |dn| / |dp| over the edges of a slot [FaceWorks 1.0].
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_edge(
     uint slots, __global const uint* slices, __global const uint* rings, __global const float* positions,
-    uint positionOffset, __global const float* normals, uint normalOffset, __global float* curvature) {
+    uint positionOffset, __global const float* normals, uint normalOffset, uint planeStride,
+    __global float* curvature) {
     const uint first = get_global_id(0) * PEL_WIDTH;
     if (first >= slots) return;
     RingCursor ring = ring_begin(first, slots, slices);
@@ -56,10 +46,12 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
 
 // The mean over a slot's triangles of their other two slots' values, itself not included.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_smooth(
-    uint slots, __global const uint* slices, __global const uint* rings, __global const float* from,
-    __global float* to) {
+    uint slots, __global const uint* slices, __global const uint* rings, uint planeStride,
+    __global const float* from, __global float* to) {
     const uint first = get_global_id(0) * PEL_WIDTH;
     if (first >= slots) return;
+    from += (size_t)get_global_id(1) * planeStride;
+    to += (size_t)get_global_id(1) * planeStride;
     RingCursor ring = ring_begin(first, slots, slices);
     const floatw self = loadw(first, from);
     floatw sum = 0.0f, weight = 0.0f;
@@ -76,15 +68,43 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     storew(selectw(self, sum / weight, (self == self) & (weight > 0.0f)), first, to);
 }
 
+inline float finite_or_zero(float value) {
+    return isfinite(value) ? value : 0.0f;
+}
+
+// `planes` after smoothing, `estimated` as the estimator left them (for the directions).
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_store(
-    __global const uint* slotOf, __global const float* curvature, float scale, __global float* result,
-    VertexLayout layout) {
+    __global const uint* slotOf, uint planeStride, __global const float* planes,
+    __global const float* estimated, float scale, __global float* result, VertexLayout layout) {
     const uint vertex = get_global_id(0);
     if (vertex >= layout.count) return;
 #if MESH_MAPPED
-    const float value = curvature[slotOf[vertex]] * scale;
+    const uint slot = slotOf[vertex];
 #else
-    const float value = curvature[vertex] * scale;
+    const uint slot = vertex;
 #endif
-    result[layout.offset + (size_t)vertex * layout.stride] = isfinite(value) ? value : 0.0f;
+    result += layout.offset + (size_t)vertex * layout.stride;
+    const float first = planes[slot] * scale;
+#if MESH_PLANES > 1
+    const float second = planes[(size_t)planeStride + slot] * scale;
+#endif
+#if MESH_QUANTITY == 0
+    *result = finite_or_zero(fabs(first));
+#elif MESH_QUANTITY == 1
+    *result = finite_or_zero(fmax(fabs(first), fabs(second)));
+#elif MESH_QUANTITY == 2
+    *result = finite_or_zero(hypot(first, second) * 0.70710678f);
+#elif MESH_QUANTITY == 3 || MESH_QUANTITY == 5
+    *result = finite_or_zero(first);
+#elif MESH_QUANTITY == 4
+    *result = finite_or_zero(first * second);
+#elif MESH_QUANTITY == 6
+    *result = finite_or_zero(second);
+#else
+    result[0] = finite_or_zero(first);
+    result[1] = finite_or_zero(second);
+#if MESH_QUANTITY == 8
+    for (uint plane = 2; plane < 8; ++plane) result[plane] = estimated[(size_t)plane * planeStride + slot];
+#endif
+#endif
 }

@@ -1,15 +1,18 @@
 // Curvature LUT, form arc, of a sum of Gaussians (section 2 of the mathematics).
 //
-// With x = s/r the arc integral is a convolution on the circle of max0(cos) with K(x) = r P(r x), |x| <= X = min(pi, cut/r).
-// At the angle phi = theta - pi/2 behind the terminator (u = -sin phi) it obeys D'' + D = K(phi) + K(pi - phi), so that a
-// row is one sweep from phi = pi/2 to 0 over E with E(pi/2) = E'(pi/2) = 0, all terms positive:
+// With x = s/r the arc integral is a convolution on the circle of max0(cos) with K(x) = r P(r x), |x| <= X =
+// min(pi, cut/r). At the angle phi = theta - pi/2 behind the terminator (u = -sin phi) it obeys D'' + D =
+// K(phi) + K(pi - phi), so that a row is one sweep from phi = pi/2 to 0 over E with E(pi/2) = E'(pi/2) = 0,
+// all terms positive:
 //   unlit side   D(-u) = E + back u        back  = 2 int_0^{pi/2} K(pi - t) cos t dt
-//   lit side     D(+u) = E + front u       front = 2 int_0^{pi/2} K(t) cos t dt = mass - 2 int_0^{pi/2} K(t) (1 - cos t) dt
-// E is kept at N + 1 nodes (pi/2) (j/N)^4 with its slope, and cubic between them: the error of such an interpolation, about
-// 1e-3 sigma (h/sigma)^4, is then about the same for every width sigma of K, so one mesh serves all rows and profiles.
+//   lit side     D(+u) = E + front u       front = 2 int_0^{pi/2} K(t) cos t dt = mass - 2 int_0^{pi/2} K(t)
+//   (1 - cos t) dt
+// E is kept at N + 1 nodes (pi/2) (j/N)^4 with its slope, and cubic between them: the error of such an
+// interpolation, about 1e-3 sigma (h/sigma)^4, is then about the same for every width sigma of K, so one mesh
+// serves all rows and profiles.
 //
-// Variants: PEL_WIDTH; PEL_GROUP, work-items in a group; PEL_NODES, N; PEL_POINTS, Gauss points per mesh interval (2 or 3);
-// PEL_COLUMNS, columns per work-item of curvatureTexels.
+// Variants: PEL_WIDTH; PEL_GROUP, work-items in a group; PEL_NODES, N; PEL_POINTS, Gauss points per mesh
+// interval (2 or 3); PEL_COLUMNS, columns per work-item of curvatureTexels.
 #include "lib/normal.clh"
 #include "lib/width.clh"
 #include "shared/lut_integral.h"
@@ -36,7 +39,8 @@ inline Rgb rgbFma(const Rgb a, const floatw s, const Rgb b) {
 }
 
 // Writes value of PEL_WIDTH rows to slot `slot` of each row's record.
-inline void storeRows(__global float4* rows, const uint firstRow, const uint height, const uint slot, const Rgb value) {
+inline void storeRows(__global float4* rows, const uint firstRow, const uint height, const uint slot,
+                      const Rgb value) {
 #if PEL_WIDTH == 1
     rows[(size_t)firstRow * ROW_STRIDE + slot] = (float4)(value.r, value.g, value.b, 0.0f);
 #else
@@ -50,7 +54,8 @@ inline void storeRows(__global float4* rows, const uint firstRow, const uint hei
 }
 
 // Adds K(t) of the Gaussians first <= g < end at arc length s; times r it is K.
-inline Rgb lineSpread(__global const LutGaussian* gaussians, const uint first, const uint end, const floatw s) {
+inline Rgb lineSpread(__global const LutGaussian* gaussians, const uint first, const uint end,
+                      const floatw s) {
     Rgb sum = {0.0f, 0.0f, 0.0f};
     for (uint g = first; g < end; ++g) {
         const LutGaussian G = gaussians[g];
@@ -63,7 +68,8 @@ inline Rgb lineSpread(__global const LutGaussian* gaussians, const uint first, c
     return sum;
 }
 
-// One work-item: PEL_WIDTH rows, one per lane. A row's record: E, F at node 0, ... E, F at node N, back, front.
+// One work-item: PEL_WIDTH rows, one per lane. A row's record: E, F at node 0, ... E, F at node N, back,
+// front.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvatureRows(
     const CurvatureParams params, __global const LutGaussian* gaussians, __constant LutNode* nodes,
     __global float4* rows) {
@@ -93,8 +99,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvatureRo
         const float step2 = step * step;
         const float s = step * (1.0f - step2 * (1.0f / 6.0f) * (1.0f - step2 * (1.0f / 20.0f)));
         const float c = 1.0f - step2 * 0.5f * (1.0f - step2 * (1.0f / 12.0f));
-        const Rgb turned = {fma(F.r, (floatw)(s), E.r * c), fma(F.g, (floatw)(s), E.g * c), fma(F.b, (floatw)(s), E.b * c)};
-        F = (Rgb){fma(E.r, (floatw)(-s), F.r * c), fma(E.g, (floatw)(-s), F.g * c), fma(E.b, (floatw)(-s), F.b * c)};
+        const Rgb turned = {fma(F.r, (floatw)(s), E.r * c), fma(F.g, (floatw)(s), E.g * c),
+                            fma(F.b, (floatw)(s), E.b * c)};
+        F = (Rgb){fma(E.r, (floatw)(-s), F.r * c), fma(E.g, (floatw)(-s), F.g * c),
+                  fma(E.b, (floatw)(-s), F.b * c)};
         E = turned;
 
         const floatw frontHalf = 0.5f * fmax(fmin((floatw)(step), frontEnd - node.angle), 0.0f);
@@ -119,7 +127,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvatureRo
                 const floatw sd = d * (1.0f - d2 * (1.0f / 6.0f) * (1.0f - d2 * (1.0f / 20.0f)));
                 const floatw cd = 1.0f - d2 * 0.5f * (1.0f - d2 * (1.0f / 12.0f));
                 const floatw weight = backHalf * gaussWeight[q] * radius;
-                const Rgb k = lineSpread(gaussians, behind, params.gaussians, (M_PI_F - node.angle - d) * radius);
+                const Rgb k =
+                    lineSpread(gaussians, behind, params.gaussians, (M_PI_F - node.angle - d) * radius);
                 E = rgbFma(k, weight * sd, E);
                 F = rgbFma(k, weight * cd, F);
                 back = rgbFma(k, weight * (node.cosine * cd - node.sine * sd), back);
@@ -132,7 +141,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvatureRo
     Rgb mass = {0.0f, 0.0f, 0.0f};
     for (uint g = 0; g < params.gaussians; ++g) {
         const LutGaussian G = gaussians[g];
-        const floatw inside = 1.0f - 2.0f * normalTailOnly(fmin((floatw)(params.cut), M_PI_2_F * radius) / G.sigma);
+        const floatw inside =
+            1.0f - 2.0f * normalTailOnly(fmin((floatw)(params.cut), M_PI_2_F * radius) / G.sigma);
         mass.r = fma(inside, (floatw)(G.red), mass.r);
         mass.g = fma(inside, (floatw)(G.green), mass.g);
         mass.b = fma(inside, (floatw)(G.blue), mass.b);
@@ -142,8 +152,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvatureRo
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES + 3, rgbFma(missing, -2.0f, mass));
 }
 
-// One work-item: PEL_COLUMNS columns of the unlit half of one row, and their mirror images in the lit half. The row behind
-// the last is a copy of it, and the column behind the last likewise (shared/lut.h).
+// One work-item: PEL_COLUMNS columns of the unlit half of one row, and their mirror images in the lit half.
+// The row behind the last is a copy of it, and the column behind the last likewise (shared/lut.h).
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvatureTexels(
     const CurvatureParams params, __global const float4* rows, __global const LutColumn* columns,
     __global float4* texels) {

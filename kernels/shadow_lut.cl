@@ -1,11 +1,13 @@
 // Shadow LUT of a sum of Gaussians (section 3 of the mathematics).
 //
-// Lengths in diffusion radii. At distance z = zeta q from the middle of the edge (z = p - 1/2) the sharpened shadow is a
-// smoothstep of half width b = 1/(2 k q) about -zeta. The table is odd about the middle, T(z) + T(-z) = mass, so that only
-// the far side z >= 0 is integrated: U = mass - T, a sum of positive terms. For one Gaussian, with beta = b/sigma,
-// e1 = (zeta - b)/sigma, e2 = (zeta + b)/sigma and the repeated integrals i_n of the normal tail,
+// Lengths in diffusion radii. At distance z = zeta q from the middle of the edge (z = p - 1/2) the sharpened
+// shadow is a smoothstep of half width b = 1/(2 k q) about -zeta. The table is odd about the middle, T(z) +
+// T(-z) = mass, so that only the far side z >= 0 is integrated: U = mass - T, a sum of positive terms. For
+// one Gaussian, with beta = b/sigma, e1 = (zeta - b)/sigma, e2 = (zeta + b)/sigma and the repeated integrals
+// i_n of the normal tail,
 //   U = 3/(2 beta^2) (i2(e1) + i2(e2)) - 3/(2 beta^3) (i3(e1) - i3(e2))            beta >= 1
-//   U = integral over [-1, 1] of 3/4 (1 - y^2) Q((zeta + b y)/sigma) dy, by Gauss points    beta < 1, where that cancels.
+//   U = integral over [-1, 1] of 3/4 (1 - y^2) Q((zeta + b y)/sigma) dy, by Gauss points    beta < 1, where
+//   that cancels.
 // The part of the profile beyond the cut is taken off again where it weighs anything.
 //
 // Variants: PEL_WIDTH; PEL_GROUP, work-items in a group.
@@ -17,7 +19,8 @@
 #define REACH 5.8f
 
 // Gauss rule of 6 points on [-1, 1].
-__constant float gaussAt[6] = {-0.9324695142f, -0.6612093865f, -0.2386191861f, 0.2386191861f, 0.6612093865f, 0.9324695142f};
+__constant float gaussAt[6] = {-0.9324695142f, -0.6612093865f, -0.2386191861f,
+                               0.2386191861f,  0.6612093865f,  0.9324695142f};
 __constant float gaussWeight[6] = {0.1713244924f, 0.3607615730f, 0.4679139346f,
                                    0.4679139346f, 0.3607615730f, 0.1713244924f};
 
@@ -29,9 +32,10 @@ inline floatw thirdTail(const floatw x, const floatw Q, const floatw density) {
     return (1.0f / 6.0f) * (fma(x, x, (floatw)(2.0f)) * density - x * fma(x, x, (floatw)(3.0f)) * Q);
 }
 
-// Integral of smoothstep((x + beta - xi) / 2 beta) over the normal density beyond x = cut: what a cut profile lacks.
-inline floatw beyondCut(const floatw xi, const float beta, const float cut, const floatw e1, const floatw e2, const floatw i2e1,
-                        const floatw i3e1, const floatw i2e2, const floatw i3e2) {
+// Integral of smoothstep((x + beta - xi) / 2 beta) over the normal density beyond x = cut: what a cut profile
+// lacks.
+inline floatw beyondCut(const floatw xi, const float beta, const float cut, const floatw e1, const floatw e2,
+                        const floatw i2e1, const floatw i3e1, const floatw i2e2, const floatw i3e2) {
     floatw density;
     const floatw Q = normalTail((floatw)(cut), &density);
     const floatw i1 = density - cut * Q;
@@ -40,21 +44,23 @@ inline floatw beyondCut(const floatw xi, const float beta, const float cut, cons
     const float r = 1.0f / beta;
     const floatw y = clamp((cut - xi) * r, -1.0f, 1.0f);
     // The cubic 1/2 + 3/4 y - 1/4 y^3 expanded about the cut, and where it ends at e2.
-    const floatw inside = (0.5f + y * (0.75f - 0.25f * y * y)) * Q + 0.75f * (1.0f - y * y) * r * i1 - 1.5f * y * r * r * i2 -
-                          1.5f * r * r * r * i3 + 1.5f * r * r * (i2e2 + r * i3e2);
+    const floatw inside = (0.5f + y * (0.75f - 0.25f * y * y)) * Q + 0.75f * (1.0f - y * y) * r * i1 -
+                          1.5f * y * r * r * i2 - 1.5f * r * r * r * i3 + 1.5f * r * r * (i2e2 + r * i3e2);
     const floatw all = 1.5f * r * r * (i2e1 + i2e2 - r * (i3e1 - i3e2));
     return selectw(selectw(inside, Q, e2 <= cut), all, e1 >= cut);
 }
 
 inline floatw farSide(const floatw zeta, const float b, const LutGaussian G, const float cutLength) {
-    const float sigma = fmax(G.sigma, 1e-6f * b); // narrower ones are points to the smoothstep
+    const float sigma = fmax(G.sigma, 1e-6f * b);  // narrower ones are points to the smoothstep
     const float beta = b / sigma;
     const float cut = cutLength / sigma;
     const floatw xi = zeta / sigma;
     if (beta < 1.0f) {
-        // The cut profile has no tail beyond the cut, and all its mass on this side of the cut at the other end.
+        // The cut profile has no tail beyond the cut, and all its mass on this side of the cut at the other
+        // end.
         const floatw cutTail = cut < REACH ? normalTailOnly((floatw)(cut)) : (floatw)(0.0f);
-        const floatw low = clamp((-cut - xi) / beta, -1.0f, 1.0f), high = clamp((cut - xi) / beta, -1.0f, 1.0f);
+        const floatw low = clamp((-cut - xi) / beta, -1.0f, 1.0f),
+                     high = clamp((cut - xi) / beta, -1.0f, 1.0f);
         const floatw centre = 0.5f * (low + high), halfLength = 0.5f * (high - low);
         floatw sum = (0.5f + low * (0.75f - 0.25f * low * low)) * (1.0f - 2.0f * cutTail);
 #pragma unroll
@@ -75,18 +81,19 @@ inline floatw farSide(const floatw zeta, const float b, const LutGaussian G, con
     if (cut < REACH) {
         U -= beyondCut(xi, beta, cut, e1, e2, i2e1, i3e1, i2e2, i3e2);
         if (anyw(e1 < -cut)) {
-            // Mirrored, 1 - smoothstep turns the other end into the same problem: light lacks Q there, less this.
-            U -= normalTailOnly((floatw)(cut)) - beyondCut(-xi, beta, cut, -e2, -e1, secondTail(-e2, 1.0f - Q2, density2),
-                                                           thirdTail(-e2, 1.0f - Q2, density2),
-                                                           secondTail(-e1, 1.0f - Q1, density1),
-                                                           thirdTail(-e1, 1.0f - Q1, density1));
+            // Mirrored, 1 - smoothstep turns the other end into the same problem: light lacks Q there, less
+            // this.
+            U -= normalTailOnly((floatw)(cut)) -
+                 beyondCut(-xi, beta, cut, -e2, -e1, secondTail(-e2, 1.0f - Q2, density2),
+                           thirdTail(-e2, 1.0f - Q2, density2), secondTail(-e1, 1.0f - Q1, density1),
+                           thirdTail(-e1, 1.0f - Q1, density1));
         }
     }
     return U;
 }
 
-inline void storeTexels(__global float4* line, const uint width, const uint x, const floatw r, const floatw g, const floatw b,
-                        const float3 mass) {
+inline void storeTexels(__global float4* line, const uint width, const uint x, const floatw r, const floatw g,
+                        const floatw b, const float3 mass) {
     float red[PEL_WIDTH], green[PEL_WIDTH], blue[PEL_WIDTH];
     storew(r, 0, red);
     storew(g, 0, green);
@@ -99,8 +106,8 @@ inline void storeTexels(__global float4* line, const uint width, const uint x, c
     }
 }
 
-// One work-item: PEL_WIDTH columns of the lit half of one row, and their mirror images. The row behind the last is a copy of
-// it, and the column behind the last likewise (shared/lut.h).
+// One work-item: PEL_WIDTH columns of the lit half of one row, and their mirror images. The row behind the
+// last is a copy of it, and the column behind the last likewise (shared/lut.h).
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadowTexels(
     const ShadowParams params, __global const LutGaussian* gaussians, __global float4* texels) {
     const uint x = params.width / 2 + get_global_id(0) * PEL_WIDTH;

@@ -57,11 +57,13 @@ struct Result {
     PelMeshReport report;
 };
 
-inline Result curvature(const Mesh& mesh, const PelMeshTopologyDesc& desc, const PelCurvatureParams& params) {
+// `floats`: what the quantity has per vertex.
+inline Result curvature(const Mesh& mesh, const PelMeshTopologyDesc& desc, const PelCurvatureParams& params,
+                        uint32_t floats = 1) {
     using namespace pellucid;
     const MeshTopology topology(device(), desc);
     const Buffer positions(device(), mesh.positions), normals(device(), mesh.normals);
-    const Buffer out(device(), mesh.vertices() * sizeof(float));
+    const Buffer out(device(), mesh.vertices() * floats * sizeof(float));
     Result result{{}, pelMeshReportDefaults()};
     const uint32_t n = mesh.vertices();
     topology.curvature(params, vertexView(positions, n), vertexView(normals, n), vertexView(out, n),

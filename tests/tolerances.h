@@ -31,6 +31,27 @@ inline constexpr Tolerance sphereMean{"sphereMean", 1e-5,
 // --- curvature, relative to the mesh's largest value ---
 inline constexpr Tolerance edgeCurvature{"edgeCurvature", 1e-5,
                                          "differences of float positions and normals, then a mean per pass"};
+inline constexpr Tolerance tensorCurvature{
+    "tensorCurvature", 1e-4,
+    "float least squares per triangle; slivers of irregular meshes lose three digits"};
+inline constexpr Tolerance torusExactNormals{"torusExactNormals", 0.005,
+                                             "RMS, 20,000 vertices: what the estimators are chosen for"};
+inline constexpr Tolerance torusEstimatedNormals{
+    "torusEstimatedNormals", 0.01, "RMS, the same with normals from the mesh, as hosts often have them"};
+inline constexpr Tolerance surfaceCurvature{
+    "surfaceCurvature", 0.02,
+    "RMS, 10,000 vertices: the flat side of an ellipsoid, next to the apex of a cone"};
+inline constexpr Tolerance planeCurvature{
+    "planeCurvature", 1e-5, "1/length, a plane of side 4: rounding of positions over the square of an edge"};
+inline constexpr Tolerance orderQuadric{"orderQuadric", 1.8, "second order, measured between two sizes"};
+inline constexpr Tolerance orderTensor{"orderTensor", 1.8, "second order where errors of neighbours cancel"};
+inline constexpr Tolerance orderTensorIrregular{"orderTensorIrregular", 0.8,
+                                                "first order on irregular meshes"};
+inline constexpr Tolerance quantity{"quantity", 2e-6, "the same numbers combined in float and in double"};
+inline constexpr Tolerance direction{"direction", 1e-5, "unit length and right angles in float"};
+inline constexpr Tolerance directionIrregular{
+    "directionIrregular", 0.02,
+    "cosine: directions on an irregular mesh of 60 sides are off by a few degrees"};
 inline constexpr Tolerance uvScale{
     "uvScale", 2e-6,
     "relative: float edge lengths; their logarithms add up without loss and errors average out"};

@@ -36,7 +36,7 @@ PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* pa
             return checkedView(v, name, mesh.device(), mesh.vertices(), components);
         };
         const VertexView p = view(positions, "positions", 3), n = view(normals, "normals", 3);
-        const VertexView out = view(curvature, "curvature", 1);
+        const VertexView out = view(curvature, "curvature", quantityFloats(full.quantity));
         PelMeshReport found = mesh.report();
         if (report) writeStruct(report, found, "PelMeshReport");  // fails before any work does
         MeshCounts counts{};

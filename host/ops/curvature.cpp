@@ -14,20 +14,40 @@ uint32_t width(const Device& device) {
     return device.info().mathWidth > 1 ? MESH_LANES : 1;
 }
 
-cl::Program program(const MeshTopology& topology, uint32_t stride) {
-    return topology.device().programs().get("curvature.cl",
-                                            {{"MESH_MAPPED", topology.mapped() ? "1" : "0"},
-                                             {"MESH_STRIDE", std::to_string(stride)},
-                                             {"PEL_WIDTH", std::to_string(width(topology.device()))}});
+// Planes that the passes carry (kernels/lib/principal.clh).
+uint32_t planesOf(PelCurvatureQuantity quantity) {
+    switch (quantity) {
+        case PEL_QUANTITY_ABSOLUTE:
+        case PEL_QUANTITY_MEAN:
+            return 1;
+        case PEL_QUANTITY_FRAME:
+            return 8;
+        default:
+            return 2;
+    }
+}
+
+const char* estimatorKernel(PelCurvatureEstimator estimator) {
+    return estimator == PEL_CURVATURE_EDGE     ? "curvature_edge"
+           : estimator == PEL_CURVATURE_TENSOR ? "curvature_tensor"
+                                               : "curvature_quadric";
 }
 
 cl::Program rowsProgram(const MeshTopology& topology) {
     return topology.device().programs().get("mesh_rows.cl", {{"MESH_MAPPED", topology.mapped() ? "1" : "0"}});
 }
 
-cl::Range overSlots(const MeshTopology& topology) {
+cl::Program estimatorProgram(const MeshTopology& topology, const char* kernel, uint32_t stride,
+                             uint32_t planes) {
+    return topology.device().programs().get(std::string(kernel) + ".cl",
+                                            {{"MESH_STRIDE", std::to_string(stride)},
+                                             {"MESH_PLANES", std::to_string(planes)},
+                                             {"PEL_WIDTH", std::to_string(width(topology.device()))}});
+}
+
+cl::Range overSlots(const MeshTopology& topology, uint32_t planes = 1) {
     const uint32_t lanes = width(topology.device());
-    return over((topology.slots() + lanes - 1) / lanes);
+    return {{(topology.slots() + lanes - 1) / lanes, planes, 1}, {MESH_GROUP, 1, 1}};
 }
 
 // Positions and normals by slot, both `stride` words apart: the caller's own memory, or rows gathered from
@@ -68,10 +88,20 @@ MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, cons
 
 }  // namespace
 
+uint32_t quantityFloats(PelCurvatureQuantity quantity) {
+    return quantity == PEL_QUANTITY_PRINCIPAL ? 2 : quantity == PEL_QUANTITY_FRAME ? 8 : 1;
+}
+
 void checkCurvatureParams(const PelCurvatureParams& params) {
-    if (params.estimator != PEL_CURVATURE_EDGE)
+    if (params.estimator < PEL_CURVATURE_EDGE || params.estimator > PEL_CURVATURE_QUADRIC)
         invalidArgument("PelCurvatureParams.estimator is ", int(params.estimator),
                         ", which is no PelCurvatureEstimator");
+    if (params.quantity < PEL_QUANTITY_ABSOLUTE || params.quantity > PEL_QUANTITY_FRAME)
+        invalidArgument("PelCurvatureParams.quantity is ", int(params.quantity),
+                        ", which is no PelCurvatureQuantity");
+    if (params.estimator == PEL_CURVATURE_EDGE && params.quantity != PEL_QUANTITY_ABSOLUTE)
+        invalidArgument("the edge estimator measures PEL_QUANTITY_ABSOLUTE only, not quantity ",
+                        int(params.quantity), ": take the tensor or the quadric estimator");
     if (params.smoothingPasses > 1000)
         invalidArgument("PelCurvatureParams.smoothingPasses is ", params.smoothingPasses,
                         "; 0 to 1000 are allowed, typical is 2");
@@ -85,28 +115,40 @@ void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, con
     if (counts) *counts = {};
     if (topology.vertices() == 0) return;
     Device& device = topology.device();
-    const uint32_t slots = topology.slots();
+    const uint32_t slots = topology.slots(), planes = planesOf(params.quantity);
     // Whole slices are written.
-    const size_t bytes = (size_t(slots) + MESH_LANES - 1) / MESH_LANES * MESH_LANES * sizeof(float);
+    const uint32_t planeStride = (slots + MESH_LANES - 1) / MESH_LANES * MESH_LANES;
+    const size_t planeBytes = planeStride * sizeof(float);
     const auto lock = topology.lock();
     const SlotData data = bySlot(topology, positions, normals);
-    const cl::Program passes = program(topology, data.stride);
-    cl::Memory from = topology.scratch(MeshTopology::scratchFrom, bytes);
-    cl::Memory to = params.smoothingPasses ? topology.scratch(MeshTopology::scratchTo, bytes) : cl::Memory();
+    const cl::Memory estimated = topology.scratch(MeshTopology::scratchFrom, planeBytes * planes);
+    const cl::Defines defines = {{"MESH_MAPPED", topology.mapped() ? "1" : "0"},
+                                 {"MESH_STRIDE", std::to_string(data.stride)},
+                                 {"MESH_PLANES", std::to_string(planes)},
+                                 {"MESH_QUANTITY", std::to_string(params.quantity)},
+                                 {"PEL_WIDTH", std::to_string(width(device))}};
+    const cl::Program passes = device.programs().get("curvature.cl", defines);
 
-    cl::Launch edge(passes, "curvature_edge");
-    edge.arg(slots).arg(topology.slices()).arg(topology.rings());
-    edge.arg(data.positions.memory).arg(data.positions.layout.offset);
-    edge.arg(data.normals.memory).arg(data.normals.layout.offset).arg(from);
-    device.launch(edge, overSlots(topology));
+    const char* kernel = estimatorKernel(params.estimator);
+    const bool edge = params.estimator == PEL_CURVATURE_EDGE;
+    cl::Launch estimate(edge ? passes : estimatorProgram(topology, kernel, data.stride, planes), kernel);
+    estimate.arg(slots).arg(topology.slices()).arg(topology.rings());
+    estimate.arg(data.positions.memory).arg(data.positions.layout.offset);
+    estimate.arg(data.normals.memory).arg(data.normals.layout.offset).arg(planeStride).arg(estimated);
+    device.launch(estimate, overSlots(topology));
+
+    cl::Memory from = estimated, to;
+    if (params.smoothingPasses)
+        to = topology.scratch(MeshTopology::scratchTo, planeBytes * std::min(planes, 2u));
     for (uint32_t pass = 0; pass < params.smoothingPasses; ++pass) {
         cl::Launch smooth(passes, "curvature_smooth");
-        smooth.arg(slots).arg(topology.slices()).arg(topology.rings()).arg(from).arg(to);
-        device.launch(smooth, overSlots(topology));
+        smooth.arg(slots).arg(topology.slices()).arg(topology.rings()).arg(planeStride).arg(from).arg(to);
+        device.launch(smooth, overSlots(topology, std::min(planes, 2u)));
         std::swap(from, to);
     }
     cl::Launch store(passes, "curvature_store");
-    store.arg(topology.slotOf()).arg(from).arg(params.scale).arg(curvature.memory).arg(curvature.layout);
+    store.arg(topology.slotOf()).arg(planeStride).arg(from).arg(estimated);
+    store.arg(params.scale).arg(curvature.memory).arg(curvature.layout);
     device.launch(store, over(topology.vertices()));
     if (counts) *counts = countFaults(topology, positions, normals, data);
 }

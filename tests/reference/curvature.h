@@ -35,8 +35,9 @@ struct PrincipalCurvatures {
 
 // Rusinkiewicz, Estimating Curvatures and Their Derivatives on Triangle Meshes, 3DPVT 2004: each triangle's
 // second fundamental form by least squares on its three normal differences, turned into each corner's tangent
-// plane and averaged with the part of the triangle's area that lies nearest to the corner. Triangles of no
-// area are skipped; a vertex without any other has 0, 0.
+// plane and averaged with the part of the triangle's area that lies nearest to the corner. A triangle faces
+// the side that the corner's normal is on, whatever its order. Triangles of no area are skipped; a vertex
+// without any other has 0, 0.
 std::vector<PrincipalCurvatures> tensorCurvature(const Mesh& mesh);
 
 // Share of the triangle's area nearest to each of its corners.

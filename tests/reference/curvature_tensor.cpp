@@ -101,8 +101,8 @@ std::vector<PrincipalCurvatures> tensorCurvature(const Mesh& mesh) {
         const auto areas = voronoiAreas(p[0], p[1], p[2]);
         for (int i = 0; i < 3; ++i) {
             TangentForm& form = forms[triangle[i]];
-            const Vec3 u = rotated(form.u, n[i], normalized(across)),
-                       v = rotated(form.v, n[i], normalized(across));
+            const Vec3 facing = normalized(dot(across, n[i]) < 0 ? -1.0 * across : across);
+            const Vec3 u = rotated(form.u, n[i], facing), v = rotated(form.v, n[i], facing);
             form.uu += areas[i] * face(u, u);
             form.uv += areas[i] * face(u, v);
             form.vv += areas[i] * face(v, v);

@@ -273,19 +273,38 @@ typedef struct PelVertexView {
 } PelVertexView;
 
 typedef enum PelCurvatureEstimator {
-    PEL_CURVATURE_EDGE = 0 /* (min + max) / 2 of |dn| / |dp| over a vertex's triangle edges [FaceWorks] */
+    PEL_CURVATURE_EDGE = 0,   /* (min + max) / 2 of |dn| / |dp| over a vertex's triangle edges [FaceWorks] */
+    PEL_CURVATURE_TENSOR = 1, /* least squares on each triangle's normal differences [Rusinkiewicz 2004] */
+    PEL_CURVATURE_QUADRIC = 2 /* polynomial fit to the positions of the two-ring: does not trust the normals */
 } PelCurvatureEstimator;
+
+/* What is written for a vertex. Curvatures are positive where the surface bends away from its normal (a sphere with
+ * outward normals has two positive ones); k1 >= k2. Edge has the first quantity only. */
+typedef enum PelCurvatureQuantity {
+    PEL_QUANTITY_ABSOLUTE = 0,     /* |k1 + k2| / 2, 1/radius of the best sphere; edge: its own estimate. For LUTs */
+    PEL_QUANTITY_ABSOLUTE_MAX = 1, /* max(|k1|, |k2|), 1/radius of the best cylinder: on a cylinder twice the above */
+    PEL_QUANTITY_CURVEDNESS = 2,   /* sqrt((k1^2 + k2^2) / 2) [Koenderink 1992]: between the two, 0 on planes only */
+    PEL_QUANTITY_MEAN = 3,         /* H = (k1 + k2) / 2, signed */
+    PEL_QUANTITY_GAUSSIAN = 4,     /* K = k1 k2, 1/length^2; `scale` multiplies it twice */
+    PEL_QUANTITY_FIRST = 5,        /* k1 */
+    PEL_QUANTITY_SECOND = 6,       /* k2 */
+    PEL_QUANTITY_PRINCIPAL = 7,    /* k1, k2: 2 floats */
+    PEL_QUANTITY_FRAME = 8         /* k1, k2, unit direction of k1, unit direction of k2: 8 floats. Directions are not
+                                      smoothed; 0 where nothing was measured */
+} PelCurvatureQuantity;
 
 typedef struct PelCurvatureParams {
     uint32_t structSize;
     PelCurvatureEstimator estimator;
     uint32_t smoothingPasses; /* each vertex becomes the mean of its triangles' other two vertices; typical 2 */
     float scale;              /* multiplies the result; 1 when mesh and LUT share their unit of length */
+    PelCurvatureQuantity quantity;
 } PelCurvatureParams;
 
 /* Curvature at each vertex. `positions`, `normals`: xyz float32 per vertex, as many as the topology has; normals are of
- * unit length. `curvature`: float32 per vertex, 1/length, >= 0, finite. A given `report` makes the call block. Same input,
- * same bits. Source: FaceWorks 1.0. */
+ * unit length. `curvature`: one float32 per vertex (more where the quantity says so), 1/length, finite; 0 where nothing
+ * could be measured. Signed values are smoothed, then the quantity is taken. A given `report` makes the call block. Same
+ * input, same bits. Sources: FaceWorks 1.0; Rusinkiewicz, Estimating Curvatures, 3DPVT 2004. */
 PEL_API PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* params,
                                   const PelVertexView* positions, const PelVertexView* normals,
                                   const PelVertexView* curvature, PelMeshReport* report, const PelSubmit* submit);
