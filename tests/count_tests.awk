@@ -1,4 +1,4 @@
-# Sums up CTest's LastTest.log: GoogleTest cases one by one, any other test as one. Fails when nothing ran or something failed.
+# Sums up CTest's LastTest.log: GoogleTest and pytest cases one by one, any other test as one. Fails when nothing ran or something failed.
 function close_test() {
     if (!open) return
     if (ok + bad + skip == 0) { if (good) ok = 1; else bad = 1 }
@@ -10,6 +10,10 @@ function close_test() {
 /^\[       OK \] / { ok++ }
 /^\[  SKIPPED \] .*\([0-9]+ ms\)/ { skip++ }
 /^\[  FAILED  \] .*\([0-9]+ ms\)/ { bad++ }
+# Python tests, one a line: PATH::NAME PASSED
+/^[^ ]+::.* PASSED( |$)/ { ok++ }
+/^[^ ]+::.* (SKIPPED|XFAIL)( |$)/ { skip++ }
+/^[^ ]+::.* (FAILED|ERROR)( |$)/ { bad++ }
 /^Test Passed\./ { good = 1 }
 END {
     close_test()

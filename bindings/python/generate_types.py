@@ -1,0 +1,193 @@
+"""Writes what the binding needs to know about pellucid.h, so that each structure, value and comment stands there alone.
+
+    generate_types.py HEADER OUT_PY OUT_INC
+
+OUT_PY: the enumerations and plain structures as Python classes with the header's own documentation.
+OUT_INC: for the native module, the defaults and field offsets of the same structures as the compiler sees them.
+Structures that hold pointers or handles are left out: the native module has functions for those.
+"""
+import re
+import sys
+import textwrap
+from pathlib import Path
+
+SCALARS = {
+    "uint32_t": ("np.uint32", "int"), "uint64_t": ("np.uint64", "int"), "int32_t": ("np.int32", "int"),
+    "int": ("np.intc", "int"), "float": ("np.float32", "float"), "double": ("np.float64", "float"),
+}
+COMMENT = re.compile(r"/\*(.*?)\*/", re.S)
+
+
+def tidy(comment):
+    """The text of a C comment as one paragraph."""
+    return " ".join(re.sub(r"^\s*\*", "", line).strip() for line in comment.strip().splitlines()).strip()
+
+
+def snake(name):
+    return re.sub(r"(?<=[a-z0-9])([A-Z])", lambda m: "_" + m.group(1).lower(), name)
+
+
+def comment_before(text, position):
+    """The comment that ends right before `position`, or ""."""
+    match = re.search(r"/\*((?:(?!\*/).)*)\*/\s*\Z", text[:position], re.S)
+    return tidy(match.group(1)) if match and not match.group(1).startswith(" ----") else ""
+
+
+def parse_enums(text):
+    enums = {}
+    for match in re.finditer(r"typedef enum (\w+) \{(.*?)\} \1;", text, re.S):
+        entries = re.findall(r"(PEL_\w+) = ([^,/\n]+?)\s*,?[ ]*(?:/\*(.*?)\*/)?\s*(?=\n|PEL_|\Z)", match.group(2), re.S)
+        names = [name for name, _, _ in entries]
+        if not entries or len(names) != len(re.findall(r"PEL_\w+ =", match.group(2))):
+            raise SystemExit(f"{match.group(1)}: an enumerator was not understood")
+        parts = [name.split("_") for name in names]
+        common = 0
+        while all(len(p) > common + 1 and p[common] == parts[0][common] for p in parts):
+            common += 1
+        if len(parts) == 1:
+            common = 2
+        members = [("_".join(p[common:]).removeprefix("ERROR_"), value, tidy(doc), name)
+                   for p, (name, value, doc) in zip(parts, entries) if p[-1] != "COUNT"]
+        enums[match.group(1)] = (comment_before(text, match.start()), members)
+    return enums
+
+
+def parse_structs(text, enums):
+    structs = {}
+    for match in re.finditer(r"typedef struct (\w+) \{(.*?)\} \1;", text, re.S):
+        name, body = match.groups()
+        if not body.strip().startswith("uint32_t structSize"):
+            continue
+        fields = []
+        for declaration, doc in re.findall(r"([\w][\w \*\[\],]*);[ ]*(?:/\*(.*?)\*/)?", COMMENT_ON_OWN_LINE.sub("", body), re.S):
+            pointer = re.match(r"(?:const )?(\w+)\s*(\*?)\s*(\w+)((?:\[\w+\])*)$", declaration.strip())
+            if not pointer:
+                raise SystemExit(f"{name}: the field '{declaration}' was not understood")
+            kind, star, field, dimensions = pointer.groups()
+            fields.append((field, kind + star, [int(d) for d in re.findall(r"\[(\d+)\]", dimensions)], tidy(doc)))
+        known = all(kind in SCALARS or kind in enums or kind in structs or kind == "char" for _, kind, _, _ in fields)
+        if known:
+            structs[name] = (comment_before(text, match.start()), fields)
+    return structs
+
+
+COMMENT_ON_OWN_LINE = re.compile(r"^\s*/\*.*?\*/\s*$", re.S | re.M)
+
+
+class Translator:
+    """Rewrites the C names inside a comment into the Python ones."""
+
+    def __init__(self, enums, structs):
+        self.words = {}
+        for name, (_, members) in enums.items():
+            for short, _, _, full in members:
+                self.words[full] = f"{name[3:]}.{short}"
+        for name, (_, fields) in structs.items():
+            for field, _, _, _ in fields:
+                self.words[field] = snake(field)
+        self.pattern = re.compile(r"\b(\w+)\b")
+
+    def __call__(self, text):
+        def word(match):
+            w = match.group(1)
+            if w in self.words and (w.isupper() or w != w.lower()):
+                return self.words[w]
+            return w[3:] if re.match(r"Pel[A-Z]", w) else w
+        return self.pattern.sub(word, text).replace("\\", "\\\\").replace('"""', "'''")
+
+
+def wrapped(text, indent, width=110):
+    return "\n".join(textwrap.wrap(text, width - len(indent), initial_indent=indent, subsequent_indent=indent))
+
+
+def python_field(field, kind, shape, enums, structs):
+    """dtype entry, descriptor, type of the argument that sets it ("" for none), and the type as the documentation says."""
+    p = snake(field)
+    if kind == "char":
+        return f'("{p}", "S{shape[0]}")', f'TextField("{p}")', "", "str"
+    if kind in enums:
+        e = kind[3:]
+        return f'("{p}", np.int32)', f'EnumField("{p}", {e})', f"{e} | str", f"{e} or its name"
+    if kind in structs:
+        s = kind[3:]
+        return f'("{p}", {s}._dtype)', f'StructField("{p}", {s})', s, s
+    dtype, number = SCALARS[kind]
+    if shape:
+        size = " x ".join(map(str, shape))
+        return f'("{p}", {dtype}, {tuple(shape)})', f'ArrayField("{p}")', "ArrayLike", f"array of {size} {dtype[3:]}"
+    return f'("{p}", {dtype})', f'{number.capitalize()}Field("{p}")', number, number
+
+
+def python_struct(name, doc, fields, enums, structs, say):
+    python = name[3:]
+    lines, dtypes, arguments, settings, docs = [], [], [], [], []
+    for field, kind, shape, comment in fields:
+        p = snake(field)
+        dtype, descriptor, argument, hint = python_field(field, kind, shape, enums, structs)
+        dtypes.append(dtype)
+        if field == "structSize":
+            continue
+        lines.append(f"    {p} = {descriptor}")
+        docs.append(f"    {p} : {hint}" + (f"\n{wrapped(say(comment), '        ')}" if comment else ""))
+        if argument:
+            arguments.append(f"{p}: {argument} | None = None")
+            settings.append(f"{p}={p}")
+    summary = wrapped('"""' + (say(doc) or f"{python} values."), "    ")
+    return "\n".join([
+        f"\nclass {python}(Struct):", summary, "\n    Attributes\n    ----------", *docs, '    """\n',
+        f'    _c_name = "{name}"', "    _dtype = np.dtype([" + ", ".join(dtypes) + "], align=True)", *lines,
+        "\n    def __init__(self, *, " + ",\n                 ".join(arguments) + ") -> None:",
+        "        super().__init__(" + ",\n                         ".join(settings) + ")\n"])
+
+
+def python_module(enums, structs):
+    say = Translator(enums, structs)
+    out = ['"""Enumerations and plain structures of pellucid.h. Written by generate_types.py: do not edit."""',
+           "from __future__ import annotations\n", "from enum import IntEnum, IntFlag\n", "import numpy as np",
+           "from numpy.typing import ArrayLike\n",
+           "from ._struct import ArrayField, EnumField, FloatField, IntField, Struct, StructField, TextField\n"]
+    exported = []
+    for name, (doc, members) in enums.items():
+        python = {"PelError": "ErrorCode"}.get(name, name[3:])
+        say.words.update({full: f"{python}.{short}" for short, _, _, full in members})
+        exported.append(python)
+        base = "IntFlag" if any("<<" in value for _, value, _, _ in members) else "IntEnum"
+        out.append(f"\nclass {python}({base}):")
+        out.append(f'    """{say(doc) or python + " values."}"""\n')
+        for short, value, comment, _ in members:
+            out.append(f"    {short} = {value}")
+            if comment:
+                out.append(f'    """{say(comment)}"""')
+        out.append("")
+    for name, (doc, fields) in structs.items():
+        exported.append(name[3:])
+        out.append(python_struct(name, doc, fields, enums, structs, say))
+    out.append("\n__all__ = [" + ",\n           ".join(f'"{e}"' for e in exported) + "]")
+    return "\n".join(out) + "\n"
+
+
+def native_table(structs):
+    out = ["// Written by generate_types.py: do not edit.", "static const StructInfo structInfos[] = {"]
+    for name, (_, fields) in structs.items():
+        offsets = ", ".join(f'{{"{snake(field)}", offsetof({name}, {field})}}' for field, _, _, _ in fields)
+        default = name[0].lower() + name[1:] + "Defaults"
+        out.append(f'    {{"{name}", sizeof({name}), [](void* to) {{ const {name} s = {default}(); '
+                   f'std::memcpy(to, &s, sizeof s); }}, {{{offsets}}}}},')
+    return "\n".join(out + ["};"]) + "\n"
+
+
+def main(header, out_py, out_inc):
+    text = Path(header).read_text(encoding="utf-8")
+    enums = parse_enums(text)
+    structs = parse_structs(text, enums)
+    if len(enums) < 8 or "PelMaterial" not in structs:
+        raise SystemExit(f"{header}: {len(enums)} enumerations and {len(structs)} structures understood: "
+                         "too few, this program is broken")
+    Path(out_py).write_text(python_module(enums, structs), encoding="utf-8")
+    Path(out_inc).write_text(native_table(structs), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 4:
+        raise SystemExit(__doc__)
+    main(*sys.argv[1:])

@@ -1,0 +1,48 @@
+#include "progress.h"
+
+namespace pel::python {
+
+void bindLut(py::module_& module) {
+    using pellucid::Lut;
+    py::class_<Lut>(module, "Lut")
+        .def_static("curvature", [](const Device& d, const py::object& desc, const Waits& waits) {
+            PelLut handle = nullptr;
+            Submit submit(waits);
+            const auto* what = structOf<PelCurvatureLutDesc>(desc);
+            call([&] { return pelCurvatureLutCreate(d.handle.get(), what, &handle, submit.get()); });
+            return std::make_pair(Lut(handle), submit.done());
+        })
+        .def_static("shadow", [](const Device& d, const py::object& desc, const Waits& waits) {
+            PelLut handle = nullptr;
+            Submit submit(waits);
+            const auto* what = structOf<PelShadowLutDesc>(desc);
+            call([&] { return pelShadowLutCreate(d.handle.get(), what, &handle, submit.get()); });
+            return std::make_pair(Lut(handle), submit.done());
+        })
+        .def_static("from_texels", [](const Device& d, const py::object& info, uintptr_t texels, size_t bytes) {
+            PelLut handle = nullptr;
+            const auto* what = structOf<PelLutInfo>(info);
+            call([&] {
+                return pelLutCreateFromTexels(d.handle.get(), what, static_cast<const float*>(pointer(texels)), bytes,
+                                              &handle);
+            });
+            return Lut(handle);
+        })
+        .def("info", [](const Lut& l) {
+            PelLutInfo info = pelLutInfoDefaults();
+            call([&] { return pelLutGetInfo(l.get(), &info); });
+            return bytesOf(info);
+        })
+        .def("size", [](const Lut& l, uint32_t encoding) {
+            size_t bytes = 0;
+            call([&] { return pelLutGetSize(l.get(), PelLutEncoding(encoding), &bytes); });
+            return bytes;
+        })
+        .def("read", [](const Lut& l, uint32_t encoding, uintptr_t to, size_t bytes, const Waits& waits) {
+            Submit submit(waits);
+            call([&] { return pelLutRead(l.get(), PelLutEncoding(encoding), pointer(to), bytes, submit.get()); });
+            return submit.done();
+        });
+}
+
+}  // namespace pel::python

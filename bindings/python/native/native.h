@@ -1,0 +1,94 @@
+// What the files of the native module share: errors as Python exceptions, the GIL let go during calls, waiting that
+// Ctrl-C can end, and structures passed as their bytes. Everything a user sees is in the Python files beside this.
+#pragma once
+#include <pellucid/pellucid.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <cstddef>
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <pellucid/pellucid.hpp>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace pel::python {
+
+namespace py = pybind11;
+
+// A failed call on its way to becoming pellucid.PellucidError.
+struct CallError {
+    PelError code;
+    std::string message;
+};
+
+// Runs `body` without the GIL and throws its error. An exception that a progress callback raised comes first.
+void call(const std::function<PelError()>& body);
+
+// Waits without the GIL, looking for Ctrl-C meanwhile; the work itself goes on when that comes.
+void waitInterruptibly(const pellucid::Event& event);
+
+// Runs a blocking call that is safe to abandon on a thread of its own, likewise.
+void callInterruptibly(std::function<PelError()> body);
+
+// The bytes of a C structure that a Python object holds; throws unless they are one T.
+template <class T>
+T* structOf(const py::object& object) {
+    const py::buffer_info info = py::reinterpret_borrow<py::buffer>(object).request(true);
+    if (size_t(info.size * info.itemsize) != sizeof(T))
+        throw CallError{PEL_ERROR_UNKNOWN, "a structure of " + std::to_string(info.size * info.itemsize) +
+                                               " bytes where one of " + std::to_string(sizeof(T)) + " belongs"};
+    return static_cast<T*>(info.ptr);
+}
+
+template <class T>
+py::bytes bytesOf(const T& value) {
+    return py::bytes(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+inline void* pointer(uintptr_t address) {
+    return reinterpret_cast<void*>(address);
+}
+inline uintptr_t address(void* p) {
+    return reinterpret_cast<uintptr_t>(p);
+}
+
+using Waits = std::vector<pellucid::Event>;
+
+// PelSubmit over a list of events, with room for the event of the submitted work.
+class Submit {
+  public:
+    explicit Submit(const Waits& waits) {
+        for (const pellucid::Event& e : waits) handles_.push_back(e.get());
+        submit_ = {handles_.data(), uint32_t(handles_.size()), &done_};
+    }
+    const PelSubmit* get() const { return &submit_; }
+    pellucid::Event done() const { return pellucid::Event(done_); }
+
+  private:
+    std::vector<PelEvent> handles_;
+    PelEvent done_ = nullptr;
+    PelSubmit submit_;
+};
+
+// Vertex data as Python passes it: buffer, byte offset, byte stride, count.
+using VertexView = std::tuple<pellucid::Buffer, uint64_t, uint32_t, uint32_t>;
+inline PelVertexView vertexView(const VertexView& v) {
+    return pellucid::vertexView(std::get<0>(v), std::get<3>(v), std::get<1>(v), std::get<2>(v));
+}
+
+// An image as Python passes it: buffer, format, width, height, byte offset, pixel, row and plane stride.
+using ImageView =
+    std::tuple<pellucid::Buffer, uint32_t, uint32_t, uint32_t, uint64_t, uint64_t, uint64_t, uint64_t>;
+PelImageDesc imageDesc(const ImageView& v);
+
+void bindStructs(py::module_& module);
+void bindDevice(py::module_& module);
+void bindBuffer(py::module_& module);
+void bindMesh(py::module_& module);
+void bindLut(py::module_& module);
+
+}  // namespace pel::python

@@ -1,0 +1,23 @@
+"""Pellucid: subsurface scattering for deferred renderers, on OpenCL.
+
+Lengths (positions, radii, widths, thickness) are in any one unit, the same for all, with defaults in millimetres;
+curvature is in 1/length; colours are linear RGB; matrices are row-major and multiply column vectors. NumPy arrays are used
+in place, with any positive strides; nothing is copied unless the documentation of a parameter says so. Work runs without the
+GIL, and arrays stay alive until the work that uses them is done. Failures raise `PellucidError`.
+"""
+from __future__ import annotations
+
+from . import _native
+from ._arrays import Image, Vertices
+from ._errors import PellucidError
+from ._types import *  # noqa: F401,F403
+from ._types import __all__ as _type_names
+from .device import Buffer, Device, Event, devices, set_error_callback
+from .lut import Lut
+from .mesh import MeshTopology
+
+_number = _native.version()
+__version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
+
+__all__ = ["Buffer", "Device", "Event", "Image", "Lut", "MeshTopology", "PellucidError", "Vertices",
+           "devices", "set_error_callback", *_type_names]

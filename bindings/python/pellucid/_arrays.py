@@ -1,0 +1,241 @@
+"""NumPy arrays, PyOpenCL arrays and buffers as the views that the C interface takes, without copying."""
+from __future__ import annotations
+
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from . import _native
+from ._struct import to_enum
+from ._types import Format
+from .device import Buffer, Device, Event, _cl_address
+
+# Formats by type and number of components. One-component integers are ids in the material slot and fractions elsewhere.
+_FORMATS = {
+    ("float32", 1): Format.R32F, ("float32", 2): Format.RG32F, ("float32", 3): Format.RGB32F,
+    ("float32", 4): Format.RGBA32F,
+    ("float16", 1): Format.R16F, ("float16", 2): Format.RG16F, ("float16", 3): Format.RGB16F,
+    ("float16", 4): Format.RGBA16F,
+    ("uint8", 1): Format.R8_UNORM, ("uint8", 4): Format.RGBA8_UNORM, ("uint16", 1): Format.R16_UNORM,
+    ("int16", 2): Format.OCT16X2_SNORM,
+}
+_ID_FORMATS = {"uint8": Format.R8_UINT, "uint16": Format.R16_UINT, "uint32": Format.R32_UINT}
+# What an explicitly named format is stored as: type and components.
+_STORAGE = {f: key for key, f in _FORMATS.items()} | {f: (t, 1) for t, f in _ID_FORMATS.items()} | {
+    Format.RGBA8_SRGB: ("uint8", 4), Format.A2B10G10R10_UNORM: ("uint32", 1), Format.PLANAR_RGB32F: ("float32", 3)}
+
+
+def as_array(value: Any, what: str) -> NDArray[Any]:
+    """An array over the memory of anything with the array, buffer or DLPack protocol; never a copy."""
+    if isinstance(value, np.ndarray):
+        return value
+    if hasattr(value, "__dlpack__"):
+        return np.from_dlpack(value)
+    if hasattr(value, "__array_interface__") or isinstance(value, (memoryview, bytearray)):
+        return np.asarray(value)
+    raise TypeError(f"{what} is a {type(value).__name__}; a NumPy array, or an object with the buffer or DLPack "
+                    "protocol, is needed")
+
+
+class Span:
+    """The memory from an array's first to its last byte, as a buffer.
+
+    On a CPU device that buffer is the memory itself. Elsewhere it has a twin on the device, and the bytes move with each
+    submission: everything in before, the results out after.
+    """
+
+    def __init__(self, device: Device, array: NDArray[Any], what: str, output: bool) -> None:
+        if any(s < 0 for n, s in zip(array.shape, array.strides) if n > 1):
+            raise ValueError(f"{what} has a negative stride, which the device cannot follow; pass array.copy()")
+        if any(s == 0 for n, s in zip(array.shape, array.strides) if n > 1):
+            raise ValueError(f"{what} is broadcast (a stride of 0), which the device cannot follow; pass array.copy()")
+        if output and not array.flags.writeable:
+            raise ValueError(f"{what} is read-only and the result goes there")
+        if array.dtype.byteorder == ">":
+            raise ValueError(f"{what} is big-endian; pass array.astype(array.dtype.newbyteorder('='))")
+        self.array, self.output = array, output
+        self.address = array.ctypes.data
+        last = sum((n - 1) * s for n, s in zip(array.shape, array.strides))
+        self.nbytes = last + array.itemsize if array.size else 0
+        self.moves = not device._in_place or self.nbytes == 0
+        if self.moves:
+            self.handle = _native.Buffer.create(device._handle, max(self.nbytes, 4), 0)
+        else:
+            self.handle = _native.Buffer.from_host(device._handle, self.address, self.nbytes)
+
+    def upload(self, waits: list[_native.Event]) -> None:
+        if self.moves and self.nbytes:
+            self.handle.write(0, self.nbytes, self.address, waits)
+
+    def download(self) -> Optional[_native.Event]:
+        if self.moves and self.output and self.nbytes:
+            return self.handle.read(0, self.nbytes, self.address, [])
+        return None
+
+
+class View:
+    """Part of a buffer, and what must stay alive and move for it."""
+
+    def __init__(self, span: Span | Buffer, tail: tuple[int, ...]) -> None:
+        self.span = span
+        self._tail = tail
+
+    @property
+    def native(self) -> Any:
+        handle = self.span.handle if isinstance(self.span, Span) else self.span._handle
+        return (handle, *self._tail)
+
+
+def submit(views: list[View], waits: list[_native.Event], enqueue: Any) -> _native.Event:
+    """Moves inputs, enqueues with `enqueue(waits)`, moves results; returns the event of the last step."""
+    spans = {id(v.span): v.span for v in views if isinstance(v.span, Span)}.values()
+    for span in spans:
+        if span.moves:
+            span.upload(waits)
+    event: _native.Event = enqueue(waits)
+    for span in spans:
+        event = span.download() or event
+    return event
+
+
+def _pyopencl_array(device: Device, value: Any) -> Optional[tuple[Buffer, int, tuple[int, ...], tuple[int, ...], Any]]:
+    """Buffer, byte offset, shape, strides and type of a pyopencl.array.Array, without importing PyOpenCL."""
+    data = getattr(value, "base_data", None)
+    if data is None or not hasattr(data, "int_ptr"):
+        return None
+    return Buffer.from_cl(device, data), value.offset, value.shape, value.strides, value.dtype
+
+
+class Vertices:
+    """Vertex data inside a Buffer, for calls that take arrays of vertices.
+
+    Parameters
+    ----------
+    buffer : Buffer
+    count : int
+        Vertices.
+    byte_offset, byte_stride : int
+        Multiples of 4; a stride of 0 is tightly packed.
+    """
+
+    def __init__(self, buffer: Buffer, count: int, byte_offset: int = 0, byte_stride: int = 0) -> None:
+        self.buffer, self.count, self.byte_offset, self.byte_stride = buffer, count, byte_offset, byte_stride
+
+
+def vertex_view(device: Device, value: Any, components: int, what: str, output: bool = False) -> View:
+    """An array of float32 vertices: shape (n, components), or (n,) for one component; any positive strides."""
+    if isinstance(value, Vertices):
+        return View(value.buffer, (value.byte_offset, value.byte_stride, value.count))
+    wanted = f"(n, {components})" if components > 1 else "(n,)"
+    cl = _pyopencl_array(device, value)
+    if cl:
+        buffer, offset, shape, strides, dtype = cl
+    else:
+        array = as_array(value, what)
+        shape, strides, dtype = array.shape, array.strides, array.dtype
+    if dtype != np.float32:
+        raise ValueError(f"{what} is {dtype}; float32 is needed (array.astype(numpy.float32) makes a copy that is)")
+    if len(shape) != (2 if components > 1 else 1) or (components > 1 and shape[1] != components):
+        raise ValueError(f"{what} has the shape {tuple(shape)}; {wanted} is needed")
+    if components > 1 and strides[1] != 4:
+        raise ValueError(f"{what} has components {strides[1]} bytes apart; they must follow each other")
+    # One vertex or none has no stride to speak of, whatever NumPy says.
+    stride = strides[0] if shape[0] > 1 else 4 * components
+    if stride % 4:
+        raise ValueError(f"{what} has vertices {stride} bytes apart; a multiple of 4 is needed")
+    if cl:
+        return View(buffer, (offset, stride, shape[0]))
+    return View(Span(device, array, what, output), (0, stride, shape[0]))
+
+
+class Image:
+    """An image in the layout it already has, for the slots of a shader.
+
+    Parameters
+    ----------
+    device : Device
+    data : array, pyopencl.array.Array or Buffer
+        An array of shape (height, width) or (height, width, components) with any positive strides is used in place,
+        also planar ones whose three components lie apart (float32). A Buffer needs `format`, `width` and `height`.
+    format : Format or str, optional
+        How the components are read. From the array without it: float32 and float16 with 1 to 4 components; uint8 with 1
+        or 4 as fractions of 255; uint16 with 1 as a fraction; int16 with 2 as an octahedral unit vector; one-component
+        unsigned integers in the material slot as ids.
+    byte_offset, pixel_stride, row_stride, plane_stride : int
+        Bytes, for a Buffer; strides of 0 are tightly packed.
+
+    Raises
+    ------
+    ValueError
+        No format fits; the message says what would.
+    """
+
+    def __init__(self, device: Device, data: Any, format: Format | str | None = None, *, width: int = 0, height: int = 0,
+                 byte_offset: int = 0, pixel_stride: int = 0, row_stride: int = 0, plane_stride: int = 0,
+                 _slot: str = "the image", _output: bool = False, _ids: bool = False) -> None:
+        self.format = None if format is None else to_enum(Format, format, "format")
+        if isinstance(data, Buffer):
+            if self.format is None or width <= 0 or height <= 0:
+                raise ValueError(f"{_slot}: a Buffer needs format, width and height")
+            self._view = View(data, (int(self.format), width, height, byte_offset, pixel_stride, row_stride,
+                                     plane_stride))
+            return
+        if width or height or byte_offset or pixel_stride or row_stride or plane_stride:
+            raise ValueError(f"{_slot}: size, offset and strides come from the array")
+        cl = _pyopencl_array(device, data)
+        if cl:
+            buffer, byte_offset, shape, strides, dtype = cl
+        else:
+            array = as_array(data, _slot)
+            shape, strides, dtype = array.shape, array.strides, array.dtype
+        if len(shape) not in (2, 3):
+            raise ValueError(f"{_slot} has the shape {tuple(shape)}; (height, width) or (height, width, components) is "
+                             "needed")
+        components = shape[2] if len(shape) == 3 else 1
+        between = strides[2] if len(shape) == 3 and components > 1 else dtype.itemsize
+        planar = between != dtype.itemsize
+        self.format = self._pick(dtype, components, planar, _ids, _slot)
+        height, width = shape[:2]
+        # Strides that NumPy leaves undefined for lengths of one.
+        pixel = strides[1] if width > 1 else (dtype.itemsize if planar else components * dtype.itemsize)
+        row = strides[0] if height > 1 else pixel * width
+        tail = (int(self.format), width, height, byte_offset if cl else 0, pixel, row, between if planar else 0)
+        self._view = View(buffer if cl else Span(device, array, _slot, _output), tail)
+
+    def _pick(self, dtype: np.dtype[Any], components: int, planar: bool, ids: bool, slot: str) -> Format:
+        if self.format is not None:
+            stored = _STORAGE.get(self.format)
+            if stored != (dtype.name, components):
+                raise ValueError(f"{slot}: the format {self.format.name.lower()} is stored as "
+                                 f"{stored and f'{stored[1]} x {stored[0]}'}, the array as {components} x {dtype}")
+            if planar != (self.format == Format.PLANAR_RGB32F) and components > 1:
+                raise ValueError(f"{slot}: the components lie {'apart' if planar else 'together'}, which "
+                                 f"{self.format.name.lower()} does not describe")
+            return self.format
+        if planar:
+            if (dtype.name, components) == ("float32", 3):
+                return Format.PLANAR_RGB32F
+            raise ValueError(f"{slot} has components that lie apart; that works for three of float32 only, else pass "
+                             "numpy.ascontiguousarray(array)")
+        if ids and components == 1 and dtype.name in _ID_FORMATS:
+            return _ID_FORMATS[dtype.name]
+        found = _FORMATS.get((dtype.name, components))
+        if found is None:
+            raise ValueError(f"{slot} has {components} components of {dtype}, which no format stores; float32 or float16 "
+                             "with 1 to 4, uint8 with 1 or 4, uint16 with 1 or int16 with 2 would do "
+                             "(array.astype(numpy.float32) makes a copy that is)")
+        return found
+
+
+def output_array(out: Optional[NDArray[Any]], shape: tuple[int, ...], dtype: DTypeLike, what: str) -> NDArray[Any]:
+    """`out`, checked, or a new array."""
+    if out is None:
+        return np.empty(shape, dtype)
+    if out.shape != shape or out.dtype != np.dtype(dtype):
+        raise ValueError(f"{what} is {out.dtype} of shape {out.shape}; {np.dtype(dtype)} of shape {shape} is needed")
+    return out
+
+
+__all__ = ["Image", "Vertices", "Span", "View", "as_array", "vertex_view", "output_array", "submit", "Event",
+           "_cl_address"]

@@ -1,0 +1,209 @@
+"""Base of the generated structures: the C structure's own bytes, with attributes over them."""
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any, ClassVar, Generic, TypeVar, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native
+
+E = TypeVar("E", bound=IntEnum)
+S = TypeVar("S", bound="Struct")
+
+
+def to_enum(kind: type[E], value: Any, what: str) -> E:
+    """An enumerator from itself, its number or its name in any letter case."""
+    if isinstance(value, str):
+        if value.upper() in kind.__members__:
+            return kind[value.upper()]
+    else:
+        try:
+            return kind(value)
+        except ValueError:
+            pass
+    names = ", ".join(name.lower() for name in kind.__members__)
+    raise ValueError(f"{what} is {value!r}; it must be one of {names}")
+
+
+class Struct:
+    """A C structure by value. Every field starts at the library's default; keyword arguments set others.
+
+    Fields that are arrays come back read-only: assign a whole new value to change one.
+    """
+
+    _c_name: ClassVar[str]
+    _dtype: ClassVar[np.dtype[Any]]
+    _data: NDArray[Any]
+
+    def __init__(self, **fields: Any) -> None:
+        # A writable copy of the library's own defaults, structSize included.
+        self._data = np.frombuffer(bytearray(_native.struct_defaults(self._c_name)), self._dtype)
+        for name, value in fields.items():
+            if value is not None:
+                setattr(self, name, value)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name != "_data" and name not in self.field_names():
+            raise AttributeError(f"{type(self).__name__} has no field {name!r}; it has {', '.join(self.field_names())}")
+        super().__setattr__(name, value)
+
+    @classmethod
+    def field_names(cls) -> tuple[str, ...]:
+        """The fields in the order of the C structure."""
+        return tuple(n for n in cls._dtype.names or () if n != "struct_size")
+
+    def to_dict(self) -> dict[str, Any]:
+        """The fields as plain Python values, for JSON."""
+
+        def plain(value: Any) -> Any:
+            if isinstance(value, Struct):
+                return value.to_dict()
+            if isinstance(value, np.ndarray):
+                return value.tolist()
+            return value.name.lower() if isinstance(value, IntEnum) else value
+
+        return {name: plain(getattr(self, name)) for name in self.field_names()}
+
+    def copy(self: S) -> S:
+        """An independent copy."""
+        other = type(self)()
+        other._data[...] = self._data
+        return other
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{n}={getattr(self, n)!r}' for n in self.field_names())})"
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and self.to_dict() == other.to_dict()
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+class _Field:
+    def __init__(self, name: str) -> None:
+        self.name = name
+
+    def _fail(self, owner: Struct, value: Any, right: str) -> ValueError:
+        return ValueError(f"{type(owner).__name__}.{self.name} is {value!r}; it must be {right}")
+
+
+class FloatField(_Field):
+    """A float32 or float64."""
+
+    @overload
+    def __get__(self, owner: None, kind: Any) -> FloatField: ...
+    @overload
+    def __get__(self, owner: Struct, kind: Any) -> float: ...
+    def __get__(self, owner: Struct | None, kind: Any) -> Any:
+        return self if owner is None else float(owner._data[self.name][0])
+
+    def __set__(self, owner: Struct, value: float) -> None:
+        try:
+            owner._data[self.name] = float(value)
+        except (TypeError, ValueError):
+            raise self._fail(owner, value, "a number") from None
+
+
+class IntField(_Field):
+    """An unsigned integer or a flag."""
+
+    @overload
+    def __get__(self, owner: None, kind: Any) -> IntField: ...
+    @overload
+    def __get__(self, owner: Struct, kind: Any) -> int: ...
+    def __get__(self, owner: Struct | None, kind: Any) -> Any:
+        return self if owner is None else int(owner._data[self.name][0])
+
+    def __set__(self, owner: Struct, value: int) -> None:
+        limits = np.iinfo(owner._dtype[self.name])
+        try:
+            number = value.__index__()
+        except AttributeError:
+            raise self._fail(owner, value, "an integer") from None
+        if not limits.min <= number <= limits.max:
+            raise self._fail(owner, value, f"from {limits.min} to {limits.max}")
+        owner._data[self.name] = number
+
+
+class ArrayField(_Field):
+    """A vector or a matrix (row-major, multiplying column vectors)."""
+
+    @overload
+    def __get__(self, owner: None, kind: Any) -> ArrayField: ...
+    @overload
+    def __get__(self, owner: Struct, kind: Any) -> NDArray[Any]: ...
+    def __get__(self, owner: Struct | None, kind: Any) -> Any:
+        if owner is None:
+            return self
+        values = owner._data[self.name][0].copy()
+        values.flags.writeable = False
+        return values
+
+    def __set__(self, owner: Struct, value: ArrayLike) -> None:
+        shape = owner._dtype[self.name].shape
+        size = int(np.prod(shape))
+        try:
+            values = np.asarray(value, dtype=owner._dtype[self.name].base)
+        except (TypeError, ValueError):
+            raise self._fail(owner, value, f"{size} numbers") from None
+        if values.size != size:
+            raise self._fail(owner, value, f"{size} numbers, shape {shape}")
+        owner._data[self.name][0] = values.reshape(shape)
+
+
+class TextField(_Field):
+    """A string that the library fills in."""
+
+    @overload
+    def __get__(self, owner: None, kind: Any) -> TextField: ...
+    @overload
+    def __get__(self, owner: Struct, kind: Any) -> str: ...
+    def __get__(self, owner: Struct | None, kind: Any) -> Any:
+        return self if owner is None else bytes(owner._data[self.name][0]).decode("utf-8", "replace")
+
+    def __set__(self, owner: Struct, value: str) -> None:
+        raise AttributeError(f"{type(owner).__name__}.{self.name} is set by the library")
+
+
+class EnumField(_Field, Generic[E]):
+    """One of a list of names."""
+
+    def __init__(self, name: str, kind: type[E]) -> None:
+        super().__init__(name)
+        self.kind = kind
+
+    @overload
+    def __get__(self, owner: None, kind: Any) -> EnumField[E]: ...
+    @overload
+    def __get__(self, owner: Struct, kind: Any) -> E: ...
+    def __get__(self, owner: Struct | None, kind: Any) -> Any:
+        return self if owner is None else self.kind(int(owner._data[self.name][0]))
+
+    def __set__(self, owner: Struct, value: E | str) -> None:
+        owner._data[self.name] = int(to_enum(self.kind, value, f"{type(owner).__name__}.{self.name}"))
+
+
+class StructField(_Field, Generic[S]):
+    """A structure inside a structure; comes back as a copy."""
+
+    def __init__(self, name: str, kind: type[S]) -> None:
+        super().__init__(name)
+        self.kind = kind
+
+    @overload
+    def __get__(self, owner: None, kind: Any) -> StructField[S]: ...
+    @overload
+    def __get__(self, owner: Struct, kind: Any) -> S: ...
+    def __get__(self, owner: Struct | None, kind: Any) -> Any:
+        if owner is None:
+            return self
+        inner = self.kind()
+        inner._data[0] = owner._data[self.name][0]
+        return inner
+
+    def __set__(self, owner: Struct, value: S) -> None:
+        if not isinstance(value, self.kind):
+            raise self._fail(owner, value, f"a {self.kind.__name__}")
+        owner._data[self.name][0] = value._data[0]

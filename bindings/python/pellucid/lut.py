@@ -1,0 +1,125 @@
+"""Look-up tables."""
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _flight, _native
+from ._arrays import output_array
+from ._struct import to_enum
+from ._types import CurvatureLutDesc, LutEncoding, LutInfo, LutKind, ShadowLutDesc
+from .device import Device, Event, _filled, _handles
+
+_TEXELS = {LutEncoding.FLOAT: (np.float32, 3), LutEncoding.HALF: (np.float16, 3), LutEncoding.FACEWORKS8: (np.uint8, 4)}
+
+
+class Lut:
+    """A table on the device; made by `curvature`, `shadow` or `from_texels`.
+
+    Attributes
+    ----------
+    device : Device
+    ready : Event or None
+        When a submitted table is integrated; reading and shading on the same device wait by themselves.
+    """
+
+    device: Device
+    ready: Optional[Event]
+    _handle: _native.Lut
+
+    def __init__(self) -> None:
+        raise TypeError("make a table by Lut.curvature, Lut.shadow or Lut.from_texels")
+
+    @classmethod
+    def _made(cls, device: Device, handle: _native.Lut, event: Optional[_native.Event]) -> Lut:
+        self = cls.__new__(cls)
+        self.device, self._handle = device, handle
+        self.ready = None if event is None else Event(event)
+        if event is not None:
+            _flight.hold(event, self._handle)
+        return self
+
+    @classmethod
+    def curvature(cls, device: Device, desc: Optional[CurvatureLutDesc] = None, *, wait: bool = True,
+                  waits: Iterable[Event] = (), **fields: Any) -> Lut:
+        """Integrates a curvature table: texel (x, y) is D(N.L, r) per channel, row 0 the smallest curvature.
+
+        Parameters
+        ----------
+        desc : CurvatureLutDesc, optional
+            The defaults without it; `fields` are fields of it by themselves (width=256, radius_min=0.5, ...).
+        wait : bool
+            False: return once it is submitted; `ready` says when it is done.
+        """
+        settings = _described(CurvatureLutDesc, desc, fields)
+        lut = cls._made(device, *_native.Lut.curvature(device._handle, settings._data, _handles(waits)))
+        return lut._waited(wait)
+
+    @classmethod
+    def shadow(cls, device: Device, desc: Optional[ShadowLutDesc] = None, *, wait: bool = True,
+               waits: Iterable[Event] = (), **fields: Any) -> Lut:
+        """Integrates a shadow table: texel (x, y) is the light transmitted per channel, row 0 the widest penumbra.
+
+        The parameters are as for `curvature`, with ShadowLutDesc.
+        """
+        settings = _described(ShadowLutDesc, desc, fields)
+        lut = cls._made(device, *_native.Lut.shadow(device._handle, settings._data, _handles(waits)))
+        return lut._waited(wait)
+
+    @classmethod
+    def from_texels(cls, device: Device, info: LutInfo, texels: NDArray[np.float32]) -> Lut:
+        """A table from texels that were integrated before: (height, width, 3) float32, described by `info`."""
+        if texels.dtype != np.float32:
+            raise ValueError(f"texels are {texels.dtype}; float32 is needed")
+        packed = np.ascontiguousarray(texels)
+        return cls._made(device, _native.Lut.from_texels(device._handle, info._data, packed.ctypes.data, packed.nbytes),
+                         None)
+
+    def _waited(self, wait: bool) -> Lut:
+        if wait and self.ready is not None:
+            self.ready.wait()
+            self.ready = None
+        return self
+
+    @property
+    def info(self) -> LutInfo:
+        """What the table holds."""
+        return _filled(LutInfo, self._handle.info())
+
+    def read(self, encoding: LutEncoding | str = LutEncoding.FLOAT, out: Optional[NDArray[Any]] = None) -> NDArray[Any]:
+        """The texels, top row first.
+
+        Returns
+        -------
+        (height, width, 3) float32 or float16 for "float" and "half", (height, width, 4) uint8 for "faceworks8".
+        """
+        result, event = self._submit_read(encoding, out, ())
+        event.wait()
+        return result
+
+    def submit_read(self, encoding: LutEncoding | str, out: NDArray[Any], waits: Iterable[Event] = ()) -> Event:
+        """The same into `out` after `waits`, without waiting."""
+        return self._submit_read(encoding, out, waits)[1]
+
+    def _submit_read(self, encoding: LutEncoding | str, out: Optional[NDArray[Any]],
+                     waits: Iterable[Event]) -> tuple[NDArray[Any], Event]:
+        e = to_enum(LutEncoding, encoding, "encoding")
+        info = self.info
+        size = info.curvature if info.kind == LutKind.CURVATURE else info.shadow
+        dtype, components = _TEXELS[e]
+        result = output_array(out, (size.height, size.width, components), dtype, "out")
+        if not result.flags.c_contiguous or not result.flags.writeable:
+            raise ValueError("out must be C-contiguous and writable")
+        event = self._handle.read(int(e), result.ctypes.data, result.nbytes, _handles(waits))
+        _flight.hold(event, self, result)
+        return result, Event(event)
+
+
+def _described(kind: Any, desc: Any, fields: dict[str, Any]) -> Any:
+    settings = kind() if desc is None else desc.copy()
+    for name, value in fields.items():
+        setattr(settings, name, value)
+    return settings

@@ -1,0 +1,148 @@
+"""Curvature and UV scale of meshes."""
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _flight, _native
+from ._arrays import Span, Vertices, output_array, submit, vertex_view
+from ._struct import to_enum
+from ._types import CurvatureEstimator, CurvatureParams, MeshReport, Weld
+from .device import Device, Event, _handles
+
+
+class MeshTopology:
+    """The connectivity of a mesh, analysed once; curvature for any positions then reuses it.
+
+    Parameters
+    ----------
+    device : Device
+    indices : (t, 3) or (3 t,) integers
+        Three per triangle. Read during the call; other types and layouts than packed uint32 are converted.
+    num_vertices : int, optional
+        Needed without `positions`.
+    weld : Weld or str
+        "none", "exact" or "tolerance": vertices at the same place are one vertex to the topology.
+    positions : (n, 3) float32, optional
+        Needed when welding; read during the call.
+    weld_tolerance : float
+        Length, with weld="tolerance".
+
+    Attributes
+    ----------
+    report : MeshReport
+        What was found in the mesh.
+
+    Raises
+    ------
+    PellucidError
+        An index count that is no multiple of 3, or an index out of range (the message names the triangle).
+    """
+
+    def __init__(self, device: Device, indices: ArrayLike, num_vertices: Optional[int] = None, *,
+                 weld: Weld | str = Weld.NONE, positions: Optional[NDArray[np.float32]] = None,
+                 weld_tolerance: float = 0.0) -> None:
+        triangles = np.asarray(indices)
+        if triangles.size and (triangles.dtype.kind not in "ui" or
+                               (triangles.dtype != np.uint32 and not 0 <= triangles.min() <= triangles.max() < 2**32)):
+            raise ValueError(f"indices are {triangles.dtype} from {triangles.min()} to {triangles.max()}; integers from 0 "
+                             "are needed")
+        packed = np.ascontiguousarray(triangles, np.uint32)
+        address, stride = 0, 0
+        if positions is not None:
+            if positions.dtype != np.float32 or positions.ndim != 2 or positions.shape[1] != 3:
+                raise ValueError(f"positions are {positions.dtype} of shape {positions.shape}; float32 of shape (n, 3) is "
+                                 "needed")
+            if len(positions) > 1 and (positions.strides[1] != 4 or positions.strides[0] <= 0):
+                positions = np.ascontiguousarray(positions)
+            address, stride = positions.ctypes.data, positions.strides[0] if len(positions) > 1 else 12
+            if num_vertices not in (None, len(positions)):
+                raise ValueError(f"num_vertices is {num_vertices} and positions has {len(positions)} rows")
+            num_vertices = len(positions)
+        if num_vertices is None:
+            raise ValueError("num_vertices or positions is needed")
+        if not 0 <= num_vertices < 2**32:
+            raise ValueError(f"num_vertices is {num_vertices}; it must be from 0 to {2**32 - 1}")
+        self.device = device
+        self.num_vertices = int(num_vertices)
+        self.report = MeshReport()
+        self._handle = _native.MeshTopology.create(device._handle, self.num_vertices, packed.ctypes.data, packed.size,
+                                                   int(to_enum(Weld, weld, "weld")), weld_tolerance, address, stride,
+                                                   self.report._data)
+
+    def curvature(self, positions: Any, normals: Any, out: Optional[NDArray[np.float32]] = None, *,
+                  params: Optional[CurvatureParams] = None, estimator: CurvatureEstimator | str | None = None,
+                  smoothing_passes: Optional[int] = None, scale: Optional[float] = None,
+                  report: bool = False) -> NDArray[np.float32]:
+        """Curvature at each vertex, in 1/length, finite and at least 0.
+
+        Parameters
+        ----------
+        positions, normals : (n, 3) float32
+            Any positive row stride, in place; or Vertices of a Buffer. Normals are of unit length.
+        out : (n,) float32, optional
+            Where the result goes, any positive stride; a new array without it.
+        params : CurvatureParams, optional
+        estimator, smoothing_passes, scale
+            Fields of it by themselves.
+
+        report : bool
+            Also count in `self.report` what these positions and normals made it skip.
+        """
+        settings = _settings(params, estimator, smoothing_passes, scale)
+        result = out if isinstance(out, Vertices) else output_array(out, (self.num_vertices,), np.float32, "out")
+        if report:
+            # A call that reports blocks where Ctrl-C is not seen, so it is a short one, without smoothing.
+            found, unsmoothed = MeshReport(), settings.copy()
+            unsmoothed.smoothing_passes = 0
+            self._submit(positions, normals, result, unsmoothed, found, ()).wait()
+            self.report = found
+        self._submit(positions, normals, result, settings, None, ()).wait()
+        return result
+
+    def submit_curvature(self, positions: Any, normals: Any, out: Any, *, params: Optional[CurvatureParams] = None,
+                         estimator: CurvatureEstimator | str | None = None, smoothing_passes: Optional[int] = None,
+                         scale: Optional[float] = None, waits: Iterable[Event] = ()) -> Event:
+        """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
+        return self._submit(positions, normals, out, _settings(params, estimator, smoothing_passes, scale), None, waits)
+
+    def _submit(self, positions: Any, normals: Any, out: Any, params: CurvatureParams, report: Optional[MeshReport],
+                waits: Iterable[Event]) -> Event:
+        views = [vertex_view(self.device, positions, 3, "positions"), vertex_view(self.device, normals, 3, "normals"),
+                 vertex_view(self.device, out, 1, "out", output=True)]
+        p, n, c = (v.native for v in views)
+        event = submit(views, _handles(waits), lambda w: self._handle.curvature(
+            params._data, p, n, c, None if report is None else report._data, w))
+        _flight.hold(event, self, views)
+        return Event(event)
+
+    def uv_scale(self, positions: Any, uvs: Any) -> float:
+        """Geometric mean over triangles of longest edge / longest UV edge, in length per UV unit.
+
+        Parameters
+        ----------
+        positions : (n, 3) float32
+        uvs : (n, 2) float32
+
+        Raises
+        ------
+        PellucidError
+            No triangle is large enough to measure.
+        """
+        views = [vertex_view(self.device, positions, 3, "positions"), vertex_view(self.device, uvs, 2, "uvs")]
+        p, u = (v.native for v in views)
+        for v in views:
+            if isinstance(v.span, Span):
+                v.span.upload([])
+        return self._handle.uv_scale(p, u)
+
+
+def _settings(params: Optional[CurvatureParams], estimator: Any, smoothing_passes: Any, scale: Any) -> CurvatureParams:
+    settings = CurvatureParams() if params is None else params.copy()
+    for name, value in (("estimator", estimator), ("smoothing_passes", smoothing_passes), ("scale", scale)):
+        if value is not None:
+            setattr(settings, name, value)
+    return settings

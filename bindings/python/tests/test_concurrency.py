@@ -1,0 +1,159 @@
+"""The GIL, Ctrl-C, progress callbacks, and memory that outlives the name it had."""
+import gc
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+import weakref
+
+import numpy as np
+import pytest
+
+import pellucid as pel
+from pellucid import _flight
+
+
+def test_other_threads_run_during_work(device, make_sphere):
+    mesh = make_sphere(1.0, 300, 600)
+    topology = pel.MeshTopology(device, mesh.triangles, len(mesh.positions))
+    topology.curvature(mesh.positions, mesh.normals)
+    ticks, stop = [], threading.Event()
+
+    def tick():
+        while not stop.is_set():
+            ticks.append(time.perf_counter())
+            time.sleep(0.0005)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    start = time.perf_counter()
+    while time.perf_counter() - start < 0.4:
+        topology.curvature(mesh.positions, mesh.normals, smoothing_passes=60)
+    end = time.perf_counter()
+    stop.set()
+    thread.join()
+    # Had the calls kept the GIL, the other thread would have run only between them.
+    assert sum(start < t < end for t in ticks) > 20
+
+
+def test_arrays_live_until_their_work_is_done(device, make_sphere):
+    mesh = make_sphere(1.0, 200, 400)
+    topology = pel.MeshTopology(device, mesh.triangles, len(mesh.positions))
+    gone = []
+    for _ in range(3):
+        positions, out = mesh.positions.copy(), np.empty(len(mesh.positions), np.float32)
+        weakref.finalize(positions, gone.append, 1)
+        event = topology.submit_curvature(positions, mesh.normals, out, smoothing_passes=200)
+        del positions
+        gc.collect()
+        if not event.done:
+            assert not gone
+        event.wait()
+        assert gone == [1] and np.allclose(out, 1, atol=1e-4)
+        gone.clear()
+    assert _flight.in_flight() == 0
+
+
+class Steps:
+    def __init__(self, answer=None):
+        self.seen, self.answer = [], answer
+
+    def __call__(self, fraction, what):
+        self.seen.append((fraction, what))
+        if isinstance(self.answer, Exception):
+            raise self.answer
+        return self.answer
+
+
+def long_work(mesh):
+    """Something that reports its progress."""
+    device = pel.Device()
+    return device, lambda: pel.MeshTopology(device, mesh.triangles, positions=mesh.positions, weld="exact")
+
+
+@pytest.fixture(scope="module")
+def large(make_sphere):
+    return make_sphere(1.0, 600, 900)
+
+
+def test_progress_is_reported(large):
+    device, work = long_work(large)
+    steps = Steps()
+    device.set_progress(steps)
+    work()
+    fractions = [f for f, _ in steps.seen]
+    assert len(fractions) >= 2 and all(0 <= f <= 1 for f in fractions) and all(what for _, what in steps.seen)
+
+
+def test_progress_cancels(large):
+    device, work = long_work(large)
+    device.set_progress(Steps(answer=False))
+    with pytest.raises(pel.PellucidError) as caught:
+        work()
+    assert caught.value.code is pel.ErrorCode.CANCELLED
+    device.set_progress(None)
+    work()
+
+
+def test_exceptions_in_progress_come_through(large):
+    device, work = long_work(large)
+    device.set_progress(Steps(answer=KeyError("mine")))
+    with pytest.raises(KeyError, match="mine"):
+        work()
+    device.set_progress(lambda fraction, what: "not an answer" if False else {})
+    with pytest.raises(TypeError, match="returns True, False or None"):
+        work()
+
+
+def test_progress_bar(large, capsys, monkeypatch):
+    device, work = long_work(large)
+    device.set_progress(True)
+    work()
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)  # as if it were not installed
+    device.set_progress(True)
+    work()
+    assert "%" in capsys.readouterr().err
+
+
+CTRL_C = textwrap.dedent("""
+    import sys, time
+    import numpy as np
+    import pellucid as pel
+    device = pel.Device()
+    n = 1 << 20
+    grid = np.arange(n, dtype=np.uint32).reshape(1024, 1024)
+    quads = np.stack([grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:], grid[:-1, 1:], grid[1:, :-1], grid[1:, 1:]], -1)
+    positions = np.random.default_rng(1).normal(size=(n, 3)).astype(np.float32)
+    topology = pel.MeshTopology(device, quads.ravel(), n)
+    print("go", flush=True)
+    try:
+        if sys.argv[1] == "wait":
+            topology.curvature(positions, positions, smoothing_passes=1000)
+        elif sys.argv[1] == "finish":
+            topology.submit_curvature(positions, positions, np.empty(n, np.float32), smoothing_passes=1000)
+            device.finish()
+        else:
+            while True:
+                pel.MeshTopology(device, quads.ravel(), positions=positions, weld="exact")
+    except KeyboardInterrupt:
+        print("interrupted", time.time(), flush=True)
+        import os
+        os._exit(0)
+""")
+
+
+@pytest.mark.parametrize("what", ["wait", "finish", "host"])
+def test_ctrl_c_within_a_second(what):
+    child = subprocess.Popen([sys.executable, "-c", CTRL_C, what], stdout=subprocess.PIPE, text=True)
+    try:
+        assert child.stdout.readline() == "go\n"
+        time.sleep(0.3)
+        sent = time.time()
+        child.send_signal(signal.SIGINT)
+        word, when = child.stdout.readline().split()
+        assert word == "interrupted" and float(when) - sent < 1
+    finally:
+        child.kill()
+        child.wait()

@@ -1,0 +1,96 @@
+"""Look-up tables, against the integrals written out again in NumPy."""
+import numpy as np
+import pytest
+
+import pellucid as pel
+
+# The skin profile of GPU Gems 3, ch. 14, with the standard deviations (mm) of FaceWorks; weights per channel.
+VARIANCES = np.array([0.080, 0.220, 0.432, 0.753, 1.411, 2.722]) ** 2
+WEIGHTS = np.array([[.233, .455, .649], [.100, .336, .344], [.118, .198, 0], [.113, .007, .007], [.358, .004, 0],
+                    [.078, 0, 0]])
+
+
+def line_spread(s):
+    gaussians = np.exp(-s[:, None] ** 2 / (2 * VARIANCES)) / np.sqrt(2 * np.pi * VARIANCES)
+    return gaussians @ (WEIGHTS / WEIGHTS.sum(0))
+
+
+def integrate(lengths, values):
+    """Simpson's rule; an odd number of equally spaced points."""
+    w = np.ones(len(lengths))
+    w[1:-1:2], w[2:-1:2] = 4, 2
+    return (w[:, None] * values).sum(0) * (lengths[1] - lengths[0]) / 3
+
+
+def test_curvature_texels_are_the_integral(device, tolerance):
+    texels = pel.Lut.curvature(device, width=64, height=16).read()
+    assert texels.shape == (16, 64, 3) and texels.dtype == np.float32
+    for x, y in [(0, 0), (31, 15), (35, 8), (20, 15), (63, 3)]:
+        u = -1 + (x + 0.5) * 2 / 64
+        r = 1 / (0.01 + (y + 0.5) * (1 - 0.01) / 16)
+        edge = min(np.pi * r, 10.0)
+        # Split at the terminator's kinks, theta - s / r = ±90° (and ±270°), so that each piece is smooth.
+        theta = np.arccos(u)
+        kinks = [r * (theta - k * np.pi / 2) for k in (-3, -1, 1, 3)]
+        ends = sorted({-edge, 0.0, edge, *(k for k in kinks if -edge < k < edge)})
+        truth = np.zeros(3)
+        for low, high in zip(ends, ends[1:]):
+            s = np.linspace(low, high, 4001)
+            middle = (s[1:] + s[:-1]).mean() / 2
+            if np.cos(theta - middle / r) > 0:
+                truth += integrate(s, np.cos(theta - s / r)[:, None] * line_spread(s))
+        assert np.abs(texels[y, x] - truth).max() < tolerance["lutTexel"], (x, y)
+
+
+def test_encodings(device):
+    lut = pel.Lut.curvature(device, width=32, height=8, radius_min=0.5)
+    full = lut.read("float")
+    assert np.array_equal(lut.read("half"), full.astype(np.float16))
+    coded = lut.read(pel.LutEncoding.FACEWORKS8)
+    u = -1 + (np.arange(32) + 0.5) * 2 / 32
+    exact = 255 * np.clip(2 * (full.astype(float) - np.maximum(u, 0)[None, :, None]) + 0.5, 0, 1)
+    assert coded.shape == (8, 32, 4) and (coded[..., 3] == 255).all()
+    assert np.abs(coded[..., :3] - exact).max() <= 0.5 + 1e-4
+    assert lut.info.curvature.radius_min == 0.5 and lut.info.kind is pel.LutKind.CURVATURE
+
+
+def test_shadow_is_monotone_and_ends_dark_and_lit(device):
+    texels = pel.Lut.shadow(device, width=64, height=8).read()
+    assert (np.diff(texels, axis=1) >= -1e-6).all()
+    assert texels[:, 0].max() < 0.5 < texels[:, -1].min()
+
+
+def test_submitted_tables_are_the_same(device):
+    lut = pel.Lut.curvature(device, width=128, height=64, wait=False)
+    out = np.empty((64, 128, 3), np.float32)
+    lut.submit_read("float", out, waits=[lut.ready]).wait()
+    assert np.array_equal(out, pel.Lut.curvature(device, width=128, height=64).read())
+
+
+def test_texels_go_there_and_back(device):
+    lut = pel.Lut.shadow(device, width=16, height=4)
+    texels = lut.read()
+    assert np.array_equal(pel.Lut.from_texels(device, lut.info, texels).read(), texels)
+    with pytest.raises(pel.PellucidError):
+        pel.Lut.from_texels(device, lut.info, texels[:-1])
+    with pytest.raises(ValueError, match="float64"):
+        pel.Lut.from_texels(device, lut.info, texels.astype(np.float64))
+
+
+@pytest.mark.parametrize("fields", [dict(width=0), dict(radius_min=-1.0), dict(radius_max=float("nan")),
+                                    dict(diffusion_radius=0.0)])
+def test_bad_descriptions(device, fields):
+    with pytest.raises(pel.PellucidError) as caught:
+        pel.Lut.curvature(device, **fields)
+    assert caught.value.code is pel.ErrorCode.INVALID_ARGUMENT and str(caught.value)
+
+
+def test_bad_use(device):
+    with pytest.raises(AttributeError, match="no field 'widht'"):
+        pel.Lut.curvature(device, widht=3)
+    with pytest.raises(ValueError, match="encoding is 'png'; it must be one of float, half, faceworks8"):
+        pel.Lut.curvature(device, width=4, height=4).read("png")
+    with pytest.raises(ValueError, match="out is"):
+        pel.Lut.curvature(device, width=4, height=4).read("half", np.empty((4, 4, 3), np.float32))
+    with pytest.raises(TypeError):
+        pel.Lut()

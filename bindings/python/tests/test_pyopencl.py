@@ -1,0 +1,66 @@
+"""Contexts, queues, buffers and events that PyOpenCL made."""
+import numpy as np
+import pytest
+
+import pellucid as pel
+
+cl = pytest.importorskip("pyopencl")
+cl_array = pytest.importorskip("pyopencl.array")
+
+
+@pytest.fixture(scope="module")
+def queue():
+    wanted = pel.Device().info.name
+    for platform in cl.get_platforms():
+        for device in platform.get_devices():
+            if device.name == wanted:
+                return cl.CommandQueue(cl.Context([device]))
+    pytest.skip("PyOpenCL does not see the device")
+
+
+def test_the_hosts_queue_is_used(queue):
+    device = pel.Device.from_cl(queue)
+    assert device.cl == (queue.context.int_ptr, queue.device.int_ptr, queue.int_ptr)
+    assert device.info.name == queue.device.name
+
+
+def test_curvature_between_buffers(queue, sphere):
+    device = pel.Device.from_cl(queue)
+    n = len(sphere.positions)
+    topology = pel.MeshTopology(device, sphere.triangles, n)
+    positions = cl_array.to_device(queue, sphere.positions)
+    out = cl_array.zeros(queue, (n, 2), np.float32)[:, 1]
+    result = pel.Buffer(device, 4 * n)
+    topology.submit_curvature(positions, sphere.normals, pel.Vertices(result, n)).wait()
+    expected = topology.curvature(sphere.positions, sphere.normals)
+    assert np.array_equal(result.read(np.empty(n, np.float32)), expected)
+    mem = cl.Buffer(queue.context, cl.mem_flags.READ_WRITE, 4 * n)
+    topology.submit_curvature(positions, sphere.normals, pel.Vertices(pel.Buffer.from_cl(device, mem), n)).wait()
+    host = np.empty(n, np.float32)
+    cl.enqueue_copy(queue, host, mem)
+    assert np.array_equal(host, expected)
+    topology.submit_curvature(positions, sphere.normals, out).wait()
+    assert np.array_equal(out.base_data and cl_copy(queue, out.base_data, 2 * n)[1::2], expected)
+
+
+def cl_copy(queue, mem, count):
+    host = np.empty(count, np.float32)
+    cl.enqueue_copy(queue, host, mem)
+    return host
+
+
+def test_events_both_ways(queue):
+    device = pel.Device.from_cl(queue)
+    gate = cl.UserEvent(queue.context)
+    buffer, out = pel.Buffer(device, np.int64([5])), np.zeros(1, np.int64)
+    event = buffer.submit_read(out, waits=[pel.Event.from_cl(device, gate)])
+    assert not event.done
+    gate.set_status(cl.command_execution_status.COMPLETE)
+    cl.wait_for_events([cl.Event.from_int_ptr(event.cl)])
+    assert event.done and out[0] == 5
+
+
+def test_a_buffer_of_another_context_is_refused(queue):
+    other = cl.Context([queue.device])
+    with pytest.raises(pel.PellucidError, match="another cl_context"):
+        pel.Buffer.from_cl(pel.Device.from_cl(queue), cl.Buffer(other, cl.mem_flags.READ_WRITE, 64))
