@@ -184,11 +184,29 @@ TEST_F(MeshFile, BadPlyFilesSayWhere) {
     const std::string header =
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
         "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-    EXPECT_TRUE(contains(loadError("n.ply", header + "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"), "n.ply:11: "));
+    EXPECT_TRUE(
+        contains(loadError("n.ply", header + "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"), "n.ply:11: y is 'nan'"));
     EXPECT_TRUE(contains(loadError("t.ply", header + "0 0 0\n1 0 0\n"), "ends early"));
     EXPECT_TRUE(contains(loadError("i.ply", header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"),
                          "face 0 (counted from 0) refers to vertex 7"));
-    EXPECT_NE(loadError("x.ply", "nonsense"), "");
+    EXPECT_TRUE(contains(loadError("x.ply", "nonsense"), "x.ply:1: does not start with 'ply'"));
+    const auto replaced = [&](std::string text, const std::string& from, const std::string& to) {
+        return text.replace(text.find(from), from.size(), to);
+    };
+    const std::string body = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    EXPECT_TRUE(contains(loadError("f.ply", replaced(header, "ascii 1.0", "ascii") + body),
+                         "f.ply:2: 'format ENCODING 1.0'"));
+    EXPECT_TRUE(contains(loadError("p.ply", replaced(header, "float z", "floot z") + body),
+                         "p.ply:6: has the type 'floot'"));
+    EXPECT_TRUE(
+        contains(loadError("z.ply", replaced(header, "float z", "float w") + body), "vertices need 'z'"));
+    EXPECT_TRUE(
+        contains(loadError("e.ply", replaced(header, "end_header", "end") + body), "no line 'end_header'"));
+    EXPECT_TRUE(
+        contains(loadError("l.ply", header + "0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n"), "l.ply:13: the list"));
+    EXPECT_EQ(
+        loadError("o.ply", replaced(header, "element vertex", "obj_info element 7\nelement vertex") + body),
+        "");
     MeshData mesh = loadMesh(write("a.off", offTetrahedron));
     mesh.positions[4] = NAN;
     writePly(path("b.ply"), mesh, std::vector<float>(4, 0.0f), 0, 1);

@@ -145,6 +145,7 @@ MeshData loadMesh(const std::string& path, const MeshLoadOptions& options) {
     if (extension == "off") checked = checkOff(path, text);
     if (extension == "obj") checked = checkObj(path, text);
     if (extension == "stl") checked = checkStl(path, text);
+    if (extension == "ply") checked = checkPly(path, text);
 
     RawMesh raw;
     if (checked.canonical) {

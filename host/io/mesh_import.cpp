@@ -2,7 +2,6 @@
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
 #include <algorithm>
-#include <fstream>
 
 #include "io/file_error.h"
 #include "io/quiet_open_mesh.h"
@@ -88,17 +87,6 @@ class RawImporter final : public OpenMesh::IO::BaseImporter {
     RawMesh& mesh_;
 };
 
-int lineAt(std::ifstream& stream, const std::string& path) {
-    stream.exceptions(std::ios::goodbit);
-    stream.clear();
-    const std::streamoff at = stream.tellg();
-    std::ifstream again(path, std::ios::binary);
-    int line = 1;
-    char c;
-    for (std::streamoff i = 0; i < at && again.get(c); ++i) line += c == '\n';
-    return line;
-}
-
 }  // namespace
 
 RawMesh importWithOpenMesh(const std::string& path, const std::string& extension) {
@@ -108,21 +96,7 @@ RawMesh importWithOpenMesh(const std::string& path, const std::string& extension
     OpenMesh::IO::Options options = OpenMesh::IO::Options::VertexNormal;
     options += OpenMesh::IO::Options::VertexTexCoord;
     options += OpenMesh::IO::Options::FaceTexCoord;
-    bool read = false;
-    if (extension == "ply") {
-        // Its reader goes on with zeros when a value cannot be read; a stream that throws stops it there.
-        std::ifstream stream(path, std::ios::binary);
-        try {
-            stream.exceptions(std::ios::failbit | std::ios::badbit);
-            read = OpenMesh::IO::IOManager().read(stream, extension, importer, options);
-        } catch (const std::ios_base::failure&) {
-            const bool binary = options.is_binary();
-            throw FileError(path, "a number is missing, not finite or cannot be read, or the file ends early",
-                            binary ? 0 : lineAt(stream, path));
-        }
-    } else {
-        read = OpenMesh::IO::IOManager().read(path, importer, options);
-    }
+    const bool read = OpenMesh::IO::IOManager().read(path, importer, options);
     if (!read) throw FileError(path, "is no ." + extension + " file that OpenMesh can read");
     const size_t vertices = importer.n_vertices();
     if (!mesh.normals.empty()) mesh.normals.resize(3 * vertices, 0.0f);

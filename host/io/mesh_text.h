@@ -19,5 +19,6 @@ struct MeshText {
 MeshText checkOff(const std::string& path, const std::string& text);  // ASCII: not "OFF BINARY"
 MeshText checkObj(const std::string& path, const std::string& text);
 MeshText checkStl(const std::string& path, const std::string& text);  // ASCII and binary
+MeshText checkPly(const std::string& path, const std::string& text);  // likewise
 
 }  // namespace pellucid::io

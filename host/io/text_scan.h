@@ -13,16 +13,19 @@ namespace pellucid::io {
 
 class TextScan {
   public:
-    TextScan(std::string path, std::string_view text) : path_(std::move(path)), rest_(text) {}
+    // `comment` starts what is left out of a line, '\n' for nothing. `linesBefore`: of the file, when `text`
+    // is its rest.
+    TextScan(std::string path, std::string_view text, char comment = '#', int linesBefore = 0)
+        : path_(std::move(path)), rest_(text), comment_(comment), line_(linesBefore) {}
 
-    // The next line that has words, split at blanks; what follows '#' is left out. False at the end.
+    // The next line that has words, split at blanks; comments are left out. False at the end.
     bool nextLine() {
         while (!rest_.empty()) {
             ++line_;
             const size_t end = rest_.find('\n');
             std::string_view text = rest_.substr(0, end);
             rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-            if (const size_t comment = text.find('#'); comment != std::string_view::npos) {
+            if (const size_t comment = text.find(comment_); comment != std::string_view::npos) {
                 text = text.substr(0, comment);
                 sawComment_ = true;
             }
@@ -81,7 +84,8 @@ class TextScan {
     std::string path_;
     std::string_view rest_;
     std::vector<std::string_view> words_;
-    int line_ = 0;
+    char comment_;
+    int line_;
     bool sawComment_ = false;
 };
 
