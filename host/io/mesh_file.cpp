@@ -36,8 +36,8 @@ class TemporaryText {
     std::string path_;
 };
 
-std::string plural(size_t count, const std::string& noun) {
-    return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+std::string counted(size_t count, const std::string& one, const std::string& several) {
+    return std::to_string(count) + " " + (count == 1 ? one : several);
 }
 
 void checkVertices(const std::string& path, const RawMesh& raw) {
@@ -58,8 +58,8 @@ void checkCorners(const std::string& path, const RawMesh& raw) {
             if (raw.corners[c] >= 0 && raw.corners[c] < vertices) continue;
             throw FileError(path, "face " + std::to_string(f) + " (counted from 0) refers to vertex " +
                                       std::to_string(raw.corners[c]) + ", but the file has " +
-                                      plural(static_cast<size_t>(vertices), "vertex") + "; 0 to " +
-                                      std::to_string(vertices - 1) + " would be right");
+                                      counted(static_cast<size_t>(vertices), "vertex", "vertices") +
+                                      "; 0 to " + std::to_string(vertices - 1) + " would be right");
         }
     }
 }
@@ -114,7 +114,8 @@ void triangulate(MeshData& mesh, const RawMesh& raw) {
         }
     }
     if (tooSmall)
-        mesh.warnings.push_back(plural(tooSmall, "face") + " with fewer than three corners left out");
+        mesh.warnings.push_back(counted(tooSmall, "face", "faces") +
+                                " with fewer than three corners left out");
 }
 
 // Normals as loaded are used only if every one can be.
@@ -131,7 +132,7 @@ void checkNormals(MeshData& mesh) {
     }
     if (!bad) return;
     mesh.normals.clear();
-    mesh.warnings.push_back("normals left out: " + plural(bad, "vertex normal") +
+    mesh.warnings.push_back("normals left out: " + counted(bad, "vertex normal", "vertex normals") +
                             " missing, zero or not finite");
 }
 
@@ -164,7 +165,8 @@ MeshData loadMesh(const std::string& path, const MeshLoadOptions& options) {
     checkNormals(mesh);
     const size_t faces = raw.faceStart.size() - 1;
     if (faces < checked.faces) {
-        mesh.warnings.push_back(plural(checked.faces - faces, "face") + " with coinciding corners left out");
+        mesh.warnings.push_back(counted(checked.faces - faces, "face", "faces") +
+                                " with coinciding corners left out");
     }
     if (!raw.cornerUvs.empty()) {
         assignCornerUvs(mesh, raw, options.splitUvSeams);
@@ -173,7 +175,7 @@ MeshData loadMesh(const std::string& path, const MeshLoadOptions& options) {
     }
     triangulate(mesh, raw);
     if (mesh.triangles.empty()) {
-        throw FileError(path, "has " + plural(mesh.vertexCount(), "vertice") +
+        throw FileError(path, "has " + counted(mesh.vertexCount(), "vertex", "vertices") +
                                   " but no face with three corners; a surface was expected");
     }
     return mesh;
