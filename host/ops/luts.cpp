@@ -145,14 +145,16 @@ Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
     }
 
     const uint32_t lanes = device->info().mathWidth;
-    const size_t group = lanes > 1 ? 1 : 64;
-    const cl::Program program =
-        device->programs().get("shadow_lut.cl", {{"PEL_GROUP", std::to_string(group)}});
+    const size_t group = lanes > 1 ? 1 : 64, columnsPerItem = lanes > 1 ? 256 : 1;
+    const cl::Program program = device->programs().get(
+        "shadow_lut.cl",
+        {{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
     const cl::Memory gaussians = upload(*device, terms);
     cl::Launch launch(program, "shadowTexels");
     launch.arg(params).arg(gaussians).arg(lut->texels());
     const size_t half = desc.width - desc.width / 2;
-    device->launch(launch, {{(half + lanes - 1) / lanes, desc.height + 1, 1}, {group, 1, 1}});
+    device->launch(launch,
+                   {{(half + columnsPerItem - 1) / columnsPerItem, desc.height + 1, 1}, {group, 1, 1}});
     return lut;
 }
 
