@@ -1,15 +1,18 @@
 // Shadow LUT of a sum of Gaussians (section 3 of the mathematics).
 //
-// Lengths in diffusion radii. At distance z = zeta q from the middle of the edge (z = p - 1/2) the sharpened shadow is a
-// smoothstep of half width b = 1/(2 k q) about -zeta. The table is odd about the middle, T(z) + T(-z) = mass, so that only
-// the far side z >= 0 is integrated: U = mass - T, a sum of positive terms. For one Gaussian, with beta = b/sigma,
-// e1 = (zeta - b)/sigma, e2 = (zeta + b)/sigma and the repeated integrals i_n of the normal tail,
+// Lengths in diffusion radii. At distance z = zeta q from the middle of the edge (z = p - 1/2) the sharpened
+// shadow is a smoothstep of half width b = 1/(2 k q) about -zeta. The table is odd about the middle, T(z) +
+// T(-z) = mass, so that only the far side z >= 0 is integrated: U = mass - T, a sum of positive terms. For
+// one Gaussian, with beta = b/sigma, e1 = (zeta - b)/sigma, e2 = (zeta + b)/sigma and the repeated integrals
+// i_n of the normal tail,
 //   U = 3/(2 beta^2) (i2(e1) + i2(e2)) - 3/(2 beta^3) (i3(e1) - i3(e2))            beta >= 1
-//   U = sum over n of beta^2n / (2n)! Q^(2n)(zeta/sigma) 3/((2n + 1)(2n + 3))             beta < 1, where that cancels.
-// Between and beyond the kinks the tails are 0 or 1 and cost nothing. The part of the profile beyond the cut is taken off
-// again where it weighs anything.
+//   U = sum over n of beta^2n / (2n)! Q^(2n)(zeta/sigma) 3/((2n + 1)(2n + 3))             beta < 1, where
+//   that cancels.
+// Between and beyond the kinks the tails are 0 or 1 and cost nothing. The part of the profile beyond the cut
+// is taken off again where it weighs anything.
 //
-// Variants: PEL_WIDTH; PEL_GROUP, work-items in a group; PEL_COLUMNS, columns per work-item, a multiple of PEL_WIDTH.
+// Variants: PEL_WIDTH; PEL_GROUP, work-items in a group; PEL_COLUMNS, columns per work-item, a multiple of
+// PEL_WIDTH.
 #include "lib/normal.clh"
 #include "lib/width.clh"
 #include "shared/lut_integral.h"
@@ -18,7 +21,8 @@
 #define REACH 5.8f
 
 // Gauss rule of 6 points on [-1, 1].
-__constant float gaussAt[6] = {-0.9324695142f, -0.6612093865f, -0.2386191861f, 0.2386191861f, 0.6612093865f, 0.9324695142f};
+__constant float gaussAt[6] = {-0.9324695142f, -0.6612093865f, -0.2386191861f,
+                               0.2386191861f,  0.6612093865f,  0.9324695142f};
 __constant float gaussWeight[6] = {0.1713244924f, 0.3607615730f, 0.4679139346f,
                                    0.4679139346f, 0.3607615730f, 0.1713244924f};
 
@@ -30,9 +34,10 @@ inline floatw thirdTail(const floatw x, const floatw Q, const floatw density) {
     return (1.0f / 6.0f) * (fma(x, x, (floatw)(2.0f)) * density - x * fma(x, x, (floatw)(3.0f)) * Q);
 }
 
-// Integral of smoothstep((x + beta - xi) / 2 beta) over the normal density beyond x = cut: what a cut profile lacks.
-inline floatw beyondCut(const floatw xi, const float beta, const float cut, const floatw e1, const floatw e2, const floatw i2e1,
-                        const floatw i3e1, const floatw i2e2, const floatw i3e2) {
+// Integral of smoothstep((x + beta - xi) / 2 beta) over the normal density beyond x = cut: what a cut profile
+// lacks.
+inline floatw beyondCut(const floatw xi, const float beta, const float cut, const floatw e1, const floatw e2,
+                        const floatw i2e1, const floatw i3e1, const floatw i2e2, const floatw i3e2) {
     floatw density;
     const floatw Q = normalTail((floatw)(cut), &density);
     const floatw i1 = density - cut * Q;
@@ -41,8 +46,8 @@ inline floatw beyondCut(const floatw xi, const float beta, const float cut, cons
     const float r = 1.0f / beta;
     const floatw y = clamp((cut - xi) * r, -1.0f, 1.0f);
     // The cubic 1/2 + 3/4 y - 1/4 y^3 expanded about the cut, and where it ends at e2.
-    const floatw inside = (0.5f + y * (0.75f - 0.25f * y * y)) * Q + 0.75f * (1.0f - y * y) * r * i1 - 1.5f * y * r * r * i2 -
-                          1.5f * r * r * r * i3 + 1.5f * r * r * (i2e2 + r * i3e2);
+    const floatw inside = (0.5f + y * (0.75f - 0.25f * y * y)) * Q + 0.75f * (1.0f - y * y) * r * i1 -
+                          1.5f * y * r * r * i2 - 1.5f * r * r * r * i3 + 1.5f * r * r * (i2e2 + r * i3e2);
     const floatw all = 1.5f * r * r * (i2e1 + i2e2 - r * (i3e1 - i3e2));
     return selectw(selectw(inside, Q, e2 <= cut), all, e1 >= cut);
 }
@@ -54,7 +59,8 @@ inline floatw tailBeyond(const floatw x, floatw* density) {
     return selectw((floatw)(0.0f), (floatw)(1.0f), x < 0.0f);
 }
 
-// beta < 1, the cut outside of the ramp: the Taylor series of Q about xi against the moments of 3/4 (1 - y^2).
+// beta < 1, the cut outside of the ramp: the Taylor series of Q about xi against the moments of 3/4 (1 -
+// y^2).
 inline floatw bluntSide(const floatw xi, const float beta) {
     floatw density;
     const floatw Q = tailBeyond(xi, &density);
@@ -72,8 +78,8 @@ inline floatw bluntSide(const floatw xi, const float beta) {
     return fma(sum, density, Q);
 }
 
-// beta < 1 with the cut within the ramp for some lane: quadrature of the cut profile's tail, which is 0 beyond the cut and
-// all of its mass before the cut at the other end.
+// beta < 1 with the cut within the ramp for some lane: quadrature of the cut profile's tail, which is 0
+// beyond the cut and all of its mass before the cut at the other end.
 inline floatw bluntCutSide(const floatw xi, const float beta, const float cut, const floatw cutTail) {
     const floatw low = clamp((-cut - xi) / beta, -1.0f, 1.0f), high = clamp((cut - xi) / beta, -1.0f, 1.0f);
     const floatw centre = 0.5f * (low + high), halfLength = 0.5f * (high - low);
@@ -87,7 +93,7 @@ inline floatw bluntCutSide(const floatw xi, const float beta, const float cut, c
 }
 
 inline floatw farSide(const floatw zeta, const float b, const LutGaussian G, const float cutLength) {
-    const float sigma = fmax(G.sigma, 1e-6f * b); // narrower ones are points to the smoothstep
+    const float sigma = fmax(G.sigma, 1e-6f * b);  // narrower ones are points to the smoothstep
     const float beta = b / sigma;
     const float cut = cutLength / sigma;
     const floatw xi = zeta * (1.0f / sigma);
@@ -116,8 +122,8 @@ inline floatw farSide(const floatw zeta, const float b, const LutGaussian G, con
     return U - lost;
 }
 
-inline void storeTexels(__global float4* line, const uint width, const uint x, const floatw r, const floatw g, const floatw b,
-                        const float3 mass) {
+inline void storeTexels(__global float4* line, const uint width, const uint x, const floatw r, const floatw g,
+                        const floatw b, const float3 mass) {
     float red[PEL_WIDTH], green[PEL_WIDTH], blue[PEL_WIDTH];
     storew(r, 0, red);
     storew(g, 0, green);
@@ -130,8 +136,8 @@ inline void storeTexels(__global float4* line, const uint width, const uint x, c
     }
 }
 
-// One work-item: PEL_COLUMNS columns of the lit half of one row, and their mirror images. The row behind the last is a copy of
-// it, and the column behind the last likewise (shared/lut.h).
+// One work-item: PEL_COLUMNS columns of the lit half of one row, and their mirror images. The row behind the
+// last is a copy of it, and the column behind the last likewise (shared/lut.h).
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadowTexels(
     const ShadowParams params, __global const LutGaussian* gaussians, __global float4* texels) {
     const uint begin = params.width / 2 + get_global_id(0) * PEL_COLUMNS;
@@ -144,7 +150,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadowTexel
         const floatw column = convert_floatw((intw)((int)x) + lanesw()) + 0.5f;
         const floatw w = fmin(column / (float)params.width, 1.0f);
         // p - 1/2 = (sqrt w - sqrt(1 - w)) / 2 without its cancellation
-        const floatw z = (column - 0.5f * (float)params.width) / (float)params.width / (sqrt(w) + sqrt(1.0f - w));
+        const floatw z =
+            (column - 0.5f * (float)params.width) / (float)params.width / (sqrt(w) + sqrt(1.0f - w));
         const floatw zeta = z / q;
         floatw red = 0.0f, green = 0.0f, blue = 0.0f;
         for (uint g = 0; g < params.gaussians; ++g) {

@@ -47,7 +47,8 @@ TEST(LutApi, RefusesWhatMakesNoSense) {
     curvature([](auto& d) { d.width = 0; }, "width");
     curvature([](auto& d) { d.height = 16385; }, "height");
     curvature([](auto& d) { d.form = PelCurvatureForm(99); }, "form");
-    curvature([](auto& d) { d.diffusionRadius = 0; }, "diffusionRadius");
+    curvature([](auto& d) { d.axis = PelLutAxis(7); }, "axis");
+    curvature([](auto& d) { d.diffusionRadius = -1; }, "diffusionRadius");
     curvature([](auto& d) { d.diffusionRadius = infinity; }, "diffusionRadius");
     curvature([](auto& d) { d.radiusMin = -1; }, "radiusMin");
     curvature([](auto& d) { d.radiusMin = notANumber; }, "radiusMin");

@@ -25,6 +25,11 @@ inline constexpr Tolerance lutSecondDifference{
     "between neighbours of a 512-texel row away from the terminator; a kink or a band would show as 1e-3"};
 inline constexpr Tolerance peerBytes{"peerBytes", 2,
                                      "8-bit steps: the peer samples its integrals at 200 points"};
+inline constexpr Tolerance profileEvaluation{
+    "profileEvaluation", 3e-6,
+    "relative; the mixtures of Gaussians that stand for burley and dipole leave 1e-6"};
+inline constexpr Tolerance normalBlend{"normalBlend", 0.05,
+                                       "of the factors 1, 0.3, 0 that were chosen by eye for skin"};
 inline constexpr Tolerance sphereMean{"sphereMean", 1e-5,
                                       "energy: the mean of the form sphere is exactly 1/4"};
 

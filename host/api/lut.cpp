@@ -30,6 +30,19 @@ PelError pelShadowLutCreate(PelDevice device, const PelShadowLutDesc* desc, PelL
     });
 }
 
+PelError pelSpecularLutCreate(PelDevice device, const PelSpecularLutDesc* desc, PelLut* lut,
+                              const PelSubmit* submit) {
+    return entry([&] {
+        Device& d = fromHandle<Device>(device);
+        const auto request = readStruct(desc, pelSpecularLutDescDefaults(), "PelSpecularLutDesc");
+        PelLut& result = output(lut, "lut");
+        Submission submission(d, submit);
+        Ref<Lut> made = tabulateSpecularLut(Ref<Device>(&d), request);
+        submission.finish();
+        result = toHandle<PelLut>(std::move(made));
+    });
+}
+
 PelError pelLutCreateFromTexels(PelDevice device, const PelLutInfo* info, const float* texels, size_t bytes,
                                 PelLut* lut) {
     return entry([&] {

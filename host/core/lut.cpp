@@ -1,21 +1,66 @@
 #include "core/lut.h"
 
+#include <cmath>
+#include <cstring>
+
 namespace pel {
 namespace {
 
+static_assert(int(PEL_AXIS_LINEAR) == LUT_AXIS_LINEAR && int(PEL_AXIS_ROOT) == LUT_AXIS_ROOT);
+
+PelProfile profileHandle(const PelLutInfo& info) {
+    return info.kind == PEL_LUT_CURVATURE ? info.curvature.profile
+           : info.kind == PEL_LUT_SHADOW  ? info.shadow.profile
+                                          : nullptr;
+}
+
+// Fills in what a description may leave to defaults: the profile, its name and the diffusion radius.
+PelLutInfo resolved(PelLutInfo info, const Profile& profile) {
+    if (profileHandle(info)) {
+        std::memset(info.profile, 0, sizeof info.profile);
+        std::strncpy(info.profile, profile.name().c_str(), sizeof info.profile - 1);
+    }
+    for (float* radius : {&info.curvature.diffusionRadius, &info.shadow.diffusionRadius})
+        if (*radius == 0) *radius = float(profile.radius());
+    return info;
+}
+
 LutLayout layoutOf(const PelLutInfo& info) {
-    const bool curvature = info.kind == PEL_LUT_CURVATURE;
     LutLayout layout{};
-    layout.width = curvature ? info.curvature.width : info.shadow.width;
-    layout.height = curvature ? info.curvature.height : info.shadow.height;
+    double longest = 1, shortest = 1;
+    switch (info.kind) {
+        case PEL_LUT_CURVATURE:
+            layout.width = info.curvature.width;
+            layout.height = info.curvature.height;
+            layout.axis = uint32_t(info.curvature.axis);
+            layout.radius = info.curvature.diffusionRadius;
+            longest = info.curvature.radiusMax;
+            shortest = info.curvature.radiusMin;
+            break;
+        case PEL_LUT_SHADOW:
+            layout.width = info.shadow.width;
+            layout.height = info.shadow.height;
+            layout.radius = info.shadow.diffusionRadius;
+            longest = info.shadow.widthMax;
+            shortest = info.shadow.widthMin;
+            break;
+        case PEL_LUT_SPECULAR:
+            layout.width = info.specular.width;
+            layout.height = info.specular.height;
+            break;
+    }
     layout.rowTexels = layout.width + 1;
-    layout.axis = LUT_AXIS_LINEAR;
-    const double longest = curvature ? info.curvature.radiusMax : info.shadow.widthMax;
-    const double shortest = curvature ? info.curvature.radiusMin : info.shadow.widthMin;
-    layout.rowMin = float(1 / longest);
-    layout.rowScale = longest > shortest ? float(layout.height / (1 / shortest - 1 / longest)) : 0.0f;
-    layout.radius = curvature ? info.curvature.diffusionRadius : info.shadow.diffusionRadius;
+    const bool root = layout.axis == LUT_AXIS_ROOT;
+    const double first = root ? std::sqrt(1 / longest) : 1 / longest;
+    const double last = root ? std::sqrt(1 / shortest) : 1 / shortest;
+    layout.rowMin = float(first);
+    layout.rowScale = last > first ? float(layout.height / (last - first)) : 0.0f;
     return layout;
+}
+
+Ref<Profile> profileOf(const PelLutInfo& info) {
+    const PelProfile handle = profileHandle(info);
+    return handle ? Ref<Profile>(&fromHandle<Profile>(handle)) : Profile::skin();
 }
 
 }  // namespace
@@ -23,8 +68,9 @@ LutLayout layoutOf(const PelLutInfo& info) {
 Lut::Lut(Ref<Device> device, const PelLutInfo& info)
     : Object(kind),
       device_(std::move(device)),
-      info_(info),
-      layout_(layoutOf(info)),
+      profile_(profileOf(info)),
+      info_(resolved(info, *profile_)),
+      layout_(layoutOf(info_)),
       texels_(device_->allocate(size_t(layout_.rowTexels) * (layout_.height + 1) * sizeof(cl_float4))) {}
 
 }  // namespace pel

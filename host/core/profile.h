@@ -1,22 +1,77 @@
-// Diffusion profiles as sums of Gaussians (section 1 of the mathematics).
+// PelProfile: diffusion profiles (section 1 of the mathematics) in double precision.
 #pragma once
 #include <array>
+#include <memory>
+#include <string>
 #include <vector>
 
+#include "core/object.h"
+
 namespace pel {
+
+using Rgb = std::array<double, 3>;
 
 // weight * exp(-d^2 / 2 variance) / (2 pi variance) as energy per area, and with the same weight
 // exp(-s^2 / 2 variance) / sqrt(2 pi variance) as line spread.
 struct GaussianTerm {
-    double variance;               // length^2; mm^2 for skin
-    std::array<double, 3> weight;  // red, green, blue; each channel sums to 1
+    double variance;  // length^2; mm^2 for skin
+    Rgb weight;
 };
 
-struct GaussianSum {
-    double radius;                    // the profile's own diffusion radius, length; 2.7 mm for skin
-    std::vector<GaussianTerm> terms;  // variance rises
+// A shape of its own behind each kind; lengths in the profile's unit.
+class ProfileShape {
+  public:
+    virtual ~ProfileShape() = default;
+    virtual Rgb radial(double distance) const = 0;      // energy per area, > 0 away
+    virtual Rgb lineSpread(double distance) const = 0;  // energy per length
+    virtual Rgb width() const = 0;                      // standard deviation of the line spread, length
+    // The sum of Gaussians that stands for the profile on the device, variances rising; exact for skin and
+    // gaussians, within 1e-6 for burley and dipole, empty for tables.
+    virtual std::vector<GaussianTerm> gaussians() const { return {}; }
+    // Where a table's radial bends, length, rising; empty for all others.
+    virtual std::vector<double> knots() const { return {}; }
+    virtual bool singular() const { return false; }  // radial grows like 1/d
 };
 
-const GaussianSum& skinProfile();
+class Profile final : public Object {
+  public:
+    static constexpr Kind kind = Kind::profile;
+
+    static Ref<Profile> skin();
+    static Ref<Profile> gaussians(const PelGaussian* gaussians, uint32_t count);
+    static Ref<Profile> burley(const float* meanFreePath, const float* albedo, PelBurleyFit fit);
+    static Ref<Profile> dipole(const float* absorption, const float* reducedScattering, float eta);
+    static Ref<Profile> table(const float* distances, const float* values, uint32_t count);
+
+    const ProfileShape& shape() const { return *shape_; }
+    double radius() const { return radius_; }
+    const std::vector<GaussianTerm>& terms() const { return terms_; }
+    PelProfileInfo info() const;
+    const std::string& name() const { return name_; }
+    void setName(const char* name);
+
+    Profile(PelProfileKind profileKind, double radius, std::unique_ptr<ProfileShape> shape);
+
+  private:
+    ~Profile() override = default;
+    PelProfileKind profileKind_;
+    double radius_;  // length
+    std::unique_ptr<ProfileShape> shape_;
+    std::vector<GaussianTerm> terms_;
+    std::string name_;
+};
+
+// Sums of Gaussians, in any order and scale; weights are scaled to 1 per channel.
+class GaussianShape : public ProfileShape {
+  public:
+    explicit GaussianShape(std::vector<GaussianTerm> terms);
+    Rgb radial(double distance) const override;
+    Rgb lineSpread(double distance) const override;
+    Rgb width() const override;
+    std::vector<GaussianTerm> gaussians() const override { return terms_; }
+
+  protected:
+    std::vector<GaussianTerm> terms_;
+};
 
 }  // namespace pel

@@ -17,6 +17,10 @@ void checkLength(float value, const char* field) {
         invalidArgument(field, " is ", value, "; a finite length above 0 is needed");
 }
 
+void checkDiffusionRadius(float value, const char* field) {
+    if (value != 0) checkLength(value, field);  // 0 is the profile's own
+}
+
 void checkOrder(float min, float max, const char* minField, const char* maxField) {
     checkLength(min, minField);
     checkLength(max, maxField);
@@ -29,9 +33,13 @@ void checkOrder(float min, float max, const char* minField, const char* maxField
 void checkCurvatureDesc(const PelCurvatureLutDesc& desc) {
     checkSide(desc.width, "PelCurvatureLutDesc.width");
     checkSide(desc.height, "PelCurvatureLutDesc.height");
-    if (desc.form != PEL_FORM_ARC)
-        invalidArgument("PelCurvatureLutDesc.form is ", int(desc.form), "; PEL_FORM_ARC (0) is known");
-    checkLength(desc.diffusionRadius, "PelCurvatureLutDesc.diffusionRadius");
+    if (desc.form < PEL_FORM_ARC || desc.form > PEL_FORM_SPHERE)
+        invalidArgument("PelCurvatureLutDesc.form is ", int(desc.form),
+                        "; PEL_FORM_ARC (0), _RING (1), _HALF_RING (2) or _SPHERE (3) is needed");
+    if (desc.axis != PEL_AXIS_LINEAR && desc.axis != PEL_AXIS_ROOT)
+        invalidArgument("PelCurvatureLutDesc.axis is ", int(desc.axis),
+                        "; PEL_AXIS_LINEAR (0) or PEL_AXIS_ROOT (1) is needed");
+    checkDiffusionRadius(desc.diffusionRadius, "PelCurvatureLutDesc.diffusionRadius");
     checkOrder(desc.radiusMin, desc.radiusMax, "PelCurvatureLutDesc.radiusMin",
                "PelCurvatureLutDesc.radiusMax");
 }
@@ -39,11 +47,16 @@ void checkCurvatureDesc(const PelCurvatureLutDesc& desc) {
 void checkShadowDesc(const PelShadowLutDesc& desc) {
     checkSide(desc.width, "PelShadowLutDesc.width");
     checkSide(desc.height, "PelShadowLutDesc.height");
-    checkLength(desc.diffusionRadius, "PelShadowLutDesc.diffusionRadius");
+    checkDiffusionRadius(desc.diffusionRadius, "PelShadowLutDesc.diffusionRadius");
     checkOrder(desc.widthMin, desc.widthMax, "PelShadowLutDesc.widthMin", "PelShadowLutDesc.widthMax");
     if (!std::isfinite(desc.sharpening) || desc.sharpening < 1)
         invalidArgument("PelShadowLutDesc.sharpening is ", desc.sharpening,
                         "; 1 (no sharpening) or more, finite, is needed");
+}
+
+void checkSpecularDesc(const PelSpecularLutDesc& desc) {
+    checkSide(desc.width, "PelSpecularLutDesc.width");
+    checkSide(desc.height, "PelSpecularLutDesc.height");
 }
 
 void checkInfo(const PelLutInfo& info) {
@@ -51,9 +64,11 @@ void checkInfo(const PelLutInfo& info) {
         checkCurvatureDesc(info.curvature);
     else if (info.kind == PEL_LUT_SHADOW)
         checkShadowDesc(info.shadow);
+    else if (info.kind == PEL_LUT_SPECULAR)
+        checkSpecularDesc(info.specular);
     else
         invalidArgument("PelLutInfo.kind is ", int(info.kind),
-                        "; PEL_LUT_CURVATURE (0) or PEL_LUT_SHADOW (1) is needed");
+                        "; PEL_LUT_CURVATURE (0), PEL_LUT_SHADOW (1) or PEL_LUT_SPECULAR (2) is needed");
 }
 
 }  // namespace pel

@@ -14,6 +14,12 @@ struct Encoding {
     size_t texelBytes;
 };
 
+const char* bytesKernel(PelLutKind kind) {
+    return kind == PEL_LUT_CURVATURE ? "encodeCurvatureBytes"
+           : kind == PEL_LUT_SHADOW  ? "encodeShadowBytes"
+                                     : "encodeBytes";
+}
+
 Encoding encodingOf(const Lut& lut, PelLutEncoding encoding) {
     switch (encoding) {
         case PEL_LUT_FLOAT:
@@ -21,7 +27,7 @@ Encoding encodingOf(const Lut& lut, PelLutEncoding encoding) {
         case PEL_LUT_HALF:
             return {"encodeHalf", 6};
         case PEL_LUT_FACEWORKS8:
-            return {lut.info().kind == PEL_LUT_CURVATURE ? "encodeCurvatureBytes" : "encodeShadowBytes", 4};
+            return {bytesKernel(lut.info().kind), 4};
     }
     invalidArgument("LUT encoding ", int(encoding),
                     " is unknown; PEL_LUT_FLOAT (0), PEL_LUT_HALF (1) or PEL_LUT_FACEWORKS8 (2) is needed");
@@ -64,7 +70,7 @@ void readLut(const Lut& lut, PelLutEncoding encoding, void* destination, bool bl
     constexpr size_t group = 64;
     cl::Launch launch(device.programs().get("lut_encode.cl", {{"PEL_GROUP", std::to_string(group)}}),
                       how.kernel);
-    launch.arg(cl_uint(lut.width())).arg(lut.texels()).arg(packed);
+    launch.arg(lut.layout()).arg(lut.texels()).arg(packed);
     device.launch(launch, {{lut.width(), lut.height(), 1}, {group, 1, 1}});
     device.read(packed.get(), 0, bytes, destination, blocking);
 }

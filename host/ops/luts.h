@@ -4,10 +4,18 @@
 
 namespace pel {
 
+// Nodes of a curvature row and Gauss points between two of them (1 to 3). 64 and 2 leave about 1e-7.
+struct CurvatureQuality {
+    int nodes = 64;
+    int points = 2;
+};
+
 // Each throws PEL_ERROR_INVALID_ARGUMENT, naming the field, for a description outside of what pellucid.h
 // documents; work is enqueued, not waited for.
-Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& desc);
+Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& desc,
+                               const CurvatureQuality& quality = {});
 Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc);
+Ref<Lut> tabulateSpecularLut(Ref<Device> device, const PelSpecularLutDesc& desc);
 // From texels that were packed as PEL_LUT_FLOAT; `bytes` is checked against the size in `info`.
 Ref<Lut> uploadLut(Ref<Device> device, const PelLutInfo& info, const float* texels, size_t bytes);
 

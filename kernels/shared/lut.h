@@ -2,22 +2,24 @@
 #ifndef PEL_SHARED_LUT
 #define PEL_SHARED_LUT
 
-// How a row belongs to a value of the row axis. The column axes are fixed by the kind of table.
+// How texels are spread over the axes (PelLutAxis). Shadow tables are always linear.
 #define LUT_AXIS_LINEAR 0
+#define LUT_AXIS_ROOT \
+    1  // columns: u = s |s|, s from -1 to 1 across; rows: the root of the row value is linear
 
-// Texels are float4 (R, G, B, 0), row-major, rowTexels to a row, the row of the smallest curvature or of the widest
-// penumbra first. Behind the last column stands a copy of it, behind the last row likewise: a bilinear look-up at
-// texel coordinates within [0, width - 1] x [0, height - 1] reads texel (i, j) and its three neighbours at +1,
-// +rowTexels and +rowTexels + 1 without any clamping, also where width or height is 1.
+// Texels are float4 (R, G, B, 0), row-major, rowTexels to a row, the row of the smallest curvature or of the
+// widest penumbra first. Behind the last column stands a copy of it, behind the last row likewise: a bilinear
+// look-up at texel coordinates within [0, width - 1] x [0, height - 1] reads texel (i, j) and its three
+// neighbours at +1, +rowTexels and +rowTexels + 1 without any clamping, also where width or height is 1.
 // lib/lut_lookup.clh turns values into texel coordinates.
 typedef struct LutLayout {
-    unsigned int width;     // texels, without the copied column
-    unsigned int height;    // texels, without the copied row
-    unsigned int rowTexels; // width + 1
-    unsigned int axis;      // LUT_AXIS_...: of the rows
-    float rowMin;     // row value at the upper edge of row 0: 1/radiusMax or 1/widthMax, 1/length; typical 0.01
-    float rowScale;   // texels per row value, height / (rowMax - rowMin); 0 where both are the same
-    float radius;     // diffusion radius that the table was made for, length; typical 2.7 mm
+    unsigned int width;      // texels, without the copied column
+    unsigned int height;     // texels, without the copied row
+    unsigned int rowTexels;  // width + 1
+    unsigned int axis;       // LUT_AXIS_...
+    float rowMin;    // row value at the upper edge of row 0: 1/radiusMax or 1/widthMax, 1/length, or its root
+    float rowScale;  // texels per row value (or root), height / (rowMax - rowMin); 0 where both are the same
+    float radius;    // diffusion radius that the table was made for, length; typical 2.7 mm
     float pad;
 } LutLayout;
 #ifdef __cplusplus

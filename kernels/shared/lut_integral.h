@@ -1,32 +1,33 @@
-// What the LUT integrators share with the host: the nodes of the curvature rows and the parameters of both kernels.
-// All lengths are in units of the LUT's diffusion radius, so that no radius, however small or large, leaves the range of
-// float.
+// What the LUT integrators share with the host: the nodes of the curvature rows and the parameters of both
+// kernels. All lengths are in units of the LUT's diffusion radius, so that no radius, however small or large,
+// leaves the range of float.
 #ifndef PEL_SHARED_LUT_INTEGRAL
 #define PEL_SHARED_LUT_INTEGRAL
 
-// One Gaussian of a profile, as line spread weight * exp(-s^2 / 2 sigma^2) / (sigma sqrt(2 pi)); in a list, sigma rises.
+// One Gaussian of a profile, as line spread weight * exp(-s^2 / 2 sigma^2) / (sigma sqrt(2 pi)); in a list,
+// sigma rises.
 typedef struct LutGaussian {
-    float sigma; // diffusion radii
-    float red;   // weights
+    float sigma;  // diffusion radii
+    float red;    // weights
     float green;
     float blue;
 } LutGaussian;
 
 // A node of the angular mesh, at angle (pi/2) (j/N)^4 behind the terminator, j = 0 ... N.
 typedef struct LutNode {
-    float angle; // radians
+    float angle;  // radians
     float sine;
     float cosine;
-    float versine; // 1 - cosine, without its cancellation
+    float versine;  // 1 - cosine, without its cancellation
 } LutNode;
 
 // Where a column of the dark half reads the row's nodes: cubic Hermite weights between node and node + 1.
 typedef struct LutColumn {
-    float value0; // of E at the lower node
-    float slope0; // of F at the lower node (E' = -F)
+    float value0;  // of E at the lower node
+    float slope0;  // of F at the lower node (E' = -F)
     float value1;
     float slope1;
-    float elevation; // |N.L| of the column
+    float elevation;  // |N.L| of the column
     int node;
 } LutColumn;
 
@@ -34,20 +35,21 @@ typedef struct CurvatureParams {
     unsigned int width;
     unsigned int height;
     unsigned int gaussians;
-    float curvatureMin;  // at the upper edge of row 0, 1/diffusion radii
-    float curvatureStep; // per row
-    float cut;           // length at which the kernel ends, diffusion radii; 10/2.7 for form arc
+    unsigned int axis;  // LUT_AXIS_...
+    float rowMin;       // curvature, 1/diffusion radii, or its root, at the upper edge of row 0
+    float rowStep;      // per row
+    float cut;          // length at which the kernel of form arc ends, diffusion radii; 10/2.7
 } CurvatureParams;
 
 typedef struct ShadowParams {
     unsigned int width;
     unsigned int height;
     unsigned int gaussians;
-    float reciprocalMin;  // 1/penumbra width at the upper edge of row 0, 1/diffusion radii
-    float reciprocalStep; // per row
+    float reciprocalMin;   // 1/penumbra width at the upper edge of row 0, 1/diffusion radii
+    float reciprocalStep;  // per row
     float sharpening;
-    float cut;         // half length of the integral, diffusion radii
-    float mass[3];     // of the cut profile, per channel
+    float cut;      // half length of the integral, diffusion radii
+    float mass[3];  // of the cut profile, per channel
 } ShadowParams;
 
 #endif

@@ -315,44 +315,139 @@ PEL_API PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvaturePa
 PEL_API PelError pelMeshUvScale(PelMeshTopology topology, const PelVertexView* positions, const PelVertexView* uvs,
                                 float* uvScale);
 
+/* ---- Diffusion profiles ------------------------------------------------------------------------------------- */
+
+typedef struct PelProfileObject* PelProfile;
+
+typedef enum PelProfileKind {
+    PEL_PROFILE_SKIN = 0,
+    PEL_PROFILE_GAUSSIANS = 1,
+    PEL_PROFILE_BURLEY = 2,
+    PEL_PROFILE_DIPOLE = 3,
+    PEL_PROFILE_TABLE = 4
+} PelProfileKind;
+
+/* weight * exp(-d^2 / 2 variance) / (2 pi variance): as energy per area at distance d; the same variance and weight give
+ * the line spread. */
+typedef struct PelGaussian {
+    float variance;  /* length^2, > 0; mm^2 */
+    float weight[3]; /* red, green, blue, >= 0; scaled so that each channel sums to 1 */
+} PelGaussian;
+
+/* The fits of s(A) in Christensen and Burley 2015, by what the length given is and how light enters. */
+typedef enum PelBurleyFit {
+    PEL_BURLEY_SEARCHLIGHT = 0,           /* eq. 5: volume mean free path, perpendicular beam */
+    PEL_BURLEY_DIFFUSE_TRANSMISSION = 1,  /* eq. 6: volume mean free path, diffuse transmission; the usual one */
+    PEL_BURLEY_DIFFUSE_MEAN_FREE_PATH = 2 /* eq. 8: diffuse mean free path on the surface, perpendicular beam */
+} PelBurleyFit;
+
+/* A profile tells, per RGB channel, how much of the light that enters at one point leaves at a distance. It belongs to no
+ * device and never changes. Lengths are in any one unit, mm for skin. All are normalised: no light is lost.
+ * Errors: PEL_ERROR_INVALID_ARGUMENT for values that are not finite or out of the ranges below, or a channel without
+ * energy; the message names the value. */
+
+/* Six Gaussians [d'Eon and Luebke, GPU Gems 3, ch. 14; FaceWorks 1.0], in mm; radius 2.7 mm. */
+PEL_API PelError pelProfileCreateSkin(PelProfile* profile);
+/* `count` (1 to 256) Gaussians in any order. Radius: sigma of the widest that has a weight. */
+PEL_API PelError pelProfileCreateGaussians(const PelGaussian* gaussians, uint32_t count, PelProfile* profile);
+/* R(d) = (exp(-d/b) + exp(-d/3b)) / (8 pi b d), b = meanFreePath / s(albedo), per channel. meanFreePath > 0, length;
+ * albedo in [0, 1]. Radius, here and for the next two: root mean square width of the widest channel's line spread.
+ * Source: Christensen and Burley, Approximate Reflectance Profiles for Efficient Subsurface Scattering, 2015. */
+PEL_API PelError pelProfileCreateBurley(const float meanFreePath[3], const float albedo[3], PelBurleyFit fit,
+                                        PelProfile* profile);
+/* The classical dipole. absorption and reducedScattering > 0, 1/length; eta > 1, the medium against its outside.
+ * Source: Jensen, Marschner, Levoy, Hanrahan, A Practical Model for Subsurface Light Transport, 2001. */
+PEL_API PelError pelProfileCreateDipole(const float absorption[3], const float reducedScattering[3], float eta,
+                                        PelProfile* profile);
+/* Measured R: linear between `count` (2 to 4096) rising distances >= 0, constant before the first, 0 after the last.
+ * `values`: RGB per distance, >= 0, up to a factor. */
+PEL_API PelError pelProfileCreateTable(const float* distances, const float* values, uint32_t count,
+                                       PelProfile* profile);
+PEL_API void pelProfileRetain(PelProfile profile);
+PEL_API void pelProfileRelease(PelProfile profile);
+
+typedef struct PelProfileInfo {
+    uint32_t structSize;
+    PelProfileKind kind;
+    float radius;         /* length that diffusionRadius refers to: a table for radius rho stretches the profile by rho/radius */
+    float width[3];       /* length, standard deviation of the line spread per channel */
+    float normalBlend[3]; /* for PelMaterial.normalBlend: 1 - log8(widest width / width), at least 0. A channel as wide as
+                             the widest sees the blurred normal alone, one eight times narrower the shading normal alone;
+                             1, 0.28, 0.03 for skin */
+    uint32_t gaussians;   /* terms of the sum that stands for it on the device; 0 for tables */
+    uint32_t singular;    /* 1: R grows like 1/d towards 0, so that the ring forms have no finite integral (burley) */
+    char name[64];        /* as tables and their files carry it; the kind's name unless pelProfileSetName was called */
+} PelProfileInfo;
+PEL_API PelError pelProfileGetInfo(PelProfile profile, PelProfileInfo* info);
+/* Names a profile, once, before it is used: up to 63 bytes. */
+PEL_API PelError pelProfileSetName(PelProfile profile, const char* name);
+
+/* R and P at `count` distances > 0 (length): RGB each, either may be NULL. R is energy per area, P energy per length. */
+PEL_API PelError pelProfileEvaluate(PelProfile profile, const double* distances, uint32_t count, double* radial,
+                                    double* lineSpread);
+
 /* ---- Look-up tables ----------------------------------------------------------------------------------------- */
 
 typedef struct PelLutObject* PelLut;
 
-typedef enum PelLutKind { PEL_LUT_CURVATURE = 0, PEL_LUT_SHADOW = 1 } PelLutKind;
+typedef enum PelLutKind { PEL_LUT_CURVATURE = 0, PEL_LUT_SHADOW = 1, PEL_LUT_SPECULAR = 2 } PelLutKind;
 
+/* Over what geometry a curvature LUT is integrated; docs/luts.md says what each is good for. */
 typedef enum PelCurvatureForm {
-    PEL_FORM_ARC = 0 /* the line spread along the arc of a circle, cut at 10 mm * radius / 2.7 [FaceWorks] */
+    PEL_FORM_ARC = 0,       /* the line spread along the arc of a circle, cut at 10 mm * radius / 2.7 [FaceWorks] */
+    PEL_FORM_RING = 1,      /* the radial profile of the chord, round a circle, normalised [Penner 2011] */
+    PEL_FORM_HALF_RING = 2, /* the same over the half circle about the point */
+    PEL_FORM_SPHERE = 3     /* the radial profile of the chord, over a whole sphere, normalised: exact for a sphere */
 } PelCurvatureForm;
+
+/* How texels are spread over the axes of a curvature LUT. Look-ups in pellucid follow the table's own axis; a host that
+ * reads a table itself must too. s is the texel coordinate from -1 to 1 across, t that from 0 to 1 down. */
+typedef enum PelLutAxis {
+    PEL_AXIS_LINEAR = 0, /* u = s; curvature linear in t [FaceWorks] */
+    PEL_AXIS_ROOT = 1    /* u = s |s|; the square root of curvature linear in t: dense at the terminator and for flat
+                            surfaces, so that 64x64 texels look up as well as 1024x1024 linear ones */
+} PelLutAxis;
 
 typedef struct PelCurvatureLutDesc {
     uint32_t structSize;
     uint32_t width;  /* texels along N.L from -1 to 1; 1 to 16384; typical 512 */
     uint32_t height; /* texels along curvature from 1/radiusMax to 1/radiusMin; typical 512 */
     PelCurvatureForm form;
-    float diffusionRadius; /* length, sigma of the widest Gaussian; 2.7 mm for skin */
+    float diffusionRadius; /* length, sigma of the widest Gaussian; 2.7 mm for skin; 0: the profile's own radius */
     float radiusMin;       /* length, smallest radius of curvature; typical 1 mm */
     float radiusMax;       /* length; typical 100 mm */
+    PelLutAxis axis;
+    PelProfile profile; /* NULL: skin. The table keeps it alive */
 } PelCurvatureLutDesc;
 
 typedef struct PelShadowLutDesc {
     uint32_t structSize;
     uint32_t width;        /* texels along the wide-filtered shadow from 0 to 1; 1 to 16384; typical 512 */
     uint32_t height;       /* texels along 1/penumbra width, from widest to narrowest; typical 512 */
-    float diffusionRadius; /* length; 2.7 mm for skin */
+    float diffusionRadius; /* length; 2.7 mm for skin; 0: the profile's own radius */
     float widthMin;        /* length, narrowest penumbra; typical 8 mm */
     float widthMax;        /* length; typical 100 mm */
     float sharpening;      /* >= 1: how much narrower the shadow gets than the wide filter; typical 10 */
+    PelProfile profile;    /* NULL: skin. The table keeps it alive */
 } PelShadowLutDesc;
 
-/* Integrates a curvature LUT of the skin profile: texel (x, y) holds D(N.L, r) per channel, row 0 the smallest
- * curvature. Sources: FaceWorks 1.0; Penner, SIGGRAPH 2011. */
+typedef struct PelSpecularLutDesc {
+    uint32_t structSize;
+    uint32_t width;  /* texels along n.h from 0 to 1; 1 to 16384; typical 512 */
+    uint32_t height; /* texels along the roughness m from 0 to 1; typical 512 */
+} PelSpecularLutDesc;
+
+/* Integrates a curvature LUT: texel (x, y) holds D(N.L, r) per channel, row 0 the smallest curvature. Sources: FaceWorks 1.0; Penner, SIGGRAPH 2011. */
 PEL_API PelError pelCurvatureLutCreate(PelDevice device, const PelCurvatureLutDesc* desc, PelLut* lut,
                                        const PelSubmit* submit);
-/* Integrates a shadow LUT of the skin profile: texel (x, y) holds the light transmitted per channel, row 0 the widest
+/* Integrates a shadow LUT: texel (x, y) holds the light transmitted per channel, row 0 the widest
  * penumbra. Source: FaceWorks 1.0. */
 PEL_API PelError pelShadowLutCreate(PelDevice device, const PelShadowLutDesc* desc, PelLut* lut,
                                     const PelSubmit* submit);
+/* Tabulates Beckmann's distribution P(n.h, m) as P^0.1 / 2, the same in all channels, row 0 the smallest m.
+ * Source: d'Eon and Luebke, GPU Gems 3, ch. 14. */
+PEL_API PelError pelSpecularLutCreate(PelDevice device, const PelSpecularLutDesc* desc, PelLut* lut,
+                                      const PelSubmit* submit);
 PEL_API void pelLutRetain(PelLut lut);
 PEL_API void pelLutRelease(PelLut lut);
 
@@ -361,13 +456,17 @@ typedef struct PelLutInfo {
     PelLutKind kind;
     PelCurvatureLutDesc curvature; /* of a PEL_LUT_CURVATURE */
     PelShadowLutDesc shadow;       /* of a PEL_LUT_SHADOW */
+    PelSpecularLutDesc specular;   /* of a PEL_LUT_SPECULAR */
+    char profile[64];              /* name of the profile, for tables from texels too; "skin" by default */
 } PelLutInfo;
+/* The description with all defaults resolved; a profile in it belongs to the table. */
 PEL_API PelError pelLutGetInfo(PelLut lut, PelLutInfo* info);
 
 typedef enum PelLutEncoding {
     PEL_LUT_FLOAT = 0,     /* RGB float32, the values themselves */
     PEL_LUT_HALF = 1,      /* RGB float16, the same */
-    PEL_LUT_FACEWORKS8 = 2 /* RGBA8: curvature sat(2 (D - max(u, 0)) + 1/2); shadow faded at the left edge, then sRGB */
+    PEL_LUT_FACEWORKS8 = 2 /* RGBA8: curvature sat(2 (D - max(u, 0)) + 1/2); shadow faded at the left edge, then sRGB;
+                              specular as it is */
 } PelLutEncoding;
 
 /* Bytes that pelLutRead writes: width * height * 12, 6 or 4. */

@@ -173,6 +173,57 @@ class MeshTopology : public Handle<PelMeshTopology, pelMeshTopologyRetain, pelMe
     }
 };
 
+class Profile : public Handle<PelProfile, pelProfileRetain, pelProfileRelease> {
+  public:
+    using Handle::Handle;
+    static Profile skin() {
+        Profile p;
+        check(pelProfileCreateSkin(p.out()));
+        return p;
+    }
+    static Profile gaussians(const std::vector<PelGaussian>& gaussians) {
+        Profile p;
+        check(pelProfileCreateGaussians(gaussians.data(), uint32_t(gaussians.size()), p.out()));
+        return p;
+    }
+    static Profile burley(const float (&meanFreePath)[3], const float (&albedo)[3],
+                          PelBurleyFit fit = PEL_BURLEY_DIFFUSE_TRANSMISSION) {
+        Profile p;
+        check(pelProfileCreateBurley(meanFreePath, albedo, fit, p.out()));
+        return p;
+    }
+    static Profile dipole(const float (&absorption)[3], const float (&reducedScattering)[3], float eta) {
+        Profile p;
+        check(pelProfileCreateDipole(absorption, reducedScattering, eta, p.out()));
+        return p;
+    }
+    // values: RGB per distance.
+    static Profile table(const std::vector<float>& distances, const std::vector<float>& values) {
+        if (values.size() != 3 * distances.size())
+            throw Error(PEL_ERROR_INVALID_ARGUMENT, "a table needs three values per distance");
+        Profile p;
+        check(pelProfileCreateTable(distances.data(), values.data(), uint32_t(distances.size()), p.out()));
+        return p;
+    }
+    PelProfileInfo info() const {
+        PelProfileInfo info = pelProfileInfoDefaults();
+        check(pelProfileGetInfo(h_, &info));
+        return info;
+    }
+    void setName(const std::string& name) const { check(pelProfileSetName(h_, name.c_str())); }
+    // RGB per distance.
+    std::vector<double> radial(const std::vector<double>& distances) const {
+        std::vector<double> values(3 * distances.size());
+        check(pelProfileEvaluate(h_, distances.data(), uint32_t(distances.size()), values.data(), nullptr));
+        return values;
+    }
+    std::vector<double> lineSpread(const std::vector<double>& distances) const {
+        std::vector<double> values(3 * distances.size());
+        check(pelProfileEvaluate(h_, distances.data(), uint32_t(distances.size()), nullptr, values.data()));
+        return values;
+    }
+};
+
 class Lut : public Handle<PelLut, pelLutRetain, pelLutRelease> {
   public:
     using Handle::Handle;
@@ -181,6 +232,9 @@ class Lut : public Handle<PelLut, pelLutRetain, pelLutRelease> {
     }
     Lut(const Device& device, const PelShadowLutDesc& desc, const PelSubmit* submit = nullptr) {
         check(pelShadowLutCreate(device.get(), &desc, out(), submit));
+    }
+    Lut(const Device& device, const PelSpecularLutDesc& desc, const PelSubmit* submit = nullptr) {
+        check(pelSpecularLutCreate(device.get(), &desc, out(), submit));
     }
     Lut(const Device& device, const PelLutInfo& info, const std::vector<float>& texels) {
         check(

@@ -40,10 +40,19 @@ static inline PelShadowLutDesc pelShadowLutDescDefaults(void) {
     s.sharpening = 10.0f;
     return s;
 }
+static inline PelSpecularLutDesc pelSpecularLutDescDefaults(void) {
+    PEL_ZEROED_(PelSpecularLutDesc, s);
+    s.width = 512;
+    s.height = 512;
+    return s;
+}
+static inline PelProfileInfo pelProfileInfoDefaults(void) { PEL_ZEROED_(PelProfileInfo, s); return s; }
 static inline PelLutInfo pelLutInfoDefaults(void) {
     PEL_ZEROED_(PelLutInfo, s);
     s.curvature = pelCurvatureLutDescDefaults();
     s.shadow = pelShadowLutDescDefaults();
+    s.specular = pelSpecularLutDescDefaults();
+    memcpy(s.profile, "skin", 5);
     return s;
 }
 static inline PelLight pelLightDefaults(void) {

@@ -1,0 +1,52 @@
+// Beside kernels/shadow_lut.cl.
+#include <cmath>
+
+#include "ops/lut_check.h"
+#include "ops/lut_terms.h"
+#include "ops/luts.h"
+
+namespace pel {
+
+Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
+    checkShadowDesc(desc);
+    PelLutInfo info = pelLutInfoDefaults();
+    info.kind = PEL_LUT_SHADOW;
+    info.shadow = desc;
+    Ref<Lut> lut = make<Lut>(device, info);
+
+    const Profile& profile = *lut->profile();
+    const double radius = lut->diffusionRadius();
+    const double reciprocalMin = rowLimit(desc.widthMax, radius),
+                 reciprocalMax = rowLimit(desc.widthMin, radius);
+    const std::vector<LutGaussian> terms = deviceTerms(profile, reciprocalMax);
+    ShadowParams params{desc.width,
+                        desc.height,
+                        uint32_t(terms.size()),
+                        float(reciprocalMin),
+                        float((reciprocalMax - reciprocalMin) / desc.height),
+                        desc.sharpening,
+                        float(profileCut),
+                        {}};
+    for (int channel = 0; channel < 3; ++channel) {
+        double mass = 0;
+        for (const GaussianTerm& term : profile.terms())
+            mass +=
+                term.weight[channel] * std::erf(profileCut * profile.radius() / std::sqrt(2 * term.variance));
+        params.mass[channel] = float(mass);
+    }
+
+    const uint32_t lanes = device->info().mathWidth;
+    const size_t group = lanes > 1 ? 1 : 64, columnsPerItem = lanes > 1 ? 256 : 1;
+    const cl::Program program = device->programs().get(
+        "shadow_lut.cl",
+        {{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
+    const cl::Memory gaussians = upload(*device, terms);
+    cl::Launch launch(program, "shadowTexels");
+    launch.arg(params).arg(gaussians).arg(lut->texels());
+    const size_t lit = desc.width - desc.width / 2;
+    device->launch(launch,
+                   {{(lit + columnsPerItem - 1) / columnsPerItem, desc.height + 1, 1}, {group, 1, 1}});
+    return lut;
+}
+
+}  // namespace pel
