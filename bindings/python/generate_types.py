@@ -4,7 +4,8 @@
 
 OUT_PY: the enumerations and plain structures as Python classes with the header's own documentation.
 OUT_INC: for the native module, the defaults and field offsets of the same structures as the compiler sees them.
-Structures that hold pointers or handles are left out: the native module has functions for those.
+Structures that hold pointers or handles are left out: the native module has functions for those. A handle in OPAQUE is
+kept at its default instead, and has no attribute.
 """
 import re
 import sys
@@ -15,6 +16,7 @@ SCALARS = {
     "uint32_t": ("np.uint32", "int"), "uint64_t": ("np.uint64", "int"), "int32_t": ("np.int32", "int"),
     "int": ("np.intc", "int"), "float": ("np.float32", "float"), "double": ("np.float64", "float"),
 }
+OPAQUE = {"PelProfile"}
 COMMENT = re.compile(r"/\*(.*?)\*/", re.S)
 
 
@@ -65,7 +67,8 @@ def parse_structs(text, enums):
                 raise SystemExit(f"{name}: the field '{declaration}' was not understood")
             kind, star, field, dimensions = pointer.groups()
             fields.append((field, kind + star, [int(d) for d in re.findall(r"\[(\d+)\]", dimensions)], tidy(doc)))
-        known = all(kind in SCALARS or kind in enums or kind in structs or kind == "char" for _, kind, _, _ in fields)
+        known = all(kind in SCALARS or kind in enums or kind in structs or kind == "char" or kind in OPAQUE
+                    for _, kind, _, _ in fields)
         if known:
             structs[name] = (comment_before(text, match.start()), fields)
     return structs
@@ -123,6 +126,9 @@ def python_struct(name, doc, fields, enums, structs, say):
     lines, dtypes, arguments, settings, docs = [], [], [], [], []
     for field, kind, shape, comment in fields:
         p = snake(field)
+        if kind in OPAQUE:
+            dtypes.append(f'("{p}", np.uintp)')
+            continue
         dtype, descriptor, argument, hint = python_field(field, kind, shape, enums, structs)
         dtypes.append(dtype)
         if field == "structSize":
