@@ -116,6 +116,11 @@ TEST_F(SceneFileTest, WrongTypesAndValuesNameLineKeyAndWhatIsRight) {
     EXPECT_TRUE(contains(errorOf("diffusion_radius = 2.7", "diffusion_radius = -2.7"),
                          "is -2.7; it must be more than 0"));
     EXPECT_TRUE(contains(errorOf("diffusion_radius = 2.7", "diffusion_radius = nan"), "must be more than 0"));
+    EXPECT_TRUE(contains(errorOf("specular = 1.5", "f0 = 1.5"), "is 1.5; it must be from 0 to 1"));
+    EXPECT_TRUE(contains(errorOf("color = [1, 0.95, 0.9]", "color = [1, -0.95, 0.9]"),
+                         "is -0.95; it must be 0 or more"));
+    EXPECT_TRUE(
+        contains(errorOf("file = \"shadow_lut.exr\"", "sharpening = 0.5"), "is 0.5; it must be 1 or more"));
     EXPECT_TRUE(contains(errorOf("radius_min = 1", "radius_min = -1"), at("radius_min") + "'radius_min'"));
     EXPECT_TRUE(contains(errorOf("radius_min = 1", "radius_min = 100"), "not below radius_max"));
     EXPECT_TRUE(contains(errorOf("to_light = [0.6, 0.3, 0.742]", "to_light = [0.6, 0.3]"),
