@@ -8,7 +8,7 @@
 // three times the arithmetic, but no memory between, no second pass, and nothing to add up atomically.
 // Variants: MESH_STRIDE (lib/mesh_ring.clh), MESH_PLANES (lib/principal.clh).
 
-#include "lib/mesh_ring.clh"
+#include "lib/mesh_triangle.clh"
 #include "lib/principal.clh"
 
 typedef struct Corner {
@@ -36,21 +36,6 @@ inline Corner corner_select(Corner f, Corner t, maskw mask) {
     return f;
 }
 
-// The part of the area of triangle (0, a, b) that is nearest to its first corner; an obtuse triangle's
-// corners share at the midpoints of the obtuse one's sides.
-inline floatw corner_area(Vec3w a, Vec3w b, floatw doubled) {
-    const Vec3w c = sub3(b, a);
-    const floatw aa = dot3(a, a), bb = dot3(b, b), cc = dot3(c, c);
-    const floatw at0 = dot3(a, b), atA = -dot3(a, c), atB = dot3(b, c);  // unnormalised cosines
-    floatw area = (aa * atB + bb * atA) / (8.0f * doubled);
-    const floatw partA = 0.125f * aa * doubled / atA, partB = 0.125f * bb * doubled / atB;
-    area = selectw(area, 0.5f * doubled - partA - partB, at0 <= 0.0f);
-    // Obtuse at a: this corner keeps a right triangle on half of its side to a. Likewise at b.
-    area = selectw(area, 0.125f * aa * doubled / at0, atA <= 0.0f);
-    area = selectw(area, 0.125f * bb * doubled / at0, atB <= 0.0f);
-    return area;
-}
-
 typedef struct Form {
     floatw uu, uv, vv, weight;
 } Form;
@@ -62,7 +47,7 @@ inline void add_triangle(Form* form, Vec3w n, Vec3w u, Vec3w v, Corner a, Corner
     const Vec3w ea = scale3(a.offset, scale), eb = scale3(b.offset, scale);
     const Vec3w across = cross3(ea, eb);
     const floatw doubled2 = dot3(across, across);
-    mask &= a.usable & b.usable & (doubled2 > 1e-10f * dot3(ea, ea) * dot3(eb, eb));
+    mask &= a.usable & b.usable & (doubled2 > TRIANGLE_FLAT * dot3(ea, ea) * dot3(eb, eb));
     const floatw doubled = sqrt(doubled2);
     // Orthonormal frame of the triangle, on the same side as the slot's normal where it has two.
     Vec3w m = scale3(across, 1.0f / doubled);

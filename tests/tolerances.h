@@ -52,6 +52,15 @@ inline constexpr Tolerance orderQuadric{"orderQuadric", 1.8, "second order, meas
 inline constexpr Tolerance orderTensor{"orderTensor", 1.8, "second order where errors of neighbours cancel"};
 inline constexpr Tolerance orderTensorIrregular{"orderTensorIrregular", 0.8,
                                                 "first order on irregular meshes"};
+inline constexpr Tolerance diffusionAmplitude{
+    "diffusionAmplitude", 0.03,
+    "part of a wave left by a blur: first order in time, a dozen vertices per wave"};
+inline constexpr Tolerance densityIndependence{"densityIndependence", 0.01,
+                                               "RMS between a mesh and one of four times its triangles"};
+inline constexpr Tolerance noisyTorus{"noisyTorus", 0.1,
+                                      "RMS, noise of 2 % of the edges, smoothed to three edges"};
+inline constexpr Tolerance diffusionRange{
+    "diffusionRange", 1e-4, "relative: rounding of hundreds of stages; means never leave the range"};
 inline constexpr Tolerance quantity{"quantity", 2e-6, "the same numbers combined in float and in double"};
 inline constexpr Tolerance direction{"direction", 1e-5, "unit length and right angles in float"};
 inline constexpr Tolerance directionIrregular{

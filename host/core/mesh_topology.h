@@ -31,9 +31,14 @@ class MeshTopology final : public Object {
 
     // Memory between the passes of one call, at least `bytes` long, kept for the next call. The queue is in
     // order, so that calls may share it as long as each enqueues its passes together: hold lock() meanwhile.
-    enum Scratch { scratchRows, scratchFrom, scratchTo, scratchReduce, scratchCount };
+    enum Scratch { scratchRows, scratchFrom, scratchTo, scratchReduce, scratchWeights, scratchCount };
     std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
     const cl::Memory& scratch(Scratch which, size_t bytes);
+
+    // Entries of the rings, fillers included.
+    size_t ringEntries() const { return ringEntries_; }
+    // How fast the finest parts of the mesh even out, 1/length^2; 0: not measured yet. Guarded by lock().
+    float diffusionRate = 0;
 
     explicit MeshTopology(Ref<Device> device) : Object(kind), device_(std::move(device)) {}
 
@@ -43,6 +48,7 @@ class MeshTopology final : public Object {
 
     Ref<Device> device_;
     PelMeshReport report_ = pelMeshReportDefaults();
+    size_t ringEntries_ = 0;
     cl::Memory indices_, slotOf_, memberOffsets_, members_, slices_, rings_;
     std::mutex mutex_;
     struct {

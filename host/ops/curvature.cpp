@@ -2,17 +2,10 @@
 
 #include <cmath>
 
+#include "ops/mesh_smoothing.h"
+
 namespace pel {
 namespace {
-
-cl::Range over(size_t items) {
-    return {{items, 1, 1}, {MESH_GROUP, 1, 1}};
-}
-
-// Mesh passes take a slice of slots at a time where wide arithmetic pays, else one slot.
-uint32_t width(const Device& device) {
-    return device.info().mathWidth > 1 ? MESH_LANES : 1;
-}
 
 // Planes that the passes carry (kernels/lib/principal.clh).
 uint32_t planesOf(PelCurvatureQuantity quantity) {
@@ -44,18 +37,6 @@ cl::Program estimatorProgram(const MeshTopology& topology, const char* kernel, u
                                              {"MESH_PLANES", std::to_string(planes)},
                                              {"PEL_WIDTH", std::to_string(width(topology.device()))}});
 }
-
-cl::Range overSlots(const MeshTopology& topology, uint32_t planes = 1) {
-    const uint32_t lanes = width(topology.device());
-    return {{(topology.slots() + lanes - 1) / lanes, planes, 1}, {MESH_GROUP, 1, 1}};
-}
-
-// Positions and normals by slot, both `stride` words apart: the caller's own memory, or rows gathered from
-// it.
-struct SlotData {
-    VertexView positions, normals;
-    uint32_t stride;
-};
 
 SlotData bySlot(MeshTopology& topology, const VertexView& positions, const VertexView& normals) {
     if (!topology.mapped() && positions.layout.stride == 3 && normals.layout.stride == 3)
@@ -105,6 +86,15 @@ void checkCurvatureParams(const PelCurvatureParams& params) {
     if (params.smoothingPasses > 1000)
         invalidArgument("PelCurvatureParams.smoothingPasses is ", params.smoothingPasses,
                         "; 0 to 1000 are allowed, typical is 2");
+    if (!std::isfinite(params.smoothingRadius) || params.smoothingRadius < 0)
+        invalidArgument("PelCurvatureParams.smoothingRadius is ", params.smoothingRadius,
+                        "; a finite length of at least 0 is needed");
+    if (!(params.smoothingCrease >= 0 && params.smoothingCrease <= 3.14159265f))
+        invalidArgument("PelCurvatureParams.smoothingCrease is ", params.smoothingCrease,
+                        "; an angle from 0 to pi is needed");
+    if (params.smoothingStages > 4000)
+        invalidArgument("PelCurvatureParams.smoothingStages is ", params.smoothingStages,
+                        "; 0 (chosen from the mesh) to 4000 are allowed");
     if (!std::isfinite(params.scale) || params.scale < 0)
         invalidArgument("PelCurvatureParams.scale is ", params.scale,
                         "; a finite number of at least 0 is needed");
@@ -137,17 +127,15 @@ void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, con
     estimate.arg(data.normals.memory).arg(data.normals.layout.offset).arg(planeStride).arg(estimated);
     device.launch(estimate, overSlots(topology));
 
-    cl::Memory from = estimated, to;
-    if (params.smoothingPasses)
-        to = topology.scratch(MeshTopology::scratchTo, planeBytes * std::min(planes, 2u));
-    for (uint32_t pass = 0; pass < params.smoothingPasses; ++pass) {
-        cl::Launch smooth(passes, "curvature_smooth");
-        smooth.arg(slots).arg(topology.slices()).arg(topology.rings()).arg(planeStride).arg(from).arg(to);
-        device.launch(smooth, overSlots(topology, std::min(planes, 2u)));
-        std::swap(from, to);
-    }
+    SlotPlanes values{std::min(planes, 2u), planeStride, estimated, {}};
+    if (params.smoothingPasses > 0 || params.smoothingRadius > 0)
+        values.to = topology.scratch(MeshTopology::scratchTo, planeBytes * values.planes);
+    smoothUniform(topology, passes, params.smoothingPasses, values);
+    if (params.smoothingRadius > 0)
+        smoothToRadius(topology, data, params.smoothingRadius, params.smoothingCrease, params.smoothingStages,
+                       values);
     cl::Launch store(passes, "curvature_store");
-    store.arg(topology.slotOf()).arg(planeStride).arg(from).arg(estimated);
+    store.arg(topology.slotOf()).arg(planeStride).arg(values.from).arg(estimated);
     store.arg(params.scale).arg(curvature.memory).arg(curvature.layout);
     device.launch(store, over(topology.vertices()));
     if (counts) *counts = countFaults(topology, positions, normals, data);

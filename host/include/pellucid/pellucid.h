@@ -299,6 +299,13 @@ typedef struct PelCurvatureParams {
     uint32_t smoothingPasses; /* each vertex becomes the mean of its triangles' other two vertices; typical 2 */
     float scale;              /* multiplies the result; 1 when mesh and LUT share their unit of length */
     PelCurvatureQuantity quantity;
+    float smoothingRadius;    /* length; standard deviation of a smoothing that does not depend on the mesh's density;
+                                 0: none. The first call with a radius measures the mesh, which blocks, unless
+                                 smoothingStages is given */
+    float smoothingCrease;    /* with a radius: angle between normals, radians, across which smoothing falls to 1/e, so
+                                 that sharp features stay; 0: none stay */
+    uint32_t smoothingStages; /* with a radius: work spent, about 4 * radius / edge length; 0: chosen from the mesh. Too
+                                 few smooth less, never wrongly */
 } PelCurvatureParams;
 
 /* Curvature at each vertex. `positions`, `normals`: xyz float32 per vertex, as many as the topology has; normals are of
