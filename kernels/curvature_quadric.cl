@@ -1,13 +1,17 @@
-// Curvature by a local polynomial through the two-ring of each slot (mathematics, section 5): heights over
-// the tangent plane of the given normal, fitted by least squares with slope, quadratic and cubic terms. The
-// slope re-estimates the normal; the cubic terms take what would otherwise lean the quadratic ones on
-// irregular meshes, and are not used further. Positions alone decide: a normal only says which way the height
-// is.
+// Curvature by a local polynomial through the two-ring of each slot (mathematics, section 5): heights over the tangent
+// plane of the given normal, fitted by least squares with slope, quadratic and cubic terms. The slope re-estimates the
+// normal; the cubic terms take what would otherwise lean the quadratic ones on irregular meshes, and are not used
+// further. Positions alone decide: a normal only says which way the height is.
 //
-// Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h). Output:
-// lib/principal.clh. One work-item: PEL_WIDTH slots. The two-ring is walked as the rings of the ring: a
-// vertex reached by several ways counts as many times. Variants: MESH_STRIDE
-// (lib/mesh_ring.clh), MESH_PLANES (lib/principal.clh).
+// The two-ring is walked as the rings of the ring. Where those are closed, their walks begin behind the slot's own
+// neighbours and leave out the last vertex, which the next walk begins with: each vertex of the two-ring then counts
+// once. At borders some count several times.
+//
+// Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h). Output: lib/principal.clh.
+//
+// One work-item: PEL_WIDTH slots.
+//
+// Variants: MESH_STRIDE (lib/mesh_ring.clh), MESH_PLANES (lib/principal.clh).
 
 #include "lib/mesh_ring.clh"
 #include "lib/principal.clh"
@@ -25,39 +29,62 @@
 #define RIDGE_QUADRATIC 1e-7f
 #define RIDGE_CUBIC 1e-5f
 
+// The products of two terms are the monomials of degree 2 to 6: 25 sums instead of 45.
+#define DEGREES 7
+#define MONOMIAL(a, b) (((a) + (b)) * ((a) + (b) + 1) / 2 - 3 + (b))  // of x^a y^b, a + b >= 2
+#define MONOMIALS 25
+
 typedef struct Fit {
+    floatw moments[MONOMIALS];  // sum of weight x^a y^b
+    floatw right[TERMS];        // sum of weight z term; in the end the solution
     floatw products[PRODUCTS];  // lower triangle of the normal equations, row by row
-    floatw right[TERMS];
     floatw weight;
 } Fit;
 
-inline void add_point(Fit* fit, uintw slot, maskw counts, Vec3w origin, Vec3w u, Vec3w v, Vec3w n,
-                      floatw scale, __global const float* positions) {
+inline void add_point(Fit* fit, uintw slot, maskw counts, Vec3w origin, Vec3w u, Vec3w v, Vec3w n, floatw scale,
+                      __global const float* positions) {
     Vec3w p;
     gather3(positions, slot, &p.x, &p.y, &p.z);
     p = scale3(sub3(p, origin), scale);
-    counts &= finite3(p);
-    p = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), p, counts);
-    const floatw x = dot3(p, u), y = dot3(p, v), z = dot3(p, n);
-    const floatw weight = 1.0f / (WEIGHT_SOFTENING + dot3(p, p));
-    const floatw term[TERMS] = {x,
-                                y,
-                                0.5f * x * x,
-                                x * y,
-                                0.5f * y * y,
-                                (1.0f / 6.0f) * x * x * x,
-                                0.5f * x * x * y,
-                                0.5f * x * y * y,
-                                (1.0f / 6.0f) * y * y * y};
+    const floatw distance2 = dot3(p, p);
+    counts &= finitew(distance2);
+    const floatw zero = 0.0f;
+    const floatw x = selectw(zero, dot3(p, u), counts), y = selectw(zero, dot3(p, v), counts);
+    const floatw z = selectw(zero, dot3(p, n), counts);
+    const floatw weight = selectw(zero, 1.0f / (WEIGHT_SOFTENING + distance2), counts);
+    fit->weight += weight;
+    // weight x^a, then times y as often as the degree allows.
+    floatw column = weight;
+#pragma unroll
+    for (int a = 0; a < DEGREES; ++a) {
+        floatw monomial = column;
+#pragma unroll
+        for (int b = 0; a + b < DEGREES; ++b) {
+            if (a + b >= 2) fit->moments[MONOMIAL(a, b)] += monomial;
+            if (a + b >= 1 && a + b <= 3) {
+                const int term = a + b == 1 ? b : a + b == 2 ? 2 + b : 5 + b;
+                fit->right[term] = fma(monomial, z, fit->right[term]);
+            }
+            monomial *= y;
+        }
+        column *= x;
+    }
+}
+
+// Powers of x and y in a term, and what it divides them by.
+#define TERM_X(i) ((i) < 2 ? 1 - (i) : (i) < 5 ? 4 - (i) : 8 - (i))
+#define TERM_Y(i) ((i) < 2 ? (i) : (i) < 5 ? (i)-2 : (i)-5)
+__constant float factor[TERMS] = {1.0f, 1.0f, 0.5f, 1.0f, 0.5f, 1.0f / 6.0f, 0.5f, 0.5f, 1.0f / 6.0f};
+
+inline void assemble(Fit* fit) {
 #pragma unroll
     for (int i = 0; i < TERMS; ++i) {
-        const floatw wt = weight * term[i];
 #pragma unroll
         for (int j = 0; j <= i; ++j)
-            fit->products[PRODUCT(i, j)] = fma(wt, term[j], fit->products[PRODUCT(i, j)]);
-        fit->right[i] = fma(wt, z, fit->right[i]);
+            fit->products[PRODUCT(i, j)] =
+                factor[i] * factor[j] * fit->moments[MONOMIAL(TERM_X(i) + TERM_X(j), TERM_Y(i) + TERM_Y(j))];
+        fit->right[i] *= factor[i];
     }
-    fit->weight += selectw((floatw)(0.0f), weight, counts);
 }
 
 // Cholesky without roots, in place; the solution replaces the right side. A pivot that is lost to rounding
@@ -124,26 +151,47 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
 
     Fit fit;
 #pragma unroll
-    for (int i = 0; i < PRODUCTS; ++i) fit.products[i] = 0.0f;
+    for (int i = 0; i < MONOMIALS; ++i) fit.moments[i] = 0.0f;
 #pragma unroll
     for (int i = 0; i < TERMS; ++i) fit.right[i] = 0.0f;
     fit.weight = 0.0f;
+    const uintw none = (uintw)(0), one = (uintw)(1);
     for (; ring.row < ring.end; ++ring.row) {
         const uintw near_ = RING_SLOT(ring_entry(&ring, rings));
-        const maskw real = near_ != ring.self;
-        add_point(&fit, near_, real & spread, origin, u, v, n, scale, positions);
-        // Each lane walks the ring of its own neighbour, in that one's slice.
-        const uintw begin = gather_uint(slices, near_ / MESH_LANES),
-                    end = gather_uint(slices, near_ / MESH_LANES + 1);
-        const uint rows = largest_lane(selectw((uintw)(0), end - begin, real));
-        for (uint row = 0; row < rows; ++row) {
-            const maskw inside = real & (begin + row < end);
-            const uintw at = (selectw(begin, begin + row, inside)) * MESH_LANES + near_ % MESH_LANES;
-            const uintw far_ = RING_SLOT(gather_uint(rings, at));
-            add_point(&fit, selectw(ring.self, far_, inside), inside & (far_ != near_) & spread, origin, u, v,
-                      n, scale, positions);
+        const maskw real = (near_ != ring.self) & spread;
+        add_point(&fit, near_, real, origin, u, v, n, scale, positions);
+        // Each lane walks the ring of its own neighbour, in that one's slice. Where in it does this slot stand?
+        const uintw begin = gather_uint(slices, near_ / MESH_LANES);
+        const uintw rows = selectw(none, gather_uint(slices, near_ / MESH_LANES + 1) - begin, real);
+        const uint most = largest_lane(rows);
+        uintw length = none, here = none, walks = none;
+        maskw closed = real;
+        for (uint row = 0; row < most; ++row) {
+            const maskw inside = row < rows;
+            const uintw at = selectw(begin, begin + row, inside) * MESH_LANES + near_ % MESH_LANES;
+            const uintw entry = gather_uint(rings, at);
+            const maskw filled = inside & (RING_SLOT(entry) != near_);
+            length += selectw(none, one, filled);
+            walks += selectw(none, one, filled & ((entry & (uintw)(MESH_START)) != 0));
+            here = selectw(here, (uintw)(row), filled & (RING_SLOT(entry) == ring.self));
+            closed &= !(filled & ((entry & (uintw)(MESH_SINGLE)) != 0));
+        }
+        closed &= (walks == 1) & (length > 2);
+        // Closed: all but this slot, its two neighbours and the last one; with four in the ring just one is left.
+        const uintw rest = selectw(selectw(none, one, length == 4), length - 4, length > 4);
+        const uintw steps = selectw(length, rest, closed);
+        const uintw from = selectw(none, here + 2, closed);
+        const uint longest = largest_lane(steps);
+        for (uint step = 0; step < longest; ++step) {
+            const maskw inside = step < steps;
+            uintw row = selectw(none, from + step, inside);
+            row -= selectw(none, length, row >= length);
+            const uintw entry = gather_uint(rings, (begin + selectw(none, row, inside)) * MESH_LANES + near_ % MESH_LANES);
+            const uintw far_ = selectw(ring.self, RING_SLOT(entry), inside);
+            add_point(&fit, far_, inside & (far_ != ring.self), origin, u, v, n, scale, positions);
         }
     }
+    assemble(&fit);
     solve(&fit);
 
     // The second fundamental form of the graph, in an orthonormal frame of its tangent plane at the slot.
