@@ -1,0 +1,106 @@
+"""The promise that programs built against an older or newer pellucid.h keep working.
+
+    check_abi.py list HEADER_DIR              prints what the header promises now: functions, values, sizes
+    check_abi.py check HEADER_DIR LIBRARY     compares with promises.txt and with the library's exports, and runs one program
+                                              whose two halves were compiled against this and against a longer header
+
+A function or value in promises.txt stays; a structure may only grow, at its end. CC and CFLAGS choose the compiler.
+"""
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+CC = [*shlex.split(os.environ.get("CC", "cc")), *shlex.split(os.environ.get("CFLAGS", "")), "-std=c99", "-Wall", "-Werror"]
+
+
+def run(*command):
+    return subprocess.run([str(c) for c in command], check=True, stdout=subprocess.PIPE, text=True).stdout
+
+
+def promises(include):
+    """{"function pelX": 0, "value PEL_X": number, "size PelX": bytes} as the compiler sees the header."""
+    text = (include / "pellucid/pellucid.h").read_text(encoding="utf-8")
+    code = re.sub(r"/\*.*?\*/", "", text, flags=re.S)
+    functions = re.findall(r"PEL_API[^;(]*?\b(pel\w+)\(", code)
+    values = re.findall(r"\b(PEL_[A-Z0-9_]+)\s*=", code)
+    sizes = re.findall(r"typedef struct (Pel\w+) \{", code)
+    if min(len(functions), len(values), len(sizes)) < 15:
+        raise SystemExit(f"only {len(functions)} functions, {len(values)} values, {len(sizes)} structures: broken")
+    with tempfile.TemporaryDirectory() as work:
+        lines = [f'printf("value {v} %lld\\n", (long long){v});' for v in values]
+        lines += [f'printf("size {s} %lld\\n", (long long)sizeof({s}));' for s in sizes]
+        source = Path(work, "list.c")
+        source.write_text("#include <pellucid/pellucid.h>\n#include <stdio.h>\nint main(void) {\n" + "\n".join(lines) +
+                          "\nreturn 0; }\n")
+        run(*CC, "-I", include, source, "-o", Path(work, "list"))
+        measured = [line.rsplit(" ", 1) for line in run(Path(work, "list")).splitlines()]
+    return {f"function {f}": 0 for f in functions} | {name: int(number) for name, number in measured}
+
+
+def broken_promises(then, now):
+    for name, number in then.items():
+        if name not in now:
+            yield f"{name} was promised and is gone"
+        elif name.startswith("size") and now[name] < number:
+            yield f"{name} was {number} and is {now[name]}: a structure may only grow"
+        elif name.startswith("value") and now[name] != number:
+            yield f"{name} was {number} and is {now[name]}"
+
+
+def longer_header(include, to):
+    """The header of a later version: every structure that carries its size has four more fields at its end."""
+    (to / "pellucid").mkdir()
+    text = (include / "pellucid/pellucid.h").read_text(encoding="utf-8")
+    text, count = re.subn(r"(typedef struct (Pel\w+) \{\s*uint32_t structSize;.*?\n)(\} \2;)",
+                          r"\1    uint32_t later[4];\n\3", text, flags=re.S)
+    if count < 10:
+        raise SystemExit(f"{count} structures were made longer: broken")
+    (to / "pellucid/pellucid.h").write_text(text.replace("#define PEL_VERSION_MINOR 1", "#define PEL_VERSION_MINOR 2"))
+    defaults = (include / "pellucid/pellucid_defaults.h").read_text(encoding="utf-8")
+    (to / "pellucid/pellucid_defaults.h").write_text(defaults)
+
+
+def two_versions(include, library):
+    """One program from two headers: both halves use the one library, in C99."""
+    with tempfile.TemporaryDirectory() as name:
+        work = Path(name)
+        longer = work / "longer"
+        longer.mkdir()
+        longer_header(include, longer)
+        for half, folder in (("now", include), ("later", longer)):
+            run(*CC, f"-DHALF={half}", "-I", folder, "-c", HERE / "half.c", "-o", work / f"{half}.o")
+        run(*CC, HERE / "two_versions.c", work / "now.o", work / "later.o", "-o", work / "both", library,
+            f"-Wl,-rpath,{library.parent}", "-lm")
+        print(run(work / "both"), end="")
+
+
+def main(what, include, library=None):
+    include = Path(include).resolve()
+    now = promises(include)
+    if what == "list":
+        print("\n".join(f"{name} {number}" if number or not name.startswith("function") else name
+                        for name, number in now.items()))
+        return
+    lines = [line.split() for line in (HERE / "promises.txt").read_text().splitlines() if not line.startswith("#")]
+    then = {" ".join(words[:2]): int(words[2]) if len(words) > 2 else 0 for words in lines}
+    library = Path(library).resolve()
+    exported = set(re.findall(r" T (pel\w+)$", run("nm", "-D", "--defined-only", library), re.M))
+    wrong = list(broken_promises(then, now))
+    wrong += [f"{n} is promised and not exported" for n in then if n.startswith("function") and n.split()[1] not in exported]
+    # The comparison itself must be able to fail.
+    assert len(list(broken_promises({"size A": 8, "value B": 1, "function c": 0}, {"size A": 4, "value B": 2}))) == 3
+    if wrong:
+        raise SystemExit("\n".join(wrong))
+    print(f"{len(then)} promises kept")
+    two_versions(include, library)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (3, 4):
+        raise SystemExit(__doc__)
+    main(*sys.argv[1:])
