@@ -2,23 +2,23 @@
 
 namespace pel::python {
 
+namespace {
+// The table, and the event of its integration.
+template <class Desc, PelError (*Create)(PelDevice, const Desc*, PelLut*, const PelSubmit*)>
+std::pair<pellucid::Lut, pellucid::Event> created(const Device& d, const py::object& desc, const Waits& waits) {
+    PelLut handle = nullptr;
+    Submit submit(waits);
+    call([&, what = structOf<Desc>(desc)] { return Create(d.handle.get(), what, &handle, submit.get()); });
+    return {pellucid::Lut(handle), submit.done()};
+}
+}  // namespace
+
 void bindLut(py::module_& module) {
     using pellucid::Lut;
     py::class_<Lut>(module, "Lut")
-        .def_static("curvature", [](const Device& d, const py::object& desc, const Waits& waits) {
-            PelLut handle = nullptr;
-            Submit submit(waits);
-            const auto* what = structOf<PelCurvatureLutDesc>(desc);
-            call([&] { return pelCurvatureLutCreate(d.handle.get(), what, &handle, submit.get()); });
-            return std::make_pair(Lut(handle), submit.done());
-        })
-        .def_static("shadow", [](const Device& d, const py::object& desc, const Waits& waits) {
-            PelLut handle = nullptr;
-            Submit submit(waits);
-            const auto* what = structOf<PelShadowLutDesc>(desc);
-            call([&] { return pelShadowLutCreate(d.handle.get(), what, &handle, submit.get()); });
-            return std::make_pair(Lut(handle), submit.done());
-        })
+        .def_static("curvature", created<PelCurvatureLutDesc, pelCurvatureLutCreate>)
+        .def_static("shadow", created<PelShadowLutDesc, pelShadowLutCreate>)
+        .def_static("specular", created<PelSpecularLutDesc, pelSpecularLutCreate>)
         .def_static("from_texels", [](const Device& d, const py::object& info, uintptr_t texels, size_t bytes) {
             PelLut handle = nullptr;
             const auto* what = structOf<PelLutInfo>(info);

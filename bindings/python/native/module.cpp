@@ -19,5 +19,6 @@ PYBIND11_MODULE(_native, module) {
     bindDevice(module);
     bindBuffer(module);
     bindMesh(module);
+    bindProfile(module);
     bindLut(module);
 }

@@ -5,6 +5,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <functional>
@@ -89,6 +90,7 @@ void bindStructs(py::module_& module);
 void bindDevice(py::module_& module);
 void bindBuffer(py::module_& module);
 void bindMesh(py::module_& module);
+void bindProfile(py::module_& module);
 void bindLut(py::module_& module);
 
 }  // namespace pel::python

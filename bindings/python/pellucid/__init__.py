@@ -15,9 +15,10 @@ from ._types import __all__ as _type_names
 from .device import Buffer, Device, Event, devices, set_error_callback
 from .lut import Lut
 from .mesh import MeshTopology
+from .profile import Profile
 
 _number = _native.version()
 __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
 
-__all__ = ["Buffer", "Device", "Event", "Image", "Lut", "MeshTopology", "PellucidError", "Vertices",
+__all__ = ["Buffer", "Device", "Event", "Image", "Lut", "MeshTopology", "PellucidError", "Profile", "Vertices",
            "devices", "set_error_callback", *_type_names]

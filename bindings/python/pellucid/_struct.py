@@ -154,7 +154,7 @@ class ArrayField(_Field):
 
 
 class TextField(_Field):
-    """A string that the library fills in."""
+    """A string of limited length."""
 
     @overload
     def __get__(self, owner: None, kind: Any) -> TextField: ...
@@ -164,7 +164,10 @@ class TextField(_Field):
         return self if owner is None else bytes(owner._data[self.name][0]).decode("utf-8", "replace")
 
     def __set__(self, owner: Struct, value: str) -> None:
-        raise AttributeError(f"{type(owner).__name__}.{self.name} is set by the library")
+        data, size = value.encode(), owner._dtype[self.name].itemsize
+        if len(data) >= size:
+            raise self._fail(owner, value, f"at most {size - 1} bytes")
+        owner._data[self.name] = data
 
 
 class EnumField(_Field, Generic[E]):

@@ -10,14 +10,15 @@ from numpy.typing import NDArray
 from . import _flight, _native
 from ._arrays import output_array
 from ._struct import to_enum
-from ._types import CurvatureLutDesc, LutEncoding, LutInfo, LutKind, ShadowLutDesc
+from ._types import CurvatureLutDesc, LutEncoding, LutInfo, ShadowLutDesc, SpecularLutDesc
 from .device import Device, Event, _filled, _handles
+from .profile import Profile
 
 _TEXELS = {LutEncoding.FLOAT: (np.float32, 3), LutEncoding.HALF: (np.float16, 3), LutEncoding.FACEWORKS8: (np.uint8, 4)}
 
 
 class Lut:
-    """A table on the device; made by `curvature`, `shadow` or `from_texels`.
+    """A table on the device; made by `curvature`, `shadow`, `specular` or `from_texels`.
 
     Attributes
     ----------
@@ -31,7 +32,7 @@ class Lut:
     _handle: _native.Lut
 
     def __init__(self) -> None:
-        raise TypeError("make a table by Lut.curvature, Lut.shadow or Lut.from_texels")
+        raise TypeError("make a table by Lut.curvature, Lut.shadow, Lut.specular or Lut.from_texels")
 
     @classmethod
     def _made(cls, device: Device, handle: _native.Lut, event: Optional[_native.Event]) -> Lut:
@@ -43,31 +44,45 @@ class Lut:
         return self
 
     @classmethod
-    def curvature(cls, device: Device, desc: Optional[CurvatureLutDesc] = None, *, wait: bool = True,
-                  waits: Iterable[Event] = (), **fields: Any) -> Lut:
+    def curvature(cls, device: Device, desc: Optional[CurvatureLutDesc] = None, *, profile: Optional[Profile] = None,
+                  wait: bool = True, waits: Iterable[Event] = (), **fields: Any) -> Lut:
         """Integrates a curvature table: texel (x, y) is D(N.L, r) per channel, row 0 the smallest curvature.
 
         Parameters
         ----------
         desc : CurvatureLutDesc, optional
-            The defaults without it; `fields` are fields of it by themselves (width=256, radius_min=0.5, ...).
+            The defaults without it; `fields` are fields of it by themselves (width=256, form="sphere", ...).
+        profile : Profile, optional
+            Skin without it.
         wait : bool
             False: return once it is submitted; `ready` says when it is done.
         """
-        settings = _described(CurvatureLutDesc, desc, fields)
-        lut = cls._made(device, *_native.Lut.curvature(device._handle, settings._data, _handles(waits)))
-        return lut._waited(wait)
+        return cls._integrated(device, _native.Lut.curvature, CurvatureLutDesc, desc, fields, profile, wait, waits)
 
     @classmethod
-    def shadow(cls, device: Device, desc: Optional[ShadowLutDesc] = None, *, wait: bool = True,
-               waits: Iterable[Event] = (), **fields: Any) -> Lut:
+    def shadow(cls, device: Device, desc: Optional[ShadowLutDesc] = None, *, profile: Optional[Profile] = None,
+               wait: bool = True, waits: Iterable[Event] = (), **fields: Any) -> Lut:
         """Integrates a shadow table: texel (x, y) is the light transmitted per channel, row 0 the widest penumbra.
 
         The parameters are as for `curvature`, with ShadowLutDesc.
         """
-        settings = _described(ShadowLutDesc, desc, fields)
-        lut = cls._made(device, *_native.Lut.shadow(device._handle, settings._data, _handles(waits)))
-        return lut._waited(wait)
+        return cls._integrated(device, _native.Lut.shadow, ShadowLutDesc, desc, fields, profile, wait, waits)
+
+    @classmethod
+    def specular(cls, device: Device, desc: Optional[SpecularLutDesc] = None, *, wait: bool = True,
+                 waits: Iterable[Event] = (), **fields: Any) -> Lut:
+        """Tabulates Beckmann's distribution P(n.h, m) as P^0.1 / 2, row 0 the smallest m; see SpecularLutDesc."""
+        return cls._integrated(device, _native.Lut.specular, SpecularLutDesc, desc, fields, None, wait, waits)
+
+    @classmethod
+    def _integrated(cls, device: Device, create: Any, kind: Any, desc: Any, fields: dict[str, Any],
+                    profile: Optional[Profile], wait: bool, waits: Iterable[Event]) -> Lut:
+        settings = kind() if desc is None else desc.copy()
+        for name, value in fields.items():
+            setattr(settings, name, value)
+        if profile is not None:
+            settings._data["profile"] = profile._handle.address()  # the library's table keeps it alive
+        return cls._made(device, *create(device._handle, settings._data, _handles(waits)))._waited(wait)
 
     @classmethod
     def from_texels(cls, device: Device, info: LutInfo, texels: NDArray[np.float32]) -> Lut:
@@ -87,7 +102,11 @@ class Lut:
     @property
     def info(self) -> LutInfo:
         """What the table holds."""
-        return _filled(LutInfo, self._handle.info())
+        info = _filled(LutInfo, self._handle.info())
+        # The library's copy points to the table's profile, which this structure would outlive; its name stays.
+        for part in ("curvature", "shadow"):
+            info._data[part]["profile"] = 0
+        return info
 
     def read(self, encoding: LutEncoding | str = LutEncoding.FLOAT, out: Optional[NDArray[Any]] = None) -> NDArray[Any]:
         """The texels, top row first.
@@ -108,7 +127,7 @@ class Lut:
                      waits: Iterable[Event]) -> tuple[NDArray[Any], Event]:
         e = to_enum(LutEncoding, encoding, "encoding")
         info = self.info
-        size = info.curvature if info.kind == LutKind.CURVATURE else info.shadow
+        size = getattr(info, info.kind.name.lower())
         dtype, components = _TEXELS[e]
         result = output_array(out, (size.height, size.width, components), dtype, "out")
         if not result.flags.c_contiguous or not result.flags.writeable:
@@ -117,9 +136,3 @@ class Lut:
         _flight.hold(event, self, result)
         return result, Event(event)
 
-
-def _described(kind: Any, desc: Any, fields: dict[str, Any]) -> Any:
-    settings = kind() if desc is None else desc.copy()
-    for name, value in fields.items():
-        setattr(settings, name, value)
-    return settings

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _flight, _native
 from ._arrays import Span, Vertices, output_array, submit, vertex_view
 from ._struct import to_enum
-from ._types import CurvatureEstimator, CurvatureParams, MeshReport, Weld
+from ._types import CurvatureEstimator, CurvatureParams, CurvatureQuantity, MeshReport, Weld
 from .device import Device, Event, _handles
 
 
@@ -75,25 +75,26 @@ class MeshTopology:
 
     def curvature(self, positions: Any, normals: Any, out: Optional[NDArray[np.float32]] = None, *,
                   params: Optional[CurvatureParams] = None, estimator: CurvatureEstimator | str | None = None,
-                  smoothing_passes: Optional[int] = None, scale: Optional[float] = None,
-                  report: bool = False) -> NDArray[np.float32]:
-        """Curvature at each vertex, in 1/length, finite and at least 0.
+                  quantity: CurvatureQuantity | str | None = None, smoothing_passes: Optional[int] = None,
+                  scale: Optional[float] = None, report: bool = False) -> NDArray[np.float32]:
+        """Curvature at each vertex, in 1/length, finite; 0 where nothing could be measured.
 
         Parameters
         ----------
         positions, normals : (n, 3) float32
             Any positive row stride, in place; or Vertices of a Buffer. Normals are of unit length.
         out : (n,) float32, optional
-            Where the result goes, any positive stride; a new array without it.
+            Where the result goes, any positive stride; a new array without it. (n, 2) for the quantity "principal", (n, 8)
+            for "frame".
         params : CurvatureParams, optional
-        estimator, smoothing_passes, scale
+        estimator, quantity, smoothing_passes, scale
             Fields of it by themselves.
 
         report : bool
             Also count in `self.report` what these positions and normals made it skip.
         """
-        settings = _settings(params, estimator, smoothing_passes, scale)
-        result = out if isinstance(out, Vertices) else output_array(out, (self.num_vertices,), np.float32, "out")
+        settings = _settings(params, estimator, quantity, smoothing_passes, scale)
+        result = out if isinstance(out, Vertices) else output_array(out, _shape(self.num_vertices, settings), np.float32, "out")
         if report:
             # A call that reports blocks where Ctrl-C is not seen, so it is a short one, without smoothing.
             found, unsmoothed = MeshReport(), settings.copy()
@@ -104,15 +105,16 @@ class MeshTopology:
         return result
 
     def submit_curvature(self, positions: Any, normals: Any, out: Any, *, params: Optional[CurvatureParams] = None,
-                         estimator: CurvatureEstimator | str | None = None, smoothing_passes: Optional[int] = None,
+                         estimator: CurvatureEstimator | str | None = None,
+                         quantity: CurvatureQuantity | str | None = None, smoothing_passes: Optional[int] = None,
                          scale: Optional[float] = None, waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
-        return self._submit(positions, normals, out, _settings(params, estimator, smoothing_passes, scale), None, waits)
+        return self._submit(positions, normals, out, _settings(params, estimator, quantity, smoothing_passes, scale), None, waits)
 
     def _submit(self, positions: Any, normals: Any, out: Any, params: CurvatureParams, report: Optional[MeshReport],
                 waits: Iterable[Event]) -> Event:
         views = [vertex_view(self.device, positions, 3, "positions"), vertex_view(self.device, normals, 3, "normals"),
-                 vertex_view(self.device, out, 1, "out", output=True)]
+                 vertex_view(self.device, out, _COMPONENTS.get(params.quantity, 1), "out", output=True)]
         p, n, c = (v.native for v in views)
         event = submit(views, _handles(waits), lambda w: self._handle.curvature(
             params._data, p, n, c, None if report is None else report._data, w))
@@ -140,9 +142,19 @@ class MeshTopology:
         return self._handle.uv_scale(p, u)
 
 
-def _settings(params: Optional[CurvatureParams], estimator: Any, smoothing_passes: Any, scale: Any) -> CurvatureParams:
+# Floats per vertex of the quantities that have more than one.
+_COMPONENTS = {CurvatureQuantity.PRINCIPAL: 2, CurvatureQuantity.FRAME: 8}
+
+
+def _shape(vertices: int, params: CurvatureParams) -> tuple[int, ...]:
+    return (vertices, _COMPONENTS[params.quantity]) if params.quantity in _COMPONENTS else (vertices,)
+
+
+def _settings(params: Optional[CurvatureParams], estimator: Any, quantity: Any, smoothing_passes: Any,
+              scale: Any) -> CurvatureParams:
     settings = CurvatureParams() if params is None else params.copy()
-    for name, value in (("estimator", estimator), ("smoothing_passes", smoothing_passes), ("scale", scale)):
+    given = {"estimator": estimator, "quantity": quantity, "smoothing_passes": smoothing_passes, "scale": scale}
+    for name, value in given.items():
         if value is not None:
             setattr(settings, name, value)
     return settings

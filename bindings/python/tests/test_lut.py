@@ -78,11 +78,30 @@ def test_texels_go_there_and_back(device):
 
 
 @pytest.mark.parametrize("fields", [dict(width=0), dict(radius_min=-1.0), dict(radius_max=float("nan")),
-                                    dict(diffusion_radius=0.0)])
+                                    dict(diffusion_radius=-2.0)])
 def test_bad_descriptions(device, fields):
     with pytest.raises(pel.PellucidError) as caught:
         pel.Lut.curvature(device, **fields)
     assert caught.value.code is pel.ErrorCode.INVALID_ARGUMENT and str(caught.value)
+
+
+def test_specular_is_beckmann(device, tolerance):
+    texels = pel.Lut.specular(device, width=64, height=32).read()
+    nh, m = (np.arange(64) + 0.5) / 64, ((np.arange(32) + 0.5) / 32)[:, None]
+    tan2 = 1 / nh**2 - 1
+    assert np.abs(texels[..., 0] - 0.5 * (np.exp(-tan2 / m**2) / (m**2 * nh**4)) ** 0.1).max() < tolerance["lutTexel"] * 10
+
+
+def test_profiles_reach_the_table(device):
+    narrow = pel.Profile.gaussians([(0.01, 1)], name="narrow")
+    lut = pel.Lut.curvature(device, width=64, height=8, profile=narrow, diffusion_radius=0)
+    assert lut.info.profile == "narrow"
+    u = -1 + (np.arange(64) + 0.5) * 2 / 64
+    # sigma is 0.1: at radius 1 it smears the terminator by about 0.1 and no more.
+    assert np.abs(lut.read() - np.maximum(u, 0)[None, :, None]).max() < 0.05
+    again = pel.Lut.from_texels(device, lut.info, lut.read())
+    del lut, narrow
+    assert again.info.profile == "narrow"
 
 
 def test_bad_use(device):

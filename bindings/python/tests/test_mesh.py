@@ -26,6 +26,17 @@ def test_scale_and_params(device, sphere):
     assert params.scale == 3
 
 
+def test_quantities_have_their_shapes(device, make_sphere):
+    mesh = make_sphere(5.0)
+    frame = curvature_of(device, mesh, estimator="tensor", quantity="frame")
+    assert frame.shape == (len(mesh.positions), 8)
+    principal = curvature_of(device, mesh, estimator="tensor", quantity=pel.CurvatureQuantity.PRINCIPAL)
+    assert np.array_equal(principal, frame[:, :2]) and np.abs(principal * 5 - 1).max() < 1e-2
+    assert np.abs(np.linalg.norm(frame[1:-1, 2:5], axis=1) - 1).max() < 1e-5
+    with pytest.raises(ValueError, match="shape .*8"):
+        curvature_of(device, mesh, estimator="tensor", quantity="frame", out=np.empty(len(mesh.positions), np.float32))
+
+
 def interleaved(mesh):
     vertex = np.zeros(len(mesh.positions), [("p", "f4", 3), ("pad", "f4"), ("n", "f4", 3), ("c", "f4"), ("uv", "f4", 2)])
     vertex["p"], vertex["n"], vertex["c"] = mesh.positions, mesh.normals, -1

@@ -1,0 +1,58 @@
+#include "progress.h"
+
+namespace pel::python {
+
+namespace {
+using pellucid::Profile;
+using Triple = std::array<float, 3>;
+
+Profile named(const std::string& name, const std::function<PelError(PelProfile*)>& create) {
+    PelProfile handle = nullptr;
+    call([&] { return create(&handle); });
+    Profile profile(handle);
+    if (!name.empty()) call([&] { return pelProfileSetName(handle, name.c_str()); });
+    return profile;
+}
+}  // namespace
+
+void bindProfile(py::module_& module) {
+    py::class_<Profile>(module, "Profile")
+        .def_static("skin", [](const std::string& name) { return named(name, pelProfileCreateSkin); })
+        .def_static("gaussians", [](const std::vector<std::pair<float, Triple>>& terms, const std::string& name) {
+            std::vector<PelGaussian> all;
+            for (const auto& [variance, weight] : terms) all.push_back({variance, {weight[0], weight[1], weight[2]}});
+            return named(name, [&](PelProfile* out) {
+                return pelProfileCreateGaussians(all.data(), uint32_t(all.size()), out);
+            });
+        })
+        .def_static("burley", [](const Triple& path, const Triple& albedo, uint32_t fit, const std::string& name) {
+            return named(name, [&](PelProfile* out) {
+                return pelProfileCreateBurley(path.data(), albedo.data(), PelBurleyFit(fit), out);
+            });
+        })
+        .def_static("dipole", [](const Triple& absorption, const Triple& scattering, float eta, const std::string& name) {
+            return named(name, [&](PelProfile* out) {
+                return pelProfileCreateDipole(absorption.data(), scattering.data(), eta, out);
+            });
+        })
+        .def_static("table", [](uintptr_t distances, uintptr_t values, uint32_t count, const std::string& name) {
+            return named(name, [&](PelProfile* out) {
+                return pelProfileCreateTable(static_cast<const float*>(pointer(distances)),
+                                             static_cast<const float*>(pointer(values)), count, out);
+            });
+        })
+        .def("info", [](const Profile& p) {
+            PelProfileInfo info = pelProfileInfoDefaults();
+            call([&] { return pelProfileGetInfo(p.get(), &info); });
+            return bytesOf(info);
+        })
+        .def("evaluate", [](const Profile& p, uintptr_t distances, uint32_t count, uintptr_t radial, uintptr_t spread) {
+            call([&] {
+                return pelProfileEvaluate(p.get(), static_cast<const double*>(pointer(distances)), count,
+                                          static_cast<double*>(pointer(radial)), static_cast<double*>(pointer(spread)));
+            });
+        })
+        .def("address", [](const Profile& p) { return address(p.get()); });
+}
+
+}  // namespace pel::python

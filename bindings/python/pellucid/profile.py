@@ -1,0 +1,82 @@
+"""Diffusion profiles."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _native
+from ._struct import to_enum
+from ._types import BurleyFit, ProfileInfo
+from .device import _filled
+
+
+def _triple(value: ArrayLike, what: str) -> list[float]:
+    numbers = np.asarray(value, np.float64)
+    if numbers.shape not in ((), (3,)):
+        raise ValueError(f"{what} has the shape {numbers.shape}; one number, or three for red, green and blue, are needed")
+    return [float(x) for x in np.broadcast_to(numbers, 3)]
+
+
+class Profile:
+    """How much of the light that enters at one point leaves at a distance, per RGB channel.
+
+    Made by `skin`, `gaussians`, `burley`, `dipole` or `table`; belongs to no device and never changes. Lengths are in any one
+    unit. Each channel is normalised. `name` is what tables and their files carry, up to 63 bytes.
+    """
+
+    _handle: _native.Profile
+
+    def __init__(self) -> None:
+        raise TypeError("make a profile by Profile.skin, gaussians, burley, dipole or table")
+
+    @classmethod
+    def _made(cls, handle: _native.Profile) -> Profile:
+        self = cls.__new__(cls)
+        self._handle = handle
+        return self
+
+    @classmethod
+    def skin(cls, name: str = "") -> Profile:
+        """Six Gaussians in mm [d'Eon and Luebke, GPU Gems 3, ch. 14]."""
+        return cls._made(_native.Profile.skin(name))
+
+    @classmethod
+    def gaussians(cls, terms: Sequence[tuple[float, ArrayLike]], name: str = "") -> Profile:
+        """1 to 256 pairs of a variance (length², > 0) and a weight (one number or RGB, >= 0)."""
+        return cls._made(_native.Profile.gaussians([(float(v), _triple(w, "a weight")) for v, w in terms], name))
+
+    @classmethod
+    def burley(cls, mean_free_path: ArrayLike, albedo: ArrayLike, fit: BurleyFit | str = BurleyFit.DIFFUSE_TRANSMISSION,
+               name: str = "") -> Profile:
+        """From mean free paths (length, > 0) and albedos in [0, 1] [Christensen and Burley 2015]."""
+        return cls._made(_native.Profile.burley(_triple(mean_free_path, "mean_free_path"), _triple(albedo, "albedo"),
+                                                int(to_enum(BurleyFit, fit, "fit")), name))
+
+    @classmethod
+    def dipole(cls, absorption: ArrayLike, reduced_scattering: ArrayLike, eta: float = 1.3, name: str = "") -> Profile:
+        """The classical dipole from coefficients in 1/length (> 0) and a relative index > 1 [Jensen et al. 2001]."""
+        return cls._made(_native.Profile.dipole(_triple(absorption, "absorption"),
+                                                _triple(reduced_scattering, "reduced_scattering"), eta, name))
+
+    @classmethod
+    def table(cls, distances: ArrayLike, values: ArrayLike, name: str = "") -> Profile:
+        """Measured R: (n,) rising distances and (n, 3) values, up to a factor; 2 to 4096 of them."""
+        d = np.ascontiguousarray(distances, np.float32)
+        r = np.ascontiguousarray(values, np.float32)
+        if d.ndim != 1 or r.shape != (len(d), 3):
+            raise ValueError(f"distances have the shape {d.shape} and values {r.shape}; (n,) and (n, 3) are needed")
+        return cls._made(_native.Profile.table(d.ctypes.data, r.ctypes.data, len(d), name))
+
+    @property
+    def info(self) -> ProfileInfo:
+        """Radius, widths, normal blend factors."""
+        return _filled(ProfileInfo, self._handle.info())
+
+    def evaluate(self, distances: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """R (energy per area) and P (energy per length), (n, 3) each, at n distances > 0."""
+        d = np.ascontiguousarray(distances, np.float64).ravel()
+        radial, spread = np.empty((len(d), 3)), np.empty((len(d), 3))
+        self._handle.evaluate(d.ctypes.data, len(d), radial.ctypes.data, spread.ctypes.data)
+        return radial, spread
