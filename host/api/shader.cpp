@@ -1,0 +1,88 @@
+#include "ops/shader.h"
+
+#include "api/entry.h"
+#include "core/submission.h"
+
+using namespace pel;
+
+PelError pelShaderCreate(PelDevice device, PelShader* shader) {
+    return entry([&] {
+        output(shader, "shader") = toHandle<PelShader>(make<Shader>(Ref(&fromHandle<Device>(device))));
+    });
+}
+
+void pelShaderRetain(PelShader shader) {
+    retainHandle(shader);
+}
+void pelShaderRelease(PelShader shader) {
+    releaseHandle(shader);
+}
+
+PelError pelShaderSetOptions(PelShader shader, const PelShaderOptions* options) {
+    return entry([&] {
+        fromHandle<Shader>(shader).setOptions(
+            readStruct(options, pelShaderOptionsDefaults(), "PelShaderOptions"));
+    });
+}
+
+PelError pelShaderSetImage(PelShader shader, PelImageSlot slot, const PelImageDesc* image) {
+    return entry([&] {
+        Shader& s = fromHandle<Shader>(shader);
+        if (!image) return s.setImage(slot, nullptr);
+        const PelImageDesc desc = readStruct(image, pelImageDescDefaults(), "PelImageDesc");
+        s.setImage(slot, &desc);
+    });
+}
+
+PelError pelShaderSetMaterial(PelShader shader, uint32_t id, const PelMaterial* material, PelLut curvatureLut,
+                              PelLut shadowLut) {
+    return entry([&] {
+        Shader& s = fromHandle<Shader>(shader);
+        if (!material) return s.setMaterial(id, nullptr, nullptr, nullptr);
+        const PelMaterial m = readStruct(material, pelMaterialDefaults(), "PelMaterial");
+        s.setMaterial(id, &m, curvatureLut ? &fromHandle<Lut>(curvatureLut) : nullptr,
+                      shadowLut ? &fromHandle<Lut>(shadowLut) : nullptr);
+    });
+}
+
+PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t count) {
+    return entry([&] { fromHandle<Shader>(shader).setLights(lights, count); });
+}
+
+PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot,
+                                const PelImageDesc* image) {
+    return entry([&] {
+        Shader& s = fromHandle<Shader>(shader);
+        if (!image) return s.setLightImage(light, slot, nullptr);
+        const PelImageDesc desc = readStruct(image, pelImageDescDefaults(), "PelImageDesc");
+        s.setLightImage(light, slot, &desc);
+    });
+}
+
+PelError pelShaderSetAmbient(PelShader shader, const PelAmbient* ambient) {
+    return entry([&] {
+        fromHandle<Shader>(shader).setAmbient(readStruct(ambient, pelAmbientDefaults(), "PelAmbient"));
+    });
+}
+
+PelError pelShaderSetCamera(PelShader shader, const PelCamera* camera) {
+    return entry(
+        [&] { fromHandle<Shader>(shader).setCamera(readStruct(camera, pelCameraDefaults(), "PelCamera")); });
+}
+
+PelError pelShaderCommit(PelShader shader) {
+    return entry([&] { fromHandle<Shader>(shader).commit(); });
+}
+
+PelError pelShaderExecute(PelShader shader, const PelSubmit* submit) {
+    return entry([&] {
+        Shader& s = fromHandle<Shader>(shader);
+        Submission submission(s.device(), submit);
+        s.execute();
+        submission.finish();
+    });
+}
+
+PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats) {
+    return entry([&] { writeStruct(stats, fromHandle<Shader>(shader).stats(), "PelShaderStats"); });
+}

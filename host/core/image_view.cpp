@@ -1,0 +1,106 @@
+#include "core/image_view.h"
+
+namespace pel {
+namespace {
+
+constexpr FormatInfo formats[] = {
+    {"undefined", 0, 0, 0, false},
+    {"R32F", 1, 4, 4, false},
+    {"RG32F", 2, 4, 8, false},
+    {"RGB32F", 3, 4, 12, false},
+    {"RGBA32F", 4, 4, 16, false},
+    {"R16F", 1, 2, 2, false},
+    {"RG16F", 2, 2, 4, false},
+    {"RGB16F", 3, 2, 6, false},
+    {"RGBA16F", 4, 2, 8, false},
+    {"R8_UNORM", 1, 1, 1, false},
+    {"RGBA8_UNORM", 4, 1, 4, false},
+    {"RGBA8_SRGB", 4, 1, 4, false},
+    {"R16_UNORM", 1, 2, 2, false},
+    {"OCT16X2_SNORM", 2, 4, 4, false},  // read as one word, like the next
+    {"A2B10G10R10_UNORM", 4, 4, 4, false},
+    {"R8_UINT", 1, 1, 1, false},
+    {"R16_UINT", 1, 2, 2, false},
+    {"R32_UINT", 1, 4, 4, false},
+    {"PLANAR_RGB32F", 3, 4, 4, true},
+};
+
+}  // namespace
+
+const FormatInfo* formatInfo(PelFormat format) {
+    const auto index = size_t(format);
+    return index > 0 && index < std::size(formats) ? &formats[index] : nullptr;
+}
+
+uint64_t ImageView::byteEnd() const {
+    const uint64_t planes = info().planar ? (info().components - 1) * planeStride : 0;
+    return byteOffset + planes + (height - 1) * rowStride + (width - 1) * pixelStride + info().pixelBytes;
+}
+
+ImageView makeImageView(const PelImageDesc& desc, Device& device, const char* what) {
+    const FormatInfo* format = formatInfo(desc.format);
+    if (!format)
+        invalidArgument("the ", what, " image has format ", int(desc.format), ", which is none of PelFormat");
+    if (desc.width == 0 || desc.height == 0 || desc.width > 16384 || desc.height > 16384)
+        invalidArgument("the ", what, " image is ", desc.width, " x ", desc.height,
+                        "; both must be between 1 and 16384");
+    ImageView view;
+    view.buffer = Ref(&fromHandle<Buffer>(desc.buffer));
+    if (&view.buffer->device() != &device)
+        invalidArgument("the buffer of the ", what, " image belongs to another PelDevice than the shader");
+    view.format = desc.format;
+    view.width = desc.width;
+    view.height = desc.height;
+    view.byteOffset = desc.byteOffset;
+    view.pixelStride = desc.pixelStride ? desc.pixelStride : format->pixelBytes;
+    if (view.pixelStride > 1u << 16)
+        invalidArgument("the ", what, " image's pixelStride is ", view.pixelStride,
+                        "; 65536 bytes is the most");
+    view.rowStride = desc.rowStride ? desc.rowStride : view.width * view.pixelStride;
+    view.planeStride = desc.planeStride ? desc.planeStride : view.height * view.rowStride;
+    const struct {
+        const char* name;
+        uint64_t value;
+    } aligned[] = {{"byteOffset", view.byteOffset},
+                   {"pixelStride", view.pixelStride},
+                   {"rowStride", view.rowStride},
+                   {"planeStride", format->planar ? view.planeStride : 0}};
+    for (const auto& [name, value] : aligned)
+        if (value % format->componentBytes)
+            invalidArgument("the ", what, " image's ", name, " is ", value, "; format ", format->name,
+                            " needs a multiple of ", format->componentBytes);
+    if (view.pixelStride < format->pixelBytes)
+        invalidArgument("the ", what, " image's pixelStride is ", view.pixelStride, ", less than the ",
+                        format->pixelBytes, " bytes of a pixel of ", format->name);
+    if (view.rowStride > UINT32_MAX || view.planeStride > uint64_t(1) << 40)
+        invalidArgument("the ", what, " image's rowStride is ", view.rowStride, " and planeStride ",
+                        view.planeStride, ": below 4 GiB and 1 TiB they must be");
+    if (view.height > 1 && view.rowStride < (view.width - 1) * view.pixelStride + format->pixelBytes)
+        invalidArgument("the ", what, " image's rowStride is ", view.rowStride, ", less than the ",
+                        (view.width - 1) * view.pixelStride + format->pixelBytes, " bytes of its row");
+    if (view.byteOffset > view.buffer->bytes() || view.byteEnd() > view.buffer->bytes())
+        invalidArgument("the ", what, " image (", view.width, " x ", view.height, " ", format->name,
+                        " from byte ", view.byteOffset, " on) ends at byte ", view.byteEnd(),
+                        " of a buffer of ", view.buffer->bytes());
+    return view;
+}
+
+bool overlapsElsewhere(const ImageView& a, const ImageView& b) {
+    if (a.buffer.get() != b.buffer.get() && a.buffer->memory().get() != b.buffer->memory().get())
+        return false;
+    if (a.byteEnd() <= b.byteOffset || b.byteEnd() <= a.byteOffset) return false;
+    // Pixels of one and the same layout: interleaved components, or the very same image.
+    const bool samePixels =
+        a.pixelStride == b.pixelStride && a.rowStride == b.rowStride && !a.info().planar && !b.info().planar;
+    const uint64_t apart =
+        a.byteOffset > b.byteOffset ? a.byteOffset - b.byteOffset : b.byteOffset - a.byteOffset;
+    const uint64_t width = std::max(a.byteOffset + a.info().pixelBytes, b.byteOffset + b.info().pixelBytes) -
+                           std::min(a.byteOffset, b.byteOffset);
+    if (samePixels && width <= a.pixelStride) return false;
+    const bool samePlanes = a.info().planar && b.info().planar && apart == 0 &&
+                            a.pixelStride == b.pixelStride && a.rowStride == b.rowStride &&
+                            a.planeStride == b.planeStride;
+    return !samePlanes;
+}
+
+}  // namespace pel

@@ -1,0 +1,194 @@
+// Commit and execution of a PelShader: programs, scratch memory, launches, stats.
+#include "ops/shader.h"
+#include "shared/features.h"
+
+namespace pel {
+namespace {
+
+static_assert(PEL_BIT_DIRECT_SCATTER == PEL_FEATURE_DIRECT_SCATTER && PEL_BIT_SHADOW == PEL_FEATURE_SHADOW &&
+              PEL_BIT_SHADOW_LUT == PEL_FEATURE_SHADOW_LUT && PEL_BIT_AMBIENT == PEL_FEATURE_AMBIENT &&
+              PEL_BIT_DEEP_SCATTER == PEL_FEATURE_DEEP_SCATTER &&
+              PEL_BIT_THICKNESS_TAPS == PEL_FEATURE_THICKNESS_TAPS &&
+              PEL_BIT_SPECULAR == PEL_FEATURE_SPECULAR);
+static_assert(PEL_FMT_R32F == PEL_FORMAT_R32F && PEL_FMT_RGBA16F == PEL_FORMAT_RGBA16F &&
+              PEL_FMT_R8_UNORM == PEL_FORMAT_R8_UNORM && PEL_FMT_RGBA8_SRGB == PEL_FORMAT_RGBA8_SRGB &&
+              PEL_FMT_OCT16X2_SNORM == PEL_FORMAT_OCT16X2_SNORM && PEL_FMT_R8_UINT == PEL_FORMAT_R8_UINT &&
+              PEL_FMT_PLANAR_RGB32F == PEL_FORMAT_PLANAR_RGB32F);
+static_assert(PEL_IMAGE_SLOTS == PEL_SLOT_COUNT);
+
+constexpr const char* formatDefines[PEL_SLOT_COUNT] = {
+    "PEL_FORMAT_RADIANCE",         "PEL_FORMAT_MATERIAL",
+    "PEL_FORMAT_POSITION",         "PEL_FORMAT_DEPTH",
+    "PEL_FORMAT_NORMAL_GEOMETRIC", "PEL_FORMAT_NORMAL_SHADING",
+    "PEL_FORMAT_NORMAL_BLURRED",   "PEL_FORMAT_CURVATURE",
+    "PEL_FORMAT_ALBEDO",           "PEL_FORMAT_AMBIENT_OCCLUSION",
+    "PEL_FORMAT_THICKNESS",        "PEL_FORMAT_ROUGHNESS",
+    "PEL_FORMAT_SPECULAR"};
+
+constexpr uint32_t classifyGroup = 16;
+
+// CPUs run one vector of pixels after another in each work-item; GPUs want a full work-group in a tile.
+uint32_t shadeGroup(const Device& device) {
+    return device.info().mathWidth > 1 ? 1 : 64;
+}
+
+// Images whose pixels are read one by one get another variant than tight ones.
+uint32_t formatCode(const ImageView& view, uint32_t mathWidth) {
+    if (!view) return 0;
+    const bool vectors = view.tightlyPacked() && view.width >= mathWidth;
+    return uint32_t(view.format) | (vectors ? 0 : PEL_FMT_STRIDED);
+}
+
+// Slots that no feature reads are left out: fewer variants, and no input that cannot matter.
+bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
+    switch (slot) {
+        case PEL_SLOT_POSITION:
+            return features & (PEL_BIT_SPECULAR | PEL_BIT_THICKNESS_TAPS | PEL_BIT_POSITIONAL);
+        case PEL_SLOT_DEPTH:
+            return !state.images[PEL_SLOT_POSITION] && slotIsRead(state, PEL_SLOT_POSITION, features);
+        case PEL_SLOT_NORMAL_GEOMETRIC:
+            return !state.images[PEL_SLOT_NORMAL_BLURRED] ||
+                   features & (PEL_BIT_SHADOW_LUT | PEL_BIT_THICKNESS_TAPS);
+        case PEL_SLOT_CURVATURE:
+            return features & PEL_BIT_DIRECT_SCATTER;
+        case PEL_SLOT_AMBIENT_OCCLUSION:
+            return features & PEL_BIT_AMBIENT;
+        case PEL_SLOT_THICKNESS:
+            return features & PEL_BIT_DEEP_SCATTER;
+        case PEL_SLOT_ROUGHNESS:
+        case PEL_SLOT_SPECULAR:
+            return features & PEL_BIT_SPECULAR;
+        default:
+            return true;
+    }
+}
+
+cl::Defines variant(const ShaderState& state, uint32_t features, const Device& device) {
+    if (state.options.accumulate) features |= PEL_BIT_ACCUMULATE;
+    if (state.options.disableSkipping) features |= PEL_BIT_NO_SKIPPING;
+    if (state.options.countPixels) features |= PEL_BIT_COUNT;
+    uint32_t wide = 0, map = 0;
+    for (const ShaderLight& light : state.lights) {
+        if (light.params.type != PEL_LIGHT_DIRECTIONAL) features |= PEL_BIT_POSITIONAL;
+        wide |= formatCode(light.images[PEL_LIGHT_WIDE_SHADOW], device.info().mathWidth);
+        map |= formatCode(light.images[PEL_LIGHT_SHADOW_MAP], 1);
+    }
+    cl::Defines defines{
+        {"PEL_FEATURES", std::to_string(features)},
+        {"PEL_SHADE_GROUP", std::to_string(shadeGroup(device))},
+        {"PEL_CLASSIFY_GROUP", std::to_string(classifyGroup)},
+        {"PEL_FORMAT_WIDE_SHADOW", std::to_string(wide)},
+        {"PEL_FORMAT_SHADOW_MAP", std::to_string(features & PEL_BIT_THICKNESS_TAPS ? map : 0)}};
+    for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) {
+        const uint32_t code =
+            slotIsRead(state, slot, features) ? formatCode(state.images[slot], device.info().mathWidth) : 0;
+        defines[formatDefines[slot]] = std::to_string(code);
+    }
+    return defines;
+}
+
+}  // namespace
+
+void Shader::commit() {
+    const uint32_t features = deriveFeatures(state_);
+    Device& device = *device_;
+    const cl::Defines defines = variant(state_, features, device);
+    const uint32_t before = device.programs().built();
+    cl::Program shade = device.programs().get("shade.cl", defines), classify;
+    if (state_.images[PEL_SLOT_MATERIAL])
+        classify = device.programs().get(
+            "classify_tiles.cl",
+            {{"PEL_FORMAT_MATERIAL", defines.at("PEL_FORMAT_MATERIAL")},
+             {"PEL_FEATURES", state_.options.disableSkipping ? text(PEL_BIT_NO_SKIPPING) : "0"},
+             {"PEL_CLASSIFY_GROUP", text(classifyGroup)}});
+    programsBuilt_ += device.programs().built() - before;
+    bytesUploaded_ += tables_.update(device, state_);
+    const size_t listBytes = classify ? (1 + size_t(tables_.frame().tiles)) * sizeof(cl_uint) : 0;
+    if (listBytes != tileListBytes_) {
+        tileListBytes_ = 0;
+        tileList_ = listBytes ? device.allocate(listBytes) : cl::Memory();
+        tileListBytes_ = listBytes;
+    }
+    if (!counters_ && state_.options.countPixels) counters_ = device.allocate(PEL_COUNTERS * sizeof(cl_uint));
+    shadeProgram_ = shade;
+    classifyProgram_ = classify;
+    features_ = features;
+    committed_ = true;
+}
+
+void Shader::execute() {
+    if (!committed_)
+        fail(PEL_ERROR_INVALID_STATE,
+             "something was set after the last pelShaderCommit, or nothing was committed yet");
+    events_.clear();
+    launches_ = 0;
+    const cl_uint zero = 0;
+    const auto clear = [&](const cl::Memory& memory, size_t bytes) {
+        cl::check(clEnqueueFillBuffer(device_->queue(), memory.get(), &zero, sizeof zero, 0, bytes, 0,
+                                      nullptr, nullptr),
+                  "clEnqueueFillBuffer");
+    };
+    if (classifyProgram_) {
+        clear(tileList_, sizeof zero);
+        enqueueTiles();
+    }
+    if (state_.options.countPixels) clear(counters_, PEL_COUNTERS * sizeof zero);
+    enqueueShade();
+    uploadedBefore_ = std::exchange(bytesUploaded_, 0);
+    executed_ = true;
+}
+
+void Shader::enqueueTiles() {
+    cl::Launch launch(classifyProgram_, "classify_tiles");
+    launch.arg(tables_.frameMemory()).arg(state_.images[PEL_SLOT_MATERIAL].buffer->memory()).arg(tileList_);
+    events_.push_back(device_->launch(launch, {{tables_.frame().tiles, 1, 1}, {classifyGroup, 1, 1}}));
+    ++launches_;
+}
+
+void Shader::enqueueShade() {
+    cl::Launch launch(shadeProgram_, "shade");
+    launch.arg(tables_.frameMemory()).arg(tables_.materials()).arg(tables_.lights()).arg(tables_.luts());
+    launch.arg(tileList_).arg(counters_);
+    for (const ImageView& view : state_.images) launch.arg(view ? view.buffer->memory() : cl::Memory());
+    const auto& lightBuffers = tables_.lightBuffers();
+    for (size_t i = 0; i < PEL_LIGHT_BUFFERS; ++i)
+        launch.arg(i < lightBuffers.size() ? lightBuffers[i] : cl::Memory());
+    // Enough groups to keep every unit busy to the end; each takes tiles in turn, so that no host waits for
+    // their count.
+    const size_t group = shadeGroup(*device_);
+    const size_t groups = std::min<size_t>(tables_.frame().tiles, 64 * size_t(device_->info().computeUnits));
+    events_.push_back(device_->launch(launch, {{groups * group, 1, 1}, {group, 1, 1}}));
+    ++launches_;
+}
+
+PelShaderStats Shader::stats() {
+    device_->finish();
+    PelShaderStats stats = pelShaderStatsDefaults();
+    stats.features = features_;
+    stats.programsBuilt = programsBuilt_;
+    stats.scratchBytes =
+        tables_.scratchBytes() + tileListBytes_ + (counters_ ? PEL_COUNTERS * sizeof(cl_uint) : 0);
+    if (!executed_) return stats;
+    stats.launches = launches_;
+    stats.bytesUploaded = uploadedBefore_;
+    stats.tilesTotal = stats.tilesShaded = tables_.frame().tiles;
+    stats.pixelsTotal = uint64_t(tables_.frame().width) * tables_.frame().height;
+    if (classifyProgram_ && committed_) {
+        cl_uint shaded = 0;
+        device_->read(tileList_.get(), 0, sizeof shaded, &shaded, true);
+        stats.tilesShaded = shaded;
+    }
+    if (state_.options.countPixels && committed_) {
+        cl_uint counts[PEL_COUNTERS];
+        device_->read(counters_.get(), 0, sizeof counts, counts, true);
+        stats.pixelsShaded = counts[PEL_COUNT_SHADED];
+        stats.pixelsShadowLut = counts[PEL_COUNT_SHADOW_LUT];
+        stats.pixelsThickness = counts[PEL_COUNT_THICKNESS];
+        stats.pixelsSpecular = counts[PEL_COUNT_SPECULAR];
+        stats.pixelsInvalid = counts[PEL_COUNT_INVALID];
+    }
+    for (const cl::Event& event : events_) stats.deviceMilliseconds += eventMilliseconds(event);
+    return stats;
+}
+
+}  // namespace pel

@@ -1,0 +1,73 @@
+// PelShader: what the caller set (ShaderState), and what a commit made of it (ShaderPlan).
+#pragma once
+#include <array>
+#include <map>
+#include <vector>
+
+#include "core/image_view.h"
+#include "core/lut.h"
+#include "ops/shade_tables.h"
+
+namespace pel {
+
+struct ShaderMaterial {
+    PelMaterial params;
+    Ref<Lut> curvatureLut, shadowLut;
+};
+
+struct ShaderLight {
+    PelLight params;
+    std::array<ImageView, PEL_LIGHT_SLOT_COUNT> images;
+};
+
+struct ShaderState {
+    PelShaderOptions options = pelShaderOptionsDefaults();
+    std::array<ImageView, PEL_SLOT_COUNT> images;
+    std::map<uint32_t, ShaderMaterial> materials;
+    std::vector<ShaderLight> lights;
+    PelAmbient ambient = pelAmbientDefaults();
+    PelCamera camera = pelCameraDefaults();
+};
+
+const char* slotName(PelImageSlot slot);
+const char* lightSlotName(PelLightSlot slot);
+
+// PelFeature bits of what is bound and non-zero. Throws when something needed is missing or does not fit.
+uint32_t deriveFeatures(const ShaderState& state);
+
+class Shader final : public Object {
+  public:
+    static constexpr Kind kind = Kind::shader;
+    explicit Shader(Ref<Device> device);
+
+    void setOptions(const PelShaderOptions& options);
+    void setImage(PelImageSlot slot, const PelImageDesc* image);
+    void setMaterial(uint32_t id, const PelMaterial* material, Lut* curvatureLut, Lut* shadowLut);
+    void setLights(const PelLight* lights, uint32_t count);
+    void setLightImage(uint32_t light, PelLightSlot slot, const PelImageDesc* image);
+    void setAmbient(const PelAmbient& ambient);
+    void setCamera(const PelCamera& camera);
+    void commit();
+    void execute();
+    PelShaderStats stats();
+    Device& device() const { return *device_; }
+
+  private:
+    ~Shader() override = default;
+    void enqueueTiles();
+    void enqueueShade();
+
+    Ref<Device> device_;
+    ShaderState state_;
+    ShadeTables tables_;
+    bool committed_ = false;
+    uint32_t features_ = 0;
+    cl::Program classifyProgram_, shadeProgram_;
+    cl::Memory tileList_, counters_;
+    size_t tileListBytes_ = 0;
+    uint64_t programsBuilt_ = 0, launches_ = 0, bytesUploaded_ = 0, uploadedBefore_ = 0;
+    bool executed_ = false;
+    std::vector<cl::Event> events_;
+};
+
+}  // namespace pel

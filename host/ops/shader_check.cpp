@@ -1,0 +1,185 @@
+// What a shader accepts, value by value as it is set and as a whole at commit.
+#include "ops/shader_check.h"
+
+#include <cmath>
+#include <initializer_list>
+
+namespace pel {
+namespace {
+
+constexpr const char* slotNames[PEL_SLOT_COUNT] = {
+    "radiance",       "material",       "position",  "depth",  "geometric normal",
+    "shading normal", "blurred normal", "curvature", "albedo", "ambient occlusion",
+    "thickness",      "roughness",      "specular"};
+
+enum class Content { scalar, id, color, normal, output };
+
+Content content(PelImageSlot slot) {
+    switch (slot) {
+        case PEL_SLOT_RADIANCE:
+            return Content::output;
+        case PEL_SLOT_MATERIAL:
+            return Content::id;
+        case PEL_SLOT_POSITION:
+        case PEL_SLOT_ALBEDO:
+            return Content::color;
+        case PEL_SLOT_NORMAL_GEOMETRIC:
+        case PEL_SLOT_NORMAL_SHADING:
+        case PEL_SLOT_NORMAL_BLURRED:
+            return Content::normal;
+        default:
+            return Content::scalar;
+    }
+}
+
+bool isUint(PelFormat f) {
+    return f == PEL_FORMAT_R8_UINT || f == PEL_FORMAT_R16_UINT || f == PEL_FORMAT_R32_UINT;
+}
+
+bool isFloat(PelFormat f) {
+    return f >= PEL_FORMAT_R32F && f <= PEL_FORMAT_RGBA16F;
+}
+
+void checkContent(const ImageView& view, Content content, const char* what) {
+    const PelFormat f = view.format;
+    const uint32_t components = view.info().components;
+    const char* right = nullptr;
+    switch (content) {
+        case Content::scalar:
+            if (isUint(f) || f == PEL_FORMAT_OCT16X2_SNORM) right = "a float or unorm format";
+            break;
+        case Content::id:
+            if (!isUint(f) && !isFloat(f)) right = "a uint or float format";
+            break;
+        case Content::color:
+            if (isUint(f) || components < 3) right = "three components, float or unorm";
+            break;
+        case Content::normal:
+            if (isUint(f) || f == PEL_FORMAT_RGBA8_SRGB || (components < 3 && f != PEL_FORMAT_OCT16X2_SNORM))
+                right = "three components, float or unorm, or OCT16X2_SNORM";
+            break;
+        case Content::output:
+            if (!((isFloat(f) && components >= 3) || f == PEL_FORMAT_PLANAR_RGB32F))
+                right = "RGB or RGBA, float or half";
+            break;
+    }
+    if (right) invalidArgument("the ", what, " image has format ", view.info().name, "; it needs ", right);
+}
+
+void finite(const char* structure, const char* field, const float* values, size_t count) {
+    for (size_t i = 0; i < count; ++i)
+        if (!std::isfinite(values[i]))
+            invalidArgument(structure, ".", field, "[", i, "] is ", values[i], "; it must be finite");
+}
+
+struct Bound {
+    const char* field;
+    float value, least, most;
+};
+
+void within(const char* structure, std::initializer_list<Bound> bounds) {
+    for (const Bound& b : bounds)
+        if (!(b.value >= b.least && b.value <= b.most))
+            invalidArgument(structure, ".", b.field, " is ", b.value, "; it must be between ", b.least,
+                            " and ", b.most);
+}
+
+constexpr float tiny = 1e-6f, huge = 1e18f;
+
+bool isUnit(const float (&v)[3]) {
+    const double length2 = double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2];
+    return length2 > 0.998 && length2 < 1.002;
+}
+
+}  // namespace
+
+const char* slotName(PelImageSlot slot) {
+    return slotNames[slot];
+}
+
+const char* lightSlotName(PelLightSlot slot) {
+    return slot == PEL_LIGHT_WIDE_SHADOW ? "wide shadow" : "shadow map";
+}
+
+void checkImage(PelImageSlot slot, const ImageView& view) {
+    checkContent(view, content(slot), slotName(slot));
+}
+
+void checkLightImage(PelLightSlot slot, const ImageView& view) {
+    checkContent(view, Content::scalar, lightSlotName(slot));
+    // Taps address the map with 32 bits.
+    if (slot == PEL_LIGHT_SHADOW_MAP && view.byteEnd() - view.byteOffset > UINT32_MAX)
+        fail(PEL_ERROR_UNSUPPORTED, "the shadow map spans ", view.byteEnd() - view.byteOffset,
+             " bytes; 4 GiB is the most");
+}
+
+void checkMaterial(const PelMaterial& m) {
+    const char* name = "PelMaterial";
+    finite(name, "albedo", m.albedo, 3);
+    finite(name, "deepScatterColor", m.deepScatterColor, 3);
+    for (float blend : m.normalBlend) within(name, {{"normalBlend", blend, 0, 1}});
+    within(name, {{"diffusionRadius", m.diffusionRadius, tiny, huge},
+                  {"shadowFilterWidth", m.shadowFilterWidth, tiny, huge},
+                  {"deepScatterRadius", m.deepScatterRadius, tiny, huge},
+                  {"deepScatterNormalOffset", m.deepScatterNormalOffset, -huge, huge},
+                  {"thicknessFilterRadius", m.thicknessFilterRadius, 0, 1},
+                  {"specular", m.specular, 0, huge},
+                  {"roughness", m.roughness, 0, huge},
+                  {"f0", m.f0, 0, 1}});
+    if (m.thicknessTaps != 0 && m.thicknessTaps != 8 && m.thicknessTaps != 16 && m.thicknessTaps != 32)
+        invalidArgument("PelMaterial.thicknessTaps is ", m.thicknessTaps, "; it must be 0, 8, 16 or 32");
+}
+
+void checkLight(const PelLight& l, uint32_t index) {
+    const std::string name = text("PelLight ", index);
+    finite(name.c_str(), "color", l.color, 3);
+    for (float c : l.color) within(name.c_str(), {{"color", c, 0, huge}});
+    if (l.type > PEL_LIGHT_SPOT)
+        invalidArgument(name, ".type is ", int(l.type), ", which is none of PelLightType");
+    if (l.type == PEL_LIGHT_DIRECTIONAL) {
+        finite(name.c_str(), "toLight", l.toLight, 3);
+        if (!isUnit(l.toLight))
+            invalidArgument(name, ".toLight is (", l.toLight[0], ", ", l.toLight[1], ", ", l.toLight[2],
+                            "); it must be of unit length");
+    } else {
+        finite(name.c_str(), "position", l.position, 3);
+        within(name.c_str(), {{"range", l.range, 0, huge}});
+    }
+    if (l.type == PEL_LIGHT_SPOT) {
+        finite(name.c_str(), "spotDirection", l.spotDirection, 3);
+        if (!isUnit(l.spotDirection)) invalidArgument(name, ".spotDirection must be of unit length");
+        within(name.c_str(), {{"spotCosOuter", l.spotCosOuter, -1, 1}});
+        within(name.c_str(), {{"spotCosInner", l.spotCosInner, l.spotCosOuter, 1}});
+    }
+}
+
+void checkLightMap(const PelLight& l, uint32_t index) {
+    const std::string name = text("PelLight ", index);
+    if (l.shadowProjection > PEL_SHADOW_PERSPECTIVE)
+        invalidArgument(name, ".shadowProjection is ", int(l.shadowProjection),
+                        ", which is none of PelShadowProjection");
+    finite(name.c_str(), "worldToShadow", l.worldToShadow, 16);
+    finite(name.c_str(), "shadowDepthRange", &l.shadowDepthRange, 1);
+    finite(name.c_str(), "shadowDepthA", &l.shadowDepthA, 1);
+    finite(name.c_str(), "shadowDepthB", &l.shadowDepthB, 1);
+    if (l.shadowProjection == PEL_SHADOW_PARALLEL && l.shadowDepthRange == 0)
+        invalidArgument(name, ".shadowDepthRange is 0: the length that depths 0 to 1 span is needed");
+    if (l.shadowProjection == PEL_SHADOW_PERSPECTIVE && l.shadowDepthA == 0)
+        invalidArgument(name, ".shadowDepthA is 0: A and B of distance = 1 / (A z + B) are needed");
+}
+
+void checkAmbient(const PelAmbient& ambient) {
+    finite("PelAmbient", "constant", ambient.constant, 3);
+    finite("PelAmbient", "sh", &ambient.sh[0][0], 27);
+}
+
+void checkCamera(const PelCamera& camera) {
+    finite("PelCamera", "position", camera.position, 3);
+    finite("PelCamera", "inverseViewProjection", camera.inverseViewProjection, 16);
+}
+
+void checkOptions(const PelShaderOptions& options) {
+    finite("PelShaderOptions", "invalidColor", options.invalidColor, 3);
+}
+
+}  // namespace pel

@@ -1,0 +1,16 @@
+// What a shader accepts. Each throws PEL_ERROR_INVALID_ARGUMENT with the value and what would be right.
+#pragma once
+#include "ops/shader.h"
+
+namespace pel {
+
+void checkImage(PelImageSlot slot, const ImageView& view);
+void checkLightImage(PelLightSlot slot, const ImageView& view);
+void checkMaterial(const PelMaterial& material);
+void checkLight(const PelLight& light, uint32_t index);
+void checkLightMap(const PelLight& light, uint32_t index);  // the fields that a shadow map needs
+void checkAmbient(const PelAmbient& ambient);
+void checkCamera(const PelCamera& camera);
+void checkOptions(const PelShaderOptions& options);
+
+}  // namespace pel

@@ -1,0 +1,105 @@
+// Which features a shader's state asks for, and whether it has what they need.
+#include <algorithm>
+
+#include "ops/shader_check.h"
+
+namespace pel {
+namespace {
+
+bool black(const float (&c)[3]) {
+    return c[0] == 0 && c[1] == 0 && c[2] == 0;
+}
+
+bool ambientIsBlack(const PelAmbient& a) {
+    return black(a.constant) &&
+           std::all_of(std::begin(a.sh), std::end(a.sh), [](auto& c) { return black(c); });
+}
+
+void need(bool present, const char* what, const char* why) {
+    if (!present) invalidArgument("the ", what, " is needed ", why, ", and not set");
+}
+
+void checkSizes(const ShaderState& state) {
+    const ImageView& target = state.images[PEL_SLOT_RADIANCE];
+    auto check = [&](const ImageView& view, const std::string& what) {
+        if (!view) return;
+        if (view.width != target.width || view.height != target.height)
+            invalidArgument("the ", what, " image is ", view.width, " x ", view.height,
+                            ", the radiance image ", target.width, " x ", target.height,
+                            "; all images of a frame need one size");
+        if (overlapsElsewhere(target, view))
+            invalidArgument(
+                "the radiance image overlaps the ", what,
+                " image in memory, and not pixel on pixel: pixels would be overwritten before they are "
+                "read");
+    };
+    for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot) check(state.images[slot], slotName(PelImageSlot(slot)));
+    for (size_t i = 0; i < state.lights.size(); ++i) {
+        check(state.lights[i].images[PEL_LIGHT_WIDE_SHADOW], text("wide shadow ", i));
+        const ImageView& map = state.lights[i].images[PEL_LIGHT_SHADOW_MAP];
+        if (map && overlapsElsewhere(target, map))
+            invalidArgument("the radiance image overlaps shadow map ", i, " in memory");
+    }
+}
+
+// One kernel reads all wide shadows, and all shadow maps: each with one format.
+void checkLightFormats(const ShaderState& state, PelLightSlot slot) {
+    const ImageView* first = nullptr;
+    for (const ShaderLight& light : state.lights) {
+        const ImageView& view = light.images[slot];
+        if (!view) continue;
+        if (!first) first = &view;
+        if (view.format != first->format)
+            fail(PEL_ERROR_UNSUPPORTED, "one ", lightSlotName(slot), " image has format ", first->info().name,
+                 ", another ", view.info().name, "; those of all lights need the same");
+    }
+}
+
+}  // namespace
+
+uint32_t deriveFeatures(const ShaderState& state) {
+    const auto& images = state.images;
+    need(bool(images[PEL_SLOT_RADIANCE]), "radiance image", "as the output");
+    need(bool(images[PEL_SLOT_NORMAL_SHADING]), "shading normal image", "by every term");
+    checkSizes(state);
+    if (state.materials.empty())
+        invalidArgument("no material is set: pelShaderSetMaterial gives an id its material");
+    if (!images[PEL_SLOT_MATERIAL] && !state.materials.contains(1))
+        invalidArgument("without a material image all pixels are of material 1, which is not set");
+    checkLightFormats(state, PEL_LIGHT_WIDE_SHADOW);
+    checkLightFormats(state, PEL_LIGHT_SHADOW_MAP);
+
+    bool wide = false, map = false, positional = false;
+    for (size_t i = 0; i < state.lights.size(); ++i) {
+        const ShaderLight& light = state.lights[i];
+        wide |= bool(light.images[PEL_LIGHT_WIDE_SHADOW]);
+        positional |= light.params.type != PEL_LIGHT_DIRECTIONAL;
+        if (light.images[PEL_LIGHT_SHADOW_MAP]) {
+            map = true;
+            checkLightMap(light.params, uint32_t(i));
+        }
+    }
+    uint32_t features = 0;
+    if (wide) features |= PEL_FEATURE_SHADOW;
+    if (!ambientIsBlack(state.ambient)) features |= PEL_FEATURE_AMBIENT;
+    if (!state.lights.empty())
+        for (const auto& [id, material] : state.materials) {
+            if (material.curvatureLut && images[PEL_SLOT_CURVATURE]) features |= PEL_FEATURE_DIRECT_SCATTER;
+            if (material.shadowLut && wide) features |= PEL_FEATURE_SHADOW_LUT;
+            if (!black(material.params.deepScatterColor)) {
+                if (images[PEL_SLOT_THICKNESS])
+                    features |= PEL_FEATURE_DEEP_SCATTER;
+                else if (map && material.params.thicknessTaps)
+                    features |= PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS;
+            }
+            if (material.params.specular > 0) features |= PEL_FEATURE_SPECULAR;
+        }
+    const bool position = images[PEL_SLOT_POSITION] || images[PEL_SLOT_DEPTH];
+    constexpr const char* what = "position image (or the depth image)";
+    if (features & PEL_FEATURE_THICKNESS_TAPS) need(position, what, "to measure thickness in the shadow map");
+    if (features & PEL_FEATURE_SPECULAR) need(position, what, "by the specular term");
+    if (positional) need(position, what, "by point and spot lights");
+    return features;
+}
+
+}  // namespace pel

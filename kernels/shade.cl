@@ -1,0 +1,281 @@
+// The screen-space shading pass: section 6 of the mathematics for every pixel that has a material.
+//
+// Inputs: the images of PelImageSlot and of each light in the caller's layout (shared/shade.h), materials, lights, the
+// tables in one buffer, and the list of tiles from classify_tiles.cl. Output: radiance, linear RGB.
+// One work-group takes one tile after another from the list; one work-item PEL_WIDTH pixels of a row at a time.
+// Variants: PEL_FEATURES (shared/features.h) and the format of each image, PEL_FORMAT_<SLOT>, 0 where there is none;
+// all wide shadows have one format, and all shadow maps. Unused buffers are NULL.
+#include "lib/ambient.clh"
+#include "lib/deep_scatter.clh"
+#include "lib/direct.clh"
+#include "lib/image.clh"
+#include "lib/light.clh"
+#include "lib/material_id.clh"
+#include "lib/position.clh"
+#include "lib/shadow.clh"
+#include "lib/specular.clh"
+#include "lib/thickness.clh"
+#include "shared/shade.h"
+
+#define HAS(bit) ((PEL_FEATURES & (bit)) != 0)
+#define SKIPPING (!HAS(PEL_BIT_NO_SKIPPING))
+#define NEEDS_POSITION \
+    (HAS(PEL_BIT_THICKNESS_TAPS) || HAS(PEL_BIT_SPECULAR) || HAS(PEL_BIT_POSITIONAL))
+#define SPAN(buffer, slot) imageSpan(scene->buffer, &frame->images[slot], x, y)
+
+// The arguments of the kernel, as functions pass them on.
+typedef struct Scene {
+    __global const PelShadeFrame* frame;
+    __global const PelShadeMaterial* materials;
+    __global const PelShadeLight* lights;
+    __global const float4* luts;
+    __global uchar *position, *depth, *normalGeometric, *normalShading, *normalBlurred, *curvature, *albedo;
+    __global uchar *occlusion, *thickness, *roughness, *specular;
+    __global uchar* lightImages[PEL_LIGHT_BUFFERS];
+} Scene;
+
+typedef struct Pixels {
+    Vec3w position, toCamera;
+    Vec3w ng, n, nb;
+    NormalPair pair;
+    Vec3w albedo;
+    floatw curvature, occlusion, thickness, roughness, specular;
+    maskw valid; // no input is NaN or Inf
+} Pixels;
+
+typedef struct Counts {
+    uint of[PEL_COUNTERS];
+} Counts;
+
+static inline void count(Counts* counts, const int which, maskw mask) {
+    if (HAS(PEL_BIT_COUNT)) counts->of[which] += countw(mask);
+}
+
+static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
+    __global const PelShadeFrame* frame = scene->frame;
+    Pixels p;
+    p.n = loadNormal(PEL_FORMAT_NORMAL_SHADING, SPAN(normalShading, 5));
+    p.valid = finite3(p.n);
+    p.ng = p.n;
+    if (PEL_FORMAT_NORMAL_GEOMETRIC) {
+        p.ng = loadNormal(PEL_FORMAT_NORMAL_GEOMETRIC, SPAN(normalGeometric, 4));
+        p.valid &= finite3(p.ng);
+    }
+    p.nb = p.ng;
+    if (PEL_FORMAT_NORMAL_BLURRED) {
+        p.nb = loadNormal(PEL_FORMAT_NORMAL_BLURRED, SPAN(normalBlurred, 6));
+        p.valid &= finite3(p.nb);
+    }
+    p.pair = normalPair(p.n, p.nb);
+    if (NEEDS_POSITION) {
+        if (PEL_FORMAT_POSITION)
+            p.position = loadColor(PEL_FORMAT_POSITION, SPAN(position, 2));
+        else
+            p.position = positionFromDepth(frame->inverseViewProjection, frame->width, frame->height, x, y,
+                                           loadScalar(PEL_FORMAT_DEPTH, SPAN(depth, 3)));
+        p.valid &= finite3(p.position);
+        p.toCamera = normalize3(sub3(loadUniform3(frame->cameraPosition), p.position));
+    }
+    if (PEL_FORMAT_ALBEDO) {
+        p.albedo = loadColor(PEL_FORMAT_ALBEDO, SPAN(albedo, 8));
+        p.valid &= finite3(p.albedo);
+    }
+#define LOAD_SCALAR(feature, slot, name, number)                    \
+    if (feature && PEL_FORMAT_##slot) {                             \
+        p.name = loadScalar(PEL_FORMAT_##slot, SPAN(name, number)); \
+        p.valid &= finitew(p.name);                                 \
+    }
+    LOAD_SCALAR(HAS(PEL_BIT_DIRECT_SCATTER), CURVATURE, curvature, 7)
+    LOAD_SCALAR(HAS(PEL_BIT_AMBIENT), AMBIENT_OCCLUSION, occlusion, 9)
+    LOAD_SCALAR(HAS(PEL_BIT_DEEP_SCATTER), THICKNESS, thickness, 10)
+    LOAD_SCALAR(HAS(PEL_BIT_SPECULAR), ROUGHNESS, roughness, 11)
+    LOAD_SCALAR(HAS(PEL_BIT_SPECULAR), SPECULAR, specular, 12)
+#undef LOAD_SCALAR
+    return p;
+}
+
+// One light's wide shadow of the pixels; 1 where it has no image.
+static inline floatw loadWideShadow(const Scene* scene, __global const PelShadeLight* light, uint x, uint y) {
+    if (!HAS(PEL_BIT_SHADOW) || light->wideBuffer >= PEL_LIGHT_BUFFERS) return (floatw)(1.0f);
+    return loadScalar(PEL_FORMAT_WIDE_SHADOW,
+                      imageSpan(scene->lightImages[light->wideBuffer], &light->wide, x, y));
+}
+
+// Length that the light travelled inside before it came out of the pixels of `needed`.
+static inline floatw measureThickness(const Scene* scene, __global const PelShadeMaterial* material,
+                                      __global const PelShadeLight* light, const Pixels* p, maskw needed) {
+    const Vec3w inside = sub3(p->position, scale3(p->ng, (floatw)(material->deepScatterNormalOffset)));
+    return thicknessTaps(PEL_FORMAT_SHADOW_MAP, scene->lightImages[light->mapBuffer], light,
+                         shadowCoordinates(light->worldToShadow, inside), material->thicknessFilterRadius,
+                         material->thicknessTaps, material->thicknessCutoff, needed);
+}
+
+// What one light adds to pixels of one material: diffuse and deep scatter are multiplied by albedo later.
+static inline void addLight(const Scene* scene, __global const PelShadeMaterial* material,
+                            __global const PelShadeLight* light, const Pixels* p, floatw w, maskw active,
+                            Vec3w* diffuse, Vec3w* specular, Counts* counts) {
+    const LightSample sample = sampleLight(light, p->position);
+    const maskw reached = active & (sample.strength > 0.0f);
+    if (SKIPPING && !anyw(reached)) return;
+    const Vec3w l = sample.direction;
+    const floatw nl = dot3(p->n, l), bl = dot3(p->nb, l);
+    const Vec3w color = scale3(loadUniform3(light->color), sample.strength);
+
+    Vec3w direct;
+    if (HAS(PEL_BIT_DIRECT_SCATTER) && material->curvature.layout.width) {
+        direct = directScatter(scene->luts, material->curvature, vload3(0, material->normalBlend), p->pair, nl, bl, p->curvature);
+    } else {
+        direct.x = direct.y = direct.z = satw(nl);
+    }
+    if (HAS(PEL_BIT_SHADOW)) {
+        if (HAS(PEL_BIT_SHADOW_LUT) && material->shadow.layout.width && light->wideBuffer < PEL_LIGHT_BUFFERS) {
+            // Where no light arrives the shadow does not matter.
+            const maskw lit = reached & ((direct.x > 0.0f) | (direct.y > 0.0f) | (direct.z > 0.0f));
+            const maskw penumbra = lit & inPenumbra(material->shadow, w);
+            const floatw gl = dot3(p->ng, l);
+            count(counts, PEL_COUNT_SHADOW_LUT, penumbra);
+            if (!SKIPPING || anyw(penumbra))
+                direct = mul3(direct, shadowScatter(scene->luts, material->shadow, material->penumbraPerCosine, w, gl));
+            else if (anyw(lit))
+                direct = mul3(direct, shadowOutside(scene->luts, material->shadow, material->penumbraPerCosine, w, gl));
+        } else {
+            direct = scale3(direct, satw(w));
+        }
+    }
+
+    Vec3w sum = direct;
+    if (HAS(PEL_BIT_DEEP_SCATTER)) {
+        const floatw back = backLight(bl);
+        const bool taps = !PEL_FORMAT_THICKNESS && HAS(PEL_BIT_THICKNESS_TAPS) && material->thicknessTaps &&
+                          light->mapBuffer < PEL_LIGHT_BUFFERS;
+        const bool colored = material->deepScatterColor[0] != 0.0f || material->deepScatterColor[1] != 0.0f ||
+                             material->deepScatterColor[2] != 0.0f;
+        if (colored && (taps || PEL_FORMAT_THICKNESS)) {
+            const maskw needed = SKIPPING ? reached & (back > 0.0f) : (maskw)(-1);
+            if (anyw(needed)) {
+                floatw thickness = p->thickness;
+                if (!PEL_FORMAT_THICKNESS) thickness = measureThickness(scene, material, light, p, needed);
+                if (taps) count(counts, PEL_COUNT_THICKNESS, needed & active);
+                const floatw through =
+                    back * transmittance(thickness, material->deepScatterFalloff, material->thicknessCutoff);
+                sum = add3(sum, scale3(loadUniform3(material->deepScatterColor), through));
+            }
+        }
+    }
+    *diffuse = add3(*diffuse, mul3(sum, color));
+
+    if (HAS(PEL_BIT_SPECULAR) && material->specular != 0.0f) {
+        floatw shadow = 1.0f;
+        if (HAS(PEL_BIT_SHADOW)) shadow = sharpenedShadow(material->specularSharpening, w);
+        const maskw needed = reached & (nl > 0.0f) & (shadow > 0.0f);
+        count(counts, PEL_COUNT_SPECULAR, needed);
+        if (!SKIPPING || anyw(needed)) {
+            floatw intensity = material->specular;
+            floatw roughness = material->roughness;
+            if (PEL_FORMAT_SPECULAR) intensity *= p->specular;
+            if (PEL_FORMAT_ROUGHNESS) roughness *= p->roughness;
+            const floatw s =
+                shadow * intensity * specularKsk(p->n, l, p->toCamera, nl, roughness, material->f0);
+            *specular = add3(*specular, scale3(color, s));
+        }
+    }
+}
+
+// Pixels of one material, `active`.
+static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMaterial* material, Pixels* p, uint x,
+                                  uint y, maskw active, Counts* counts) {
+    __global const PelShadeFrame* frame = scene->frame;
+    Vec3w diffuse = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = diffuse;
+    if (HAS(PEL_BIT_AMBIENT)) {
+        diffuse = ambientLight(frame->ambient, vload3(0, material->normalBlend), p->n, p->nb);
+        if (PEL_FORMAT_AMBIENT_OCCLUSION) diffuse = scale3(diffuse, p->occlusion);
+    }
+    for (uint i = 0; i < frame->lights; ++i) {
+        __global const PelShadeLight* light = &scene->lights[i];
+        const floatw w = loadWideShadow(scene, light, x, y);
+        p->valid &= finitew(w);
+        addLight(scene, material, light, p, w, active & p->valid, &diffuse, &specular, counts);
+    }
+    const Vec3w albedo = PEL_FORMAT_ALBEDO ? p->albedo : loadUniform3(material->albedo);
+    return add3(mul3(albedo, diffuse), specular);
+}
+
+static inline Vec3w select3(Vec3w f, Vec3w t, maskw mask) {
+    return vec3(selectw(f.x, t.x, mask), selectw(f.y, t.y, mask), selectw(f.z, t.z, mask));
+}
+
+// PEL_WIDTH pixels from (x, y) on, of which those of `active` are wanted.
+static inline void shadePixels(const Scene* scene, __global uchar* radiance, uint x, uint y, uintw id, maskw active,
+                               Counts* counts) {
+    __global const PelShadeFrame* frame = scene->frame;
+    Pixels p = loadPixels(scene, x, y);
+    Vec3w result = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    if (PEL_FORMAT_MATERIAL) {
+        // Nearly always one round: neighbours share their material.
+        maskw left = active;
+#define TAKE(i, s) \
+    if (left s) current = id s;
+        while (anyw(left)) {
+            uint current = 0;
+            PEL_EACH_LANE(TAKE)
+            const maskw mask = left & (id == current);
+            const Vec3w color = shadeMaterial(scene, &scene->materials[current], &p, x, y, mask, counts);
+            result = select3(result, color, mask);
+            left &= notw(mask);
+        }
+#undef TAKE
+    } else {
+        result = shadeMaterial(scene, &scene->materials[1], &p, x, y, active, counts);
+    }
+    const Span target = imageSpan(radiance, &frame->images[0], x, y);
+    const maskw valid = p.valid & finite3(result);
+    count(counts, PEL_COUNT_SHADED, active);
+    count(counts, PEL_COUNT_INVALID, active & notw(valid));
+    const Vec3w invalid = loadUniform3(frame->invalidColor);
+    result = select3(invalid, result, valid);
+    if (HAS(PEL_BIT_ACCUMULATE)) {
+        result = add3(result, loadColor(PEL_FORMAT_RADIANCE, target));
+        result = select3(invalid, result, finite3(result)); // what stood there was no number
+    }
+    storeColor(PEL_FORMAT_RADIANCE, target, result, active);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade(
+    __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials,
+    __global const PelShadeLight* lights, __global const float4* luts, __global const uint* list,
+    __global uint* counters, __global uchar* radiance, __global uchar* material, __global uchar* position,
+    __global uchar* depth, __global uchar* normalGeometric, __global uchar* normalShading,
+    __global uchar* normalBlurred, __global uchar* curvature, __global uchar* albedo, __global uchar* occlusion,
+    __global uchar* thickness, __global uchar* roughness, __global uchar* specular, __global uchar* light0,
+    __global uchar* light1, __global uchar* light2, __global uchar* light3, __global uchar* light4,
+    __global uchar* light5, __global uchar* light6, __global uchar* light7, __global uchar* light8,
+    __global uchar* light9, __global uchar* light10, __global uchar* light11, __global uchar* light12,
+    __global uchar* light13, __global uchar* light14, __global uchar* light15) {
+    const Scene scene = {frame, materials, lights, luts, position, depth, normalGeometric, normalShading,
+                         normalBlurred, curvature, albedo, occlusion, thickness, roughness, specular,
+                         {light0, light1, light2, light3, light4, light5, light6, light7, light8, light9,
+                          light10, light11, light12, light13, light14, light15}};
+    Counts counts = {{0}};
+    const uint tiles = PEL_FORMAT_MATERIAL ? list[0] : frame->tiles;
+    for (uint i = get_group_id(0); i < tiles; i += get_num_groups(0)) {
+        const uint tile = PEL_FORMAT_MATERIAL ? list[1 + i] : i;
+        const uint tileX = tile % frame->tilesX * PEL_TILE_WIDTH, tileY = tile / frame->tilesX * PEL_TILE_HEIGHT;
+        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_SHADE_GROUP * PEL_WIDTH) {
+            const uint x = tileX + pixel % PEL_TILE_WIDTH, y = tileY + pixel / PEL_TILE_WIDTH;
+            if (x >= frame->width || y >= frame->height) continue;
+            // At the right edge vectors begin earlier; the lanes before x belong to the tile or vector before.
+            const uint first = vectorStart(x, frame->width);
+            const intw column = lanesw() + (int)first;
+            maskw active = (column >= (int)x) & (column < (int)frame->width);
+            uintw id = 1;
+            if (PEL_FORMAT_MATERIAL) {
+                id = loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[1], first, y));
+                active &= hasMaterial(frame, id);
+            }
+            if (anyw(active)) shadePixels(&scene, radiance, first, y, id, active, &counts);
+        }
+    }
+    if (HAS(PEL_BIT_COUNT))
+        for (uint i = 0; i < PEL_COUNTERS; ++i)
+            if (counts.of[i]) atomic_add(&counters[i], counts.of[i]);
+}

@@ -1,0 +1,102 @@
+// Constants of one execution of the shading pass, laid out alike on host and device. Lengths are in the caller's
+// unit, colours are linear RGB, matrices are row-major and multiply column vectors.
+#ifndef PEL_SHARED_SHADE
+#define PEL_SHARED_SHADE
+#include "shared/lut.h"
+#include "shared/scalars.h"
+
+#define PEL_TILE_WIDTH 16  // pixels; measured, docs/shading.md
+#define PEL_TILE_HEIGHT 16
+#define PEL_TILE_PIXELS (PEL_TILE_WIDTH * PEL_TILE_HEIGHT)
+#define PEL_LIGHT_BUFFERS 16 // distinct buffers among all images of all lights
+#define PEL_MATERIALS 256    // ids 0 (background) to 255
+#define PEL_IMAGE_SLOTS 13   // PelImageSlot
+// Transmittance below 2^-16 counts as none: it lets taps stop early and is a third of the accuracy promised.
+#define PEL_LEAST_TRANSMITTANCE_LOG2 16
+
+// Where the pixels of an image lie in its buffer.
+typedef struct PelShadeImage {
+    PelUint32 offset[2]; // bytes to the first pixel, low and high word
+    PelUint32 plane[2];  // bytes from plane to plane, low and high word; planar formats only
+    PelUint32 pixelStride; // bytes
+    PelUint32 rowStride;   // bytes
+    PelUint32 width;       // pixels
+    PelUint32 height;
+} PelShadeImage;
+
+typedef struct PelShadeFrame {
+    PelUint32 width; // pixels
+    PelUint32 height;
+    PelUint32 tilesX; // tiles in a row
+    PelUint32 tiles;  // tiles in all
+    PelUint32 lights;
+    PelUint32 materialMask[PEL_MATERIALS / 32]; // bit i: id i has a material
+    float cameraPosition[3];                    // length, world
+    float inverseViewProjection[16];            // clip to world
+    // Irradiance / pi as a polynomial of the normal: 1, y, z, x, xy, yz, 3z^2 - 1, xz, x^2 - y^2; the basis' factors
+    // and the constant term are folded in.
+    float ambient[9][3];
+    float invalidColor[3]; // radiance of a pixel with NaN or Inf input
+    PelShadeImage images[PEL_IMAGE_SLOTS];
+} PelShadeFrame;
+
+// A look-up table inside the buffer of all tables.
+typedef struct PelShadeLut {
+    LutLayout layout;   // width 0: no table
+    PelUint32 offset;   // texels
+    float radiusRatio;  // material's diffusion radius / the table's: multiplies row values
+} PelShadeLut;
+
+typedef struct PelShadeMaterial {
+    float albedo[3];
+    float normalBlend[3]; // how far Nb replaces N, per channel
+    PelShadeLut curvature;
+    PelShadeLut shadow;
+    float penumbraPerCosine;   // 1 / shadowFilterWidth, 1/length: reciprocal penumbra width = sat(Ng.L) times this
+    float specularSharpening;  // 0.9 k: specular's shadow is smoothstep(w 0.9k + (1 - 0.9k) / 2); 0: plain w
+    float deepScatterColor[3];
+    float deepScatterFalloff; // -log2(e) / (2 radius^2), 1/length^2: transmittance = exp2(falloff t^2)
+    float thicknessCutoff;    // length beyond which the transmittance counts as none
+    float deepScatterNormalOffset; // length
+    float thicknessFilterRadius;   // UV of the shadow map
+    PelUint32 thicknessTaps;       // 0: no taps
+    float specular;
+    float roughness;
+    float f0;
+} PelShadeMaterial;
+
+typedef struct PelShadeLight {
+    PelUint32 type;    // PelLightType
+    float toLight[3];  // directional: unit
+    float position[3]; // length, world
+    float spotDirection[3];
+    float spotCosOuter;
+    float spotScale; // 1 / (cosInner - cosOuter)
+    float color[3];
+    float range2; // length^2, square of the range; FLT_MAX: no limit
+    float worldToShadow[16];
+    PelUint32 projection; // PelShadowProjection
+    float depthRange;     // parallel: length per unit of depth
+    float depthA;         // perspective: distance = 1 / (A z + B), 1/length
+    float depthB;
+    PelUint32 wideBuffer; // which light buffer; >= PEL_LIGHT_BUFFERS: no image
+    PelUint32 mapBuffer;
+    PelShadeImage wide;
+    PelShadeImage map;
+} PelShadeLight;
+
+// Counters of one execution, in a buffer of their own.
+#define PEL_COUNT_SHADED 0
+#define PEL_COUNT_SHADOW_LUT 1
+#define PEL_COUNT_THICKNESS 2
+#define PEL_COUNT_SPECULAR 3
+#define PEL_COUNT_INVALID 4
+#define PEL_COUNTERS 5
+
+#ifndef __OPENCL_VERSION__
+static_assert(sizeof(PelShadeImage) == 32 && sizeof(PelShadeLut) == 40);
+static_assert(sizeof(PelShadeFrame) == 4 * (5 + 8 + 3 + 16 + 27 + 3) + PEL_IMAGE_SLOTS * 32);
+static_assert(sizeof(PelShadeMaterial) == 4 * 19 + 2 * sizeof(PelShadeLut));
+static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64);
+#endif
+#endif
