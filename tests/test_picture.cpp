@@ -69,6 +69,18 @@ TEST(ColorMap, GetsLighterEvenly) {
     EXPECT_EQ(sequentialColor(NAN), (Srgb8{128, 128, 128}));
 }
 
+TEST(ColorMap, DivergesEvenlyFromZero) {
+    for (int i = 1; i <= 32; ++i) {
+        EXPECT_LT(lightness(divergingColor(i / 32.0f)), lightness(divergingColor((i - 1) / 32.0f))) << i;
+        EXPECT_LT(lightness(divergingColor(-i / 32.0f)), lightness(divergingColor((1 - i) / 32.0f))) << i;
+    }
+    EXPECT_GT(divergingColor(-1)[2], divergingColor(-1)[0]);
+    EXPECT_GT(divergingColor(1)[0], divergingColor(1)[2]);
+    EXPECT_EQ(scaleColor(-3, -3, 6), divergingColor(-0.5f));
+    EXPECT_EQ(scaleColor(0, -3, 6), divergingColor(0));
+    EXPECT_EQ(scaleColor(3, 0, 6), sequentialColor(0.5f));
+}
+
 TEST(Picture, TextIsDotsOfTheGlyphs) {
     Picture p(20, 10);
     const Srgb8 white = {255, 255, 255}, black = {0, 0, 0};

@@ -38,17 +38,41 @@ Rgb shown(double lightness, double hueDegrees, double chroma) {
 }
 
 constexpr size_t tableSize = 257;
+using Table = std::array<std::array<float, 3>, tableSize>;
 
-// sRGB-encoded, so that what is interpolated is close to even in what is seen.
-std::array<std::array<float, 3>, tableSize> makeTable() {
-    std::array<std::array<float, 3>, tableSize> table;
+// `color(t)` for t in [0, 1], sRGB-encoded, so that what is interpolated is close to even in what is seen.
+template <class Color>
+Table makeTable(Color&& color) {
+    Table table;
     for (size_t i = 0; i < tableSize; ++i) {
-        const double t = static_cast<double>(i) / (tableSize - 1);
-        // Hue from blue (264 degrees) up to orange (430 = 70 degrees), passing purple and red.
-        const Rgb c = shown(0.28 + 0.57 * t, 264.0 + 166.0 * t, 0.19);
+        const Rgb c = color(static_cast<double>(i) / (tableSize - 1));
         for (size_t k = 0; k < 3; ++k) table[i][k] = encodeSrgb(static_cast<float>(c[k]));
     }
     return table;
+}
+
+// Hue from blue (264 degrees) up to orange (430 = 70 degrees), passing purple and red.
+Rgb sequential(double t) {
+    return shown(0.28 + 0.57 * t, 264.0 + 166.0 * t, 0.19);
+}
+
+// Blue and red (29 degrees) of equal lightness and chroma at the ends, nearly white in the middle.
+Rgb diverging(double t) {
+    const double side = std::abs(2 * t - 1);
+    return shown(0.95 - 0.45 * side, t < 0.5 ? 264.0 : 29.0, 0.19 * side);
+}
+
+Srgb8 lookUp(const Table& table, float t) {
+    if (std::isnan(t)) return {128, 128, 128};
+    const float at = std::clamp(t, 0.0f, 1.0f) * (tableSize - 1);
+    const size_t low = std::min(static_cast<size_t>(at), tableSize - 2);
+    const float share = at - static_cast<float>(low);
+    Srgb8 color;
+    for (size_t k = 0; k < 3; ++k) {
+        const float value = table[low][k] * (1 - share) + table[low + 1][k] * share;
+        color[k] = static_cast<uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
+    }
+    return color;
 }
 
 }  // namespace
@@ -61,17 +85,18 @@ float decodeSrgb(float x) {
 }
 
 Srgb8 sequentialColor(float t) {
-    static const auto table = makeTable();
-    if (std::isnan(t)) return {128, 128, 128};
-    const float at = std::clamp(t, 0.0f, 1.0f) * (tableSize - 1);
-    const size_t low = std::min(static_cast<size_t>(at), tableSize - 2);
-    const float share = at - static_cast<float>(low);
-    Srgb8 color;
-    for (size_t k = 0; k < 3; ++k) {
-        const float value = table[low][k] * (1 - share) + table[low + 1][k] * share;
-        color[k] = static_cast<uint8_t>(std::lround(255.0f * std::clamp(value, 0.0f, 1.0f)));
-    }
-    return color;
+    static const Table table = makeTable(sequential);
+    return lookUp(table, t);
+}
+
+Srgb8 divergingColor(float t) {
+    static const Table table = makeTable(diverging);
+    return lookUp(table, (t + 1) / 2);
+}
+
+Srgb8 scaleColor(float value, float low, float high) {
+    if (low < 0) return divergingColor(value / std::max(-low, high));
+    return sequentialColor(high > low ? (value - low) / (high - low) : 0.0f);
 }
 
 }  // namespace pellucid::io

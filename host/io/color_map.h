@@ -11,6 +11,12 @@ using Srgb8 = std::array<uint8_t, 3>;
 // 2020]. Clamps t; NaN is mid grey.
 Srgb8 sequentialColor(float t);
 
+// Blue (t = -1) over light grey (0) to red (1), lightest in the middle. Clamps t; NaN is mid grey.
+Srgb8 divergingColor(float t);
+
+// The colour of a value on a scale from low to high: sequential, or diverging about 0 when low is negative.
+Srgb8 scaleColor(float value, float low, float high);
+
 // The sRGB transfer (IEC 61966-2-1) of a linear value in [0, 1], and back.
 float encodeSrgb(float linear);
 float decodeSrgb(float encoded);

@@ -48,7 +48,7 @@ void loopSubdivide(MeshData& mesh, int levels);
 float scaleToHeight(MeshData& mesh, float height, int axis);
 
 // Writes a binary PLY: positions, normals if present, `quality` per vertex (vertexCount() values) and colours
-// that show quality from `low` to `high` with the project's colour map. Complete or not at all; throws
+// that show quality from `low` to `high` (scaleColor). Complete or not at all; throws
 // FileError.
 void writePly(const std::string& path, const MeshData& mesh, std::span<const float> quality, float low,
               float high);

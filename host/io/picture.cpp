@@ -132,7 +132,9 @@ Picture colorBar(int width, double low, double high, std::string_view unit, int 
     const int barHeight = 3 * glyphHeight * textScale, textTop = barHeight + 2 * textScale;
     Picture bar(width, textTop + 2 * (glyphHeight + 2) * textScale, paper);
     for (int x = 0; x < width; ++x) {
-        const Srgb8 color = sequentialColor((static_cast<float>(x) + 0.5f) / static_cast<float>(width));
+        const double value = low + (high - low) * (x + 0.5) / width;
+        const Srgb8 color =
+            scaleColor(static_cast<float>(value), static_cast<float>(low), static_cast<float>(high));
         for (int y = 0; y < barHeight; ++y) bar.paint(x, y, color);
     }
     const std::string middle = shownNumber((low + high) / 2), right = shownNumber(high);
@@ -151,7 +153,7 @@ Picture colored(int width, int height, std::span<const float> values, float low,
         for (int x = 0; x < width; ++x) {
             const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
             if (!mask.empty() && mask[i] == 0.0f) continue;
-            picture.paint(x, y, sequentialColor(high > low ? (values[i] - low) / (high - low) : 0.0f));
+            picture.paint(x, y, scaleColor(values[i], low, high));
         }
     }
     return picture;

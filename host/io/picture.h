@@ -42,11 +42,11 @@ struct Tile {
 // largest tile.
 Picture contactSheet(std::span<const Tile> tiles, int columns, int textScale = 2);
 
-// A horizontal bar of sequentialColor from `low` to `high`, numbers at both ends and the middle, and the
+// A horizontal bar of scaleColor from `low` to `high`, numbers at both ends and the middle, and the
 // unit.
 Picture colorBar(int width, double low, double high, std::string_view unit, int textScale = 2);
 
-// Values in [low, high] as sequentialColor; `outside` where mask (empty, or one per value) is 0.
+// Values in [low, high] as scaleColor; `outside` where mask (empty, or one per value) is 0.
 Picture colored(int width, int height, std::span<const float> values, float low, float high,
                 std::span<const float> mask = {}, Srgb8 outside = {20, 20, 20});
 

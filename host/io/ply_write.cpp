@@ -32,7 +32,7 @@ void writePly(const std::string& path, const MeshData& mesh, std::span<const flo
         append(&mesh.positions[3 * v], 12);
         if (normals) append(&mesh.normals[3 * v], 12);
         append(&quality[v], 4);
-        const Srgb8 color = sequentialColor(high > low ? (quality[v] - low) / (high - low) : 0.0f);
+        const Srgb8 color = scaleColor(quality[v], low, high);
         append(color.data(), 3);
     }
     for (size_t t = 0; t < mesh.triangles.size(); t += 3) {
