@@ -191,6 +191,19 @@ TEST(ReferenceProfile, ScalingKeepsEnergyAndStretchesBothViews) {
     }
 }
 
+TEST(ReferenceProfile, MemoisedIsTheSame) {
+    for (const auto& [name, profile] : allProfiles()) {
+        const auto memoised = memoisedProfile(profile);
+        for (int twice = 0; twice < 2; ++twice)
+            for (double s : {0.2, 1.0, -1.0, 2.5})
+                for (int c = 0; c < 3; ++c)
+                    EXPECT_EQ(memoised->lineSpread(s)[c], profile->lineSpread(s)[c]) << name;
+        EXPECT_EQ(memoised->radial(0.7).x, profile->radial(0.7).x);
+        EXPECT_EQ(memoised->radius(), profile->radius());
+        EXPECT_EQ(memoised->singularAtZero(), profile->singularAtZero());
+    }
+}
+
 TEST(ReferenceProfile, RefusesWhatHasNoMeaning) {
     EXPECT_THROW(gaussiansProfile({{0, {1, 1, 1}}}), std::invalid_argument);
     EXPECT_THROW(gaussiansProfile({{1, {1, 0, 1}}}), std::invalid_argument);

@@ -227,6 +227,24 @@ TEST(SampleDetail, AlbedoVariesAboutItsMean) {
     }
 }
 
+TEST(SampleWaves, MeanSquaresAreOneOverManySurfaces) {
+    const sample::WaveField field(6, 100, 5);
+    double value = 0, slope = 0;
+    const int count = 20000;
+    for (int i = 0; i < count; ++i) {
+        // Points and normals on two spirals that share no period.
+        const double z = 2 * (i + 0.5) / count - 1, r = std::sqrt(1 - z * z), t = 2.399963 * i;
+        const sample::Footprint sharp{{r * std::cos(t), r * std::sin(t), z}};
+        const Vec3 p{37.1 * std::cos(1.7 * i), 0.613 * i, 29.3 * std::sin(0.9 * i)};
+        Vec3 s;
+        field.slope(p, &sharp, 1, &s);
+        value += std::pow(field.value(p, sharp), 2) / count;
+        slope += dot(s, s) / count;
+    }
+    EXPECT_NEAR(value, 1, tolerance::sampleMeanSquare);
+    EXPECT_NEAR(slope, 1, tolerance::sampleMeanSquare);
+}
+
 // The blurred field against a quadrature of the sharp one over the footprint.
 TEST(SampleWaves, BlurIsAGaussianInTheTangentPlane) {
     const sample::WaveField field(6, 24, 5);

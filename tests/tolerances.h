@@ -142,6 +142,8 @@ inline constexpr Tolerance sampleDerivative{"sampleDerivative", 1e-6,
                                             "relative: a central difference of step 1e-5"};
 inline constexpr Tolerance sampleRandomField{"sampleRandomField", 0.15,
                                              "relative: a sum of 100 waves over a few hundred wavelengths"};
+inline constexpr Tolerance sampleMeanSquare{"sampleMeanSquare", 0.03,
+                                            "the mean over 20000 points of a random field"};
 inline constexpr Tolerance sampleAlbedoMean{"sampleAlbedoMean", 0.03,
                                             "the mean of few, wide random blotches"};
 inline constexpr Tolerance sampleWaves{"sampleWaves", 1e-4, "single-precision sines with phases up to 100"};

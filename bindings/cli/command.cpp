@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -82,9 +83,12 @@ void addRunOptions(CLI::App& command, Run::Options& options) {
 }
 
 void parseSize(const std::string& text, uint32_t& width, uint32_t& height) {
-    char rest = 0;
-    unsigned w = 0, h = 0;
-    if (std::sscanf(text.c_str(), "%5ux%5u%c", &w, &h, &rest) != 2 || w == 0 || h == 0)
+    const char *at = text.data(), *end = at + text.size();
+    uint32_t w = 0, h = 0;
+    auto read = std::from_chars(at, end, w);  // takes no sign and no blanks
+    if (read.ec == std::errc() && read.ptr != end && *read.ptr == 'x')
+        read = std::from_chars(read.ptr + 1, end, h);
+    if (read.ec != std::errc() || read.ptr != end || w == 0 || h == 0)
         throw UsageError("--size " + text + ": two whole numbers from 1 on are needed, such as 512x512");
     width = w;
     height = h;

@@ -26,6 +26,9 @@ void run(const Arguments& a) {
     } catch (const io::FileError& e) {
         throw UsageError(e.what());
     }
+    if (!(a.params.scale >= 0 && std::isfinite(a.params.scale)))
+        throw UsageError("--scale " + std::to_string(a.params.scale) +
+                         ": a finite number from 0 on is needed");
     Run run(a.run);
     io::MeshData mesh = io::loadMesh(a.mesh);
     for (const std::string& warning : mesh.warnings) run.warn(warning);

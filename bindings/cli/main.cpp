@@ -14,6 +14,17 @@ int fail(ExitCode code, const char* message) {
     return code;
 }
 
+// CLI11 would only say that a subcommand is required.
+void checkSubcommand(const CLI::App& app, int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-') return;
+    std::string names;
+    for (const CLI::App* known : app.get_subcommands({})) {
+        if (known->get_name() == argv[1]) return;
+        names += (names.empty() ? "" : ", ") + known->get_name();
+    }
+    throw UsageError(std::string("there is no subcommand '") + argv[1] + "'; there are " + names);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -28,6 +39,7 @@ int main(int argc, char** argv) {
     addShade(app);
     addDemo(app);
     try {
+        checkSubcommand(app, argc, argv);
         app.parse(argc, argv);
         return exitDone;
     } catch (const CLI::Success& e) {

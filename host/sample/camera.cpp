@@ -65,7 +65,7 @@ Vec3 keyLightDirection(const HeadPose& pose, KeyLight where) {
         case KeyLight::Side:
             return headDirection(pose, 80, 20);
         case KeyLight::Back:
-            return headDirection(pose, 155, 15);
+            return headDirection(pose, 150, 10);
     }
     return pose.front;
 }

@@ -45,7 +45,8 @@ struct Framing {
 Camera frameHead(const Bounds& box, const HeadPose& pose, const Framing& framing, double aspect);
 
 // Where a key light stands: to the front and above, so that most of the face is lit; to the side, so that the
-// terminator crosses the face; behind, so that ears and other thin parts glow.
+// terminator crosses the face; behind, so that ears and other thin parts glow (best seen
+// from azimuth 25).
 enum class KeyLight { Front, Side, Back };
 Vec3 keyLightDirection(const HeadPose& pose, KeyLight where);  // unit, towards the light
 

@@ -2,6 +2,7 @@
 
 #include <numbers>
 #include <stdexcept>
+#include <unordered_map>
 
 #include "reference/quadrature.h"
 
@@ -102,6 +103,24 @@ class ScaledProfile : public Profile {
     double factor_;
 };
 
+class MemoisedProfile : public Profile {
+  public:
+    explicit MemoisedProfile(ProfilePtr profile) : profile_(std::move(profile)) {}
+    Rgb radial(double d) const override { return profile_->radial(d); }
+    Rgb lineSpread(double s) const override {
+        const auto [at, added] = known_.try_emplace(std::abs(s));
+        if (added) at->second = profile_->lineSpread(s);
+        return at->second;
+    }
+    std::vector<double> lengths() const override { return profile_->lengths(); }
+    bool singularAtZero() const override { return profile_->singularAtZero(); }
+    double radius() const override { return profile_->radius(); }
+
+  private:
+    ProfilePtr profile_;
+    mutable std::unordered_map<double, Rgb> known_;
+};
+
 }  // namespace
 
 Rgb Profile::lineSpread(double offset) const {
@@ -125,12 +144,11 @@ Rgb Profile::lineSpread(double offset) const {
         const Rgb sample = integrand(y);
         for (int c = 0; c < 3; ++c) peak[c] = std::max(peak[c], sample[c]);
     }
-    Rgb result;
-    for (int c = 0; c < 3; ++c)
-        if (peak[c] > 0)
-            result[c] = 2 * integrate<double>([&](double y) { return integrand(y)[c]; },
-                                              panelPoints(0, end, borders), 1e-14 * peak[c] * end, 1e-13);
-    return result;
+    Rgb scale;  // a channel that has all but underflown stays 0
+    for (int c = 0; c < 3; ++c) scale[c] = peak[c] > 1e-290 ? 1 / peak[c] : 0;
+    return 2 * peak *
+           integrate<Rgb>([&](double y) { return scale * integrand(y); }, panelPoints(0, end, borders),
+                          1e-15 * end, 1e-13);
 }
 
 ProfilePtr skinProfile() {
@@ -158,6 +176,10 @@ ProfilePtr tableProfile(std::vector<double> distances, std::vector<Rgb> values) 
 
 ProfilePtr scaledProfile(ProfilePtr profile, double factor) {
     return std::make_shared<ScaledProfile>(std::move(profile), factor);
+}
+
+ProfilePtr memoisedProfile(ProfilePtr profile) {
+    return std::make_shared<MemoisedProfile>(std::move(profile));
 }
 
 ProfilePtr profileForRadius(ProfilePtr profile, double diffusionRadius) {

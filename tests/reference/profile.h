@@ -59,6 +59,10 @@ ProfilePtr tableProfile(std::vector<double> distances, std::vector<Rgb> values);
 ProfilePtr scaledProfile(ProfilePtr profile, double factor);
 ProfilePtr profileForRadius(ProfilePtr profile, double diffusionRadius);
 
+// The same profile, each line spread computed once: for many texels of a profile without a closed form, whose
+// panels share most of their nodes. Not for use from several threads.
+ProfilePtr memoisedProfile(ProfilePtr profile);
+
 // Standard deviation of the line spread per channel, by quadrature of radial: sqrt(1/2 * integral of R d² 2
 // pi d).
 Rgb rmsWidth(const Profile& profile);
