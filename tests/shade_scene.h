@@ -1,8 +1,13 @@
 // Random frames for the shading pass, and the oracle's answer to them.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <pellucid/pellucid.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 #include <map>
 #include <random>
 
@@ -200,6 +205,15 @@ inline Frame randomFrame(uint32_t seed, uint32_t width, uint32_t height, uint32_
 
 // --- the device's answer ---
 
+inline const pellucid::Device& device() {
+    static const pellucid::Device d("");
+    return d;
+}
+inline const Tables& tables() {
+    static const Tables t = makeTables(device());
+    return t;
+}
+
 inline pellucid::Buffer upload(const pellucid::Device& device, const Image& image) {
     return pellucid::Buffer(device, image.values);
 }
@@ -248,8 +262,23 @@ inline std::vector<float> shade(const pellucid::Device& device, const Frame& f, 
 
 // --- the oracle's ---
 
-// The taps are ours, and read from the kernels' own table: what they are is tested by themselves.
-std::vector<reference::Vec2> diskTaps(uint32_t count);
+// The kernels' table of taps, read from their source: oracle and kernel must use the same disk.
+inline std::vector<reference::Vec2> diskTaps(uint32_t count) {
+    static std::map<uint32_t, std::vector<reference::Vec2>> disks;
+    auto& taps = disks[count];
+    if (!taps.empty()) return taps;
+    std::ifstream file(PELLUCID_SOURCE_DIR "/kernels/lib/poisson_disk.clh");
+    const std::string start = "pelDisk" + std::to_string(count) + "[";
+    for (std::string line; std::getline(file, line);)
+        if (line.find(start) != std::string::npos)
+            while (std::getline(file, line) && line[0] != '}') {
+                double x = 0, y = 0;
+                EXPECT_EQ(std::sscanf(line.c_str(), " (float2)(%lff, %lff)", &x, &y), 2) << line;
+                taps.push_back({x, y});
+            }
+    EXPECT_EQ(taps.size(), count);
+    return taps;
+}
 
 inline reference::PixelLight truthLight(const Frame& f, const PelMaterial& material, const Light& light,
                                         size_t i) {
@@ -339,6 +368,16 @@ inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
         shaded.scattered = reference::shadePixel(material, plain, lights, ambient).scattered;
     }
     return shaded;
+}
+
+// Largest difference from the oracle of RGB float32 pixels.
+inline double worstError(const Frame& f, const std::vector<float>& result) {
+    double worst = 0;
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        const Rgb sum = truth(f, tables(), i).sum();
+        for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(sum[c] - result[3 * i + c]));
+    }
+    return worst;
 }
 
 }  // namespace shade_test

@@ -15,43 +15,7 @@ using pellucid::Device;
 using pellucid::imageDesc;
 using pellucid::Shader;
 
-// The kernels' table of taps, read from their source: oracle and kernel must use the same disk.
-std::vector<reference::Vec2> shade_test::diskTaps(uint32_t count) {
-    static std::map<uint32_t, std::vector<reference::Vec2>> disks;
-    auto& taps = disks[count];
-    if (!taps.empty()) return taps;
-    std::ifstream file(PELLUCID_SOURCE_DIR "/kernels/lib/poisson_disk.clh");
-    const std::string start = "pelDisk" + std::to_string(count) + "[";
-    for (std::string line; std::getline(file, line);)
-        if (line.find(start) != std::string::npos)
-            while (std::getline(file, line) && line[0] != '}') {
-                double x = 0, y = 0;
-                EXPECT_EQ(std::sscanf(line.c_str(), " (float2)(%lff, %lff)", &x, &y), 2) << line;
-                taps.push_back({x, y});
-            }
-    EXPECT_EQ(taps.size(), count);
-    return taps;
-}
-
 namespace {
-
-const Device& device() {
-    static const Device d("");
-    return d;
-}
-const Tables& tables() {
-    static const Tables t = makeTables(device());
-    return t;
-}
-
-double worstError(const Frame& f, const std::vector<float>& result) {
-    double worst = 0;
-    for (size_t i = 0; i < f.pixels(); ++i) {
-        const Rgb sum = truth(f, tables(), i).sum();
-        for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(sum[c] - result[3 * i + c]));
-    }
-    return worst;
-}
 
 void darken(Frame& f) {
     f.ambient = pelAmbientDefaults();

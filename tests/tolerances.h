@@ -97,6 +97,10 @@ inline constexpr Tolerance peerThicknessMean{"peerThicknessMean", 1e-3,
 inline constexpr Tolerance peerThicknessRms{"peerThicknessRms", 0.05,
                                             "of the mean: pixel by pixel with other taps"};
 
+inline constexpr Tolerance shadeFromDepth{"shadeFromDepth", 1e-3,
+                                          "positions from float depth: 1e-7 of depth moves a point by 1e-3 "
+                                          "of the frame's 200, and thickness with it"};
+
 // --- the oracle against itself (double precision, two methods) ---
 inline constexpr Tolerance oracleQuadrature{"oracleQuadrature", 1e-11,
                                             "two adaptive quadratures of one integral, each asked for 1e-13"};
