@@ -53,7 +53,7 @@ std::vector<DemoViewRequest> requests(const Arguments& a) {
     parseSize(a.size, side.width, side.height);
     if (a.up == "y") side.pose = {{0, 1, 0}, {0, 0, 1}};
     side.name = "key";
-    side.framing.azimuth = 20;
+    side.framing.azimuth = 25;
     side.keyLight = sample::KeyLight::Side;
     side.keyIrradiance = 1.5f;
     side.skyScale = 0.25f;
