@@ -70,7 +70,8 @@ void Run::finish() {
         return;
     }
     for (const auto& [key, value] : report.items()) {
-        if (value.is_array() && value.empty()) continue;
+        // Tables are for programs: people saw theirs on the way.
+        if (value.is_array() && (value.empty() || value[0].is_object())) continue;
         std::cout << key << ": " << (value.is_string() ? value.get<std::string>() : value.dump()) << "\n";
     }
     std::cout << std::flush;

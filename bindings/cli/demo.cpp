@@ -55,12 +55,12 @@ std::vector<DemoViewRequest> requests(const Arguments& a) {
     side.name = "key";
     side.framing.azimuth = 25;
     side.keyLight = sample::KeyLight::Side;
-    side.keyIrradiance = 1.5f;
-    side.skyScale = 0.25f;
+    side.keyIrradiance = 0.95f;
+    side.skyScale = 0.2f;
     back = side;
     back.name = "backlit";
     back.keyLight = sample::KeyLight::Back;
-    back.keyIrradiance = 3.0f;
+    back.keyIrradiance = 1.6f;
     back.skyScale = 0.12f;
     return {side, back};
 }
@@ -68,7 +68,7 @@ std::vector<DemoViewRequest> requests(const Arguments& a) {
 // One view: G-buffer, three shadings, files.
 ShadedView shadeView(Run& run, Stages& stages, LutStore& luts, const sample::Scene& scene,
                      const DemoViewRequest& request, const std::string& folder) {
-    DemoView view = renderDemoView(scene, request, [](double, const char*) {});
+    DemoView view = renderDemoView(scene, request);
     const uint64_t pixels = view.gbuffer.pixelCount();
     const uint64_t gbufferBytes = pixels * view.gbuffer.channels.size() * sizeof(float);
     stages.add(view.name + ": G-buffer (sample host)", view.gbufferMilliseconds, 0, pixels, "pixels",
@@ -136,7 +136,6 @@ void run(Arguments a) {
         views.push_back(shadeView(run, stages, luts, scene, request, a.output));
 
     const std::vector<std::string> files = writePictures(a.output, views, curvatureLut, shadowLut);
-    stages.print();
     run.report["output"] = a.output;
     run.report["pictures"] = files;
     run.report["stages"] = stages.json();

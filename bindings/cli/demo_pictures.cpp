@@ -23,12 +23,13 @@ io::Picture curvatureMap(const DemoView& view) {
     for (size_t i = 0; i < curvature.size(); ++i)
         if (material[i] > 0) seen.push_back(curvature[i]);
     const float high = std::max(percentile(seen, 0.98), 1e-6f);
-    const io::Picture map =
-        io::colored(view.gbuffer.width, view.gbuffer.height, curvature, 0, high, material);
-    io::Picture withBar(map.width, map.height + 64, io::Srgb8{20, 20, 20});
-    withBar.paste(0, 0, map);
-    withBar.paste(map.width / 8, map.height + 8, io::colorBar(map.width * 3 / 4, 0, high, "1/mm"));
-    return withBar;
+    const io::Picture map = io::shrunk(
+        io::colored(view.gbuffer.width, view.gbuffer.height, curvature, 0, high, material), sheetShrink);
+    const io::Picture bar = io::colorBar(map.width, 0, high, "1/mm");
+    io::Picture both(map.width, map.height + bar.height);
+    both.paste(0, 0, map);
+    both.paste(0, map.height, bar);
+    return both;
 }
 
 // The table as a picture, nearest texel, with values as linear radiance.
@@ -61,7 +62,7 @@ std::vector<std::string> writePictures(const std::string& folder, const std::vec
             tiles.push_back(
                 {view.view.name + ": " + p.title, io::shrunk(developed(view.view, p.radiance), sheetShrink)});
     }
-    tiles.push_back({"curvature", io::shrunk(curvatureMap(views.front().view), sheetShrink)});
+    tiles.push_back({"curvature", curvatureMap(views.front().view)});
     tiles.push_back({"curvature LUT: N.L across, curvature down", lutPicture(curvatureLut)});
     tiles.push_back({"shadow LUT: shadow across, 1/width down", lutPicture(shadowLut)});
     write("demo.png", io::contactSheet(tiles, 3));

@@ -41,7 +41,7 @@ void copy(float (&to)[3], sample::Vec3 from) {
 PelMaterial skin() {
     PelMaterial m = pelMaterialDefaults();
     // Blood and tissue let red through furthest.
-    const float transmitted[3] = {1.0f, 0.25f, 0.08f};
+    const float transmitted[3] = {0.5f, 0.12f, 0.04f};
     std::copy(transmitted, transmitted + 3, m.deepScatterColor);
     m.deepScatterRadius = 6.0f;
     m.specular = 0.35f;
@@ -59,8 +59,7 @@ io::SceneFile standardLuts() {
     return scene;
 }
 
-DemoView renderDemoView(const sample::Scene& mesh, const DemoViewRequest& request,
-                        const std::function<void(double, const char*)>& progress) {
+DemoView renderDemoView(const sample::Scene& mesh, const DemoViewRequest& request) {
     DemoView view;
     view.name = request.name;
     const int width = int(request.width), height = int(request.height);
@@ -74,18 +73,14 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoViewRequest& reques
     material.shadowLut = shadowLutName;
     view.scene.luts = standardLuts().luts;
 
-    progress(0, "rendering the G-buffer");
     sample::GBuffer g;
     view.gbufferMilliseconds = timed([&] { g = sample::renderGBuffer(mesh, camera, width, height); });
-    progress(0.3, "rendering the shadow map");
     sample::ShadowMap map;
     view.shadowMapMilliseconds = timed([&] { map = sample::renderShadowMap(mesh, key, shadowMapSize); });
-    progress(0.5, "filtering the wide shadow");
     sample::Image wide;
     sample::WideShadowOptions filter;
     filter.filterWidth = material.material.shadowFilterWidth;
     view.wideShadowMilliseconds = timed([&] { wide = sample::filterWideShadow(g, map, filter); });
-    progress(1, "rendered");
 
     view.gbuffer.width = width;
     view.gbuffer.height = height;

@@ -1,6 +1,5 @@
 // One view of the demo: what the stand-in host renders, as a G-buffer image and a scene file.
 #pragma once
-#include <functional>
 #include <string>
 
 #include "frame.h"
@@ -30,9 +29,8 @@ struct DemoViewRequest {
 // A scene of nothing but the two tables that the views use, curvature and shadow.
 io::SceneFile standardLuts();
 
-// Renders with the stand-in host. `report` is called with a fraction and what is being done.
-DemoView renderDemoView(const sample::Scene& mesh, const DemoViewRequest& request,
-                        const std::function<void(double, const char*)>& progress);
+// Renders with the stand-in host.
+DemoView renderDemoView(const sample::Scene& mesh, const DemoViewRequest& request);
 
 // The same scene with less in it: plain Lambert, or everything but deep scatter.
 io::SceneFile withoutScattering(io::SceneFile scene);

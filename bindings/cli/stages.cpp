@@ -6,7 +6,19 @@ namespace pellucid::cli {
 
 void Stages::add(const std::string& name, double wallMilliseconds, double deviceMilliseconds, uint64_t count,
                  const char* unit, uint64_t bytes) {
-    stages_.push_back({name, unit, wallMilliseconds, deviceMilliseconds, count, bytes});
+    if (stages_.empty())
+        std::fprintf(stderr, "%-38s %9s %10s %8s %8s  %s\n", "stage", "wall ms", "device ms", "MB", "M/s",
+                     "of");
+    const Stage& s =
+        stages_.emplace_back(Stage{name, unit, wallMilliseconds, deviceMilliseconds, count, bytes});
+    std::fprintf(stderr, "%-38s %9.1f", name.c_str(), s.wall);
+    // Nothing rather than 0 where a stage has no such thing.
+    s.device > 0 ? std::fprintf(stderr, " %10.2f", s.device) : std::fprintf(stderr, " %10s", "");
+    s.bytes > 0 ? std::fprintf(stderr, " %8.1f", double(s.bytes) * 1e-6) : std::fprintf(stderr, " %8s", "");
+    if (count > 0)
+        std::fprintf(stderr, " %8.1f  %llu %s", s.perSecond(double(count)) * 1e-6,
+                     static_cast<unsigned long long>(count), unit);
+    std::fputs("\n", stderr);
 }
 
 nlohmann::ordered_json Stages::json() const {
@@ -20,15 +32,6 @@ nlohmann::ordered_json Stages::json() const {
                         {"bytes", s.bytes},
                         {"per_second", s.perSecond(double(s.count))}});
     return list;
-}
-
-void Stages::print() const {
-    std::fprintf(stderr, "%-34s %10s %10s %10s %10s %-9s %12s\n", "stage", "wall ms", "device ms", "MB",
-                 "count", "of", "M/s");
-    for (const Stage& s : stages_)
-        std::fprintf(stderr, "%-34s %10.1f %10.2f %10.2f %10llu %-9s %12.2f\n", s.name.c_str(), s.wall,
-                     s.device, double(s.bytes) * 1e-6, static_cast<unsigned long long>(s.count),
-                     s.unit.c_str(), s.perSecond(double(s.count)) * 1e-6);
 }
 
 }  // namespace pellucid::cli

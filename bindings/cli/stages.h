@@ -1,4 +1,5 @@
-// The table of stages that a long command prints: what each took, moved and got done.
+// The table of stages that a long command prints on stderr, a line as each ends: what it took, moved and got
+// done.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -28,7 +29,6 @@ class Stages {
              const char* unit, uint64_t bytes);
 
     nlohmann::ordered_json json() const;
-    void print() const;  // to stderr
 
   private:
     struct Stage {

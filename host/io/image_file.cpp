@@ -200,6 +200,8 @@ void writeExr(const std::string& path, const Image& image) {
     const size_t count = image.channels.size();
     if (count == 0 || image.pixelCount() == 0) throw std::invalid_argument("writeExr: the image is empty");
     ImageSpec spec(image.width, image.height, static_cast<int>(count), TypeDesc::FLOAT);
+    // Same input, same bytes: OpenImageIO would put the time of writing here.
+    spec.attribute("DateTime", "");
     spec.attribute("compression", "zip");
     spec.attribute("oiio:ColorSpace", "Linear");
     for (const auto& [name, value] : image.attributes) setAttribute(spec, name, value);
