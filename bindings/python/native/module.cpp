@@ -21,4 +21,5 @@ PYBIND11_MODULE(_native, module) {
     bindMesh(module);
     bindProfile(module);
     bindLut(module);
+    bindShader(module);
 }

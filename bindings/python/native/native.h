@@ -92,5 +92,6 @@ void bindBuffer(py::module_& module);
 void bindMesh(py::module_& module);
 void bindProfile(py::module_& module);
 void bindLut(py::module_& module);
+void bindShader(py::module_& module);
 
 }  // namespace pel::python

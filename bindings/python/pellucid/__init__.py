@@ -16,9 +16,10 @@ from .device import Buffer, Device, Event, devices, set_error_callback
 from .lut import Lut
 from .mesh import MeshTopology
 from .profile import Profile
+from .shader import Shader
 
 _number = _native.version()
 __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
 
-__all__ = ["Buffer", "Device", "Event", "Image", "Lut", "MeshTopology", "PellucidError", "Profile", "Vertices",
+__all__ = ["Buffer", "Device", "Event", "Image", "Lut", "MeshTopology", "PellucidError", "Profile", "Shader", "Vertices",
            "devices", "set_error_callback", *_type_names]

@@ -156,8 +156,9 @@ class Image:
     ----------
     device : Device
     data : array, pyopencl.array.Array or Buffer
-        An array of shape (height, width) or (height, width, components) with any positive strides is used in place,
-        also planar ones whose three components lie apart (float32). A Buffer needs `format`, `width` and `height`.
+        An array of shape (height, width) or (height, width, components) with any positive strides is used in place, as
+        long as its rows lie one after another: crops, every other pixel, part of the components, and three planes of
+        float32. A Buffer needs `format`, `width` and `height`.
     format : Format or str, optional
         How the components are read. From the array without it: float32 and float16 with 1 to 4 components; uint8 with 1
         or 4 as fractions of 255; uint16 with 1 as a fraction; int16 with 2 as an octahedral unit vector; one-component

@@ -1,0 +1,175 @@
+"""Shading, against Lambert and Schlick written out in NumPy, in many layouts."""
+import numpy as np
+import pytest
+
+import pellucid as pel
+
+HEIGHT, WIDTH = 37, 61
+
+
+class View:
+    """A sphere of radius 10 seen from +z, orthographic, material 1 on a background of 0."""
+
+    def __init__(self):
+        y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
+        px, py = (x - WIDTH / 2 + 0.5) / 1.6, (HEIGHT / 2 - 0.5 - y) / 1.6
+        inside = px**2 + py**2 < 100
+        pz = np.sqrt(np.where(inside, 100 - px**2 - py**2, 0))
+        self.position = (np.stack([px, py, pz], -1) * inside[..., None]).astype(np.float32)
+        self.normal = self.position / 10
+        self.material = inside.astype(np.uint8)
+        self.albedo = np.random.default_rng(1).uniform(0.2, 0.9, (HEIGHT, WIDTH, 3)).astype(np.float32) * inside[..., None]
+        self.inside = inside
+        self.to_light = np.float32([0.6, 0.0, 0.8])
+        self.lambert = self.albedo * np.maximum(self.normal @ self.to_light, 0)[..., None]
+
+
+@pytest.fixture(scope="module")
+def view():
+    return View()
+
+
+def shader_for(device, view, radiance, **images):
+    given = dict(normal_shading=view.normal, material=view.material, albedo=view.albedo) | images
+    shader = pel.Shader(device).set_image("radiance", radiance)
+    for slot, image in given.items():
+        shader.set_image(slot, image)
+    shader.set_material(1, pel.Material()).set_lights([pel.Light(to_light=view.to_light)])
+    return shader.commit()
+
+
+@pytest.mark.parametrize("moving", [False, True])
+def test_lambert(device, moving_device, view, tolerance, moving):
+    radiance = np.full((HEIGHT, WIDTH, 3), -1, np.float32)
+    shader = shader_for(moving_device if moving else device, view, radiance)
+    shader.execute()
+    assert np.abs(radiance - view.lambert)[view.inside].max() < tolerance["shadeTerm"]
+    assert (radiance[~view.inside] == -1).all()  # pixels without a material are left alone
+    assert shader.stats().features == 0  # no curvature, no shadow, no ambient: nothing but Lambert
+
+
+def test_changed_arrays_are_seen_without_a_commit(device, view, tolerance):
+    albedo = view.albedo.copy()
+    radiance = np.zeros((HEIGHT, WIDTH, 3), np.float32)
+    shader = shader_for(device, view, radiance, albedo=albedo)
+    shader.execute()
+    albedo *= 0.5
+    shader.execute()
+    assert np.abs(radiance - view.lambert / 2).max() < tolerance["shadeTerm"]
+
+
+def strided(image):
+    """The same values inside a larger array, with gaps between pixels and rows."""
+    memory = np.full((image.shape[0] * 2, image.shape[1] + 3, image.shape[2] + 2), 7, image.dtype)
+    part = memory[::2, 1:-2, 1:-1]
+    part[...] = image
+    return part
+
+
+LAYOUTS = {
+    "strided": strided,
+    "planar": lambda a: np.ascontiguousarray(a.transpose(2, 0, 1)).transpose(1, 2, 0),
+    "four components": lambda a: np.concatenate([a, np.full((*a.shape[:2], 1), 9, a.dtype)], -1),
+}
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_layouts_give_the_same_bits(device, view, layout):
+    expected = np.zeros((HEIGHT, WIDTH, 3), np.float32)
+    shader_for(device, view, expected).execute()
+    change = LAYOUTS[layout]
+    out = change(np.zeros((HEIGHT, WIDTH, 3), np.float32)) if layout != "planar" else np.zeros_like(expected)
+    shader_for(device, view, out, normal_shading=change(view.normal), albedo=change(view.albedo)).execute()
+    assert np.array_equal(out[..., :3], expected)
+    if layout == "strided":
+        assert (out.base == 7).sum() == out.base.size - out.size  # the gaps are untouched
+
+
+def test_columns_in_place_of_rows_are_refused(device):
+    with pytest.raises(pel.PellucidError, match="rowStride"):
+        pel.Shader(device).set_image("albedo", np.zeros((5, 4, 3), np.float32).transpose(1, 0, 2))
+
+
+def test_half_and_bytes(device, view):
+    half = np.zeros((HEIGHT, WIDTH, 4), np.float16)
+    shader_for(device, view, half, normal_shading=view.normal.astype(np.float16),
+               albedo=np.dstack([np.rint(view.albedo * 255), view.inside]).astype(np.uint8)).execute()
+    # Half normals err by 2^-12 each, bytes by 1/510, half results by 2^-12 of at most 1.
+    assert np.abs(half[..., :3].astype(float) - view.lambert).max() < 2**-11 * 2 + 1 / 510
+
+
+def test_scattering_softens_the_terminator(device, view):
+    lut = pel.Lut.curvature(device, width=128, height=32)
+    curvature = np.where(view.inside, np.float32(0.1), 0)
+    out = np.zeros((HEIGHT, WIDTH, 3), np.float32)
+    shader = shader_for(device, view, out, curvature=curvature)
+    shader.set_material(1, pel.Material(), lut).commit().execute()
+    assert shader.stats().features & pel.Feature.DIRECT_SCATTER
+    dark = view.inside & (view.normal @ view.to_light < -0.02) & (view.normal @ view.to_light > -0.1)
+    light = out[dark] / view.albedo[dark]
+    assert (light[:, 0] > 0.005).all() and (light[:, 0] > light[:, 2]).all()  # red crosses the terminator
+
+
+def test_accumulate(device, view, tolerance):
+    out = np.full((HEIGHT, WIDTH, 3), 0.25, np.float32)
+    shader = shader_for(device, view, out).set_options(accumulate=1).commit()
+    shader.execute()
+    assert np.abs(out - 0.25 - view.lambert)[view.inside].max() < tolerance["shadeTerm"]
+
+
+def test_submitted_work_keeps_its_arrays(device, view):
+    import gc
+
+    out = np.zeros((HEIGHT, WIDTH, 3), np.float32)
+    shader = shader_for(device, view, out, albedo=view.albedo.copy())
+    events = [shader.submit() for _ in range(20)]
+    del shader
+    gc.collect()
+    events[-1].wait()
+    assert np.abs(out - view.lambert).max() < 1e-3
+
+
+@pytest.mark.parametrize("slot, image, message", [
+    ("normal_shading", np.zeros((4, 4, 3)), "normal_shading has 3 components of float64"),
+    ("normal_shading", np.zeros(4, np.float32), r"normal_shading has the shape \(4,\)"),
+    ("normal_shading", np.zeros((4, 4, 5), np.float32), "normal_shading has 5 components of float32"),
+    ("normal_shading", np.zeros((4, 4, 3), np.float32)[::-1], "normal_shading has a negative stride"),
+    ("albedo", np.broadcast_to(np.float32(1), (4, 4, 3)), "albedo is broadcast"),
+    ("albedo", np.zeros((3, 4, 4), np.float16).transpose(1, 2, 0), "components that lie apart"),
+    ("albdo", np.zeros((4, 4, 3), np.float32), "slot is 'albdo'; it must be one of radiance"),
+])
+def test_images_that_do_not_fit_are_named(device, slot, image, message):
+    with pytest.raises(ValueError, match=message):
+        pel.Shader(device).set_image(slot, image)
+
+
+def test_formats_by_name(device):
+    buffer = pel.Buffer(device, 4 * 4 * 4)
+    pel.Shader(device).set_image("albedo", pel.Image(device, np.zeros((4, 4, 4), np.uint8), "rgba8_srgb"))
+    pel.Shader(device).set_image("albedo", pel.Image(device, buffer, "rgba8_unorm", width=4, height=4))
+    with pytest.raises(ValueError, match="needs format, width and height"):
+        pel.Image(device, buffer)
+    with pytest.raises(ValueError, match="stored as 4 x uint8, the array as 3 x float32"):
+        pel.Image(device, np.zeros((4, 4, 3), np.float32), "rgba8_srgb")
+    with pytest.raises(pel.PellucidError):
+        pel.Shader(device).set_image("albedo", pel.Image(device, buffer, "rgba8_unorm", width=5, height=4))
+
+
+def test_read_only_radiance_is_refused(device):
+    radiance = np.zeros((4, 4, 3), np.float32)
+    radiance.flags.writeable = False
+    with pytest.raises(ValueError, match="radiance is read-only"):
+        pel.Shader(device).set_image("radiance", radiance)
+
+
+def test_states(device, view):
+    shader = pel.Shader(device)
+    with pytest.raises(pel.PellucidError) as caught:
+        shader.execute()
+    assert caught.value.code is pel.ErrorCode.INVALID_STATE
+    with pytest.raises(pel.PellucidError):
+        shader.set_image("radiance", np.zeros((4, 4, 3), np.float32)).commit()  # no normals
+    with pytest.raises(pel.PellucidError):
+        shader.set_material(0, pel.Material())
+    with pytest.raises(pel.PellucidError):
+        shader.set_lights([pel.Light()] * 65)
