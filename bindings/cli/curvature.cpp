@@ -1,9 +1,11 @@
 // pellucid curvature: curvature at each vertex of a mesh file.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "command.h"
+#include "curvature_picture.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/image_file.h"
@@ -15,20 +17,62 @@ namespace {
 
 struct Arguments {
     Run::Options run;
-    std::string mesh, output, estimator = "edge";
+    std::string mesh, output, picture, weld = "none", up = "z", estimator = "quadric", quantity = "absolute";
     PelCurvatureParams params = pelCurvatureParamsDefaults();
+    double creaseDegrees = 0;
 };
+
+const std::map<std::string, PelCurvatureEstimator> estimators = {
+    {"edge", PEL_CURVATURE_EDGE}, {"tensor", PEL_CURVATURE_TENSOR}, {"quadric", PEL_CURVATURE_QUADRIC}};
+
+const std::map<std::string, PelCurvatureQuantity> quantities = {
+    {"absolute", PEL_QUANTITY_ABSOLUTE},     {"absolute-max", PEL_QUANTITY_ABSOLUTE_MAX},
+    {"curvedness", PEL_QUANTITY_CURVEDNESS}, {"mean", PEL_QUANTITY_MEAN},
+    {"gaussian", PEL_QUANTITY_GAUSSIAN},     {"first", PEL_QUANTITY_FIRST},
+    {"second", PEL_QUANTITY_SECOND}};
+
+template <class T>
+std::vector<std::string> namesOf(const std::map<std::string, T>& values) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : values) names.push_back(name);
+    return names;
+}
+
+bool isSigned(PelCurvatureQuantity quantity) {
+    return quantity >= PEL_QUANTITY_MEAN;
+}
+
+MeshWeldChoice weldChoice(const std::string& text) {
+    if (text == "none") return {PEL_WELD_NONE, 0};
+    if (text == "exact") return {PEL_WELD_EXACT, 0};
+    float tolerance = 0;
+    if (!CLI::detail::lexical_cast(text, tolerance) || !(tolerance > 0))
+        throw UsageError("--weld " + text + ": none, exact, or a tolerance above 0 (a length) is needed");
+    return {PEL_WELD_TOLERANCE, tolerance};
+}
 
 void run(const Arguments& a) {
     try {
         io::requireExtension(a.output, {"npy", "ply"});
         io::checkWritable(a.output);
+        if (!a.picture.empty()) {
+            io::requireExtension(a.picture, {"png"});
+            io::checkWritable(a.picture);
+        }
     } catch (const io::FileError& e) {
         throw UsageError(e.what());
     }
     if (!(a.params.scale >= 0 && std::isfinite(a.params.scale)))
         throw UsageError("--scale " + std::to_string(a.params.scale) +
                          ": a finite number from 0 on is needed");
+    if (a.estimator == "edge" && a.quantity != "absolute")
+        throw UsageError(
+            "--quantity: the edge estimator measures `absolute` only; take --estimator tensor or quadric");
+    const MeshWeldChoice weld = weldChoice(a.weld);
+    PelCurvatureParams params = a.params;
+    params.estimator = estimators.at(a.estimator);
+    params.quantity = quantities.at(a.quantity);
+    params.smoothingCrease = float(a.creaseDegrees * 3.14159265358979 / 180);
     Run run(a.run);
     io::MeshData mesh = io::loadMesh(a.mesh);
     for (const std::string& warning : mesh.warnings) run.warn(warning);
@@ -36,12 +80,22 @@ void run(const Arguments& a) {
         io::computeNormals(mesh);
         run.note("no normals in " + a.mesh + ": they were made from its triangles");
     }
-    const MeshCurvature result = meshCurvature(run, mesh, a.params);
+    const MeshCurvature result = meshCurvature(run, mesh, params, weld);
+    const float low = isSigned(params.quantity) ? percentile(result.values, 0.02) : 0.0f;
+    const float high = percentile(result.values, 0.98);
     if (io::extensionOf(a.output) == "npy") {
         const size_t shape[] = {result.values.size()};
         io::writeNpy(a.output, shape, result.values);
     } else {
-        io::writePly(a.output, mesh, result.values, 0.0f, percentile(result.values, 0.98));
+        io::writePly(a.output, mesh, result.values, low, high);
+    }
+    if (!a.picture.empty()) {
+        const bool squared = params.quantity == PEL_QUANTITY_GAUSSIAN;
+        // The few sharpest places would leave one colour for all the others.
+        writeCurvaturePicture(a.picture, mesh, result.values,
+                              isSigned(params.quantity) ? percentile(result.values, 0.1) : 0.0f,
+                              percentile(result.values, 0.9), a.up[0], squared ? "1/length^2" : "1/length");
+        run.report["picture"] = a.picture;
     }
     run.report["output"] = a.output;
     reportMesh(run, result.report);
@@ -63,7 +117,27 @@ void addCurvature(CLI::App& app) {
                      "file to write: .npy (one float32 per vertex) or .ply (with colours)")
         ->required();
     command->add_option("--estimator", a->estimator, "how curvature is estimated")
-        ->check(CLI::IsMember({"edge"}))
+        ->check(CLI::IsMember(namesOf(estimators)))
+        ->capture_default_str();
+    command->add_option("--quantity", a->quantity, "what is made of the principal curvatures")
+        ->check(CLI::IsMember(namesOf(quantities)))
+        ->capture_default_str();
+    command->add_option("--weld", a->weld, "vertices at one place are one: none, exact, or within a length")
+        ->capture_default_str();
+    command
+        ->add_option("--smooth-radius", a->params.smoothingRadius,
+                     "smooths to a radius in the mesh's unit of length, whatever its density")
+        ->check(CLI::NonNegativeNumber);
+    command
+        ->add_option("--smooth-crease", a->creaseDegrees,
+                     "with --smooth-radius: degrees between normals that stop it")
+        ->check(CLI::Range(0.0, 180.0));
+    command->add_option("--picture", a->picture,
+                        "PNG to write as well: the mesh coloured by the values, with a colour bar");
+    command
+        ->add_option("--up", a->up,
+                     "of the picture: the mesh's up axis, z (it looks to -y) or y (it looks to +z)")
+        ->check(CLI::IsMember({"y", "z"}))
         ->capture_default_str();
     command->add_option("--smooth", a->params.smoothingPasses, "smoothing passes")
         ->capture_default_str()

@@ -4,7 +4,8 @@
 
 namespace pellucid::cli {
 
-MeshCurvature meshCurvature(Run& run, const io::MeshData& mesh, const PelCurvatureParams& params) {
+MeshCurvature meshCurvature(Run& run, const io::MeshData& mesh, const PelCurvatureParams& params,
+                            const MeshWeldChoice& weld) {
     const auto count = uint32_t(mesh.vertexCount());
     MeshCurvature result{std::vector<float>(count), pelMeshReportDefaults()};
     try {
@@ -12,6 +13,9 @@ MeshCurvature meshCurvature(Run& run, const io::MeshData& mesh, const PelCurvatu
         desc.numVertices = count;
         desc.indices = mesh.triangles.data();
         desc.numIndices = mesh.triangles.size();
+        desc.positions = mesh.positions.data();
+        desc.weld = weld.weld;
+        desc.weldTolerance = weld.tolerance;
         const MeshTopology topology(run.device(), desc, &result.report);
         const Buffer positions(run.device(), mesh.positions), normals(run.device(), mesh.normals);
         const Buffer curvature(run.device(), count * sizeof(float));
@@ -28,6 +32,7 @@ MeshCurvature meshCurvature(Run& run, const io::MeshData& mesh, const PelCurvatu
 void reportMesh(Run& run, const PelMeshReport& r) {
     run.report["vertices"] = r.vertices;
     run.report["triangles"] = r.triangles;
+    run.report["unique_positions"] = r.uniquePositions;
     run.report["edges"] = r.edges;
     run.report["border_edges"] = r.borderEdges;
     const struct {

@@ -12,8 +12,14 @@ struct MeshCurvature {
     PelMeshReport report;
 };
 
+struct MeshWeldChoice {
+    PelWeld weld = PEL_WELD_NONE;
+    float tolerance = 0;  // in the mesh's unit of length, PEL_WELD_TOLERANCE only
+};
+
 // Throws InputError, naming the file, when the library refuses the mesh.
-MeshCurvature meshCurvature(Run& run, const io::MeshData& mesh, const PelCurvatureParams& params);
+MeshCurvature meshCurvature(Run& run, const io::MeshData& mesh, const PelCurvatureParams& params,
+                            const MeshWeldChoice& weld = {});
 
 // Adds the counts of the mesh to the report, and a warning for each thing that was skipped.
 void reportMesh(Run& run, const PelMeshReport& report);

@@ -275,7 +275,7 @@ typedef struct PelVertexView {
 typedef enum PelCurvatureEstimator {
     PEL_CURVATURE_EDGE = 0,   /* (min + max) / 2 of |dn| / |dp| over a vertex's triangle edges [FaceWorks] */
     PEL_CURVATURE_TENSOR = 1, /* least squares on each triangle's normal differences [Rusinkiewicz 2004] */
-    PEL_CURVATURE_QUADRIC = 2 /* polynomial fit to the positions of the two-ring: does not trust the normals */
+    PEL_CURVATURE_QUADRIC = 2 /* polynomial fit to the positions of the two-ring: does not trust the normals. Default */
 } PelCurvatureEstimator;
 
 /* What is written for a vertex. Curvatures are positive where the surface bends away from its normal (a sphere with

@@ -17,6 +17,7 @@ static inline PelMeshReport pelMeshReportDefaults(void) { PEL_ZEROED_(PelMeshRep
 static inline PelMeshTopologyDesc pelMeshTopologyDescDefaults(void) { PEL_ZEROED_(PelMeshTopologyDesc, s); return s; }
 static inline PelCurvatureParams pelCurvatureParamsDefaults(void) {
     PEL_ZEROED_(PelCurvatureParams, s);
+    s.estimator = PEL_CURVATURE_QUADRIC;
     s.smoothingPasses = 2;
     s.scale = 1.0f;
     return s;
