@@ -100,6 +100,12 @@ TEST_F(Cli, WrongUseIsRefused) {
     expectRefused({"curvature", mesh, "-o", path("c.obj")}, 2, ".npy, .ply");
     expectRefused({"curvature", mesh, "-o", path("c.npy"), "--estimator", "guess"}, 2, "edge");
     expectRefused({"curvature", mesh, "-o", path("c.npy"), "--smooth", "-1"}, 2, "--smooth");
+    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--estimator", "edge", "--quantity", "mean"}, 2,
+                  "tensor or quadric");
+    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--quantity", "size"}, 2, "gaussian");
+    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--weld", "-1"}, 2, "tolerance above 0");
+    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--smooth-radius", "-1"}, 2, "--smooth-radius");
+    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--picture", path("c.jpg")}, 2, ".png");
     expectRefused({"curvature", mesh, "-o", path("c.npy"), "--scale", "nan"}, 2, "scale");
 }
 
@@ -113,7 +119,8 @@ TEST_F(Cli, UnwritableOutputsAreRefusedBeforeWork) {
 
 TEST_F(Cli, CurvatureOfASphereLikeMesh) {
     const std::string mesh = icosahedron();
-    const Result result = run({"curvature", mesh, "-o", path("c.npy"), "--json", "--smooth", "3"});
+    const Result result =
+        run({"curvature", mesh, "-o", path("c.npy"), "--estimator", "edge", "--json", "--smooth", "3"});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const nlohmann::json report = result.json();
     expectReport(report);
@@ -125,13 +132,26 @@ TEST_F(Cli, CurvatureOfASphereLikeMesh) {
     EXPECT_EQ(values.shape, (std::vector<size_t>{12}));
     for (float v : values.data) EXPECT_NEAR(v, 0.5f, 0.5f * tolerance::edgeCurvature);
 
-    const Result ply = run({"curvature", mesh, "-o", path("c.ply"), "--scale", "4", "--smooth", "0"});
+    const Result ply =
+        run({"curvature", mesh, "-o", path("c.ply"), "--estimator", "edge", "--scale", "4", "--smooth", "0"});
     ASSERT_EQ(ply.exitCode, 0) << ply.err;
     EXPECT_EQ(io::loadMesh(path("c.ply")).positions, io::loadMesh(mesh).positions);
     EXPECT_TRUE(contains(ply.out, "curvature_max: "));
-    ASSERT_EQ(run({"curvature", mesh, "-o", path("s.npy"), "--scale", "4"}).exitCode, 0);
+    ASSERT_EQ(run({"curvature", mesh, "-o", path("s.npy"), "--estimator", "edge", "--scale", "4"}).exitCode,
+              0);
     for (float v : npy::read<float>(path("s.npy")).data)
         EXPECT_NEAR(v, 2.0f, 2.0f * tolerance::edgeCurvature);
+}
+
+TEST_F(Cli, CurvatureQuantitiesWeldAndPicture) {
+    const std::string mesh = icosahedron();
+    ASSERT_EQ(run({"curvature", mesh, "-o", path("m.npy"), "--estimator", "tensor", "--quantity", "gaussian",
+                   "--weld", "exact", "--smooth", "0", "--smooth-radius", "0.1", "--picture", path("m.png")})
+                  .exitCode,
+              0);
+    // The icosahedron's normals point from its centre at radius 2: every edge turns as on the sphere.
+    for (float v : npy::read<float>(path("m.npy")).data) EXPECT_NEAR(v, 0.25f, 0.25f * tolerance::tensorCurvature);
+    EXPECT_GT(std::filesystem::file_size(path("m.png")), 1000u);
 }
 
 TEST_F(Cli, WhatCanBeRepairedIsCounted) {
@@ -139,7 +159,7 @@ TEST_F(Cli, WhatCanBeRepairedIsCounted) {
     // edge.
     const std::string mesh =
         icosahedron("9 9 9\n9 9 9\n0 0 5\n0 0 5\n", "3 0 0 1\n3 0 1 14\n3 14 15 3\n", 16, 23);
-    const Result result = run({"curvature", mesh, "-o", path("c.npy"), "--json"});
+    const Result result = run({"curvature", mesh, "-o", path("c.npy"), "--estimator", "edge", "--json"});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const nlohmann::json report = result.json();
     EXPECT_EQ(report.at("unreferenced_vertices"), 2);
