@@ -61,6 +61,8 @@ inline constexpr Tolerance noisyTorus{"noisyTorus", 0.1,
                                       "RMS, noise of 2 % of the edges, smoothed to three edges"};
 inline constexpr Tolerance diffusionRange{
     "diffusionRange", 1e-4, "relative: rounding of hundreds of stages; means never leave the range"};
+inline constexpr Tolerance normalComponent{
+    "normalComponent", 1e-5, "float angles and cross products; slivers of irregular meshes lose a digit"};
 inline constexpr Tolerance quantity{"quantity", 2e-6, "the same numbers combined in float and in double"};
 inline constexpr Tolerance direction{"direction", 1e-5, "unit length and right angles in float"};
 inline constexpr Tolerance directionIrregular{

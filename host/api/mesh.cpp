@@ -2,6 +2,7 @@
 #include "core/mesh_topology.h"
 #include "core/submission.h"
 #include "ops/curvature.h"
+#include "ops/mesh_normals.h"
 #include "ops/uv_scale.h"
 
 using namespace pel;
@@ -15,6 +16,39 @@ PelError pelMeshTopologyCreate(PelDevice device, const PelMeshTopologyDesc* desc
         Ref<MeshTopology> made = MeshTopology::create(Ref(&fromHandle<Device>(device)), full, found);
         if (report) writeStruct(report, found, "PelMeshReport");
         *topology = toHandle<PelMeshTopology>(std::move(made));
+    });
+}
+
+PelError pelMeshTopologySave(PelMeshTopology topology, void* destination, size_t* size) {
+    return entry([&] {
+        const std::vector<char> bytes = fromHandle<MeshTopology>(topology).save();
+        const size_t room = output(size, "size");
+        if (destination && room < bytes.size())
+            invalidArgument("the analysis takes ", bytes.size(), " bytes, and there is room for ", room);
+        if (destination) std::copy(bytes.begin(), bytes.end(), static_cast<char*>(destination));
+        *size = bytes.size();
+    });
+}
+
+PelError pelMeshTopologyLoad(PelDevice device, const void* bytes, size_t size, PelMeshTopology* topology,
+                             PelMeshReport* report) {
+    return entry([&] {
+        output(topology, "topology");
+        Ref<MeshTopology> made = MeshTopology::load(Ref(&fromHandle<Device>(device)), bytes, size);
+        if (report) writeStruct(report, made->report(), "PelMeshReport");
+        *topology = toHandle<PelMeshTopology>(std::move(made));
+    });
+}
+
+PelError pelMeshNormals(PelMeshTopology topology, const PelVertexView* positions,
+                        const PelVertexView* normals, const PelSubmit* submit) {
+    return entry([&] {
+        MeshTopology& mesh = fromHandle<MeshTopology>(topology);
+        const VertexView p = checkedView(positions, "positions", mesh.device(), mesh.vertices(), 3);
+        const VertexView n = checkedView(normals, "normals", mesh.device(), mesh.vertices(), 3);
+        Submission submission(mesh.device(), submit);
+        meshNormals(mesh, p, n);
+        submission.finish();
     });
 }
 
@@ -35,7 +69,8 @@ PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* pa
         const auto view = [&](const PelVertexView* v, const char* name, uint32_t components) {
             return checkedView(v, name, mesh.device(), mesh.vertices(), components);
         };
-        const VertexView p = view(positions, "positions", 3), n = view(normals, "normals", 3);
+        const VertexView p = view(positions, "positions", 3);
+        const VertexView n = normals ? view(normals, "normals", 3) : VertexView{};
         const VertexView out = view(curvature, "curvature", quantityFloats(full.quantity));
         PelMeshReport found = mesh.report();
         if (report) writeStruct(report, found, "PelMeshReport");  // fails before any work does

@@ -12,6 +12,10 @@ class MeshTopology final : public Object {
     static Ref<MeshTopology> create(Ref<Device> device, const PelMeshTopologyDesc& desc,
                                     PelMeshReport& report);
 
+    // Everything that was analysed, as bytes of this machine's order; load() checks all of it.
+    std::vector<char> save() const;
+    static Ref<MeshTopology> load(Ref<Device> device, const void* bytes, size_t size);
+
     Device& device() const { return *device_; }
     uint32_t vertices() const { return report_.vertices; }
     uint32_t slots() const { return report_.uniquePositions; }
@@ -31,7 +35,15 @@ class MeshTopology final : public Object {
 
     // Memory between the passes of one call, at least `bytes` long, kept for the next call. The queue is in
     // order, so that calls may share it as long as each enqueues its passes together: hold lock() meanwhile.
-    enum Scratch { scratchRows, scratchFrom, scratchTo, scratchReduce, scratchWeights, scratchCount };
+    enum Scratch {
+        scratchRows,
+        scratchFrom,
+        scratchTo,
+        scratchReduce,
+        scratchWeights,
+        scratchNormals,
+        scratchCount
+    };
     std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
     const cl::Memory& scratch(Scratch which, size_t bytes);
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "ops/mesh_normals.h"
 #include "ops/mesh_smoothing.h"
 
 namespace pel {
@@ -26,10 +27,6 @@ const char* estimatorKernel(PelCurvatureEstimator estimator) {
                                                : "curvature_quadric";
 }
 
-cl::Program rowsProgram(const MeshTopology& topology) {
-    return topology.device().programs().get("mesh_rows.cl", {{"MESH_MAPPED", topology.mapped() ? "1" : "0"}});
-}
-
 cl::Program estimatorProgram(const MeshTopology& topology, const char* kernel, uint32_t stride,
                              uint32_t planes) {
     return topology.device().programs().get(std::string(kernel) + ".cl",
@@ -38,25 +35,13 @@ cl::Program estimatorProgram(const MeshTopology& topology, const char* kernel, u
                                              {"PEL_WIDTH", std::to_string(width(topology.device()))}});
 }
 
-SlotData bySlot(MeshTopology& topology, const VertexView& positions, const VertexView& normals) {
-    if (!topology.mapped() && positions.layout.stride == 3 && normals.layout.stride == 3)
-        return {positions, normals, 3};
-    Device& device = topology.device();
-    const uint32_t slots = topology.slots();
-    const cl::Memory& rows = topology.scratch(MeshTopology::scratchRows, slots * 32ull);
-    cl::Launch gather(rowsProgram(topology), "mesh_rows");
-    gather.arg(slots).arg(topology.memberOffsets()).arg(topology.members());
-    gather.arg(positions.memory).arg(positions.layout).arg(normals.memory).arg(normals.layout).arg(rows);
-    device.launch(gather, over(slots));
-    return {{rows, {slots, 0, 8, 0}}, {rows, {slots, 4, 8, 0}}, 8};
-}
-
-MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, const VertexView& normals,
+MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, const VertexView& given,
                        const SlotData& data) {
+    const VertexView& normals = given.memory ? given : positions;
     Device& device = topology.device();
     const MeshCounts none{};
     const cl::Memory memory = device.allocate(sizeof none, &none);
-    cl::Launch count(rowsProgram(topology), "mesh_count");
+    cl::Launch count(device.programs().get("mesh_rows.cl", mapping(topology)), "mesh_count");
     count.arg(topology.vertices());
     count.arg(positions.memory).arg(positions.layout).arg(normals.memory).arg(normals.layout);
     count.arg(topology.slots()).arg(topology.slices()).arg(topology.rings());
@@ -64,6 +49,7 @@ MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, cons
     device.launch(count, over(topology.vertices()));
     MeshCounts counts;
     device.read(memory.get(), 0, sizeof counts, &counts, true);
+    if (!given.memory) counts.nonFiniteNormals = 0;  // they are made, and what they lack is in the positions
     return counts;
 }
 
@@ -110,7 +96,7 @@ void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, con
     const uint32_t planeStride = (slots + MESH_LANES - 1) / MESH_LANES * MESH_LANES;
     const size_t planeBytes = planeStride * sizeof(float);
     const auto lock = topology.lock();
-    const SlotData data = bySlot(topology, positions, normals);
+    const SlotData data = gatherBySlot(topology, positions, normals);
     const cl::Memory estimated = topology.scratch(MeshTopology::scratchFrom, planeBytes * planes);
     const cl::Defines defines = {{"MESH_MAPPED", topology.mapped() ? "1" : "0"},
                                  {"MESH_STRIDE", std::to_string(data.stride)},

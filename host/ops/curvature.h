@@ -8,7 +8,7 @@ namespace pel {
 void checkCurvatureParams(const PelCurvatureParams& params);
 uint32_t quantityFloats(PelCurvatureQuantity quantity);  // per vertex
 
-// Enqueues everything. With `counts`, waits and fills it.
+// `normals` empty: they are made from the positions. Enqueues everything. With `counts`, waits and fills it.
 void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, const VertexView& positions,
                    const VertexView& normals, const VertexView& curvature, MeshCounts* counts);
 

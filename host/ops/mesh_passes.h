@@ -19,6 +19,10 @@ inline cl::Range overSlots(const MeshTopology& topology, uint32_t planes = 1) {
     return {{(topology.slots() + lanes - 1) / lanes, planes, 1}, {MESH_GROUP, 1, 1}};
 }
 
+inline cl::Defines mapping(const MeshTopology& topology) {
+    return {{"MESH_MAPPED", topology.mapped() ? "1" : "0"}};
+}
+
 // Positions and normals by slot, both `stride` words apart: the caller's own memory, or rows gathered from
 // it.
 struct SlotData {

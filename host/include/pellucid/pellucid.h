@@ -264,6 +264,14 @@ PEL_API PelError pelMeshTopologyCreate(PelDevice device, const PelMeshTopologyDe
 PEL_API void pelMeshTopologyRetain(PelMeshTopology topology);
 PEL_API void pelMeshTopologyRelease(PelMeshTopology topology);
 
+/* The analysis as bytes, to be kept and loaded without analysing again. `size`: the room at `destination` before the call
+ * (any, if destination is NULL), the bytes of the analysis after it. For machines of the same byte order and this
+ * version of the library; pelMeshTopologyLoad refuses others, and anything that is damaged. Errors:
+ * PEL_ERROR_INVALID_ARGUMENT when the room is too small. */
+PEL_API PelError pelMeshTopologySave(PelMeshTopology topology, void* destination, size_t* size);
+PEL_API PelError pelMeshTopologyLoad(PelDevice device, const void* bytes, size_t size, PelMeshTopology* topology,
+                                     PelMeshReport* report);
+
 /* Vertex data inside a buffer. */
 typedef struct PelVertexView {
     PelBuffer buffer;
@@ -309,12 +317,18 @@ typedef struct PelCurvatureParams {
 } PelCurvatureParams;
 
 /* Curvature at each vertex. `positions`, `normals`: xyz float32 per vertex, as many as the topology has; normals are of
- * unit length. `curvature`: one float32 per vertex (more where the quantity says so), 1/length, finite; 0 where nothing
+ * unit length; NULL: they are made from the positions, as by pelMeshNormals. `curvature`: one float32 per vertex (more where the quantity says so), 1/length, finite; 0 where nothing
  * could be measured. Signed values are smoothed, then the quantity is taken. A given `report` makes the call block. Same
  * input, same bits. Sources: FaceWorks 1.0; Rusinkiewicz, Estimating Curvatures, 3DPVT 2004. */
 PEL_API PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* params,
                                   const PelVertexView* positions, const PelVertexView* normals,
                                   const PelVertexView* curvature, PelMeshReport* report, const PelSubmit* submit);
+
+/* Unit normals from positions: those of a vertex's triangles, weighted by their angles there; vertices that were welded
+ * share one. (0, 0, 0) where no triangle has a plane. `normals`: xyz float32 per vertex, written. Same input, same bits.
+ * Source: Thuermer & Wuethrich 1998. */
+PEL_API PelError pelMeshNormals(PelMeshTopology topology, const PelVertexView* positions, const PelVertexView* normals,
+                                const PelSubmit* submit);
 
 /* Geometric mean over triangles of longest edge / longest UV edge, in length per UV unit. `uvs`: two float32 per vertex.
  * Triangles where either edge is below 1e-6 of the mesh's largest are skipped. Blocks. Errors:

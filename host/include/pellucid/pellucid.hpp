@@ -158,8 +158,29 @@ inline PelVertexView vertexView(const Buffer& buffer, uint32_t count, uint64_t b
 class MeshTopology : public Handle<PelMeshTopology, pelMeshTopologyRetain, pelMeshTopologyRelease> {
   public:
     using Handle::Handle;
+    MeshTopology() = default;
     MeshTopology(const Device& device, const PelMeshTopologyDesc& desc, PelMeshReport* report = nullptr) {
         check(pelMeshTopologyCreate(device.get(), &desc, out(), report));
+    }
+    static MeshTopology load(const Device& device, const void* bytes, size_t size, PelMeshReport* report = nullptr) {
+        MeshTopology topology;
+        check(pelMeshTopologyLoad(device.get(), bytes, size, topology.out(), report));
+        return topology;
+    }
+    std::vector<char> save() const {
+        size_t size = 0;
+        check(pelMeshTopologySave(h_, nullptr, &size));
+        std::vector<char> bytes(size);
+        check(pelMeshTopologySave(h_, bytes.data(), &size));
+        return bytes;
+    }
+    void normals(const PelVertexView& positions, const PelVertexView& result, const PelSubmit* submit = nullptr) const {
+        check(pelMeshNormals(h_, &positions, &result, submit));
+    }
+    // With normals made from the positions.
+    void curvature(const PelCurvatureParams& params, const PelVertexView& positions, const PelVertexView& result,
+                   PelMeshReport* report = nullptr, const PelSubmit* submit = nullptr) const {
+        check(pelMeshCurvature(h_, &params, &positions, nullptr, &result, report, submit));
     }
     void curvature(const PelCurvatureParams& params, const PelVertexView& positions,
                    const PelVertexView& normals, const PelVertexView& result, PelMeshReport* report = nullptr,

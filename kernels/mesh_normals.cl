@@ -1,0 +1,80 @@
+// Unit normals from positions: the normals of the triangles round a slot, weighted by their angles there
+// [Thuermer & Wuethrich 1998], so that cutting a flat face differently changes nothing.
+//
+// Inputs: position (length) of each slot, one-rings (shared/mesh.h). Output: normal of each slot; 0 where no
+// triangle has a plane.
+//
+// One work-item: PEL_WIDTH slots (mesh_normals), one vertex of the caller (mesh_normals_store).
+//
+// Variants: MESH_STRIDE (lib/mesh_ring.clh), also of the output; MESH_MAPPED 1: vertices find their slot in
+// slotOf.
+
+#include "lib/mesh_triangle.clh"
+
+__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_normals(
+    uint slots, __global const uint* slices, __global const uint* rings, __global const float* positions,
+    uint positionOffset, __global float* normals, uint normalOffset) {
+    const uint first = get_global_id(0) * PEL_WIDTH;
+    if (first >= slots) return;
+    RingCursor ring = ring_begin(first, slots, slices);
+    positions += positionOffset;
+    normals += normalOffset;
+    const floatw zero = 0.0f;
+    const Vec3w none = vec3(zero, zero, zero);
+    Vec3w origin;
+    gather3(positions, ring.self, &origin.x, &origin.y, &origin.z);
+
+    Vec3w sum = none, start = none, previous = none;
+    maskw walking = start.x > zero, closed = walking, flipped = walking;
+    // One row more than there are: what follows the last neighbour ends its walk, as a filler does.
+    for (uint row = ring.row; row <= ring.end; ++row) {
+        ring.row = row;
+        const uintw entry = row < ring.end ? ring_entry(&ring, rings) : ring.self;
+        const uintw slot = RING_SLOT(entry);
+        const maskw filler = slot == ring.self;
+        const maskw starts = (entry & (uintw)(MESH_START)) != 0;
+        Vec3w current;
+        gather3(positions, slot, &current.x, &current.y, &current.z);
+        current = sub3(current, origin);
+        // At unit length, so that no product leaves the range of float; an edge without length stays 0.
+        const floatw length2 = dot3(current, current);
+        const maskw long_ = (length2 >= MESH_MIN_LENGTH2) & finitew(length2);
+        current = select3(none, scale3(current, inverseRootw(length2)), long_);
+        const maskw ends = walking & (filler | starts);
+        const maskw triangle = walking & (!ends | closed);
+        const Vec3w other = select3(current, start, ends);
+        const Vec3w across = cross3(previous, other);
+        const floatw sine2 = dot3(across, across);
+        const maskw plane = triangle & (sine2 > TRIANGLE_FLAT);
+        const floatw sine = sqrt(selectw((floatw)(1.0f), sine2, plane));
+        floatw weight = atan2(sine, dot3(previous, other)) / sine;
+        weight = selectw(weight, -weight, flipped);
+        sum = select3(sum, add3(sum, scale3(across, weight)), plane);
+        start = select3(start, current, starts);
+        closed = selectw(closed, (entry & (uintw)(MESH_SINGLE)) == 0, starts);
+        flipped = (entry & (uintw)(MESH_FLIPPED)) != 0;
+        walking = (walking | starts) & !filler;
+        previous = current;
+    }
+    const floatw length2 = dot3(sum, sum);
+    const Vec3w n = select3(none, scale3(sum, inverseRootw(length2)), length2 > 1e-12f);
+#define STORE_(i, s)       \
+    if (first + i < slots) \
+        vstore3((float3)(n.x s, n.y s, n.z s), 0, normals + (size_t)(first + i) * MESH_STRIDE);
+    PEL_EACH_LANE(STORE_)
+#undef STORE_
+}
+
+__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_normals_store(
+    __global const uint* slotOf, __global const float* normals, uint normalOffset, __global float* result,
+    VertexLayout layout) {
+    const uint vertex = get_global_id(0);
+    if (vertex >= layout.count) return;
+#if MESH_MAPPED
+    const uint slot = slotOf[vertex];
+#else
+    const uint slot = vertex;
+#endif
+    vstore3(vload3(0, normals + normalOffset + (size_t)slot * MESH_STRIDE), 0,
+            result + layout.offset + (size_t)vertex * layout.stride);
+}
