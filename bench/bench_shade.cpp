@@ -1,0 +1,284 @@
+// The shading pass: against the scalar C++ loop and the straight OpenCL port, by feature, coverage and number
+// of lights.
+//
+// Frames: `full` is a screen of folded skin, `head` a 1280 x 720 view of a ball that covers as much as the
+// demo's head.
+#include <benchmark/benchmark.h>
+
+#include <pellucid/pellucid.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <memory>
+
+#include "baseline_shade.h"
+
+using namespace pellucid;
+using baseline::ShadeFrame;
+using baseline::ShadeSettings;
+using baseline::ShadeTable;
+
+namespace {
+
+const Device& device() {
+    static const Device device("");
+    return device;
+}
+
+void append3(std::vector<float>& to, float x, float y, float z) {
+    to.insert(to.end(), {x, y, z});
+}
+
+void appendUnit(std::vector<float>& to, float x, float y, float z) {
+    const float length = std::sqrt(x * x + y * y + z * z);
+    append3(to, x / length, y / length, z / length);
+}
+
+// Coverage: share of the rows, from the top, that are skin.
+ShadeFrame foldedSkin(int width, int height, double coverage) {
+    ShadeFrame f;
+    f.width = width;
+    f.height = height;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const float a = 1.6f * std::sin(float(x) / 110), b = 1.2f * std::cos(float(y) / 85);
+            f.id.push_back(y < int(std::lround(coverage * height)));
+            append3(f.position, 0.1f * float(x - width / 2), 0.1f * float(height / 2 - y),
+                    12 * std::sin(float(x + y) / 150));
+            appendUnit(f.geometric, a, b, 1);
+            appendUnit(f.shading, a + 0.1f * std::sin(float(x) / 3), b + 0.1f * std::sin(float(y) / 4), 1);
+            appendUnit(f.blurred, 0.9f * a, 0.9f * b, 1);
+            f.curvature.push_back(0.05f + 0.2f * float((x / 7 + y / 5) % 10) / 10);
+            append3(f.albedo, 0.8f, 0.5f, 0.4f);
+            f.wide.push_back(std::clamp(0.5f + 3 * std::sin(float(x - y) / 140), 0.0f, 1.0f));
+        }
+    return f;
+}
+
+ShadeFrame ball(int width, int height) {
+    ShadeFrame f;
+    f.width = width;
+    f.height = height;
+    const float radius = 0.45f * float(height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const float px = (float(x) - 0.5f * float(width)) / radius,
+                        py = (0.5f * float(height) - float(y)) / radius;
+            const float r2 = px * px + py * py;
+            const bool inside = r2 < 1;
+            const float pz = inside ? std::sqrt(1 - r2) : 0;
+            f.id.push_back(inside);
+            append3(f.position, 110 * px, 110 * py, 110 * pz);
+            appendUnit(f.geometric, px, py, pz + 1e-3f);
+            appendUnit(f.shading, px + 0.05f * std::sin(float(x) / 3), py + 0.05f * std::sin(float(y) / 4),
+                       pz + 1e-3f);
+            appendUnit(f.blurred, px, py, pz + 1e-3f);
+            f.curvature.push_back(1.0f / 110 + 0.1f * std::fabs(std::sin(float(x + y) / 40)));
+            append3(f.albedo, 0.8f, 0.5f, 0.4f);
+            f.wide.push_back(std::clamp(0.5f + 4 * (0.7f * px + 0.3f * py + 0.6f * pz), 0.0f, 1.0f));
+        }
+    return f;
+}
+
+void addShadowMap(ShadeFrame& f) {
+    f.mapSize = 1024;
+    for (int y = 0; y < 1024; ++y)
+        for (int x = 0; x < 1024; ++x)
+            f.map.push_back(0.42f + 0.05f * std::sin(float(x) / 60) * std::cos(float(y) / 50));
+}
+
+struct Scene {
+    ShadeFrame frame;
+    ShadeSettings settings{};
+    ShadeTable curvature, shadow;
+    Lut curvatureLut, shadowLut;
+    PelLight light = pelLightDefaults();
+    PelMaterial material = pelMaterialDefaults();
+    PelAmbient ambient = pelAmbientDefaults();
+    PelCamera camera = pelCameraDefaults();
+    std::vector<float> out;
+};
+
+std::vector<float> readDisk(int taps) {
+    std::ifstream file(PELLUCID_SOURCE_DIR "/kernels/lib/poisson_disk.clh");
+    const std::string start = "pelDisk" + std::to_string(taps) + "[";
+    std::vector<float> disk;
+    for (std::string line; std::getline(file, line);)
+        if (line.find(start) != std::string::npos)
+            while (std::getline(file, line) && line[0] != '}') {
+                float x = 0, y = 0;
+                std::sscanf(line.c_str(), " (float2)(%ff, %ff)", &x, &y);
+                disk.insert(disk.end(), {x, y});
+            }
+    return disk;
+}
+
+// Both baselines and the library take their numbers from here.
+void fillSettings(Scene& s, int taps) {
+    ShadeSettings& b = s.settings;
+    const float toLight[3] = {0.8f, 0.36f, 0.48f}, camera[3] = {0, 0, 600};
+    std::copy_n(toLight, 3, s.light.toLight);
+    std::copy_n(camera, 3, s.camera.position);
+    const float rows[16] = {0.004f, 0, 0, 0.5f, 0, 0.004f, 0, 0.5f, 0, 0, -0.004f, 0.5f, 0, 0, 0, 1};
+    std::copy_n(rows, 16, s.light.worldToShadow);
+    s.light.shadowDepthRange = 250;
+    const float color[3] = {0.9f, 0.4f, 0.3f};
+    if (taps) std::copy_n(color, 3, s.material.deepScatterColor);
+    s.material.thicknessTaps = uint32_t(taps);
+    s.material.specular = 0.8f;
+    for (int i = 0; i < 9; ++i)
+        for (int c = 0; c < 3; ++c) s.ambient.sh[i][c] = 0.3f / float(1 + i + c);
+    std::copy_n(toLight, 3, b.toLight);
+    std::copy_n(camera, 3, b.camera);
+    std::copy_n(s.light.color, 3, b.light);
+    std::copy_n(color, 3, b.deepScatter);
+    std::copy_n(rows, 16, b.worldToShadow);
+    const float one = 0.48860251f, two = 1.09254843f;
+    const float factors[9] = {0.28209479f, one, one, one, two, two, 0.31539157f, two, 0.5f * two};
+    for (int i = 0; i < 9; ++i)
+        for (int c = 0; c < 3; ++c) b.ambient[i][c] = factors[i] * s.ambient.sh[i][c];
+    b.depthRange = 250;
+    b.rowsCurvature[0] = 1 / (1 - 0.01f);
+    b.rowsCurvature[1] = -0.01f / (1 - 0.01f);
+    b.rowsShadow[0] = 1 / (1 / 8.0f - 0.01f);
+    b.rowsShadow[1] = -0.01f / (1 / 8.0f - 0.01f);
+    b.penumbraPerCosine = 1 / s.material.shadowFilterWidth;
+    b.sharpening = 9;
+    b.deepScatterRadius = s.material.deepScatterRadius;
+    b.normalOffset = s.material.deepScatterNormalOffset;
+    b.filterRadius = s.material.thicknessFilterRadius;
+    b.taps = taps;
+    b.specular = s.material.specular;
+    b.roughness = s.material.roughness;
+    b.f0 = s.material.f0;
+    if (taps) b.disk = readDisk(taps);
+}
+
+std::unique_ptr<Scene> makeScene(ShadeFrame frame, int taps) {
+    auto s = std::make_unique<Scene>();
+    s->frame = std::move(frame);
+    addShadowMap(s->frame);
+    s->curvatureLut = Lut(device(), pelCurvatureLutDescDefaults());
+    s->shadowLut = Lut(device(), pelShadowLutDescDefaults());
+    s->curvature = {s->curvatureLut.read<float>(PEL_LUT_FLOAT), 512, 512};
+    s->shadow = {s->shadowLut.read<float>(PEL_LUT_FLOAT), 512, 512};
+    fillSettings(*s, taps);
+    s->out.resize(s->frame.position.size());
+    return s;
+}
+
+enum View { full, head };
+
+// view, taps, coverage in percent
+Scene& scene(View view, int taps, int coverage = 100) {
+    static std::map<std::tuple<int, int, int>, std::unique_ptr<Scene>> scenes;
+    auto& slot = scenes[{view, taps, coverage}];
+    if (!slot)
+        slot = makeScene(view == full ? foldedSkin(1920, 1080, coverage / 100.0) : ball(1280, 720), taps);
+    return *slot;
+}
+
+struct Prepared {
+    Shader shader;
+    Buffer target;
+};
+
+// plain: diffuse and specular alone, in the same framework.
+Prepared prepare(const Scene& s, uint32_t lights, bool plain) {
+    const auto w = uint32_t(s.frame.width), h = uint32_t(s.frame.height);
+    Prepared p{Shader(device()), Buffer(device(), size_t(w) * h * 12)};
+    const auto set = [&](PelImageSlot slot, const std::vector<float>& image, PelFormat format) {
+        p.shader.set(slot, imageDesc(Buffer(device(), image), format, w, h));
+    };
+    p.shader.set(PEL_SLOT_RADIANCE, imageDesc(p.target, PEL_FORMAT_RGB32F, w, h));
+    p.shader.set(PEL_SLOT_MATERIAL, imageDesc(Buffer(device(), s.frame.id), PEL_FORMAT_R8_UINT, w, h));
+    set(PEL_SLOT_POSITION, s.frame.position, PEL_FORMAT_RGB32F);
+    set(PEL_SLOT_NORMAL_SHADING, s.frame.shading, PEL_FORMAT_RGB32F);
+    set(PEL_SLOT_ALBEDO, s.frame.albedo, PEL_FORMAT_RGB32F);
+    std::vector<PelLight> all(lights, s.light);
+    for (uint32_t i = 1; i < lights; ++i) std::swap(all[i].toLight[i % 3], all[i].toLight[(i + 1) % 3]);
+    p.shader.set(all).set(s.camera);
+    if (plain) {
+        p.shader.setMaterial(1, s.material);
+    } else {
+        set(PEL_SLOT_NORMAL_GEOMETRIC, s.frame.geometric, PEL_FORMAT_RGB32F);
+        set(PEL_SLOT_NORMAL_BLURRED, s.frame.blurred, PEL_FORMAT_RGB32F);
+        set(PEL_SLOT_CURVATURE, s.frame.curvature, PEL_FORMAT_R32F);
+        p.shader.set(s.ambient);
+        p.shader.setMaterial(1, s.material, s.curvatureLut, s.shadowLut);
+        const Buffer wide(device(), s.frame.wide), map(device(), s.frame.map);
+        const auto size = uint32_t(s.frame.mapSize);
+        for (uint32_t i = 0; i < lights; ++i) {
+            p.shader.set(i, PEL_LIGHT_WIDE_SHADOW, imageDesc(wide, PEL_FORMAT_R32F, w, h));
+            p.shader.set(i, PEL_LIGHT_SHADOW_MAP, imageDesc(map, PEL_FORMAT_R32F, size, size));
+        }
+    }
+    p.shader.commit().execute();
+    return p;
+}
+
+void perPixel(benchmark::State& state, const ShadeFrame& f) {
+    const double pixels = double(std::count(f.id.begin(), f.id.end(), 1));
+    state.counters["ns_per_skin_pixel"] = benchmark::Counter(
+        pixels * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+// Largest difference in brightness between the library and a baseline: they must compute the same.
+void compare(benchmark::State& state, const Prepared& p, const std::vector<float>& other) {
+    const auto ours = p.target.readAll<float>();
+    float worst = 0;
+    for (size_t i = 0; i < ours.size(); ++i) worst = std::max(worst, std::fabs(ours[i] - other[i]));
+    state.counters["max_difference"] = worst;
+}
+
+void library(benchmark::State& state, View view, int taps, int coverage, uint32_t lights, bool plain) {
+    const Scene& s = scene(view, taps, coverage);
+    const Prepared p = prepare(s, lights, plain);
+    for (auto _ : state) p.shader.execute();
+    perPixel(state, s.frame);
+}
+
+void openMp(benchmark::State& state, View view, int taps) {
+    Scene& s = scene(view, taps);
+    for (auto _ : state) baseline::shadeOpenMp(s.frame, s.settings, s.curvature, s.shadow, s.out);
+    compare(state, prepare(s, 1, false), s.out);
+    perPixel(state, s.frame);
+}
+
+void port(benchmark::State& state, View view, int taps) {
+    const Scene& s = scene(view, taps);
+    void *context, *id, *queue;
+    check(pelDeviceGetCl(device().get(), &context, &id, &queue));
+    baseline::ShadePort naive(context, id, queue, s.frame, s.settings, s.curvature, s.shadow);
+    naive.run();
+    for (auto _ : state) naive.run();
+    compare(state, prepare(s, 1, false), naive.result());
+    perPixel(state, s.frame);
+}
+
+#define CASE(function, name, ...) \
+    BENCHMARK_CAPTURE(function, name, __VA_ARGS__)->Unit(benchmark::kMillisecond)->UseRealTime()
+
+CASE(library, full_surface, full, 0, 100, 1u, false);
+CASE(port, full_surface, full, 0);
+CASE(openMp, full_surface, full, 0);
+CASE(library, full_32taps, full, 32, 100, 1u, false);
+CASE(port, full_32taps, full, 32);
+CASE(openMp, full_32taps, full, 32);
+CASE(library, full_plain, full, 0, 100, 1u, true);
+CASE(library, full_coverage10, full, 32, 10, 1u, false);
+CASE(library, full_coverage0, full, 32, 0, 1u, false);
+CASE(library, full_32taps_4lights, full, 32, 100, 4u, false);
+CASE(library, full_surface_4lights, full, 0, 100, 4u, false);
+CASE(library, head_plain, head, 0, 100, 1u, true);
+CASE(library, head_surface, head, 0, 100, 1u, false);
+CASE(library, head_8taps, head, 8, 100, 1u, false);
+CASE(library, head_32taps, head, 32, 100, 1u, false);
+CASE(openMp, head_32taps, head, 32);
+CASE(port, head_32taps, head, 32);
+
+}  // namespace
+
+BENCHMARK_MAIN();
