@@ -259,7 +259,7 @@ void port(benchmark::State& state, View view, int taps) {
 }
 
 #define CASE(function, name, ...) \
-    BENCHMARK_CAPTURE(function, name, __VA_ARGS__)->Unit(benchmark::kMillisecond)->UseRealTime()
+    BENCHMARK_CAPTURE(function, name, __VA_ARGS__)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime()
 
 CASE(library, full_surface, full, 0, 100, 1u, false);
 CASE(port, full_surface, full, 0);

@@ -257,7 +257,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
                           light10, light11, light12, light13, light14, light15}};
     Counts counts = {{0}};
     const uint tiles = PEL_FORMAT_MATERIAL ? list[0] : frame->tiles;
-    for (uint i = get_group_id(0); i < tiles; i += get_num_groups(0)) {
+    // Each group takes a run of the list: neighbours in it share pages, and often cache lines, of the images.
+    const uint groups = get_num_groups(0), group = get_group_id(0);
+    const uint end = (uint)((ulong)tiles * (group + 1) / groups);
+    for (uint i = (uint)((ulong)tiles * group / groups); i < end; ++i) {
         const uint tile = PEL_FORMAT_MATERIAL ? list[1 + i] : i;
         const uint tileX = tile % frame->tilesX * PEL_TILE_WIDTH, tileY = tile / frame->tilesX * PEL_TILE_HEIGHT;
         for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_SHADE_GROUP * PEL_WIDTH) {

@@ -5,8 +5,8 @@
 #include "shared/lut.h"
 #include "shared/scalars.h"
 
-#define PEL_TILE_WIDTH 16  // pixels; measured, docs/shading.md
-#define PEL_TILE_HEIGHT 16
+#define PEL_TILE_WIDTH 128  // pixels; measured, docs/shading.md
+#define PEL_TILE_HEIGHT 2
 #define PEL_TILE_PIXELS (PEL_TILE_WIDTH * PEL_TILE_HEIGHT)
 #define PEL_LIGHT_BUFFERS 16 // distinct buffers among all images of all lights
 #define PEL_MATERIALS 256    // ids 0 (background) to 255
