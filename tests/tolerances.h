@@ -63,6 +63,8 @@ inline constexpr Tolerance diffusionRange{
     "diffusionRange", 1e-4, "relative: rounding of hundreds of stages; means never leave the range"};
 inline constexpr Tolerance normalComponent{
     "normalComponent", 1e-5, "float angles and cross products; slivers of irregular meshes lose a digit"};
+inline constexpr Tolerance shuffled{"shuffled", 2e-3,
+                                    "sums in another order; the fit squares the rounding of positions"};
 inline constexpr Tolerance quantity{"quantity", 2e-6, "the same numbers combined in float and in double"};
 inline constexpr Tolerance direction{"direction", 1e-5, "unit length and right angles in float"};
 inline constexpr Tolerance directionIrregular{

@@ -1,6 +1,7 @@
 #include "core/mesh_adjacency.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cl/error.h"
 #include "core/mesh_ring.h"
@@ -40,6 +41,37 @@ MeshAdjacency buildAdjacency(const std::vector<uint32_t>& triangles, uint32_t sl
     mesh.offsets.push_back(uint32_t(mesh.neighbours.size()));
     progress(1.0);
     return mesh;
+}
+
+bool isScattered(const std::vector<uint32_t>& triangles, uint32_t slots) {
+    // Below this many slots everything stays in the second-level cache anyway.
+    constexpr uint32_t fewSlots = 16384;
+    if (slots < fewSlots || triangles.empty()) return false;
+    double distance = 0;
+    for (size_t t = 0; t < triangles.size(); t += 3)
+        distance += std::abs(double(triangles[t]) - double(triangles[t + 1]));
+    // Random numbers are slots / 3 apart, a grid's root(slots).
+    return distance / double(triangles.size() / 3) > slots / 16.0;
+}
+
+std::vector<uint32_t> breadthFirstNumbers(const MeshAdjacency& adjacency) {
+    const uint32_t slots = uint32_t(adjacency.offsets.size() - 1), none = UINT32_MAX;
+    std::vector<uint32_t> numbers(slots, none), queue;
+    queue.reserve(slots);
+    for (uint32_t first = 0; first < slots; ++first) {
+        if (numbers[first] != none) continue;
+        size_t next = queue.size();
+        numbers[first] = uint32_t(next);
+        queue.push_back(first);
+        for (; next < queue.size(); ++next)
+            for (uint32_t e = adjacency.offsets[queue[next]]; e < adjacency.offsets[queue[next] + 1]; ++e) {
+                const uint32_t neighbour = adjacency.neighbours[e] & MESH_SLOT;
+                if (numbers[neighbour] != none) continue;
+                numbers[neighbour] = uint32_t(queue.size());
+                queue.push_back(neighbour);
+            }
+    }
+    return numbers;
 }
 
 MeshSlices sliceAdjacency(const MeshAdjacency& adjacency) {

@@ -18,6 +18,13 @@ struct MeshAdjacency {
 MeshAdjacency buildAdjacency(const std::vector<uint32_t>& triangles, uint32_t slots,
                              const std::function<void(double)>& progress);
 
+// Whether neighbours stand so far apart in memory that every access misses the caches.
+bool isScattered(const std::vector<uint32_t>& triangles, uint32_t slots);
+
+// A new number for each slot, so that neighbours are near each other: breadth first from the first slot of
+// each part.
+std::vector<uint32_t> breadthFirstNumbers(const MeshAdjacency& adjacency);
+
 // The lists in the layout that shared/mesh.h describes.
 struct MeshSlices {
     std::vector<uint32_t> slices;

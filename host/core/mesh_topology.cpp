@@ -38,7 +38,7 @@ Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopology
     const auto progress = [&](double fraction) { device->progress(fraction, "analysing the mesh"); };
     progress(0.0);
     checkDesc(desc);
-    const MeshWeld weld = weldVertices(desc);
+    MeshWeld weld = weldVertices(desc);
     progress(0.2);
 
     report = pelMeshReportDefaults();
@@ -61,8 +61,16 @@ Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopology
             triangles.insert(triangles.end(), v, v + 3);
     }
     report.unreferencedVertices = uint32_t(std::count(used.begin(), used.end(), false));
-    const MeshAdjacency adjacency =
-        buildAdjacency(triangles, weld.slots, [&](double fraction) { progress(0.3 + 0.6 * fraction); });
+    MeshAdjacency adjacency =
+        buildAdjacency(triangles, weld.slots, [&](double fraction) { progress(0.3 + 0.4 * fraction); });
+    if (isScattered(triangles, weld.slots)) {
+        // Passes then work in an order of their own; only the first and the last one know the caller's.
+        const std::vector<uint32_t> numbers = breadthFirstNumbers(adjacency);
+        renumberSlots(weld, numbers);
+        for (uint32_t& slot : triangles) slot = numbers[slot];
+        adjacency =
+            buildAdjacency(triangles, weld.slots, [&](double fraction) { progress(0.7 + 0.2 * fraction); });
+    }
     report.edges = adjacency.edges;
     report.borderEdges = adjacency.borderEdges;
     report.nonManifoldEdges = adjacency.nonManifoldEdges;

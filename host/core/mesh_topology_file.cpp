@@ -100,8 +100,8 @@ Ref<MeshTopology> MeshTopology::load(Ref<Device> device, const void* bytes, size
     const uint32_t slots = r.uniquePositions;
     check(slots <= r.vertices && r.vertices <= MESH_SLOT, "impossible counts");
     check(indices.size() == size_t(r.triangles) * 3 && below(indices, r.vertices), "wrong indices");
-    if (slots == r.vertices) {
-        check(slotOf.empty() && memberOffsets.empty() && members.empty(), "a wrong mapping");
+    if (slotOf.empty()) {
+        check(slots == r.vertices && memberOffsets.empty() && members.empty(), "a wrong mapping");
     } else {
         check(slotOf.size() == r.vertices && below(slotOf, slots), "a wrong mapping");
         check(members.size() == r.vertices && below(members, r.vertices), "a wrong mapping");

@@ -100,7 +100,25 @@ uint32_t findNear(const CellTable& table, const Positions& positions, const Poin
     return found;
 }
 
+void listMembers(MeshWeld& weld) {
+    weld.memberOffsets.assign(size_t(weld.slots) + 2, 0);
+    for (uint32_t slot : weld.slotOf) ++weld.memberOffsets[size_t(slot) + 2];
+    for (size_t s = 2; s < weld.memberOffsets.size(); ++s) weld.memberOffsets[s] += weld.memberOffsets[s - 1];
+    weld.members.resize(weld.slotOf.size());
+    for (uint32_t v = 0; v < weld.slotOf.size(); ++v)
+        weld.members[weld.memberOffsets[size_t(weld.slotOf[v]) + 1]++] = v;
+    weld.memberOffsets.pop_back();
+}
+
 }  // namespace
+
+void renumberSlots(MeshWeld& weld, const std::vector<uint32_t>& numbers) {
+    if (weld.slotOf.empty())
+        weld.slotOf = numbers;
+    else
+        for (uint32_t& slot : weld.slotOf) slot = numbers[slot];
+    listMembers(weld);
+}
 
 MeshWeld weldVertices(const PelMeshTopologyDesc& desc) {
     MeshWeld weld;
@@ -135,13 +153,7 @@ MeshWeld weldVertices(const PelMeshTopologyDesc& desc) {
         weld.slotOf.clear();
         return weld;
     }
-    weld.memberOffsets.assign(size_t(slots) + 2, 0);
-    for (uint32_t slot : weld.slotOf) ++weld.memberOffsets[size_t(slot) + 2];
-    for (size_t s = 2; s < weld.memberOffsets.size(); ++s) weld.memberOffsets[s] += weld.memberOffsets[s - 1];
-    weld.members.resize(desc.numVertices);
-    for (uint32_t v = 0; v < desc.numVertices; ++v)
-        weld.members[weld.memberOffsets[size_t(weld.slotOf[v]) + 1]++] = v;
-    weld.memberOffsets.pop_back();
+    listMembers(weld);
     return weld;
 }
 

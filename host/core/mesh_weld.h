@@ -8,12 +8,15 @@
 namespace pel {
 
 struct MeshWeld {
-    std::vector<uint32_t> slotOf;  // per vertex; empty when nothing was welded and slots are vertices
-    // Empty likewise. Vertices of a slot, ascending; a slot is numbered by its first vertex.
+    std::vector<uint32_t> slotOf;  // per vertex; empty when slots are the vertices in their order
+    // Empty likewise. Vertices of a slot, ascending.
     std::vector<uint32_t> memberOffsets;  // slots + 1
     std::vector<uint32_t> members;        // vertices
     uint32_t slots = 0;
 };
+
+// Gives slot s the number numbers[s].
+void renumberSlots(MeshWeld& weld, const std::vector<uint32_t>& numbers);
 
 // Exact: equal coordinates (-0 equals 0). Tolerance: a vertex joins the first one before it that stands no
 // farther than the tolerance and did not itself join another; chains do not grow. NaN and Inf join nothing.
