@@ -60,7 +60,7 @@ std::vector<DemoViewRequest> requests(const Arguments& a) {
     back = side;
     back.name = "backlit";
     back.keyLight = sample::KeyLight::Back;
-    back.keyIrradiance = 1.6f;
+    back.keyIrradiance = 2.2f;
     back.skyScale = 0.12f;
     return {side, back};
 }

@@ -41,7 +41,7 @@ void copy(float (&to)[3], sample::Vec3 from) {
 PelMaterial skin() {
     PelMaterial m = pelMaterialDefaults();
     // Blood and tissue let red through furthest.
-    const float transmitted[3] = {0.5f, 0.12f, 0.04f};
+    const float transmitted[3] = {0.7f, 0.16f, 0.05f};
     std::copy(transmitted, transmitted + 3, m.deepScatterColor);
     m.deepScatterRadius = 6.0f;
     m.specular = 0.35f;
