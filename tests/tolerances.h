@@ -162,4 +162,9 @@ inline constexpr Tolerance sampleWideShadow{
 inline constexpr Tolerance sampleSky{"sampleSky", 0.02,
                                      "what orders above 2 carry of a sky with a soft lamp"};
 
+// --- a real host's pictures ---
+inline constexpr Tolerance realHostLambert{
+    "realHostLambert", 2e-4,
+    "root mean square: 9e-5 on the head from pixels at shadow edges, where the host traced another ray"};
+
 }  // namespace tolerance
