@@ -75,8 +75,9 @@ void compare(const Device& device, const Pair& pair, PelCurvatureForm form, refe
         const double c0 = 1 / double(desc.radiusMax), c1 = 1 / double(desc.radiusMin),
                      t = (y + 0.5) / desc.height;
         if (axis == PEL_AXIS_ROOT) {
-            u *= std::abs(u);
-            c = std::pow(std::sqrt(c0) + t * (std::sqrt(c1) - std::sqrt(c0)), 2);
+            const double s = -1 + 2.0 * x / (desc.width - 1);
+            u = s * std::abs(s);
+            c = std::pow(std::sqrt(c0) + y / (desc.height - 1.0) * (std::sqrt(c1) - std::sqrt(c0)), 2);
         } else {
             c = c0 + t * (c1 - c0);
         }
@@ -130,7 +131,7 @@ TEST(LutProfiles, MeanOverTheSphereIsAQuarter) {
     const Device device("");
     for (const Pair& pair : pairs()) {
         PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
-        desc.width = 2048;
+        desc.width = 2049;
         desc.height = 16;
         desc.form = PEL_FORM_SPHERE;
         desc.axis = PEL_AXIS_ROOT;
@@ -141,10 +142,13 @@ TEST(LutProfiles, MeanOverTheSphereIsAQuarter) {
         const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
         for (uint32_t y = 0; y < desc.height; ++y)
             for (int k = 0; k < 3; ++k) {
-                double mean = 0;  // over u: du/2 = |s| ds at the middle of each texel
+                double mean =
+                    0;  // over u: du/2 = |s| ds, which vanishes at the middle; trapezoids between texels
                 for (uint32_t x = 0; x < desc.width; ++x) {
-                    const double s = -1 + (x + 0.5) * 2 / desc.width;
-                    mean += texels[(size_t(y) * desc.width + x) * 3 + k] * std::abs(s) * 2 / desc.width;
+                    const double s = -1 + 2.0 * x / (desc.width - 1),
+                                 end = x == 0 || x + 1 == desc.width ? 0.5 : 1;
+                    mean += texels[(size_t(y) * desc.width + x) * 3 + k] * std::abs(s) * end * 2 /
+                            (desc.width - 1);
                 }
                 EXPECT_NEAR(mean, 0.25, tolerance::sphereMean)
                     << pair.name << " row " << y << " channel " << k;

@@ -30,6 +30,12 @@ inline constexpr Tolerance profileEvaluation{
     "relative; the mixtures of Gaussians that stand for burley and dipole leave 1e-6"};
 inline constexpr Tolerance normalBlend{"normalBlend", 0.05,
                                        "of the factors 1, 0.3, 0 that were chosen by eye for skin"};
+inline constexpr Tolerance sampledEnergy{
+    "sampledEnergy", 1e-3, "4000 logarithmic samples of a line spread, which burley's centre leaves short"};
+inline constexpr Tolerance sixGaussians{"sixGaussians", 0.02,
+                                        "six Gaussians follow a dipole's line spread to about a percent"};
+inline constexpr Tolerance fittedAgain{"fittedAgain", 0.02,
+                                       "a search by steps of 1 % stops near the optimum"};
 inline constexpr Tolerance sphereMean{"sphereMean", 1e-5,
                                       "energy: the mean of the form sphere is exactly 1/4"};
 

@@ -64,6 +64,8 @@ void parseSize(const std::string& text, uint32_t& width, uint32_t& height);
 void addDevices(CLI::App& app);
 void addCurvature(CLI::App& app);
 void addLut(CLI::App& app);
+void addProfile(CLI::App& app);
+void addBatch(CLI::App& app);
 void addShade(CLI::App& app);
 void addDemo(CLI::App& app);
 

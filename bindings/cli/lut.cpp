@@ -1,5 +1,6 @@
 // pellucid lut curvature|shadow: integrates a look-up table and writes it.
 #include "io/lut_file.h"
+#include "io/profile_file.h"
 
 #include "command.h"
 
@@ -9,12 +10,32 @@ namespace {
 const std::map<std::string, PelLutEncoding> encodings{
     {"float", PEL_LUT_FLOAT}, {"half", PEL_LUT_HALF}, {"faceworks8", PEL_LUT_FACEWORKS8}};
 
+const std::map<std::string, PelCurvatureForm> forms{{"arc", PEL_FORM_ARC},
+                                                    {"ring", PEL_FORM_RING},
+                                                    {"half-ring", PEL_FORM_HALF_RING},
+                                                    {"sphere", PEL_FORM_SPHERE}};
+const std::map<std::string, PelLutAxis> axes{{"linear", PEL_AXIS_LINEAR}, {"root", PEL_AXIS_ROOT}};
+
 struct Arguments {
     Run::Options run;
-    std::string output, size = "512x512", encoding, form = "arc", profile = "skin";
+    std::string output, size = "512x512", encoding, form = "arc", axis = "linear", profile = "skin";
     PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
     PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+    PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
+    CLI::Option* radius = nullptr;  // --diffusion-radius of the table that is asked for
 };
+
+// Without a radius of its own, a table of another material than skin takes the material's.
+template <class Desc>
+Profile takeProfile(const Arguments& arguments, Desc& desc) {
+    const Profile profile = io::findProfile(arguments.profile).profile;
+    desc.profile = profile.get();
+    if (arguments.radius->count() == 0)
+        desc.diffusionRadius = 0;
+    else if (desc.diffusionRadius == 0)
+        throw UsageError("--diffusion-radius: diffusionRadius is 0; a length above 0 is needed");
+    return profile;
+}
 
 template <class Desc>
 void integrate(Arguments& arguments, Desc& desc) {
@@ -36,14 +57,20 @@ void integrate(Arguments& arguments, Desc& desc) {
     run.finish();
 }
 
-void addCommon(CLI::App& command, Arguments& a, float& diffusionRadius) {
-    command.add_option("-o,--output", a.output, "file to write: .exr, .png, .bmp or .npy")->required();
+void addCommon(CLI::App& command, Arguments& a) {
+    command.add_option("-o,--output", a.output, "file to write: .exr, .png, .bmp, .tga, .npy, .dds or .ktx2")
+        ->required();
     command.add_option("--size", a.size, "texels, WxH")->capture_default_str();
-    command.add_option("--diffusion-radius", diffusionRadius, "sigma of the widest Gaussian, mm")
-        ->capture_default_str();
     command.add_option("--encoding", a.encoding, "float, half or faceworks8 (default: by the file's kind)")
         ->check(CLI::IsMember({"float", "half", "faceworks8"}));
     addRunOptions(command, a.run);
+}
+
+CLI::Option* addProfileOptions(CLI::App& command, Arguments& a, float& diffusionRadius) {
+    command.add_option("--profile", a.profile, "a material (pellucid profile list) or a .toml file")
+        ->capture_default_str();
+    return command.add_option("--diffusion-radius", diffusionRadius,
+                              "sigma of the widest Gaussian, mm (default: the profile's own)");
 }
 
 }  // namespace
@@ -55,27 +82,44 @@ void addLut(CLI::App& app) {
 
     CLI::App* curvature =
         lut->add_subcommand("curvature", "Light scattered round a curved surface, over N.L and curvature");
-    addCommon(*curvature, *a, a->curvature.diffusionRadius);
+    addCommon(*curvature, *a);
+    CLI::Option* curvatureRadius = addProfileOptions(*curvature, *a, a->curvature.diffusionRadius);
     curvature->add_option("--radius-min", a->curvature.radiusMin, "smallest radius of curvature, mm")
         ->capture_default_str();
     curvature->add_option("--radius-max", a->curvature.radiusMax, "largest radius of curvature, mm")
         ->capture_default_str();
     curvature->add_option("--form", a->form, "geometry that light is integrated over")
-        ->check(CLI::IsMember({"arc"}))
+        ->check(CLI::IsMember({"arc", "ring", "half-ring", "sphere"}))
         ->capture_default_str();
-    curvature->add_option("--profile", a->profile, "diffusion profile")
-        ->check(CLI::IsMember({"skin"}))
+    curvature
+        ->add_option("--axis", a->axis, "spread of texels: linear, or root (small tables look up better)")
+        ->check(CLI::IsMember({"linear", "root"}))
         ->capture_default_str();
-    curvature->callback([a] { integrate(*a, a->curvature); });
+    curvature->callback([a, curvatureRadius] {
+        a->radius = curvatureRadius;
+        const Profile profile = takeProfile(*a, a->curvature);
+        a->curvature.form = forms.at(a->form);
+        a->curvature.axis = axes.at(a->axis);
+        integrate(*a, a->curvature);
+    });
 
     CLI::App* shadow =
         lut->add_subcommand("shadow", "Light scattered across a shadow edge, over shadow value and 1/width");
-    addCommon(*shadow, *a, a->shadow.diffusionRadius);
+    addCommon(*shadow, *a);
+    CLI::Option* shadowRadius = addProfileOptions(*shadow, *a, a->shadow.diffusionRadius);
     shadow->add_option("--width-min", a->shadow.widthMin, "narrowest penumbra, mm")->capture_default_str();
     shadow->add_option("--width-max", a->shadow.widthMax, "widest penumbra, mm")->capture_default_str();
     shadow->add_option("--sharpening", a->shadow.sharpening, "how much narrower the shadow gets, from 1")
         ->capture_default_str();
-    shadow->callback([a] { integrate(*a, a->shadow); });
+    shadow->callback([a, shadowRadius] {
+        a->radius = shadowRadius;
+        const Profile profile = takeProfile(*a, a->shadow);
+        integrate(*a, a->shadow);
+    });
+
+    CLI::App* specular = lut->add_subcommand("specular", "Beckmann's distribution over n.h and roughness");
+    addCommon(*specular, *a);
+    specular->callback([a] { integrate(*a, a->specular); });
 }
 
 }  // namespace pellucid::cli

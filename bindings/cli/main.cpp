@@ -36,6 +36,8 @@ int main(int argc, char** argv) {
     addDevices(app);
     addCurvature(app);
     addLut(app);
+    addProfile(app);
+    addBatch(app);
     addShade(app);
     addDemo(app);
     try {

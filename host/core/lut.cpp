@@ -53,8 +53,12 @@ LutLayout layoutOf(const PelLutInfo& info) {
     const bool root = layout.axis == LUT_AXIS_ROOT;
     const double first = root ? std::sqrt(1 / longest) : 1 / longest;
     const double last = root ? std::sqrt(1 / shortest) : 1 / shortest;
-    layout.rowMin = float(first);
-    layout.rowScale = last > first ? float(layout.height / (last - first)) : 0.0f;
+    // Linear rows have their values in the middle of texels, as FaceWorks has it; root rows reach the ends of
+    // the axis, so that no look-up within the range is clamped.
+    const double rows = root ? layout.height - 1.0 : layout.height;
+    const double scale = last > first ? rows / (last - first) : 0.0;
+    layout.rowMin = float(root && scale > 0 ? first - 0.5 / scale : first);
+    layout.rowScale = float(scale);
     return layout;
 }
 

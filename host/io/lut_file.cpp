@@ -1,11 +1,17 @@
 #include "io/lut_file.h"
 
+#include <OpenImageIO/half.h>
+
 #include <cstdint>
+#include <map>
+#include <sstream>
 #include <stdexcept>
 
 #include "io/atomic_file.h"
+#include "io/batch_manifest.h"
 #include "io/file_error.h"
 #include "io/image_file.h"
+#include "io/texture_file.h"
 
 namespace pellucid::io {
 namespace {
@@ -19,7 +25,7 @@ void visitNumbers(Info& info, Visit&& visit) {
         visit("pellucid:diffusionRadius", info.curvature.diffusionRadius);
         visit("pellucid:radiusMin", info.curvature.radiusMin);
         visit("pellucid:radiusMax", info.curvature.radiusMax);
-    } else {
+    } else if (info.kind == PEL_LUT_SHADOW) {
         visit("pellucid:diffusionRadius", info.shadow.diffusionRadius);
         visit("pellucid:widthMin", info.shadow.widthMin);
         visit("pellucid:widthMax", info.shadow.widthMax);
@@ -28,22 +34,107 @@ void visitNumbers(Info& info, Visit&& visit) {
 }
 
 std::pair<uint32_t, uint32_t> sizeOf(const PelLutInfo& info) {
-    return info.kind == PEL_LUT_CURVATURE ? std::pair{info.curvature.width, info.curvature.height}
-                                          : std::pair{info.shadow.width, info.shadow.height};
+    switch (info.kind) {
+        case PEL_LUT_CURVATURE:
+            return {info.curvature.width, info.curvature.height};
+        case PEL_LUT_SHADOW:
+            return {info.shadow.width, info.shadow.height};
+        case PEL_LUT_SPECULAR:
+            break;
+    }
+    return {info.specular.width, info.specular.height};
+}
+
+constexpr std::string_view kindNames[] = {"curvature", "shadow", "specular"};     // PelLutKind
+constexpr std::string_view formNames[] = {"arc", "ring", "half-ring", "sphere"};  // PelCurvatureForm
+constexpr std::string_view axisNames[] = {"linear", "root"};                      // PelLutAxis
+constexpr int formatVersion = 1;
+
+template <size_t N>
+int indexOf(const std::string& path, const char* attribute, const std::string& value,
+            const std::string_view (&names)[N]) {
+    std::string known;
+    for (size_t i = 0; i < N; ++i) {
+        if (names[i] == value) return int(i);
+        known.append(i ? ", " : "").append(names[i]);
+    }
+    throw FileError(path, std::string("attribute \"") + attribute + "\" is \"" + value + "\"; one of " +
+                              known + " is needed");
+}
+
+// An EXR's worth: channels in the storage type of the encoding, and what the table is.
+Image describedImage(const Lut& lut, PelLutEncoding encoding) {
+    const PelLutInfo info = lut.info();
+    const auto [width, height] = sizeOf(info);
+    Image image;
+    image.width = int(width);
+    image.height = int(height);
+    image.addInterleaved(rgb, lut.read<float>(PEL_LUT_FLOAT),
+                         encoding == PEL_LUT_HALF ? ChannelType::Half : ChannelType::Float);
+    image.attributes.emplace_back("pellucid:kind", std::string(kindNames[info.kind]));
+    image.attributes.emplace_back("pellucid:version", int(pelVersion()));
+    image.attributes.emplace_back("pellucid:format", formatVersion);
+    image.attributes.emplace_back("pellucid:colorSpace", std::string("linear"));
+    if (info.kind != PEL_LUT_SPECULAR)
+        image.attributes.emplace_back("pellucid:profile", std::string(info.profile));
+    if (info.kind == PEL_LUT_CURVATURE) {
+        image.attributes.emplace_back("pellucid:form", std::string(formNames[info.curvature.form]));
+        image.attributes.emplace_back("pellucid:axis", std::string(axisNames[info.curvature.axis]));
+    }
+    visitNumbers(info, [&](const char* name, float value) { image.attributes.emplace_back(name, value); });
+    return image;
+}
+
+// Over the values as they are read back: halves are rounded first.
+std::string checkSum(const Image& image) {
+    std::vector<float> values = image.interleaved(rgb);
+    if (image.channel("R").type == ChannelType::Half)
+        for (float& value : values) value = float(half(value));
+    return contentHash(values.data(), values.size() * sizeof(float));
+}
+
+std::vector<uint16_t> withAlpha(const std::vector<uint16_t>& rgbHalves) {
+    constexpr uint16_t one = 0x3C00;
+    std::vector<uint16_t> rgba;
+    for (size_t i = 0; i < rgbHalves.size(); ++i) {
+        rgba.push_back(rgbHalves[i]);
+        if (i % 3 == 2) rgba.push_back(one);
+    }
+    return rgba;
+}
+
+std::map<std::string, std::string> keyValues(const Image& image) {
+    std::map<std::string, std::string> pairs{{"KTXwriter", "pellucid " + std::to_string(pelVersion())}};
+    for (const auto& [name, value] : image.attributes) {
+        std::ostringstream text;
+        text.imbue(std::locale::classic());
+        text.precision(9);
+        if (const auto* s = std::get_if<std::string>(&value)) text << *s;
+        if (const auto* i = std::get_if<int>(&value)) text << *i;
+        if (const auto* f = std::get_if<float>(&value)) text << *f;
+        pairs[name] = text.str();
+    }
+    return pairs;
 }
 
 }  // namespace
 
 PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncoding> encoding) {
-    const std::string extension = requireExtension(path, {"exr", "npy", "png", "bmp"});
-    const bool eightBit = extension == "png" || extension == "bmp";
-    const PelLutEncoding chosen = encoding.value_or(eightBit ? PEL_LUT_FACEWORKS8 : PEL_LUT_FLOAT);
+    const std::string extension = requireExtension(path, {"exr", "npy", "png", "bmp", "tga", "dds", "ktx2"});
+    const bool eightBit = extension == "png" || extension == "bmp" || extension == "tga";
+    const bool texture = extension == "dds" || extension == "ktx2";
+    const PelLutEncoding chosen = encoding.value_or(eightBit  ? PEL_LUT_FACEWORKS8
+                                                    : texture ? PEL_LUT_HALF
+                                                              : PEL_LUT_FLOAT);
+    if (texture && chosen != PEL_LUT_HALF)
+        throw std::invalid_argument("." + extension +
+                                    " holds half texels: use --encoding half, or write .exr or .npy");
     if (eightBit && chosen != PEL_LUT_FACEWORKS8)
         throw std::invalid_argument("." + extension +
                                     " holds 8-bit texels: use --encoding faceworks8, or write .exr or .npy");
     if (extension == "exr" && chosen == PEL_LUT_FACEWORKS8)
         throw std::invalid_argument(
-            ".exr holds float or half texels: write faceworks8 as .png, .bmp or .npy");
+            ".exr holds float or half texels: write faceworks8 as .png, .bmp, .tga or .npy");
     checkWritable(path);
     return chosen;
 }
@@ -62,24 +153,45 @@ void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncod
             writeImage8(path, int(width), int(height), 4, texels, info.kind == PEL_LUT_SHADOW);
         return;
     }
-    // Halves are rounded where they are stored; in memory they are floats.
-    const ChannelType type = encoding == PEL_LUT_HALF ? ChannelType::Half : ChannelType::Float;
-    const std::vector<float> texels = lut.read<float>(PEL_LUT_FLOAT);
-    if (extension == "npy") {
-        const size_t shape[] = {height, width, 3};
-        writeNpy(path, shape, texels, type);
+    if (extension == "dds" || extension == "ktx2") {
+        const Image image = describedImage(lut, encoding);
+        const std::vector<uint16_t> texels = withAlpha(lut.read<uint16_t>(PEL_LUT_HALF));
+        if (extension == "dds")
+            writeDds(path, width, height, texels);
+        else
+            writeKtx2(path, width, height, texels, keyValues(image));
         return;
     }
-    Image image;
-    image.width = int(width);
-    image.height = int(height);
-    image.addInterleaved(rgb, texels, type);
-    image.attributes.emplace_back("pellucid:kind",
-                                  std::string(info.kind == PEL_LUT_CURVATURE ? "curvature" : "shadow"));
-    image.attributes.emplace_back("pellucid:version", int(pelVersion()));
-    if (info.kind == PEL_LUT_CURVATURE) image.attributes.emplace_back("pellucid:form", std::string("arc"));
-    visitNumbers(info, [&](const char* name, float value) { image.attributes.emplace_back(name, value); });
+    if (extension == "npy") {
+        // Halves are rounded where they are stored; in memory they are floats.
+        const ChannelType type = encoding == PEL_LUT_HALF ? ChannelType::Half : ChannelType::Float;
+        const size_t shape[] = {height, width, 3};
+        writeNpy(path, shape, lut.read<float>(PEL_LUT_FLOAT), type);
+        return;
+    }
+    writeExr(path, describedImage(lut, encoding));
+}
+
+void writeCheckedLut(const std::string& path, const Lut& lut, PelLutEncoding encoding,
+                     const std::string& key) {
+    Image image = describedImage(lut, encoding);
+    image.attributes.emplace_back("pellucid:key", key);
+    image.attributes.emplace_back("pellucid:checksum", checkSum(image));
     writeExr(path, image);
+}
+
+bool verifyLut(const std::string& path, const std::string& key) {
+    try {
+        const Image image = readImage(path);
+        const auto holds = [&](const char* name, const std::string& value) {
+            const Attribute* attribute = image.attribute(name);
+            return attribute && std::holds_alternative<std::string>(*attribute) &&
+                   std::get<std::string>(*attribute) == value;
+        };
+        return holds("pellucid:key", key) && holds("pellucid:checksum", checkSum(image));
+    } catch (const FileError&) {
+        return false;
+    }
 }
 
 Lut readLut(const Device& device, const std::string& path) {
@@ -93,13 +205,26 @@ Lut readLut(const Device& device, const std::string& path) {
         return std::get<T>(*attribute);
     };
     PelLutInfo info = pelLutInfoDefaults();
-    const std::string& kind = need("pellucid:kind", static_cast<std::string*>(nullptr));
-    if (kind != "curvature" && kind != "shadow")
-        throw FileError(path,
-                        "attribute \"pellucid:kind\" is \"" + kind + "\"; curvature or shadow is needed");
-    info.kind = kind == "curvature" ? PEL_LUT_CURVATURE : PEL_LUT_SHADOW;
-    info.curvature.width = info.shadow.width = uint32_t(image.width);
-    info.curvature.height = info.shadow.height = uint32_t(image.height);
+    const auto needText = [&](const char* name) { return need(name, static_cast<std::string*>(nullptr)); };
+    const int format = need("pellucid:format", static_cast<int*>(nullptr));
+    if (format != formatVersion)
+        throw FileError(path, "is written in format " + std::to_string(format) +
+                                  "; this program reads format " + std::to_string(formatVersion));
+    info.kind = PelLutKind(indexOf(path, "pellucid:kind", needText("pellucid:kind"), kindNames));
+    if (info.kind != PEL_LUT_SPECULAR) {
+        const std::string profile = needText("pellucid:profile");
+        if (profile.empty() || profile.size() >= sizeof info.profile)
+            throw FileError(path, "attribute \"pellucid:profile\" has no name of 1 to 63 bytes");
+        info.profile[profile.copy(info.profile, sizeof info.profile - 1)] = '\0';
+    }
+    if (info.kind == PEL_LUT_CURVATURE) {
+        info.curvature.form =
+            PelCurvatureForm(indexOf(path, "pellucid:form", needText("pellucid:form"), formNames));
+        info.curvature.axis =
+            PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), axisNames));
+    }
+    info.curvature.width = info.shadow.width = info.specular.width = uint32_t(image.width);
+    info.curvature.height = info.shadow.height = info.specular.height = uint32_t(image.height);
     visitNumbers(info,
                  [&](const char* name, float& value) { value = need(name, static_cast<float*>(nullptr)); });
     try {

@@ -8,10 +8,10 @@
 namespace pellucid::io {
 
 // Writes texels with the top row first. The extension chooses the container: .exr (float or half; with the
-// description in attributes named "pellucid:..."), .npy (any encoding; height x width x 3 or 4), .png and
-// .bmp (faceworks8). Without an encoding: float for .exr and .npy, faceworks8 for .png and .bmp. Complete or
-// not at all. Throws FileError when it cannot be written, std::invalid_argument when container and encoding
-// do not go together.
+// description in attributes named "pellucid:..."), .npy (any encoding; height x width x 3 or 4), .png, .bmp
+// and .tga (faceworks8), .dds and .ktx2 (half, alpha 1). Without an encoding: float for .exr and .npy, half
+// for .dds and .ktx2, faceworks8 for the others. Complete or not at all. Throws FileError when it cannot be
+// written, std::invalid_argument when container and encoding do not go together.
 void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncoding> encoding = {});
 
 // What writeLut will choose; throws like it, and when the file cannot be written. For checks before long
@@ -21,5 +21,11 @@ PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncodin
 // Reads what writeLut wrote as .exr. Throws FileError: no such file, no or incomplete description, wrong
 // size.
 Lut readLut(const Device& device, const std::string& path);
+
+// As .exr with two attributes more: `key`, and a check sum of the texels as stored. verifyLut tells whether a
+// file holds the texels that were written for that key; a missing, truncated or changed file does not.
+void writeCheckedLut(const std::string& path, const Lut& lut, PelLutEncoding encoding,
+                     const std::string& key);
+bool verifyLut(const std::string& path, const std::string& key);
 
 }  // namespace pellucid::io

@@ -25,7 +25,7 @@ void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind) {
     if (lut.name.empty()) reader.fail("name", "is missing; materials need it to refer to this table");
     if (scene.lut(lut.name, kind)) reader.fail("name", "is used twice; give each table a name of its own");
     if (!lut.file.empty()) {
-        for (const char* key : {"form", "width", "height", "diffusion_radius", "radius_min", "radius_max",
+        for (const char* key : {"form", "axis", "width", "height", "diffusion_radius", "radius_min", "radius_max",
                                 "width_min", "width_max", "sharpening"}) {
             if (reader.has(key))
                 reader.fail(key, "cannot stand beside 'file', which says all of it; leave one out");
@@ -96,14 +96,7 @@ const SceneLut* SceneFile::lut(const std::string& name, PelLutKind kind) const {
 }
 
 SceneFile readScene(const std::string& path) {
-    const std::string text = readWholeFile(path);
-    toml::table root;
-    try {
-        root = toml::parse(text, path);
-    } catch (const toml::parse_error& error) {
-        throw FileError(path, "is no TOML: " + std::string(error.description()),
-                        static_cast<int>(error.source().begin.line));
-    }
+    const toml::table root = parseToml(path, readWholeFile(path));
     SceneFile scene;
     scene.source = path;
     TomlReader reader(path, root, "the scene");

@@ -12,9 +12,10 @@ namespace pellucid::io {
 
 enum class Range { Any, NotNegative, Positive, AtLeastOne, ZeroToOne };
 
-constexpr std::string_view lightTypes[] = {"directional", "point", "spot"};    // PelLightType
-constexpr std::string_view shadowProjections[] = {"parallel", "perspective"};  // PelShadowProjection
-constexpr std::string_view curvatureForms[] = {"arc"};                         // PelCurvatureForm
+constexpr std::string_view lightTypes[] = {"directional", "point", "spot"};            // PelLightType
+constexpr std::string_view shadowProjections[] = {"parallel", "perspective"};          // PelShadowProjection
+constexpr std::string_view curvatureForms[] = {"arc", "ring", "half-ring", "sphere"};  // PelCurvatureForm
+constexpr std::string_view lutAxes[] = {"linear", "root"};                             // PelLutAxis
 
 struct SlotKey {
     PelImageSlot slot;
@@ -102,6 +103,7 @@ void curvatureLutKeys(Visitor& v, Lut& l) {
     v.text("name", l.name);
     v.text("file", l.file);
     v.choice("form", l.info.curvature.form, curvatureForms);
+    v.choice("axis", l.info.curvature.axis, lutAxes);
     v.integer("width", l.info.curvature.width, 1, 16384);
     v.integer("height", l.info.curvature.height, 1, 16384);
     v.number("diffusion_radius", l.info.curvature.diffusionRadius, Range::Positive);

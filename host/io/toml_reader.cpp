@@ -75,6 +75,15 @@ bool inRange(float x, Range range) {
 
 }  // namespace
 
+toml::table parseToml(const std::string& file, const std::string& text) {
+    try {
+        return toml::parse(text, file);
+    } catch (const toml::parse_error& error) {
+        throw FileError(file, "is no TOML: " + std::string(error.description()),
+                        static_cast<int>(error.source().begin.line));
+    }
+}
+
 int TomlReader::lineOf(std::string_view key) const {
     for (const auto& [k, node] : table_) {
         if (k.str() == key) return static_cast<int>(k.source().begin.line);
@@ -209,7 +218,39 @@ std::string TomlReader::innerName(std::string_view key) const {
     return name;
 }
 
+void TomlReader::list(std::string_view key, std::vector<std::string>& values) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    values.clear();
+    const auto add = [&](const toml::node& entry) {
+        if (!entry.is_string())
+            fail(key, "holds " + typeName(entry) + "; a string or an array of strings would be right");
+        values.push_back(entry.as_string()->get());
+    };
+    if (node->is_array())
+        for (const toml::node& entry : *node->as_array()) add(entry);
+    else
+        add(*node);
+    if (values.empty()) fail(key, "is empty; at least one value would be right");
+}
+
+void TomlReader::list(std::string_view key, std::vector<float>& values, Range range) {
+    const toml::node* node = find(key);
+    if (!node) return;
+    values.clear();
+    if (node->is_array())
+        for (const toml::node& entry : *node->as_array()) values.push_back(toFloat(key, entry, range));
+    else
+        values.push_back(toFloat(key, *node, range));
+    if (values.empty()) fail(key, "is empty; at least one value would be right");
+}
+
 void TomlReader::tables(std::string_view key, const std::function<void(TomlReader&)>& function) {
+    tablesApart(key, function, [](const FileError& error) { throw error; });
+}
+
+void TomlReader::tablesApart(std::string_view key, const std::function<void(TomlReader&)>& function,
+                             const std::function<void(const FileError&)>& failed) {
     const toml::node* node = find(key);
     if (!node) return;
     const std::string name = "[[" + std::string(key) + "]]";
@@ -218,8 +259,12 @@ void TomlReader::tables(std::string_view key, const std::function<void(TomlReade
     for (const toml::node& entry : *node->as_array()) {
         if (!entry.is_table()) fail(key, "holds " + typeName(entry) + "; tables " + name + " would be right");
         TomlReader reader(file_, *entry.as_table(), name);
-        function(reader);
-        reader.finish();
+        try {
+            function(reader);
+            reader.finish();
+        } catch (const FileError& error) {
+            failed(error);
+        }
     }
 }
 

@@ -8,9 +8,13 @@
 #include <string_view>
 #include <vector>
 
+#include "io/file_error.h"
 #include "io/scene_keys.h"
 
 namespace pellucid::io {
+
+// Parses the text of `file`; throws FileError with the line where it is no TOML.
+toml::table parseToml(const std::string& file, const std::string& text);
 
 class TomlReader {
   public:
@@ -25,6 +29,10 @@ class TomlReader {
     void text(std::string_view key, std::string& value);
     void texts(std::string_view key, std::vector<std::string>& values,
                size_t count);  // one text will do for count 1
+
+    // One value or an array of them, not empty.
+    void list(std::string_view key, std::vector<std::string>& values);
+    void list(std::string_view key, std::vector<float>& values, Range range);
 
     template <class Enum>
     void choice(std::string_view key, Enum& value, std::span<const std::string_view> names) {
@@ -43,6 +51,10 @@ class TomlReader {
 
     // The tables [[key]], in order; each is given to `function(reader)` and then finished.
     void tables(std::string_view key, const std::function<void(TomlReader&)>& function);
+
+    // The same, but what is wrong in one table goes to `failed` and the others are read all the same.
+    void tablesApart(std::string_view key, const std::function<void(TomlReader&)>& function,
+                     const std::function<void(const FileError&)>& failed);
 
     void finish() const;  // throws FileError for the first key that nobody asked for
     int line() const { return static_cast<int>(table_.source().begin.line); }

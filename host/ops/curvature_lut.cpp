@@ -28,8 +28,10 @@ std::vector<LutNode> meshOfNodes(int nodes) {
 std::vector<LutColumn> columnsOf(uint32_t width, PelLutAxis axis, int nodes) {
     std::vector<LutColumn> columns;
     for (uint32_t x = 0; x < (width + 1) / 2; ++x) {
-        const double s = 1 - (x + 0.5) * 2 / width;  // the axis runs from -1 to 1
-        const double elevation = axis == PEL_AXIS_ROOT ? s * s : s;
+        // From u = -1 on: linear columns in the middle of texels, root columns from end to end
+        // (core/lut.cpp).
+        const double s = width > 1 ? 1 - 2.0 * x / (width - 1) : 0;
+        const double elevation = axis == PEL_AXIS_ROOT ? s * s : 1 - (x + 0.5) * 2 / width;
         const double angle = std::asin(elevation);
         int j = std::min(nodes - 1, int(nodes * std::pow(angle / (std::numbers::pi / 2), 0.25)));
         while (j > 0 && nodeAngle(j, nodes) > angle) --j;
@@ -51,8 +53,14 @@ CurvatureParams paramsOf(const PelCurvatureLutDesc& desc, double curvatureMin, d
     const bool root = desc.axis == PEL_AXIS_ROOT;
     const double first = root ? std::sqrt(curvatureMin) : curvatureMin;
     const double last = root ? std::sqrt(curvatureMax) : curvatureMax;
-    params.rowMin = float(first);
-    params.rowStep = float((last - first) / desc.height);
+    if (root && desc.height > 1) {
+        const double step = (last - first) / (desc.height - 1);
+        params.rowMin = float(first - 0.5 * step);
+        params.rowStep = float(step);
+    } else {
+        params.rowMin = float(first);
+        params.rowStep = float((last - first) / desc.height);
+    }
     params.cut = float(profileCut);
     return params;
 }

@@ -1,0 +1,37 @@
+// The manifest of `pellucid batch`: TOML that lists look-up tables one by one and as grids. Keys:
+// docs/batch.md.
+#pragma once
+#include <pellucid/pellucid.hpp>
+#include <string>
+#include <vector>
+
+namespace pellucid::io {
+
+// One table to make.
+struct BatchEntry {
+    PelLutInfo info;          // kind and description; profile handles are those of `profile`
+    Profile profile;          // empty for specular tables
+    PelLutEncoding encoding;  // float or half
+    std::string key;          // all that determines the texels, as text
+    std::string file;  // name: kind and hash of the key; entries that ask for the same thing have the same
+    int line;          // of the manifest
+};
+
+struct BatchError {
+    int line;
+    std::string message;
+};
+
+struct BatchManifest {
+    std::vector<BatchEntry> entries;  // in order, each file once
+    std::vector<BatchError> errors;   // entries that make no sense; the others stand
+    size_t duplicates = 0;            // left out because an entry before asks for the same
+};
+
+// Throws FileError when the file is no manifest at all; entries that are wrong come back as errors.
+BatchManifest readManifest(const std::string& path);
+
+// 64-bit FNV-1a, as 16 hexadecimal digits: names of files and check sums of texels.
+std::string contentHash(const void* bytes, size_t count);
+
+}  // namespace pellucid::io
