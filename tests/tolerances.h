@@ -160,4 +160,10 @@ inline constexpr Tolerance sampleWideShadow{
 inline constexpr Tolerance sampleSky{"sampleSky", 0.02,
                                      "what orders above 2 carry of a sky with a soft lamp"};
 
+// --- pictures that Blender rendered ---
+inline constexpr Tolerance blenderLambert{
+    "blenderLambert", 5e-4, "RMS: some dozen pixels where a shadow's edge crosses the pixel centre differ"};
+inline constexpr Tolerance blenderTerminator{
+    "blenderTerminator", 0.5, "times Lambert's error in red: what the path tracer's noise leaves room for"};
+
 }  // namespace tolerance
