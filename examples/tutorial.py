@@ -1,7 +1,7 @@
 """From a mesh to a picture with Pellucid: tutorial.py MESH PICTURE.png
 
 The library shades what a renderer hands it; trimesh and Embree stand in for the renderer here.
-Install: pip install . trimesh embreex pillow
+Install: pip install . trimesh scipy embreex pillow
 """
 import sys
 

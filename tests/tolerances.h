@@ -172,5 +172,10 @@ inline constexpr Tolerance sampleSky{"sampleSky", 0.02,
 inline constexpr Tolerance realHostLambert{
     "realHostLambert", 2e-4,
     "root mean square: 9e-5 on the head from pixels at shadow edges, where the host traced another ray"};
+// --- pictures that Blender rendered ---
+inline constexpr Tolerance blenderLambert{
+    "blenderLambert", 5e-4, "RMS: some dozen pixels where a shadow's edge crosses the pixel centre differ"};
+inline constexpr Tolerance blenderTerminator{
+    "blenderTerminator", 0.5, "times Lambert's error in red: what the path tracer's noise leaves room for"};
 
 }  // namespace tolerance
