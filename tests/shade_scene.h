@@ -120,7 +120,10 @@ inline Frame randomFrame(uint32_t seed, uint32_t width, uint32_t height, uint32_
             float bend[3], sum = 0;
             random.unit(bend);
             float* n = &s[slot].values[3 * i];
-            for (int c = 0; c < 3; ++c) sum += (n[c] = base[c] + 0.4f * bend[c]) * n[c];
+            for (int c = 0; c < 3; ++c) {
+                n[c] = base[c] + 0.4f * bend[c];
+                sum += n[c] * n[c];
+            }
             for (int c = 0; c < 3; ++c) n[c] /= std::sqrt(sum);
         }
     }

@@ -95,7 +95,7 @@ TEST_F(Cli, WrongUseIsRefused) {
     expectRefused({"lut", "curvature", "-o", path("l.npy"), "--radius-min", "9", "--radius-max", "3"}, 2,
                   "radius");
     expectRefused({"lut", "shadow", "-o", path("l.npy"), "--sharpening", "0.5"}, 2, "sharpening");
-    expectRefused({"lut", "shadow", "-o", path("l.npy"), "--diffusion-radius", "0"}, 2, "diffusionRadius");
+    expectRefused({"lut", "shadow", "-o", path("l.npy"), "--diffusion-radius", "-1"}, 2, "diffusionRadius");
     const std::string mesh = icosahedron();
     expectRefused({"curvature", mesh, "-o", path("c.obj")}, 2, ".npy, .ply");
     expectRefused({"curvature", mesh, "-o", path("c.npy"), "--estimator", "guess"}, 2, "edge");
