@@ -125,7 +125,7 @@ TEST_F(Shade, BadFilesAreRefused) {
     scene_.luts[0].file = "g.exr";  // an image, but no look-up table
     scene_.materials[0].curvatureLut = "t";
     io::writeScene(path("lut.toml"), scene_);
-    expectRefused(command("lut.toml"), 3, "pellucid:kind");
+    expectRefused(command("lut.toml"), 3, "pellucid:format");
     expectRefused({"shade", path("g.exr"), "--scene", path("s.toml"), "-o", path("no/o.exr")}, 2,
                   "no folder");
     expectRefused({"shade", path("g.exr"), "--scene", path("s.toml"), "-o", path("o.png")}, 2, ".exr");

@@ -40,6 +40,7 @@ const char* JOIN(half, HALF)(uint32_t* sizeOfInfo) {
     if (pelBufferCreate(device, sizeof curvature, NULL, &out)) return pelGetErrorMessage();
     const PelVertexView positions = {in, 0, 0, 4}, normals = {in, 48, 0, 4}, result = {out, 0, 0, 4};
     PelCurvatureParams params = pelCurvatureParamsDefaults();
+    params.estimator = PEL_CURVATURE_EDGE;
     params.scale = 10;
     if (pelMeshCurvature(topology, &params, &positions, &normals, &result, NULL, NULL)) return pelGetErrorMessage();
     if (pelBufferRead(out, 0, sizeof curvature, curvature, NULL)) return pelGetErrorMessage();

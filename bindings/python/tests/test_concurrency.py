@@ -45,7 +45,7 @@ def test_arrays_live_until_their_work_is_done(device, make_sphere):
     for _ in range(3):
         positions, out = mesh.positions.copy(), np.empty(len(mesh.positions), np.float32)
         weakref.finalize(positions, gone.append, 1)
-        event = topology.submit_curvature(positions, mesh.normals, out, smoothing_passes=200)
+        event = topology.submit_curvature(positions, mesh.normals, out, estimator="edge", smoothing_passes=200)
         del positions
         gc.collect()
         if not event.done:
