@@ -4,43 +4,44 @@
 
 using namespace pel;
 
-PelError pelCurvatureLutCreate(PelDevice device, const PelCurvatureLutDesc* desc, PelLut* lut,
-                               const PelSubmit* submit) {
+namespace {
+
+// What every call that makes a table from a description does; `make` is the operation of ops/luts.h.
+template <class Desc>
+PelError createLut(PelDevice device, const Desc* desc, const Desc& defaults, const char* name, PelLut* lut,
+                   const PelSubmit* submit, Ref<Lut> (*make)(Ref<Device>, const Desc&)) {
     return entry([&] {
         Device& d = fromHandle<Device>(device);
-        const auto request = readStruct(desc, pelCurvatureLutDescDefaults(), "PelCurvatureLutDesc");
+        const Desc request = readStruct(desc, defaults, name);
         PelLut& result = output(lut, "lut");
         Submission submission(d, submit);
-        Ref<Lut> made = integrateCurvatureLut(Ref<Device>(&d), request);
+        Ref<Lut> made = make(Ref<Device>(&d), request);
         submission.finish();
         result = toHandle<PelLut>(std::move(made));
     });
+}
+
+}  // namespace
+
+PelError pelCurvatureLutCreate(PelDevice device, const PelCurvatureLutDesc* desc, PelLut* lut,
+                               const PelSubmit* submit) {
+    return createLut(
+        device, desc, pelCurvatureLutDescDefaults(), "PelCurvatureLutDesc", lut, submit,
+        +[](Ref<Device> d, const PelCurvatureLutDesc& request) {
+            return integrateCurvatureLut(std::move(d), request);  // at its usual quality
+        });
 }
 
 PelError pelShadowLutCreate(PelDevice device, const PelShadowLutDesc* desc, PelLut* lut,
                             const PelSubmit* submit) {
-    return entry([&] {
-        Device& d = fromHandle<Device>(device);
-        const auto request = readStruct(desc, pelShadowLutDescDefaults(), "PelShadowLutDesc");
-        PelLut& result = output(lut, "lut");
-        Submission submission(d, submit);
-        Ref<Lut> made = integrateShadowLut(Ref<Device>(&d), request);
-        submission.finish();
-        result = toHandle<PelLut>(std::move(made));
-    });
+    return createLut(device, desc, pelShadowLutDescDefaults(), "PelShadowLutDesc", lut, submit,
+                     integrateShadowLut);
 }
 
 PelError pelSpecularLutCreate(PelDevice device, const PelSpecularLutDesc* desc, PelLut* lut,
                               const PelSubmit* submit) {
-    return entry([&] {
-        Device& d = fromHandle<Device>(device);
-        const auto request = readStruct(desc, pelSpecularLutDescDefaults(), "PelSpecularLutDesc");
-        PelLut& result = output(lut, "lut");
-        Submission submission(d, submit);
-        Ref<Lut> made = tabulateSpecularLut(Ref<Device>(&d), request);
-        submission.finish();
-        result = toHandle<PelLut>(std::move(made));
-    });
+    return createLut(device, desc, pelSpecularLutDescDefaults(), "PelSpecularLutDesc", lut, submit,
+                     tabulateSpecularLut);
 }
 
 PelError pelLutCreateFromTexels(PelDevice device, const PelLutInfo* info, const float* texels, size_t bytes,
