@@ -175,6 +175,12 @@ inline constexpr Tolerance realHostLambert{
 // --- pictures that Blender rendered ---
 inline constexpr Tolerance blenderLambert{
     "blenderLambert", 5e-4, "RMS: some dozen pixels where a shadow's edge crosses the pixel centre differ"};
+inline constexpr Tolerance blenderScriptLambert{
+    "blenderScriptLambert", 5e-4, "RMS against Cycles, which fades smooth normals out at grazing light"};
+inline constexpr Tolerance blenderSky{"blenderSky", 1e-3,
+                                      "spherical harmonics from 64 x 32 pixels of Blender's sky, 16 jittered samples each"};
+inline constexpr Tolerance blenderCurvature{
+    "blenderCurvature", 0.03, "relative: a subdivided and smoothed ball of 48 x 24 faces is not quite a sphere"};
 inline constexpr Tolerance blenderTerminator{
     "blenderTerminator", 0.5, "times Lambert's error in red: what the path tracer's noise leaves room for"};
 

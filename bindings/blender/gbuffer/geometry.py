@@ -1,0 +1,171 @@
+"""Meshes: loading a file, making real what Blender would render, curvature at each vertex."""
+
+import array
+import math
+import os
+import struct
+import subprocess
+import tempfile
+
+import bpy
+from mathutils import Matrix, Vector
+
+from .fault import Fault, warn
+
+CURVATURE = "pellucid_curvature"  # vertex attribute, 1/Blender unit
+RENDERED = ("MESH", "CURVE", "SURFACE", "FONT", "META")
+
+
+class Bounds:
+    """The box round everything, in Blender units."""
+
+    def __init__(self, things):
+        corners = [thing.matrix_world @ Vector(corner) for thing in things for corner in thing.bound_box]
+        self.low = Vector(min(c[i] for c in corners) for i in range(3))
+        self.high = Vector(max(c[i] for c in corners) for i in range(3))
+        self.centre = (self.low + self.high) / 2
+        self.radius = max((self.high - self.low).length / 2, 1e-6)
+
+    def corners(self):
+        box = (self.low, self.high)
+        return [Vector((box[i & 1][0], box[i >> 1 & 1][1], box[i >> 2 & 1][2])) for i in range(8)]
+
+
+def load(options, unit):
+    """Adds options.mesh to the current scene: Z up, in Blender units; the file's own unit is taken to be one of them."""
+    path = options.mesh
+    if not os.path.isfile(path):
+        raise Fault(f"{path}: there is no such file")
+    before = set(bpy.data.objects)
+    extension = os.path.splitext(path)[1].lower()
+    if extension == ".obj":  # by Blender, for its texture coordinates and materials
+        forward, up = ("Y_FORWARD", "Z_UP") if options.up == "z" else ("NEGATIVE_Z_FORWARD", "Y_UP")
+        if hasattr(bpy.types, "WM_OT_obj_import") and bpy.app.version >= (3, 6):
+            forward, up = forward.replace("_FORWARD", ""), up.replace("_UP", "")
+        bpy.ops.wm.obj_import(filepath=path, forward_axis=forward, up_axis=up)
+    elif extension in (".ply", ".stl", ".off"):
+        load_ply(path, options.pellucid, options.up)
+    else:
+        raise Fault(f"{path}: OBJ, PLY, STL or OFF is needed; open other formats in Blender and save a .blend file")
+    things = [thing for thing in bpy.data.objects if thing not in before and thing.type == "MESH"]
+    if not things or not any(len(thing.data.polygons) for thing in things):
+        raise Fault(f"{path}: there are no faces in it")
+    for thing in things:
+        smooth = [True] * len(thing.data.polygons)
+        thing.data.polygons.foreach_set("use_smooth", smooth)
+    if options.height:
+        bpy.context.view_layer.update()
+        box = Bounds(things)
+        tall = box.high.z - box.low.z
+        if not tall > 0:
+            raise Fault(f"{path}: it is flat along its up axis, so --height cannot scale it; is --up right?")
+        for thing in things:
+            thing.matrix_world = Matrix.Scale(options.height / unit / tall, 4) @ thing.matrix_world
+    bpy.context.view_layer.update()
+
+
+def run(command, pellucid):
+    try:
+        done = subprocess.run([pellucid, *command], capture_output=True, text=True)
+    except OSError as error:
+        raise Fault(f"cannot run '{pellucid}' ({error.strerror}): give its path with --pellucid or PELLUCID_COMMAND, "
+                    "or leave curvature out with --no-curvature") from None
+    if done.returncode:
+        raise Fault(f"{pellucid} {command[0]}: {done.stderr.strip()}")
+
+
+def load_ply(path, pellucid, up):
+    """By way of `pellucid curvature`, which reads every one of these formats and writes one PLY: fields of 4 bytes, a
+    colour, triangles."""
+    with tempfile.TemporaryDirectory() as folder:
+        copy = os.path.join(folder, "mesh.ply")
+        run(["curvature", path, "-o", copy], pellucid)
+        with open(copy, "rb") as file:
+            data = file.read()
+    header, body = data.split(b"end_header\n", 1)
+    counts = {line.split()[1]: int(line.split()[2]) for line in header.decode().splitlines() if line.startswith("element")}
+    step = 0
+    for line in header.decode().splitlines():
+        if line.startswith("property list"):
+            break
+        if line.startswith("property"):
+            step += 1 if line.split()[1] == "uchar" else 4
+    vertices = [struct.unpack_from("<3f", body, i * step) for i in range(counts["vertex"])]
+    if up == "y":
+        vertices = [(x, -z, y) for x, y, z in vertices]
+    start = counts["vertex"] * step
+    faces = [struct.unpack_from("<3I", body, start + 13 * i + 1) for i in range(counts["face"])]
+    name = os.path.basename(path)
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(vertices, [], faces)
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new(name, mesh))
+
+
+def realise(source, scene):
+    """Everything that the source scene renders, as plain meshes in world space, linked to `scene`."""
+    for thing in source.objects:
+        for modifier in thing.modifiers:  # as they render, not as they look on screen
+            modifier.show_viewport = modifier.show_render
+            if modifier.type in ("SUBSURF", "MULTIRES"):
+                modifier.levels = modifier.render_levels
+    bpy.context.view_layer.update()
+    graph = bpy.context.evaluated_depsgraph_get()
+    things, left_out = [], set()
+    for instance in graph.object_instances:
+        thing = instance.object
+        if not instance.show_self or thing.original.hide_render:
+            continue
+        if thing.type in ("VOLUME", "CURVES", "HAIR", "POINTCLOUD"):
+            left_out.add(thing.name)
+        if thing.type not in RENDERED:
+            continue
+        mesh = bpy.data.meshes.new_from_object(thing, preserve_all_data_layers=True, depsgraph=graph)
+        if not mesh.polygons:
+            continue
+        mesh.transform(instance.matrix_world)
+        if instance.matrix_world.determinant() < 0:
+            mesh.flip_normals()
+        for i, slot in enumerate(thing.material_slots):  # materials may belong to the object
+            if i < len(mesh.materials):
+                mesh.materials[i] = slot.material
+        made = bpy.data.objects.new(f"pellucid {thing.name}", mesh)
+        made.pass_index = thing.original.pass_index or len(things) + 1
+        scene.collection.objects.link(made)
+        things.append(made)
+    if left_out:
+        warn("left out, neither meshes nor curves: " + ", ".join(sorted(left_out)))
+    if not things:
+        raise Fault("no mesh in the scene is rendered")
+    return things
+
+
+def measure_curvature(things, pellucid, smooth):
+    """Sets the attribute CURVATURE: 1/Blender unit, as `pellucid curvature` measures it."""
+    with tempfile.TemporaryDirectory() as folder:
+        ply, npy = os.path.join(folder, "mesh.ply"), os.path.join(folder, "curvature.npy")
+        for thing in things:
+            write_ply(ply, thing.data)
+            run(["curvature", ply, "-o", npy, "--smooth", str(smooth), "--weld", "exact"], pellucid)
+            with open(npy, "rb") as file:
+                data = file.read()
+            values = array.array("f", data[10 + struct.unpack_from("<H", data, 8)[0] :])
+            attribute = thing.data.attributes.new(CURVATURE, "FLOAT", "POINT")
+            attribute.data.foreach_set("value", values)
+
+
+def write_ply(path, mesh):
+    mesh.calc_loop_triangles()
+    positions = array.array("f", bytes(12 * len(mesh.vertices)))
+    mesh.vertices.foreach_get("co", positions)
+    if not all(map(math.isfinite, positions)):
+        raise Fault(f"{mesh.name}: it has vertices at NaN or Inf")
+    corners = array.array("i", bytes(12 * len(mesh.loop_triangles)))
+    mesh.loop_triangles.foreach_get("vertices", corners)
+    faces = corners.tobytes()
+    with open(path, "wb") as file:
+        file.write(b"ply\nformat binary_little_endian 1.0\n")
+        file.write(f"element vertex {len(mesh.vertices)}\n".encode())
+        file.write(b"property float x\nproperty float y\nproperty float z\n")
+        file.write(f"element face {len(mesh.loop_triangles)}\nproperty list uchar int vertex_indices\nend_header\n".encode())
+        file.write(positions.tobytes())
+        file.write(b"".join(b"\3" + faces[i : i + 12] for i in range(0, len(faces), 12)))

@@ -1,0 +1,81 @@
+"""The G-buffer: camera, passes and the settings that make every pixel one exact sample."""
+
+import math
+
+import bpy
+from mathutils import Matrix, Vector
+
+from .surface import AOVS
+
+
+def look(eye, forward):
+    """Matrix of a camera at `eye`, upright; cameras look along their -z."""
+    return Matrix.Translation(eye) @ forward.to_track_quat("-Z", "Y").to_matrix().to_4x4()
+
+
+def frame_size(source, options):
+    """Pixels."""
+    if options.size or not bpy.data.filepath:
+        return options.size or (1024, 1024)
+    share = source.render.resolution_percentage / 100
+    return int(source.render.resolution_x * share), int(source.render.resolution_y * share)
+
+
+def add_camera(source, scene, bounds, size):
+    """A copy of the source scene's camera, or one that frames everything from half left in front."""
+    if source.camera:
+        camera = bpy.data.objects.new("pellucid camera", source.camera.data.copy())
+        camera.matrix_world = source.camera.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world.copy()
+    else:
+        camera = bpy.data.objects.new("pellucid camera", bpy.data.cameras.new("pellucid camera"))
+        camera.data.angle = math.radians(25)
+        away = Vector((math.sin(math.radians(25)), -math.cos(math.radians(25)), 0))
+        right = Vector((-away.y, away.x, 0))
+        slope = 0.92 * math.tan(camera.data.angle / 2)
+        if size[0] > size[1]:  # the angle is that of the longer side
+            across, upward = slope, slope * size[1] / size[0]
+        else:
+            across, upward = slope * size[0] / size[1], slope
+        distance = 1.1 * bounds.radius
+        for corner in bounds.corners():
+            p = corner - bounds.centre
+            distance = max(distance, away.dot(p) + max(abs(right.dot(p)) / across, abs(p.z) / upward))
+        camera.matrix_world = look(bounds.centre + away * distance, -away)
+        camera.data.clip_start, camera.data.clip_end = 0.01 * distance, distance + 2 * bounds.radius
+    camera.data.dof.use_dof = False
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    return camera
+
+
+def prepare(scene, size):
+    """One sample through each pixel's centre, no bounces, no tone mapping, the passes of the G-buffer."""
+    render = scene.render
+    render.engine = "CYCLES"
+    render.resolution_x, render.resolution_y = size
+    render.resolution_percentage = 100
+    render.use_motion_blur = False
+    render.dither_intensity = 0
+    cycles = scene.cycles
+    cycles.device = "CPU"
+    cycles.samples = 1
+    cycles.use_adaptive_sampling = cycles.use_denoising = False
+    cycles.pixel_filter_type, cycles.filter_width = "BOX", 0.01
+    cycles.max_bounces = 0
+    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
+    layer = scene.view_layers[0]
+    layer.use_pass_z = layer.use_pass_position = layer.use_pass_normal = layer.use_pass_uv = True
+    layer.use_pass_diffuse_color = layer.use_pass_object_index = layer.use_pass_material_index = True
+    for name, kind in AOVS:
+        aov = layer.aovs.add()
+        aov.name, aov.type = name, kind
+
+
+def render_gbuffer(scene, camera, path, half):
+    scene.camera = camera
+    settings = scene.render.image_settings
+    settings.file_format = "OPEN_EXR_MULTILAYER"
+    settings.color_depth = "16" if half else "32"
+    settings.exr_codec = "ZIP"
+    scene.render.filepath = path
+    bpy.ops.render.render(write_still=True, scene=scene.name)

@@ -1,0 +1,80 @@
+"""The scene file of `pellucid shade` (docs/scene-file.md)."""
+
+# Lengths of the defaults, in millimetres.
+SKIN = {"diffusion_radius": 2.7, "shadow_filter_width": 8.0, "deep_scatter_radius": 6.0, "deep_scatter_normal_offset": 0.2}
+OTHERS = {"deep_scatter_color": (0.7, 0.16, 0.05), "specular": 0.35}
+PREFIX = "pellucid_"  # custom properties of a Blender material that set a key of [[material]]
+
+
+def number(value):
+    text = f"{float(value):.9g}"
+    return text if "." in text or "e" in text or "n" in text else text + ".0"
+
+
+def value(v):
+    if isinstance(v, str):
+        return '"' + v.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    if isinstance(v, int):
+        return str(v)
+    try:
+        return "[" + ", ".join(value(inner) for inner in v) + "]"
+    except TypeError:
+        return number(v)
+
+
+def write(path, unit, camera, lamps, sky, materials, curvature):
+    """unit: millimetres per Blender unit. materials: (id, Blender material)."""
+    lines = [
+        "# Written by bindings/blender/render_gbuffer.py. Axes: Blender's world, Z up. Lengths: Blender units,",
+        f"# of {unit:g} mm each.",
+        "version = 1",
+        "",
+        "[channels]",
+        'material = "IndexMA.X"',
+        'position = ["Position.X", "Position.Y", "Position.Z"]',
+        'normal_shading = ["NShading.R", "NShading.G", "NShading.B"]',
+        'normal_geometric = ["NGeom.R", "NGeom.G", "NGeom.B"]',
+        'albedo = ["Albedo.R", "Albedo.G", "Albedo.B"]',
+    ]
+    if curvature:
+        lines += ['curvature = "Curvature.X"']
+    lines += ["", "[camera]", "position = " + value(tuple(camera.matrix_world.translation))]
+    if sky:
+        lines += ["", "[ambient]", "sh = [", *("    " + value(row) + "," for row in sky), "]"]
+    for lamp in lamps:
+        lines += ["", f"[[light]]  # {lamp.name}"]
+        if lamp.kind == "SUN":
+            lines += ['type = "directional"', "to_light = " + value(tuple(-lamp.forward))]
+        else:
+            lines += [f'type = "{lamp.kind.lower()}"', "position = " + value(tuple(lamp.position))]
+        if lamp.kind == "SPOT":
+            lines += ["spot_direction = " + value(tuple(lamp.forward)), "spot_cos_inner = " + number(lamp.cos_inner),
+                      "spot_cos_outer = " + number(lamp.cos_outer)]
+        lines += ["color = " + value(lamp.color)]
+        if lamp.map_file:
+            lines += ["", "[light.shadow_map]", "file = " + value(lamp.map_file), 'channel = "R"']
+            lines += ["world_to_shadow = " + value([v for row in lamp.to_shadow for v in row])]
+            if lamp.kind == "SUN":
+                lines += ['projection = "parallel"', "depth_range = " + number(lamp.depth_range)]
+            else:
+                lines += ['projection = "perspective"', "depth_a = " + number(lamp.depth_a), "depth_b = " + number(lamp.depth_b)]
+    extents = [lamp.extent for lamp in lamps if lamp.map_file and lamp.kind == "SUN"]
+    for id_, material in materials:
+        keys = {key: length / unit for key, length in SKIN.items()}
+        keys.update(OTHERS)
+        if extents:
+            keys["thickness_filter_radius"] = 3 / unit / max(extents)  # 3 mm
+        keys["shadow_lut"] = "skin"
+        if curvature:
+            keys["curvature_lut"] = "skin"
+        for name in material.keys():
+            if name.startswith(PREFIX):
+                own = material[name]
+                keys[name[len(PREFIX) :]] = own if isinstance(own, (int, float, str)) else tuple(own)
+        lines += ["", f"[[material]]  # {material.name}", f"id = {id_}"]
+        lines += [f"{key} = {value(v)}" for key, v in keys.items() if v != ""]
+    if curvature:
+        lines += ["", "[[curvature_lut]]  # in millimetres, as it stands", 'name = "skin"']
+    lines += ["", "[[shadow_lut]]", 'name = "skin"']
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n".join(lines) + "\n")
