@@ -126,6 +126,25 @@ TEST_F(Shade, BadFilesAreRefused) {
     scene_.materials[0].curvatureLut = "t";
     io::writeScene(path("lut.toml"), scene_);
     expectRefused(command("lut.toml"), 3, "pellucid:format");
+    // A look-up table, but not the one that is asked for.
+    ASSERT_EQ(run({"lut", "shadow", "-o", path("t.exr"), "--size", "8x8"}).exitCode, 0);
+    scene_.luts[0].file = "t.exr";
+    io::writeScene(path("lut.toml"), scene_);
+    expectRefused(command("lut.toml"), 3, "kind is shadow; curvature is asked for");
+    ASSERT_EQ(run({"lut", "curvature", "-o", path("t.exr"), "--size", "8x8", "--axis", "root"}).exitCode, 0);
+    EXPECT_EQ(run(command("lut.toml")).exitCode, 0);
+    const std::string asking = read(path("lut.toml"));
+    const auto expecting = [&](const std::string& keys) {
+        std::string text = asking;
+        text.replace(text.find("file = \"t.exr\""), 14, "file = \"t.exr\"\n" + keys);
+        write("asking.toml", text);
+        return command("asking.toml");
+    };
+    EXPECT_EQ(run(expecting("axis = \"root\"\nwidth = 8\nradius_max = 100")).exitCode, 0);
+    expectRefused(expecting("axis = \"linear\""), 3, "axis is root; linear is asked for");
+    expectRefused(expecting("form = \"sphere\""), 3, "form is arc; sphere is asked for");
+    expectRefused(expecting("radius_min = 0.5"), 3, "radius_min is 1; 0.5 is asked for");
+    expectRefused(expecting("diffusion_radius = 3"), 3, "diffusion_radius is 2.7; 3 is asked for");
     expectRefused({"shade", path("g.exr"), "--scene", path("s.toml"), "-o", path("no/o.exr")}, 2,
                   "no folder");
     expectRefused({"shade", path("g.exr"), "--scene", path("s.toml"), "-o", path("o.png")}, 2, ".exr");

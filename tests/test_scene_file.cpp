@@ -150,8 +150,6 @@ TEST_F(SceneFileTest, WhatIsMissingIsNamed) {
         contains(errorOf("normal_shading", "normal_blurred"), "'normal_shading' in [channels] is missing"));
     EXPECT_TRUE(contains(errorOf("curvature_lut = \"skin\"", "curvature_lut = \"wax\""),
                          "asks for the curvature_lut 'wax'; there is only: skin"));
-    EXPECT_TRUE(
-        contains(errorOf("file = \"shadow_lut.exr\"", "file = \"s.exr\"\nsharpening = 3"), "beside 'file'"));
     EXPECT_TRUE(contains(errorOf("[[curvature_lut]]", "[[material]]\n[[curvature_lut]]"), "used twice"));
     EXPECT_TRUE(contains(errorOf("position = [0, 0, 600]", "position = [0, 0"), "s.toml:"));
     EXPECT_TRUE(contains(messageOf<FileError>([&] { readScene(path("none.toml")); }), "No such file"));

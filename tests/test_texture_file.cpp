@@ -73,3 +73,27 @@ TEST_F(TextureFile, Ktx2) {
     EXPECT_EQ(word(bytes, 88), 120u);
     expectTexels(bytes, texels, lut);
 }
+
+TEST_F(TextureFile, Bc6h) {
+    const Lut lut = table();  // 5x3 texels: 2x1 blocks
+    EXPECT_GT(io::writeLutBc6h(path("t.dds"), lut).max, 0);
+    const std::string dds = read(path("t.dds"));
+    EXPECT_EQ(word(dds, 8) & 0x80008u, 0x80000u) << "a size of all bytes, not of a row";
+    EXPECT_EQ(word(dds, 20), 32u);
+    EXPECT_EQ(word(dds, 128), 95u) << "BC6H_UF16";
+    ASSERT_EQ(dds.size(), 148u + 32);
+
+    io::writeLutBc6h(path("t.ktx2"), lut);
+    const std::string ktx = read(path("t.ktx2"));
+    EXPECT_EQ(word(ktx, 12), 143u) << "VK_FORMAT_BC6H_UFLOAT_BLOCK";
+    EXPECT_EQ(word(ktx, 16), 1u);
+    const size_t descriptor = word(ktx, 48), texels = word(ktx, 80);
+    EXPECT_EQ(word(ktx, descriptor), 44u) << "one sample";
+    EXPECT_EQ(uint8_t(ktx[descriptor + 12]), 133u) << "colour model BC6H";
+    EXPECT_EQ(word(ktx, descriptor + 16), 0x0303u) << "4x4 texels";
+    EXPECT_EQ(word(ktx, descriptor + 20), 16u) << "bytes of a block";
+    EXPECT_EQ(texels % 16, 0u);
+    EXPECT_EQ(word(ktx, 88), 32u);
+    EXPECT_EQ(ktx.substr(texels), dds.substr(148)) << "the same blocks";
+    EXPECT_THROW(io::writeLutBc6h(path("t.exr"), lut), std::invalid_argument);
+}

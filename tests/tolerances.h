@@ -184,4 +184,9 @@ inline constexpr Tolerance blenderCurvature{
 inline constexpr Tolerance blenderTerminator{
     "blenderTerminator", 0.5, "times Lambert's error in red: what the path tracer's noise leaves room for"};
 
+// --- tables as BC6H ---
+inline constexpr Tolerance bc6hMax{
+    "bc6hMax", 0.016, "64x64: one byte per texel cannot follow three channels that part at the terminator"};
+inline constexpr Tolerance bc6hRms{"bc6hRms", 1.6e-3, "64x64: 1.4e-3 measured"};
+
 }  // namespace tolerance

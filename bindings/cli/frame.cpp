@@ -11,12 +11,15 @@ namespace {
 
 // Equal requests give equal bits, so that the description is the key. Its structures have no padding.
 bool sameTable(const io::SceneLut& a, const io::SceneLut& b) {
-    if (a.file != b.file || a.info.kind != b.info.kind) return false;
-    return !a.file.empty() || std::memcmp(&a.info, &b.info, sizeof a.info) == 0;
+    return a.file == b.file && a.expected == b.expected && std::memcmp(&a.info, &b.info, sizeof a.info) == 0;
 }
 
 Lut make(const Device& device, const io::SceneLut& request) {
-    if (!request.file.empty()) return io::readLut(device, request.file);
+    if (!request.file.empty()) {
+        const Lut lut = io::readLut(device, request.file);
+        io::checkLutInfo(request.file, lut.info(), request.info, request.expected);
+        return lut;
+    }
     return request.info.kind == PEL_LUT_CURVATURE ? Lut(device, request.info.curvature)
                                                   : Lut(device, request.info.shadow);
 }

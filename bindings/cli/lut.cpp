@@ -40,17 +40,27 @@ Profile takeProfile(const Arguments& arguments, Desc& desc) {
 template <class Desc>
 void integrate(Arguments& arguments, Desc& desc) {
     parseSize(arguments.size, desc.width, desc.height);
+    const bool bc6h = arguments.encoding == "bc6h";
     std::optional<PelLutEncoding> encoding;
-    if (!arguments.encoding.empty()) encoding = encodings.at(arguments.encoding);
+    if (!arguments.encoding.empty() && !bc6h) encoding = encodings.at(arguments.encoding);
     try {
-        encoding = io::checkLutPath(arguments.output, encoding);
+        if (bc6h)
+            io::checkLutPathBc6h(arguments.output);
+        else
+            encoding = io::checkLutPath(arguments.output, encoding);
     } catch (const std::exception& e) {  // before any work: the output is the user's choice
         throw UsageError(e.what());
     }
     Run run(arguments.run);
     const Lut lut(run.device(), desc);
-    io::writeLut(arguments.output, lut, encoding);
     run.report["output"] = arguments.output;
+    if (bc6h) {
+        const io::TexelError error = io::writeLutBc6h(arguments.output, lut);
+        run.report["encoding_error_max"] = error.max;
+        run.report["encoding_error_rms"] = error.rms;
+    } else {
+        io::writeLut(arguments.output, lut, encoding);
+    }
     run.report["width"] = desc.width;
     run.report["height"] = desc.height;
     run.report["texels"] = uint64_t(desc.width) * desc.height;
@@ -61,8 +71,10 @@ void addCommon(CLI::App& command, Arguments& a) {
     command.add_option("-o,--output", a.output, "file to write: .exr, .png, .bmp, .tga, .npy, .dds or .ktx2")
         ->required();
     command.add_option("--size", a.size, "texels, WxH")->capture_default_str();
-    command.add_option("--encoding", a.encoding, "float, half or faceworks8 (default: by the file's kind)")
-        ->check(CLI::IsMember({"float", "half", "faceworks8"}));
+    command
+        .add_option("--encoding", a.encoding,
+                    "float, half, faceworks8, or bc6h for .dds and .ktx2 (default: by the file's kind)")
+        ->check(CLI::IsMember({"float", "half", "faceworks8", "bc6h"}));
     addRunOptions(command, a.run);
 }
 

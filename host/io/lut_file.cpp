@@ -3,6 +3,7 @@
 #include <OpenImageIO/half.h>
 
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -93,12 +94,12 @@ std::string checkSum(const Image& image) {
     return contentHash(values.data(), values.size() * sizeof(float));
 }
 
-std::vector<uint16_t> withAlpha(const std::vector<uint16_t>& rgbHalves) {
+std::vector<uint8_t> withAlpha(const std::vector<uint16_t>& rgbHalves) {
     constexpr uint16_t one = 0x3C00;
-    std::vector<uint16_t> rgba;
-    for (size_t i = 0; i < rgbHalves.size(); ++i) {
-        rgba.push_back(rgbHalves[i]);
-        if (i % 3 == 2) rgba.push_back(one);
+    std::vector<uint8_t> rgba(rgbHalves.size() / 3 * 8);
+    for (size_t i = 0; i < rgbHalves.size() / 3; ++i) {
+        std::memcpy(&rgba[8 * i], &rgbHalves[3 * i], 6);
+        std::memcpy(&rgba[8 * i + 6], &one, 2);
     }
     return rgba;
 }
@@ -117,7 +118,33 @@ std::map<std::string, std::string> keyValues(const Image& image) {
     return pairs;
 }
 
+void writeTexture(const std::string& path, const Lut& lut, Texture::Format format,
+                  std::span<const uint8_t> bytes) {
+    const auto [width, height] = sizeOf(lut.info());
+    const Texture texture{format, width, height, bytes};
+    if (extensionOf(path) == "dds")
+        writeDds(path, texture);
+    else
+        writeKtx2(path, texture, keyValues(describedImage(lut, PEL_LUT_HALF)));
+}
+
 }  // namespace
+
+void checkLutPathBc6h(const std::string& path) {
+    const std::string extension = extensionOf(path);
+    if (extension != "dds" && extension != "ktx2")
+        throw std::invalid_argument("bc6h goes into .dds and .ktx2, not into '" + path + "'");
+    checkWritable(path);
+}
+
+TexelError writeLutBc6h(const std::string& path, const Lut& lut) {
+    checkLutPathBc6h(path);
+    const auto [width, height] = sizeOf(lut.info());
+    const std::vector<uint16_t> texels = lut.read<uint16_t>(PEL_LUT_HALF);
+    const std::vector<uint8_t> blocks = encodeBc6h(width, height, texels);
+    writeTexture(path, lut, Texture::Format::Bc6hUnsigned, blocks);
+    return differenceOf(texels, decodeBc6h(width, height, blocks));
+}
 
 PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncoding> encoding) {
     const std::string extension = requireExtension(path, {"exr", "npy", "png", "bmp", "tga", "dds", "ktx2"});
@@ -128,7 +155,7 @@ PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncodin
                                                               : PEL_LUT_FLOAT);
     if (texture && chosen != PEL_LUT_HALF)
         throw std::invalid_argument("." + extension +
-                                    " holds half texels: use --encoding half, or write .exr or .npy");
+                                    " holds half texels: use --encoding half or bc6h, or write .exr or .npy");
     if (eightBit && chosen != PEL_LUT_FACEWORKS8)
         throw std::invalid_argument("." + extension +
                                     " holds 8-bit texels: use --encoding faceworks8, or write .exr or .npy");
@@ -154,12 +181,7 @@ void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncod
         return;
     }
     if (extension == "dds" || extension == "ktx2") {
-        const Image image = describedImage(lut, encoding);
-        const std::vector<uint16_t> texels = withAlpha(lut.read<uint16_t>(PEL_LUT_HALF));
-        if (extension == "dds")
-            writeDds(path, width, height, texels);
-        else
-            writeKtx2(path, width, height, texels, keyValues(image));
+        writeTexture(path, lut, Texture::Format::Rgba16Float, withAlpha(lut.read<uint16_t>(PEL_LUT_HALF)));
         return;
     }
     if (extension == "npy") {
@@ -170,6 +192,38 @@ void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncod
         return;
     }
     writeExr(path, describedImage(lut, encoding));
+}
+
+void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLutInfo& wanted,
+                  const std::vector<std::string>& keys) {
+    const auto refuse = [&](const std::string& what, const auto& is, const auto& asked) {
+        std::ostringstream text;
+        text.imbue(std::locale::classic());
+        text << "is a table whose " << what << " is " << is << "; " << asked << " is asked for";
+        throw FileError(path, text.str());
+    };
+    if (found.kind != wanted.kind) refuse("kind", kindNames[found.kind], kindNames[wanted.kind]);
+    const auto [width, height] = sizeOf(found);
+    const auto [askedWidth, askedHeight] = sizeOf(wanted);
+    const PelCurvatureLutDesc &c = found.curvature, &askedC = wanted.curvature;
+    const PelShadowLutDesc &s = found.shadow, &askedS = wanted.shadow;
+    const bool curvature = found.kind == PEL_LUT_CURVATURE;
+    for (const std::string& key : keys) {
+        const auto same = [&](const char* name, const auto& is, const auto& asked) {
+            if (key == name && is != asked) refuse(name, is, asked);
+        };
+        same("width", width, askedWidth);
+        same("height", height, askedHeight);
+        same("diffusion_radius", curvature ? c.diffusionRadius : s.diffusionRadius,
+             curvature ? askedC.diffusionRadius : askedS.diffusionRadius);
+        same("form", formNames[c.form], formNames[askedC.form]);
+        same("axis", axisNames[c.axis], axisNames[askedC.axis]);
+        same("radius_min", c.radiusMin, askedC.radiusMin);
+        same("radius_max", c.radiusMax, askedC.radiusMax);
+        same("width_min", s.widthMin, askedS.widthMin);
+        same("width_max", s.widthMax, askedS.widthMax);
+        same("sharpening", s.sharpening, askedS.sharpening);
+    }
 }
 
 void writeCheckedLut(const std::string& path, const Lut& lut, PelLutEncoding encoding,

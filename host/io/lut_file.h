@@ -4,6 +4,9 @@
 #include <optional>
 #include <pellucid/pellucid.hpp>
 #include <string>
+#include <vector>
+
+#include "io/bc6h.h"
 
 namespace pellucid::io {
 
@@ -18,9 +21,19 @@ void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncod
 // work.
 PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncoding> encoding);
 
+// The same as BC6H in .dds or .ktx2, an eighth of the bytes of half texels with alpha; returns what that
+// costs.
+TexelError writeLutBc6h(const std::string& path, const Lut& lut);
+void checkLutPathBc6h(const std::string& path);
+
 // Reads what writeLut wrote as .exr. Throws FileError: no such file, no or incomplete description, wrong
 // size.
 Lut readLut(const Device& device, const std::string& path);
+
+// Checks what a table read from `path` is against what was asked for: its kind, and the keys of a scene file
+// that are in `keys` ("form", "radius_min", ...). Throws FileError that names both values.
+void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLutInfo& wanted,
+                  const std::vector<std::string>& keys);
 
 // As .exr with two attributes more: `key`, and a check sum of the texels as stored. verifyLut tells whether a
 // file holds the texels that were written for that key; a missing, truncated or changed file does not.

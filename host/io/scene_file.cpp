@@ -24,16 +24,14 @@ void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind) {
     }
     if (lut.name.empty()) reader.fail("name", "is missing; materials need it to refer to this table");
     if (scene.lut(lut.name, kind)) reader.fail("name", "is used twice; give each table a name of its own");
-    if (!lut.file.empty()) {
-        for (const char* key : {"form", "axis", "width", "height", "diffusion_radius", "radius_min", "radius_max",
-                                "width_min", "width_max", "sharpening"}) {
-            if (reader.has(key))
-                reader.fail(key, "cannot stand beside 'file', which says all of it; leave one out");
-        }
-    }
-    if (kind == PEL_LUT_CURVATURE && lut.info.curvature.radiusMin >= lut.info.curvature.radiusMax)
+    if (!lut.file.empty())
+        for (const char* key : {"form", "axis", "width", "height", "diffusion_radius", "radius_min",
+                                "radius_max", "width_min", "width_max", "sharpening"})
+            if (reader.has(key)) lut.expected.push_back(key);
+    if (lut.file.empty() && kind == PEL_LUT_CURVATURE &&
+        lut.info.curvature.radiusMin >= lut.info.curvature.radiusMax)
         reader.fail("radius_min", "is not below radius_max");
-    if (kind == PEL_LUT_SHADOW && lut.info.shadow.widthMin >= lut.info.shadow.widthMax)
+    if (lut.file.empty() && kind == PEL_LUT_SHADOW && lut.info.shadow.widthMin >= lut.info.shadow.widthMax)
         reader.fail("width_min", "is not below width_max");
     scene.luts.push_back(std::move(lut));
 }

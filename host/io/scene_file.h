@@ -15,6 +15,7 @@ struct SceneLut {
     std::string name;                        // materials refer to it
     PelLutInfo info = pelLutInfoDefaults();  // kind; and what to integrate if `file` is empty
     std::string file;                        // a float or half EXR written by `pellucid lut`
+    std::vector<std::string> expected;       // keys beside `file`: what the file must say too
     int line = 0;                            // of the scene file; 0: made by a program
 };
 

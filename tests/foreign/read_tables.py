@@ -1,0 +1,118 @@
+"""Tables written by `pellucid lut`, read by NumPy, Pillow, OpenEXR, imagecodecs and pyktx2, compared with one another."""
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+COMMAND = sys.argv.pop(1)
+WIDTH, HEIGHT = 23, 14  # no multiples of 4
+
+
+def reader(name):
+    try:
+        return __import__(name)
+    except ImportError:
+        raise unittest.SkipTest(f"{name} is not installed")
+
+
+class Tables(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def table(self, name, encoding, size=f"{WIDTH}x{HEIGHT}"):
+        path = Path(self.folder.name) / f"{size}-{name}"
+        if not path.exists():
+            subprocess.run([COMMAND, "lut", "curvature", "-o", path, "--size", size, "--axis", "root", "--encoding",
+                            encoding], check=True, stdout=subprocess.DEVNULL)
+        return str(path)
+
+    def npy(self, encoding):
+        return np.load(self.table(encoding + ".npy", encoding))
+
+    def test_npy(self):
+        full, half, coded = (self.npy(e) for e in ("float", "half", "faceworks8"))
+        self.assertEqual((full.dtype, full.shape), (np.float32, (HEIGHT, WIDTH, 3)))
+        self.assertTrue(np.array_equal(half, full.astype(np.float16)))
+        self.assertEqual((coded.dtype, coded.shape), (np.uint8, (HEIGHT, WIDTH, 4)))
+        self.assertGreater(full.std(), 0.1)
+
+    def test_exr(self):
+        openexr = reader("OpenEXR")
+        for encoding, dtype in (("float", np.float32), ("half", np.float16)):
+            with openexr.File(self.table(encoding + ".exr", encoding), separate_channels=True) as file:
+                header, channels = file.header(), file.channels()
+                for c, name in enumerate("RGB"):
+                    pixels = channels[name].pixels
+                    self.assertEqual(pixels.dtype, dtype)
+                    self.assertTrue(np.array_equal(pixels, self.npy(encoding)[..., c]), (encoding, name))
+                self.assertEqual(header["pellucid:form"], "arc")
+                self.assertEqual(header["pellucid:axis"], "root")
+                self.assertAlmostEqual(header["pellucid:radiusMax"], 100)
+
+    def test_8_bit(self):
+        reader("PIL")
+        from PIL import Image
+        expected = self.npy("faceworks8")
+        for kind in ("png", "bmp", "tga"):
+            with Image.open(self.table("t." + kind, "faceworks8")) as image:
+                pixels = np.asarray(image.convert("RGBA"))
+            self.assertTrue(np.array_equal(pixels[..., :3], expected[..., :3]), kind)
+
+    def rgba(self, data):
+        pixels = np.frombuffer(data, np.float16).reshape(HEIGHT, WIDTH, 4)
+        self.assertTrue((pixels[..., 3] == 1).all())
+        return pixels[..., :3]
+
+    def bc6h(self, blocks):
+        codecs = reader("imagecodecs")
+        padded = codecs.bcn_decode(bytes(blocks), codecs.BCN.FORMAT.BC6HU, shape=(-(-HEIGHT // 4) * 4, -(-WIDTH // 4) * 4, 3))
+        return np.asarray(padded, np.float32)[:HEIGHT, :WIDTH, :3]
+
+    def test_dds(self):
+        data = Path(self.table("half.dds", "half")).read_bytes()
+        self.assertTrue(np.array_equal(self.rgba(data[148:]), self.npy("half")))
+
+    def test_dds_bc6h(self):
+        path = self.table("t.dds", "bc6h")
+        decoded = self.bc6h(Path(path).read_bytes()[148:])
+        self.assertLess(np.abs(decoded - self.npy("float")).max(), 0.04)
+        self.assertLess(np.sqrt(np.square(decoded - self.npy("float")).mean()), 0.006)
+        reader("PIL")
+        from PIL import Image
+        with Image.open(path) as image:  # Pillow finds the header right, and shows 8 bits of it
+            self.assertEqual(image.size, (WIDTH, HEIGHT))
+            shown = np.asarray(image.convert("RGB")) / 255
+        self.assertLess(np.abs(shown - np.clip(decoded, 0, 1)).max(), 1.1 / 255)
+
+    def test_ktx2(self):
+        reader("pyktx2")
+        from pyktx2 import parser
+        # It walks the file by itself, but knows few colour models and texel formats, and pads after pos % 8.
+        parser.BytesReader.get_padding_size = lambda self, alignment: -self.pos % alignment
+        parser.ColorModel = int
+        parser.get_stride = {97: 8, 143: 1}.__getitem__
+        parser.VkFormat = int
+        for encoding, size, vulkan, model in (("half", f"{WIDTH}x{HEIGHT}", 97, 1), ("bc6h", "24x16", 143, 133)):
+            ktx = parser.parse_path(Path(self.table(encoding + ".ktx2", encoding, size)))
+            self.assertEqual(f"{ktx.pixelWidth}x{ktx.pixelHeight}", size)
+            self.assertEqual((ktx.vkFormat, ktx.faceCount, ktx.levelCount), (vulkan, 1, 1))
+            facts, samples = ktx.dfd
+            self.assertEqual((facts.colorModel, len(samples)), (model, 4 if encoding == "half" else 1))
+            self.assertEqual(facts.transferFunction, parser.TransferFunction.KHR_DF_TRANSFER_LINEAR)
+            self.assertEqual(ktx.kv["pellucid:axis"], b"root\0")
+            (image,) = ktx.levelImages
+            if encoding == "half":
+                self.assertTrue(np.array_equal(self.rgba(image.data), self.npy("half")))
+            else:
+                self.assertEqual(image.data, Path(self.table("t.dds", encoding, size)).read_bytes()[148:])
+
+
+unittest.main(verbosity=2)
