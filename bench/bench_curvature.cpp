@@ -30,17 +30,8 @@ fixture::Mesh makeMesh(int64_t vertices, Order order) {
     const uint32_t sides = uint32_t(std::lround(std::sqrt(double(vertices) / 2)));
     fixture::Mesh mesh = fixture::torus(2 * sides, sides);
     if (order == ordered) return mesh;
-    std::vector<uint32_t> newOf(mesh.vertices());
-    for (uint32_t i = 0; i < newOf.size(); ++i) newOf[i] = i;
+    fixture::Mesh result = fixture::shuffleVertices(mesh, 1).mesh;
     std::mt19937 random(1);
-    std::shuffle(newOf.begin(), newOf.end(), random);
-    fixture::Mesh result = mesh;
-    for (uint32_t v = 0; v < newOf.size(); ++v)
-        for (int k = 0; k < 3; ++k) {
-            result.positions[3 * newOf[v] + k] = mesh.positions[3 * v + k];
-            result.normals[3 * newOf[v] + k] = mesh.normals[3 * v + k];
-        }
-    for (uint32_t& index : result.indices) index = newOf[index];
     for (size_t t = 0; t < result.indices.size() / 3; ++t) {
         const size_t other = t + random() % (result.indices.size() / 3 - t);
         std::swap_ranges(&result.indices[3 * t], &result.indices[3 * t] + 3, &result.indices[3 * other]);

@@ -7,6 +7,9 @@
 // neighbours and leave out the last vertex, which the next walk begins with: each vertex of the two-ring then counts
 // once. At borders some count several times.
 //
+// What the points leave open (fewer than nine, all on a line) a ridge decides, towards a quadric and then a plane; a
+// term whose pivot is lost to rounding is dropped. The result is always finite.
+//
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h). Output: lib/principal.clh.
 //
 // One work-item: PEL_WIDTH slots.
@@ -29,10 +32,28 @@
 #define RIDGE_QUADRATIC 1e-7f
 #define RIDGE_CUBIC 1e-5f
 
+// Root mean square of a coordinate over a round ring, in units of its reach: such a ring keeps its shape.
+#define CHART_SIZE 0.70710678f
+
+// Square of the chart's radius beyond which a point is no neighbour: a round two-ring has radius 1. Next to a vertex of
+// many neighbours (the pole of a sphere) the two-ring is a wide circle, of which only the near part tells.
+#define FARTHEST2 4.0f
+
+// Squared width over squared length below which a ring counts as a line: slivers of 1 : 1000.
+#define MOST_UNEVEN 1e-6f
+
 // The products of two terms are the monomials of degree 2 to 6: 25 sums instead of 45.
 #define DEGREES 7
 #define MONOMIAL(a, b) (((a) + (b)) * ((a) + (b) + 1) / 2 - 3 + (b))  // of x^a y^b, a + b >= 2
 #define MONOMIALS 25
+
+// From offsets to the coordinates of the fit: x = xx X, y = xy X + yy Y, z = scale * height, with X and Y along the
+// tangent vectors. They are as long along the ring as across it, so that slivers fit as well as other triangles: in
+// coordinates of one unit the sixth powers of a short direction would drown in the rounding of a long one's.
+typedef struct Chart {
+    Vec3w origin, u, v, n;
+    floatw scale, xx, xy, yy;
+} Chart;
 
 typedef struct Fit {
     floatw moments[MONOMIALS];  // sum of weight x^a y^b
@@ -41,16 +62,18 @@ typedef struct Fit {
     floatw weight;
 } Fit;
 
-inline void add_point(Fit* fit, uintw slot, maskw counts, Vec3w origin, Vec3w u, Vec3w v, Vec3w n, floatw scale,
-                      __global const float* positions) {
+inline void add_point(Fit* fit, uintw slot, maskw counts, const Chart* chart, __global const float* positions) {
     Vec3w p;
     gather3(positions, slot, &p.x, &p.y, &p.z);
-    p = scale3(sub3(p, origin), scale);
+    p = scale3(sub3(p, chart->origin), chart->scale);
     const floatw distance2 = dot3(p, p);
     counts &= finitew(distance2);
     const floatw zero = 0.0f;
-    const floatw x = selectw(zero, dot3(p, u), counts), y = selectw(zero, dot3(p, v), counts);
-    const floatw z = selectw(zero, dot3(p, n), counts);
+    const floatw along = dot3(p, chart->u), across = dot3(p, chart->v);
+    floatw x = chart->xx * along, y = fma(chart->xy, along, chart->yy * across);
+    counts &= fma(x, x, y * y) <= FARTHEST2;
+    x = selectw(zero, x, counts), y = selectw(zero, y, counts);
+    const floatw z = selectw(zero, dot3(p, chart->n), counts);
     const floatw weight = selectw(zero, 1.0f / (WEIGHT_SOFTENING + distance2), counts);
     fit->weight += weight;
     // weight x^a, then times y as often as the degree allows.
@@ -118,6 +141,42 @@ inline void solve(Fit* fit) {
     }
 }
 
+// The chart's scales from the ring's second moments in the tangent plane; false for a ring without extent.
+inline maskw scale_chart(Chart* chart, RingCursor ring, __global const uint* rings, __global const float* positions) {
+    const floatw zero = 0.0f, one = 1.0f;
+    floatw reach2 = zero, suu = zero, suv = zero, svv = zero, snn = zero, count = zero;
+    for (; ring.row < ring.end; ++ring.row) {
+        const uintw slot = RING_SLOT(ring_entry(&ring, rings));
+        Vec3w p;
+        gather3(positions, slot, &p.x, &p.y, &p.z);
+        p = sub3(p, chart->origin);
+        const floatw length2 = dot3(p, p);
+        const maskw counts = finitew(length2);
+        reach2 = selectw(reach2, fmax(reach2, length2), counts);
+        const floatw along = selectw(zero, dot3(p, chart->u), counts), across = selectw(zero, dot3(p, chart->v), counts);
+        const floatw height = selectw(zero, dot3(p, chart->n), counts);
+        suu = fma(along, along, suu), suv = fma(along, across, suv), svv = fma(across, across, svv);
+        snn = fma(height, height, snn);
+        count += selectw(zero, one, slot != ring.self);
+    }
+    const maskw spread = reach2 >= MESH_MIN_LENGTH2;
+    // In units of the ring's reach: powers up to the sixth must neither overflow nor vanish.
+    reach2 = selectw(one, reach2, spread);
+    chart->scale = 0.5f / sqrt(reach2);
+    // The moments' inverse square root (Cholesky): with it the ring is as wide as long.
+    const floatw inverse = 1.0f / (reach2 * fmax(count, one));
+    suu *= inverse, suv *= inverse, svv *= inverse, snn *= inverse;
+    // A ring that is thinner than high is no sliver: its normal is wrong, as where a triangle is folded over.
+    const floatw least = fmax(MOST_UNEVEN * (suu + svv), snn) + 1e-20f;
+    suu = fmax(suu, least);
+    const floatw slope = suv / suu;
+    const floatw rest = fmax(fma(-slope, suv, svv), least);
+    chart->xx = CHART_SIZE / sqrt(suu);
+    chart->yy = CHART_SIZE / sqrt(rest);
+    chart->xy = -slope * chart->yy;
+    return spread;
+}
+
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_quadric(
     uint slots, __global const uint* slices, __global const uint* rings, __global const float* positions,
     uint positionOffset, __global const float* normals, uint normalOffset, uint planeStride,
@@ -127,27 +186,14 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     RingCursor ring = ring_begin(first, slots, slices);
     positions += positionOffset;
     normals += normalOffset;
-    Vec3w origin, n, u, v;
-    gather3(positions, ring.self, &origin.x, &origin.y, &origin.z);
-    gather3(normals, ring.self, &n.x, &n.y, &n.z);
-    usable_normals(&n.x, &n.y, &n.z);
-    const maskw sound = finite3(origin) & finite3(n);
-    n = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(1.0f)), n, sound);
-    tangent_frame(n, &u, &v);
-
-    // In units of the ring's reach: powers up to the sixth must neither overflow nor vanish.
-    floatw reach2 = 0.0f;
-    for (uint row = ring.row; row < ring.end; ++row) {
-        RingCursor at = ring;
-        at.row = row;
-        Vec3w p;
-        gather3(positions, RING_SLOT(ring_entry(&at, rings)), &p.x, &p.y, &p.z);
-        p = sub3(p, origin);
-        const floatw length2 = dot3(p, p);
-        reach2 = selectw(reach2, fmax(reach2, length2), finitew(length2));
-    }
-    const maskw spread = sound & (reach2 >= MESH_MIN_LENGTH2);
-    const floatw scale = 0.5f / sqrt(selectw((floatw)(1.0f), reach2, spread));
+    Chart chart;
+    gather3(positions, ring.self, &chart.origin.x, &chart.origin.y, &chart.origin.z);
+    gather3(normals, ring.self, &chart.n.x, &chart.n.y, &chart.n.z);
+    usable_normals(&chart.n.x, &chart.n.y, &chart.n.z);
+    const maskw sound = finite3(chart.origin) & finite3(chart.n);
+    chart.n = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(1.0f)), chart.n, sound);
+    tangent_frame(chart.n, &chart.u, &chart.v);
+    const maskw spread = scale_chart(&chart, ring, rings, positions) & sound;
 
     Fit fit;
 #pragma unroll
@@ -159,7 +205,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     for (; ring.row < ring.end; ++ring.row) {
         const uintw near_ = RING_SLOT(ring_entry(&ring, rings));
         const maskw real = (near_ != ring.self) & spread;
-        add_point(&fit, near_, real, origin, u, v, n, scale, positions);
+        add_point(&fit, near_, real, &chart, positions);
         // Each lane walks the ring of its own neighbour, in that one's slice. Where in it does this slot stand?
         const uintw begin = gather_uint(slices, near_ / MESH_LANES);
         const uintw rows = selectw(none, gather_uint(slices, near_ / MESH_LANES + 1) - begin, real);
@@ -188,21 +234,27 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
             row -= selectw(none, length, row >= length);
             const uintw entry = gather_uint(rings, (begin + selectw(none, row, inside)) * MESH_LANES + near_ % MESH_LANES);
             const uintw far_ = selectw(ring.self, RING_SLOT(entry), inside);
-            add_point(&fit, far_, inside & (far_ != ring.self), origin, u, v, n, scale, positions);
+            add_point(&fit, far_, inside & (far_ != ring.self), &chart, positions);
         }
     }
     assemble(&fit);
     solve(&fit);
 
+    // Back to derivatives of the height, in units of the reach, by the tangent vectors.
+    const floatw fx = fit.right[0], fxx = fit.right[2], fxy = fit.right[3];
+    const floatw fy = fit.right[1], fyy = fit.right[4];
+    const floatw du = fma(chart.xx, fx, chart.xy * fy), dv = chart.yy * fy;
+    const floatw duu = chart.xx * fma(chart.xx, fxx, 2.0f * chart.xy * fxy) + chart.xy * chart.xy * fyy;
+    const floatw duv = chart.yy * fma(chart.xx, fxy, chart.xy * fyy), dvv = chart.yy * chart.yy * fyy;
     // The second fundamental form of the graph, in an orthonormal frame of its tangent plane at the slot.
-    const floatw du = fit.right[0], dv = fit.right[1];
+    const Vec3w n = chart.n, u = chart.u, v = chart.v;
     const floatw slope2 = fma(du, du, dv * dv), w = sqrt(1.0f + slope2);
     const Vec3w normal = scale3(sub3(n, add3(scale3(u, du), scale3(v, dv))), 1.0f / w);
     const Vec3w tu = scale3(add3(u, scale3(n, du)), inverseRootw(fma(du, du, (floatw)(1.0f))));
     const Vec3w tv = cross3(normal, tu);
     const floatw ux = dot3(tu, u), uy = dot3(tu, v), vx = dot3(tv, u), vy = dot3(tv, v);
-    const floatw part = -scale / w;  // heights along the normal: bending away from it is negative
-    const floatw xx = fit.right[2] * part, xy = fit.right[3] * part, yy = fit.right[4] * part;
+    const floatw part = -chart.scale / w;  // heights along the normal: bending away from it is negative
+    const floatw xx = duu * part, xy = duv * part, yy = dvv * part;
     const floatw uu = ux * fma(xx, ux, 2.0f * xy * uy) + yy * uy * uy;
     const floatw vv = vx * fma(xx, vx, 2.0f * xy * vy) + yy * vy * vy;
     const floatw uv = xx * ux * vx + xy * fma(ux, vy, uy * vx) + yy * uy * vy;

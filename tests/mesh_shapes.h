@@ -1,7 +1,9 @@
 // Meshes for tests and benchmarks.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <random>
 #include <vector>
 
 namespace fixture {
@@ -32,6 +34,58 @@ inline Mesh torus(uint32_t rings, uint32_t sides, double a = 3, double b = 1) {
             mesh.indices.insert(mesh.indices.end(), {p, q, r, p, r, s});
         }
     return mesh;
+}
+
+// Rings of latitude round the z axis, closed by a vertex at each pole, which comes first and last: near the poles
+// triangles are slivers.
+inline Mesh latLongSphere(uint32_t rings, uint32_t columns, double radius) {
+    Mesh mesh;
+    const double pi = 3.14159265358979323846;
+    const auto add = [&](double colatitude, double longitude) {
+        const double n[3] = {std::sin(colatitude) * std::cos(longitude),
+                             std::sin(colatitude) * std::sin(longitude), std::cos(colatitude)};
+        for (double x : n) {
+            mesh.positions.push_back(float(radius * x));
+            mesh.normals.push_back(float(x));
+        }
+    };
+    add(0, 0);
+    for (uint32_t i = 1; i < rings; ++i)
+        for (uint32_t j = 0; j < columns; ++j) add(pi * i / rings, 2 * pi * j / columns);
+    add(pi, 0);
+    const uint32_t last = mesh.vertices() - 1;
+    const auto at = [&](uint32_t i, uint32_t j) { return 1 + (i - 1) * columns + j % columns; };
+    for (uint32_t j = 0; j < columns; ++j) {
+        mesh.indices.insert(mesh.indices.end(), {0u, at(1, j), at(1, j + 1)});
+        for (uint32_t i = 1; i + 1 < rings; ++i)
+            mesh.indices.insert(mesh.indices.end(), {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j),
+                                                     at(i + 1, j + 1), at(i, j + 1)});
+        mesh.indices.insert(mesh.indices.end(), {last, at(rings - 1, j + 1), at(rings - 1, j)});
+    }
+    return mesh;
+}
+
+// The same surface with its vertices in an order without sense: vertex v of the other stands at newOf[v].
+struct Shuffled {
+    Mesh mesh;
+    std::vector<uint32_t> newOf;
+    std::vector<float> inOldOrder(const std::vector<float>& values) const {
+        std::vector<float> back(newOf.size());
+        for (uint32_t v = 0; v < newOf.size(); ++v) back[v] = values[newOf[v]];
+        return back;
+    }
+};
+
+inline Shuffled shuffleVertices(const Mesh& mesh, uint32_t seed) {
+    Shuffled s{mesh, std::vector<uint32_t>(mesh.vertices())};
+    for (uint32_t i = 0; i < s.newOf.size(); ++i) s.newOf[i] = i;
+    std::shuffle(s.newOf.begin(), s.newOf.end(), std::mt19937(seed));
+    for (uint32_t v = 0; v < s.newOf.size(); ++v) {
+        std::copy_n(&mesh.positions[3 * v], 3, &s.mesh.positions[3 * s.newOf[v]]);
+        std::copy_n(&mesh.normals[3 * v], 3, &s.mesh.normals[3 * s.newOf[v]]);
+    }
+    for (uint32_t& index : s.mesh.indices) index = s.newOf[index];
+    return s;
 }
 
 }  // namespace fixture

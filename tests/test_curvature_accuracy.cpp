@@ -129,6 +129,17 @@ TEST(CurvatureAccuracy, EverySurface) {
         for (float value : principal(plane.mesh, estimator)) EXPECT_NEAR(value, 0, tolerance::planeCurvature);
 }
 
+TEST(CurvatureAccuracy, SliversAtThePolesOfASphere) {
+    // The fit's coordinates are as wide as long there; and the wide circle round a pole is no neighbourhood.
+    for (double radius : {1.0, 1e-6, 1e6}) {
+        const Mesh mesh = latLongSphere(200, 400, radius);
+        const std::vector<float> k = principal(mesh, PEL_CURVATURE_QUADRIC);
+        double worst = 0;
+        for (float value : k) worst = std::max(worst, std::abs(value * radius - 1));
+        EXPECT_LE(worst, tolerance::sliverSphere) << "radius " << radius;
+    }
+}
+
 TEST(CurvatureAccuracy, DoesNotDependOnTheUnitOfLength) {
     // Powers of two, so that positions round alike: every bit but the exponent must stay.
     const AnalyticMesh sphere = tessellate(reference::sphereSurface(1), 48, 32, Tessellation::irregular);

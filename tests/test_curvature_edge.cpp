@@ -66,19 +66,8 @@ TEST(CurvatureEdge, ScalesInverselyAndIgnoresRotation) {
 TEST(CurvatureEdge, FollowsAPermutationOfTheVertices) {
     const Mesh mesh = torus(40, 24);
     const std::vector<float> base = edgeCurvature(mesh, 2).values;
-    std::vector<uint32_t> newOf(mesh.vertices());
-    for (uint32_t i = 0; i < newOf.size(); ++i) newOf[i] = i;
-    std::shuffle(newOf.begin(), newOf.end(), std::mt19937(7));
-    Mesh shuffled = mesh;
-    for (uint32_t v = 0; v < newOf.size(); ++v)
-        for (int k = 0; k < 3; ++k) {
-            shuffled.positions[3 * newOf[v] + k] = mesh.positions[3 * v + k];
-            shuffled.normals[3 * newOf[v] + k] = mesh.normals[3 * v + k];
-        }
-    for (uint32_t& index : shuffled.indices) index = newOf[index];
-    const std::vector<float> result = edgeCurvature(shuffled, 2).values;
-    std::vector<float> back(result.size());
-    for (uint32_t v = 0; v < newOf.size(); ++v) back[v] = result[newOf[v]];
+    const Shuffled shuffled = shuffleVertices(mesh, 7);
+    const std::vector<float> back = shuffled.inOldOrder(edgeCurvature(shuffled.mesh, 2).values);
     EXPECT_LE(relativeError(back, base), tolerance::edgeCurvature);
 }
 

@@ -108,16 +108,8 @@ TEST(MeshTopologyFile, LoadedIsAsGoodAsAnalysed) {
 TEST(MeshOrder, AShuffledMeshGivesTheSameValues) {
     // Large enough that the library numbers the vertices anew for itself.
     const Mesh mesh = torus(200, 100);
-    std::vector<uint32_t> newOf(mesh.vertices());
-    for (uint32_t i = 0; i < newOf.size(); ++i) newOf[i] = i;
-    std::shuffle(newOf.begin(), newOf.end(), std::mt19937(9));
-    Mesh shuffled = mesh;
-    for (uint32_t v = 0; v < newOf.size(); ++v)
-        for (int k = 0; k < 3; ++k) {
-            shuffled.positions[3 * newOf[v] + k] = mesh.positions[3 * v + k];
-            shuffled.normals[3 * newOf[v] + k] = mesh.normals[3 * v + k];
-        }
-    for (uint32_t& index : shuffled.indices) index = newOf[index];
+    const Shuffled shuffle = shuffleVertices(mesh, 9);
+    const Mesh& shuffled = shuffle.mesh;
     for (auto estimator : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
         PelCurvatureParams params = tensorParams();
         params.estimator = estimator;
@@ -125,9 +117,7 @@ TEST(MeshOrder, AShuffledMeshGivesTheSameValues) {
         for (const PelMeshTopologyDesc& desc : {topologyDesc(shuffled), weldedDesc(shuffled)}) {
             const Result result = curvature(shuffled, desc, params);
             EXPECT_EQ(result.report.edges, 3 * mesh.vertices());
-            std::vector<float> back(base.size());
-            for (uint32_t v = 0; v < newOf.size(); ++v) back[v] = result.values[newOf[v]];
-            EXPECT_LE(relativeError(back, base), tolerance::shuffled) << estimator;
+            EXPECT_LE(relativeError(shuffle.inOldOrder(result.values), base), tolerance::shuffled) << estimator;
         }
     }
     const MeshTopology first(device(), topologyDesc(shuffled));

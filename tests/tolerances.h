@@ -69,6 +69,14 @@ inline constexpr Tolerance diffusionRange{
     "diffusionRange", 1e-4, "relative: rounding of hundreds of stages; means never leave the range"};
 inline constexpr Tolerance normalComponent{
     "normalComponent", 1e-5, "float angles and cross products; slivers of irregular meshes lose a digit"};
+inline constexpr Tolerance sliverSphere{
+    "sliverSphere", 0.01, "largest relative error of the quadric fit, triangles up to 60 times longer than wide"};
+inline constexpr Tolerance screenOracle{
+    "screenOracle", 2e-5, "relative to 1/(a step): differences of float normals and positions of neighbours"};
+inline constexpr Tolerance screenSphere{
+    "screenSphere", 2e-3, "relative: float positions at steps of 1/30 radius; normals are exact"};
+inline constexpr Tolerance screenFromDepth{
+    "screenFromDepth", 0.02, "relative: float depth leaves 1e-7 of the distance, a step is 1e-4 of it"};
 inline constexpr Tolerance shuffled{"shuffled", 2e-3,
                                     "sums in another order; the fit squares the rounding of positions"};
 inline constexpr Tolerance quantity{"quantity", 2e-6, "the same numbers combined in float and in double"};
