@@ -4,6 +4,7 @@
 #include <random>
 
 #include "io/file_error.h"
+#include "io/mip_chain.h"
 #include "io/scene_file.h"
 #include "io_files.h"
 
@@ -78,11 +79,20 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     scene.lights[1].light.type = PEL_LIGHT_SPOT;
     scene.lights[1].shadowMapFile.clear();
     scene.lights[0].shadowMapChannel = "odd \"name\" \\ here";
+    scene.blurNormals = 1;
+    scene.channels[PEL_SLOT_UV] = {"UV.U", "UV.V"};
+    scene.channels[PEL_SLOT_TANGENT] = {"T.X", "T.Y", "T.Z", "T.W"};
+    scene.materials[0].normalMap = path("normals.png");
+    scene.materials[0].material.uvScale = 12.5f;
+    scene.lights[0].light.shadowFilterTexels = 48;
+    scene.lights[0].light.shadowSoftness = 0.125f;
     scene.luts[1].file.clear();
     scene.luts[1].info.shadow.sharpening = 4.5f;
     writeScene(path("out.toml"), scene);
     const SceneFile again = readScene(path("out.toml"));
     EXPECT_EQ(again.channels, scene.channels);
+    EXPECT_EQ(again.blurNormals, 1u);
+    EXPECT_EQ(again.materials[0].normalMap, scene.materials[0].normalMap);
     const auto same = [](const auto& a, const auto& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
     EXPECT_TRUE(same(again.camera, scene.camera));
     EXPECT_TRUE(same(again.ambient, scene.ambient));
@@ -171,4 +181,23 @@ TEST_F(SceneFileTest, EveryKeyIsDocumented) {
         EXPECT_TRUE(page.find("`" + line.substr(0, equals) + "`") != std::string::npos) << line;
     }
     EXPECT_GT(keys, 50u);
+}
+
+TEST_F(SceneFileTest, NormalMapsNeedTheirChannels) {
+    const std::string error = errorOf("curvature_lut = \"skin\"", "normal_map = \"n.png\"");
+    EXPECT_NE(error.find("'uv' in [channels] is missing"), std::string::npos) << error;
+}
+
+TEST(MipChain, MeansOfWhatATexelCovers) {
+    std::vector<float> rgb;
+    for (int i = 0; i < 5 * 4; ++i) rgb.insert(rgb.end(), {float(i), 1, float(i % 2)});
+    const MipChain chain = mipChain(5, 4, rgb);
+    ASSERT_EQ(chain.levels.size(), 3u);
+    EXPECT_EQ(chain.levels[1].width, 2);
+    EXPECT_EQ(chain.levels[2].width, 1);
+    EXPECT_EQ(chain.levels[2].height, 1);
+    const auto red = [&](int level, int texel) { return chain.texels[chain.levels[level].byteOffset / 4 + 3 * texel]; };
+    EXPECT_EQ(red(1, 0), (0 + 1 + 5 + 6) / 4.0f);
+    EXPECT_EQ(red(1, 1), (2 + 3 + 4 + 7 + 8 + 9) / 6.0f) << "an odd side's last texel covers three";
+    EXPECT_EQ(chain.texels.size(), 3u * (20 + 4 + 1));
 }

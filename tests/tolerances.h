@@ -107,6 +107,15 @@ inline constexpr Tolerance shadeTerm{"shadeTerm", 5e-5,
                                      "one term alone: bilinear weights and a few dozen float operations"};
 inline constexpr Tolerance shadeSum{"shadeSum", 2e-4, "all terms added and multiplied by light and albedo"};
 
+inline constexpr Tolerance blurResponse{
+    "blurResponse", 0.02, "share of a wave that is left: 13 taps stand for an integral over the kernel"};
+inline constexpr Tolerance mappedNormal{
+    "mappedNormal", 2e-4, "float UV times map size: 1e-5 of a texel between random normals; levels by float log2"};
+inline constexpr Tolerance mappedLevel{"mappedLevel", 1e-3, "a level of detail from the slope between two levels"};
+inline constexpr Tolerance wideShadow{
+    "wideShadow", 2e-4, "the kernel's polynomial for the weights is 5e-5 off; float sums over a thousand texels"};
+inline constexpr Tolerance wideShadowEdge{
+    "wideShadowEdge", 0.01, "texels of 1/80 of the filter: where the edge falls between two of them"};
 inline constexpr Tolerance peerTerm{"peerTerm", 1e-6,
                                     "the peer's float arithmetic and float LUT coordinates"};
 inline constexpr Tolerance peerSharpened{"peerSharpened", 1e-6, "the same, steeper by the sharpening"};

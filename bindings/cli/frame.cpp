@@ -4,6 +4,7 @@
 
 #include "io/file_error.h"
 #include "io/lut_file.h"
+#include "io/mip_chain.h"
 
 namespace pellucid::cli {
 
@@ -40,7 +41,9 @@ Lut LutStore::get(const io::SceneFile& scene, const std::string& name, PelLutKin
 Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene, LutStore& luts,
              const ShadowMaps& shadowMaps, const PelShaderOptions& options)
     : shader_(device), radiance_(device, gbuffer.pixelCount() * 3 * sizeof(float)) {
-    shader_.set(options);
+    PelShaderOptions all = options;
+    all.blurNormals |= scene.blurNormals;
+    shader_.set(all);
     shader_.set(PEL_SLOT_RADIANCE,
                 imageDesc(radiance_, PEL_FORMAT_RGB32F, uint32_t(gbuffer.width), uint32_t(gbuffer.height)));
     for (size_t slot = 0; slot < scene.channels.size(); ++slot)
@@ -49,6 +52,8 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
     for (const io::SceneMaterial& m : scene.materials)
         shader_.setMaterial(m.id, m.material, luts.get(scene, m.curvatureLut, PEL_LUT_CURVATURE),
                             luts.get(scene, m.shadowLut, PEL_LUT_SHADOW));
+    for (const io::SceneMaterial& m : scene.materials)
+        if (!m.normalMap.empty()) setNormalMap(device, m.id, m.normalMap);
     std::vector<PelLight> lights;
     for (const io::SceneLight& l : scene.lights) lights.push_back(l.light);
     shader_.set(lights);
@@ -68,6 +73,27 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
     shader_.set(scene.ambient);
     shader_.set(scene.camera);
     shader_.commit();
+}
+
+void Frame::setNormalMap(const Device& device, uint32_t id, const std::string& file) {
+    const io::Image image = io::readImage(file);
+    if (image.channels.size() < 3)
+        throw io::FileError(file, "has " + std::to_string(image.channels.size()) +
+                                      " channels; a normal map needs three: x, y, z, from 0 to 1");
+    const bool named = image.has("R") && image.has("G") && image.has("B");
+    std::vector<std::string> names{"R", "G", "B"};
+    if (!named)
+        for (size_t c = 0; c < 3; ++c) names[c] = image.channels[c].name;
+    std::vector<float> normals = image.interleaved(names);
+    for (float& v : normals) v = 2 * v - 1;
+    const io::MipChain chain = io::mipChain(image.width, image.height, std::move(normals));
+    inputs_.emplace_back(device, chain.texels);
+    inputBytes_ += inputs_.back().bytes();
+    std::vector<PelImageDesc> levels;
+    for (const io::MipLevel& level : chain.levels)
+        levels.push_back(imageDesc(inputs_.back(), PEL_FORMAT_RGB32F, uint32_t(level.width), uint32_t(level.height),
+                                   level.byteOffset));
+    shader_.setNormalMap(id, levels);
 }
 
 PelImageDesc Frame::upload(const Device& device, const io::Image& image,
@@ -96,7 +122,10 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
         {PEL_FEATURE_AMBIENT, "ambient"},
         {PEL_FEATURE_DEEP_SCATTER, "deep_scatter"},
         {PEL_FEATURE_THICKNESS_TAPS, "thickness_taps"},
-        {PEL_FEATURE_SPECULAR, "specular"}};
+        {PEL_FEATURE_SPECULAR, "specular"},
+        {PEL_FEATURE_BLUR_NORMALS, "blur_normals"},
+        {PEL_FEATURE_NORMAL_MAP, "normal_map"},
+        {PEL_FEATURE_FILTER_SHADOW, "filter_shadow"}};
     nlohmann::ordered_json features = nlohmann::ordered_json::array();
     for (const auto& [bit, name] : names)
         if (s.features & bit) features.push_back(name);
@@ -112,6 +141,7 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
             {"pixels_shadow_lut", s.pixelsShadowLut},
             {"pixels_thickness", s.pixelsThickness},
             {"pixels_specular", s.pixelsSpecular},
+            {"pixels_wide_shadow", s.pixelsWideShadow},
             {"pixels_invalid", s.pixelsInvalid},
             {"shade_ms", s.deviceMilliseconds}};
 }

@@ -38,6 +38,7 @@ class Frame {
     uint64_t inputBytes() const { return inputBytes_; }
 
   private:
+    void setNormalMap(const Device& device, uint32_t id, const std::string& file);
     PelImageDesc upload(const Device& device, const io::Image& image,
                         const std::vector<std::string>& channels);
 

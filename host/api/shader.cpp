@@ -45,6 +45,10 @@ PelError pelShaderSetMaterial(PelShader shader, uint32_t id, const PelMaterial* 
     });
 }
 
+PelError pelShaderSetNormalMap(PelShader shader, uint32_t id, const PelImageDesc* levels, uint32_t count) {
+    return entry([&] { fromHandle<Shader>(shader).setNormalMap(id, levels, count); });
+}
+
 PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t count) {
     return entry([&] { fromHandle<Shader>(shader).setLights(lights, count); });
 }

@@ -67,6 +67,10 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
                                 "; 0, 8 or 32 would be right",
                             m.line);
         }
+        if (!m.normalMap.empty())
+            for (const auto& [slot, key] : {std::pair{PEL_SLOT_UV, "uv"}, {PEL_SLOT_TANGENT, "tangent"}})
+                if (scene.channels[slot].empty())
+                    channels.fail(key, "is missing; the normal map of material " + std::to_string(m.id) + " needs it");
         for (PelLutKind kind : {PEL_LUT_CURVATURE, PEL_LUT_SHADOW}) {
             const std::string& name = kind == PEL_LUT_CURVATURE ? m.curvatureLut : m.shadowLut;
             if (name.empty() || scene.lut(name, kind)) continue;
@@ -101,6 +105,7 @@ SceneFile readScene(const std::string& path) {
     uint32_t version = 0;
     reader.integer("version", version, sceneVersion, sceneVersion);
     if (version == 0) reader.fail("version", "is missing; this program writes and reads version 1");
+    reader.integer("blur_normals", scene.blurNormals, 0, 1);
     reader.table("camera", true, [&](TomlReader& r) { cameraKeys(r, scene.camera); });
     reader.table("ambient", true, [&](TomlReader& r) { ambientKeys(r, scene.ambient); });
     reader.tables("curvature_lut", [&](TomlReader& r) { readLut(r, scene, PEL_LUT_CURVATURE); });
@@ -124,6 +129,9 @@ SceneFile readScene(const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     for (SceneLut& l : scene.luts) {
         if (!l.file.empty()) l.file = (folder / l.file).string();
+    }
+    for (SceneMaterial& m : scene.materials) {
+        if (!m.normalMap.empty()) m.normalMap = (folder / m.normalMap).string();
     }
     for (SceneLight& l : scene.lights) {
         if (!l.shadowMapFile.empty()) l.shadowMapFile = (folder / l.shadowMapFile).string();

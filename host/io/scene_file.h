@@ -24,6 +24,7 @@ struct SceneMaterial {
     PelMaterial material = pelMaterialDefaults();
     std::string curvatureLut;  // name of a SceneLut; "": no direct scattering
     std::string shadowLut;     // likewise; "": plain shadow
+    std::string normalMap;     // image of tangent-space normals, x, y, z from 0 to 1 as in 8-bit files; "": none
     int line = 0;
 };
 
@@ -39,6 +40,7 @@ struct SceneFile {
     std::string source;  // the file, for messages
     std::array<std::vector<std::string>, PEL_SLOT_COUNT>
         channels;  // of the G-buffer per image slot; empty: slot not set
+    uint32_t blurNormals = 0;  // PelShaderOptions.blurNormals
     PelCamera camera = pelCameraDefaults();
     PelAmbient ambient = pelAmbientDefaults();
     std::vector<SceneLight> lights;

@@ -35,6 +35,9 @@ constexpr SlotKey slotKeys[] = {
     {PEL_SLOT_THICKNESS, "thickness", 1},
     {PEL_SLOT_ROUGHNESS, "roughness", 1},
     {PEL_SLOT_SPECULAR, "specular", 1},
+    {PEL_SLOT_UV, "uv", 2},
+    {PEL_SLOT_UV_GRADIENT, "uv_gradient", 4},
+    {PEL_SLOT_TANGENT, "tangent", 4},
 };
 
 template <class Visitor, class Scene>
@@ -63,6 +66,10 @@ void shadowMapKeys(Visitor& v, Light& l) {
     v.number("depth_range", l.light.shadowDepthRange, Range::Any);
     v.number("depth_a", l.light.shadowDepthA, Range::Any);
     v.number("depth_b", l.light.shadowDepthB, Range::Any);
+    v.integer("filter_texels", l.light.shadowFilterTexels, 0, 256);
+    v.number("bias", l.light.shadowBias, Range::NotNegative);
+    v.number("softness", l.light.shadowSoftness, Range::Positive);
+    v.number("cone_slope", l.light.shadowConeSlope, Range::NotNegative);
 }
 
 template <class Visitor, class Light>
@@ -96,6 +103,8 @@ void materialKeys(Visitor& v, Material& m) {
     v.number("specular", m.material.specular, Range::NotNegative);
     v.number("roughness", m.material.roughness, Range::Positive);
     v.number("f0", m.material.f0, Range::ZeroToOne);
+    v.text("normal_map", m.normalMap);
+    v.number("uv_scale", m.material.uvScale, Range::Positive);
 }
 
 template <class Visitor, class Lut>

@@ -80,6 +80,7 @@ class TomlWriter {
 void writeScene(const std::string& path, const SceneFile& scene) {
     std::string out =
         "# A scene of `pellucid shade`. Lengths are in the unit of the G-buffer's positions.\nversion = 1\n";
+    if (scene.blurNormals) TomlWriter(out).integer("blur_normals", scene.blurNormals, 0, 1);
     const auto table = [&](const std::string& header, const std::string& name, auto&& function) {
         out += "\n" + header + "\n";
         TomlWriter writer(out, name);

@@ -1,5 +1,8 @@
 // Commit and execution of a PelShader: programs, scratch memory, launches, stats.
 #include "ops/shader.h"
+
+#include <algorithm>
+
 #include "shared/features.h"
 
 namespace pel {
@@ -10,6 +13,8 @@ static_assert(PEL_BIT_DIRECT_SCATTER == PEL_FEATURE_DIRECT_SCATTER && PEL_BIT_SH
               PEL_BIT_DEEP_SCATTER == PEL_FEATURE_DEEP_SCATTER &&
               PEL_BIT_THICKNESS_TAPS == PEL_FEATURE_THICKNESS_TAPS &&
               PEL_BIT_SPECULAR == PEL_FEATURE_SPECULAR);
+// What the passes before it do does not make another variant of the shading kernel.
+constexpr uint32_t shadeFeatures = PEL_FEATURE_SPECULAR * 2 - 1;
 static_assert(PEL_FMT_R32F == PEL_FORMAT_R32F && PEL_FMT_RGBA16F == PEL_FORMAT_RGBA16F &&
               PEL_FMT_R8_UNORM == PEL_FORMAT_R8_UNORM && PEL_FMT_RGBA8_SRGB == PEL_FORMAT_RGBA8_SRGB &&
               PEL_FMT_OCT16X2_SNORM == PEL_FORMAT_OCT16X2_SNORM && PEL_FMT_R8_UINT == PEL_FORMAT_R8_UINT &&
@@ -23,21 +28,10 @@ constexpr const char* formatDefines[PEL_SLOT_COUNT] = {
     "PEL_FORMAT_NORMAL_BLURRED",   "PEL_FORMAT_CURVATURE",
     "PEL_FORMAT_ALBEDO",           "PEL_FORMAT_AMBIENT_OCCLUSION",
     "PEL_FORMAT_THICKNESS",        "PEL_FORMAT_ROUGHNESS",
-    "PEL_FORMAT_SPECULAR"};
+    "PEL_FORMAT_SPECULAR",         "PEL_FORMAT_UV",
+    "PEL_FORMAT_UV_GRADIENT",      "PEL_FORMAT_TANGENT"};
 
 constexpr uint32_t classifyGroup = 16;
-
-// CPUs run one vector of pixels after another in each work-item; GPUs want a full work-group in a tile.
-uint32_t shadeGroup(const Device& device) {
-    return device.info().mathWidth > 1 ? 1 : 64;
-}
-
-// Images whose pixels are read one by one get another variant than tight ones.
-uint32_t formatCode(const ImageView& view, uint32_t mathWidth) {
-    if (!view) return 0;
-    const bool vectors = view.tightlyPacked() && view.width >= mathWidth;
-    return uint32_t(view.format) | (vectors ? 0 : PEL_FMT_STRIDED);
-}
 
 // Slots that no feature reads are left out: fewer variants, and no input that cannot matter.
 bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
@@ -64,6 +58,7 @@ bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
 }
 
 cl::Defines variant(const ShaderState& state, uint32_t features, const Device& device) {
+    features &= shadeFeatures;
     if (state.options.accumulate) features |= PEL_BIT_ACCUMULATE;
     if (state.options.disableSkipping) features |= PEL_BIT_NO_SKIPPING;
     if (state.options.countPixels) features |= PEL_BIT_COUNT;
@@ -79,7 +74,7 @@ cl::Defines variant(const ShaderState& state, uint32_t features, const Device& d
         {"PEL_CLASSIFY_GROUP", std::to_string(classifyGroup)},
         {"PEL_FORMAT_WIDE_SHADOW", std::to_string(wide)},
         {"PEL_FORMAT_SHADOW_MAP", std::to_string(features & PEL_BIT_THICKNESS_TAPS ? map : 0)}};
-    for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) {
+    for (int slot = 0; slot < PEL_SHADE_SLOTS; ++slot) {
         const uint32_t code =
             slotIsRead(state, slot, features) ? formatCode(state.images[slot], device.info().mathWidth) : 0;
         defines[formatDefines[slot]] = std::to_string(code);
@@ -89,10 +84,28 @@ cl::Defines variant(const ShaderState& state, uint32_t features, const Device& d
 
 }  // namespace
 
+uint32_t shadeGroup(const Device& device) {
+    return device.info().mathWidth > 1 ? 1 : 64;
+}
+
+uint32_t formatCode(const ImageView& view, uint32_t mathWidth) {
+    if (!view) return 0;
+    const bool vectors = view.tightlyPacked() && view.width >= mathWidth;
+    return uint32_t(view.format) | (vectors ? 0 : PEL_FMT_STRIDED);
+}
+
+cl::Range tileRange(const Device& device, uint32_t tiles) {
+    const size_t group = shadeGroup(device);
+    const size_t groups = std::min<size_t>(tiles, 64 * size_t(device.info().computeUnits));
+    return {{groups * group, 1, 1}, {group, 1, 1}};
+}
+
 void Shader::commit() {
     const uint32_t features = deriveFeatures(state_);
     Device& device = *device_;
-    const cl::Defines defines = variant(state_, features, device);
+    ShadePasses passes = passes_;
+    ShaderState plan = passes.plan(device_, state_, features);
+    const cl::Defines defines = variant(plan, features, device);
     const uint32_t before = device.programs().built();
     cl::Program shade = device.programs().get("shade.cl", defines), classify;
     if (state_.images[PEL_SLOT_MATERIAL])
@@ -101,8 +114,9 @@ void Shader::commit() {
             {{"PEL_FORMAT_MATERIAL", defines.at("PEL_FORMAT_MATERIAL")},
              {"PEL_FEATURES", state_.options.disableSkipping ? text(PEL_BIT_NO_SKIPPING) : "0"},
              {"PEL_CLASSIFY_GROUP", text(classifyGroup)}});
+    passes.build(device, plan, features);
     programsBuilt_ += device.programs().built() - before;
-    bytesUploaded_ += tables_.update(device, state_);
+    bytesUploaded_ += tables_.update(device, plan) + passes.upload(device, plan);
     const size_t listBytes = classify ? (1 + size_t(tables_.frame().tiles)) * sizeof(cl_uint) : 0;
     if (listBytes != tileListBytes_) {
         tileListBytes_ = 0;
@@ -110,6 +124,8 @@ void Shader::commit() {
         tileListBytes_ = listBytes;
     }
     if (!counters_ && state_.options.countPixels) counters_ = device.allocate(PEL_COUNTERS * sizeof(cl_uint));
+    plan_ = std::move(plan);
+    passes_ = std::move(passes);
     shadeProgram_ = shade;
     classifyProgram_ = classify;
     features_ = features;
@@ -121,7 +137,6 @@ void Shader::execute() {
         fail(PEL_ERROR_INVALID_STATE,
              "something was set after the last pelShaderCommit, or nothing was committed yet");
     events_.clear();
-    launches_ = 0;
     const cl_uint zero = 0;
     const auto clear = [&](const cl::Memory& memory, size_t bytes) {
         cl::check(clEnqueueFillBuffer(device_->queue(), memory.get(), &zero, sizeof zero, 0, bytes, 0,
@@ -133,7 +148,9 @@ void Shader::execute() {
         enqueueTiles();
     }
     if (state_.options.countPixels) clear(counters_, PEL_COUNTERS * sizeof zero);
+    passes_.enqueue(*device_, plan_, tables_, tileList_, counters_, events_);
     enqueueShade();
+    launches_ = events_.size();
     uploadedBefore_ = std::exchange(bytesUploaded_, 0);
     executed_ = true;
 }
@@ -142,23 +159,21 @@ void Shader::enqueueTiles() {
     cl::Launch launch(classifyProgram_, "classify_tiles");
     launch.arg(tables_.frameMemory()).arg(state_.images[PEL_SLOT_MATERIAL].buffer->memory()).arg(tileList_);
     events_.push_back(device_->launch(launch, {{tables_.frame().tiles, 1, 1}, {classifyGroup, 1, 1}}));
-    ++launches_;
 }
 
 void Shader::enqueueShade() {
     cl::Launch launch(shadeProgram_, "shade");
     launch.arg(tables_.frameMemory()).arg(tables_.materials()).arg(tables_.lights()).arg(tables_.luts());
     launch.arg(tileList_).arg(counters_);
-    for (const ImageView& view : state_.images) launch.arg(view ? view.buffer->memory() : cl::Memory());
+    for (int slot = 0; slot < PEL_SHADE_SLOTS; ++slot) {
+        const ImageView& view = plan_.images[slot];
+        launch.arg(view ? view.buffer->memory() : cl::Memory());
+    }
     const auto& lightBuffers = tables_.lightBuffers();
     for (size_t i = 0; i < PEL_LIGHT_BUFFERS; ++i)
         launch.arg(i < lightBuffers.size() ? lightBuffers[i] : cl::Memory());
-    // Enough groups to keep every unit busy to the end; each takes tiles in turn, so that no host waits for
-    // their count.
-    const size_t group = shadeGroup(*device_);
-    const size_t groups = std::min<size_t>(tables_.frame().tiles, 64 * size_t(device_->info().computeUnits));
-    events_.push_back(device_->launch(launch, {{groups * group, 1, 1}, {group, 1, 1}}));
-    ++launches_;
+    // Groups take tiles in turn, so that no host waits for their count.
+    events_.push_back(device_->launch(launch, tileRange(*device_, tables_.frame().tiles)));
 }
 
 PelShaderStats Shader::stats() {
@@ -167,7 +182,7 @@ PelShaderStats Shader::stats() {
     stats.features = features_;
     stats.programsBuilt = programsBuilt_;
     stats.scratchBytes =
-        tables_.scratchBytes() + tileListBytes_ + (counters_ ? PEL_COUNTERS * sizeof(cl_uint) : 0);
+        tables_.scratchBytes() + passes_.scratchBytes() + tileListBytes_ + (counters_ ? PEL_COUNTERS * sizeof(cl_uint) : 0);
     if (!executed_) return stats;
     stats.launches = launches_;
     stats.bytesUploaded = uploadedBefore_;
@@ -186,6 +201,7 @@ PelShaderStats Shader::stats() {
         stats.pixelsThickness = counts[PEL_COUNT_THICKNESS];
         stats.pixelsSpecular = counts[PEL_COUNT_SPECULAR];
         stats.pixelsInvalid = counts[PEL_COUNT_INVALID];
+        stats.pixelsWideShadow = counts[PEL_COUNT_WIDE_SHADOW];
     }
     for (const cl::Event& event : events_) stats.deviceMilliseconds += eventMilliseconds(event);
     return stats;

@@ -153,6 +153,9 @@ std::vector<PelShadeMaterial> ShadeTables::describeMaterials(const ShaderState& 
         to.specular = m.specular;
         to.roughness = m.roughness;
         to.f0 = m.f0;
+        to.diffusionRadius = m.diffusionRadius;
+        to.shadowFilterWidth = m.shadowFilterWidth;
+        to.hasNormalMap = !from.normalMap.empty();
     }
     return table;
 }

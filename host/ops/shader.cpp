@@ -43,7 +43,29 @@ void Shader::setMaterial(uint32_t id, const PelMaterial* material, Lut* curvatur
     };
     check(curvatureLut, PEL_LUT_CURVATURE, "curvature");
     check(shadowLut, PEL_LUT_SHADOW, "shadow");
-    state_.materials[id] = {*material, Ref(curvatureLut), Ref(shadowLut)};
+    ShaderMaterial& set = state_.materials[id];  // which may have a normal map already
+    set.params = *material;
+    set.curvatureLut = Ref(curvatureLut);
+    set.shadowLut = Ref(shadowLut);
+    committed_ = false;
+}
+
+void Shader::setNormalMap(uint32_t id, const PelImageDesc* levels, uint32_t count) {
+    const auto found = state_.materials.find(id);
+    if (found == state_.materials.end())
+        invalidArgument("material ", id, " is not set: pelShaderSetMaterial comes before its normal map");
+    if (count > PEL_MAP_LEVELS) invalidArgument("a normal map of ", count, " levels; ", PEL_MAP_LEVELS, " are the most");
+    if (count > 0 && !levels) invalidArgument("levels is NULL but their count is ", count);
+    std::vector<ImageView> views;
+    const char* next = reinterpret_cast<const char*>(levels);
+    for (uint32_t i = 0; i < count; ++i) {
+        const auto* level = reinterpret_cast<const PelImageDesc*>(next);
+        views.push_back(makeImageView(readStruct(level, pelImageDescDefaults(), "PelImageDesc"), *device_,
+                                      text("normal map ", i).c_str()));
+        next += level->structSize;
+    }
+    checkNormalMap(views);
+    found->second.normalMap = std::move(views);
     committed_ = false;
 }
 

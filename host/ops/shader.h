@@ -6,6 +6,7 @@
 
 #include "core/image_view.h"
 #include "core/lut.h"
+#include "ops/shade_passes.h"
 #include "ops/shade_tables.h"
 
 namespace pel {
@@ -13,6 +14,7 @@ namespace pel {
 struct ShaderMaterial {
     PelMaterial params;
     Ref<Lut> curvatureLut, shadowLut;
+    std::vector<ImageView> normalMap;  // its levels, the finest first
 };
 
 struct ShaderLight {
@@ -29,8 +31,21 @@ struct ShaderState {
     PelCamera camera = pelCameraDefaults();
 };
 
+// What a variant of a kernel knows of an image's layout: images whose pixels are read one by one get another one than tight
+// ones of at least mathWidth pixels a row.
+uint32_t formatCode(const ImageView& view, uint32_t mathWidth);
+// CPUs run one vector of pixels after another in each work-item; GPUs want a full work-group in a tile.
+uint32_t shadeGroup(const Device& device);
+// Work-items that keep every unit busy to the end; each group takes a run of the frame's tiles.
+cl::Range tileRange(const Device& device, uint32_t tiles);
+
 const char* slotName(PelImageSlot slot);
 const char* lightSlotName(PelLightSlot slot);
+
+// Whether a light's wide shadow is made from its shadow map.
+inline bool filtersShadow(const ShaderLight& light) {
+    return !light.images[PEL_LIGHT_WIDE_SHADOW] && light.images[PEL_LIGHT_SHADOW_MAP] && light.params.shadowFilterTexels > 0;
+}
 
 // PelFeature bits of what is bound and non-zero. Throws when something needed is missing or does not fit.
 uint32_t deriveFeatures(const ShaderState& state);
@@ -43,6 +58,7 @@ class Shader final : public Object {
     void setOptions(const PelShaderOptions& options);
     void setImage(PelImageSlot slot, const PelImageDesc* image);
     void setMaterial(uint32_t id, const PelMaterial* material, Lut* curvatureLut, Lut* shadowLut);
+    void setNormalMap(uint32_t id, const PelImageDesc* levels, uint32_t count);
     void setLights(const PelLight* lights, uint32_t count);
     void setLightImage(uint32_t light, PelLightSlot slot, const PelImageDesc* image);
     void setAmbient(const PelAmbient& ambient);
@@ -58,7 +74,9 @@ class Shader final : public Object {
     void enqueueShade();
 
     Ref<Device> device_;
-    ShaderState state_;
+    ShaderState state_;  // as the caller set it
+    ShaderState plan_;   // as of the last commit, with the images that the passes make in their slots
+    ShadePasses passes_;
     ShadeTables tables_;
     bool committed_ = false;
     uint32_t features_ = 0;

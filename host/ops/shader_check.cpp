@@ -10,9 +10,10 @@ namespace {
 constexpr const char* slotNames[PEL_SLOT_COUNT] = {
     "radiance",       "material",       "position",  "depth",  "geometric normal",
     "shading normal", "blurred normal", "curvature", "albedo", "ambient occlusion",
-    "thickness",      "roughness",      "specular"};
+    "thickness",      "roughness",      "specular",  "UV",     "UV gradient",
+    "tangent"};
 
-enum class Content { scalar, id, color, normal, output };
+enum class Content { scalar, id, color, normal, output, uv, gradient };
 
 Content content(PelImageSlot slot) {
     switch (slot) {
@@ -26,7 +27,12 @@ Content content(PelImageSlot slot) {
         case PEL_SLOT_NORMAL_GEOMETRIC:
         case PEL_SLOT_NORMAL_SHADING:
         case PEL_SLOT_NORMAL_BLURRED:
+        case PEL_SLOT_TANGENT:
             return Content::normal;
+        case PEL_SLOT_UV:
+            return Content::uv;
+        case PEL_SLOT_UV_GRADIENT:
+            return Content::gradient;
         default:
             return Content::scalar;
     }
@@ -57,6 +63,12 @@ void checkContent(const ImageView& view, Content content, const char* what) {
         case Content::normal:
             if (isUint(f) || f == PEL_FORMAT_RGBA8_SRGB || (components < 3 && f != PEL_FORMAT_OCT16X2_SNORM))
                 right = "three components, float or unorm, or OCT16X2_SNORM";
+            break;
+        case Content::uv:
+            if (!isFloat(f) || components < 2) right = "two components, float or half";
+            break;
+        case Content::gradient:
+            if (!isFloat(f) || components < 4) right = "four components, float or half";
             break;
         case Content::output:
             if (!((isFloat(f) && components >= 3) || f == PEL_FORMAT_PLANAR_RGB32F))
@@ -113,6 +125,25 @@ void checkLightImage(PelLightSlot slot, const ImageView& view) {
              " bytes; 4 GiB is the most");
 }
 
+void checkNormalMap(const std::vector<ImageView>& levels) {
+    for (size_t i = 0; i < levels.size(); ++i) {
+        const ImageView &level = levels[i], &first = levels[0];
+        const std::string name = text("normal map ", i);
+        if (level.format == PEL_FORMAT_OCT16X2_SNORM || level.format == PEL_FORMAT_RGBA8_SRGB)
+            invalidArgument("the ", name, " image has format ", level.info().name,
+                            "; it needs three components, float or unorm, that may be averaged");
+        checkContent(level, Content::color, name.c_str());
+        if (level.format != first.format || level.tightlyPacked() != first.tightlyPacked() ||
+            level.buffer->memory().get() != first.buffer->memory().get())
+            invalidArgument("the ", name, " image has another format, pixel stride or buffer than level 0; all levels need the "
+                            "same, each at its own byteOffset");
+        const uint32_t width = std::max(first.width >> i, 1u), height = std::max(first.height >> i, 1u);
+        if (level.width != width || level.height != height)
+            invalidArgument("the ", name, " image is ", level.width, " x ", level.height, "; below ", first.width, " x ",
+                            first.height, " it must be ", width, " x ", height);
+    }
+}
+
 void checkMaterial(const PelMaterial& m) {
     const char* name = "PelMaterial";
     finite(name, "albedo", m.albedo, 3);
@@ -125,7 +156,8 @@ void checkMaterial(const PelMaterial& m) {
                   {"thicknessFilterRadius", m.thicknessFilterRadius, 0, 1},
                   {"specular", m.specular, 0, huge},
                   {"roughness", m.roughness, 0, huge},
-                  {"f0", m.f0, 0, 1}});
+                  {"f0", m.f0, 0, 1},
+                  {"uvScale", m.uvScale, tiny, huge}});
     if (m.thicknessTaps != 0 && m.thicknessTaps != 8 && m.thicknessTaps != 16 && m.thicknessTaps != 32)
         invalidArgument("PelMaterial.thicknessTaps is ", m.thicknessTaps, "; it must be 0, 8, 16 or 32");
 }
@@ -134,6 +166,11 @@ void checkLight(const PelLight& l, uint32_t index) {
     const std::string name = text("PelLight ", index);
     finite(name.c_str(), "color", l.color, 3);
     for (float c : l.color) within(name.c_str(), {{"color", c, 0, huge}});
+    if (l.shadowFilterTexels != 0 && (l.shadowFilterTexels < 4 || l.shadowFilterTexels > 256))
+        invalidArgument(name, ".shadowFilterTexels is ", l.shadowFilterTexels, "; it must be 0, or between 4 and 256");
+    within(name.c_str(), {{"shadowBias", l.shadowBias, 0, huge},
+                          {"shadowSoftness", l.shadowSoftness, 1e-3f, huge},
+                          {"shadowConeSlope", l.shadowConeSlope, 0, huge}});
     if (l.type > PEL_LIGHT_SPOT)
         invalidArgument(name, ".type is ", int(l.type), ", which is none of PelLightType");
     if (l.type == PEL_LIGHT_DIRECTIONAL) {

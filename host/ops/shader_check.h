@@ -6,6 +6,7 @@ namespace pel {
 
 void checkImage(PelImageSlot slot, const ImageView& view);
 void checkLightImage(PelLightSlot slot, const ImageView& view);
+void checkNormalMap(const std::vector<ImageView>& levels);
 void checkMaterial(const PelMaterial& material);
 void checkLight(const PelLight& light, uint32_t index);
 void checkLightMap(const PelLight& light, uint32_t index);  // the fields that a shadow map needs

@@ -48,10 +48,27 @@ void checkLightFormats(const ShaderState& state, PelLightSlot slot) {
     for (const ShaderLight& light : state.lights) {
         const ImageView& view = light.images[slot];
         if (!view) continue;
+        if (slot == PEL_LIGHT_WIDE_SHADOW && view.format != PEL_FORMAT_R32F &&
+            std::any_of(state.lights.begin(), state.lights.end(), filtersShadow))
+            fail(PEL_ERROR_UNSUPPORTED, "a wide shadow image has format ", view.info().name,
+                 "; beside a light whose wide shadow is made from its shadow map it needs R32F");
         if (!first) first = &view;
         if (view.format != first->format)
             fail(PEL_ERROR_UNSUPPORTED, "one ", lightSlotName(slot), " image has format ", first->info().name,
                  ", another ", view.info().name, "; those of all lights need the same");
+    }
+}
+
+// One program reads the normal maps of all materials.
+void checkMapFormats(const ShaderState& state) {
+    const ImageView* first = nullptr;
+    for (const auto& [id, material] : state.materials) {
+        if (material.normalMap.empty()) continue;
+        const ImageView& view = material.normalMap[0];
+        if (!first) first = &view;
+        if (formatCode(view, 1) != formatCode(*first, 1))
+            fail(PEL_ERROR_UNSUPPORTED, "the normal map of material ", id, " has format ", view.info().name,
+                 ", another ", first->info().name, ", or another packing; those of all materials need the same");
     }
 }
 
@@ -69,10 +86,11 @@ uint32_t deriveFeatures(const ShaderState& state) {
     checkLightFormats(state, PEL_LIGHT_WIDE_SHADOW);
     checkLightFormats(state, PEL_LIGHT_SHADOW_MAP);
 
-    bool wide = false, map = false, positional = false;
+    bool wide = false, filtered = false, map = false, positional = false;
     for (size_t i = 0; i < state.lights.size(); ++i) {
         const ShaderLight& light = state.lights[i];
-        wide |= bool(light.images[PEL_LIGHT_WIDE_SHADOW]);
+        filtered |= filtersShadow(light);
+        wide |= light.images[PEL_LIGHT_WIDE_SHADOW] || filtersShadow(light);
         positional |= light.params.type != PEL_LIGHT_DIRECTIONAL;
         if (light.images[PEL_LIGHT_SHADOW_MAP]) {
             map = true;
@@ -81,6 +99,7 @@ uint32_t deriveFeatures(const ShaderState& state) {
     }
     uint32_t features = 0;
     if (wide) features |= PEL_FEATURE_SHADOW;
+    if (filtered) features |= PEL_FEATURE_FILTER_SHADOW;
     if (!ambientIsBlack(state.ambient)) features |= PEL_FEATURE_AMBIENT;
     if (!state.lights.empty())
         for (const auto& [id, material] : state.materials) {
@@ -94,10 +113,26 @@ uint32_t deriveFeatures(const ShaderState& state) {
             }
             if (material.params.specular > 0) features |= PEL_FEATURE_SPECULAR;
         }
+    // Blurred normals matter to scattered and ambient light; a host's image goes before ours, a map before the blur.
+    const bool read = !state.lights.empty() || features & PEL_FEATURE_AMBIENT;
+    if (read && !images[PEL_SLOT_NORMAL_BLURRED])
+        for (const auto& [id, material] : state.materials) {
+            if (!material.normalMap.empty())
+                features |= PEL_FEATURE_NORMAL_MAP;
+            else if (state.options.blurNormals)
+                features |= PEL_FEATURE_BLUR_NORMALS;
+        }
+    if (features & PEL_FEATURE_NORMAL_MAP) {
+        need(bool(images[PEL_SLOT_UV]), "UV image", "by normal maps");
+        need(bool(images[PEL_SLOT_TANGENT]), "tangent image", "by normal maps");
+        checkMapFormats(state);
+    }
     const bool position = images[PEL_SLOT_POSITION] || images[PEL_SLOT_DEPTH];
     constexpr const char* what = "position image (or the depth image)";
     if (features & PEL_FEATURE_THICKNESS_TAPS) need(position, what, "to measure thickness in the shadow map");
     if (features & PEL_FEATURE_SPECULAR) need(position, what, "by the specular term");
+    if (features & PEL_FEATURE_BLUR_NORMALS) need(position, what, "to blur normals over a length");
+    if (filtered) need(position, what, "to filter a wide shadow from a shadow map");
     if (positional) need(position, what, "by point and spot lights");
     return features;
 }

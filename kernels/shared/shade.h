@@ -10,7 +10,16 @@
 #define PEL_TILE_PIXELS (PEL_TILE_WIDTH * PEL_TILE_HEIGHT)
 #define PEL_LIGHT_BUFFERS 16 // distinct buffers among all images of all lights
 #define PEL_MATERIALS 256    // ids 0 (background) to 255
-#define PEL_IMAGE_SLOTS 13   // PelImageSlot
+#define PEL_IMAGE_SLOTS 16   // PelImageSlot
+#define PEL_SHADE_SLOTS 13   // those of them that shade.cl reads itself; the others belong to the passes before it
+// Numbers of PelImageSlot that those passes use.
+#define PEL_SLOT_NUMBER_MATERIAL 1
+#define PEL_SLOT_NUMBER_POSITION 2
+#define PEL_SLOT_NUMBER_DEPTH 3
+#define PEL_SLOT_NUMBER_NORMAL_SHADING 5
+#define PEL_SLOT_NUMBER_UV 13
+#define PEL_SLOT_NUMBER_UV_GRADIENT 14
+#define PEL_SLOT_NUMBER_TANGENT 15
 // Transmittance below 2^-16 counts as none: it lets taps stop early and is a third of the accuracy promised.
 #define PEL_LEAST_TRANSMITTANCE_LOG2 16
 
@@ -63,6 +72,9 @@ typedef struct PelShadeMaterial {
     float specular;
     float roughness;
     float f0;
+    float diffusionRadius;   // length
+    float shadowFilterWidth; // length
+    PelUint32 hasNormalMap;
 } PelShadeMaterial;
 
 typedef struct PelShadeLight {
@@ -91,12 +103,13 @@ typedef struct PelShadeLight {
 #define PEL_COUNT_THICKNESS 2
 #define PEL_COUNT_SPECULAR 3
 #define PEL_COUNT_INVALID 4
-#define PEL_COUNTERS 5
+#define PEL_COUNT_WIDE_SHADOW 5
+#define PEL_COUNTERS 6
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelShadeImage) == 32 && sizeof(PelShadeLut) == 40);
 static_assert(sizeof(PelShadeFrame) == 4 * (5 + 8 + 3 + 16 + 27 + 3) + PEL_IMAGE_SLOTS * 32);
-static_assert(sizeof(PelShadeMaterial) == 4 * 19 + 2 * sizeof(PelShadeLut));
+static_assert(sizeof(PelShadeMaterial) == 4 * 22 + 2 * sizeof(PelShadeLut));
 static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64);
 #endif
 #endif

@@ -26,6 +26,11 @@ void bindShader(py::module_& module) {
                                             shadow ? shadow->get() : nullptr);
             });
         })
+        .def("set_normal_map", [](const Shader& s, uint32_t id, const std::vector<ImageView>& levels) {
+            std::vector<PelImageDesc> all;
+            for (const ImageView& level : levels) all.push_back(imageDesc(level));
+            call([&] { return pelShaderSetNormalMap(s.get(), id, all.data(), uint32_t(all.size())); });
+        })
         .def("set_lights", [](const Shader& s, const std::vector<py::object>& lights) {
             std::vector<PelLight> all;
             for (const py::object& light : lights) all.push_back(*structOf<PelLight>(light));

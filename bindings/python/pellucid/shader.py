@@ -4,11 +4,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any, Optional
 
+import numpy as np
+from numpy.typing import NDArray
+
 from . import _flight, _native
 from ._arrays import Image, submit
 from ._struct import to_enum
-from ._types import Ambient, Camera, ImageSlot, Light, LightSlot, Material, ShaderOptions, ShaderStats
-from .device import Device, Event, _filled, _handles
+from ._types import Ambient, Camera, Format, ImageSlot, Light, LightSlot, Material, ShaderOptions, ShaderStats
+from .device import Buffer, Device, Event, _filled, _handles
 from .lut import Lut
 
 
@@ -63,6 +66,37 @@ class Shader:
         self._handle.set_material(id, None if material is None else material._data,
                                   None if curvature_lut is None else curvature_lut._handle,
                                   None if shadow_lut is None else shadow_lut._handle)
+        return self
+
+    def set_normal_map(self, id: int, levels: Optional[NDArray[Any] | Sequence[NDArray[Any]]]) -> Shader:
+        """Sets the tangent-space normal map of material `id`, from which its blurred normals are read.
+
+        Parameters
+        ----------
+        id : int
+            A material that was set. The slots "uv" and "tangent" are needed too, "uv_gradient" if there is one.
+        levels : array, list of arrays or None
+            (height, width, 3) of float32 from -1 to 1, or (height, width, 4) of uint8. One array: the smaller levels are
+            made here, by means over 2 x 2 texels. A list: all levels, each half the size of the one before. The texels are
+            copied. None removes the map.
+        """
+        chain = [] if levels is None else _mip_chain(levels) if isinstance(levels, np.ndarray) else list(levels)
+        if any(a.ndim != 3 or (a.dtype.name, a.shape[2]) != (chain[0].dtype.name, chain[0].shape[2]) for a in chain):
+            raise ValueError("a normal map needs arrays of shape (height, width, 3 or 4), all of one type; it has "
+                             + ", ".join(f"{a.shape} of {a.dtype}" for a in chain))
+        if not chain:
+            self._handle.set_normal_map(id, [])
+            return self
+        key = (chain[0].dtype.name, chain[0].shape[2])
+        if key not in (("float32", 3), ("uint8", 4)):
+            raise ValueError(f"the normal map has {key[1]} components of {key[0]}; 3 of float32 or 4 of uint8 are needed")
+        buffer = Buffer(self.device, np.concatenate([np.ascontiguousarray(a).reshape(-1) for a in chain]))
+        images, offset = [], 0
+        for a in chain:
+            images.append(Image(self.device, buffer, Format.RGB32F if key[1] == 3 else Format.RGBA8_UNORM,
+                                width=a.shape[1], height=a.shape[0], byte_offset=offset))
+            offset += a.nbytes
+        self._handle.set_normal_map(id, [image._view.native for image in images])
         return self
 
     def set_lights(self, lights: Sequence[Light]) -> Shader:
@@ -122,3 +156,18 @@ class Shader:
         """What the last execution did."""
         self.device.finish()
         return _filled(ShaderStats, self._handle.stats())
+
+
+def _mip_chain(image: NDArray[Any]) -> list[NDArray[Any]]:
+    """An image and its halves down to one texel, each a mean over 2 x 2 (the last of an odd side over 3)."""
+    chain = [image]
+    while max(chain[-1].shape[:2]) > 1:
+        level = chain[-1].astype(np.float64)
+        for axis in (0, 1):
+            size = level.shape[axis]
+            if size > 1:
+                starts = np.arange(0, size - 1, 2)
+                counts = np.diff(np.append(starts, size)).reshape([-1 if a == axis else 1 for a in range(3)])
+                level = np.add.reduceat(level, starts, axis) / counts
+        chain.append(np.rint(level).astype(image.dtype) if image.dtype.kind == "u" else level.astype(image.dtype))
+    return chain

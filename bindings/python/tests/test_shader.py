@@ -173,3 +173,65 @@ def test_states(device, view):
         shader.set_material(0, pel.Material())
     with pytest.raises(pel.PellucidError):
         shader.set_lights([pel.Light()] * 65)
+
+
+def show_blurred_normal(device, view, **options):
+    """A shader whose radiance is 1 + Nb / 2."""
+    out = np.zeros((HEIGHT, WIDTH, 3), np.float32)
+    shader = shader_for(device, view, out, albedo=np.ones_like(view.albedo), position=view.position)
+    sh = np.zeros((9, 3))
+    for channel, basis in enumerate((3, 1, 2)):
+        sh[basis, channel] = 0.5 / np.sqrt(3 / (4 * np.pi))
+    shader.set_material(1, pel.Material(normal_blend=[1, 1, 1], diffusion_radius=3, uv_scale=100)).set_lights([])
+    shader.set_ambient(pel.Ambient(constant=[1, 1, 1], sh=sh)).set_options(**options)
+    return shader, out
+
+
+def test_normals_blurred_on_screen(device, view):
+    rough = view.normal + np.random.default_rng(2).normal(0, 0.2, view.normal.shape).astype(np.float32)
+    rough /= np.maximum(np.linalg.norm(rough, axis=-1, keepdims=True), 1e-6)
+    shader, out = show_blurred_normal(device, view, blur_normals=1)
+    shader.set_image("normal_shading", rough).commit().execute()
+    assert shader.stats().features & pel.Feature.BLUR_NORMALS
+    inner = view.position[..., 2] > 5
+    error = lambda n: np.sqrt(((n - view.normal) ** 2).sum(-1)[inner].mean())
+    assert error(2 * (out - 1)) < error(rough) / 3  # some 10 x 10 pixels are averaged
+
+
+def test_normal_map(device, view, tolerance):
+    texels = np.zeros((16, 8, 3), np.float32)
+    texels[...] = [0.6, 0, 0.8]
+    shader, out = show_blurred_normal(device, view)
+    tangent = np.cross([0, 1, 0], view.normal)
+    tangent /= np.maximum(np.linalg.norm(tangent, axis=-1, keepdims=True), 1e-6)
+    shader.set_image("uv", np.zeros((HEIGHT, WIDTH, 2), np.float32)).set_image("tangent", tangent.astype(np.float32))
+    for levels in (texels, [texels, texels[::2, ::2]], np.rint(np.dstack([texels * 127.5 + 127.5, texels[..., :1]])).astype(np.uint8)):
+        shader.set_normal_map(1, levels).commit().execute()
+        assert shader.stats().features & pel.Feature.NORMAL_MAP
+        right = 0.6 * tangent + 0.8 * view.normal
+        close = tolerance["mappedNormal"] if levels is not texels and isinstance(levels, list) or levels is texels else 0.01
+        assert np.abs(2 * (out - 1) - right)[view.inside].max() < close
+    shader.set_normal_map(1, None).commit().execute()
+    assert np.abs(2 * (out - 1) - view.normal)[view.inside].max() < tolerance["mappedNormal"]
+    with pytest.raises(ValueError, match="3 components of float64"):
+        shader.set_normal_map(1, texels.astype(float))
+    with pytest.raises(pel.PellucidError, match="must be 4 x 8"):
+        shader.set_normal_map(1, [texels, texels])
+
+
+def test_wide_shadow_from_a_shadow_map(device, view):
+    """A wall at x < 0 between the light straight above and the sphere."""
+    depth = np.ones((64, 64), np.float32)
+    depth[:, :32] = 0.1
+    out = np.zeros((HEIGHT, WIDTH, 3), np.float32)
+    shader = shader_for(device, view, out, position=view.position)
+    light = pel.Light(to_light=[0, 0, 1], shadow_filter_texels=32, shadow_depth_range=50,
+                      world_to_shadow=[1 / 30, 0, 0, 0.5, 0, -1 / 30, 0, 0.5, 0, 0, -1 / 50, 0.5, 0, 0, 0, 1])
+    shader.set_lights([light]).set_light_image(0, "shadow_map", depth)
+    shader.set_material(1, pel.Material(shadow_filter_width=4)).commit().execute()
+    assert shader.stats().features == pel.Feature.SHADOW | pel.Feature.FILTER_SHADOW
+    lambert = view.albedo * view.normal[..., 2:]
+    x = view.position[..., 0]
+    assert np.abs(out[view.inside & (x < -2.5)]).max() == 0
+    lit = view.inside & (x > 2.5)
+    assert np.abs(out - lambert)[lit].max() < 1e-5

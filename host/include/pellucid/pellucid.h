@@ -518,13 +518,19 @@ typedef enum PelImageSlot {
     PEL_SLOT_THICKNESS = 10,        /* length, from the host, instead of shadow map taps */
     PEL_SLOT_ROUGHNESS = 11,        /* multiplies PelMaterial.roughness */
     PEL_SLOT_SPECULAR = 12,         /* multiplies PelMaterial.specular */
-    PEL_SLOT_COUNT = 13
+    PEL_SLOT_UV = 13,               /* u, v of the normal map: two components, float or half. Needed by normal maps */
+    PEL_SLOT_UV_GRADIENT = 14,      /* du/dx, dv/dx, du/dy, dv/dy per pixel: four components. Not set: only the
+                                       diffusion radius chooses the level of a normal map */
+    PEL_SLOT_TANGENT = 15,          /* xyz, unit, along u; a fourth component below 0 turns the bitangent round.
+                                       Needed by normal maps */
+    PEL_SLOT_COUNT = 16
 } PelImageSlot;
 
 /* The images of one light. */
 typedef enum PelLightSlot {
-    PEL_LIGHT_WIDE_SHADOW = 0, /* w per pixel, 0 shadow to 1 lit, filtered over PelMaterial.shadowFilterWidth */
-    PEL_LIGHT_SHADOW_MAP = 1,  /* depth in [0, 1], any size, one component: thickness by taps */
+    PEL_LIGHT_WIDE_SHADOW = 0, /* w per pixel, 0 shadow to 1 lit, filtered over PelMaterial.shadowFilterWidth. Not set:
+                                  PelLight.shadowFilterTexels makes it from the shadow map */
+    PEL_LIGHT_SHADOW_MAP = 1,  /* depth in [0, 1], any size, one component: thickness by taps, wide shadow */
     PEL_LIGHT_SLOT_COUNT = 2
 } PelLightSlot;
 
@@ -548,6 +554,14 @@ typedef struct PelLight {
     float shadowDepthRange; /* parallel: length that z from 0 to 1 spans; negative when z falls away from the light */
     float shadowDepthA;     /* perspective: distance along the light = 1 / (A * z + B), from its projection matrix */
     float shadowDepthB;
+    /* The wide shadow made from the shadow map, when PEL_LIGHT_WIDE_SHADOW is not set (docs/shading.md, "Wide shadow"). */
+    uint32_t shadowFilterTexels; /* 0: none. Else the most texels across the filter that are read, 4 to 256; of a finer map
+                                    every 2nd, 3rd, ... row and column. Typical 48 */
+    float shadowBias;            /* length an occluder must stand before the surface to count; 0.5 mm */
+    float shadowSoftness;        /* times PelMaterial.shadowFilterWidth: how much further before the bias it counts in
+                                    full, so that round bodies do not shade themselves with a hard edge; 0.25 */
+    float shadowConeSlope;       /* the bias grows by this times the sideways distance, so that folds and facets do not
+                                    shade themselves; 0.5 */
 } PelLight;
 
 typedef struct PelMaterial {
@@ -565,6 +579,8 @@ typedef struct PelMaterial {
     float specular;                /* rho_s; 0: no specular */
     float roughness;               /* m of Beckmann; 0.3 */
     float f0;                      /* reflectance at normal incidence; 0.028 */
+    float uvScale;                 /* length per unit of u or v on the surface, as pelMeshUvScale gives it: which level of
+                                      the normal map is blurred over diffusionRadius; 1 */
 } PelMaterial;
 
 /* Light from everywhere: E(n) = constant + sum of sh[i] * basis_i(n) over the 9 orthonormal real spherical harmonics of
@@ -590,7 +606,10 @@ typedef enum PelFeature {
     PEL_FEATURE_AMBIENT = 1 << 3,
     PEL_FEATURE_DEEP_SCATTER = 1 << 4,   /* deepScatterColor, and thickness from an image or taps */
     PEL_FEATURE_THICKNESS_TAPS = 1 << 5, /* deep scatter with a shadow map */
-    PEL_FEATURE_SPECULAR = 1 << 6
+    PEL_FEATURE_SPECULAR = 1 << 6,
+    PEL_FEATURE_BLUR_NORMALS = 1 << 7, /* PelShaderOptions.blurNormals, and no blurred normal image */
+    PEL_FEATURE_NORMAL_MAP = 1 << 8,   /* blurred normals from the normal map of a material */
+    PEL_FEATURE_FILTER_SHADOW = 1 << 9 /* a wide shadow made from a shadow map */
 } PelFeature;
 
 /* What a shader did: counts of its last execution unless they say total. */
@@ -610,6 +629,7 @@ typedef struct PelShaderStats {
     uint64_t pixelsSpecular;
     uint64_t pixelsInvalid;    /* with a NaN or Inf input */
     double deviceMilliseconds; /* kernels; 0 on a queue without profiling */
+    uint64_t pixelsWideShadow; /* whose wide shadow was filtered from a shadow map, summed over lights */
 } PelShaderStats;
 
 typedef struct PelShaderOptions {
@@ -618,6 +638,8 @@ typedef struct PelShaderOptions {
     uint32_t disableSkipping; /* 1: shade every tile and evaluate every term; the same bits come out, for tests */
     uint32_t countPixels;     /* 1: fill the pixel counters of PelShaderStats, at some cost */
     float invalidColor[3];    /* radiance of a pixel with a NaN or Inf input; default 0 */
+    uint32_t blurNormals;     /* 1: without PEL_SLOT_NORMAL_BLURRED, blurred normals are shading normals blurred on screen
+                                 over PelMaterial.diffusionRadius; needs positions or depth */
 } PelShaderOptions;
 
 PEL_API PelError pelShaderCreate(PelDevice device, PelShader* shader);
@@ -629,6 +651,12 @@ PEL_API PelError pelShaderSetImage(PelShader shader, PelImageSlot slot, const Pe
 /* Material `id`, 1 to 255; a NULL material removes it. Either LUT may be NULL: no direct scattering, plain shadow. */
 PEL_API PelError pelShaderSetMaterial(PelShader shader, uint32_t id, const PelMaterial* material, PelLut curvatureLut,
                                       PelLut shadowLut);
+/* The tangent-space normal map of material `id`, which must be set: `levels` images, each half the size of the one before,
+ * all in one buffer and of one format with three components (unorm: 2x - 1; float: as they are), repeated beyond [0, 1].
+ * Without PEL_SLOT_NORMAL_BLURRED, the blurred normal is read from it: trilinear, at level
+ * log2(max(size * diffusionRadius, uvScale) / uvScale), but never sharper than the pixel's own level of detail. A count of 0
+ * removes it. Source: FaceWorks 1.0. */
+PEL_API PelError pelShaderSetNormalMap(PelShader shader, uint32_t id, const PelImageDesc* levels, uint32_t count);
 /* Replaces all lights, 0 to 64 of them; images of lights beyond the count are cleared. */
 PEL_API PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t count);
 PEL_API PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot, const PelImageDesc* image);

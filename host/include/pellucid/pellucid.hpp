@@ -290,6 +290,10 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
                         const Lut& shadow = {}) {
         return done(pelShaderSetMaterial(h_, id, &material, curvature.get(), shadow.get()));
     }
+    // Each level half the size of the one before; none: no normal map.
+    Shader& setNormalMap(uint32_t id, const std::vector<PelImageDesc>& levels) {
+        return done(pelShaderSetNormalMap(h_, id, levels.data(), uint32_t(levels.size())));
+    }
     Shader& set(const std::vector<PelLight>& lights) {
         return done(pelShaderSetLights(h_, lights.data(), uint32_t(lights.size())));
     }

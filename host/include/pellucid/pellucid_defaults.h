@@ -66,6 +66,9 @@ static inline PelLight pelLightDefaults(void) {
     s.worldToShadow[0] = s.worldToShadow[5] = 1.0f;
     s.worldToShadow[10] = s.worldToShadow[15] = 1.0f;
     s.shadowDepthRange = 1.0f;
+    s.shadowBias = 0.5f;
+    s.shadowSoftness = 0.25f;
+    s.shadowConeSlope = 0.5f;
     return s;
 }
 static inline PelMaterial pelMaterialDefaults(void) {
@@ -81,6 +84,7 @@ static inline PelMaterial pelMaterialDefaults(void) {
     s.thicknessTaps = 32;
     s.roughness = 0.3f;
     s.f0 = 0.028f;
+    s.uvScale = 1.0f;
     return s;
 }
 static inline PelAmbient pelAmbientDefaults(void) { PEL_ZEROED_(PelAmbient, s); return s; }

@@ -1,0 +1,260 @@
+#include "ops/shade_passes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ops/shader.h"
+#include "shared/features.h"
+
+namespace pel {
+namespace {
+
+// The geometric normals of a frame: their slot, or the shading normals'.
+PelImageSlot normalSlot(const ShaderState& state) {
+    return state.images[PEL_SLOT_NORMAL_GEOMETRIC] ? PEL_SLOT_NORMAL_GEOMETRIC : PEL_SLOT_NORMAL_SHADING;
+}
+
+const cl::Memory& memoryOf(const ImageView& view) {
+    static const cl::Memory none;
+    return view ? view.buffer->memory() : none;
+}
+
+// An image of the frame's size inside scratch memory.
+ImageView scratchImage(const Ref<Buffer>& buffer, const ImageView& frame, PelFormat format, uint64_t offset = 0) {
+    ImageView view;
+    view.buffer = buffer;
+    view.format = format;
+    view.width = frame.width;
+    view.height = frame.height;
+    view.byteOffset = offset;
+    view.pixelStride = view.info().pixelBytes;
+    view.rowStride = view.width * view.pixelStride;
+    view.planeStride = view.height * view.rowStride;
+    return view;
+}
+
+// `buffer` with this many bytes; 0: none.
+void resize(Ref<Buffer>& buffer, const Ref<Device>& device, size_t bytes) {
+    if ((buffer ? buffer->bytes() : 0) == bytes) return;
+    buffer = Ref<Buffer>();
+    if (bytes) buffer = Buffer::create(device, bytes, nullptr);
+}
+
+// A buffer that holds `value`; written anew only when it changed. Returns the bytes sent.
+template <class T>
+size_t send(Device& device, const T& value, cl::Memory& memory, std::vector<unsigned char>& sent) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(&value);
+    if (memory && std::equal(sent.begin(), sent.end(), bytes, bytes + sizeof value)) return 0;
+    memory = device.allocate(sizeof value, nullptr);  // an execution that is queued keeps reading the old one
+    sent.clear();
+    device.write(memory.get(), 0, sizeof value, bytes, true);
+    sent.assign(bytes, bytes + sizeof value);
+    return sizeof value;
+}
+
+PelNormalMap describeNormalMap(const ShaderState& plan, uint32_t id, bool fallback) {
+    const ShaderMaterial& material = plan.materials.at(id);
+    PelNormalMap map{};
+    map.count = uint32_t(material.normalMap.size());
+    for (uint32_t i = 0; i < map.count; ++i) map.levels[i] = describeImage(material.normalMap[i]);
+    map.material = id;
+    map.fallback = fallback;
+    const ImageView& finest = material.normalMap[0];
+    const double size = std::max(finest.width, finest.height), scale = material.params.uvScale;
+    map.baseLevel = float(std::log2(std::max(size * material.params.diffusionRadius, scale) / scale));
+    return map;
+}
+
+}  // namespace
+
+ShaderState ShadePasses::plan(const Ref<Device>& device, const ShaderState& state, uint32_t features) {
+    ShaderState plan = state;
+    const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
+    const size_t pixels = size_t(frame.width) * frame.height;
+    const bool blur = features & PEL_FEATURE_BLUR_NORMALS, map = features & PEL_FEATURE_NORMAL_MAP;
+    resize(normals_, device, blur || map ? pixels * sizeof(cl_float4) : 0);
+    resize(positions_, device, blur ? pixels * sizeof(cl_float4) : 0);
+    resize(between_, device, blur ? pixels * sizeof(cl_float4) : 0);
+    if (normals_) plan.images[PEL_SLOT_NORMAL_BLURRED] = scratchImage(normals_, frame, PEL_FORMAT_RGBA32F);
+
+    mappedMaterials_.clear();
+    for (const auto& [id, material] : state.materials)
+        if (map && !material.normalMap.empty()) mappedMaterials_.push_back(id);
+
+    filteredLights_.clear();
+    for (uint32_t i = 0; i < state.lights.size(); ++i)
+        if (features & PEL_FEATURE_FILTER_SHADOW && filtersShadow(state.lights[i])) filteredLights_.push_back(i);
+    resize(wideShadows_, device, filteredLights_.size() * pixels * sizeof(float));
+    for (size_t k = 0; k < filteredLights_.size(); ++k)
+        plan.lights[filteredLights_[k]].images[PEL_LIGHT_WIDE_SHADOW] =
+            scratchImage(wideShadows_, frame, PEL_FORMAT_R32F, k * pixels * sizeof(float));
+    features_ = features;
+    return plan;
+}
+
+void ShadePasses::build(Device& device, const ShaderState& plan, uint32_t features) {
+    const uint32_t width = device.info().mathWidth;
+    const auto code = [&](PelImageSlot slot, uint32_t lanes) { return text(formatCode(plan.images[slot], lanes)); };
+    const auto common = [&](uint32_t lanes) {
+        return cl::Defines{{"PEL_PASS_GROUP", text(shadeGroup(device))},
+                           {"PEL_WIDTH", text(lanes)},
+                           {"PEL_FEATURES", text(0)},
+                           {"PEL_FORMAT_MATERIAL", code(PEL_SLOT_MATERIAL, lanes)},
+                           {"PEL_FORMAT_POSITION", code(PEL_SLOT_POSITION, lanes)},
+                           {"PEL_FORMAT_DEPTH", plan.images[PEL_SLOT_POSITION] ? text(0) : code(PEL_SLOT_DEPTH, lanes)},
+                           {"PEL_FORMAT_NORMAL", code(normalSlot(plan), lanes)},
+                           {"PEL_NORMAL_SLOT", text(int(normalSlot(plan)))}};
+    };
+    blurProgram_ = mapProgram_ = shadowProgram_ = cl::Program();
+    if (features & PEL_FEATURE_BLUR_NORMALS) {
+        cl::Defines all = common(1);
+        all.erase("PEL_FORMAT_NORMAL");
+        all.erase("PEL_NORMAL_SLOT");
+        all["PEL_FORMAT_NORMAL_SHADING"] = code(PEL_SLOT_NORMAL_SHADING, 1);
+        blurProgram_ = device.programs().get("blur_normals.cl", all);
+    }
+    if (features & PEL_FEATURE_NORMAL_MAP) {
+        const ImageView& tangent = plan.images[PEL_SLOT_TANGENT];
+        cl::Defines all = common(1);
+        all["PEL_FORMAT_POSITION"] = all["PEL_FORMAT_DEPTH"] = text(0);
+        all["PEL_FORMAT_UV"] = code(PEL_SLOT_UV, 1);
+        all["PEL_FORMAT_UV_GRADIENT"] = code(PEL_SLOT_UV_GRADIENT, 1);
+        all["PEL_FORMAT_TANGENT"] = code(PEL_SLOT_TANGENT, 1);
+        all["PEL_TANGENT_COMPONENTS"] = text(tangent.info().components);
+        all["PEL_TANGENT_UNORM"] =
+            text(int(tangent.format > PEL_FORMAT_RGBA16F && tangent.format != PEL_FORMAT_PLANAR_RGB32F));
+        all["PEL_FORMAT_NORMAL_MAP"] = text(formatCode(plan.materials.at(mappedMaterials_[0]).normalMap[0], 1));
+        mapProgram_ = device.programs().get("normal_map.cl", all);
+    }
+    if (features & PEL_FEATURE_FILTER_SHADOW) {
+        cl::Defines all = common(width);
+        all["PEL_FEATURES"] = text((plan.options.countPixels ? PEL_BIT_COUNT : 0) |
+                                   (plan.options.disableSkipping ? PEL_BIT_NO_SKIPPING : 0));
+        uint32_t map = 0;
+        for (uint32_t light : filteredLights_) map |= formatCode(plan.lights[light].images[PEL_LIGHT_SHADOW_MAP], 1);
+        all["PEL_FORMAT_SHADOW_MAP"] = text(map);
+        shadowProgram_ = device.programs().get("wide_shadow.cl", all);
+    }
+}
+
+size_t ShadePasses::upload(Device& device, const ShaderState& plan) {
+    lightConstants_.resize(filteredLights_.size());
+    mapConstants_.resize(mappedMaterials_.size());
+    sent_.resize(filteredLights_.size() + mappedMaterials_.size());
+    size_t bytes = 0;
+    for (size_t k = 0; k < filteredLights_.size(); ++k) {
+        PelWideShadow constants = describeWideShadow(plan.lights[filteredLights_[k]], filteredLights_[k]);
+        bytes += send(device, constants, lightConstants_[k], sent_[k]);
+    }
+    const bool fallback = !(features_ & PEL_FEATURE_BLUR_NORMALS);
+    for (size_t k = 0; k < mappedMaterials_.size(); ++k)
+        bytes += send(device, describeNormalMap(plan, mappedMaterials_[k], fallback && k == 0), mapConstants_[k],
+                      sent_[filteredLights_.size() + k]);
+    return bytes;
+}
+
+void ShadePasses::enqueue(Device& device, const ShaderState& plan, const ShadeTables& tables, const cl::Memory& list,
+                          const cl::Memory& counters, std::vector<cl::Event>& events) const {
+    const cl::Range range = tileRange(device, tables.frame().tiles);
+    if (blurProgram_) enqueueBlur(device, plan, tables, list, events);
+    for (size_t k = 0; k < mappedMaterials_.size(); ++k) {
+        cl::Launch launch(mapProgram_, "normal_map");
+        launch.arg(tables.frameMemory()).arg(tables.materials()).arg(list);
+        for (PelImageSlot slot :
+             {PEL_SLOT_MATERIAL, normalSlot(plan), PEL_SLOT_UV, PEL_SLOT_UV_GRADIENT, PEL_SLOT_TANGENT})
+            launch.arg(memoryOf(plan.images[slot]));
+        launch.arg(mapConstants_[k]).arg(memoryOf(plan.materials.at(mappedMaterials_[k]).normalMap[0]));
+        launch.arg(normals_->memory());
+        events.push_back(device.launch(launch, range));
+    }
+    for (size_t k = 0; k < filteredLights_.size(); ++k) {
+        const ShaderLight& light = plan.lights[filteredLights_[k]];
+        cl::Launch launch(shadowProgram_, "wide_shadow");
+        launch.arg(tables.frameMemory()).arg(tables.materials()).arg(tables.lights()).arg(list).arg(counters);
+        for (PelImageSlot slot : {PEL_SLOT_MATERIAL, normalSlot(plan), PEL_SLOT_POSITION, PEL_SLOT_DEPTH})
+            launch.arg(memoryOf(plan.images[slot]));
+        launch.arg(lightConstants_[k]).arg(cl_uint(filteredLights_[k]));
+        launch.arg(memoryOf(light.images[PEL_LIGHT_SHADOW_MAP])).arg(wideShadows_->memory());
+        events.push_back(device.launch(launch, range));
+    }
+}
+
+void ShadePasses::enqueueBlur(Device& device, const ShaderState& plan, const ShadeTables& tables, const cl::Memory& list,
+                              std::vector<cl::Event>& events) const {
+    const cl::Range range = tileRange(device, tables.frame().tiles);
+    const cl::Memory& material = memoryOf(plan.images[PEL_SLOT_MATERIAL]);
+    cl::Launch prepare(blurProgram_, "prepare_normals");
+    prepare.arg(tables.frameMemory()).arg(list).arg(material).arg(memoryOf(plan.images[PEL_SLOT_NORMAL_SHADING]));
+    prepare.arg(memoryOf(plan.images[PEL_SLOT_POSITION])).arg(memoryOf(plan.images[PEL_SLOT_DEPTH]));
+    prepare.arg(normals_->memory()).arg(positions_->memory());
+    events.push_back(device.launch(prepare, range));
+    for (cl_uint alongY : {0u, 1u}) {
+        const cl::Memory &from = alongY ? between_->memory() : normals_->memory(),
+                         &to = alongY ? normals_->memory() : between_->memory();
+        cl::Launch blur(blurProgram_, "blur_normals");
+        blur.arg(tables.frameMemory()).arg(tables.materials()).arg(list).arg(material);
+        blur.arg(from).arg(positions_->memory()).arg(to).arg(alongY);
+        events.push_back(device.launch(blur, range));
+    }
+}
+
+size_t ShadePasses::scratchBytes() const {
+    size_t bytes = 0;
+    for (const Ref<Buffer>& buffer : {normals_, wideShadows_, positions_, between_})
+        if (buffer) bytes += buffer->bytes();
+    for (const auto& sent : sent_) bytes += sent.size();
+    return bytes;
+}
+
+PelWideShadow describeWideShadow(const ShaderLight& light, uint32_t index) {
+    const PelLight& l = light.params;
+    PelWideShadow to{};
+    std::copy_n(l.worldToShadow, 16, to.worldToShadow);
+    struct Vec {
+        double x, y, z;
+        Vec scaled(double s) const { return {x * s, y * s, z * s}; }
+        Vec minus(Vec b) const { return {x - b.x, y - b.y, z - b.z}; }
+        double dot(Vec b) const { return x * b.x + y * b.y + z * b.z; }
+        Vec cross(Vec b) const { return {y * b.z - z * b.y, z * b.x - x * b.z, x * b.y - y * b.x}; }
+        double length() const { return std::sqrt(dot(*this)); }
+        void to(float (&out)[3]) const { out[0] = float(x), out[1] = float(y), out[2] = float(z); }
+    };
+    const auto row = [&](int r) {
+        const float* m = l.worldToShadow + 4 * r;
+        return Vec{m[0], m[1], m[2]};
+    };
+    const bool perspective = l.shadowProjection == PEL_SHADOW_PERSPECTIVE;
+    const double w = perspective ? row(3).length() : l.worldToShadow[15];
+    // Along a ray of the light u and v stay what they are; across it they grow by 1 / extent per length.
+    Vec forward = perspective ? row(3).scaled(1 / w) : row(0).cross(row(1));
+    if (!perspective) {
+        const double length = forward.length(), sign = row(2).dot(forward) * w * l.shadowDepthRange < 0 ? -1 : 1;
+        forward = forward.scaled(sign / length);
+        to.zPerLength = float(row(2).dot(forward) / w);
+    }
+    const Vec right = row(0).minus(forward.scaled(row(0).dot(forward))),
+              down = row(1).minus(forward.scaled(row(1).dot(forward)));
+    const double u = right.length(), v = down.length(), skew = right.dot(down) / (u * v);
+    if (!(u > 0 && v > 0 && std::isfinite(forward.length()) && std::abs(skew) < 0.999 && (perspective || to.zPerLength != 0)))
+        invalidArgument("PelLight ", index,
+                        ".worldToShadow is singular: a wide shadow cannot be filtered from its shadow map");
+    right.scaled(1 / u).to(to.right);
+    down.scaled(1 / v).to(to.down);
+    forward.to(to.forward);
+    to.extent[0] = float(std::abs(w) / u);
+    to.extent[1] = float(std::abs(w) / v);
+    to.centre[0] = float(row(0).dot(forward) / w);
+    to.centre[1] = float(row(1).dot(forward) / w);
+    to.projection = l.shadowProjection;
+    to.depthA = l.shadowDepthA;
+    to.depthB = l.shadowDepthB;
+    to.bias = l.shadowBias;
+    to.softness = l.shadowSoftness;
+    to.coneSlope = l.shadowConeSlope;
+    to.maxTexels = float(l.shadowFilterTexels);
+    to.map = describeImage(light.images[PEL_LIGHT_SHADOW_MAP]);
+    to.out = describeImage(light.images[PEL_LIGHT_WIDE_SHADOW]);
+    return to;
+}
+
+}  // namespace pel

@@ -1,0 +1,44 @@
+// Constants of the passes that run before shade.cl, laid out alike on host and device. Units as in shared/shade.h.
+#ifndef PEL_SHARED_SHADE_PASSES
+#define PEL_SHARED_SHADE_PASSES
+#include "shared/shade.h"
+
+#define PEL_BLUR_TAPS 6      // of the normal blur, to each side
+#define PEL_BLUR_STEP_MAX 64 // pixels from tap to tap: a close-up is blurred over no more than 384 pixels to each side
+#define PEL_BLUR_GAP 3       // a step this many times longer than the one before is a depth edge
+#define PEL_MAP_LEVELS 16    // of a normal map
+
+// One light's wide shadow, made from its shadow map.
+typedef struct PelWideShadow {
+    float worldToShadow[16];
+    float right[3];   // unit, world: along +u
+    float down[3];    // unit, world: along +v
+    float forward[3]; // unit, world: away from the light
+    float extent[2];  // length that u, v from 0 to 1 span; perspective: at distance 1 along forward
+    float centre[2];  // u, v that lies straight ahead; perspective
+    PelUint32 projection; // PelShadowProjection
+    float zPerLength;     // parallel: depth per length along forward, 1/length
+    float depthA;         // perspective: distance = 1 / (A z + B), 1/length
+    float depthB;
+    float bias;      // length
+    float softness;  // of the filter's width
+    float coneSlope; // length per length
+    float maxTexels; // across the filter
+    PelShadeImage map;
+    PelShadeImage out; // R32F
+} PelWideShadow;
+
+// The levels of one material's normal map.
+typedef struct PelNormalMap {
+    PelShadeImage levels[PEL_MAP_LEVELS];
+    PelUint32 count;
+    PelUint32 material; // its id
+    PelUint32 fallback; // 1: materials without a map get their geometric normal from this launch
+    float baseLevel;    // log2(max(size radius, uvScale) / uvScale)
+} PelNormalMap;
+
+#ifndef __OPENCL_VERSION__
+static_assert(sizeof(PelWideShadow) == 4 * (16 + 9 + 4 + 8) + 64);
+static_assert(sizeof(PelNormalMap) == PEL_MAP_LEVELS * 32 + 16);
+#endif
+#endif

@@ -1,0 +1,53 @@
+// The images that the shading pass makes itself when its caller has none (docs/shading.md, "Blurred normals", "Wide
+// shadow"): the definitions, in double precision, pixel by pixel.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "reference/shade.h"
+
+namespace reference {
+
+// --- normals blurred on screen ---
+
+struct SurfacePixels {
+    int width = 0, height = 0;
+    std::vector<Vec3> normals, positions;
+    std::vector<int> ids;       // 0: background
+    std::vector<double> radii;  // length, by id
+};
+
+// Per pixel with an id; none where the pixel's normal or position is no number. `doubtful`, if given, is set for pixels
+// whose answer hangs on a decision (how many pixels from tap to tap, where an edge begins) that rounding could turn.
+std::vector<std::optional<Vec3>> blurredNormals(const SurfacePixels& surface, std::vector<bool>* doubtful = nullptr);
+
+// --- normals from a map ---
+
+struct NormalLevel {
+    int width = 0, height = 0;
+    std::vector<Vec3> texels;
+};
+Vec3 sampleRepeated(const NormalLevel& level, double u, double v);
+// log2 of the longer side of a pixel's footprint, in texels of a map of that size.
+double footprintLevel(const std::array<double, 4>& gradient, int width, int height);
+Vec3 trilinear(const std::vector<NormalLevel>& levels, double u, double v, double level);
+// `side`: -1 turns the bitangent round.
+Vec3 fromTangentSpace(Vec3 texel, Vec3 tangent, Vec3 normal, double side);
+
+// --- the wide shadow ---
+
+// A light by its axes: texel (i, j) looks along forward (parallel) or along forward + right (u - 1/2) extent + ...
+struct ShadowView {
+    Vec3 right, down, forward;  // unit, orthogonal
+    Vec3 origin;                // parallel: any point whose u, v are 1/2 and z is 0; perspective: the light
+    double extent = 1;          // length that the map spans a side; perspective: at distance 1
+    DepthDecoding decoding;
+};
+struct WideFilterParams {
+    double width = 8, bias = 0.5, softness = 0.25, coneSlope = 0.5;
+    int maxTexels = 48;
+};
+double wideShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal, const WideFilterParams& params);
+
+}  // namespace reference

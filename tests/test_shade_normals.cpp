@@ -1,0 +1,381 @@
+// Blurred normals that the shader makes itself: on screen, and from a normal map.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "pass_scene.h"
+#include "tolerances.h"
+
+using namespace shade_test;
+using pellucid::Buffer;
+using pellucid::imageDesc;
+using pellucid::Shader;
+
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+double difference(Vec3 a, Vec3 b) {
+    return reference::magnitude(a - b);
+}
+
+// --- on screen ---
+
+struct Worst {
+    double error = 0;
+    size_t compared = 0, doubtful = 0;
+};
+Worst againstOracle(const Frame& f, const std::vector<float>& radiance) {
+    std::vector<bool> doubtful;
+    const auto truth = reference::blurredNormals(surfaceOf(f), &doubtful);
+    Worst worst;
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        if (!truth[i]) continue;
+        if (doubtful[i]) {
+            ++worst.doubtful;
+            continue;
+        }
+        ++worst.compared;
+        worst.error = std::max(worst.error, difference(shownNormal(radiance, i), *truth[i]));
+    }
+    return worst;
+}
+
+TEST(BlurNormals, MatchesTheOracle) {
+    for (const auto& [seed, pixel] : {std::pair{1u, 0.31f}, {2u, 0.9f}, {3u, 0.07f}, {4u, 4.0f}}) {
+        Frame f = reliefFrame(seed, 150, 70, pixel);
+        showBlurredNormal(f);
+        f.options.blurNormals = 1;
+        PelShaderStats stats = pelShaderStatsDefaults();
+        const auto shown = shade(device(), f, tables(), &stats);
+        EXPECT_EQ(stats.features, uint32_t(PEL_FEATURE_AMBIENT | PEL_FEATURE_BLUR_NORMALS));
+        EXPECT_EQ(stats.launches, 5u) << "classify, prepare, along x, along y, shade";
+        const Worst worst = againstOracle(f, shown);
+        EXPECT_LE(worst.error, tolerance::shadeTerm) << "pixels " << pixel << " apart";
+        EXPECT_GT(worst.compared, 9 * worst.doubtful);
+    }
+}
+
+TEST(BlurNormals, OffCostsNothingAndAnImageGoesFirst) {
+    Frame f = reliefFrame(1, 64, 32, 0.5f);
+    showBlurredNormal(f);
+    PelShaderStats off = pelShaderStatsDefaults(), on = off, given = off;
+    const auto plain = shade(device(), f, tables(), &off);
+    EXPECT_EQ(off.launches, 2u);
+    f.options.blurNormals = 1;
+    EXPECT_NE(plain, shade(device(), f, tables(), &on));
+    EXPECT_GE(on.scratchBytes, off.scratchBytes + 48 * f.pixels());
+    f.slots[PEL_SLOT_NORMAL_BLURRED] = f.slots[PEL_SLOT_NORMAL_GEOMETRIC];
+    EXPECT_EQ(plain, shade(device(), f, tables(), &given));
+    EXPECT_EQ(given.launches, off.launches);
+    EXPECT_EQ(given.scratchBytes, off.scratchBytes);
+}
+
+TEST(BlurNormals, SkippingAndRunsChangeNoBit) {
+    for (uint32_t seed = 0; seed < 4; ++seed) {
+        Frame f = reliefFrame(seed, 133 + 40 * seed, 41, 0.4f);
+        showBlurredNormal(f);
+        f.options.blurNormals = 1;
+        const auto first = shade(device(), f, tables());
+        EXPECT_EQ(first, shade(device(), f, tables()));
+        f.options.disableSkipping = 1;
+        EXPECT_EQ(first, shade(device(), f, tables()));
+    }
+}
+
+// A plane whose normals wave along x: the blur's response is the Fourier transform of its kernel.
+TEST(BlurNormals, DampsWavesAsItsKernelDoes) {
+    for (const double wavelength : {4.0, 6.0, 12.0}) {
+        Frame f = reliefFrame(1, 200, 8, 0.1f);
+        for (size_t i = 0; i < f.pixels(); ++i) {
+            f.slots[PEL_SLOT_MATERIAL].values[i] = 1;
+            f.slots[PEL_SLOT_POSITION].values[3 * i + 2] = 0;
+            const double bend = 0.05 * std::sin(2 * 3.14159265358979 / wavelength * 0.1 * double(i % f.width));
+            const float n[3] = {float(bend), 0, float(std::sqrt(1 - bend * bend))};
+            std::copy_n(n, 3, &f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i]);
+        }
+        showBlurredNormal(f);
+        f.options.blurNormals = 1;
+        const auto shown = shade(device(), f, tables());
+        double seen = 0, response = 0, total = 0;
+        for (uint32_t x = 50; x < 150; ++x) seen = std::max(seen, shownNormal(shown, 4 * f.width + x).x);
+        for (double t = -0.9995; t < 1; t += 0.001) {
+            response += (1 - t * t) * (1 - t * t) * std::cos(2 * 3.14159265358979 / wavelength * 2.7 * t);
+            total += (1 - t * t) * (1 - t * t);
+        }
+        EXPECT_NEAR(seen / 0.05, response / total, tolerance::blurResponse) << wavelength;
+    }
+}
+
+TEST(BlurNormals, NothingCrossesADepthEdgeOrAMaterial) {
+    Frame f = reliefFrame(1, 128, 16, 0.3f);
+    const float left[3] = {-0.6f, 0, 0.8f}, right[3] = {0.6f, 0, 0.8f};
+    for (const float gap : {2.2f, 30.0f})  // the smaller lies within the diffusion radius
+        for (const bool material : {false, true}) {
+            for (size_t i = 0; i < f.pixels(); ++i) {
+                const bool far = i % f.width >= 64;
+                f.slots[PEL_SLOT_MATERIAL].values[i] = material && far ? 2 : 1;
+                f.slots[PEL_SLOT_POSITION].values[3 * i + 2] = far && !material ? gap : 0;
+                std::copy_n(far ? right : left, 3, &f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i]);
+            }
+            showBlurredNormal(f);
+            f.options.blurNormals = 1;
+            const auto shown = shade(device(), f, tables());
+            for (size_t i = 0; i < f.pixels(); ++i)
+                EXPECT_LE(difference(shownNormal(shown, i), f.slots[PEL_SLOT_NORMAL_SHADING].vec(i)), tolerance::shadeTerm)
+                    << "gap " << gap << ", pixel " << i;
+        }
+}
+
+TEST(BlurNormals, BadPixelsStayAlone) {
+    Frame f = reliefFrame(5, 120, 60, 0.3f);
+    showBlurredNormal(f);
+    f.options.blurNormals = 1;
+    f.options.countPixels = 1;
+    f.options.invalidColor[0] = -7;
+    const auto before = shade(device(), f, tables());
+    Frame bad = f;
+    const size_t normal = 20 * 120 + 30, position = 40 * 120 + 90;
+    bad.slots[PEL_SLOT_NORMAL_SHADING].values[3 * normal] = nan;
+    bad.slots[PEL_SLOT_POSITION].values[3 * position + 1] = std::numeric_limits<float>::infinity();
+    PelShaderStats stats = pelShaderStatsDefaults();
+    const auto after = shade(device(), bad, tables(), &stats);
+    EXPECT_EQ(stats.pixelsInvalid, 2u);
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        const bool itself = i == normal || i == position;
+        EXPECT_EQ(after[3 * i] == -7, itself) << i;
+        for (int c = 0; c < 3; ++c) EXPECT_TRUE(std::isfinite(after[3 * i + c])) << i;
+        // Beyond six taps in both directions nothing changes at all.
+        const auto far = [&](size_t centre) {
+            return std::abs(int(i % 120) - int(centre % 120)) > 12 || std::abs(int(i / 120) - int(centre / 120)) > 12;
+        };
+        if (far(normal) && far(position))
+            for (int c = 0; c < 3; ++c) EXPECT_EQ(after[3 * i + c], before[3 * i + c]) << i;
+    }
+    EXPECT_LE(againstOracle(bad, after).error, tolerance::shadeTerm);
+}
+
+TEST(BlurNormals, OddFrames) {
+    for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 9u}, {17u, 1u}, {129u, 3u}}) {
+        Frame f = reliefFrame(2, width, height, 0.5f);
+        f.slots[PEL_SLOT_MATERIAL] = {};
+        showBlurredNormal(f);
+        f.options.blurNormals = 1;
+        EXPECT_LE(againstOracle(f, shade(device(), f, tables())).error, tolerance::shadeTerm) << width << " x " << height;
+    }
+    Frame f = reliefFrame(2, 16, 16, 0.0f);  // all pixels in one place
+    showBlurredNormal(f);
+    f.options.blurNormals = 1;
+    for (float value : shade(device(), f, tables())) EXPECT_TRUE(std::isfinite(value));
+    f.slots[PEL_SLOT_POSITION] = {};
+    EXPECT_THROW(shade(device(), f, tables()), pellucid::Error) << "positions are needed";
+}
+
+// --- from a map ---
+
+struct Mapped {
+    Frame frame;
+    std::vector<reference::NormalLevel> levels;
+    std::vector<float> texels;  // all levels, RGB
+    double uvScale = 120;       // length
+};
+
+Mapped mappedFrame(uint32_t seed, uint32_t size) {
+    Mapped m;
+    Random random(seed);
+    m.frame = reliefFrame(seed, 90, 40, 0.5f);
+    Frame& f = m.frame;
+    f.slots[PEL_SLOT_UV].components = 2;
+    f.slots[PEL_SLOT_UV_GRADIENT].components = f.slots[PEL_SLOT_TANGENT].components = 4;
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        const Vec3 n = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), t = reference::normalized(Vec3{1, 0, 0} - n.x * n);
+        for (float v : {float(t.x), float(t.y), float(t.z), i % 3 ? 1.0f : -1.0f}) f.slots[PEL_SLOT_TANGENT].values.push_back(v);
+        for (float v : {random.uniform(-1.5f, 2.5f), random.uniform(-1.5f, 2.5f)}) f.slots[PEL_SLOT_UV].values.push_back(v);
+        const float footprint = std::exp2(random.uniform(-12, -2));
+        for (int c = 0; c < 4; ++c) f.slots[PEL_SLOT_UV_GRADIENT].values.push_back(footprint * random.uniform(-1, 1));
+    }
+    for (uint32_t s = size; s > 0; s /= 2) {
+        reference::NormalLevel level{int(s), int(s), {}};
+        for (uint32_t i = 0; i < s * s; ++i) {
+            float v[3];
+            random.unit(v);
+            v[2] = std::fabs(v[2]) + 0.3f;
+            level.texels.push_back({v[0], v[1], v[2]});
+            m.texels.insert(m.texels.end(), v, v + 3);
+        }
+        m.levels.push_back(std::move(level));
+    }
+    for (auto& [id, material] : f.materials) material.uvScale = float(m.uvScale);
+    showBlurredNormal(f);
+    return m;
+}
+
+std::vector<PelImageDesc> descriptions(const Mapped& m, const Buffer& buffer) {
+    std::vector<PelImageDesc> all;
+    uint64_t at = 0;
+    for (const auto& level : m.levels) {
+        all.push_back(imageDesc(buffer, PEL_FORMAT_RGB32F, uint32_t(level.width), uint32_t(level.height), at));
+        at += level.texels.size() * 12;
+    }
+    return all;
+}
+
+std::vector<float> shadeMapped(const Mapped& m, std::initializer_list<uint32_t> ids, PelShaderStats* stats = nullptr) {
+    Shader shader(device());
+    setFrame(device(), shader, m.frame, tables());
+    const Buffer map(device(), m.texels), target(device(), m.frame.pixels() * 12);
+    for (uint32_t id : ids) shader.setNormalMap(id, descriptions(m, map));
+    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, m.frame.width, m.frame.height));
+    shader.commit().execute();
+    if (stats) *stats = shader.stats();
+    return target.readAll<float>();
+}
+
+Vec3 mappedTruth(const Mapped& m, size_t i) {
+    const Frame& f = m.frame;
+    const PelMaterial& material = f.materials.at(uint32_t(f.slots[PEL_SLOT_MATERIAL].at(i)));
+    const auto g = [&](uint32_t c) { return f.slots[PEL_SLOT_UV_GRADIENT].at(i, c); };
+    double level = reference::blurredNormalMip(m.levels[0].width, material.diffusionRadius, m.uvScale);
+    if (!f.slots[PEL_SLOT_UV_GRADIENT].values.empty())
+        level = std::max(level, reference::footprintLevel({g(0), g(1), g(2), g(3)}, m.levels[0].width, m.levels[0].height));
+    const Vec3 texel = reference::trilinear(m.levels, f.slots[PEL_SLOT_UV].at(i, 0), f.slots[PEL_SLOT_UV].at(i, 1), level);
+    const auto& tangent = f.slots[PEL_SLOT_TANGENT];
+    return reference::fromTangentSpace(texel, {tangent.at(i, 0), tangent.at(i, 1), tangent.at(i, 2)},
+                                       f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), tangent.at(i, 3) < 0 ? -1 : 1);
+}
+
+TEST(NormalMap, MatchesTheOracle) {
+    for (const bool gradients : {true, false}) {
+        Mapped m = mappedFrame(3, 64);
+        if (!gradients) m.frame.slots[PEL_SLOT_UV_GRADIENT] = {};
+        PelShaderStats stats = pelShaderStatsDefaults();
+        const auto shown = shadeMapped(m, {1, 2}, &stats);
+        EXPECT_EQ(stats.features, uint32_t(PEL_FEATURE_AMBIENT | PEL_FEATURE_NORMAL_MAP));
+        EXPECT_EQ(stats.launches, 4u) << "classify, a map per material, shade";
+        double worst = 0;
+        for (size_t i = 0; i < m.frame.pixels(); ++i)
+            if (m.frame.slots[PEL_SLOT_MATERIAL].values[i] != 0)
+                worst = std::max(worst, difference(shownNormal(shown, i), mappedTruth(m, i)));
+        EXPECT_LE(worst, tolerance::mappedNormal);
+    }
+}
+
+TEST(NormalMap, NeverSharperThanTheOrdinaryLevelAndBlurredOverTheRadius) {
+    Mapped m = mappedFrame(4, 64);
+    for (size_t k = 0; k < m.levels.size(); ++k)  // each level leans further along the tangent
+        for (size_t i = 0, at = [&] { size_t a = 0; for (size_t j = 0; j < k; ++j) a += 3 * m.levels[j].texels.size(); return a; }();
+             i < m.levels[k].texels.size(); ++i) {
+            m.texels[at + 3 * i] = float(k);
+            m.texels[at + 3 * i + 1] = 0;
+            m.texels[at + 3 * i + 2] = 1;
+        }
+    const auto levelSeen = [&] {
+        const auto shown = shadeMapped(m, {1, 2});
+        const size_t i = 20 * 90 + 60;
+        const Vec3 n = m.frame.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), s = shownNormal(shown, i);
+        const auto& t = m.frame.slots[PEL_SLOT_TANGENT];
+        return reference::dot(s, {t.at(i, 0), t.at(i, 1), t.at(i, 2)}) / reference::dot(s, n);
+    };
+    auto& gradients = m.frame.slots[PEL_SLOT_UV_GRADIENT].values;
+    const auto footprint = [&](float texels) {
+        for (size_t i = 0; i < gradients.size(); ++i) gradients[i] = i % 4 == 0 ? texels / 64 : 0;
+    };
+    const double blurred = std::log2(64 * 2.7 / m.uvScale);
+    footprint(0.01f);
+    EXPECT_NEAR(levelSeen(), blurred, tolerance::mappedLevel) << "magnified: the diffusion radius alone";
+    footprint(9.0f);
+    EXPECT_NEAR(levelSeen(), std::log2(9.0), tolerance::mappedLevel) << "minified: as sharp as any other texture";
+    for (auto& [id, material] : m.frame.materials) material.uvScale = 1e6f;
+    footprint(0.01f);
+    EXPECT_NEAR(levelSeen(), 0, tolerance::mappedLevel) << "texels longer than the radius: the finest level";
+}
+
+TEST(NormalMap, MaterialsWithoutOneKeepTheirNormal) {
+    Mapped m = mappedFrame(5, 16);
+    PelShaderStats stats = pelShaderStatsDefaults();
+    for (const bool blur : {false, true}) {
+        m.frame.options.blurNormals = blur;
+        const auto shown = shadeMapped(m, {1}, &stats);
+        EXPECT_EQ(stats.features, uint32_t(PEL_FEATURE_AMBIENT | PEL_FEATURE_NORMAL_MAP | (blur ? PEL_FEATURE_BLUR_NORMALS : 0)));
+        const auto blurred = reference::blurredNormals(surfaceOf(m.frame));
+        size_t close = 0, of = 0;
+        for (size_t i = 0; i < m.frame.pixels(); ++i) {
+            const float id = m.frame.slots[PEL_SLOT_MATERIAL].values[i];
+            if (id == 1) EXPECT_LE(difference(shownNormal(shown, i), mappedTruth(m, i)), tolerance::mappedNormal);
+            if (id != 2) continue;
+            const Vec3 right = blur ? *blurred[i] : m.frame.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i);
+            ++of;
+            close += difference(shownNormal(shown, i), right) <= tolerance::shadeTerm;
+        }
+        EXPECT_GT(10 * close, 9 * of);
+    }
+}
+
+TEST(NormalMap, BadInput) {
+    Mapped m = mappedFrame(6, 8);
+    m.frame.options.invalidColor[1] = -7;
+    m.frame.slots[PEL_SLOT_UV].values[2 * 700] = nan;
+    m.frame.slots[PEL_SLOT_UV_GRADIENT].values[4 * 701 + 2] = nan;
+    m.frame.slots[PEL_SLOT_TANGENT].values[4 * 702] = nan;
+    const auto shown = shadeMapped(m, {1, 2});
+    for (size_t i = 0; i < m.frame.pixels(); ++i) {
+        EXPECT_TRUE(std::isfinite(shown[3 * i])) << i;
+        EXPECT_EQ(shown[3 * i + 1] == -7, i >= 700 && i <= 702) << i;
+    }
+    const auto refused = [&](PelError code, const char* word, auto change) {
+        Mapped bad = mappedFrame(6, 8);
+        Shader shader(device());
+        const Buffer map(device(), bad.texels), target(device(), bad.frame.pixels() * 12);
+        auto levels = descriptions(bad, map);
+        uint32_t id = 1;
+        change(bad, levels, id);
+        try {
+            setFrame(device(), shader, bad.frame, tables());
+            shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, bad.frame.width, bad.frame.height));
+            shader.setNormalMap(id, levels).commit();
+            ADD_FAILURE() << "no error about " << word;
+        } catch (const pellucid::Error& e) {
+            EXPECT_EQ(e.code(), code) << e.what();
+            EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << "\"" << word << "\" in: " << e.what();
+        }
+    };
+    using Levels = std::vector<PelImageDesc>;
+    refused(PEL_ERROR_INVALID_ARGUMENT, "material 9", [](Mapped&, Levels&, uint32_t& id) { id = 9; });
+    refused(PEL_ERROR_INVALID_ARGUMENT, "4 x 4", [](Mapped&, Levels& l, uint32_t&) { l[1].width = 3; });
+    refused(PEL_ERROR_INVALID_ARGUMENT, "another format",
+            [](Mapped&, Levels& l, uint32_t&) { l[1].format = PEL_FORMAT_RGBA8_UNORM; });
+    refused(PEL_ERROR_INVALID_ARGUMENT, "R32F", [](Mapped&, Levels& l, uint32_t&) { l[0].format = PEL_FORMAT_R32F; });
+    refused(PEL_ERROR_INVALID_ARGUMENT, "17 levels", [](Mapped&, Levels& l, uint32_t&) { l.resize(17, l[0]); });
+    refused(PEL_ERROR_INVALID_ARGUMENT, "UV image", [](Mapped& b, Levels&, uint32_t&) { b.frame.slots[PEL_SLOT_UV] = {}; });
+    refused(PEL_ERROR_INVALID_ARGUMENT, "tangent image",
+            [](Mapped& b, Levels&, uint32_t&) { b.frame.slots[PEL_SLOT_TANGENT] = {}; });
+    refused(PEL_ERROR_INVALID_ARGUMENT, "uvScale",
+            [](Mapped& b, Levels&, uint32_t&) { b.frame.materials[1].uvScale = 0; });
+}
+
+TEST(NormalMap, BytesDecodeToTheSame) {
+    Mapped m = mappedFrame(7, 16);
+    std::vector<uint8_t> bytes;
+    for (size_t i = 0, at = 0; i < m.levels.size(); ++i)
+        for (Vec3& v : m.levels[i].texels) {
+            for (int c = 0; c < 3; ++c, ++at) {
+                bytes.push_back(uint8_t(std::lround(std::clamp((v[c] + 1) / 2, 0.0, 1.0) * 255)));
+                v[c] = m.texels[at] = float(2 * bytes.back() / 255.0 - 1);
+            }
+            bytes.push_back(3);
+        }
+    Shader shader(device());
+    setFrame(device(), shader, m.frame, tables());
+    const Buffer map(device(), bytes), target(device(), m.frame.pixels() * 12);
+    auto levels = descriptions(m, map);
+    for (PelImageDesc& level : levels) level.format = PEL_FORMAT_RGBA8_UNORM, level.byteOffset = level.byteOffset / 12 * 4;
+    shader.setNormalMap(1, levels).setNormalMap(2, levels);
+    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, m.frame.width, m.frame.height));
+    shader.commit().execute();
+    const auto shown = target.readAll<float>();
+    for (size_t i = 0; i < m.frame.pixels(); ++i)
+        if (m.frame.slots[PEL_SLOT_MATERIAL].values[i] != 0)
+            EXPECT_LE(difference(shownNormal(shown, i), mappedTruth(m, i)), tolerance::mappedNormal) << i;
+}
+
+}  // namespace
