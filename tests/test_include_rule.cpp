@@ -24,11 +24,12 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/api", {"kernels/shared", "host/include/pellucid", "host/cl", "host/core", "host/ops"}},
     {"host/io", {"host/include/pellucid"}},
     {"host/sample", {"host/include/pellucid"}},
-    {"bindings/cli", {"host/include/pellucid", "host/io", "host/sample"}},
+    {"bindings/bench", {"host/include/pellucid", "tests/reference"}},
+    {"bindings/cli", {"host/include/pellucid", "host/io", "host/sample", "bindings/bench"}},
     {"bindings/python", {"host/include/pellucid"}},
     {"examples", {"host/include/pellucid"}},
     {"bench", {"host/include/pellucid", "host/io", "host/sample", "tests/reference", "tests"}},
-    {"tests", {"host/include/pellucid", "host/io", "host/sample", "tests/reference"}},
+    {"tests", {"host/include/pellucid", "host/io", "host/sample", "bindings/bench", "tests/reference"}},
     {"tests/reference", {}},
 };
 
@@ -44,7 +45,7 @@ std::string layerOf(const fs::path& relative) {
 // Where an include lands inside the project, or "" for headers from elsewhere.
 std::string resolve(const fs::path& from, const std::string& included) {
     for (const fs::path& base : {from.parent_path(), root / "host", root / "kernels", root / "host/include",
-                                 root / "tests", root / "bench"}) {
+                                 root / "tests", root / "bindings", root / "bench"}) {
         std::error_code error;
         if (fs::exists(base / included, error))
             return layerOf(fs::relative(fs::canonical(base / included), root));

@@ -9,7 +9,8 @@
 
 namespace pellucid::cli {
 
-enum ExitCode { exitDone = 0, exitWrongUse = 2, exitBadInput = 3, exitNoDevice = 4 };
+// exitWorse: `bench compare` found something slower or less accurate.
+enum ExitCode { exitDone = 0, exitWorse = 1, exitWrongUse = 2, exitBadInput = 3, exitNoDevice = 4 };
 
 // Wrong use that only shows once the arguments are looked at together.
 class UsageError : public std::runtime_error {
@@ -68,5 +69,6 @@ void addProfile(CLI::App& app);
 void addBatch(CLI::App& app);
 void addShade(CLI::App& app);
 void addDemo(CLI::App& app);
+void addBench(CLI::App& app);
 
 }  // namespace pellucid::cli

@@ -40,12 +40,15 @@ int main(int argc, char** argv) {
     addBatch(app);
     addShade(app);
     addDemo(app);
+    addBench(app);
     try {
         checkSubcommand(app, argc, argv);
         app.parse(argc, argv);
         return exitDone;
     } catch (const CLI::Success& e) {
         return app.exit(e);  // --help and --version
+    } catch (const CLI::RuntimeError& e) {
+        return e.get_exit_code();  // a subcommand's own
     } catch (const CLI::ParseError& e) {
         app.exit(e);
         return exitWrongUse;

@@ -1,0 +1,233 @@
+#include "measure.h"
+
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <thread>
+
+namespace pellucid::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double milliseconds() {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+struct Running {
+    Json entry;
+    Case work;
+    int repeats = 1;  // runs per sample, so that a sample is long against the clock
+    std::vector<double> wall, device;
+};
+
+void sample(const Device& device, Running& r) {
+    const double before = device.stats().kernelMilliseconds, start = milliseconds();
+    for (int i = 0; i < r.repeats; ++i) r.work.run();
+    const double end = milliseconds();
+    r.wall.push_back((end - start) / r.repeats);
+    r.device.push_back((device.stats().kernelMilliseconds - before) / r.repeats);
+}
+
+// A number, or null where there is none: JSON has no NaN.
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json();
+}
+
+// The pellucid command again in an empty cache of every driver known here, then in the cache that this left.
+void measureFirstUse(const Request& request, Json& report) {
+    if (request.command.empty()) return;
+    const std::filesystem::path cache =
+        std::filesystem::temp_directory_path() / ("pellucid-bench-" + std::to_string(::getpid()));
+    std::string line;
+    for (const char* variable :
+         {"POCL_CACHE_DIR", "CUDA_CACHE_PATH", "MESA_SHADER_CACHE_DIR", "NEO_CACHE_DIR", "cl_cache_dir",
+          "AMD_COMGR_CACHE_DIR", "PELLUCID_CACHE_DIR"})
+        line += std::string(variable) + "='" + cache.string() + "' ";
+    line += "'" + request.command + "' bench --first-use --device '" + request.device + "' 2>/dev/null";
+    for (const char* key : {"first_use", "warm_start"}) {
+        std::filesystem::create_directories(cache);
+        FILE* pipe = ::popen(line.c_str(), "r");
+        std::string text;
+        char part[256];
+        while (pipe && std::fgets(part, sizeof part, pipe)) text += part;
+        const bool good = pipe && ::pclose(pipe) == 0;
+        const Json parsed = Json::parse(text, nullptr, false);
+        report[key] = good && !parsed.is_discarded() ? parsed : Json();
+    }
+    std::error_code ignored;
+    std::filesystem::remove_all(cache, ignored);
+}
+
+Json summary(const Running& r) {
+    Json e = r.entry;
+    const double time = median(r.wall);
+    e["runs"] = r.wall.size() * size_t(r.repeats);
+    e["samples"] = r.wall.size();
+    e["median_ms"] = time;
+    e["mad_ms"] = medianDeviation(r.wall);
+    e["device_ms"] = median(r.device);
+    e["per_second"] = r.work.items / time * 1e3;
+    if (r.work.bytes > 0) e["bytes"] = r.work.bytes;
+    if (r.work.operations > 0) e["operations"] = r.work.operations;
+    return e;
+}
+
+}  // namespace
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0;
+    std::sort(values.begin(), values.end());
+    const size_t half = values.size() / 2;
+    return values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+double medianDeviation(const std::vector<double>& values) {
+    const double middle = median(values);
+    std::vector<double> away;
+    for (const double v : values) away.push_back(std::abs(v - middle));
+    return median(away);
+}
+
+Json measureDevice(const Request& request) {
+    const auto say = [&](const std::string& text) {
+        if (request.progress) request.progress(text);
+    };
+    const Device device(request.device);
+    const PelDeviceInfo info = device.info();
+    Json report = {{"name", info.name},
+                   {"platform", info.platform},
+                   {"version", info.version},
+                   {"driver", info.driver},
+                   {"type", info.type == PEL_DEVICE_GPU   ? "gpu"
+                            : info.type == PEL_DEVICE_CPU ? "cpu"
+                                                          : "accelerator"},
+                   {"compute_units", info.computeUnits},
+                   {"clock_mhz", info.clockMhz},
+                   {"math_width", info.mathWidth}};
+    say("first use and warm start");
+    measureFirstUse(request, report);
+
+    std::vector<Factory> factories;
+    for (const auto& from : {deviceCases, meshCases, tableCases, shadingCases})
+        for (Factory& f : from(device, Size{request.quick})) factories.push_back(std::move(f));
+    std::vector<Running> running;
+    Json failed = Json::array();
+    for (const Factory& f : factories) {
+        const auto named = [&](const std::string& part) { return f.name.find(part) != std::string::npos; };
+        if (f.group != "device" && !request.only.empty() &&
+            std::none_of(request.only.begin(), request.only.end(), named))
+            continue;
+        say(f.name + ": prepared, compared with the truth");
+        Running r;
+        r.entry = {{"name", f.name}, {"group", f.group}};
+        try {
+            r.work = f.make();
+            r.entry["what"] = r.work.what;
+            r.entry["items"] = r.work.items;
+            r.entry["unit"] = r.work.unit;
+            r.work.run();
+            if (r.work.error) {
+                const Error e = r.work.error();
+                r.entry["error_max"] = number(e.max);
+                r.entry["error_rms"] = number(e.rms);
+                r.entry["truth"] = r.work.truth;
+            }
+            const double start = milliseconds();
+            r.work.run();
+            const double once = std::max(milliseconds() - start, 1e-3);
+            r.repeats = int(std::clamp((request.quick ? 2.0 : 10.0) / once, 1.0, 100.0));
+            running.push_back(std::move(r));
+        } catch (const std::exception& e) {
+            r.entry["failed"] = e.what();
+            failed.push_back(r.entry);
+        }
+        if (request.cancelled && request.cancelled())
+            throw pellucid::Error(PEL_ERROR_CANCELLED, "the benchmark was cancelled");
+    }
+    // Every round runs each case once, in an order of its own: machines drift, and all cases drift with them.
+    const int rounds = request.quick ? 5 : 15;
+    std::mt19937 random(1);
+    std::vector<size_t> order(running.size());
+    for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+    for (int round = 0; round < rounds; ++round) {
+        say("round " + std::to_string(round + 1) + " of " + std::to_string(rounds));
+        std::shuffle(order.begin(), order.end(), random);
+        for (const size_t i : order) {
+            sample(device, running[i]);
+            if (request.cancelled && request.cancelled())
+                throw pellucid::Error(PEL_ERROR_CANCELLED, "the benchmark was cancelled");
+        }
+    }
+    double bandwidth = 0, peak = 0;
+    for (const Running& r : running) {
+        if (r.entry["name"] == copyName) bandwidth = r.work.bytes / median(r.wall) * 1e3;
+        if (r.entry["name"] == arithmeticName) peak = r.work.operations / median(r.wall) * 1e3;
+    }
+    report["copy_bytes_per_second"] = bandwidth;
+    report["operations_per_second"] = peak;
+    Json list = Json::array();
+    for (const Running& r : running) {
+        Json e = summary(r);
+        const double seconds = e["median_ms"].get<double>() * 1e-3;
+        if (r.work.bytes > 0 && bandwidth > 0) e["bandwidth_share"] = r.work.bytes / seconds / bandwidth;
+        if (r.work.operations > 0 && peak > 0) e["arithmetic_share"] = r.work.operations / seconds / peak;
+        list.push_back(e);
+    }
+    for (const Json& e : failed) list.push_back(e);
+    report["operations"] = list;
+    return report;
+}
+
+Json firstUse(const std::string& selector) {
+    const double start = milliseconds();
+    const Device device(selector);
+    const double opened = milliseconds();
+    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    desc.width = desc.height = 64;
+    const Lut lut(device, desc);
+    const double table = milliseconds();
+    const std::vector<float> normals(64 * 64 * 3, 0.57735027f), curvature(64 * 64, 0.1f);
+    const Buffer target(device, normals.size() * sizeof(float));
+    Shader shader(device);
+    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, 64, 64));
+    shader.set(PEL_SLOT_NORMAL_SHADING, imageDesc(Buffer(device, normals), PEL_FORMAT_RGB32F, 64, 64));
+    shader.set(PEL_SLOT_CURVATURE, imageDesc(Buffer(device, curvature), PEL_FORMAT_R32F, 64, 64));
+    shader.setMaterial(1, pelMaterialDefaults(), lut).set(std::vector<PelLight>{pelLightDefaults()});
+    shader.commit().execute();
+    const double shaded = milliseconds();
+    return {{"device_ms", opened - start},
+            {"table_ms", table - opened},
+            {"shade_ms", shaded - table},
+            {"total_ms", shaded - start}};
+}
+
+Json describeHost() {
+    utsname system{};
+    ::uname(&system);
+    std::string cpu;
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line) && cpu.empty();)
+        if (line.starts_with("model name")) cpu = line.substr(line.find(':') + 2);
+    char date[32] = "";
+    const std::time_t now = std::time(nullptr);
+    std::strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", std::gmtime(&now));
+    const uint32_t v = pelVersion();
+    return {{"format", 1},
+            {"pellucid",
+             std::to_string(v / 10000) + "." + std::to_string(v / 100 % 100) + "." + std::to_string(v % 100)},
+            {"date", date},
+            {"cpu", cpu},
+            {"cores", std::thread::hardware_concurrency()},
+            {"system", std::string(system.sysname) + " " + system.machine}};
+}
+
+}  // namespace pellucid::bench

@@ -1,0 +1,38 @@
+// Runs cases on a device and reports them as JSON.
+#pragma once
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "case.h"
+
+namespace pellucid::bench {
+
+double median(std::vector<double> values);                  // of none: 0
+double medianDeviation(const std::vector<double>& values);  // median absolute deviation from the median
+
+struct Request {
+    std::string device;             // selector
+    bool quick = false;             // small sizes, few repetitions
+    std::vector<std::string> only;  // parts of names; empty: every operation
+    std::string
+        command;  // path of the pellucid command, for the first use in a process of its own; "": not measured
+    std::function<void(const std::string&)> progress;  // a line now and then
+    std::function<bool()> cancelled;
+};
+
+// {"name", "platform", "version", "driver", ..., "copy_bytes_per_second", "operations_per_second",
+// "first_use_ms", "warm_start_ms", "operations": [{"name", "group", "what", "items", "unit", "runs",
+// "median_ms", "mad_ms", "device_ms", "bytes", "bandwidth_share", "operations", "arithmetic_share",
+// "error_max", "error_rms", "truth"} or {..., "failed": message}]}
+nlohmann::ordered_json measureDevice(const Request& request);
+
+// What a process pays once: {"device_ms", "table_ms", "shade_ms", "total_ms"} from nothing to the first table
+// and frame.
+nlohmann::ordered_json firstUse(const std::string& device);
+
+// This machine and this build.
+nlohmann::ordered_json describeHost();
+
+}  // namespace pellucid::bench

@@ -1,0 +1,166 @@
+// Mesh data on a torus with moved vertices, whose curvature is known in closed form.
+#include <random>
+
+#include "case.h"
+#include "reference/surfaces.h"
+
+namespace pellucid::bench {
+namespace {
+
+struct Torus {
+    reference::AnalyticMesh truth;  // positions and normals as float32 holds them
+    std::vector<float> positions, normals, uvs;
+    std::vector<uint32_t> indices;
+    MeshTopology topology;
+    Buffer positionBuffer, normalBuffer, uvBuffer, scalars, vectors;
+    uint32_t vertices = 0;
+
+    PelMeshTopologyDesc describe() const {
+        PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
+        desc.numVertices = vertices;
+        desc.indices = indices.data();
+        desc.numIndices = indices.size();
+        return desc;
+    }
+    Torus(const Device& device, int columns)
+        : truth(reference::tessellate(reference::torusSurface(30, 10), columns, columns / 2,
+                                      reference::Tessellation::irregular)) {
+        reference::Mesh& mesh = truth.mesh;
+        vertices = uint32_t(mesh.positions.size());
+        const auto round = [](reference::Vec3& v, std::vector<float>& to) {
+            for (int i = 0; i < 3; ++i) {
+                to.push_back(float(v[i]));
+                v[i] = double(to.back());
+            }
+        };
+        for (reference::Vec3& p : mesh.positions) round(p, positions);
+        for (reference::Vec3& n : mesh.normals) round(n, normals);
+        for (reference::Vec2& t : mesh.uvs) {
+            uvs.push_back(float(t.x)), uvs.push_back(float(t.y));
+            t = {double(uvs[uvs.size() - 2]), double(uvs.back())};
+        }
+        for (const reference::Triangle& t : mesh.triangles)
+            indices.insert(indices.end(), {uint32_t(t[0]), uint32_t(t[1]), uint32_t(t[2])});
+        topology = MeshTopology(device, describe());
+        positionBuffer = Buffer(device, positions);
+        normalBuffer = Buffer(device, normals);
+        if (!uvs.empty()) uvBuffer = Buffer(device, uvs);
+        scalars = Buffer(device, vertices * sizeof(float));
+        vectors = Buffer(device, vertices * 3 * sizeof(float));
+    }
+    PelVertexView view(const Buffer& buffer) const { return vertexView(buffer, vertices); }
+};
+
+Error against(const Buffer& result, const std::vector<double>& truth) {
+    const std::vector<float> values = result.readAll<float>();
+    double largest = 0;
+    ErrorSum sum;
+    for (size_t i = 0; i < truth.size(); ++i) {
+        sum.add(values[i] - truth[i]);
+        largest = std::max(largest, std::abs(truth[i]));
+    }
+    return sum.result(largest);
+}
+
+}  // namespace
+
+std::vector<Factory> meshCases(const Device& device, Size size) {
+    const auto made = std::make_shared<std::shared_ptr<Torus>>();
+    const auto torus = [=] {
+        if (!*made) *made = std::make_shared<Torus>(device, size.quick ? 200 : 800);
+        return *made;
+    };
+    const auto begin = [](const Torus& t, const std::string& more) {
+        Case c;
+        c.what = std::to_string(t.vertices) + " vertices" + more;
+        c.items = t.vertices;
+        c.unit = "vertices";
+        return c;
+    };
+    // Positions, normals, two triangles per vertex, one result.
+    constexpr double bytes = 12 + 12 + 24 + 4;
+    const auto curvature = [=](PelCurvatureEstimator estimator, uint32_t passes, bool exact,
+                               double operations, std::function<std::vector<double>(const Torus&)> truth,
+                               const char* of) {
+        return [=] {
+            const auto t = torus();
+            Case c = begin(*t, passes ? ", " + std::to_string(passes) + " smoothing passes" : "");
+            PelCurvatureParams params = pelCurvatureParamsDefaults();
+            params.estimator = estimator;
+            params.smoothingPasses = passes;
+            c.bytes = (bytes + passes * (24.0 + 8)) * t->vertices;
+            c.operations = (operations + passes * 13.0) * t->vertices;
+            c.run = [=] {
+                t->topology.curvature(params, t->view(t->positionBuffer), t->view(t->normalBuffer),
+                                      t->view(t->scalars));
+            };
+            c.error = [=] { return against(t->scalars, truth(*t)); };
+            c.truth = std::string(of) + (exact ? "" : ", the mesh's coarseness included") +
+                      "; relative to the largest";
+            return c;
+        };
+    };
+    const auto edge = [](const Torus& t) { return reference::edgeCurvature(t.truth.mesh); };
+    const auto smooth = [](const Torus& t) {
+        return reference::smoothed(t.truth.mesh, reference::edgeCurvature(t.truth.mesh), 2);
+    };
+    const auto tensor = [](const Torus& t) {
+        std::vector<double> values;
+        for (const auto& k : reference::tensorCurvature(t.truth.mesh)) values.push_back(std::abs(k.mean()));
+        return values;
+    };
+    const auto surface = [](const Torus& t) {
+        std::vector<double> values;
+        for (const auto& p : t.truth.truth) values.push_back(std::abs(p.curvature.mean()));
+        return values;
+    };
+    const auto normals = [=] {
+        const auto t = torus();
+        Case c = begin(*t, "");
+        c.bytes = (12.0 + 24 + 12) * t->vertices;
+        c.operations = 2.0 * 70 * t->vertices;  // per triangle: three angles and a cross product
+        c.run = [=] { t->topology.normals(t->view(t->positionBuffer), t->view(t->vectors)); };
+        c.error = [=] {
+            const std::vector<reference::Vec3> truth = reference::estimatedNormals(t->truth.mesh);
+            const std::vector<float> values = t->vectors.readAll<float>();
+            ErrorSum sum;
+            for (size_t i = 0; i < values.size(); ++i) sum.add(values[i] - truth[i / 3][int(i % 3)]);
+            return sum.result();
+        };
+        c.truth = "double precision; absolute";
+        return c;
+    };
+    const auto uvScale = [=] {
+        const auto t = torus();
+        const auto result = std::make_shared<float>();
+        Case c = begin(*t, "");
+        c.bytes = (12.0 + 8 + 24) * t->vertices;
+        c.operations = 2.0 * 40 * t->vertices;
+        c.run = [=] { *result = t->topology.uvScale(t->view(t->positionBuffer), t->view(t->uvBuffer)); };
+        c.error = [=] {
+            const double truth = reference::uvScale(t->truth.mesh), e = std::abs(*result - truth) / truth;
+            return Error{e, e};
+        };
+        c.truth = "double precision; relative";
+        return c;
+    };
+    const auto topology = [=] {
+        const auto t = torus();
+        Case c = begin(*t, ", on the host");
+        c.run = [=] { MeshTopology(device, t->describe()); };
+        return c;
+    };
+    return {{"topology", "mesh", topology},
+            {"normals", "mesh", normals},
+            {"uv-scale", "mesh", uvScale},
+            {"curvature-edge", "mesh",
+             curvature(PEL_CURVATURE_EDGE, 0, true, 3 * 18, edge, "the estimator in double precision")},
+            {"curvature-edge-smoothed", "mesh",
+             curvature(PEL_CURVATURE_EDGE, 2, true, 3 * 18, smooth, "the estimator in double precision")},
+            {"curvature-tensor", "mesh",
+             curvature(PEL_CURVATURE_TENSOR, 0, true, 2 * 180, tensor, "the estimator in double precision")},
+            {"curvature-quadric", "mesh",
+             curvature(PEL_CURVATURE_QUADRIC, 0, false, 18 * 65 + 150, surface, "the torus itself")}};
+}
+
+}  // namespace pellucid::bench

@@ -1,0 +1,176 @@
+// pellucid bench: every operation on every device, its time and its error; bench compare: two reports against
+// each other.
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "bench/compare.h"
+#include "bench/measure.h"
+#include "bench/page.h"
+#include "command.h"
+#include "io/atomic_file.h"
+#include "io/file_error.h"
+
+namespace pellucid::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Arguments {
+    std::vector<std::string> devices, only;
+    std::string output, before, after;
+    bool quick = false, json = false, firstUse = false;
+};
+
+std::atomic<bool> stopped{false};
+
+void writeText(const std::string& path, const std::string& text) {
+    io::AtomicFile file(path);
+    file.write(text.data(), text.size());
+    file.commit();
+}
+
+// Numbers of the devices to measure: those asked for, or all but simulators.
+std::vector<std::string> chosenDevices(const Arguments& a) {
+    if (!a.devices.empty()) return a.devices;
+    std::vector<std::string> chosen;
+    for (const PelDeviceInfo& d : Device::all()) {
+        if (std::string(d.platform).find("Oclgrind") != std::string::npos)
+            std::fprintf(stderr, "%u: %s is left out; --device %u measures it\n", d.index, d.name, d.index);
+        else
+            chosen.push_back(std::to_string(d.index));
+    }
+    if (chosen.empty()) chosen.push_back("");  // the library says what is missing
+    return chosen;
+}
+
+void measure(const Arguments& a) {
+    if (a.firstUse) {
+        std::cout << bench::firstUse(a.devices.empty() ? "" : a.devices[0]).dump() << std::endl;
+        return;
+    }
+    if (a.output.empty()) throw UsageError("-o is needed: a folder for bench.json and bench.html");
+    const std::string jsonPath = a.output + "/bench.json", htmlPath = a.output + "/bench.html";
+    const std::vector<std::string> chosen = chosenDevices(a);
+    try {
+        std::filesystem::create_directories(a.output);
+        io::checkWritable(jsonPath);
+    } catch (const std::exception& e) {
+        throw UsageError("-o " + a.output + ": " + e.what());
+    }
+    std::signal(SIGINT, [](int signal) {
+        stopped = true;
+        std::signal(signal, SIG_DFL);
+    });
+    const auto start = std::chrono::steady_clock::now();
+    Json report = {{"host", bench::describeHost()}, {"quick", a.quick}, {"devices", Json::array()}};
+    std::string names;
+    double deviceMilliseconds = 0;
+    for (const std::string& selector : chosen) {
+        bench::Request request;
+        request.device = selector;
+        request.quick = a.quick;
+        request.only = a.only;
+        request.command = std::filesystem::read_symlink("/proc/self/exe").string();
+        request.progress = [&](const std::string& text) {
+            std::fprintf(stderr, "device %s: %s\n", selector.c_str(), text.c_str());
+        };
+        request.cancelled = [] { return stopped.load(); };
+        report["devices"].push_back(bench::measureDevice(request));
+        const Json& d = report["devices"].back();
+        names += (names.empty() ? "" : ", ") + d.at("name").get<std::string>();
+        for (const Json& e : d.at("operations"))
+            deviceMilliseconds += e.value("device_ms", 0.0) * e.value("runs", 0.0);
+    }
+    writeText(jsonPath, report.dump(1) + "\n");
+    writeText(htmlPath, bench::htmlPage(report));
+    const std::chrono::duration<double, std::milli> total = std::chrono::steady_clock::now() - start;
+    const Json said = {{"device", names},           {"report", jsonPath},
+                       {"page", htmlPath},          {"device_ms", deviceMilliseconds},
+                       {"total_ms", total.count()}, {"warnings", Json::array()}};
+    if (a.json) {
+        std::cout << said.dump(2) << std::endl;
+        return;
+    }
+    for (const Json& d : report["devices"]) {
+        std::printf("%s\n  %-28s %10s %9s %10s %10s %12s\n", d.at("name").get<std::string>().c_str(),
+                    "operation", "median ms", "MAD", "bandwidth", "arithmetic", "largest error");
+        for (const Json& e : d.at("operations")) {
+            std::printf("  %-28s", e.at("name").get<std::string>().c_str());
+            if (e.contains("failed")) {
+                std::printf(" could not be done: %s\n", e["failed"].get<std::string>().c_str());
+                continue;
+            }
+            const auto share = [&](const char* key) {
+                if (e.contains(key))
+                    std::printf(" %8.1f %%", 100 * e[key].get<double>());
+                else
+                    std::printf(" %10s", "");
+            };
+            std::printf(" %10.3f %9.3f", e["median_ms"].get<double>(), e["mad_ms"].get<double>());
+            share("bandwidth_share");
+            share("arithmetic_share");
+            if (e.contains("error_max") && e["error_max"].is_number())
+                std::printf(" %12.2e", e["error_max"].get<double>());
+            std::printf("\n");
+        }
+    }
+    std::printf("%s\n%s\n", jsonPath.c_str(), htmlPath.c_str());
+}
+
+Json readReport(const std::string& path) {
+    std::ifstream file(path);
+    if (!file) throw InputError(path + ": cannot be read");
+    Json report = Json::parse(file, nullptr, false);
+    if (report.is_discarded() || !report.is_object() || !report.contains("devices") ||
+        !report["devices"].is_array())
+        throw InputError(path + ": not a report of `pellucid bench` (its bench.json)");
+    return report;
+}
+
+void compare(const Arguments& a) {
+    const Json before = readReport(a.before), after = readReport(a.after);
+    Json result;
+    try {
+        result = bench::compareReports(before, after);
+    } catch (const nlohmann::json::exception& e) {
+        throw InputError(a.before + " or " + a.after + ": not whole: " + e.what());
+    }
+    if (a.json)
+        std::cout << result.dump(2) << std::endl;
+    else
+        std::cout << bench::describeComparison(result) << std::flush;
+    if (result.at("slower").get<int>() > 0 || result.at("less_accurate").get<int>() > 0)
+        throw CLI::RuntimeError(exitWorse);
+}
+
+}  // namespace
+
+void addBench(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("bench", "Measure every operation: time, share of the device's limits, error");
+    auto a = std::make_shared<Arguments>();
+    command->add_option("-o,--output", a->output, "folder for bench.json and bench.html");
+    command->add_option("--device", a->devices,
+                        "number, name or type; may be given several times (default: all but simulators)");
+    command->add_option("--only", a->only,
+                        "part of an operation's name; may be given several times (default: all)");
+    command->add_flag("--quick", a->quick, "small sizes and few repetitions: some seconds");
+    command->add_flag("--json", a->json, "print one JSON object on standard output");
+    command->add_flag("--first-use", a->firstUse,
+                      "time from nothing to the first table and frame, in this process alone");
+    CLI::App* two = command->add_subcommand(
+        "compare", "Two reports: what became slower, faster or less accurate (exit code 1)");
+    two->add_option("old", a->before, "bench.json")->required();
+    two->add_option("new", a->after, "bench.json")->required();
+    two->add_flag("--json", a->json, "print one JSON object on standard output");
+    two->callback([a] { compare(*a); });
+    command->callback([a, two] {
+        if (!two->parsed()) measure(*a);
+    });
+}
+
+}  // namespace pellucid::cli

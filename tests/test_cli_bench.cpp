@@ -1,0 +1,125 @@
+// `pellucid bench`: a report with times, shares and errors, its page, and verdicts on two reports.
+#include <cmath>
+
+#include "bench/compare.h"
+#include "cli_run.h"
+#include "tolerances.h"
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+class BenchCommand : public CommandTest {};
+
+// A report of one device with one operation.
+std::string report(double median, double mad, double error, double copy = 1e10,
+                   const std::string& name = "table-arc") {
+    const Json json = {{"host", {{"pellucid", "0"}, {"date", ""}, {"cpu", ""}}},
+                       {"devices",
+                        {{{"name", "D"},
+                          {"platform", "P"},
+                          {"copy_bytes_per_second", copy},
+                          {"operations_per_second", 1e11},
+                          {"operations",
+                           {{{"name", name},
+                             {"group", "tables"},
+                             {"items", 100},
+                             {"samples", 9},
+                             {"median_ms", median},
+                             {"mad_ms", mad},
+                             {"error_max", error}}}}}}}};
+    return json.dump();
+}
+
+}  // namespace
+
+TEST_F(BenchCommand, MeasuresTimeShareAndError) {
+    const Result result = run({"bench", "--quick", "--only", "table-sh", "--only", "shade-plain", "--only",
+                               "curvature-edge", "-o", path("out"), "--json"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    expectReport(result.json());
+    EXPECT_EQ(result.json().at("report"), path("out") + "/bench.json");
+    const auto report = nlohmann::json::parse(read(path("out/bench.json")));
+    EXPECT_EQ(report.at("quick"), true);
+    ASSERT_GE(report.at("devices").size(), 1u);
+    const auto& device = report.at("devices")[0];
+    EXPECT_GT(device.at("copy_bytes_per_second").get<double>(), 1e8);
+    EXPECT_GT(device.at("operations_per_second").get<double>(), 1e8);
+    for (const char* key : {"name", "platform", "version", "driver"}) EXPECT_NE(device.at(key), "");
+    // A process that starts from nothing, and again from what that left.
+    EXPECT_GT(device.at("first_use").at("total_ms").get<double>(), 0.0);
+    EXPECT_GT(device.at("warm_start").at("total_ms").get<double>(), 0.0);
+    std::vector<std::string> names;
+    for (const auto& e : device.at("operations")) {
+        const std::string name = e.at("name");
+        names.push_back(name);
+        ASSERT_FALSE(e.contains("failed")) << e;
+        EXPECT_GT(e.at("median_ms").get<double>(), 0.0) << name;
+        EXPECT_GE(e.at("samples").get<int>(), 5) << name;
+        if (e.at("group") == "device") continue;
+        // Right answers, and no faster than the device itself. Small memory may run in a cache, twice as fast
+        // and more.
+        EXPECT_LT(e.at("error_max").get<double>(), tolerance::shadeSum) << name;
+        EXPECT_GE(e.at("error_max").get<double>(), e.at("error_rms").get<double>()) << name;
+        EXPECT_GT(e.at("bandwidth_share").get<double>(), 0.0) << name;
+        EXPECT_LT(e.at("bandwidth_share").get<double>(), 20.0) << name;
+        if (e.contains("arithmetic_share")) {
+            EXPECT_LT(e.at("arithmetic_share").get<double>(), 1.0) << name;
+        }
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"copy", "arithmetic", "curvature-edge",
+                                               "curvature-edge-smoothed", "table-shadow", "shade-plain"}));
+    const std::string page = read(path("out/bench.html"));
+    for (const std::string& name : names) EXPECT_TRUE(contains(page, "<td>" + name + "</td>"));
+    EXPECT_TRUE(contains(page, "<svg"));
+    for (const char* outside : {"http:", "https:", "<script", "<link", "<img"})
+        EXPECT_FALSE(contains(page, outside)) << outside;
+    // A report is the same as itself.
+    const Result same = run({"bench", "compare", path("out/bench.json"), path("out/bench.json"), "--json"});
+    EXPECT_EQ(same.exitCode, 0) << same.err;
+    EXPECT_EQ(same.json().at("same"), 4);
+}
+
+TEST_F(BenchCommand, VerdictsSurviveNoise) {
+    struct Row {
+        const char* what;
+        std::string before, after;
+        const char* verdict;
+        int exitCode;
+    };
+    const Row rows[] = {
+        {"a twentieth is nothing", report(10, 0.01, 1e-6), report(10.4, 0.01, 1e-6), "same", 0},
+        {"a fifth over a steady clock", report(10, 0.01, 1e-6), report(12, 0.01, 1e-6), "slower", 1},
+        {"and the other way", report(12, 0.01, 1e-6), report(10, 0.01, 1e-6), "faster", 0},
+        {"a fifth within the scatter", report(10, 1, 1e-6), report(12, 1, 1e-6), "same", 0},
+        {"twice, beyond the scatter", report(10, 1, 1e-6), report(21, 1, 1e-6), "slower", 1},
+        {"a fifth, but copies slowed down as well", report(10, 0.01, 1e-6, 1e10),
+         report(12, 0.01, 1e-6, 0.8e10), "same", 0},
+        {"a larger error", report(10, 0.01, 1e-6), report(5, 0.01, 2e-6), "less accurate", 1},
+        {"an error of rounding", report(10, 0.01, 1e-8), report(10, 0.01, 5e-8), "same", 0},
+        {"an error that became NaN", report(10, 0.01, 1e-6), report(10, 0.01, NAN), "less accurate", 1},
+        {"another operation", report(10, 0.01, 1e-6), report(10, 0.01, 1e-6, 1e10, "table-ring"), "only new",
+         0},
+    };
+    for (const Row& row : rows) {
+        const auto result = pellucid::bench::compareReports(Json::parse(row.before), Json::parse(row.after));
+        EXPECT_EQ(result.at("slower").get<int>() + result.at("less_accurate").get<int>(), row.exitCode)
+            << row.what;
+        EXPECT_EQ(result.at("devices")[0].at("operations")[0].at("verdict"), row.verdict) << row.what;
+    }
+    write("old.json", report(10, 0.01, 1e-6));
+    write("new.json", report(12, 0.01, 1e-6));
+    const Result text = run({"bench", "compare", path("old.json"), path("new.json")});
+    EXPECT_EQ(text.exitCode, 1);
+    EXPECT_TRUE(contains(text.out, "1 slower"));
+}
+
+TEST_F(BenchCommand, SaysWhatIsWrong) {
+    expectRefused({"bench", "--quick"}, 2, "-o is needed");
+    expectRefused({"bench", "-o", "/proc/nowhere"}, 2, "/proc/nowhere");
+    expectRefused({"bench", "compare", path("none.json"), path("none.json")}, 3, "none.json: cannot be read");
+    write("a.json", "{}");
+    expectRefused({"bench", "compare", path("a.json"), path("a.json")}, 3, "not a report");
+    expectRefused({"bench", "compare", write("b.json", "{\"devices\":[{}]}"), path("b.json")}, 3,
+                  "not whole");
+}
