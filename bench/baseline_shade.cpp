@@ -81,7 +81,7 @@ float thickness(const ShadeFrame& f, const ShadeSettings& s, V p, V ng) {
 }
 
 V shadePixel(const ShadeFrame& f, const ShadeSettings& s, const ShadeTable& curvature,
-             const ShadeTable& shadow, size_t i) {
+             const ShadeTable& shadow, bool skipping, size_t i) {
     const V l = from(s.toLight), ng = load(f.geometric, i), n = load(f.shading, i), nb = load(f.blurred, i);
     const V p = load(f.position, i), albedo = load(f.albedo, i);
     const float bl = dot(nb, l), nl = dot(n, l), w = f.wide[i];
@@ -95,14 +95,14 @@ V shadePixel(const ShadeFrame& f, const ShadeSettings& s, const ShadeTable& curv
     V diffuse{irradiance(s, nb, 0), irradiance(s, between, 1), irradiance(s, n, 2)};
     V lit = direct * t;
     const float back = sat(0.3f - bl);
-    if (s.taps && back > 0) {
+    if (s.taps && (back > 0 || !skipping)) {
         const float thick = thickness(f, s, p, ng);
         lit = lit + (std::exp(-thick * thick / (2 * s.deepScatterRadius * s.deepScatterRadius)) * back) *
                         from(s.deepScatter);
     }
     diffuse = diffuse + from(s.light) * lit;
     V result = albedo * diffuse;
-    if (nl > 0) {
+    if (nl > 0 || !skipping) {
         const V v = normalize(from(s.camera) - p), h = l + v, unit = normalize(h);
         const float nh = dot(n, unit), m2 = s.roughness * s.roughness;
         if (nh > 0) {
@@ -111,7 +111,7 @@ V shadePixel(const ShadeFrame& f, const ShadeSettings& s, const ShadeTable& curv
             const float fresnel = s.f0 + (1 - s.f0) * std::pow(1 - dot(v, unit), 5.0f);
             const float k = sat(w * s.sharpening + 0.5f * (1 - s.sharpening));
             result =
-                result + (k * k * (3 - 2 * k) * s.specular * nl * lobe * fresnel / dot(h, h)) * from(s.light);
+                result + (k * k * (3 - 2 * k) * s.specular * std::max(nl, 0.0f) * lobe * fresnel / dot(h, h)) * from(s.light);
         }
     }
     return result;
@@ -120,13 +120,14 @@ V shadePixel(const ShadeFrame& f, const ShadeSettings& s, const ShadeTable& curv
 }  // namespace
 
 void shadeOpenMp(const ShadeFrame& f, const ShadeSettings& s, const ShadeTable& curvature,
-                 const ShadeTable& shadow, std::vector<float>& out) {
+                 const ShadeTable& shadow, Effort effort, std::vector<float>& out) {
+    const bool skipping = effort == Effort::Skipping;
 #pragma omp parallel for schedule(dynamic, 8)
     for (int y = 0; y < f.height; ++y)
         for (int x = 0; x < f.width; ++x) {
             const size_t i = size_t(y) * f.width + x;
             if (!f.id[i]) continue;
-            const V color = shadePixel(f, s, curvature, shadow, i);
+            const V color = shadePixel(f, s, curvature, shadow, skipping, i);
             out[3 * i] = color.x;
             out[3 * i + 1] = color.y;
             out[3 * i + 2] = color.z;

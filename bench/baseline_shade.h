@@ -33,9 +33,15 @@ struct ShadeSettings {
     std::vector<float> disk;  // 2 * taps
 };
 
+// What the loop does about terms that come out as 0.
+enum class Effort {
+    Straight,  // every term of every pixel of a material
+    Skipping,  // no taps where sat(0.3 - Nb.L) is 0, no specular where N.L <= 0, as the library
+};
+
 // out: RGB float32.
 void shadeOpenMp(const ShadeFrame& frame, const ShadeSettings& settings, const ShadeTable& curvature,
-                 const ShadeTable& shadow, std::vector<float>& out);
+                 const ShadeTable& shadow, Effort effort, std::vector<float>& out);
 
 // Images are uploaded once; run() blocks.
 class ShadePort {

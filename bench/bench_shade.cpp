@@ -2,7 +2,8 @@
 // of lights.
 //
 // Frames: `full` is a screen of folded skin, `head` a 1280 x 720 view of a ball that covers as much as the
-// demo's head.
+// demo's head, `key` and `backlit` the two views of the demo, from where `pellucid demo` left them (out/demo, or
+// PELLUCID_DEMO_DIR).
 #include <benchmark/benchmark.h>
 
 #include <pellucid/pellucid.hpp>
@@ -14,8 +15,11 @@
 #include <memory>
 
 #include "baseline_shade.h"
+#include "io/image_file.h"
+#include "io/scene_file.h"
 
 using namespace pellucid;
+using baseline::Effort;
 using baseline::ShadeFrame;
 using baseline::ShadeSettings;
 using baseline::ShadeTable;
@@ -115,9 +119,7 @@ std::vector<float> readDisk(int taps) {
     return disk;
 }
 
-// Both baselines and the library take their numbers from here.
-void fillSettings(Scene& s, int taps) {
-    ShadeSettings& b = s.settings;
+void describeScene(Scene& s, int taps) {
     const float toLight[3] = {0.8f, 0.36f, 0.48f}, camera[3] = {0, 0, 600};
     std::copy_n(toLight, 3, s.light.toLight);
     std::copy_n(camera, 3, s.camera.position);
@@ -130,16 +132,23 @@ void fillSettings(Scene& s, int taps) {
     s.material.specular = 0.8f;
     for (int i = 0; i < 9; ++i)
         for (int c = 0; c < 3; ++c) s.ambient.sh[i][c] = 0.3f / float(1 + i + c);
-    std::copy_n(toLight, 3, b.toLight);
-    std::copy_n(camera, 3, b.camera);
+}
+
+// The baselines take their numbers from what the library is given.
+void fillSettings(Scene& s) {
+    ShadeSettings& b = s.settings;
+    const int taps = int(s.material.thicknessTaps);
+    std::copy_n(s.light.toLight, 3, b.toLight);
+    std::copy_n(s.camera.position, 3, b.camera);
     std::copy_n(s.light.color, 3, b.light);
-    std::copy_n(color, 3, b.deepScatter);
-    std::copy_n(rows, 16, b.worldToShadow);
+    std::copy_n(s.material.deepScatterColor, 3, b.deepScatter);
+    std::copy_n(s.light.worldToShadow, 16, b.worldToShadow);
     const float one = 0.48860251f, two = 1.09254843f;
     const float factors[9] = {0.28209479f, one, one, one, two, two, 0.31539157f, two, 0.5f * two};
     for (int i = 0; i < 9; ++i)
-        for (int c = 0; c < 3; ++c) b.ambient[i][c] = factors[i] * s.ambient.sh[i][c];
-    b.depthRange = 250;
+        for (int c = 0; c < 3; ++c)
+            b.ambient[i][c] = factors[i] * s.ambient.sh[i][c] + (i ? 0 : s.ambient.constant[c]);
+    b.depthRange = s.light.shadowDepthRange;
     b.rowsCurvature[0] = 1 / (1 - 0.01f);
     b.rowsCurvature[1] = -0.01f / (1 - 0.01f);
     b.rowsShadow[0] = 1 / (1 / 8.0f - 0.01f);
@@ -156,27 +165,71 @@ void fillSettings(Scene& s, int taps) {
     if (taps) b.disk = readDisk(taps);
 }
 
+void makeTables(Scene& s) {
+    s.curvatureLut = Lut(device(), pelCurvatureLutDescDefaults());
+    s.shadowLut = Lut(device(), pelShadowLutDescDefaults());
+    s.curvature = {s.curvatureLut.read<float>(PEL_LUT_FLOAT), 512, 512};
+    s.shadow = {s.shadowLut.read<float>(PEL_LUT_FLOAT), 512, 512};
+    s.out.resize(s.frame.position.size());
+}
+
 std::unique_ptr<Scene> makeScene(ShadeFrame frame, int taps) {
     auto s = std::make_unique<Scene>();
     s->frame = std::move(frame);
     addShadowMap(s->frame);
-    s->curvatureLut = Lut(device(), pelCurvatureLutDescDefaults());
-    s->shadowLut = Lut(device(), pelShadowLutDescDefaults());
-    s->curvature = {s->curvatureLut.read<float>(PEL_LUT_FLOAT), 512, 512};
-    s->shadow = {s->shadowLut.read<float>(PEL_LUT_FLOAT), 512, 512};
-    fillSettings(*s, taps);
-    s->out.resize(s->frame.position.size());
+    describeScene(*s, taps);
+    fillSettings(*s);
+    makeTables(*s);
     return s;
 }
 
-enum View { full, head };
+// A view as `pellucid demo` wrote it.
+std::unique_ptr<Scene> readDemoView(const std::string& directory, const std::string& view) {
+    const io::SceneFile file = io::readScene(directory + "/" + view + ".toml");
+    const io::Image g = io::readImage(directory + "/" + view + "_gbuffer.exr");
+    auto s = std::make_unique<Scene>();
+    ShadeFrame& f = s->frame;
+    f.width = g.width;
+    f.height = g.height;
+    const auto take = [&](PelImageSlot slot) { return g.interleaved(file.channels[slot]); };
+    f.position = take(PEL_SLOT_POSITION);
+    f.geometric = take(PEL_SLOT_NORMAL_GEOMETRIC);
+    f.shading = take(PEL_SLOT_NORMAL_SHADING);
+    f.blurred = take(PEL_SLOT_NORMAL_BLURRED);
+    f.curvature = take(PEL_SLOT_CURVATURE);
+    f.albedo = take(PEL_SLOT_ALBEDO);
+    for (const float id : take(PEL_SLOT_MATERIAL)) f.id.push_back(id == 1.0f);
+    f.wide = g.interleaved(std::vector{file.lights.at(0).wideShadow});
+    const io::Image map = io::readImage(file.lights[0].shadowMapFile);
+    f.map = map.interleaved(std::vector{file.lights[0].shadowMapChannel});
+    f.mapSize = map.width;
+    s->light = file.lights[0].light;
+    s->material = file.materials.at(0).material;
+    s->ambient = file.ambient;
+    s->camera = file.camera;
+    fillSettings(*s);
+    makeTables(*s);
+    return s;
+}
 
-// view, taps, coverage in percent
+enum View { full, head, key, backlit };
+
+std::string demoDirectory() {
+    const char* named = std::getenv("PELLUCID_DEMO_DIR");
+    return named && *named ? named : PELLUCID_SOURCE_DIR "/out/demo";
+}
+
+// view, taps, coverage in percent; taps and coverage of the demo's views are as they are.
 Scene& scene(View view, int taps, int coverage = 100) {
     static std::map<std::tuple<int, int, int>, std::unique_ptr<Scene>> scenes;
     auto& slot = scenes[{view, taps, coverage}];
-    if (!slot)
-        slot = makeScene(view == full ? foldedSkin(1920, 1080, coverage / 100.0) : ball(1280, 720), taps);
+    if (slot) return *slot;
+    if (view == full)
+        slot = makeScene(foldedSkin(1920, 1080, coverage / 100.0), taps);
+    else if (view == head)
+        slot = makeScene(ball(1280, 720), taps);
+    else
+        slot = readDemoView(demoDirectory(), view == key ? "key" : "backlit");
     return *slot;
 }
 
@@ -240,9 +293,9 @@ void library(benchmark::State& state, View view, int taps, int coverage, uint32_
     perPixel(state, s.frame);
 }
 
-void openMp(benchmark::State& state, View view, int taps) {
+void openMp(benchmark::State& state, View view, int taps, Effort effort) {
     Scene& s = scene(view, taps);
-    for (auto _ : state) baseline::shadeOpenMp(s.frame, s.settings, s.curvature, s.shadow, s.out);
+    for (auto _ : state) baseline::shadeOpenMp(s.frame, s.settings, s.curvature, s.shadow, effort, s.out);
     compare(state, prepare(s, 1, false), s.out);
     perPixel(state, s.frame);
 }
@@ -261,12 +314,16 @@ void port(benchmark::State& state, View view, int taps) {
 #define CASE(function, name, ...) \
     BENCHMARK_CAPTURE(function, name, __VA_ARGS__)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime()
 
+#define OPEN_MP(name, ...)                                   \
+    CASE(openMp, name, __VA_ARGS__, Effort::Straight);        \
+    CASE(openMp, name##_skipping, __VA_ARGS__, Effort::Skipping)
+
 CASE(library, full_surface, full, 0, 100, 1u, false);
 CASE(port, full_surface, full, 0);
-CASE(openMp, full_surface, full, 0);
+OPEN_MP(full_surface, full, 0);
 CASE(library, full_32taps, full, 32, 100, 1u, false);
 CASE(port, full_32taps, full, 32);
-CASE(openMp, full_32taps, full, 32);
+OPEN_MP(full_32taps, full, 32);
 CASE(library, full_plain, full, 0, 100, 1u, true);
 CASE(library, full_coverage10, full, 32, 10, 1u, false);
 CASE(library, full_coverage0, full, 32, 0, 1u, false);
@@ -276,9 +333,32 @@ CASE(library, head_plain, head, 0, 100, 1u, true);
 CASE(library, head_surface, head, 0, 100, 1u, false);
 CASE(library, head_8taps, head, 8, 100, 1u, false);
 CASE(library, head_32taps, head, 32, 100, 1u, false);
-CASE(openMp, head_32taps, head, 32);
+OPEN_MP(head_32taps, head, 32);
 CASE(port, head_32taps, head, 32);
 
 }  // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+    if (std::ifstream(demoDirectory() + "/key.toml")) {
+        const auto add = [](const std::string& name, auto function, auto... arguments) {
+            benchmark::RegisterBenchmark(name.c_str(), function, arguments...)
+                ->Unit(benchmark::kMillisecond)
+                ->MeasureProcessCPUTime()
+                ->UseRealTime();
+        };
+        for (const View view : {key, backlit}) {
+            const std::string name = view == key ? "demo_key" : "demo_backlit";
+            add("library/" + name, library, view, 32, 100, 1u, false);
+            add("library/" + name + "_plain", library, view, 32, 100, 1u, true);
+            add("openMp/" + name, openMp, view, 32, Effort::Straight);
+            add("openMp/" + name + "_skipping", openMp, view, 32, Effort::Skipping);
+            add("port/" + name, port, view, 32);
+        }
+    } else {
+        std::fprintf(stderr, "no demo views in %s: run ./run demo first to have them measured\n", demoDirectory().c_str());
+    }
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+}

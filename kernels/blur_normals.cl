@@ -25,7 +25,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void prepar
             if (x >= frame->width || y >= frame->height) continue;
             if (!hasMaterial(frame, loadIds(frame, material, x, y))) continue;
             const Vec3w n = loadNormal(PEL_FORMAT_NORMAL_SHADING,
-                                       imageSpan(normal, &frame->images[PEL_SLOT_NUMBER_NORMAL_SHADING], x, y));
+                                       imageSpan(normal, &frame->images[PEL_IMAGE_NORMAL_SHADING], x, y));
             const Vec3w p = loadPosition(frame, position, depth, x, y);
             const size_t at = (size_t)y * frame->width + x;
             const bool valid = finite3(n) && finite3(p);

@@ -16,7 +16,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_CLASSIFY_GROUP, 1, 1))) void cl
     for (uint y = y0; y < y1 && !found; ++y)
         for (uint x = x0; x < x1; x += PEL_WIDTH) {
             const uint first = vectorStart(x, frame->width);
-            const uintw id = loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[1], first, y));
+            const uintw id = loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[PEL_IMAGE_MATERIAL], first, y));
             found |= anyw(hasMaterial(frame, id));
         }
     if (found) list[1 + atomic_inc(list)] = tile;

@@ -12,7 +12,7 @@
 static inline float4 mappedNormal(__global const PelShadeFrame* frame, __global const PelNormalMap* chain, __global uchar* map,
                                   __global uchar* uv, __global uchar* gradient, __global uchar* tangent, Vec3w ng, uint x,
                                   uint y) {
-    const Span uvSpan = PEL_AT(uv, PEL_SLOT_NUMBER_UV), tangentSpan = PEL_AT(tangent, PEL_SLOT_NUMBER_TANGENT);
+    const Span uvSpan = PEL_AT(uv, PEL_IMAGE_UV), tangentSpan = PEL_AT(tangent, PEL_IMAGE_TANGENT);
     const float u = gatherComponent(PEL_FORMAT_UV, uvSpan, 0), v = gatherComponent(PEL_FORMAT_UV, uvSpan, 1);
     const Vec3w t = loadNormal(PEL_FORMAT_TANGENT, tangentSpan);
     float side = 1.0f;
@@ -23,7 +23,7 @@ static inline float4 mappedNormal(__global const PelShadeFrame* frame, __global 
     bool valid = finite3(ng) && finite3(t) && finitew(u) && finitew(v);
     float level = chain->baseLevel;
     if (PEL_FORMAT_UV_GRADIENT) {
-        const Span span = PEL_AT(gradient, PEL_SLOT_NUMBER_UV_GRADIENT);
+        const Span span = PEL_AT(gradient, PEL_IMAGE_UV_GRADIENT);
         const float4 g = (float4)(gatherComponent(PEL_FORMAT_UV_GRADIENT, span, 0), gatherComponent(PEL_FORMAT_UV_GRADIENT, span, 1),
                                   gatherComponent(PEL_FORMAT_UV_GRADIENT, span, 2), gatherComponent(PEL_FORMAT_UV_GRADIENT, span, 3));
         valid = valid && finitew(g.x) && finitew(g.y) && finitew(g.z) && finitew(g.w);

@@ -21,7 +21,7 @@
 #define SKIPPING (!HAS(PEL_BIT_NO_SKIPPING))
 #define NEEDS_POSITION \
     (HAS(PEL_BIT_THICKNESS_TAPS) || HAS(PEL_BIT_SPECULAR) || HAS(PEL_BIT_POSITIONAL))
-#define SPAN(buffer, slot) imageSpan(scene->buffer, &frame->images[slot], x, y)
+#define SPAN(buffer, slot) imageSpan(scene->buffer, &frame->images[PEL_IMAGE_##slot], x, y)
 
 // The arguments of the kernel, as functions pass them on.
 typedef struct Scene {
@@ -54,42 +54,42 @@ static inline void count(Counts* counts, const int which, maskw mask) {
 static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
     __global const PelShadeFrame* frame = scene->frame;
     Pixels p;
-    p.n = loadNormal(PEL_FORMAT_NORMAL_SHADING, SPAN(normalShading, 5));
+    p.n = loadNormal(PEL_FORMAT_NORMAL_SHADING, SPAN(normalShading, NORMAL_SHADING));
     p.valid = finite3(p.n);
     p.ng = p.n;
     if (PEL_FORMAT_NORMAL_GEOMETRIC) {
-        p.ng = loadNormal(PEL_FORMAT_NORMAL_GEOMETRIC, SPAN(normalGeometric, 4));
+        p.ng = loadNormal(PEL_FORMAT_NORMAL_GEOMETRIC, SPAN(normalGeometric, NORMAL_GEOMETRIC));
         p.valid &= finite3(p.ng);
     }
     p.nb = p.ng;
     if (PEL_FORMAT_NORMAL_BLURRED) {
-        p.nb = loadNormal(PEL_FORMAT_NORMAL_BLURRED, SPAN(normalBlurred, 6));
+        p.nb = loadNormal(PEL_FORMAT_NORMAL_BLURRED, SPAN(normalBlurred, NORMAL_BLURRED));
         p.valid &= finite3(p.nb);
     }
     p.pair = normalPair(p.n, p.nb);
     if (NEEDS_POSITION) {
         if (PEL_FORMAT_POSITION)
-            p.position = loadColor(PEL_FORMAT_POSITION, SPAN(position, 2));
+            p.position = loadColor(PEL_FORMAT_POSITION, SPAN(position, POSITION));
         else
             p.position = positionFromDepth(frame->inverseViewProjection, frame->width, frame->height, x, y,
-                                           loadScalar(PEL_FORMAT_DEPTH, SPAN(depth, 3)));
+                                           loadScalar(PEL_FORMAT_DEPTH, SPAN(depth, DEPTH)));
         p.valid &= finite3(p.position);
         p.toCamera = normalize3(sub3(loadUniform3(frame->cameraPosition), p.position));
     }
     if (PEL_FORMAT_ALBEDO) {
-        p.albedo = loadColor(PEL_FORMAT_ALBEDO, SPAN(albedo, 8));
+        p.albedo = loadColor(PEL_FORMAT_ALBEDO, SPAN(albedo, ALBEDO));
         p.valid &= finite3(p.albedo);
     }
-#define LOAD_SCALAR(feature, slot, name, number)                    \
+#define LOAD_SCALAR(feature, slot, name)                          \
     if (feature && PEL_FORMAT_##slot) {                             \
-        p.name = loadScalar(PEL_FORMAT_##slot, SPAN(name, number)); \
+        p.name = loadScalar(PEL_FORMAT_##slot, SPAN(name, slot)); \
         p.valid &= finitew(p.name);                                 \
     }
-    LOAD_SCALAR(HAS(PEL_BIT_DIRECT_SCATTER), CURVATURE, curvature, 7)
-    LOAD_SCALAR(HAS(PEL_BIT_AMBIENT), AMBIENT_OCCLUSION, occlusion, 9)
-    LOAD_SCALAR(HAS(PEL_BIT_DEEP_SCATTER), THICKNESS, thickness, 10)
-    LOAD_SCALAR(HAS(PEL_BIT_SPECULAR), ROUGHNESS, roughness, 11)
-    LOAD_SCALAR(HAS(PEL_BIT_SPECULAR), SPECULAR, specular, 12)
+    LOAD_SCALAR(HAS(PEL_BIT_DIRECT_SCATTER), CURVATURE, curvature)
+    LOAD_SCALAR(HAS(PEL_BIT_AMBIENT), AMBIENT_OCCLUSION, occlusion)
+    LOAD_SCALAR(HAS(PEL_BIT_DEEP_SCATTER), THICKNESS, thickness)
+    LOAD_SCALAR(HAS(PEL_BIT_SPECULAR), ROUGHNESS, roughness)
+    LOAD_SCALAR(HAS(PEL_BIT_SPECULAR), SPECULAR, specular)
 #undef LOAD_SCALAR
     return p;
 }
@@ -213,21 +213,17 @@ static inline void shadePixels(const Scene* scene, __global uchar* radiance, uin
     if (PEL_FORMAT_MATERIAL) {
         // Nearly always one round: neighbours share their material.
         maskw left = active;
-#define TAKE(i, s) \
-    if (left s) current = id s;
         while (anyw(left)) {
-            uint current = 0;
-            PEL_EACH_LANE(TAKE)
+            const uint current = greatestId(id, left);
             const maskw mask = left & (id == current);
             const Vec3w color = shadeMaterial(scene, &scene->materials[current], &p, x, y, mask, counts);
             result = select3(result, color, mask);
             left &= notw(mask);
         }
-#undef TAKE
     } else {
         result = shadeMaterial(scene, &scene->materials[1], &p, x, y, active, counts);
     }
-    const Span target = imageSpan(radiance, &frame->images[0], x, y);
+    const Span target = imageSpan(radiance, &frame->images[PEL_IMAGE_RADIANCE], x, y);
     const maskw valid = p.valid & finite3(result);
     count(counts, PEL_COUNT_SHADED, active);
     count(counts, PEL_COUNT_INVALID, active & notw(valid));
@@ -272,7 +268,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
             maskw active = (column >= (int)x) & (column < (int)frame->width);
             uintw id = 1;
             if (PEL_FORMAT_MATERIAL) {
-                id = loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[1], first, y));
+                id = loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[PEL_IMAGE_MATERIAL], first, y));
                 active &= hasMaterial(frame, id);
             }
             if (anyw(active)) shadePixels(&scene, radiance, first, y, id, active, &counts);

@@ -46,6 +46,22 @@ TEST(Device, EnvironmentSelects) {
         unsetenv("PELLUCID_DEVICE");
 }
 
+TEST(Device, MathWidthCanBeOverruled) {
+    const char* before = std::getenv("PELLUCID_MATH_WIDTH");
+    const std::string saved = before ? before : "";
+    setenv("PELLUCID_MATH_WIDTH", "1", 1);
+    EXPECT_EQ(Device(std::string()).info().mathWidth, 1u);
+    setenv("PELLUCID_MATH_WIDTH", "7", 1);
+    try {
+        Device device((std::string()));
+        ADD_FAILURE();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.code(), PEL_ERROR_INVALID_ARGUMENT);
+        EXPECT_NE(std::string(e.what()).find("PELLUCID_MATH_WIDTH"), std::string::npos) << e.what();
+    }
+    before ? setenv("PELLUCID_MATH_WIDTH", saved.c_str(), 1) : unsetenv("PELLUCID_MATH_WIDTH");
+}
+
 TEST(Device, CallersContextAndQueue) {
     const Device first("");
     void *context = nullptr, *id = nullptr, *queue = nullptr;

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 
 namespace pel::cl {
 namespace {
@@ -49,6 +50,15 @@ std::string list(const std::vector<PelDeviceInfo>& devices) {
 uint64_t strength(const PelDeviceInfo& d) {
     const uint64_t kind = d.type == PEL_DEVICE_GPU ? 2 : d.type == PEL_DEVICE_CPU ? 1 : 0;
     return kind << 48 | uint64_t(d.computeUnits) * std::max(1u, d.clockMhz);
+}
+
+// PELLUCID_MATH_WIDTH, so that a CPU can test and time what other devices run.
+std::optional<uint32_t> requestedMathWidth() {
+    const char* text = std::getenv("PELLUCID_MATH_WIDTH");
+    if (!text || !*text) return {};
+    for (const uint32_t width : {1u, 8u, 16u})
+        if (text == std::to_string(width)) return width;
+    invalidArgument("PELLUCID_MATH_WIDTH is \"", text, "\"; it can be 1, 8 or 16");
 }
 
 }  // namespace
@@ -103,6 +113,7 @@ PelDeviceInfo describe(cl_device_id device, uint32_t index) {
 
     // CPUs vectorise explicit vector types, GPUs vectorise across work-items (docs/dataflow.md, "Widths").
     d.mathWidth = d.type != PEL_DEVICE_CPU ? 1 : d.preferredFloatWidth >= 16 ? 16 : 8;
+    d.mathWidth = requestedMathWidth().value_or(d.mathWidth);
     std::string quirks;
     if (d.type == PEL_DEVICE_CPU) quirks += text("explicit ", d.mathWidth, "-wide arithmetic; ");
     if (platform == "Portable Computing Language")

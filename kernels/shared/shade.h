@@ -10,16 +10,25 @@
 #define PEL_TILE_PIXELS (PEL_TILE_WIDTH * PEL_TILE_HEIGHT)
 #define PEL_LIGHT_BUFFERS 16 // distinct buffers among all images of all lights
 #define PEL_MATERIALS 256    // ids 0 (background) to 255
-#define PEL_IMAGE_SLOTS 16   // PelImageSlot
-#define PEL_SHADE_SLOTS 13   // those of them that shade.cl reads itself; the others belong to the passes before it
-// Numbers of PelImageSlot that those passes use.
-#define PEL_SLOT_NUMBER_MATERIAL 1
-#define PEL_SLOT_NUMBER_POSITION 2
-#define PEL_SLOT_NUMBER_DEPTH 3
-#define PEL_SLOT_NUMBER_NORMAL_SHADING 5
-#define PEL_SLOT_NUMBER_UV 13
-#define PEL_SLOT_NUMBER_UV_GRADIENT 14
-#define PEL_SLOT_NUMBER_TANGENT 15
+// Images of a frame: PelImageSlot.
+#define PEL_IMAGE_RADIANCE 0
+#define PEL_IMAGE_MATERIAL 1
+#define PEL_IMAGE_POSITION 2
+#define PEL_IMAGE_DEPTH 3
+#define PEL_IMAGE_NORMAL_GEOMETRIC 4
+#define PEL_IMAGE_NORMAL_SHADING 5
+#define PEL_IMAGE_NORMAL_BLURRED 6
+#define PEL_IMAGE_CURVATURE 7
+#define PEL_IMAGE_ALBEDO 8
+#define PEL_IMAGE_AMBIENT_OCCLUSION 9
+#define PEL_IMAGE_THICKNESS 10
+#define PEL_IMAGE_ROUGHNESS 11
+#define PEL_IMAGE_SPECULAR 12
+#define PEL_IMAGE_UV 13
+#define PEL_IMAGE_UV_GRADIENT 14
+#define PEL_IMAGE_TANGENT 15
+#define PEL_IMAGE_SLOTS 16
+#define PEL_SHADE_SLOTS 13 // those of them that shade.cl reads itself; the others belong to the passes before it
 // Transmittance below 2^-16 counts as none: it lets taps stop early and is a third of the accuracy promised.
 #define PEL_LEAST_TRANSMITTANCE_LOG2 16
 
