@@ -1,7 +1,7 @@
 // LUT texels (float4, with a copied column and row, shared/lut.h) packed for the host: row-major, without the
 // copies. Section 2 and 3 of the mathematics define the 8-bit encodings, which are those of FaceWorks.
 //
-// One work-item: one texel. Variants: PEL_GROUP, work-items in a group.
+// One work-item: one texel, but for countClipped. Variants: PEL_GROUP, work-items in a group.
 #include "lib/lut_lookup.clh"
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeFloat(
@@ -28,6 +28,20 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeCurva
     residual = fma(residual, (float4)(2.0f), (float4)(0.5f));
     residual.w = 1.0f;
     vstore4(convert_uchar4_sat_rte(residual * 255.0f), (size_t)y * lut.width + x, packed);
+}
+
+// One work-item: one row. Texels that the above clips in some channel.
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void countClipped(
+    const LutLayout lut, __global const float4* texels, __global uint* clipped) {
+    const uint y = get_global_id(0);
+    if (y >= lut.height) return;
+    uint found = 0;
+    for (uint x = 0; x < lut.width; ++x) {
+        const float4 residual =
+            fabs(texels[(size_t)y * lut.rowTexels + x] - fmax(lutColumnCentre(lut, x), 0.0f));
+        found += fmax(fmax(residual.x, residual.y), residual.z) > 0.25f;
+    }
+    if (found) atomic_add(clipped, found);
 }
 
 // The peer fades the first twenty-fifth of the columns to black, then stores sRGB.

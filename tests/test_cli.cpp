@@ -150,7 +150,8 @@ TEST_F(Cli, CurvatureQuantitiesWeldAndPicture) {
                   .exitCode,
               0);
     // The icosahedron's normals point from its centre at radius 2: every edge turns as on the sphere.
-    for (float v : npy::read<float>(path("m.npy")).data) EXPECT_NEAR(v, 0.25f, 0.25f * tolerance::tensorCurvature);
+    for (float v : npy::read<float>(path("m.npy")).data)
+        EXPECT_NEAR(v, 0.25f, 0.25f * tolerance::tensorCurvature);
     EXPECT_GT(std::filesystem::file_size(path("m.png")), 1000u);
 }
 
@@ -230,6 +231,17 @@ TEST_F(Cli, LutFilesHoldTheLibrarysTexels) {
                 << name << ' ' << i;
         }
     }
+    EXPECT_EQ(
+        run({"lut", "curvature", "--size", "24x10", "--radius-min", "0.5", "-o", path("c.png"), "--json"})
+            .json()
+            .at("clipped_texels"),
+        [&] {
+            desc = pelCurvatureLutDescDefaults();
+            desc.width = 24;
+            desc.height = 10;
+            desc.radiusMin = 0.5;
+            return Lut(device, desc).clippedTexels();
+        }());
     make("h.exr", "half");
     EXPECT_EQ(io::readImage(path("h.exr")).channels[0].type, io::ChannelType::Half);
 }

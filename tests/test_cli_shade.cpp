@@ -55,6 +55,45 @@ class Shade : public CommandTest {
 
 }  // namespace
 
+TEST_F(Shade, TablesOfMaterialsAndProfileFiles) {
+    // The same profile as a file beside the scene and as an EXR made from it; another material looks
+    // otherwise.
+    write("own.toml",
+          "name = \"own\"\nsource = \"a test\"\nkind = \"table\"\nunit = \"mm\"\n[[sample]]\ndistance = 0\n"
+          "value = [3, 2, 1]\n[[sample]]\ndistance = 4\nvalue = [0.1, 0.1, 0]\n");
+    io::Image curved = gbuffer_;
+    curved.addInterleaved(std::vector<std::string>{"View.C.X"},
+                          std::vector<float>(size_t(width * height), 0.3f));
+    io::writeExr(path("c.exr"), curved);
+    scene_.channels[PEL_SLOT_CURVATURE] = {"C.X"};
+    scene_.materials[0].curvatureLut = "t";
+    ASSERT_EQ(run({"lut", "curvature", "--profile", path("own.toml"), "--axis", "root", "--size", "64x16",
+                   "-o", path("t.exr")})
+                  .exitCode,
+              0);
+    const auto shaded = [&](const std::string& profile, const std::string& file) {
+        io::SceneLut lut;
+        lut.name = "t";
+        lut.profile = profile;
+        lut.file = file;
+        lut.info.curvature.axis = PEL_AXIS_ROOT;
+        lut.info.curvature.width = 64;
+        lut.info.curvature.height = 16;
+        lut.info.curvature.diffusionRadius = 0;
+        scene_.luts = {lut};
+        io::writeScene(path("p.toml"), scene_);
+        const Result result = run(command("p.toml", "c.exr"));
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return io::readImage(path("o.exr")).channel("R").pixels;
+    };
+    const auto own = shaded("own.toml", "");
+    EXPECT_EQ(own, shaded("", "t.exr"));
+    EXPECT_NE(own, shaded("marble", ""));
+    scene_.luts[0].profile = "granite";  // no such material
+    io::writeScene(path("p.toml"), scene_);
+    expectRefused(command("p.toml", "c.exr"), 3, "granite");
+}
+
 TEST_F(Shade, PlainLightIsAlbedoTimesCosine) {
     std::vector<std::string> arguments = command();
     arguments.insert(arguments.end(), {"--json", "--stats"});

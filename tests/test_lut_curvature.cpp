@@ -136,6 +136,14 @@ TEST(CurvatureLut, EncodingsRoundTruth) {
             }
         }
     EXPECT_GT(clipped, 0) << "the narrowest radii exceed what the peer's residual holds";
+    uint64_t all = 0;
+    for (size_t i = 0; i < texels.size(); i += 3) {
+        const double u = spec.u(int(i / 3 % 256));
+        all += reference::faceworksCurvatureClips({texels[i], texels[i + 1], texels[i + 2]}, u);
+    }
+    EXPECT_EQ(lut.clippedTexels(), all);
+    EXPECT_EQ(Lut(Device(""), pelShadowLutDescDefaults()).clippedTexels(), 0u);
+    EXPECT_EQ(pelLutCountClipped(lut.get(), nullptr), PEL_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(lut.read<uint16_t>(PEL_LUT_HALF).size(), texels.size());
 }
 

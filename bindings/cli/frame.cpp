@@ -5,6 +5,7 @@
 #include "io/file_error.h"
 #include "io/lut_file.h"
 #include "io/mip_chain.h"
+#include "io/profile_file.h"
 
 namespace pellucid::cli {
 
@@ -12,7 +13,8 @@ namespace {
 
 // Equal requests give equal bits, so that the description is the key. Its structures have no padding.
 bool sameTable(const io::SceneLut& a, const io::SceneLut& b) {
-    return a.file == b.file && a.expected == b.expected && std::memcmp(&a.info, &b.info, sizeof a.info) == 0;
+    return a.file == b.file && a.expected == b.expected && a.profile == b.profile &&
+           std::memcmp(&a.info, &b.info, sizeof a.info) == 0;
 }
 
 Lut make(const Device& device, const io::SceneLut& request) {
@@ -21,8 +23,10 @@ Lut make(const Device& device, const io::SceneLut& request) {
         io::checkLutInfo(request.file, lut.info(), request.info, request.expected);
         return lut;
     }
-    return request.info.kind == PEL_LUT_CURVATURE ? Lut(device, request.info.curvature)
-                                                  : Lut(device, request.info.shadow);
+    const Profile profile = request.profile.empty() ? Profile() : io::findProfile(request.profile).profile;
+    PelLutInfo info = request.info;
+    info.curvature.profile = info.shadow.profile = profile.get();
+    return info.kind == PEL_LUT_CURVATURE ? Lut(device, info.curvature) : Lut(device, info.shadow);
 }
 
 }  // namespace

@@ -64,6 +64,8 @@ void integrate(Arguments& arguments, Desc& desc) {
     run.report["width"] = desc.width;
     run.report["height"] = desc.height;
     run.report["texels"] = uint64_t(desc.width) * desc.height;
+    if (encoding == PEL_LUT_FACEWORKS8 && lut.info().kind == PEL_LUT_CURVATURE)
+        run.report["clipped_texels"] = lut.clippedTexels();
     run.finish();
 }
 

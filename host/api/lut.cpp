@@ -68,6 +68,10 @@ PelError pelLutGetSize(PelLut lut, PelLutEncoding encoding, size_t* bytes) {
     return entry([&] { output(bytes, "bytes") = packedBytes(fromHandle<Lut>(lut), encoding); });
 }
 
+PelError pelLutCountClipped(PelLut lut, uint64_t* clipped) {
+    return entry([&] { output(clipped, "clipped") = countClipped(fromHandle<Lut>(lut)); });
+}
+
 PelError pelLutRead(PelLut lut, PelLutEncoding encoding, void* destination, size_t bytes,
                     const PelSubmit* submit) {
     return entry([&] {

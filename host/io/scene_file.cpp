@@ -24,10 +24,14 @@ void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind) {
     }
     if (lut.name.empty()) reader.fail("name", "is missing; materials need it to refer to this table");
     if (scene.lut(lut.name, kind)) reader.fail("name", "is used twice; give each table a name of its own");
+    if (!lut.file.empty() && reader.has("profile"))
+        reader.fail("profile", "cannot stand beside 'file', which was made with its own; leave one out");
     if (!lut.file.empty())
         for (const char* key : {"form", "axis", "width", "height", "diffusion_radius", "radius_min",
                                 "radius_max", "width_min", "width_max", "sharpening"})
             if (reader.has(key)) lut.expected.push_back(key);
+    if (!lut.profile.empty() && !reader.has("diffusion_radius"))
+        lut.info.curvature.diffusionRadius = lut.info.shadow.diffusionRadius = 0;
     if (lut.file.empty() && kind == PEL_LUT_CURVATURE &&
         lut.info.curvature.radiusMin >= lut.info.curvature.radiusMax)
         reader.fail("radius_min", "is not below radius_max");
@@ -129,6 +133,7 @@ SceneFile readScene(const std::string& path) {
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
     for (SceneLut& l : scene.luts) {
         if (!l.file.empty()) l.file = (folder / l.file).string();
+        if (l.profile.ends_with(".toml")) l.profile = (folder / l.profile).string();
     }
     for (SceneMaterial& m : scene.materials) {
         if (!m.normalMap.empty()) m.normalMap = (folder / m.normalMap).string();

@@ -10,12 +10,14 @@
 
 namespace pellucid::io {
 
-// A look-up table by name: read from a file, or integrated from its description.
+// A look-up table by name: read from a file, or integrated from its description, whose handle of a
+// profile is not used.
 struct SceneLut {
     std::string name;                        // materials refer to it
     PelLutInfo info = pelLutInfoDefaults();  // kind; and what to integrate if `file` is empty
     std::string file;                        // a float or half EXR written by `pellucid lut`
     std::vector<std::string> expected;       // keys beside `file`: what the file must say too
+    std::string profile;                     // a material's name or a profile file; "": skin
     int line = 0;                            // of the scene file; 0: made by a program
 };
 

@@ -113,9 +113,10 @@ void curvatureLutKeys(Visitor& v, Lut& l) {
     v.text("file", l.file);
     v.choice("form", l.info.curvature.form, curvatureForms);
     v.choice("axis", l.info.curvature.axis, lutAxes);
+    v.text("profile", l.profile);
     v.integer("width", l.info.curvature.width, 1, 16384);
     v.integer("height", l.info.curvature.height, 1, 16384);
-    v.number("diffusion_radius", l.info.curvature.diffusionRadius, Range::Positive);
+    v.number("diffusion_radius", l.info.curvature.diffusionRadius, Range::NotNegative);
     v.number("radius_min", l.info.curvature.radiusMin, Range::Positive);
     v.number("radius_max", l.info.curvature.radiusMax, Range::Positive);
 }
@@ -124,9 +125,10 @@ template <class Visitor, class Lut>
 void shadowLutKeys(Visitor& v, Lut& l) {
     v.text("name", l.name);
     v.text("file", l.file);
+    v.text("profile", l.profile);
     v.integer("width", l.info.shadow.width, 1, 16384);
     v.integer("height", l.info.shadow.height, 1, 16384);
-    v.number("diffusion_radius", l.info.shadow.diffusionRadius, Range::Positive);
+    v.number("diffusion_radius", l.info.shadow.diffusionRadius, Range::NotNegative);
     v.number("width_min", l.info.shadow.widthMin, Range::Positive);
     v.number("width_max", l.info.shadow.widthMax, Range::Positive);
     v.number("sharpening", l.info.shadow.sharpening, Range::AtLeastOne);

@@ -6,32 +6,16 @@
 #include "ops/lut_check.h"
 #include "ops/lut_terms.h"
 #include "ops/luts.h"
+#include "ops/table_luts.h"
 
 namespace pel {
 namespace {
-
-double nodeAngle(int j, int nodes) {
-    const double q = double(j) / nodes;
-    return std::numbers::pi / 2 * q * q * q * q;
-}
-
-std::vector<LutNode> meshOfNodes(int nodes) {
-    std::vector<LutNode> mesh;
-    for (int j = 0; j <= nodes; ++j) {
-        const double angle = nodeAngle(j, nodes), s = std::sin(angle / 2);
-        mesh.push_back({float(angle), float(std::sin(angle)), float(std::cos(angle)), float(2 * s * s)});
-    }
-    return mesh;
-}
 
 // Cubic Hermite interpolation between nodes, for each column of the unlit half.
 std::vector<LutColumn> columnsOf(uint32_t width, PelLutAxis axis, int nodes) {
     std::vector<LutColumn> columns;
     for (uint32_t x = 0; x < (width + 1) / 2; ++x) {
-        // From u = -1 on: linear columns in the middle of texels, root columns from end to end
-        // (core/lut.cpp).
-        const double s = width > 1 ? 1 - 2.0 * x / (width - 1) : 0;
-        const double elevation = axis == PEL_AXIS_ROOT ? s * s : 1 - (x + 0.5) * 2 / width;
+        const double elevation = columnElevation(x, width, axis);
         const double angle = std::asin(elevation);
         int j = std::min(nodes - 1, int(nodes * std::pow(angle / (std::numbers::pi / 2), 0.25)));
         while (j > 0 && nodeAngle(j, nodes) > angle) --j;
@@ -50,17 +34,9 @@ CurvatureParams paramsOf(const PelCurvatureLutDesc& desc, double curvatureMin, d
     params.height = desc.height;
     params.gaussians = uint32_t(terms);
     params.axis = uint32_t(desc.axis);
-    const bool root = desc.axis == PEL_AXIS_ROOT;
-    const double first = root ? std::sqrt(curvatureMin) : curvatureMin;
-    const double last = root ? std::sqrt(curvatureMax) : curvatureMax;
-    if (root && desc.height > 1) {
-        const double step = (last - first) / (desc.height - 1);
-        params.rowMin = float(first - 0.5 * step);
-        params.rowStep = float(step);
-    } else {
-        params.rowMin = float(first);
-        params.rowStep = float((last - first) / desc.height);
-    }
+    const RowAxis axis = rowAxis(desc, curvatureMin, curvatureMax);
+    params.rowMin = float(axis.min);
+    params.rowStep = float(axis.step);
     params.cut = float(profileCut);
     return params;
 }
@@ -79,6 +55,10 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
     const double curvatureMin = rowLimit(desc.radiusMax, radius),
                  curvatureMax = rowLimit(desc.radiusMin, radius);
     const Profile& profile = *lut->profile();
+    if (profile.terms().empty()) {
+        integrateTableCurvature(*lut, curvatureMin, curvatureMax);
+        return lut;
+    }
     std::vector<LutGaussian> terms = deviceTerms(profile, curvatureMax);
     // 1/d has no finite integral along a ring: what is left of the ratio is its limit, a point.
     if (profile.shape().singular() && (desc.form == PEL_FORM_RING || desc.form == PEL_FORM_HALF_RING))

@@ -75,4 +75,18 @@ void readLut(const Lut& lut, PelLutEncoding encoding, void* destination, bool bl
     device.read(packed.get(), 0, bytes, destination, blocking);
 }
 
+uint64_t countClipped(const Lut& lut) {
+    if (lut.info().kind != PEL_LUT_CURVATURE) return 0;
+    Device& device = lut.device();
+    cl_uint count = 0;
+    const cl::Memory counter = device.allocate(sizeof count, &count);
+    constexpr size_t group = 64;
+    cl::Launch launch(device.programs().get("lut_encode.cl", {{"PEL_GROUP", std::to_string(group)}}),
+                      "countClipped");
+    launch.arg(lut.layout()).arg(lut.texels()).arg(counter);
+    device.launch(launch, {{lut.height(), 1, 1}, {group, 1, 1}});
+    device.read(counter.get(), 0, sizeof count, &count, true);
+    return count;
+}
+
 }  // namespace pel

@@ -23,4 +23,7 @@ size_t packedBytes(const Lut& lut, PelLutEncoding encoding);
 // Encodes on the device and reads packedBytes() bytes.
 void readLut(const Lut& lut, PelLutEncoding encoding, void* destination, bool blocking);
 
+// Texels that PEL_LUT_FACEWORKS8 clips; 0 for other kinds than curvature. Waits.
+uint64_t countClipped(const Lut& lut);
+
 }  // namespace pel

@@ -4,6 +4,7 @@
 #include "ops/lut_check.h"
 #include "ops/lut_terms.h"
 #include "ops/luts.h"
+#include "ops/table_luts.h"
 
 namespace pel {
 
@@ -18,6 +19,10 @@ Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
     const double radius = lut->diffusionRadius();
     const double reciprocalMin = rowLimit(desc.widthMax, radius),
                  reciprocalMax = rowLimit(desc.widthMin, radius);
+    if (profile.terms().empty()) {
+        integrateTableShadow(*lut, reciprocalMin, reciprocalMax);
+        return lut;
+    }
     const std::vector<LutGaussian> terms = deviceTerms(profile, reciprocalMax);
     ShadowParams params{desc.width,
                         desc.height,

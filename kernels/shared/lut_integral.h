@@ -52,4 +52,51 @@ typedef struct ShadowParams {
     float mass[3];  // of the cut profile, per channel
 } ShadowParams;
 
+// --- measured profiles (kernels/table_*.cl) ---
+
+// The line spread of a table and its integrals, within the cut, at distances end (i / TAIL_CELLS)^2, i = 0 ...
+// TAIL_CELLS: TAIL_VALUES float4 (R, G, B, 0) each.
+#define TAIL_CELLS 512
+#define TAIL_SPREAD 0  // P
+#define TAIL_MASS 1    // integral of P beyond
+#define TAIL_FIRST 2   // integral of (t - s) P beyond
+#define TAIL_SECOND 3  // ... of (t - s)^2 / 2 P
+#define TAIL_THIRD 4   // ... of (t - s)^3 / 6 P
+#define TAIL_VALUES 5
+
+// A column of the dark half.
+typedef struct TableColumn {
+    float angle;      // behind the terminator, radians
+    float elevation;  // its sine, |N.L|
+} TableColumn;
+
+typedef struct TableCurvatureParams {
+    unsigned int width;
+    unsigned int height;
+    unsigned int axis;      // LUT_AXIS_...
+    unsigned int nodes;     // of the angular mesh, at 0 ... pi/2
+    unsigned int knots;     // distances at which the table bends, without 0
+    unsigned int slots;     // nodes that a row's record has room for
+    unsigned int firstRow;  // of this launch
+    unsigned int rows;      // of this launch
+    float rowMin;           // as in CurvatureParams
+    float rowStep;
+    float end;  // where the tails end, diffusion radii
+} TableCurvatureParams;
+
+// Which points stand for the table on the sphere of a row.
+typedef struct TablePoints {
+    unsigned int first;
+    unsigned int count;
+} TablePoints;
+
+typedef struct TableShadowParams {
+    unsigned int width;
+    unsigned int height;
+    float reciprocalMin;  // as in ShadowParams
+    float reciprocalStep;
+    float sharpening;
+    float end;  // where the tails end, diffusion radii
+} TableShadowParams;
+
 #endif

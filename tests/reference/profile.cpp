@@ -74,6 +74,28 @@ class TableProfile : public Profile {
         while (distances_[i] < d) ++i;
         return mix(values_[i - 1], values_[i], (d - distances_[i - 1]) / (distances_[i] - distances_[i - 1]));
     }
+    // Along the line d = sqrt(s^2 + t^2), and int d dt = (t d + s^2 asinh(t/s)) / 2: no quadrature inside of
+    // others.
+    Rgb lineSpread(double offset) const override {
+        const double s = std::abs(offset);
+        Rgb sum;
+        double a = 0;  // pieces [a, b]: constant up to the first distance, then linear
+        for (size_t i = 0; i < distances_.size(); ++i) {
+            const double b = distances_[i];
+            if (b > s && b > a) {
+                const Rgb slope = i ? (1 / (b - a)) * (values_[i] - values_[i - 1]) : Rgb{};
+                const double from = a > s ? std::sqrt((a - s) * (a + s)) : 0,
+                             to = std::sqrt((b - s) * (b + s));
+                auto meanDistance = [&](double t) {
+                    return 0.5 * (t * std::hypot(s, t) + (s > 0 ? s * s * std::asinh(t / s) : 0));
+                };
+                sum = sum + 2 * (to - from) * (values_[i] - b * slope) +
+                      2 * (meanDistance(to) - meanDistance(from)) * slope;
+            }
+            a = b;
+        }
+        return sum;
+    }
     std::vector<double> lengths() const override { return distances_; }
     double radius() const override { return radius_; }
 

@@ -38,6 +38,11 @@ void bindLut(py::module_& module) {
             call([&] { return pelLutGetSize(l.get(), PelLutEncoding(encoding), &bytes); });
             return bytes;
         })
+        .def("clipped", [](const Lut& l) {
+            uint64_t clipped = 0;
+            call([&] { return pelLutCountClipped(l.get(), &clipped); });
+            return clipped;
+        })
         .def("read", [](const Lut& l, uint32_t encoding, uintptr_t to, size_t bytes, const Waits& waits) {
             Submit submit(waits);
             call([&] { return pelLutRead(l.get(), PelLutEncoding(encoding), pointer(to), bytes, submit.get()); });

@@ -108,6 +108,13 @@ class Lut:
             info._data[part]["profile"] = 0
         return info
 
+    def clipped_texels(self) -> int:
+        """Texels of a curvature table that "faceworks8" clips: D - max(N.L, 0) lies beyond +-1/4 in some channel.
+
+        0 for other kinds. Waits for the table.
+        """
+        return self._handle.clipped()
+
     def read(self, encoding: LutEncoding | str = LutEncoding.FLOAT, out: Optional[NDArray[Any]] = None) -> NDArray[Any]:
         """The texels, top row first.
 

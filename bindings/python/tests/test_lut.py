@@ -51,7 +51,25 @@ def test_encodings(device):
     exact = 255 * np.clip(2 * (full.astype(float) - np.maximum(u, 0)[None, :, None]) + 0.5, 0, 1)
     assert coded.shape == (8, 32, 4) and (coded[..., 3] == 255).all()
     assert np.abs(coded[..., :3] - exact).max() <= 0.5 + 1e-4
+    residual = full.astype(float) - np.maximum(u, 0)[None, :, None]
+    assert lut.clipped_texels() == (np.abs(residual) > 0.25).any(axis=2).sum() > 0
     assert lut.info.curvature.radius_min == 0.5 and lut.info.kind is pel.LutKind.CURVATURE
+
+
+def test_measured_profiles(device):
+    # A thin disk scatters evenly within its radius: P(s) = 2 sqrt(1 - s^2) / pi for radius 1.
+    disk = pel.Profile.table([0.5, 1], [[1, 1, 1]] * 2)
+    lut = pel.Lut.curvature(device, width=65, height=1, radius_min=2, radius_max=2, diffusion_radius=0, axis="root",
+                            profile=disk)
+    s = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 20001))
+    weight = 2 / np.pi * (1 - s**2) * np.pi / 20000
+    for x in range(0, 65, 8):
+        side = -1 + 2 * x / 64
+        theta = np.arccos(side * abs(side))
+        assert abs(lut.read()[0, x, 0] - (np.maximum(np.cos(theta - s / 2), 0) * weight).sum()) < 1e-5
+    assert lut.info.profile == "table"
+    shadow = pel.Lut.shadow(device, width=64, height=4, diffusion_radius=0, profile=disk).read()
+    assert (np.diff(shadow, axis=1) >= -1e-6).all() and abs(shadow[:, ::-1] + shadow - 1).max() < 1e-5
 
 
 def test_shadow_is_monotone_and_ends_dark_and_lit(device):

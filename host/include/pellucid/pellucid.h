@@ -381,7 +381,7 @@ PEL_API PelError pelProfileCreateBurley(const float meanFreePath[3], const float
 PEL_API PelError pelProfileCreateDipole(const float absorption[3], const float reducedScattering[3], float eta,
                                         PelProfile* profile);
 /* Measured R: linear between `count` (2 to 4096) rising distances >= 0, constant before the first, 0 after the last.
- * `values`: RGB per distance, >= 0, up to a factor. */
+ * `values`: RGB per distance, >= 0, up to a factor. Tables are integrated from it as it stands, corners and all. */
 PEL_API PelError pelProfileCreateTable(const float* distances, const float* values, uint32_t count,
                                        PelProfile* profile);
 PEL_API void pelProfileRetain(PelProfile profile);
@@ -495,6 +495,9 @@ PEL_API PelError pelLutGetSize(PelLut lut, PelLutEncoding encoding, size_t* byte
 /* The texels, row-major, top row first. `destination` holds `bytes` >= pelLutGetSize. */
 PEL_API PelError pelLutRead(PelLut lut, PelLutEncoding encoding, void* destination, size_t bytes,
                             const PelSubmit* submit);
+/* Texels of a curvature LUT whose residual D - max(u, 0) lies beyond +-1/4 in some channel: PEL_LUT_FACEWORKS8 clips them.
+ * 0 for other kinds. Waits for the LUT. */
+PEL_API PelError pelLutCountClipped(PelLut lut, uint64_t* clipped);
 /* A LUT from texels that were integrated before: RGB float32, width * height * 12 bytes, described by info. */
 PEL_API PelError pelLutCreateFromTexels(PelDevice device, const PelLutInfo* info, const float* texels, size_t bytes,
                                         PelLut* lut);

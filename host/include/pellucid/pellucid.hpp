@@ -266,6 +266,12 @@ class Lut : public Handle<PelLut, pelLutRetain, pelLutRelease> {
         check(pelLutGetInfo(h_, &info));
         return info;
     }
+    // Texels that PEL_LUT_FACEWORKS8 clips.
+    uint64_t clippedTexels() const {
+        uint64_t clipped = 0;
+        check(pelLutCountClipped(h_, &clipped));
+        return clipped;
+    }
     // The texels in the element type of the encoding: float, uint16_t (half) or uint8_t.
     template <class T>
     std::vector<T> read(PelLutEncoding encoding) const {
