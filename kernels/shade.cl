@@ -8,6 +8,7 @@
 #include "lib/ambient.clh"
 #include "lib/deep_scatter.clh"
 #include "lib/direct.clh"
+#include "lib/ggx.clh"
 #include "lib/image.clh"
 #include "lib/light.clh"
 #include "lib/material_id.clh"
@@ -34,6 +35,10 @@ typedef struct Scene {
     __global uchar* lightImages[PEL_LIGHT_BUFFERS];
 } Scene;
 
+typedef struct Outputs {
+    __global uchar *diffuse, *deepScatter, *specular, *thickness;
+} Outputs;
+
 typedef struct Pixels {
     Vec3w position, toCamera;
     Vec3w ng, n, nb;
@@ -42,6 +47,13 @@ typedef struct Pixels {
     floatw curvature, occlusion, thickness, roughness, specular;
     maskw valid; // no input is NaN or Inf
 } Pixels;
+
+// The parts that outputs beside radiance take (PEL_FORMAT_OUT_...); not computed where there is none.
+typedef struct Parts {
+    Vec3w diffuse, deepScatter; // to be multiplied by albedo
+    floatw thickness;
+    bool measured; // thickness is
+} Parts;
 
 typedef struct Counts {
     uint of[PEL_COUNTERS];
@@ -87,7 +99,7 @@ static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
     }
     LOAD_SCALAR(HAS(PEL_BIT_DIRECT_SCATTER), CURVATURE, curvature)
     LOAD_SCALAR(HAS(PEL_BIT_AMBIENT), AMBIENT_OCCLUSION, occlusion)
-    LOAD_SCALAR(HAS(PEL_BIT_DEEP_SCATTER), THICKNESS, thickness)
+    LOAD_SCALAR(HAS(PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER), THICKNESS, thickness)
     LOAD_SCALAR(HAS(PEL_BIT_SPECULAR), ROUGHNESS, roughness)
     LOAD_SCALAR(HAS(PEL_BIT_SPECULAR), SPECULAR, specular)
 #undef LOAD_SCALAR
@@ -103,20 +115,22 @@ static inline floatw loadWideShadow(const Scene* scene, __global const PelShadeL
 
 // Length that the light travelled inside before it came out of the pixels of `needed`.
 static inline floatw measureThickness(const Scene* scene, __global const PelShadeMaterial* material,
-                                      __global const PelShadeLight* light, const Pixels* p, maskw needed) {
+                                      __global const PelShadeLight* light, const Pixels* p, maskw needed,
+                                      bool beyondCutoff) {
     const Vec3w inside = sub3(p->position, scale3(p->ng, (floatw)(material->deepScatterNormalOffset)));
     return thicknessTaps(PEL_FORMAT_SHADOW_MAP, scene->lightImages[light->mapBuffer], light,
                          shadowCoordinates(light->worldToShadow, inside), material->thicknessFilterRadius,
-                         material->thicknessTaps, material->thicknessCutoff, needed);
+                         material->thicknessTaps, beyondCutoff ? INFINITY : material->thicknessCutoff, needed);
 }
 
 // What one light adds to pixels of one material: diffuse and deep scatter are multiplied by albedo later.
 static inline void addLight(const Scene* scene, __global const PelShadeMaterial* material,
                             __global const PelShadeLight* light, const Pixels* p, floatw w, maskw active,
-                            Vec3w* diffuse, Vec3w* specular, Counts* counts) {
+                            Vec3w* diffuse, Vec3w* specular, Parts* parts, Counts* counts) {
     const LightSample sample = sampleLight(light, p->position);
     const maskw reached = active & (sample.strength > 0.0f);
-    if (SKIPPING && !anyw(reached)) return;
+    const bool wantsThickness = PEL_FORMAT_OUT_THICKNESS && !parts->measured;
+    if (SKIPPING && !wantsThickness && !anyw(reached)) return;
     const Vec3w l = sample.direction;
     const floatw nl = dot3(p->n, l), bl = dot3(p->nb, l);
     const Vec3w color = scale3(loadUniform3(light->color), sample.strength);
@@ -144,6 +158,7 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
     }
 
     Vec3w sum = direct;
+    if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = add3(parts->diffuse, mul3(direct, color));
     if (HAS(PEL_BIT_DEEP_SCATTER)) {
         const floatw back = backLight(bl);
         const bool taps = !PEL_FORMAT_THICKNESS && HAS(PEL_BIT_THICKNESS_TAPS) && material->thicknessTaps &&
@@ -151,14 +166,21 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
         const bool colored = material->deepScatterColor[0] != 0.0f || material->deepScatterColor[1] != 0.0f ||
                              material->deepScatterColor[2] != 0.0f;
         if (colored && (taps || PEL_FORMAT_THICKNESS)) {
-            const maskw needed = SKIPPING ? reached & (back > 0.0f) : (maskw)(-1);
+            const maskw needed = SKIPPING && !wantsThickness ? reached & (back > 0.0f) : (maskw)(-1);
             if (anyw(needed)) {
                 floatw thickness = p->thickness;
-                if (!PEL_FORMAT_THICKNESS) thickness = measureThickness(scene, material, light, p, needed);
+                if (!PEL_FORMAT_THICKNESS)
+                    thickness = measureThickness(scene, material, light, p, needed, wantsThickness);
+                if (wantsThickness) {
+                    parts->thickness = thickness;
+                    parts->measured = true;
+                }
                 if (taps) count(counts, PEL_COUNT_THICKNESS, needed & active);
                 const floatw through =
                     back * transmittance(thickness, material->deepScatterFalloff, material->thicknessCutoff);
-                sum = add3(sum, scale3(loadUniform3(material->deepScatterColor), through));
+                const Vec3w deep = scale3(loadUniform3(material->deepScatterColor), through);
+                if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = add3(parts->deepScatter, mul3(deep, color));
+                sum = add3(sum, deep);
             }
         }
     }
@@ -174,8 +196,15 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
             floatw roughness = material->roughness;
             if (PEL_FORMAT_SPECULAR) intensity *= p->specular;
             if (PEL_FORMAT_ROUGHNESS) roughness *= p->roughness;
-            const floatw s =
-                shadow * intensity * specularKsk(p->n, l, p->toCamera, nl, roughness, material->f0);
+            floatw s;
+            if (HAS(PEL_BIT_GGX) && material->specularModel) {
+                floatw roughness2 = material->roughness2;
+                if (PEL_FORMAT_ROUGHNESS) roughness2 *= p->roughness;
+                s = specularGgx(p->n, l, p->toCamera, nl, roughness, roughness2, material->lobeMix, material->f0);
+            } else {
+                s = specularKsk(p->n, l, p->toCamera, nl, roughness, material->f0);
+            }
+            s = shadow * intensity * s;
             *specular = add3(*specular, scale3(color, s));
         }
     }
@@ -183,20 +212,40 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
 
 // Pixels of one material, `active`.
 static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMaterial* material, Pixels* p, uint x,
-                                  uint y, maskw active, Counts* counts) {
+                                  uint y, maskw active, Parts* parts, Vec3w* specularPart, Counts* counts) {
     __global const PelShadeFrame* frame = scene->frame;
     Vec3w diffuse = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = diffuse;
+    parts->diffuse = parts->deepScatter = diffuse;
+    parts->thickness = 0.0f;
+    parts->measured = PEL_FORMAT_THICKNESS != 0;
+    if (PEL_FORMAT_THICKNESS && PEL_FORMAT_OUT_THICKNESS) parts->thickness = p->thickness;
     if (HAS(PEL_BIT_AMBIENT)) {
         diffuse = ambientLight(frame->ambient, vload3(0, material->normalBlend), p->n, p->nb);
         if (PEL_FORMAT_AMBIENT_OCCLUSION) diffuse = scale3(diffuse, p->occlusion);
+        if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = diffuse;
+    }
+    if (HAS(PEL_BIT_AMBIENT_SCATTER) && material->deepScatterAmbient != 0.0f) {
+        const floatw through = material->deepScatterAmbient * transmittance(p->thickness, material->deepScatterFalloff,
+                                                                            material->thicknessCutoff);
+        if (!SKIPPING || anyw(active & (through > 0.0f))) {
+            const Vec3w behind = scale3(p->nb, (floatw)(-1.0f));
+            const Vec3w e = vec3(irradiance(frame->ambient, 0, behind), irradiance(frame->ambient, 1, behind),
+                                 irradiance(frame->ambient, 2, behind));
+            const Vec3w deep = scale3(mul3(loadUniform3(material->deepScatterColor), e), through);
+            diffuse = add3(diffuse, deep);
+            if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = deep;
+        }
     }
     for (uint i = 0; i < frame->lights; ++i) {
         __global const PelShadeLight* light = &scene->lights[i];
         const floatw w = loadWideShadow(scene, light, x, y);
         p->valid &= finitew(w);
-        addLight(scene, material, light, p, w, active & p->valid, &diffuse, &specular, counts);
+        addLight(scene, material, light, p, w, active & p->valid, &diffuse, &specular, parts, counts);
     }
     const Vec3w albedo = PEL_FORMAT_ALBEDO ? p->albedo : loadUniform3(material->albedo);
+    if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = mul3(parts->diffuse, albedo);
+    if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = mul3(parts->deepScatter, albedo);
+    *specularPart = specular;
     return add3(mul3(albedo, diffuse), specular);
 }
 
@@ -204,24 +253,38 @@ static inline Vec3w select3(Vec3w f, Vec3w t, maskw mask) {
     return vec3(selectw(f.x, t.x, mask), selectw(f.y, t.y, mask), selectw(f.z, t.z, mask));
 }
 
+// Writes one output beside radiance.
+static inline void storePart(const int format, __global uchar* buffer, __global const PelShadeImage* image, uint x, uint y,
+                             Vec3w part, Vec3w invalid, maskw valid, maskw active) {
+    if (format) storeColor(format, imageSpan(buffer, image, x, y), select3(invalid, part, valid & finite3(part)), active);
+}
+
 // PEL_WIDTH pixels from (x, y) on, of which those of `active` are wanted.
-static inline void shadePixels(const Scene* scene, __global uchar* radiance, uint x, uint y, uintw id, maskw active,
-                               Counts* counts) {
+static inline void shadePixels(const Scene* scene, __global uchar* radiance, const Outputs* out, uint x, uint y, uintw id,
+                               maskw active, Counts* counts) {
     __global const PelShadeFrame* frame = scene->frame;
     Pixels p = loadPixels(scene, x, y);
-    Vec3w result = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    Vec3w result = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = result;
+    Parts parts = {result, result, (floatw)(0.0f), false};
     if (PEL_FORMAT_MATERIAL) {
         // Nearly always one round: neighbours share their material.
         maskw left = active;
         while (anyw(left)) {
             const uint current = greatestId(id, left);
             const maskw mask = left & (id == current);
-            const Vec3w color = shadeMaterial(scene, &scene->materials[current], &p, x, y, mask, counts);
+            Parts some;
+            Vec3w someSpecular;
+            const Vec3w color =
+                shadeMaterial(scene, &scene->materials[current], &p, x, y, mask, &some, &someSpecular, counts);
             result = select3(result, color, mask);
+            if (PEL_FORMAT_OUT_DIFFUSE) parts.diffuse = select3(parts.diffuse, some.diffuse, mask);
+            if (PEL_FORMAT_OUT_DEEP_SCATTER) parts.deepScatter = select3(parts.deepScatter, some.deepScatter, mask);
+            if (PEL_FORMAT_OUT_SPECULAR) specular = select3(specular, someSpecular, mask);
+            if (PEL_FORMAT_OUT_THICKNESS) parts.thickness = selectw(parts.thickness, some.thickness, mask);
             left &= notw(mask);
         }
     } else {
-        result = shadeMaterial(scene, &scene->materials[1], &p, x, y, active, counts);
+        result = shadeMaterial(scene, &scene->materials[1], &p, x, y, active, &parts, &specular, counts);
     }
     const Span target = imageSpan(radiance, &frame->images[PEL_IMAGE_RADIANCE], x, y);
     const maskw valid = p.valid & finite3(result);
@@ -234,6 +297,16 @@ static inline void shadePixels(const Scene* scene, __global uchar* radiance, uin
         result = select3(invalid, result, finite3(result)); // what stood there was no number
     }
     storeColor(PEL_FORMAT_RADIANCE, target, result, active);
+    storePart(PEL_FORMAT_OUT_DIFFUSE, out->diffuse, &frame->images[PEL_IMAGE_OUT_DIFFUSE], x, y, parts.diffuse, invalid,
+              valid, active);
+    storePart(PEL_FORMAT_OUT_DEEP_SCATTER, out->deepScatter, &frame->images[PEL_IMAGE_OUT_DEEP_SCATTER], x, y,
+              parts.deepScatter, invalid, valid, active);
+    storePart(PEL_FORMAT_OUT_SPECULAR, out->specular, &frame->images[PEL_IMAGE_OUT_SPECULAR], x, y, specular, invalid,
+              valid, active);
+    if (PEL_FORMAT_OUT_THICKNESS)
+        storeScalar(PEL_FORMAT_OUT_THICKNESS,
+                    imageSpan(out->thickness, &frame->images[PEL_IMAGE_OUT_THICKNESS], x, y),
+                    selectw((floatw)(0.0f), parts.thickness, valid & finitew(parts.thickness)), active);
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade(
@@ -246,11 +319,13 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
     __global uchar* light1, __global uchar* light2, __global uchar* light3, __global uchar* light4,
     __global uchar* light5, __global uchar* light6, __global uchar* light7, __global uchar* light8,
     __global uchar* light9, __global uchar* light10, __global uchar* light11, __global uchar* light12,
-    __global uchar* light13, __global uchar* light14, __global uchar* light15) {
+    __global uchar* light13, __global uchar* light14, __global uchar* light15,
+    __global uchar* outDiffuse, __global uchar* outDeepScatter, __global uchar* outSpecular, __global uchar* outThickness) {
     const Scene scene = {frame, materials, lights, luts, position, depth, normalGeometric, normalShading,
                          normalBlurred, curvature, albedo, occlusion, thickness, roughness, specular,
                          {light0, light1, light2, light3, light4, light5, light6, light7, light8, light9,
                           light10, light11, light12, light13, light14, light15}};
+    const Outputs out = {outDiffuse, outDeepScatter, outSpecular, outThickness};
     Counts counts = {{0}};
     const uint tiles = PEL_FORMAT_MATERIAL ? list[0] : frame->tiles;
     // Each group takes a run of the list: neighbours in it share pages, and often cache lines, of the images.
@@ -271,7 +346,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
                 id = loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[PEL_IMAGE_MATERIAL], first, y));
                 active &= hasMaterial(frame, id);
             }
-            if (anyw(active)) shadePixels(&scene, radiance, first, y, id, active, &counts);
+            if (anyw(active)) shadePixels(&scene, radiance, &out, first, y, id, active, &counts);
         }
     }
     if (HAS(PEL_BIT_COUNT))

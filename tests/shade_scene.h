@@ -228,7 +228,7 @@ constexpr PelFormat floatFormats[] = {PEL_FORMAT_UNDEFINED, PEL_FORMAT_R32F, PEL
 inline void setFrame(const pellucid::Device& device, pellucid::Shader& shader, const Frame& f,
                      const Tables& tables) {
     shader.set(f.options).set(f.ambient).set(f.camera);
-    for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot)
+    for (int slot = 1; slot < PEL_SLOT_OUT_DIFFUSE; ++slot)
         if (const Image& image = f.slots[slot]; !image.values.empty())
             shader.set(PelImageSlot(slot),
                        pellucid::imageDesc(upload(device, image), floatFormats[image.components], f.width,
@@ -342,6 +342,10 @@ inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
     material.specular = m.specular * value(PEL_SLOT_SPECULAR, 1);
     material.roughness = m.roughness * value(PEL_SLOT_ROUGHNESS, 1);
     material.f0 = m.f0;
+    material.ggx = m.specularModel == PEL_SPECULAR_GGX;
+    material.roughness2 = m.roughness2 * value(PEL_SLOT_ROUGHNESS, 1);
+    material.lobeMix = m.lobeMix;
+    material.deepScatterAmbient = m.deepScatterAmbient;
     const bool scatters = f.curvatureLut && !s[PEL_SLOT_CURVATURE].values.empty();
     material.curvatureLut = scatters ? &tables.curvatureTruth : nullptr;
     const bool wide = !f.lights.empty() && !f.lights[0].wide.values.empty();
@@ -358,6 +362,8 @@ inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
     }
     pixel.curvature = value(PEL_SLOT_CURVATURE, 0);
     pixel.ambientOcclusion = value(PEL_SLOT_AMBIENT_OCCLUSION, 1);
+    pixel.hasThickness = !s[PEL_SLOT_THICKNESS].values.empty();
+    pixel.thickness = value(PEL_SLOT_THICKNESS, 0);
     std::vector<reference::PixelLight> lights;
     for (const Light& light : f.lights) lights.push_back(truthLight(f, m, light, i));
     reference::Ambient ambient{{f.ambient.constant[0], f.ambient.constant[1], f.ambient.constant[2]}, {}};

@@ -96,6 +96,29 @@ INSTANTIATE_TEST_SUITE_P(
                              f.slots[PEL_SLOT_THICKNESS] = f.slots[PEL_SLOT_AMBIENT_OCCLUSION];
                              for (float& t : f.slots[PEL_SLOT_THICKNESS].values) t *= 20;
                          }},
+                    Term{"DeepScatterAmbient", PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_SCATTER,
+                         [](Frame& f, const Frame& full) {
+                             onlyAmbient(f, full);
+                             f.materials = full.materials;
+                             for (auto& [id, m] : f.materials) m.deepScatterAmbient = 0.1f * float(id), m.specular = 0;
+                             f.slots[PEL_SLOT_THICKNESS] = f.slots[PEL_SLOT_AMBIENT_OCCLUSION];
+                             for (float& t : f.slots[PEL_SLOT_THICKNESS].values) t *= 60;
+                         }},
+                    Term{"SpecularGgx", PEL_FEATURE_SPECULAR | PEL_FEATURE_SHADOW | PEL_FEATURE_GGX,
+                         [](Frame& f, const Frame& full) {
+                             noCurvature(f);
+                             f.shadowLut = false;
+                             black(f);
+                             f.materials = full.materials;
+                             for (auto& [id, m] : f.materials) {
+                                 for (float& c : m.deepScatterColor) c = 0;
+                                 if (id == 2) continue;  // one material of the other model
+                                 m.specularModel = PEL_SPECULAR_GGX;
+                                 m.roughness2 = 0.1f * float(id);
+                             }
+                             for (size_t i = 0; i < f.lights.size(); ++i)
+                                 f.lights[i].wide = full.lights[i].wide;
+                         }},
                     Term{"Specular", PEL_FEATURE_SPECULAR | PEL_FEATURE_SHADOW,
                          [](Frame& f, const Frame& full) {
                              noCurvature(f);

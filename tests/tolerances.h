@@ -107,6 +107,14 @@ inline constexpr Tolerance shadeTerm{"shadeTerm", 5e-5,
                                      "one term alone: bilinear weights and a few dozen float operations"};
 inline constexpr Tolerance shadeSum{"shadeSum", 2e-4, "all terms added and multiplied by light and albedo"};
 
+inline constexpr Tolerance shadeThickness{"shadeThickness", 2e-3,
+                                          "length: depths of a map that spans 200 to 700, through one float division"};
+inline constexpr Tolerance ggxEnergy{"ggxEnergy", 3e-3, "against a mean of 100,000 random half vectors"};
+inline constexpr Tolerance peerDirect{
+    "peerDirect", 2e-3, "half a texel of N.L: its table holds D less Lambert, ours D, which is clamped at the last centre"};
+inline constexpr Tolerance peerPass{"peerPass", 2e-5, "the peer's float arithmetic and ours, vectors turned in float"};
+inline constexpr Tolerance peerTapsMean{"peerTapsMean", 0.02, "relative: means over 20,000 pixels, other taps"};
+inline constexpr Tolerance peerTapsRms{"peerTapsRms", 0.2, "of the mean: pixel by pixel with 8 other taps"};
 inline constexpr Tolerance blurResponse{
     "blurResponse", 0.02, "share of a wave that is left: 13 taps stand for an integral over the kernel"};
 inline constexpr Tolerance mappedNormal{

@@ -129,7 +129,10 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
         {PEL_FEATURE_SPECULAR, "specular"},
         {PEL_FEATURE_BLUR_NORMALS, "blur_normals"},
         {PEL_FEATURE_NORMAL_MAP, "normal_map"},
-        {PEL_FEATURE_FILTER_SHADOW, "filter_shadow"}};
+        {PEL_FEATURE_FILTER_SHADOW, "filter_shadow"},
+        {PEL_FEATURE_GGX, "ggx"},
+        {PEL_FEATURE_AMBIENT_SCATTER, "ambient_scatter"},
+        {PEL_FEATURE_OUTPUTS, "outputs"}};
     nlohmann::ordered_json features = nlohmann::ordered_json::array();
     for (const auto& [bit, name] : names)
         if (s.features & bit) features.push_back(name);

@@ -14,6 +14,7 @@ enum class Range { Any, NotNegative, Positive, AtLeastOne, ZeroToOne };
 
 constexpr std::string_view lightTypes[] = {"directional", "point", "spot"};            // PelLightType
 constexpr std::string_view shadowProjections[] = {"parallel", "perspective"};          // PelShadowProjection
+constexpr std::string_view specularModels[] = {"ksk", "ggx"};                          // PelSpecularModel
 constexpr std::string_view curvatureForms[] = {"arc", "ring", "half-ring", "sphere"};  // PelCurvatureForm
 constexpr std::string_view lutAxes[] = {"linear", "root"};                             // PelLutAxis
 
@@ -105,6 +106,10 @@ void materialKeys(Visitor& v, Material& m) {
     v.number("f0", m.material.f0, Range::ZeroToOne);
     v.text("normal_map", m.normalMap);
     v.number("uv_scale", m.material.uvScale, Range::Positive);
+    v.choice("specular_model", m.material.specularModel, specularModels);
+    v.number("roughness2", m.material.roughness2, Range::Positive);
+    v.number("lobe_mix", m.material.lobeMix, Range::ZeroToOne);
+    v.number("deep_scatter_ambient", m.material.deepScatterAmbient, Range::NotNegative);
 }
 
 template <class Visitor, class Lut>

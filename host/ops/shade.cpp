@@ -14,7 +14,15 @@ static_assert(PEL_BIT_DIRECT_SCATTER == PEL_FEATURE_DIRECT_SCATTER && PEL_BIT_SH
               PEL_BIT_THICKNESS_TAPS == PEL_FEATURE_THICKNESS_TAPS &&
               PEL_BIT_SPECULAR == PEL_FEATURE_SPECULAR);
 // What the passes before it do does not make another variant of the shading kernel.
-constexpr uint32_t shadeFeatures = PEL_FEATURE_SPECULAR * 2 - 1;
+constexpr uint32_t shadeFeatures = (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER;
+static_assert(PEL_BIT_GGX == PEL_FEATURE_GGX && PEL_BIT_AMBIENT_SCATTER == PEL_FEATURE_AMBIENT_SCATTER);
+static_assert(PEL_IMAGE_OUT_DIFFUSE == PEL_SLOT_OUT_DIFFUSE && PEL_IMAGE_OUT_THICKNESS == PEL_SLOT_OUT_THICKNESS &&
+              PEL_IMAGE_TANGENT == PEL_SLOT_TANGENT && PEL_IMAGE_NORMAL_SHADING == PEL_SLOT_NORMAL_SHADING);
+
+// Whether the shading kernel itself reads or writes a slot.
+bool isShadeSlot(int slot) {
+    return slot < PEL_SHADE_SLOTS || slot >= PEL_SLOT_OUT_DIFFUSE;
+}
 static_assert(PEL_FMT_R32F == PEL_FORMAT_R32F && PEL_FMT_RGBA16F == PEL_FORMAT_RGBA16F &&
               PEL_FMT_R8_UNORM == PEL_FORMAT_R8_UNORM && PEL_FMT_RGBA8_SRGB == PEL_FORMAT_RGBA8_SRGB &&
               PEL_FMT_OCT16X2_SNORM == PEL_FORMAT_OCT16X2_SNORM && PEL_FMT_R8_UINT == PEL_FORMAT_R8_UINT &&
@@ -39,7 +47,9 @@ constexpr const char* formatDefines[PEL_SLOT_COUNT] = {
     "PEL_FORMAT_ALBEDO",           "PEL_FORMAT_AMBIENT_OCCLUSION",
     "PEL_FORMAT_THICKNESS",        "PEL_FORMAT_ROUGHNESS",
     "PEL_FORMAT_SPECULAR",         "PEL_FORMAT_UV",
-    "PEL_FORMAT_UV_GRADIENT",      "PEL_FORMAT_TANGENT"};
+    "PEL_FORMAT_UV_GRADIENT",      "PEL_FORMAT_TANGENT",
+    "PEL_FORMAT_OUT_DIFFUSE",      "PEL_FORMAT_OUT_DEEP_SCATTER",
+    "PEL_FORMAT_OUT_SPECULAR",     "PEL_FORMAT_OUT_THICKNESS"};
 
 constexpr uint32_t classifyGroup = 16;
 
@@ -58,7 +68,7 @@ bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
         case PEL_SLOT_AMBIENT_OCCLUSION:
             return features & PEL_BIT_AMBIENT;
         case PEL_SLOT_THICKNESS:
-            return features & PEL_BIT_DEEP_SCATTER;
+            return features & (PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER);
         case PEL_SLOT_ROUGHNESS:
         case PEL_SLOT_SPECULAR:
             return features & PEL_BIT_SPECULAR;
@@ -84,7 +94,8 @@ cl::Defines variant(const ShaderState& state, uint32_t features, const Device& d
         {"PEL_CLASSIFY_GROUP", std::to_string(classifyGroup)},
         {"PEL_FORMAT_WIDE_SHADOW", std::to_string(wide)},
         {"PEL_FORMAT_SHADOW_MAP", std::to_string(features & PEL_BIT_THICKNESS_TAPS ? map : 0)}};
-    for (int slot = 0; slot < PEL_SHADE_SLOTS; ++slot) {
+    for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) {
+        if (!isShadeSlot(slot)) continue;
         const uint32_t code =
             slotIsRead(state, slot, features) ? formatCode(state.images[slot], device.info().mathWidth) : 0;
         defines[formatDefines[slot]] = std::to_string(code);
@@ -182,6 +193,10 @@ void Shader::enqueueShade() {
     const auto& lightBuffers = tables_.lightBuffers();
     for (size_t i = 0; i < PEL_LIGHT_BUFFERS; ++i)
         launch.arg(i < lightBuffers.size() ? lightBuffers[i] : cl::Memory());
+    for (int slot = PEL_SLOT_OUT_DIFFUSE; slot < PEL_SLOT_COUNT; ++slot) {
+        const ImageView& view = plan_.images[slot];
+        launch.arg(view ? view.buffer->memory() : cl::Memory());
+    }
     // Groups take tiles in turn, so that no host waits for their count.
     events_.push_back(device_->launch(launch, tileRange(*device_, tables_.frame().tiles)));
 }

@@ -155,6 +155,10 @@ std::vector<PelShadeMaterial> ShadeTables::describeMaterials(const ShaderState& 
         to.f0 = m.f0;
         to.diffusionRadius = m.diffusionRadius;
         to.shadowFilterWidth = m.shadowFilterWidth;
+        to.specularModel = m.specularModel;
+        to.roughness2 = m.roughness2;
+        to.lobeMix = m.lobeMix;
+        to.deepScatterAmbient = m.deepScatterAmbient;
         to.hasNormalMap = !from.normalMap.empty();
     }
     return table;

@@ -11,14 +11,19 @@ constexpr const char* slotNames[PEL_SLOT_COUNT] = {
     "radiance",       "material",       "position",  "depth",  "geometric normal",
     "shading normal", "blurred normal", "curvature", "albedo", "ambient occlusion",
     "thickness",      "roughness",      "specular",  "UV",     "UV gradient",
-    "tangent"};
+    "tangent",        "diffuse output", "deep scatter output", "specular output", "thickness output"};
 
-enum class Content { scalar, id, color, normal, output, uv, gradient };
+enum class Content { scalar, id, color, normal, output, scalarOutput, uv, gradient };
 
 Content content(PelImageSlot slot) {
     switch (slot) {
         case PEL_SLOT_RADIANCE:
+        case PEL_SLOT_OUT_DIFFUSE:
+        case PEL_SLOT_OUT_DEEP_SCATTER:
+        case PEL_SLOT_OUT_SPECULAR:
             return Content::output;
+        case PEL_SLOT_OUT_THICKNESS:
+            return Content::scalarOutput;
         case PEL_SLOT_MATERIAL:
             return Content::id;
         case PEL_SLOT_POSITION:
@@ -69,6 +74,9 @@ void checkContent(const ImageView& view, Content content, const char* what) {
             break;
         case Content::gradient:
             if (!isFloat(f) || components < 4) right = "four components, float or half";
+            break;
+        case Content::scalarOutput:
+            if (!isFloat(f)) right = "float or half";
             break;
         case Content::output:
             if (!((isFloat(f) && components >= 3) || f == PEL_FORMAT_PLANAR_RGB32F))
@@ -157,7 +165,12 @@ void checkMaterial(const PelMaterial& m) {
                   {"specular", m.specular, 0, huge},
                   {"roughness", m.roughness, 0, huge},
                   {"f0", m.f0, 0, 1},
-                  {"uvScale", m.uvScale, tiny, huge}});
+                  {"uvScale", m.uvScale, tiny, huge},
+                  {"roughness2", m.roughness2, 0, huge},
+                  {"lobeMix", m.lobeMix, 0, 1},
+                  {"deepScatterAmbient", m.deepScatterAmbient, 0, huge}});
+    if (m.specularModel > PEL_SPECULAR_GGX)
+        invalidArgument("PelMaterial.specularModel is ", int(m.specularModel), ", which is none of PelSpecularModel");
     if (m.thicknessTaps != 0 && m.thicknessTaps != 8 && m.thicknessTaps != 16 && m.thicknessTaps != 32)
         invalidArgument("PelMaterial.thicknessTaps is ", m.thicknessTaps, "; it must be 0, 8, 16 or 32");
 }

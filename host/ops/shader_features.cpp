@@ -21,8 +21,16 @@ void need(bool present, const char* what, const char* why) {
 
 void checkSizes(const ShaderState& state) {
     const ImageView& target = state.images[PEL_SLOT_RADIANCE];
-    auto check = [&](const ImageView& view, const std::string& what) {
+    // Outputs beside radiance: none may lie over any other image.
+    const auto checkOutputs = [&](const ImageView& view, const std::string& what, int itself) {
+        for (int slot = PEL_SLOT_OUT_DIFFUSE; slot < PEL_SLOT_COUNT; ++slot)
+            if (slot != itself && state.images[slot] && overlapsElsewhere(state.images[slot], view))
+                invalidArgument("the ", slotName(PelImageSlot(slot)), " image overlaps the ", what,
+                                " image in memory, and not pixel on pixel");
+    };
+    auto check = [&](const ImageView& view, const std::string& what, int itself = -1) {
         if (!view) return;
+        checkOutputs(view, what, itself);
         if (view.width != target.width || view.height != target.height)
             invalidArgument("the ", what, " image is ", view.width, " x ", view.height,
                             ", the radiance image ", target.width, " x ", target.height,
@@ -33,11 +41,13 @@ void checkSizes(const ShaderState& state) {
                 " image in memory, and not pixel on pixel: pixels would be overwritten before they are "
                 "read");
     };
-    for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot) check(state.images[slot], slotName(PelImageSlot(slot)));
+    for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot) check(state.images[slot], slotName(PelImageSlot(slot)), slot);
     for (size_t i = 0; i < state.lights.size(); ++i) {
         check(state.lights[i].images[PEL_LIGHT_WIDE_SHADOW], text("wide shadow ", i));
         const ImageView& map = state.lights[i].images[PEL_LIGHT_SHADOW_MAP];
-        if (map && overlapsElsewhere(target, map))
+        if (!map) continue;
+        checkOutputs(map, text("shadow map ", i), -1);
+        if (overlapsElsewhere(target, map))
             invalidArgument("the radiance image overlaps shadow map ", i, " in memory");
     }
 }
@@ -112,7 +122,15 @@ uint32_t deriveFeatures(const ShaderState& state) {
                     features |= PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS;
             }
             if (material.params.specular > 0) features |= PEL_FEATURE_SPECULAR;
+            if (material.params.specular > 0 && material.params.specularModel == PEL_SPECULAR_GGX)
+                features |= PEL_FEATURE_GGX;
         }
+    if (features & PEL_FEATURE_AMBIENT && images[PEL_SLOT_THICKNESS])
+        for (const auto& [id, material] : state.materials)
+            if (material.params.deepScatterAmbient > 0 && !black(material.params.deepScatterColor))
+                features |= PEL_FEATURE_AMBIENT_SCATTER;
+    for (int slot = PEL_SLOT_OUT_DIFFUSE; slot < PEL_SLOT_COUNT; ++slot)
+        if (images[slot]) features |= PEL_FEATURE_OUTPUTS;
     // Blurred normals matter to scattered and ambient light; a host's image goes before ours, a map before the blur.
     const bool read = !state.lights.empty() || features & PEL_FEATURE_AMBIENT;
     if (read && !images[PEL_SLOT_NORMAL_BLURRED])

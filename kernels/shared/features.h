@@ -11,6 +11,8 @@
 #define PEL_BIT_DEEP_SCATTER 0x10
 #define PEL_BIT_THICKNESS_TAPS 0x20
 #define PEL_BIT_SPECULAR 0x40
+#define PEL_BIT_GGX 0x400
+#define PEL_BIT_AMBIENT_SCATTER 0x800
 // How the kernel goes about it.
 #define PEL_BIT_POSITIONAL 0x10000  // a point or spot light
 #define PEL_BIT_ACCUMULATE 0x20000  // add to the output

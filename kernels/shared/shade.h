@@ -27,8 +27,12 @@
 #define PEL_IMAGE_UV 13
 #define PEL_IMAGE_UV_GRADIENT 14
 #define PEL_IMAGE_TANGENT 15
-#define PEL_IMAGE_SLOTS 16
-#define PEL_SHADE_SLOTS 13 // those of them that shade.cl reads itself; the others belong to the passes before it
+#define PEL_IMAGE_OUT_DIFFUSE 16
+#define PEL_IMAGE_OUT_DEEP_SCATTER 17
+#define PEL_IMAGE_OUT_SPECULAR 18
+#define PEL_IMAGE_OUT_THICKNESS 19
+#define PEL_IMAGE_SLOTS 20
+#define PEL_SHADE_SLOTS 13 // those of them that shade.cl reads; from PEL_IMAGE_OUT_DIFFUSE on it writes; the rest is others'
 // Transmittance below 2^-16 counts as none: it lets taps stop early and is a third of the accuracy promised.
 #define PEL_LEAST_TRANSMITTANCE_LOG2 16
 
@@ -84,6 +88,10 @@ typedef struct PelShadeMaterial {
     float diffusionRadius;   // length
     float shadowFilterWidth; // length
     PelUint32 hasNormalMap;
+    PelUint32 specularModel; // PelSpecularModel
+    float roughness2;
+    float lobeMix;
+    float deepScatterAmbient;
 } PelShadeMaterial;
 
 typedef struct PelShadeLight {
@@ -118,7 +126,7 @@ typedef struct PelShadeLight {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelShadeImage) == 32 && sizeof(PelShadeLut) == 40);
 static_assert(sizeof(PelShadeFrame) == 4 * (5 + 8 + 3 + 16 + 27 + 3) + PEL_IMAGE_SLOTS * 32);
-static_assert(sizeof(PelShadeMaterial) == 4 * 22 + 2 * sizeof(PelShadeLut));
+static_assert(sizeof(PelShadeMaterial) == 4 * 26 + 2 * sizeof(PelShadeLut));
 static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64);
 #endif
 #endif

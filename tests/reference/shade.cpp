@@ -140,4 +140,18 @@ double specular(Vec3 shading, Vec3 toLight, Vec3 toViewer, double roughness, dou
     return intensity * cosine * max0(lobe * schlick(dot(toViewer, half), f0) / squared);
 }
 
+double ggxLobe(Vec3 n, Vec3 l, Vec3 v, double a) {
+    const double nh = dot(n, normalized(l + v)), nl = dot(n, l), nv = std::max(dot(n, v), 1e-3);
+    const double d = a * a / (std::numbers::pi * std::pow(nh * nh * (a * a - 1) + 1, 2));
+    const auto hidden = [&](double c) { return (std::sqrt(1 + a * a * (1 / (c * c) - 1)) - 1) / 2; };
+    return d / (1 + hidden(nl) + hidden(nv)) / (4 * nl * nv);
+}
+
+double specularGgx(Vec3 n, Vec3 l, Vec3 v, double roughness, double roughness2, double lobeMix, double intensity, double f0) {
+    const double nl = dot(n, l);
+    if (!(nl > 0) || !(dot(n, l + v) > 0)) return 0;
+    const double lobes = std::lerp(ggxLobe(n, l, v, roughness), ggxLobe(n, l, v, roughness2), lobeMix);
+    return intensity * nl * std::numbers::pi * schlick(dot(v, normalized(l + v)), f0) * lobes;
+}
+
 }  // namespace reference

@@ -85,4 +85,9 @@ double schlick(double cosine, double f0);
 double specular(Vec3 shading, Vec3 toLight, Vec3 toViewer, double roughness, double intensity,
                 double f0 = 0.028);
 
+// The same of two lobes of GGX with Smith's correlated masking, times pi: intensity (N.L) pi BRDF.
+double ggxLobe(Vec3 shading, Vec3 toLight, Vec3 toViewer, double roughness);  // D G / (4 (N.L) (N.V))
+double specularGgx(Vec3 shading, Vec3 toLight, Vec3 toViewer, double roughness, double roughness2, double lobeMix,
+                   double intensity, double f0 = 0.028);
+
 }  // namespace reference

@@ -35,10 +35,12 @@ Shaded shadeLight(const Material& material, const Pixel& pixel, const PixelLight
         const double shadow = material.shadowLut
                                   ? sharpenedShadow(light.wideShadow, material.shadowLut->sharpening)
                                   : light.wideShadow;
-        out.specular = shadow *
-                       specular(pixel.shading, light.toLight, pixel.toViewer, material.roughness,
-                                material.specular, material.f0) *
-                       light.color;
+        const double lobe =
+            material.ggx ? specularGgx(pixel.shading, light.toLight, pixel.toViewer, material.roughness,
+                                       material.roughness2, material.lobeMix, material.specular, material.f0)
+                         : specular(pixel.shading, light.toLight, pixel.toViewer, material.roughness,
+                                    material.specular, material.f0);
+        out.specular = shadow * lobe * light.color;
     }
     return out;
 }
@@ -55,6 +57,12 @@ Shaded shadePixel(const Material& material, const Pixel& pixel, const std::vecto
     total.ambient =
         pixel.ambientOcclusion *
         (material.albedo * ambientTerm(ambient, pixel.shading, pixel.blurred, material.normalBlend));
+    if (pixel.hasThickness && material.deepScatterAmbient > 0) {
+        const double t = pixel.thickness / material.deepScatterRadius;
+        total.deepScatter = total.deepScatter + material.deepScatterAmbient * std::exp(-t * t / 2) *
+                                                    (material.deepScatterColor * material.albedo *
+                                                     irradiance(ambient, -1 * pixel.blurred));
+    }
     return total;
 }
 

@@ -20,6 +20,9 @@ struct Material {
     Rgb deepScatterColor;
     double deepScatterRadius = 6;  // length
     double specular = 0, roughness = 0.3, f0 = 0.028;
+    bool ggx = false;
+    double roughness2 = 0.15, lobeMix = 0.15;
+    double deepScatterAmbient = 0;
     const ScatterTable* curvatureLut = nullptr;  // none: no scattering at the terminator, delta = 0
     const ScatterTable* shadowLut = nullptr;     // none: the wide shadow as it is, in all channels
 };
@@ -28,6 +31,8 @@ struct Pixel {
     Vec3 geometric, shading, blurred, toViewer;
     double curvature = 0;  // 1/length
     double ambientOcclusion = 1;
+    bool hasThickness = false;  // of its own, from an image
+    double thickness = 0;       // length
 };
 
 // A light as this pixel sees it.

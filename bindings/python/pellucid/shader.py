@@ -33,12 +33,12 @@ class Shader:
         Parameters
         ----------
         slot : ImageSlot or str
-            Such as "normal_shading"; "radiance" is the output.
+            Such as "normal_shading"; "radiance" is the output, and those that begin with "out_".
         image : array, pyopencl.array.Array, Image or None
             (height, width[, components]), see Image; None clears the slot.
         """
         s = to_enum(ImageSlot, slot, "slot")
-        self._keep(s, image, s.name.lower(), s == ImageSlot.RADIANCE, s == ImageSlot.MATERIAL,
+        self._keep(s, image, s.name.lower(), s == ImageSlot.RADIANCE or s.name.startswith("OUT_"), s == ImageSlot.MATERIAL,
                    lambda native: self._handle.set_image(int(s), native))
         return self
 

@@ -235,3 +235,20 @@ def test_wide_shadow_from_a_shadow_map(device, view):
     assert np.abs(out[view.inside & (x < -2.5)]).max() == 0
     lit = view.inside & (x > 2.5)
     assert np.abs(out - lambert)[lit].max() < 1e-5
+
+
+def test_outputs_add_up_to_radiance(device, view, tolerance):
+    shader, out = show_blurred_normal(device, view)
+    shader.set_lights([pel.Light(to_light=view.to_light)]).set_camera(pel.Camera(position=[0, 0, 100]))
+    shader.set_image("thickness", np.full((HEIGHT, WIDTH), 4, np.float32))
+    shader.set_material(1, pel.Material(specular=1, specular_model="ggx", deep_scatter_color=[1, 0.2, 0.1],
+                                        deep_scatter_ambient=0.5))
+    parts = {name: np.zeros((HEIGHT, WIDTH, 3), np.float32) for name in ("out_diffuse", "out_deep_scatter", "out_specular")}
+    thickness = np.zeros((HEIGHT, WIDTH), np.float16)
+    for name, image in parts.items():
+        shader.set_image(name, image)
+    shader.set_image("out_thickness", thickness).commit().execute()
+    assert shader.stats().features & pel.Feature.OUTPUTS and shader.stats().features & pel.Feature.GGX
+    assert all(image[view.inside].max() > 0.01 for image in parts.values())
+    assert np.abs(sum(parts.values()) - out).max() < tolerance["shadeTerm"]
+    assert (thickness == 4 * view.inside).all()

@@ -526,7 +526,14 @@ typedef enum PelImageSlot {
                                        diffusion radius chooses the level of a normal map */
     PEL_SLOT_TANGENT = 15,          /* xyz, unit, along u; a fourth component below 0 turns the bitangent round.
                                        Needed by normal maps */
-    PEL_SLOT_COUNT = 16
+    /* Outputs beside radiance, which stays what it is: parts of it per pixel of a material, for compositing and debugging.
+       Always replaced, never added to; RGB or RGBA, float or half, but for the last. */
+    PEL_SLOT_OUT_DIFFUSE = 16,      /* albedo * (scattered light + ambient) */
+    PEL_SLOT_OUT_DEEP_SCATTER = 17, /* albedo * light that came through */
+    PEL_SLOT_OUT_SPECULAR = 18,
+    PEL_SLOT_OUT_THICKNESS = 19,    /* length, one component: of the thickness image, or along the first light with a shadow
+                                       map; 0 where neither is */
+    PEL_SLOT_COUNT = 20
 } PelImageSlot;
 
 /* The images of one light. */
@@ -567,6 +574,11 @@ typedef struct PelLight {
                                     shade themselves; 0.5 */
 } PelLight;
 
+typedef enum PelSpecularModel {
+    PEL_SPECULAR_KSK = 0, /* Kelemen and Szirmay-Kalos with Beckmann's distribution, roughness m */
+    PEL_SPECULAR_GGX = 1  /* two lobes of GGX of widths roughness and roughness2, mixed by lobeMix */
+} PelSpecularModel;
+
 typedef struct PelMaterial {
     uint32_t structSize;
     float albedo[3];       /* used when PEL_SLOT_ALBEDO is not set */
@@ -584,6 +596,11 @@ typedef struct PelMaterial {
     float f0;                      /* reflectance at normal incidence; 0.028 */
     float uvScale;                 /* length per unit of u or v on the surface, as pelMeshUvScale gives it: which level of
                                       the normal map is blurred over diffusionRadius; 1 */
+    PelSpecularModel specularModel;
+    float roughness2;              /* of the second lobe of GGX; multiplied by the roughness image too; 0.15 */
+    float lobeMix;                 /* its share, 0 to 1; 0.15 */
+    float deepScatterAmbient;      /* share of ambient light that comes through from behind: times deepScatterColor and the
+                                      irradiance on -Nb. Needs a thickness image; 0 */
 } PelMaterial;
 
 /* Light from everywhere: E(n) = constant + sum of sh[i] * basis_i(n) over the 9 orthonormal real spherical harmonics of
@@ -612,7 +629,10 @@ typedef enum PelFeature {
     PEL_FEATURE_SPECULAR = 1 << 6,
     PEL_FEATURE_BLUR_NORMALS = 1 << 7, /* PelShaderOptions.blurNormals, and no blurred normal image */
     PEL_FEATURE_NORMAL_MAP = 1 << 8,   /* blurred normals from the normal map of a material */
-    PEL_FEATURE_FILTER_SHADOW = 1 << 9 /* a wide shadow made from a shadow map */
+    PEL_FEATURE_FILTER_SHADOW = 1 << 9, /* a wide shadow made from a shadow map */
+    PEL_FEATURE_GGX = 1 << 10,          /* specular with PEL_SPECULAR_GGX */
+    PEL_FEATURE_AMBIENT_SCATTER = 1 << 11, /* deepScatterAmbient, ambient light and a thickness image */
+    PEL_FEATURE_OUTPUTS = 1 << 12       /* an output beside radiance */
 } PelFeature;
 
 /* What a shader did: counts of its last execution unless they say total. */

@@ -85,6 +85,8 @@ static inline PelMaterial pelMaterialDefaults(void) {
     s.roughness = 0.3f;
     s.f0 = 0.028f;
     s.uvScale = 1.0f;
+    s.roughness2 = 0.15f;
+    s.lobeMix = 0.15f;
     return s;
 }
 static inline PelAmbient pelAmbientDefaults(void) { PEL_ZEROED_(PelAmbient, s); return s; }

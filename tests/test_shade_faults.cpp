@@ -1,0 +1,155 @@
+// Every allocation of a shader fails once: an error each time, nothing broken after it.
+//
+// This program's own operator new and OpenCL calls come before the library's: they count calls that the library makes, and let
+// one of them fail.
+#include <CL/cl.h>
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "pass_scene.h"
+
+using namespace shade_test;
+using pellucid::Buffer;
+using pellucid::imageDesc;
+using pellucid::Shader;
+
+namespace {
+
+enum class Fault { none, hostMemory, deviceMemory, launch, kernel };
+std::atomic<Fault> fault{Fault::none};
+std::atomic<int> countdown{0}, calls{0};
+std::atomic<void*> libraryBase{nullptr};
+
+bool inLibrary(void* address) {
+    Dl_info info{};
+    return dladdr(address, &info) && info.dli_fbase == libraryBase.load();
+}
+
+// Whether this call is the one to fail.
+bool strikes(Fault kind) {
+    if (fault.load() != kind) return false;
+    ++calls;
+    return --countdown == 0;
+}
+
+template <class F>
+F* next(const char* name) {
+    return reinterpret_cast<F*>(dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+
+void* operator new(size_t bytes) {
+    if (fault.load() == Fault::hostMemory && inLibrary(__builtin_return_address(0)) && strikes(Fault::hostMemory))
+        throw std::bad_alloc();
+    if (void* memory = std::malloc(bytes ? bytes : 1)) return memory;
+    throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept {
+    std::free(memory);
+}
+void operator delete(void* memory, size_t) noexcept {
+    std::free(memory);
+}
+
+extern "C" {
+#pragma GCC visibility push(default)
+cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void* host, cl_int* code) {
+    if (strikes(Fault::deviceMemory)) {
+        if (code) *code = CL_MEM_OBJECT_ALLOCATION_FAILURE;
+        return nullptr;
+    }
+    return next<decltype(clCreateBuffer)>("clCreateBuffer")(context, flags, bytes, host, code);
+}
+cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* code) {
+    if (strikes(Fault::kernel)) {
+        if (code) *code = CL_OUT_OF_HOST_MEMORY;
+        return nullptr;
+    }
+    return next<decltype(clCreateKernel)>("clCreateKernel")(program, name, code);
+}
+cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset,
+                              const size_t* global, const size_t* local, cl_uint waits, const cl_event* list, cl_event* event) {
+    if (strikes(Fault::launch)) return CL_MEM_OBJECT_ALLOCATION_FAILURE;
+    return next<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel")(queue, kernel, dimensions, offset, global, local,
+                                                                          waits, list, event);
+}
+#pragma GCC visibility pop
+}
+
+namespace {
+
+class ShadeFaults : public testing::TestWithParam<Fault> {};
+
+TEST_P(ShadeFaults, EachAllocationInTurn) {
+    Dl_info info{};
+    ASSERT_TRUE(dladdr(reinterpret_cast<void*>(&pelShaderCommit), &info));
+    libraryBase = info.dli_fbase;
+    MapLight from = mapLight(3, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61);
+    Frame f = reliefFrame(1, 70, 20, 0.4f);
+    f.lights = {from.light};
+    f.options.blurNormals = f.options.countPixels = 1;
+    f.curvatureLut = f.shadowLut = true;
+    f.slots[PEL_SLOT_CURVATURE] = f.slots[PEL_SLOT_MATERIAL];
+    const auto right = shade(device(), f, tables());  // the programs are built by now
+
+    Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    const Buffer target(device(), f.pixels() * 12), curvature(device(), f.slots[PEL_SLOT_CURVATURE].values);
+    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+    shader.commit();
+    int failures = 0;
+    for (int n = 1; n < 2000; ++n) {
+        // A new shader, so that everything is allocated anew.
+        Shader fresh;
+        calls = 0;
+        countdown = n;
+        fault = GetParam();
+        PelError code = PEL_SUCCESS;
+        std::string message;
+        try {
+            fresh = Shader(device());
+            setFrame(device(), fresh, f, tables());
+            fresh.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+            fresh.commit().execute();
+        } catch (const pellucid::Error& e) {
+            fault = Fault::none;
+            code = e.code();
+            message = e.what();
+        }
+        fault = Fault::none;
+        if (countdown > 0) {  // there are no more calls than that
+            EXPECT_EQ(code, PEL_SUCCESS) << message;
+            break;
+        }
+        ++failures;
+        EXPECT_EQ(code, PEL_ERROR_OUT_OF_MEMORY) << "call " << n << ": " << message;
+        EXPECT_FALSE(message.empty());
+        // Whatever was left of that one, another shader works, and so does the same one when it is asked again.
+        if (n % 7 == 0) {
+            shader.execute();
+            EXPECT_EQ(target.readAll<float>(), right) << "after call " << n;
+        }
+        if (!fresh.get()) continue;
+        setFrame(device(), fresh, f, tables());
+        fresh.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+        fresh.commit().execute();
+        EXPECT_EQ(target.readAll<float>(), right) << "after call " << n;
+    }
+    std::printf("%d calls failed, each in its turn\n", failures);
+    EXPECT_GT(failures, 3);
+}
+
+std::string nameOf(const testing::TestParamInfo<Fault>& info) {
+    constexpr const char* names[] = {"None", "HostMemory", "DeviceMemory", "Launch", "Kernel"};
+    return names[int(info.param)];
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, ShadeFaults,
+                         testing::Values(Fault::hostMemory, Fault::deviceMemory, Fault::launch, Fault::kernel), nameOf);
+
+}  // namespace
