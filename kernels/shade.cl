@@ -320,7 +320,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
     __global uchar* light5, __global uchar* light6, __global uchar* light7, __global uchar* light8,
     __global uchar* light9, __global uchar* light10, __global uchar* light11, __global uchar* light12,
     __global uchar* light13, __global uchar* light14, __global uchar* light15,
-    __global uchar* outDiffuse, __global uchar* outDeepScatter, __global uchar* outSpecular, __global uchar* outThickness) {
+    __global uchar* outDiffuse, __global uchar* outDeepScatter, __global uchar* outSpecular, __global uchar* outThickness,
+    uint part, uint parts) {
     const Scene scene = {frame, materials, lights, luts, position, depth, normalGeometric, normalShading,
                          normalBlurred, curvature, albedo, occlusion, thickness, roughness, specular,
                          {light0, light1, light2, light3, light4, light5, light6, light7, light8, light9,
@@ -329,7 +330,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
     Counts counts = {{0}};
     const uint tiles = PEL_FORMAT_MATERIAL ? list[0] : frame->tiles;
     // Each group takes a run of the list: neighbours in it share pages, and often cache lines, of the images.
-    const uint groups = get_num_groups(0), group = get_group_id(0);
+    // Of long frames a launch takes one part of `parts`, so that the host may stop between them.
+    const uint groups = get_num_groups(0) * parts, group = get_num_groups(0) * part + get_group_id(0);
     const uint end = (uint)((ulong)tiles * (group + 1) / groups);
     for (uint i = (uint)((ulong)tiles * group / groups); i < end; ++i) {
         const uint tile = PEL_FORMAT_MATERIAL ? list[1 + i] : i;

@@ -320,6 +320,65 @@ TEST(ShadeSubmit, EventsAndKeptObjects) {
     EXPECT_EQ(target.readAll<float>(), expected);
 }
 
+// --- progress and cancelling ---
+
+struct Listener {
+    std::vector<double> heard;
+    double stopAt = 2;
+};
+int listen(void* user, double fraction, const char* what) {
+    auto& listener = *static_cast<Listener*>(user);
+    EXPECT_STREQ(what, "shading");
+    listener.heard.push_back(fraction);
+    return fraction < listener.stopAt;
+}
+
+TEST(ShadeProgress, IsToldAndMayCancel) {
+    const pellucid::Device own("");
+    const Tables ownTables = makeTables(own);
+    Frame f = randomFrame(9, 2100, 1024, 1);  // more than two million pixels
+    f.materials.erase(7);
+    for (auto& [id, m] : f.materials) m.thicknessTaps = 0;
+    const auto right = shade(own, f, ownTables);
+    Listener patient, impatient;
+    impatient.stopAt = 0.3;
+    Shader shader(own);
+    setFrame(own, shader, f, ownTables);
+    const Buffer target(own, std::vector<float>(f.pixels() * 3, -3));
+    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height)).commit();
+    pellucid::check(pelDeviceSetProgress(own.get(), listen, &impatient));
+    expectError(PEL_ERROR_CANCELLED, {"shading"}, [&] { shader.execute(); });
+    const auto part = target.readAll<float>();
+    size_t done = 0, left = 0;
+    for (size_t i = 0; i < part.size(); ++i) {
+        if (f.slots[PEL_SLOT_MATERIAL].values[i / 3] == 0 || f.slots[PEL_SLOT_MATERIAL].values[i / 3] == 7) continue;
+        (part[i] == -3 ? left : done)++;
+    }
+    EXPECT_GT(done, 0u) << "the first million";
+    EXPECT_GT(left, done / 2) << "not the rest";
+
+    pellucid::check(pelDeviceSetProgress(own.get(), listen, &patient));
+    shader.execute();
+    EXPECT_GE(patient.heard.size(), 4u);
+    EXPECT_EQ(patient.heard.front(), 0);
+    EXPECT_EQ(patient.heard.back(), 1);
+    EXPECT_TRUE(std::is_sorted(patient.heard.begin(), patient.heard.end()));
+    // Submitted without waiting there is nobody to ask.
+    patient.heard.clear();
+    PelEvent done_ = nullptr;
+    PelSubmit submit{};
+    submit.done = &done_;
+    shader.execute(&submit);
+    EXPECT_TRUE(patient.heard.empty());
+    pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));
+    const auto all = target.readAll<float>();
+    pelEventRelease(done_);
+    for (size_t i = 0; i < all.size(); ++i)
+        if (all[i] != -3) {
+            ASSERT_EQ(all[i], right[i]) << "the same bits in parts as at once";
+        }
+}
+
 TEST(ShadeStats, NothingIsSentOrBuiltTwice) {
     Frame f = randomFrame(5, 120, 60, 1);
     Shader shader(device());

@@ -113,6 +113,11 @@ inline constexpr Tolerance ggxEnergy{"ggxEnergy", 3e-3, "against a mean of 100,0
 inline constexpr Tolerance peerDirect{
     "peerDirect", 2e-3, "half a texel of N.L: its table holds D less Lambert, ours D, which is clamped at the last centre"};
 inline constexpr Tolerance peerPass{"peerPass", 2e-5, "the peer's float arithmetic and ours, vectors turned in float"};
+inline constexpr Tolerance diskMoment{"diskMoment", 0.02, "mean squared radius of a disk, 1/2, from 8 points"};
+inline constexpr Tolerance diskSpacing{
+    "diskSpacing", 0.65, "least distance over that of a hexagonal packing: 0.7 to 0.75 is called blue noise, 0 is white"};
+inline constexpr Tolerance diskEdge{
+    "diskEdge", 0.55, "RMS error over straight edges, relative to as many random points"};
 inline constexpr Tolerance peerTapsMean{"peerTapsMean", 0.02, "relative: means over 20,000 pixels, other taps"};
 inline constexpr Tolerance peerTapsRms{"peerTapsRms", 0.2, "of the mean: pixel by pixel with 8 other taps"};
 inline constexpr Tolerance blurResponse{

@@ -82,7 +82,7 @@ PelError pelShaderExecute(PelShader shader, const PelSubmit* submit) {
     return entry([&] {
         Shader& s = fromHandle<Shader>(shader);
         Submission submission(s.device(), submit);
-        s.execute();
+        s.execute(submit == nullptr);
         submission.finish();
     });
 }

@@ -137,6 +137,11 @@ void Device::setProgress(PelProgressCallback callback, void* user) {
     progressUser_ = user;
 }
 
+bool Device::hasProgress() {
+    std::lock_guard lock(mutex_);
+    return progress_ != nullptr;
+}
+
 void Device::progress(double fraction, const char* what) {
     PelProgressCallback callback;
     void* user;

@@ -36,6 +36,7 @@ class Device final : public Object {
     void finish();
     PelDeviceStats stats();
 
+    bool hasProgress();
     void setProgress(PelProgressCallback callback, void* user);
     // Tells the caller how far long work is; throws PEL_ERROR_CANCELLED when the caller wants no more of it.
     void progress(double fraction, const char* what);

@@ -53,6 +53,9 @@ constexpr const char* formatDefines[PEL_SLOT_COUNT] = {
 
 constexpr uint32_t classifyGroup = 16;
 
+// A caller who listens is asked at least this often whether to go on: some tens of milliseconds on two cores.
+constexpr uint64_t pixelsPerPart = 1 << 20;
+
 // Slots that no feature reads are left out: fewer variants, and no input that cannot matter.
 bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
     switch (slot) {
@@ -153,7 +156,7 @@ void Shader::commit() {
     committed_ = true;
 }
 
-void Shader::execute() {
+void Shader::execute(bool blocking) {
     if (!committed_)
         fail(PEL_ERROR_INVALID_STATE,
              "something was set after the last pelShaderCommit, or nothing was committed yet");
@@ -170,7 +173,20 @@ void Shader::execute() {
     }
     if (state_.options.countPixels) clear(counters_, PEL_COUNTERS * sizeof zero);
     passes_.enqueue(*device_, plan_, tables_, tileList_, counters_, events_);
-    enqueueShade();
+    const uint64_t pixels = uint64_t(tables_.frame().width) * tables_.frame().height;
+    const bool tell = blocking && device_->hasProgress();
+    const uint32_t parts = tell ? uint32_t(1 + pixels / pixelsPerPart) : 1;
+    for (uint32_t part = 0; part < parts; ++part) {
+        if (tell) {
+            device_->finish();
+            device_->progress(double(part) / parts, "shading");
+        }
+        enqueueShade(part, parts);
+    }
+    if (tell) {
+        device_->finish();
+        device_->progress(1, "shading");
+    }
     launches_ = events_.size();
     uploadedBefore_ = std::exchange(bytesUploaded_, 0);
     executed_ = true;
@@ -182,7 +198,7 @@ void Shader::enqueueTiles() {
     events_.push_back(device_->launch(launch, {{tables_.frame().tiles, 1, 1}, {classifyGroup, 1, 1}}));
 }
 
-void Shader::enqueueShade() {
+void Shader::enqueueShade(uint32_t part, uint32_t parts) {
     cl::Launch launch(shadeProgram_, "shade");
     launch.arg(tables_.frameMemory()).arg(tables_.materials()).arg(tables_.lights()).arg(tables_.luts());
     launch.arg(tileList_).arg(counters_);
@@ -197,6 +213,7 @@ void Shader::enqueueShade() {
         const ImageView& view = plan_.images[slot];
         launch.arg(view ? view.buffer->memory() : cl::Memory());
     }
+    launch.arg(cl_uint(part)).arg(cl_uint(parts));
     // Groups take tiles in turn, so that no host waits for their count.
     events_.push_back(device_->launch(launch, tileRange(*device_, tables_.frame().tiles)));
 }

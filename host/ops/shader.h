@@ -64,14 +64,15 @@ class Shader final : public Object {
     void setAmbient(const PelAmbient& ambient);
     void setCamera(const PelCamera& camera);
     void commit();
-    void execute();
+    // `blocking`: the caller waits, and may want to hear how far it is.
+    void execute(bool blocking);
     PelShaderStats stats();
     Device& device() const { return *device_; }
 
   private:
     ~Shader() override = default;
     void enqueueTiles();
-    void enqueueShade();
+    void enqueueShade(uint32_t part, uint32_t parts);
 
     Ref<Device> device_;
     ShaderState state_;  // as the caller set it

@@ -687,7 +687,8 @@ PEL_API PelError pelShaderSetAmbient(PelShader shader, const PelAmbient* ambient
 PEL_API PelError pelShaderSetCamera(PelShader shader, const PelCamera* camera);
 /* Checks that everything fits together, derives the features and builds what they need. */
 PEL_API PelError pelShaderCommit(PelShader shader);
-/* Shades. Errors: PEL_ERROR_INVALID_STATE when something was set after the last commit. */
+/* Shades. Blocking, it tells a progress callback of the device how far it is, about every million pixels; cancelled by it,
+ * some pixels are shaded and others not. Errors: PEL_ERROR_CANCELLED; PEL_ERROR_INVALID_STATE when something was set after the last commit. */
 PEL_API PelError pelShaderExecute(PelShader shader, const PelSubmit* submit);
 /* Waits for the last execution. */
 PEL_API PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats);
