@@ -16,8 +16,8 @@ static_assert(PEL_BIT_DIRECT_SCATTER == PEL_FEATURE_DIRECT_SCATTER && PEL_BIT_SH
 // What the passes before it do does not make another variant of the shading kernel.
 constexpr uint32_t shadeFeatures = (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER;
 static_assert(PEL_BIT_GGX == PEL_FEATURE_GGX && PEL_BIT_AMBIENT_SCATTER == PEL_FEATURE_AMBIENT_SCATTER);
-static_assert(PEL_IMAGE_OUT_DIFFUSE == PEL_SLOT_OUT_DIFFUSE && PEL_IMAGE_OUT_THICKNESS == PEL_SLOT_OUT_THICKNESS &&
-              PEL_IMAGE_TANGENT == PEL_SLOT_TANGENT && PEL_IMAGE_NORMAL_SHADING == PEL_SLOT_NORMAL_SHADING);
+static_assert(PEL_IMAGE_OUT_DIFFUSE == PEL_SLOT_OUT_DIFFUSE && PEL_IMAGE_OUT_DEEP_SCATTER == PEL_SLOT_OUT_DEEP_SCATTER &&
+              PEL_IMAGE_OUT_SPECULAR == PEL_SLOT_OUT_SPECULAR && PEL_IMAGE_OUT_THICKNESS == PEL_SLOT_OUT_THICKNESS);
 
 // Whether the shading kernel itself reads or writes a slot.
 bool isShadeSlot(int slot) {
