@@ -5,17 +5,17 @@
 // be measured. Such a slot stays out of its neighbours' means, and the last pass writes 0 for it, so that no
 // NaN ever spreads or leaves. One work-item: PEL_WIDTH slots (of plane get_global_id(1)); curvature_store:
 // one vertex of the caller. Variants: MESH_MAPPED 1: vertices find their slot in slotOf. MESH_STRIDE:
-// lib/mesh_ring.clh. MESH_PLANES, MESH_QUANTITY (a PelCurvatureQuantity): what curvature_store reads and
+// lib/mesh_ring.clh. MESH_LISTED: lib/mesh_vertex.clh. MESH_PLANES, MESH_QUANTITY (a PelCurvatureQuantity): what curvature_store reads and
 // writes.
 
 #include "lib/mesh_ring.clh"
 
 // (min + max) / 2 of |dn| / |dp| over the edges of a slot [FaceWorks 1.0].
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_edge(
-    uint slots, __global const uint* slices, __global const uint* rings, __global const float* positions,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings, __global const float* positions,
     uint positionOffset, __global const float* normals, uint normalOffset, uint planeStride,
     __global float* curvature) {
-    const uint first = get_global_id(0) * PEL_WIDTH;
+    const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ring_begin(first, slots, slices);
     floatw px, py, pz, nx, ny, nz;
@@ -46,9 +46,9 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
 
 // The mean over a slot's triangles of their other two slots' values, itself not included.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_smooth(
-    uint slots, __global const uint* slices, __global const uint* rings, uint planeStride,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings, uint planeStride,
     __global const float* from, __global float* to) {
-    const uint first = get_global_id(0) * PEL_WIDTH;
+    const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     from += (size_t)get_global_id(1) * planeStride;
     to += (size_t)get_global_id(1) * planeStride;
@@ -73,17 +73,8 @@ inline float finite_or_zero(float value) {
 }
 
 // `planes` after smoothing, `estimated` as the estimator left them (for the directions).
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_store(
-    __global const uint* slotOf, uint planeStride, __global const float* planes,
-    __global const float* estimated, float scale, __global float* result, VertexLayout layout) {
-    const uint vertex = get_global_id(0);
-    if (vertex >= layout.count) return;
-#if MESH_MAPPED
-    const uint slot = slotOf[vertex];
-#else
-    const uint slot = vertex;
-#endif
-    result += layout.offset + (size_t)vertex * layout.stride;
+inline void store_quantity(uint slot, uint planeStride, __global const float* planes, __global const float* estimated,
+                           float scale, __global float* result) {
     const float first = planes[slot] * scale;
 #if MESH_PLANES > 1
     const float second = planes[(size_t)planeStride + slot] * scale;
@@ -106,5 +97,34 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
 #if MESH_QUANTITY == 8
     for (uint plane = 2; plane < 8; ++plane) result[plane] = estimated[(size_t)plane * planeStride + slot];
 #endif
+#endif
+}
+
+__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_store(
+    __global const uint* slotOf, uint planeStride, __global const float* planes,
+    __global const float* estimated, float scale, __global float* result, VertexLayout layout) {
+    const uint vertex = get_global_id(0);
+    if (vertex >= layout.count) return;
+#if MESH_MAPPED
+    const uint slot = slotOf[vertex];
+#else
+    const uint slot = vertex;
+#endif
+    store_quantity(slot, planeStride, planes, estimated, scale, result + layout.offset + (size_t)vertex * layout.stride);
+}
+
+// The same for the vertices of some slots: those of the listed slices whose bit is set in lanes[].
+__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_store_listed(
+    uint slots, uint listed, __global const uint* list, __global const uint* lanes,
+    __global const uint* memberOffsets, __global const uint* members, uint planeStride, __global const float* planes,
+    __global const float* estimated, float scale, __global float* result, VertexLayout layout) {
+    const uint item = get_global_id(0), slot = mesh_slot(item, slots, listed, list);
+    if (slot >= slots || !(lanes[item / MESH_LANES] >> (item % MESH_LANES) & 1)) return;
+    result += layout.offset;
+#if MESH_MAPPED
+    for (uint m = memberOffsets[slot]; m < memberOffsets[slot + 1]; ++m)
+        store_quantity(slot, planeStride, planes, estimated, scale, result + (size_t)members[m] * layout.stride);
+#else
+    store_quantity(slot, planeStride, planes, estimated, scale, result + (size_t)slot * layout.stride);
 #endif
 }

@@ -19,10 +19,10 @@
 // down to it, which keeps every stage stable on slivers. crease2: square of the change of normal at which
 // weights fall to 1/e; 0: none do.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_weights(
-    uint slots, __global const uint* slices, __global const uint* rings, __global const float* positions,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings, __global const float* positions,
     uint positionOffset, __global const float* normals, uint normalOffset, float time, float limit,
     float crease2, __global float* weights, __global float* rates) {
-    const uint first = get_global_id(0) * PEL_WIDTH;
+    const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ring_begin(first, slots, slices);
     const uint begin = ring.row;
@@ -108,10 +108,10 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
 
 // next = mu * current + nu * before + step * Laplacian(current); next may be before.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_stage(
-    uint slots, __global const uint* slices, __global const uint* rings, __global const float* weights,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings, __global const float* weights,
     uint planeStride, __global const float* current, __global const float* before, __global float* next,
     float mu, float nu, float step) {
-    const uint first = get_global_id(0) * PEL_WIDTH;
+    const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     const size_t plane = (size_t)get_global_id(1) * planeStride;
     current += plane, before += plane, next += plane;

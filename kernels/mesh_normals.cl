@@ -12,9 +12,9 @@
 #include "lib/mesh_triangle.clh"
 
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_normals(
-    uint slots, __global const uint* slices, __global const uint* rings, __global const float* positions,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings, __global const float* positions,
     uint positionOffset, __global float* normals, uint normalOffset) {
-    const uint first = get_global_id(0) * PEL_WIDTH;
+    const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ring_begin(first, slots, slices);
     positions += positionOffset;

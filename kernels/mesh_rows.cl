@@ -6,15 +6,15 @@
 // Inputs: positions (length), normals (unit), one of each per vertex of the caller.
 // One work-item: one slot (mesh_rows), one vertex or slot (mesh_count).
 // Variants: MESH_MAPPED 1: a slot has members, one or several vertices of the caller. It stands at the first;
-// its normal is the mean direction of theirs.
+// its normal is the mean direction of theirs. MESH_LISTED (lib/mesh_vertex.clh): mesh_rows.
 
 #include "lib/mesh_vertex.clh"
 
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_rows(
-    uint slots, __global const uint* memberOffsets, __global const uint* members,
+    uint slots, uint listed, __global const uint* list, __global const uint* memberOffsets, __global const uint* members,
     __global const float* positions, VertexLayout positionLayout, __global const float* normals,
     VertexLayout normalLayout, __global float* rows) {
-    const uint slot = get_global_id(0);
+    const uint slot = mesh_slot(get_global_id(0), slots, listed, list);
     if (slot >= slots) return;
 #if MESH_MAPPED
     const uint begin = memberOffsets[slot], end = memberOffsets[slot + 1], vertex = members[begin];

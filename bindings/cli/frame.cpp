@@ -1,5 +1,6 @@
 #include "frame.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "io/file_error.h"
@@ -29,6 +30,14 @@ Lut make(const Device& device, const io::SceneLut& request) {
     return info.kind == PEL_LUT_CURVATURE ? Lut(device, info.curvature) : Lut(device, info.shadow);
 }
 
+// The scene asks for curvature from the picture itself; a channel of that name would be meant instead.
+bool isScreenCurvature(const io::Image& gbuffer, const io::SceneFile& scene) {
+    const std::vector<std::string>& channel = scene.channels[PEL_SLOT_CURVATURE];
+    if (channel != std::vector<std::string>{"screen"}) return false;
+    return std::none_of(gbuffer.channels.begin(), gbuffer.channels.end(),
+                        [](const auto& c) { return c.name == "screen"; });
+}
+
 }  // namespace
 
 Lut LutStore::get(const io::SceneFile& scene, const std::string& name, PelLutKind kind) {
@@ -51,7 +60,9 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
     shader_.set(PEL_SLOT_RADIANCE,
                 imageDesc(radiance_, PEL_FORMAT_RGB32F, uint32_t(gbuffer.width), uint32_t(gbuffer.height)));
     for (size_t slot = 0; slot < scene.channels.size(); ++slot)
-        if (!scene.channels[slot].empty())
+        if (slot == PEL_SLOT_CURVATURE && isScreenCurvature(gbuffer, scene))
+            shader_.set(PEL_SLOT_CURVATURE, measureCurvature(device, gbuffer, scene));
+        else if (!scene.channels[slot].empty())
             shader_.set(PelImageSlot(slot), upload(device, gbuffer, scene.channels[slot]));
     for (const io::SceneMaterial& m : scene.materials)
         shader_.setMaterial(m.id, m.material, luts.get(scene, m.curvatureLut, PEL_LUT_CURVATURE),
@@ -98,6 +109,28 @@ void Frame::setNormalMap(const Device& device, uint32_t id, const std::string& f
         levels.push_back(imageDesc(inputs_.back(), PEL_FORMAT_RGB32F, uint32_t(level.width), uint32_t(level.height),
                                    level.byteOffset));
     shader_.setNormalMap(id, levels);
+}
+
+PelImageDesc Frame::measureCurvature(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene) {
+    const auto image = [&](PelImageSlot slot) {
+        return scene.channels[slot].empty() ? pelImageDescDefaults() : upload(device, gbuffer, scene.channels[slot]);
+    };
+    // The surface's own normals where there are: those of a normal map turn without the surface doing so.
+    const PelImageDesc normals =
+        image(scene.channels[PEL_SLOT_NORMAL_GEOMETRIC].empty() ? PEL_SLOT_NORMAL_SHADING : PEL_SLOT_NORMAL_GEOMETRIC);
+    const PelImageDesc positions = image(PEL_SLOT_POSITION), ids = image(PEL_SLOT_MATERIAL);
+    const PelImageDesc depth = positions.buffer ? pelImageDescDefaults() : image(PEL_SLOT_DEPTH);
+    if (!positions.buffer && !depth.buffer)
+        throw io::FileError(scene.source, "[gbuffer] curvature = \"screen\" is measured from positions or depth; "
+                                          "name their channels");
+    PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
+    std::copy_n(scene.camera.inverseViewProjection, 16, params.inverseViewProjection);
+    inputs_.emplace_back(device, gbuffer.pixelCount() * sizeof(float));
+    const PelImageDesc curvature =
+        imageDesc(inputs_.back(), PEL_FORMAT_R32F, uint32_t(gbuffer.width), uint32_t(gbuffer.height));
+    screenCurvature(device, params, normals, positions.buffer ? &positions : nullptr, depth.buffer ? &depth : nullptr,
+                    ids.buffer ? &ids : nullptr, curvature);
+    return curvature;
 }
 
 PelImageDesc Frame::upload(const Device& device, const io::Image& image,

@@ -39,6 +39,8 @@ class Frame {
 
   private:
     void setNormalMap(const Device& device, uint32_t id, const std::string& file);
+    // Curvature from normals and positions or depth of the G-buffer (pelScreenCurvature).
+    PelImageDesc measureCurvature(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene);
     PelImageDesc upload(const Device& device, const io::Image& image,
                         const std::vector<std::string>& channels);
 

@@ -2,6 +2,7 @@
 #include "core/mesh_topology.h"
 #include "core/submission.h"
 #include "ops/curvature.h"
+#include "ops/live_mesh.h"
 #include "ops/mesh_normals.h"
 #include "ops/uv_scale.h"
 
@@ -94,4 +95,43 @@ PelError pelMeshUvScale(PelMeshTopology topology, const PelVertexView* positions
         const VertexView uv = checkedView(uvs, "uvs", mesh.device(), mesh.vertices(), 2);
         output(uvScale, "uvScale") = meshUvScale(mesh, p, uv);
     });
+}
+
+PelError pelLiveMeshCreate(PelMeshTopology topology, const PelCurvatureParams* params, PelLiveMesh* live) {
+    return entry([&] {
+        output(live, "live");
+        const auto full = readStruct(params, pelCurvatureParamsDefaults(), "PelCurvatureParams");
+        checkCurvatureParams(full);
+        *live = toHandle<PelLiveMesh>(make<LiveMesh>(Ref(&fromHandle<MeshTopology>(topology)), full));
+    });
+}
+
+void pelLiveMeshRetain(PelLiveMesh live) {
+    retainHandle(live);
+}
+void pelLiveMeshRelease(PelLiveMesh live) {
+    releaseHandle(live);
+}
+
+PelError pelLiveMeshUpdate(PelLiveMesh live, const PelVertexView* positions, const PelVertexView* normals,
+                           const PelVertexView* curvature, const PelVertexRange* changed, uint32_t numChanged,
+                           const PelSubmit* submit) {
+    return entry([&] {
+        LiveMesh& mesh = fromHandle<LiveMesh>(live);
+        const MeshTopology& topology = *mesh.topology();
+        const auto view = [&](const PelVertexView* v, const char* name, uint32_t components) {
+            return checkedView(v, name, topology.device(), topology.vertices(), components);
+        };
+        const VertexView p = view(positions, "positions", 3);
+        const VertexView n = normals ? view(normals, "normals", 3) : VertexView{};
+        const VertexView out = view(curvature, "curvature", quantityFloats(mesh.params().quantity));
+        checkRanges(changed, numChanged, topology.vertices());
+        Submission submission(topology.device(), submit);
+        mesh.update(p, n, out, changed, numChanged);
+        submission.finish();
+    });
+}
+
+PelError pelLiveMeshGetStats(PelLiveMesh live, PelLiveMeshStats* stats) {
+    return entry([&] { writeStruct(stats, fromHandle<LiveMesh>(live).stats(), "PelLiveMeshStats"); });
 }

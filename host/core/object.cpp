@@ -29,6 +29,8 @@ const char* kindName(Kind kind) {
             return "PelBuffer";
         case Kind::meshTopology:
             return "PelMeshTopology";
+        case Kind::liveMesh:
+            return "PelLiveMesh";
         case Kind::lut:
             return "PelLut";
         case Kind::shader:

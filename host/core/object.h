@@ -8,7 +8,7 @@
 
 namespace pel {
 
-enum class Kind { device, event, buffer, meshTopology, lut, shader, profile };
+enum class Kind { device, event, buffer, meshTopology, liveMesh, lut, shader, profile };
 const char* kindName(Kind kind);
 
 class Object {

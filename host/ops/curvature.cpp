@@ -2,37 +2,13 @@
 
 #include <cmath>
 
-#include "ops/mesh_normals.h"
-#include "ops/mesh_smoothing.h"
-
 namespace pel {
 namespace {
-
-// Planes that the passes carry (kernels/lib/principal.clh).
-uint32_t planesOf(PelCurvatureQuantity quantity) {
-    switch (quantity) {
-        case PEL_QUANTITY_ABSOLUTE:
-        case PEL_QUANTITY_MEAN:
-            return 1;
-        case PEL_QUANTITY_FRAME:
-            return 8;
-        default:
-            return 2;
-    }
-}
 
 const char* estimatorKernel(PelCurvatureEstimator estimator) {
     return estimator == PEL_CURVATURE_EDGE     ? "curvature_edge"
            : estimator == PEL_CURVATURE_TENSOR ? "curvature_tensor"
                                                : "curvature_quadric";
-}
-
-cl::Program estimatorProgram(const MeshTopology& topology, const char* kernel, uint32_t stride,
-                             uint32_t planes) {
-    return topology.device().programs().get(std::string(kernel) + ".cl",
-                                            {{"MESH_STRIDE", std::to_string(stride)},
-                                             {"MESH_PLANES", std::to_string(planes)},
-                                             {"PEL_WIDTH", std::to_string(width(topology.device()))}});
 }
 
 MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, const VertexView& given,
@@ -86,44 +62,84 @@ void checkCurvatureParams(const PelCurvatureParams& params) {
                         "; a finite number of at least 0 is needed");
 }
 
+uint32_t planesOf(PelCurvatureQuantity quantity) {
+    switch (quantity) {
+        case PEL_QUANTITY_ABSOLUTE:
+        case PEL_QUANTITY_MEAN:
+            return 1;
+        case PEL_QUANTITY_FRAME:
+            return 8;
+        default:
+            return 2;
+    }
+}
+
+uint32_t planeStrideOf(const MeshTopology& topology) {
+    return (topology.slots() + MESH_LANES - 1) / MESH_LANES * MESH_LANES;  // whole slices are written
+}
+
+cl::Defines passDefines(const MeshTopology& topology, const PelCurvatureParams& params, uint32_t stride) {
+    return {{"MESH_MAPPED", topology.mapped() ? "1" : "0"},
+            {"MESH_STRIDE", std::to_string(stride)},
+            {"MESH_PLANES", std::to_string(planesOf(params.quantity))},
+            {"MESH_QUANTITY", std::to_string(params.quantity)},
+            {"MESH_LISTED", "0"},
+            {"PEL_WIDTH", std::to_string(width(topology.device()))}};
+}
+
+void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params, const SlotData& data,
+                       const cl::Memory& planes, const Rows& rows) {
+    cl::Defines defines = passDefines(topology, params, data.stride);
+    defines["MESH_LISTED"] = listed(rows);
+    const char* kernel = estimatorKernel(params.estimator);
+    const bool edge = params.estimator == PEL_CURVATURE_EDGE;
+    if (!edge) {  // neither what is stored nor the mapping makes another program of these
+        defines.erase("MESH_MAPPED");
+        defines.erase("MESH_QUANTITY");
+    }
+    cl::Launch estimate(
+        topology.device().programs().get(edge ? "curvature.cl" : std::string(kernel) + ".cl", defines),
+        kernel);
+    ringArguments(topology, estimate, rows);
+    estimate.arg(data.positions.memory).arg(data.positions.layout.offset);
+    estimate.arg(data.normals.memory)
+        .arg(data.normals.layout.offset)
+        .arg(planeStrideOf(topology))
+        .arg(planes);
+    launchRows(topology, estimate, rows, width(topology.device()));
+}
+
+void storeQuantity(MeshTopology& topology, const PelCurvatureParams& params, uint32_t stride,
+                   const cl::Memory& smoothed, const cl::Memory& estimated, const VertexView& curvature,
+                   Rows::Work* work) {
+    cl::Launch store(topology.device().programs().get("curvature.cl", passDefines(topology, params, stride)),
+                     "curvature_store");
+    store.arg(topology.slotOf()).arg(planeStrideOf(topology)).arg(smoothed).arg(estimated);
+    store.arg(params.scale).arg(curvature.memory).arg(curvature.layout);
+    topology.device().launch(store, over(topology.vertices()));
+    if (work) ++work->launches, work->rows += topology.slots();
+}
+
 void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, const VertexView& positions,
                    const VertexView& normals, const VertexView& curvature, MeshCounts* counts) {
     if (counts) *counts = {};
     if (topology.vertices() == 0) return;
-    Device& device = topology.device();
-    const uint32_t slots = topology.slots(), planes = planesOf(params.quantity);
-    // Whole slices are written.
-    const uint32_t planeStride = (slots + MESH_LANES - 1) / MESH_LANES * MESH_LANES;
+    const uint32_t planes = planesOf(params.quantity), planeStride = planeStrideOf(topology);
     const size_t planeBytes = planeStride * sizeof(float);
     const auto lock = topology.lock();
-    const SlotData data = gatherBySlot(topology, positions, normals);
-    const cl::Memory estimated = topology.scratch(MeshTopology::scratchFrom, planeBytes * planes);
-    const cl::Defines defines = {{"MESH_MAPPED", topology.mapped() ? "1" : "0"},
-                                 {"MESH_STRIDE", std::to_string(data.stride)},
-                                 {"MESH_PLANES", std::to_string(planes)},
-                                 {"MESH_QUANTITY", std::to_string(params.quantity)},
-                                 {"PEL_WIDTH", std::to_string(width(device))}};
-    const cl::Program passes = device.programs().get("curvature.cl", defines);
+    const Scratch scratch = scratchOf(topology);
+    const SlotData data = gatherBySlot(topology, positions, normals, scratch);
+    const cl::Memory estimated = scratch(MeshTopology::scratchFrom, planeBytes * planes);
+    estimateCurvature(topology, params, data, estimated, {});
 
-    const char* kernel = estimatorKernel(params.estimator);
-    const bool edge = params.estimator == PEL_CURVATURE_EDGE;
-    cl::Launch estimate(edge ? passes : estimatorProgram(topology, kernel, data.stride, planes), kernel);
-    estimate.arg(slots).arg(topology.slices()).arg(topology.rings());
-    estimate.arg(data.positions.memory).arg(data.positions.layout.offset);
-    estimate.arg(data.normals.memory).arg(data.normals.layout.offset).arg(planeStride).arg(estimated);
-    device.launch(estimate, overSlots(topology));
-
-    SlotPlanes values{std::min(planes, 2u), planeStride, estimated, {}};
+    SlotPlanes values{std::min(planes, 2u), planeStride, estimated, {}, {}, {}};
     if (params.smoothingPasses > 0 || params.smoothingRadius > 0)
-        values.to = topology.scratch(MeshTopology::scratchTo, planeBytes * values.planes);
-    smoothUniform(topology, passes, params.smoothingPasses, values);
-    if (params.smoothingRadius > 0)
-        smoothToRadius(topology, data, params.smoothingRadius, params.smoothingCrease, params.smoothingStages,
-                       values);
-    cl::Launch store(passes, "curvature_store");
-    store.arg(topology.slotOf()).arg(planeStride).arg(values.from).arg(estimated);
-    store.arg(params.scale).arg(curvature.memory).arg(curvature.layout);
-    device.launch(store, over(topology.vertices()));
+        values.to = scratch(MeshTopology::scratchTo, planeBytes * values.planes);
+    // Before the uniform passes, whose result is not lost when this throws.
+    const Diffusion diffusion = planDiffusion(topology, data, params, scratch, values.to);
+    smoothUniform(topology, passDefines(topology, params, data.stride), params.smoothingPasses, values);
+    if (diffusion.passes() > 0) smoothToRadius(topology, data, diffusion, values, scratch);
+    storeQuantity(topology, params, data.stride, values.from, estimated, curvature, nullptr);
     if (counts) *counts = countFaults(topology, positions, normals, data);
 }
 

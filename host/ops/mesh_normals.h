@@ -5,8 +5,11 @@
 
 namespace pel {
 
-// `normals` empty: they are made from the positions.
-SlotData gatherBySlot(MeshTopology& topology, const VertexView& positions, const VertexView& normals);
+// `normals` empty: they are made from the positions. `moved`: slots whose vertices are gathered; `turned`:
+// those whose normals are made, the neighbours of these as well. What other rows of the scratch memory hold
+// stays.
+SlotData gatherBySlot(MeshTopology& topology, const VertexView& positions, const VertexView& normals,
+                      const Scratch& scratch, const Rows& moved = {}, const Rows& turned = {});
 
 // Unit normals of the caller's vertices from their positions. Enqueues everything.
 void meshNormals(MeshTopology& topology, const VertexView& positions, const VertexView& normals);

@@ -2,7 +2,63 @@
 
 namespace pel::python {
 
+namespace {
+
+void bindLiveMesh(py::module_& module) {
+    using pellucid::LiveMesh;
+    py::class_<LiveMesh>(module, "LiveMesh")
+        .def_static("create", [](const pellucid::MeshTopology& t, const py::object& params) {
+            PelLiveMesh handle = nullptr;
+            call([&, p = structOf<PelCurvatureParams>(params)] { return pelLiveMeshCreate(t.get(), p, &handle); });
+            return LiveMesh(handle);
+        })
+        .def("update", [](const LiveMesh& live, const VertexView& positions, const std::optional<VertexView>& normals,
+                          const VertexView& curvature,
+                          const std::optional<std::vector<std::pair<uint32_t, uint32_t>>>& changed, const Waits& waits) {
+            const PelVertexView p = vertexView(positions), c = vertexView(curvature);
+            const PelVertexView n = normals ? vertexView(*normals) : PelVertexView{};
+            std::vector<PelVertexRange> ranges(1);
+            if (changed) {
+                ranges.clear();
+                for (const auto& [first, count] : *changed) ranges.push_back({first, count});
+                ranges.push_back({0, 0});  // so that there is a pointer to no ranges
+            }
+            Submit submit(waits);
+            call([&] {
+                return pelLiveMeshUpdate(live.get(), &p, normals ? &n : nullptr, &c, changed ? ranges.data() : nullptr,
+                                         changed ? uint32_t(changed->size()) : 0, submit.get());
+            });
+            return submit.done();
+        })
+        .def("stats", [](const LiveMesh& live) {
+            PelLiveMeshStats stats = pelLiveMeshStatsDefaults();
+            call([&] { return pelLiveMeshGetStats(live.get(), &stats); });
+            return bytesOf(stats);
+        });
+}
+
+void bindScreen(py::module_& module) {
+    module.def("screen_curvature", [](const Device& d, const py::object& params, const ImageView& normals,
+                                      const std::optional<ImageView>& positions, const std::optional<ImageView>& depth,
+                                      const std::optional<ImageView>& ids, const ImageView& curvature, const Waits& waits) {
+        const auto desc = [](const std::optional<ImageView>& v) { return v ? imageDesc(*v) : pelImageDescDefaults(); };
+        const PelImageDesc n = imageDesc(normals), p = desc(positions), z = desc(depth), i = desc(ids);
+        const PelImageDesc c = imageDesc(curvature);
+        const auto* settings = structOf<PelScreenCurvatureParams>(params);
+        Submit submit(waits);
+        call([&] {
+            return pelScreenCurvature(d.handle.get(), settings, &n, positions ? &p : nullptr, depth ? &z : nullptr,
+                                      ids ? &i : nullptr, &c, submit.get());
+        });
+        return submit.done();
+    });
+}
+
+}  // namespace
+
 void bindMesh(py::module_& module) {
+    bindLiveMesh(module);
+    bindScreen(module);
     using pellucid::MeshTopology;
     py::class_<MeshTopology>(module, "MeshTopology")
         .def_static("create", [](const Device& d, uint32_t numVertices, uintptr_t indices, uint64_t numIndices, uint32_t weld,

@@ -336,6 +336,68 @@ PEL_API PelError pelMeshNormals(PelMeshTopology topology, const PelVertexView* p
 PEL_API PelError pelMeshUvScale(PelMeshTopology topology, const PelVertexView* positions, const PelVertexView* uvs,
                                 float* uvScale);
 
+/* ---- Meshes that move --------------------------------------------------------------------------------------- */
+
+typedef struct PelLiveMeshObject* PelLiveMesh;
+
+/* `count` vertices from `first` on. */
+typedef struct PelVertexRange {
+    uint32_t first;
+    uint32_t count;
+} PelVertexRange;
+
+/* Curvature, by `params`, of a mesh of which a part moves from update to update. What an update left stays on the device:
+ * per vertex 4 to 32 bytes of estimates, 8 to 16 of smoothed values, 12 of normals that it makes. */
+PEL_API PelError pelLiveMeshCreate(PelMeshTopology topology, const PelCurvatureParams* params, PelLiveMesh* live);
+PEL_API void pelLiveMeshRetain(PelLiveMesh live);
+PEL_API void pelLiveMeshRelease(PelLiveMesh live);
+
+/* The same bits as pelMeshCurvature, with only the work that the change asks for. `changed`: numChanged ranges of vertices
+ * whose position or normal is another than at the update before, in any order; NULL: all. Only rows that they reach are
+ * measured, smoothed and written; ranges without vertices cost nothing at all: no launch, no byte. The first
+ * update measures everything, as does one that begins or ends to give normals; one with another `curvature` writes all of it.
+ * One asynchronous submission; the first with a smoothing radius measures the mesh, which blocks, unless
+ * params.smoothingStages is given, and so does the first with `changed`, which reads the neighbour lists back. Errors:
+ * PEL_ERROR_INVALID_ARGUMENT for a range that leaves the mesh. */
+PEL_API PelError pelLiveMeshUpdate(PelLiveMesh live, const PelVertexView* positions, const PelVertexView* normals,
+                                   const PelVertexView* curvature, const PelVertexRange* changed, uint32_t numChanged,
+                                   const PelSubmit* submit);
+
+/* What the last update did. A row is a vertex after welding; rows are worked on eight at a time. */
+typedef struct PelLiveMeshStats {
+    uint32_t structSize;
+    uint32_t rowsTotal;
+    uint64_t launches;
+    uint64_t rowsEstimated;
+    uint64_t rowsSmoothed;  /* summed over passes */
+    uint64_t rowsStored;    /* exactly those that the change reaches */
+    uint64_t bytesUploaded; /* lists of rows; 0 when the same vertices change again */
+    uint64_t deviceBytes;   /* held between updates */
+    uint64_t hostBytes;     /* neighbour lists on the host, once `changed` was given; about 32 per vertex */
+} PelLiveMeshStats;
+PEL_API PelError pelLiveMeshGetStats(PelLiveMesh live, PelLiveMeshStats* stats);
+
+/* ---- Curvature from a G-buffer ------------------------------------------------------------------------------ */
+
+typedef struct PelScreenCurvatureParams {
+    uint32_t structSize;
+    float scale; /* multiplies the result; 1 when the picture and the LUT share their unit of length */
+    float edge;  /* 0 to 1: sine of the angle between the surface and the step to the next pixel from which the step crosses
+                    an edge of depth; 0.5 */
+    float inverseViewProjection[16]; /* clip to world, for depth, as in PelCamera */
+} PelScreenCurvatureParams;
+
+/* Curvature per pixel for hosts without per-vertex data: |fwidth N| / |fwidth P|, whose differences never cross an edge of
+ * depth or between ids. A sphere has 1/radius; a cylinder between 0 and that, by its angle to the pixels. `normals`: unit,
+ * world; `positions`: world; or `depth` with params.inverseViewProjection and positions NULL; `ids`: of materials or
+ * objects, 0 is background; may be NULL. `curvature`: R32F, written, finite; 0 for background and for pixels whose
+ * normal or position is not finite, which no neighbour uses. All images have one size. `params` may be NULL. Source: Penner,
+ * SIGGRAPH 2011. */
+PEL_API PelError pelScreenCurvature(PelDevice device, const PelScreenCurvatureParams* params,
+                                    const PelImageDesc* normals, const PelImageDesc* positions,
+                                    const PelImageDesc* depth, const PelImageDesc* ids, const PelImageDesc* curvature,
+                                    const PelSubmit* submit);
+
 /* ---- Diffusion profiles ------------------------------------------------------------------------------------- */
 
 typedef struct PelProfileObject* PelProfile;

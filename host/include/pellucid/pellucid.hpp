@@ -194,6 +194,39 @@ class MeshTopology : public Handle<PelMeshTopology, pelMeshTopologyRetain, pelMe
     }
 };
 
+class LiveMesh : public Handle<PelLiveMesh, pelLiveMeshRetain, pelLiveMeshRelease> {
+  public:
+    using Handle::Handle;
+    LiveMesh() = default;
+    LiveMesh(const MeshTopology& topology, const PelCurvatureParams& params) {
+        check(pelLiveMeshCreate(topology.get(), &params, out()));
+    }
+    // All vertices. normals NULL: they are made.
+    void update(const PelVertexView& positions, const PelVertexView* normals, const PelVertexView& curvature,
+                const PelSubmit* submit = nullptr) const {
+        check(pelLiveMeshUpdate(h_, &positions, normals, &curvature, nullptr, 0, submit));
+    }
+    // Only `changed`, which may be empty.
+    void update(const PelVertexView& positions, const PelVertexView* normals, const PelVertexView& curvature,
+                const std::vector<PelVertexRange>& changed, const PelSubmit* submit = nullptr) const {
+        static constexpr PelVertexRange none{};
+        check(pelLiveMeshUpdate(h_, &positions, normals, &curvature, changed.empty() ? &none : changed.data(),
+                                uint32_t(changed.size()), submit));
+    }
+    PelLiveMeshStats stats() const {
+        PelLiveMeshStats stats = pelLiveMeshStatsDefaults();
+        check(pelLiveMeshGetStats(h_, &stats));
+        return stats;
+    }
+};
+
+// Any of positions, depth and ids may be NULL, but not both of the first two.
+inline void screenCurvature(const Device& device, const PelScreenCurvatureParams& params, const PelImageDesc& normals,
+                            const PelImageDesc* positions, const PelImageDesc* depth, const PelImageDesc* ids,
+                            const PelImageDesc& curvature, const PelSubmit* submit = nullptr) {
+    check(pelScreenCurvature(device.get(), &params, &normals, positions, depth, ids, &curvature, submit));
+}
+
 class Profile : public Handle<PelProfile, pelProfileRetain, pelProfileRelease> {
   public:
     using Handle::Handle;

@@ -22,6 +22,15 @@ static inline PelCurvatureParams pelCurvatureParamsDefaults(void) {
     s.scale = 1.0f;
     return s;
 }
+static inline PelLiveMeshStats pelLiveMeshStatsDefaults(void) { PEL_ZEROED_(PelLiveMeshStats, s); return s; }
+static inline PelScreenCurvatureParams pelScreenCurvatureParamsDefaults(void) {
+    PEL_ZEROED_(PelScreenCurvatureParams, s);
+    s.scale = 1.0f;
+    s.edge = 0.5f;
+    s.inverseViewProjection[0] = s.inverseViewProjection[5] = 1.0f;
+    s.inverseViewProjection[10] = s.inverseViewProjection[15] = 1.0f;
+    return s;
+}
 static inline PelCurvatureLutDesc pelCurvatureLutDescDefaults(void) {
     PEL_ZEROED_(PelCurvatureLutDesc, s);
     s.width = 512;

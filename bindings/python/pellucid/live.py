@@ -1,0 +1,105 @@
+"""Curvature of meshes of which a part moves, and of pictures."""
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _flight, _native
+from ._arrays import Image, submit, vertex_view
+from ._types import CurvatureParams, LiveMeshStats, ScreenCurvatureParams
+from .device import Device, Event, _filled, _handles
+from .mesh import _COMPONENTS, MeshTopology
+
+
+class LiveMesh:
+    """Curvature of a mesh of which a part moves from update to update; see pelLiveMeshUpdate.
+
+    Parameters
+    ----------
+    topology : MeshTopology
+    params : CurvatureParams, optional
+        How curvature is measured and smoothed, for all updates.
+    """
+
+    def __init__(self, topology: MeshTopology, params: Optional[CurvatureParams] = None) -> None:
+        self.topology = topology
+        self.params = CurvatureParams() if params is None else params.copy()
+        self._handle = _native.LiveMesh.create(topology._handle, self.params._data)
+
+    def update(self, positions: Any, normals: Any, out: Any, changed: Optional[Iterable[tuple[int, int]]] = None) -> None:
+        """Writes to `out` what the change asks for, and waits; the same bits as measuring everything anew.
+
+        Parameters
+        ----------
+        positions : (n, 3) float32
+            Any positive row stride, in place; or Vertices of a Buffer.
+        normals : (n, 3) float32 or None
+            Likewise; None: they are made from the positions.
+        out : (n,) float32
+            1/length; (n, 2) for the quantity "principal", (n, 8) for "frame". Rows that the change does not reach are left
+            alone, so pass the same one each time.
+        changed : iterable of (first, count), optional
+            Ranges of vertices that moved or turned since the update before; empty: none did, and nothing is done; None: all.
+
+        Raises
+        ------
+        PellucidError
+            A range that leaves the mesh.
+        """
+        self.submit_update(positions, normals, out, changed).wait()
+
+    def submit_update(self, positions: Any, normals: Any, out: Any, changed: Optional[Iterable[tuple[int, int]]] = None, *,
+                      waits: Iterable[Event] = ()) -> Event:
+        """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
+        device = self.topology.device
+        p = vertex_view(device, positions, 3, "positions")
+        n = None if normals is None else vertex_view(device, normals, 3, "normals")
+        c = vertex_view(device, out, _COMPONENTS.get(self.params.quantity, 1), "out", output=True)
+        ranges = None if changed is None else [(int(first), int(count)) for first, count in changed]
+        views = [v for v in (p, n, c) if v is not None]
+        if not device._in_place and ranges is not None and hasattr(c.span, "upload"):
+            # The device's own copy of `out` is a new one each time: all of it is written.
+            ranges = None
+        event = submit(views, _handles(waits), lambda w: self._handle.update(
+            p.native, None if n is None else n.native, c.native, ranges, w))
+        _flight.hold(event, self, views)
+        return Event(event)
+
+    def stats(self) -> LiveMeshStats:
+        """What the last update did."""
+        return _filled(LiveMeshStats, self._handle.stats())
+
+
+def screen_curvature(device: Device, normals: Any, positions: Any = None, *, depth: Any = None, ids: Any = None,
+                     out: Optional[NDArray[np.float32]] = None,
+                     params: Optional[ScreenCurvatureParams] = None) -> NDArray[np.float32]:
+    """Curvature per pixel of a G-buffer, |fwidth N| / |fwidth P|, in 1/length, finite; see pelScreenCurvature.
+
+    Parameters
+    ----------
+    normals, positions : (height, width, 3)
+        World, in any layout that Image takes.
+    depth : (height, width), optional
+        Instead of positions, with params.inverse_view_projection.
+    ids : (height, width) unsigned integers, optional
+        Differences never cross from one id to another; 0 is background.
+    out : (height, width) float32, optional
+        A new array without it.
+    params : ScreenCurvatureParams, optional
+    """
+    def image(value: Any, what: str, **kind: bool) -> Optional[Image]:
+        return value if value is None or isinstance(value, Image) else Image(device, value, _slot=what, **kind)
+
+    settings = ScreenCurvatureParams() if params is None else params
+    result = np.empty(np.shape(normals)[:2], np.float32) if out is None else out
+    images = [image(normals, "normals"), image(positions, "positions"), image(depth, "depth"), image(ids, "ids", _ids=True),
+              image(result, "out", _output=True)]
+    n, p, d, i, c = (None if x is None else x._view.native for x in images)
+    views = [x._view for x in images if x is not None]
+    event = submit(views, [], lambda w: _native.screen_curvature(device._handle, settings._data, n, p, d, i, c, w))
+    _flight.hold(event, views)
+    Event(event).wait()
+    return result

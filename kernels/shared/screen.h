@@ -1,0 +1,20 @@
+// Constants of one pass over the screen, laid out alike on host and device.
+#ifndef PEL_SHARED_SCREEN
+#define PEL_SHARED_SCREEN
+#include "shared/shade.h"
+
+#define SCREEN_GROUP 16 // work-items in a work-group, each of PEL_WIDTH pixels
+
+typedef struct ScreenCurvatureFrame {
+    PelUint32 width; // pixels
+    PelUint32 height;
+    float scale; // multiplies the result
+    float edge;  // sine between a step and the surface from which it crosses an edge
+    float inverseViewProjection[16]; // clip to world, for depth
+    PelShadeImage normal, position, ids, curvature; // position: or depth
+} ScreenCurvatureFrame;
+
+#ifndef __OPENCL_VERSION__
+static_assert(sizeof(ScreenCurvatureFrame) == 20 * 4 + 4 * sizeof(PelShadeImage));
+#endif
+#endif

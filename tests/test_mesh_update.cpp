@@ -1,0 +1,221 @@
+// Live meshes: an update of a part gives the bits of measuring everything anew, and counters show that it did
+// not.
+#include "mesh_fixture.h"
+#include "reference_meshes.h"
+#include "tolerances.h"
+
+using namespace fixture;
+using namespace pellucid;
+using reference::Tessellation;
+
+namespace {
+
+// Positions, normals and results on the device, and the mesh as it stands in this pose.
+struct Pose {
+    Mesh mesh;
+    Buffer positions, normals, result;
+    uint32_t n, floats;
+    bool given;
+    Pose(const Mesh& m, bool givenNormals, uint32_t floatsPerVertex)
+        : mesh(m),
+          positions(device(), m.positions),
+          normals(device(), m.normals),
+          result(device(), m.vertices() * floatsPerVertex * sizeof(float)),
+          n(m.vertices()),
+          floats(floatsPerVertex),
+          given(givenNormals) {}
+    void move(PelVertexRange range, float by) {
+        for (uint32_t v = range.first; v < range.first + range.count; ++v) {
+            mesh.positions[3 * v] += by;
+            mesh.normals[3 * v + 1] += 0.1f * by;
+        }
+        positions.write(&mesh.positions[3 * range.first], range.count * 12, range.first * 12);
+        normals.write(&mesh.normals[3 * range.first], range.count * 12, range.first * 12);
+    }
+    PelVertexView normalView() const { return vertexView(normals, n); }
+    void update(const LiveMesh& live, const std::vector<PelVertexRange>* changed) const {
+        const PelVertexView view = normalView(), *optional = given ? &view : nullptr;
+        if (changed)
+            live.update(vertexView(positions, n), optional, vertexView(result, n), *changed);
+        else
+            live.update(vertexView(positions, n), optional, vertexView(result, n));
+    }
+    std::vector<float> anew(const MeshTopology& topology, const PelCurvatureParams& params) const {
+        const Buffer out(device(), n * floats * sizeof(float));
+        if (given)
+            topology.curvature(params, vertexView(positions, n), normalView(), vertexView(out, n));
+        else
+            topology.curvature(params, vertexView(positions, n), vertexView(out, n));
+        return out.readAll<float>();
+    }
+};
+
+Mesh irregularTorus(int columns, int rows) {
+    return pairOf(tessellate(reference::torusSurface(3, 1), columns, rows, Tessellation::irregular).mesh)
+        .mesh;
+}
+
+PelCurvatureParams paramsOf(PelCurvatureEstimator estimator, PelCurvatureQuantity quantity) {
+    PelCurvatureParams params = pelCurvatureParamsDefaults();
+    params.estimator = estimator;
+    params.quantity = quantity;
+    return params;
+}
+
+}  // namespace
+
+TEST(LiveMesh, APartGivesTheBitsOfTheWhole) {
+    const Mesh mesh = irregularTorus(80, 50);
+    std::mt19937 random(3);
+    struct Case {
+        PelCurvatureEstimator estimator;
+        PelCurvatureQuantity quantity;
+        uint32_t floats;
+        bool given;  // normals
+        uint32_t passes;
+        float radius;
+        bool welded;  // and in an order without sense: slots are not the vertices
+    };
+    for (const Case& c : {Case{PEL_CURVATURE_EDGE, PEL_QUANTITY_ABSOLUTE, 1, true, 3, 0, false},
+                          Case{PEL_CURVATURE_EDGE, PEL_QUANTITY_ABSOLUTE, 1, false, 0, 0, true},
+                          Case{PEL_CURVATURE_TENSOR, PEL_QUANTITY_FRAME, 8, true, 1, 0, true},
+                          Case{PEL_CURVATURE_QUADRIC, PEL_QUANTITY_ABSOLUTE, 1, true, 2, 0, false},
+                          Case{PEL_CURVATURE_QUADRIC, PEL_QUANTITY_ABSOLUTE, 1, false, 1, 0.2f, false}}) {
+        PelCurvatureParams params = paramsOf(c.estimator, c.quantity);
+        params.smoothingPasses = c.passes;
+        params.smoothingRadius = c.radius;
+        params.smoothingCrease = c.radius > 0 ? 0.5f : 0;
+        Pose pose(c.welded ? shuffleVertices(mesh, 4).mesh : mesh, c.given, c.floats);
+        const MeshTopology topology(device(),
+                                    c.welded ? weldedDesc(pose.mesh, 0.04f) : topologyDesc(pose.mesh));
+        const LiveMesh live(topology, params);
+        pose.update(live, nullptr);
+        EXPECT_EQ(pose.result.readAll<float>(), pose.anew(topology, params));
+        for (int step = 0; step < 4; ++step) {
+            std::vector<PelVertexRange> changed;
+            for (int r = 0; r <= step % 2; ++r) {
+                const uint32_t count = 1 + random() % (c.welded ? 3 : 60);
+                changed.push_back({uint32_t(random() % (pose.n - count)), count});
+                pose.move(changed.back(), 0.02f);
+            }
+            pose.update(live, &changed);
+            EXPECT_EQ(pose.result.readAll<float>(), pose.anew(topology, params))
+                << c.estimator << c.given << c.passes << c.welded << " step " << step;
+        }
+    }
+}
+
+TEST(LiveMesh, WorksOnNoMoreRowsThanTheChangeReaches) {
+    const Mesh mesh = torus(400, 200);
+    Pose pose(mesh, true, 1);
+    const MeshTopology topology(device(), topologyDesc(mesh));
+    PelCurvatureParams params = paramsOf(PEL_CURVATURE_QUADRIC, PEL_QUANTITY_ABSOLUTE);
+    const LiveMesh live(topology, params);
+    pose.update(live, nullptr);
+    EXPECT_EQ(live.stats().rowsEstimated, mesh.vertices());
+    EXPECT_EQ(live.stats().launches, 4u) << "quadric, two smoothing passes, store";
+    const std::vector<PelVertexRange> one{{40100, 1}};
+    pose.move(one[0], 0.001f);
+    pose.update(live, &one);
+    PelLiveMeshStats stats = live.stats();
+    EXPECT_EQ(stats.rowsStored, 61u) << "four rings of a vertex of six neighbours: 1 + 6 + 12 + 18 + 24";
+    EXPECT_LE(stats.rowsEstimated, 15u * 8) << "two rings in whole slices";
+    EXPECT_LE(stats.rowsSmoothed, (22u + 26u) * 8);
+    EXPECT_GT(stats.bytesUploaded, 0u);
+    EXPECT_EQ(stats.rowsTotal, mesh.vertices());
+    // The same vertices again: not even the list.
+    const PelDeviceStats before = device().stats();
+    pose.update(live, &one);
+    stats = live.stats();
+    EXPECT_EQ(stats.bytesUploaded, 0u);
+    EXPECT_EQ(stats.rowsStored, 61u);
+    const PelDeviceStats after = device().stats();
+    EXPECT_EQ(after.launches - before.launches, stats.launches);
+    EXPECT_EQ(after.bytesToDevice, before.bytesToDevice);
+    EXPECT_EQ(after.bytesToHost, before.bytesToHost);
+    EXPECT_EQ(after.bytesAllocated, before.bytesAllocated);
+}
+
+TEST(LiveMesh, NothingChangedCostsNothing) {
+    Pose pose(torus(64, 48), false, 1);
+    const MeshTopology topology(device(), topologyDesc(pose.mesh));
+    const LiveMesh live(topology, pelCurvatureParamsDefaults());
+    const std::vector<PelVertexRange> none, empty{{5, 0}};
+    pose.update(live, &none);
+    EXPECT_EQ(live.stats().rowsStored, pose.n) << "the first update measures everything whatever it is told";
+    const std::vector<float> values = pose.result.readAll<float>();
+    const PelDeviceStats before = device().stats();
+    pose.update(live, &none);
+    pose.update(live, &empty);
+    const PelDeviceStats after = device().stats();
+    EXPECT_EQ(after.launches, before.launches);
+    EXPECT_EQ(after.bytesToDevice, before.bytesToDevice);
+    EXPECT_EQ(after.bytesAllocated, before.bytesAllocated);
+    EXPECT_EQ(live.stats().launches, 0u);
+    EXPECT_EQ(pose.result.readAll<float>(), values);
+}
+
+TEST(LiveMesh, AnotherTargetIsWrittenWholeAndNormalsThatAppearCount) {
+    Pose pose(torus(64, 48), true, 1);
+    const MeshTopology topology(device(), topologyDesc(pose.mesh));
+    const PelCurvatureParams params = paramsOf(PEL_CURVATURE_TENSOR, PEL_QUANTITY_ABSOLUTE);
+    const LiveMesh live(topology, params);
+    pose.update(live, nullptr);
+    const std::vector<PelVertexRange> some{{100, 9}}, none;
+    pose.move(some[0], 0.05f);
+    const Buffer other(device(), pose.n * 4);
+    const PelVertexView normals = pose.normalView();
+    live.update(vertexView(pose.positions, pose.n), &normals, vertexView(other, pose.n), some);
+    EXPECT_EQ(other.readAll<float>(), pose.anew(topology, params));
+    EXPECT_LT(live.stats().rowsEstimated, pose.n / 4) << "estimates are kept";
+    pose.given = false;
+    live.update(vertexView(pose.positions, pose.n), nullptr, vertexView(other, pose.n), none);
+    EXPECT_EQ(other.readAll<float>(), pose.anew(topology, params));
+}
+
+TEST(LiveMesh, IsOneAsynchronousSubmission) {
+    Pose pose(torus(64, 48), false, 1);
+    const MeshTopology topology(device(), topologyDesc(pose.mesh));
+    const LiveMesh live(topology, pelCurvatureParamsDefaults());
+    const std::vector<PelVertexRange> some{{100, 9}};
+    pose.update(live, nullptr);
+    pose.update(live, &some);
+    PelEvent event = nullptr;
+    const PelSubmit submit{nullptr, 0, &event};
+    const uint64_t before = device().stats().bytesToHost;
+    live.update(vertexView(pose.positions, pose.n), nullptr, vertexView(pose.result, pose.n), some, &submit);
+    Event(event).wait();
+    EXPECT_EQ(device().stats().bytesToHost, before);
+    // An event comes even when there is nothing to do.
+    event = nullptr;
+    live.update(vertexView(pose.positions, pose.n), nullptr, vertexView(pose.result, pose.n),
+                std::vector<PelVertexRange>{}, &submit);
+    ASSERT_NE(event, nullptr);
+    Event(event).wait();
+}
+
+TEST(LiveMesh, NamesWhatIsWrong) {
+    Pose pose(torus(8, 6), false, 1);
+    const MeshTopology topology(device(), topologyDesc(pose.mesh));
+    const LiveMesh live(topology, pelCurvatureParamsDefaults());
+    for (PelVertexRange range :
+         {PelVertexRange{48, 1}, PelVertexRange{40, 9}, PelVertexRange{1, UINT32_MAX}}) {
+        const std::vector<PelVertexRange> changed{{0, 1}, range};
+        try {
+            pose.update(live, &changed);
+            FAIL();
+        } catch (const Error& e) {
+            EXPECT_NE(std::string(e.what()).find("range 1"), std::string::npos) << e.what();
+        }
+    }
+    PelLiveMesh handle = nullptr;
+    PelCurvatureParams params = pelCurvatureParamsDefaults();
+    params.scale = NAN;
+    EXPECT_EQ(pelLiveMeshCreate(topology.get(), &params, &handle), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(pelLiveMeshCreate(nullptr, &params, &handle), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(handle, nullptr);
+    const Mesh none;
+    const MeshTopology empty(device(), topologyDesc(none));
+    const Buffer any(device(), 16);
+    LiveMesh(empty, pelCurvatureParamsDefaults()).update(vertexView(any, 0), nullptr, vertexView(any, 0));
+}

@@ -1,0 +1,296 @@
+// Curvature from a G-buffer: against the oracle, on surfaces whose curvature is known, and at edges of all
+// kinds.
+#include <gtest/gtest.h>
+
+#include <pellucid/pellucid.hpp>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "reference/screen.h"
+#include "tolerances.h"
+
+using namespace pellucid;
+
+namespace {
+
+constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
+
+const Device& device() {
+    static const Device device("");
+    return device;
+}
+
+struct GBuffer {
+    uint32_t width, height;
+    std::vector<float> normals, positions, depth;
+    std::vector<uint8_t> ids;
+    GBuffer(uint32_t w, uint32_t h)
+        : width(w), height(h), normals(3 * w * h), positions(3 * w * h), ids(w * h, 1) {}
+    size_t at(uint32_t x, uint32_t y) const { return size_t(y) * width + x; }
+    void set(size_t pixel, reference::Vec3 p, reference::Vec3 n) {
+        for (int k = 0; k < 3; ++k)
+            positions[3 * pixel + k] = float(p[k]), normals[3 * pixel + k] = float(n[k]);
+    }
+};
+
+struct Options {
+    bool ids = false, depth = false, strided = false;
+    PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
+};
+
+// Every component at every second float, in rows with something behind them.
+std::vector<float> apart(const std::vector<float>& packed, uint32_t width, uint32_t height) {
+    std::vector<float> wide(size_t(height) * (width * 5 + 3), notANumber);
+    for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x)
+            std::copy_n(&packed[3 * (size_t(y) * width + x)], 3, &wide[y * (width * 5 + 3) + 5 * x]);
+    return wide;
+}
+
+std::vector<float> measure(const GBuffer& g, const Options& options = {}) {
+    const auto image = [&](const Buffer& buffer, PelFormat format) {
+        PelImageDesc desc = imageDesc(buffer, format, g.width, g.height);
+        if (options.strided && format == PEL_FORMAT_RGB32F)
+            desc.pixelStride = 20, desc.rowStride = g.width * 20 + 12;
+        return desc;
+    };
+    const auto three = [&](const std::vector<float>& v) {
+        return Buffer(device(), options.strided ? apart(v, g.width, g.height) : v);
+    };
+    const Buffer n = three(g.normals), p = three(g.positions), i(device(), g.ids);
+    const Buffer d(device(), g.depth.empty() ? std::vector<float>{0} : g.depth);
+    const Buffer out(device(), std::vector<float>(size_t(g.width) * g.height, -7.0f));
+    const PelImageDesc positions = image(p, PEL_FORMAT_RGB32F), ids = image(i, PEL_FORMAT_R8_UINT);
+    const PelImageDesc depth = options.depth ? image(d, PEL_FORMAT_R32F) : pelImageDescDefaults();
+    screenCurvature(device(), options.params, image(n, PEL_FORMAT_RGB32F),
+                    options.depth ? nullptr : &positions, options.depth ? &depth : nullptr,
+                    options.ids ? &ids : nullptr, image(out, PEL_FORMAT_R32F));
+    return out.readAll<float>();
+}
+
+reference::ScreenImage exactOf(const GBuffer& g, bool ids) {
+    reference::ScreenImage image{int(g.width), int(g.height), {}, {}, {}};
+    for (size_t i = 0; i < g.ids.size(); ++i) {
+        image.normals.push_back({g.normals[3 * i], g.normals[3 * i + 1], g.normals[3 * i + 2]});
+        image.positions.push_back({g.positions[3 * i], g.positions[3 * i + 1], g.positions[3 * i + 2]});
+        if (ids) image.ids.push_back(g.ids[i]);
+    }
+    return image;
+}
+
+// A sphere of `radius`, seen from above, over a plane; a pixel is `step` wide. Two ids.
+GBuffer sphereOverPlane(uint32_t width, uint32_t height, double radius, double step) {
+    GBuffer g(width, height);
+    for (uint32_t y = 0; y < height; ++y)
+        for (uint32_t x = 0; x < width; ++x) {
+            const double px = (x + 0.5 - width / 2.0) * step, py = (y + 0.5 - height / 2.0) * step;
+            const double z2 = radius * radius - px * px - py * py;
+            if (z2 > 0)
+                g.set(g.at(x, y), {px, py, std::sqrt(z2)},
+                      {px / radius, py / radius, std::sqrt(z2) / radius});
+            else
+                g.set(g.at(x, y), {px, py, -3 * radius}, {0, 0, 1});
+            g.ids[g.at(x, y)] = z2 > 0 ? 1 : 2;
+        }
+    return g;
+}
+
+double largest(const GBuffer& g, double edge) {
+    double most = 0;
+    for (double c : reference::screenCurvature(exactOf(g, false), edge)) most = std::max(most, c);
+    return most;
+}
+
+}  // namespace
+
+TEST(ScreenCurvature, EqualsTheOracleAtEverySize) {
+    std::mt19937 random(5);
+    std::normal_distribution<float> noise;
+    for (auto [w, h] :
+         {std::pair(1, 1), {1, 9}, {9, 1}, {2, 2}, {15, 3}, {16, 4}, {17, 5}, {31, 33}, {64, 20}}) {
+        GBuffer g(w, h);
+        for (size_t i = 0; i < g.ids.size(); ++i) {
+            // A bumpy surface with holes, cliffs, several objects and normals that are not of unit length.
+            const float x = float(i % w), y = float(i / w), cliff = random() % 9 == 0 ? 30.0f : 0.0f;
+            g.set(i, {x, y, std::sin(0.3f * x) + std::cos(0.2f * y) + cliff},
+                  {0.3 * noise(random), 0.3 * noise(random), 1.2});
+            g.ids[i] = uint8_t(random() % 6);
+            if (random() % 23 == 0) g.normals[3 * i + random() % 3] = random() % 2 ? notANumber : INFINITY;
+            if (random() % 23 == 0) g.positions[3 * i + random() % 3] = random() % 2 ? notANumber : -INFINITY;
+            if (random() % 23 == 0) std::fill_n(&g.normals[3 * i], 3, 0.0f);
+        }
+        for (bool ids : {false, true})
+            for (bool strided : {false, true}) {
+                Options options;
+                options.ids = ids;
+                options.strided = strided;
+                const auto expected = reference::screenCurvature(exactOf(g, ids), options.params.edge);
+                const auto actual = measure(g, options);
+                for (size_t i = 0; i < actual.size(); ++i)
+                    ASSERT_NEAR(actual[i], expected[i], tolerance::screenOracle)
+                        << w << " x " << h << ", pixel " << i << ids << strided;
+            }
+    }
+}
+
+TEST(ScreenCurvature, OfASphereIsOneOverItsRadiusUpToTheSilhouette) {
+    for (double radius : {0.01, 8.0, 1e5}) {
+        const GBuffer g = sphereOverPlane(120, 90, radius, radius / 30);
+        for (bool ids : {false, true}) {
+            Options options;
+            options.ids = ids;
+            const std::vector<float> c = measure(g, options);
+            size_t measured = 0, at = 0;
+            for (float value : c) {
+                const bool sphere = g.ids[at++] == 1;
+                if (sphere && value != 0) {
+                    ++measured;
+                    ASSERT_NEAR(value * radius, 1, tolerance::screenSphere) << "pixel " << at - 1;
+                }
+                if (!sphere) {
+                    ASSERT_EQ(value, 0) << "the plane has none, and nothing of the sphere's";
+                }
+            }
+            EXPECT_GT(measured, 2700u) << "of 2827 pixels";
+        }
+    }
+}
+
+TEST(ScreenCurvature, OfACylinderDependsOnHowItLies) {
+    const double radius = 5, step = 0.1;
+    for (double turn : {0.0, 0.5, 1.0}) {  // of the axis in the picture, radians
+        GBuffer g(40, 40);
+        for (size_t i = 0; i < g.ids.size(); ++i) {
+            const double x = (double(i % 40) - 19.5) * step, y = (double(i / 40) - 19.5) * step;
+            const double across = std::cos(turn) * y - std::sin(turn) * x;
+            const double z = std::sqrt(radius * radius - across * across);
+            g.set(i, {x, y, z},
+                  {-std::sin(turn) * across / radius, std::cos(turn) * across / radius, z / radius});
+        }
+        const std::vector<float> c = measure(g);
+        const float middle = c[20 * 40 + 20];
+        EXPECT_LE(middle * radius, 1 + tolerance::screenSphere);
+        // Along the pixels: of two directions only one turns, and both count as lengths.
+        if (turn == 0) {
+            EXPECT_NEAR(middle * radius, std::sqrt(0.5), tolerance::screenSphere);
+        }
+        EXPECT_GT(middle * radius, 0.7);
+    }
+}
+
+TEST(ScreenCurvature, AScaledPictureHasScaledCurvature) {
+    const GBuffer g = sphereOverPlane(64, 48, 1, 1.0 / 20);
+    GBuffer larger = g;
+    for (float& x : larger.positions) x *= 1024;
+    const std::vector<float> one = measure(g), other = measure(larger);
+    Options doubled;
+    doubled.params.scale = 2;
+    const std::vector<float> twice = measure(g, doubled);
+    for (size_t i = 0; i < one.size(); ++i) {
+        EXPECT_EQ(other[i] * 1024, one[i]);
+        EXPECT_EQ(twice[i], 2 * one[i]);
+    }
+}
+
+TEST(ScreenCurvature, ABadPixelChangesNoOtherBeyondItsAbsence) {
+    const GBuffer g = sphereOverPlane(50, 40, 1, 1.0 / 30);
+    const std::vector<float> sound = measure(g);
+    for (float bad : {notANumber, INFINITY, -INFINITY})
+        for (bool normal : {false, true}) {
+            GBuffer broken = g;
+            (normal ? broken.normals : broken.positions)[3 * g.at(25, 20) + 1] = bad;
+            const std::vector<float> c = measure(broken);
+            for (size_t i = 0; i < c.size(); ++i) {
+                ASSERT_TRUE(std::isfinite(c[i]));
+                const bool near = std::abs(int(i % 50) - 25) + std::abs(int(i / 50) - 20) <= 1;
+                if (i == g.at(25, 20))
+                    EXPECT_EQ(c[i], 0);
+                else if (near)
+                    EXPECT_NEAR(c[i], 1, tolerance::screenSphere) << "its other neighbours say the same";
+                else
+                    EXPECT_EQ(c[i], sound[i]);
+            }
+        }
+}
+
+TEST(ScreenCurvature, FromDepthAsFromPositions) {
+    // A sphere before a camera at the origin that looks along -z, planes at 1 and 9: positions come back from
+    // depth.
+    const uint32_t w = 96, h = 64;
+    const double near = 1, far = 9, radius = 1, centre = -4, tangent = 0.3;
+    GBuffer g(w, h);
+    g.depth.assign(w * h, 1);
+    for (uint32_t y = 0; y < h; ++y)
+        for (uint32_t x = 0; x < w; ++x) {
+            const double dx = tangent * w / h * ((x + 0.5) / w * 2 - 1),
+                         dy = tangent * (1 - (y + 0.5) / h * 2);
+            const double a = dx * dx + dy * dy + 1, b = -centre,
+                         disc = b * b - a * (centre * centre - radius * radius);
+            if (disc <= 0) continue;  // normal 0: nothing there
+            const double t = (b - std::sqrt(disc)) / a;
+            g.set(g.at(x, y), {}, {t * dx / radius, t * dy / radius, (-t - centre) / radius});
+            g.depth[g.at(x, y)] = float(far / (far - near) * (1 - near / t));
+        }
+    Options options;
+    options.depth = true;
+    // clip = (x / (tan aspect), y / tan, far / (far - near) (t - near), t), t = -z.
+    const double k = far / (far - near);
+    const float inverse[16] = {
+        float(tangent * w / h), 0, 0, 0, 0, float(tangent), 0, 0, 0, 0, 0, -1, 0, 0, float(-1 / (k * near)),
+        float(1 / near)};
+    std::copy_n(inverse, 16, options.params.inverseViewProjection);
+    size_t measured = 0;
+    for (float c : measure(g, options)) {
+        if (c == 0) continue;
+        ++measured;
+        ASSERT_NEAR(c * radius, 1, tolerance::screenFromDepth);
+    }
+    EXPECT_GT(measured, 1500u);
+}
+
+TEST(ScreenCurvature, SeparatesObjectsThatTouch) {
+    // Two halves of a plane bent at the middle, the one another object: without ids the fold is curved.
+    GBuffer g(20, 10);
+    for (size_t i = 0; i < g.ids.size(); ++i) {
+        const double x = double(i % 20) - 10;
+        g.set(i, {x, double(i / 20), x < 0 ? 0 : 0.2 * x},
+              x < 0 ? reference::Vec3{0, 0, 1} : reference::Vec3{-0.196, 0, 0.98});
+        g.ids[i] = x < 0 ? 1 : 7;
+    }
+    EXPECT_GT(largest(g, 0.5), 0.05);
+    Options options;
+    double most = 0;
+    for (float c : measure(g, options)) most = std::max(most, double(c));
+    EXPECT_NEAR(most, largest(g, 0.5), tolerance::screenOracle);
+    options.ids = true;
+    for (float c : measure(g, options)) EXPECT_NEAR(c, 0, tolerance::screenOracle);
+}
+
+TEST(ScreenCurvature, NamesWhatIsWrong) {
+    const Buffer b(device(), 4096), out(device(), 4096);
+    const PelImageDesc three = imageDesc(b, PEL_FORMAT_RGB32F, 8, 8),
+                       one = imageDesc(out, PEL_FORMAT_R32F, 8, 8);
+    const auto message = [&](const PelScreenCurvatureParams* params, const PelImageDesc* n,
+                             const PelImageDesc* p, const PelImageDesc* d,
+                             const PelImageDesc* c) -> std::string {
+        const PelError e = pelScreenCurvature(device().get(), params, n, p, d, nullptr, c, nullptr);
+        return e == PEL_SUCCESS ? "" : pelGetErrorMessage();
+    };
+    EXPECT_EQ(message(nullptr, &three, &three, nullptr, &one), "");
+    EXPECT_NE(message(nullptr, nullptr, &three, nullptr, &one).find("normals"), std::string::npos);
+    EXPECT_NE(message(nullptr, &three, nullptr, nullptr, &one).find("either"), std::string::npos);
+    EXPECT_NE(message(nullptr, &three, &three, &one, &one).find("not both"), std::string::npos);
+    EXPECT_NE(message(nullptr, &three, &three, nullptr, &three).find("R32F"), std::string::npos);
+    const PelImageDesc other = imageDesc(b, PEL_FORMAT_RGB32F, 8, 7),
+                       over = imageDesc(b, PEL_FORMAT_R32F, 8, 8);
+    EXPECT_NE(message(nullptr, &three, &other, nullptr, &one).find("one size"), std::string::npos);
+    EXPECT_NE(message(nullptr, &three, &three, nullptr, &over).find("overlaps"), std::string::npos);
+    PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
+    params.edge = 0;
+    EXPECT_NE(message(&params, &three, &three, nullptr, &one).find("edge"), std::string::npos);
+    params = pelScreenCurvatureParamsDefaults();
+    params.scale = notANumber;
+    EXPECT_NE(message(&params, &three, &three, nullptr, &one).find("scale"), std::string::npos);
+}
