@@ -26,7 +26,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/sample", {"host/include/pellucid"}},
     {"bindings/bench", {"host/include/pellucid", "tests/reference"}},
     {"bindings/cli", {"host/include/pellucid", "host/io", "host/sample", "bindings/bench"}},
-    {"bindings/python", {"host/include/pellucid"}},
+    {"bindings/python", {"host/include/pellucid", "host/io"}},
     {"examples", {"host/include/pellucid"}},
     {"bench", {"host/include/pellucid", "host/io", "host/sample", "tests/reference", "tests"}},
     {"tests", {"host/include/pellucid", "host/io", "host/sample", "bindings/bench", "tests/reference"}},

@@ -1,18 +1,18 @@
 // pellucid batch: makes the look-up tables of a manifest that are not there yet. A file is named by what was
-// asked for, holds a check sum of its texels, and appears complete or not at all.
+// asked for, holds a check sum, and appears complete or not at all.
 #include <unistd.h>
 
 #include <atomic>
+#include <csignal>
 #include <cstdio>
+#include <deque>
 #include <filesystem>
 #include <memory>
 #include <mutex>
-#include <thread>
 
 #include "command.h"
-#include "io/batch_manifest.h"
+#include "io/batch_run.h"
 #include "io/file_error.h"
-#include "io/lut_file.h"
 
 namespace pellucid::cli {
 namespace {
@@ -24,158 +24,142 @@ struct Arguments {
     bool json = false;
 };
 
+std::atomic<bool> interrupted{false};
+
 double seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// Shared by the workers, each of which takes one entry at a time from integration to the renamed file: with
-// more workers than cores, one computes while another waits for its disk.
-class Batch {
+// Standard error: a bar on a terminal, elsewhere a line every ten seconds; messages in between.
+class Display {
   public:
-    Batch(const Arguments& arguments, io::BatchManifest manifest)
-        : arguments_(arguments), manifest_(std::move(manifest)), start_(seconds()) {
-        for (const std::string& name : arguments.devices) devices_.emplace_back(name);
-        if (devices_.empty()) devices_.emplace_back("");
-    }
+    explicit Display(size_t all) : all_(all) {}
 
-    void run() {
-        unsigned jobs =
-            arguments_.jobs ? arguments_.jobs : 2 * std::max(1u, std::thread::hardware_concurrency());
-        jobs = unsigned(std::min<size_t>(jobs, std::max<size_t>(1, manifest_.entries.size())));
-        std::vector<std::thread> workers;
-        for (unsigned i = 0; i < jobs; ++i)
-            workers.emplace_back([this, i] { work(devices_[i % devices_.size()]); });
-        while (done_ < manifest_.entries.size() && !stopped_) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(20));
-            showProgress(false);
-        }
-        for (std::thread& worker : workers) worker.join();
-        showProgress(true);
-        if (fatal_) std::rethrow_exception(fatal_);
-    }
-
-    nlohmann::ordered_json report() {
-        nlohmann::ordered_json out;
-        std::string names;
-        double deviceMilliseconds = 0;
-        for (const Device& device : devices_) {
-            names += (names.empty() ? "" : ", ") + std::string(device.info().name);
-            deviceMilliseconds += device.stats().kernelMilliseconds;
-        }
-        const double elapsed = seconds() - start_;
-        out["device"] = names;
-        out["device_ms"] = deviceMilliseconds;
-        out["total_ms"] = elapsed * 1e3;
-        out["entries"] = manifest_.entries.size();
-        out["made"] = made_.load();
-        out["kept"] = kept_.load();
-        out["redone"] = redone_.load();
-        out["duplicates"] = manifest_.duplicates;
-        out["failed"] = failures_.size();
-        out["per_second"] = double(made_) / std::max(elapsed, 1e-9);
-        out["warnings"] = failures_;
-        return out;
-    }
-    bool failed() const { return !failures_.empty(); }
-
-    void fail(const std::string& message) {
+    void message(const std::string& text) {
         std::lock_guard lock(mutex_);
-        std::fprintf(stderr, "%s%s\n", shown_ ? "\r\033[K" : "", message.c_str());
-        failures_.push_back(message);
+        std::fprintf(stderr, "%s%s\n", shown_ ? "\r\033[K" : "", text.c_str());
+        shown_ = false;
     }
-    void failManifest() {
-        for (const io::BatchError& error : manifest_.errors) fail(error.message);
+
+    void show(size_t done, bool last) {
+        const double now = seconds();
+        if (now - start_ < 0.25 || (!last && now - spoken_ < (terminal_ ? 0.1 : 10)) || all_ == 0) return;
+        spoken_ = now;
+        // The rate of the last ten seconds: files that were there already go by faster than those to make.
+        past_.emplace_back(now, done);
+        while (past_.size() > 2 && now - past_[1].first > 10) past_.pop_front();
+        const double rate =
+            last ? double(done) / (now - start_)
+                 : double(done - past_.front().second) / std::max(now - past_.front().first, 1e-3);
+        char left[64] = "";
+        if (rate > 0 && !last) std::snprintf(left, sizeof left, ", %.0f s left", double(all_ - done) / rate);
+        std::lock_guard lock(mutex_);
+        if (terminal_) {
+            const size_t filled = 30 * done / all_;
+            std::string bar(30, '.');
+            bar.replace(0, filled, std::string(filled, '#'));
+            std::fprintf(stderr, "\r\033[K[%s] %zu/%zu, %.1f/s%s%s", bar.c_str(), done, all_, rate, left,
+                         last ? "\n" : "");
+            shown_ = !last;
+        } else {
+            std::fprintf(stderr, "%zu of %zu, %.1f per second%s\n", done, all_, rate, left);
+        }
     }
 
   private:
-    void work(const Device& device) {
-        for (size_t i; !stopped_ && (i = next_++) < manifest_.entries.size();) {
-            const io::BatchEntry& entry = manifest_.entries[i];
-            try {
-                make(device, entry);
-            } catch (const Error& e) {
-                // Something about this entry; all others may be fine.
-                fail(arguments_.manifest + ":" + std::to_string(entry.line) + ": " + e.what());
-            } catch (...) {  // the folder is full or gone: no entry will fare better
-                std::lock_guard lock(mutex_);
-                if (!fatal_) fatal_ = std::current_exception();
-                stopped_ = true;
-            }
-            ++done_;
-        }
-    }
-
-    void make(const Device& device, const io::BatchEntry& entry) {
-        const std::string path = (std::filesystem::path(arguments_.folder) / entry.file).string();
-        const bool exists = std::filesystem::exists(path);
-        if (exists && io::verifyLut(path, entry.key)) {
-            ++kept_;
-            return;
-        }
-        io::writeCheckedLut(path, integrated(device, entry), entry.encoding, entry.key);
-        ++made_;
-        if (exists) ++redone_;
-    }
-
-    static Lut integrated(const Device& device, const io::BatchEntry& entry) {
-        if (entry.info.kind == PEL_LUT_CURVATURE) return Lut(device, entry.info.curvature);
-        if (entry.info.kind == PEL_LUT_SHADOW) return Lut(device, entry.info.shadow);
-        return Lut(device, entry.info.specular);
-    }
-
-    // A bar on a terminal; elsewhere a line every ten seconds.
-    void showProgress(bool last) {
-        const size_t done = done_, all = manifest_.entries.size();
-        const double now = seconds(), elapsed = now - start_;
-        const bool terminal = isatty(2);
-        if (elapsed < 1 || (!last && now - spoken_ < (terminal ? 0.1 : 10)) || all == 0) return;
-        spoken_ = now;
-        const double rate = double(done) / elapsed;
-        std::lock_guard lock(mutex_);
-        if (terminal) {
-            std::string bar(30, '.');
-            bar.replace(0, 30 * done / all, std::string(30 * done / all, '#'));
-            std::fprintf(stderr, "\r\033[K[%s] %zu/%zu  %.1f/s  %.0f s left%s", bar.c_str(), done, all, rate,
-                         double(all - done) / std::max(rate, 1e-9), last ? "\n" : "");
-            shown_ = !last;
-        } else {
-            std::fprintf(stderr, "%zu of %zu, %.1f per second, %.0f s left\n", done, all, rate,
-                         double(all - done) / std::max(rate, 1e-9));
-        }
-    }
-
-    const Arguments& arguments_;
-    const io::BatchManifest manifest_;
-    std::vector<Device> devices_;
-    const double start_;
-    double spoken_ = 0;
-    std::atomic<size_t> next_{0}, done_{0}, made_{0}, kept_{0}, redone_{0};
-    std::atomic<bool> stopped_{false};
-    std::mutex mutex_;  // guards the rest
-    std::exception_ptr fatal_;
-    std::vector<std::string> failures_;
+    const size_t all_;
+    const bool terminal_ = isatty(2);
+    const double start_ = seconds();
+    double spoken_ = start_;
+    std::deque<std::pair<double, size_t>> past_{{start_, 0}};
+    std::mutex mutex_;  // guards shown_ and the stream
     bool shown_ = false;
 };
 
+nlohmann::ordered_json reportOf(const io::BatchManifest& manifest, const io::BatchRun& run,
+                                const std::vector<Device>& devices, double elapsed,
+                                const std::vector<std::string>& failures) {
+    nlohmann::ordered_json out, each = nlohmann::ordered_json::array();
+    std::string names;
+    double deviceMilliseconds = 0;
+    const std::vector<size_t> made = run.madeByDevice();
+    for (size_t i = 0; i < devices.size(); ++i) {
+        names += (names.empty() ? "" : ", ") + std::string(devices[i].info().name);
+        const double milliseconds = devices[i].stats().kernelMilliseconds;
+        deviceMilliseconds += milliseconds;
+        each.push_back({{"name", devices[i].info().name}, {"made", made[i]}, {"device_ms", milliseconds}});
+    }
+    const io::BatchCounts counts = run.counts();
+    out["device"] = names;
+    out["device_ms"] = deviceMilliseconds;
+    out["total_ms"] = elapsed * 1e3;
+    out["entries"] = manifest.entries.size();
+    out["made"] = counts.made;
+    out["kept"] = counts.kept;
+    out["redone"] = counts.redone;
+    out["duplicates"] = manifest.duplicates;
+    out["failed"] = failures.size();
+    out["per_second"] = double(counts.made) / std::max(elapsed, 1e-9);
+    out["devices"] = each;
+    out["warnings"] = failures;
+    return out;
+}
+
 void runBatch(const Arguments& arguments) {
-    io::BatchManifest manifest = io::readManifest(arguments.manifest);
+    const double start = seconds();
+    const io::BatchManifest manifest = io::readManifest(arguments.manifest);
     std::error_code error;
     std::filesystem::create_directories(arguments.folder, error);
     if (error || !std::filesystem::is_directory(arguments.folder))
         throw io::FileError(arguments.folder, "is no folder and cannot be made one");
-    Batch batch(arguments, std::move(manifest));
-    batch.failManifest();
-    batch.run();
-    const nlohmann::ordered_json report = batch.report();
+    std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error like a full disk
+    std::signal(SIGINT, [](int signal) {
+        interrupted = true;  // the entries in flight are finished; a second Ctrl-C kills
+        std::signal(signal, SIG_DFL);
+    });
+
+    Display display(manifest.entries.size());
+    std::vector<std::string> failures;
+    const auto failed = [&](const std::string& message) {
+        failures.push_back(message);
+        display.message(message);
+    };
+    for (const io::BatchError& e : manifest.errors) failed(e.message);
+    io::BatchOptions options;
+    options.folder = arguments.folder;
+    options.jobs = arguments.jobs;
+    for (const std::string& name : arguments.devices) options.devices.emplace_back(name);
+    if (options.devices.empty()) options.devices.emplace_back("");
+    options.failed = [&](const io::BatchEntry& entry, const std::string& message) {
+        failed(arguments.manifest + ":" + std::to_string(entry.line) + ": " + message);
+    };
+    io::BatchRun run(manifest, options);
+    while (run.running()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        if (interrupted) run.stop();
+        display.show(run.counts().done, false);
+    }
+    std::exception_ptr fatal;
+    try {
+        run.finish();
+    } catch (...) {
+        fatal = std::current_exception();
+    }
+    display.show(run.counts().done, true);
+    const nlohmann::ordered_json report =
+        reportOf(manifest, run, options.devices, seconds() - start, failures);
     if (arguments.json)
         std::printf("%s\n", report.dump(2).c_str());
     else
         std::printf("%zu tables: %zu made (%zu of them anew), %zu were there, %zu failed\n",
-                    report["entries"].get<size_t>(), report["made"].get<size_t>(),
-                    report["redone"].get<size_t>(), report["kept"].get<size_t>(),
-                    report["failed"].get<size_t>());
-    if (batch.failed())
-        throw io::FileError(arguments.manifest, std::to_string(report["failed"].get<size_t>()) +
+                    manifest.entries.size(), report["made"].get<size_t>(), report["redone"].get<size_t>(),
+                    report["kept"].get<size_t>(), failures.size());
+    std::fflush(stdout);
+    if (fatal) std::rethrow_exception(fatal);
+    if (interrupted && run.counts().done < manifest.entries.size())
+        throw Error(PEL_ERROR_CANCELLED, "interrupted; the same command goes on from here");
+    if (!failures.empty())
+        throw io::FileError(arguments.manifest, std::to_string(failures.size()) +
                                                     " of its entries failed; they are listed above");
 }
 
@@ -188,7 +172,7 @@ void addBatch(CLI::App& app) {
     batch->add_option("manifest", a->manifest, "TOML: [[lut]] and [[grid]] (docs/batch.md)")->required();
     batch->add_option("-o,--output", a->folder, "folder for the files; made if need be")->required();
     batch->add_option("--device", a->devices, "device; several share the work");
-    batch->add_option("-j,--jobs", a->jobs, "tables in flight (default: two per core)")
+    batch->add_option("-j,--jobs", a->jobs, "tables in flight (default: four per core and device)")
         ->check(CLI::Range(1, 256));
     batch->add_flag("--json", a->json, "one JSON object on stdout");
     batch->callback([a] { runBatch(*a); });

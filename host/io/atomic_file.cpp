@@ -8,10 +8,13 @@
 #include <atomic>
 #include <cctype>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 
+#include "io/content_hash.h"
 #include "io/file_error.h"
 
 namespace pellucid::io {
@@ -31,6 +34,13 @@ bool flushToDisk(const std::string& path) {
     return ok;
 }
 
+// Which machine a temporary file belongs to: 4 hexadecimal digits.
+std::string machineTag() {
+    char name[256] = {};
+    ::gethostname(name, sizeof name - 1);
+    return ContentHash().add(name).text().substr(0, 4);
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(std::string target) : target_(std::move(target)) {
@@ -38,7 +48,8 @@ AtomicFile::AtomicFile(std::string target) : target_(std::move(target)) {
     // it.
     static std::atomic<unsigned> counter{0};
     const fs::path path(target_);
-    const std::string unique = std::to_string(::getpid()) + "-" + std::to_string(counter++);
+    static const std::string machine = machineTag();
+    const std::string unique = machine + "-" + std::to_string(::getpid()) + "-" + std::to_string(counter++);
     std::string name(".");
     name.append(path.stem().string())
         .append(".")
@@ -67,13 +78,39 @@ void AtomicFile::write(const void* bytes, size_t count) {
         next += wrote;
         count -= static_cast<size_t>(wrote);
     }
-    if (::close(fd) != 0) throw FileError(target_, "cannot be written: " + systemMessage());
+    flushed_ = ::fsync(fd) == 0;
+    if (::close(fd) != 0 || !flushed_) throw FileError(target_, "cannot be written: " + systemMessage());
 }
 
 void AtomicFile::commit() {
-    if (!flushToDisk(temporary_) || std::rename(temporary_.c_str(), target_.c_str()) != 0)
+    if ((!flushed_ && !flushToDisk(temporary_)) || std::rename(temporary_.c_str(), target_.c_str()) != 0)
         throw FileError(target_, "cannot be written: " + systemMessage());
     done_ = true;
+}
+
+size_t removeAbandonedFiles(const std::string& folder) {
+    static const std::string machine = machineTag();
+    size_t removed = 0;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+        // .STEM.MACHINE-PROCESS-COUNT.tmp.EXTENSION
+        const std::string name = entry.path().filename().string();
+        const size_t end = name.rfind(".tmp.");
+        if (name[0] != '.' || end == std::string::npos) continue;
+        const size_t begin = name.rfind('.', end - 1) + 1;
+        char tag[5] = {};
+        long process = 0;
+        unsigned count = 0;
+        if (std::sscanf(name.substr(begin, end - begin).c_str(), "%4[0-9a-f]-%ld-%u", tag, &process,
+                        &count) != 3)
+            continue;
+        struct stat status;
+        if (::stat(entry.path().c_str(), &status) != 0) continue;
+        const double age = std::difftime(std::time(nullptr), status.st_mtime);
+        const bool gone = machine == tag && ::kill(pid_t(process), 0) != 0 && errno == ESRCH;
+        if (age > 86400 || (gone && age > 60)) removed += ::unlink(entry.path().c_str()) == 0;
+    }
+    return removed;
 }
 
 void checkWritable(const std::string& path) {

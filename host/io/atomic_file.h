@@ -18,14 +18,18 @@ class AtomicFile {
     AtomicFile& operator=(const AtomicFile&) = delete;
 
     const std::string& temporaryPath() const { return temporary_; }  // keeps the target's extension
-    void write(const void* bytes,
-               size_t count);  // creates or truncates, writes all; throws FileError (disk full, …)
-    void commit();             // throws FileError
+    // Creates or truncates, writes all, waits for the disk; throws FileError (disk full, …).
+    void write(const void* bytes, size_t count);
+    void commit();  // throws FileError
 
   private:
     std::string target_, temporary_;
-    bool done_ = false;
+    bool flushed_ = false, done_ = false;
 };
+
+// Removes what programs that were killed left in a folder: temporary files of processes of this machine that
+// are gone, older than a minute, and anyone's older than a day. Returns how many.
+size_t removeAbandonedFiles(const std::string& folder);
 
 // Throws FileError unless a file can be created or replaced at `path`: call it before long work, not after.
 void checkWritable(const std::string& path);

@@ -1,20 +1,22 @@
 #include "io/batch_manifest.h"
 
-#include <cstdio>
+#include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 
 #include "io/atomic_file.h"
+#include "io/content_hash.h"
 #include "io/file_error.h"
+#include "io/lut_describe.h"
 #include "io/profile_file.h"
 #include "io/toml_reader.h"
 
 namespace pellucid::io {
 namespace {
 
-constexpr std::string_view kindNames[] = {"curvature", "shadow", "specular"};  // PelLutKind
-constexpr std::string_view encodingNames[] = {"float", "half"};                // PelLutEncoding
+constexpr std::string_view encodingNames[] = {"float", "half"};  // PelLutEncoding
 
 // What a [[lut]] or [[grid]] says; a grid has several of the lists.
 struct Request {
@@ -39,7 +41,7 @@ uint32_t indexOf(const TomlReader& reader, const char* key, const std::string& v
 
 Request readRequest(TomlReader& reader) {
     Request r;
-    reader.choice("kind", r.kind, kindNames);
+    reader.choice("kind", r.kind, lutKindNames);
     reader.list("profile", r.profiles);
     reader.list("form", r.forms);
     reader.list("axis", r.axes);
@@ -80,8 +82,9 @@ struct Key {
 
 class Expansion {
   public:
-    Expansion(BatchManifest& manifest, std::map<std::string, Profile>& profiles)
-        : manifest_(manifest), profiles_(profiles) {}
+    // `folder`: where profile files are; without it, they are in the manifest already.
+    Expansion(BatchManifest& manifest, std::optional<std::filesystem::path> folder)
+        : manifest_(manifest), folder_(std::move(folder)) {}
 
     void add(TomlReader& reader) {
         const Request r = readRequest(reader);
@@ -106,15 +109,38 @@ class Expansion {
     }
 
   private:
-    const Profile& profile(const TomlReader& reader, const std::string& name) {
-        auto [at, fresh] = profiles_.try_emplace(name);
+    // A profile and the part of the key that it gives: its numbers, not its name alone, since a changed file
+    // is another request.
+    struct Known {
+        Profile profile;
+        std::string key;
+    };
+
+    const Known& profile(const TomlReader& reader, const std::string& name) {
+        auto [at, fresh] = known_.try_emplace(name);
         if (fresh) try {
-                at->second = findProfile(name).profile;
+                Profile& p = at->second.profile = load(name);
+                const PelProfileInfo info = p.info();
+                Key key;
+                key("profile", info.name)("radius", info.radius);
+                std::vector<double> distances;
+                for (double f : {0.01, 0.03, 0.1, 0.3, 0.7, 1.0, 1.5, 2.0, 3.0})
+                    distances.push_back(f * info.radius);
+                for (double value : p.radial(distances)) key("R", float(value));
+                at->second.key = key.out.str();
             } catch (const FileError& e) {
-                profiles_.erase(at);
+                known_.erase(at);
                 reader.fail("profile", std::string("is refused: ") + e.what());
             }
         return at->second;
+    }
+
+    Profile load(const std::string& name) {
+        if (extensionOf(name) != "toml") return findProfile(name).profile;
+        if (folder_) manifest_.profiles[name] = readWholeFile((*folder_ / name).string());
+        const auto at = manifest_.profiles.find(name);
+        if (at == manifest_.profiles.end()) throw FileError(name, "was not sent along with the manifest");
+        return parseProfile(name, at->second).profile;
     }
 
     void addOne(const TomlReader& reader, const Request& r, const std::string& encoding, uint32_t side,
@@ -124,10 +150,11 @@ class Expansion {
         entry.info.kind = r.kind;
         entry.encoding = PelLutEncoding(indexOf(reader, "encoding", encoding, encodingNames));
         Key key;
-        key("kind", kindNames[r.kind])("version", pelVersion())("encoding", encoding)("size", side);
+        key("kind", lutKindNames[r.kind])("version", pelVersion())("encoding", encoding)("size", side);
         if (r.kind != PEL_LUT_SPECULAR) {
-            entry.profile = profile(reader, profileName);
-            profileKey(key, entry.profile);
+            const Known& known = profile(reader, profileName);
+            entry.profile = known.profile;
+            key.out << known.key;
             key("diffusion_radius", radius);
         }
         if (r.kind == PEL_LUT_CURVATURE) {
@@ -148,44 +175,23 @@ class Expansion {
             entry.info.specular.width = entry.info.specular.height = side;
         }
         entry.key = key.out.str();
-        entry.file =
-            std::string(kindNames[r.kind]) + "-" + contentHash(entry.key.data(), entry.key.size()) + ".exr";
+        entry.file = std::string(lutKindNames[r.kind]) + "-" + ContentHash().add(entry.key).text() + ".exr";
         if (files_.insert(entry.file).second)
             manifest_.entries.push_back(std::move(entry));
         else
             ++manifest_.duplicates;
     }
 
-    // A profile's numbers, not its name alone: a changed file is another request.
-    static void profileKey(Key& key, const Profile& profile) {
-        const PelProfileInfo info = profile.info();
-        key("profile", info.name)("radius", info.radius);
-        std::vector<double> at;
-        for (double f : {0.01, 0.03, 0.1, 0.3, 0.7, 1.0, 1.5, 2.0, 3.0}) at.push_back(f * info.radius);
-        for (double value : profile.radial(at)) key("R", float(value));
-    }
-
     BatchManifest& manifest_;
-    std::map<std::string, Profile>& profiles_;
+    std::optional<std::filesystem::path> folder_;
+    std::map<std::string, Known> known_;
     std::set<std::string> files_;
 };
 
-}  // namespace
-
-std::string contentHash(const void* bytes, size_t count) {
-    uint64_t hash = 14695981039346656037u;  // Fowler, Noll, Vo
-    for (size_t i = 0; i < count; ++i)
-        hash = (hash ^ static_cast<const unsigned char*>(bytes)[i]) * 1099511628211u;
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-    return text;
-}
-
-BatchManifest readManifest(const std::string& path) {
-    const toml::table root = parseToml(path, readWholeFile(path));
-    BatchManifest manifest;
-    std::map<std::string, Profile> profiles;
-    Expansion expansion(manifest, profiles);
+BatchManifest expanded(const std::string& path, BatchManifest manifest,
+                       std::optional<std::filesystem::path> folder) {
+    const toml::table root = parseToml(path, manifest.text);
+    Expansion expansion(manifest, std::move(folder));
     TomlReader reader(path, root, "the manifest");
     for (const char* name : {"lut", "grid"})
         reader.tablesApart(
@@ -197,6 +203,22 @@ BatchManifest readManifest(const std::string& path) {
     if (manifest.entries.empty() && manifest.errors.empty())
         throw FileError(path, "lists no tables; [[lut]] and [[grid]] would be right");
     return manifest;
+}
+
+}  // namespace
+
+BatchManifest readManifest(const std::string& path) {
+    BatchManifest manifest;
+    manifest.text = readWholeFile(path);
+    return expanded(path, std::move(manifest), std::filesystem::path(path).parent_path());
+}
+
+BatchManifest parseManifest(const std::string& path, const std::string& text,
+                            const std::map<std::string, std::string>& profiles) {
+    BatchManifest manifest;
+    manifest.text = text;
+    manifest.profiles = profiles;
+    return expanded(path, std::move(manifest), {});
 }
 
 }  // namespace pellucid::io

@@ -1,6 +1,7 @@
 // The manifest of `pellucid batch`: TOML that lists look-up tables one by one and as grids. Keys:
 // docs/batch.md.
 #pragma once
+#include <map>
 #include <pellucid/pellucid.hpp>
 #include <string>
 #include <vector>
@@ -23,15 +24,19 @@ struct BatchError {
 };
 
 struct BatchManifest {
-    std::vector<BatchEntry> entries;  // in order, each file once
-    std::vector<BatchError> errors;   // entries that make no sense; the others stand
-    size_t duplicates = 0;            // left out because an entry before asks for the same
+    std::vector<BatchEntry> entries;              // in order, each file once
+    std::vector<BatchError> errors;               // entries that make no sense; the others stand
+    size_t duplicates = 0;                        // left out because an entry before asks for the same
+    std::string text;                             // of the manifest
+    std::map<std::string, std::string> profiles;  // text of each profile file that it names
 };
 
-// Throws FileError when the file is no manifest at all; entries that are wrong come back as errors.
+// Throws FileError when the file is no manifest at all; entries that are wrong come back as errors. Profile
+// files are found relative to the manifest.
 BatchManifest readManifest(const std::string& path);
 
-// 64-bit FNV-1a, as 16 hexadecimal digits: names of files and check sums of texels.
-std::string contentHash(const void* bytes, size_t count);
+// The same without reading any file: `path` is for messages, `profiles` as in BatchManifest.
+BatchManifest parseManifest(const std::string& path, const std::string& text,
+                            const std::map<std::string, std::string>& profiles);
 
 }  // namespace pellucid::io

@@ -1,7 +1,5 @@
 #include "io/lut_file.h"
 
-#include <OpenImageIO/half.h>
-
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -9,47 +7,15 @@
 #include <stdexcept>
 
 #include "io/atomic_file.h"
-#include "io/batch_manifest.h"
 #include "io/file_error.h"
 #include "io/image_file.h"
+#include "io/lut_describe.h"
 #include "io/texture_file.h"
 
 namespace pellucid::io {
 namespace {
 
 const std::vector<std::string> rgb{"R", "G", "B"};
-
-// One list of the description's numbers serves writing and reading.
-template <class Info, class Visit>
-void visitNumbers(Info& info, Visit&& visit) {
-    if (info.kind == PEL_LUT_CURVATURE) {
-        visit("pellucid:diffusionRadius", info.curvature.diffusionRadius);
-        visit("pellucid:radiusMin", info.curvature.radiusMin);
-        visit("pellucid:radiusMax", info.curvature.radiusMax);
-    } else if (info.kind == PEL_LUT_SHADOW) {
-        visit("pellucid:diffusionRadius", info.shadow.diffusionRadius);
-        visit("pellucid:widthMin", info.shadow.widthMin);
-        visit("pellucid:widthMax", info.shadow.widthMax);
-        visit("pellucid:sharpening", info.shadow.sharpening);
-    }
-}
-
-std::pair<uint32_t, uint32_t> sizeOf(const PelLutInfo& info) {
-    switch (info.kind) {
-        case PEL_LUT_CURVATURE:
-            return {info.curvature.width, info.curvature.height};
-        case PEL_LUT_SHADOW:
-            return {info.shadow.width, info.shadow.height};
-        case PEL_LUT_SPECULAR:
-            break;
-    }
-    return {info.specular.width, info.specular.height};
-}
-
-constexpr std::string_view kindNames[] = {"curvature", "shadow", "specular"};     // PelLutKind
-constexpr std::string_view formNames[] = {"arc", "ring", "half-ring", "sphere"};  // PelCurvatureForm
-constexpr std::string_view axisNames[] = {"linear", "root"};                      // PelLutAxis
-constexpr int formatVersion = 1;
 
 template <size_t N>
 int indexOf(const std::string& path, const char* attribute, const std::string& value,
@@ -66,32 +32,14 @@ int indexOf(const std::string& path, const char* attribute, const std::string& v
 // An EXR's worth: channels in the storage type of the encoding, and what the table is.
 Image describedImage(const Lut& lut, PelLutEncoding encoding) {
     const PelLutInfo info = lut.info();
-    const auto [width, height] = sizeOf(info);
+    const auto [width, height] = lutSize(info);
     Image image;
     image.width = int(width);
     image.height = int(height);
     image.addInterleaved(rgb, lut.read<float>(PEL_LUT_FLOAT),
                          encoding == PEL_LUT_HALF ? ChannelType::Half : ChannelType::Float);
-    image.attributes.emplace_back("pellucid:kind", std::string(kindNames[info.kind]));
-    image.attributes.emplace_back("pellucid:version", int(pelVersion()));
-    image.attributes.emplace_back("pellucid:format", formatVersion);
-    image.attributes.emplace_back("pellucid:colorSpace", std::string("linear"));
-    if (info.kind != PEL_LUT_SPECULAR)
-        image.attributes.emplace_back("pellucid:profile", std::string(info.profile));
-    if (info.kind == PEL_LUT_CURVATURE) {
-        image.attributes.emplace_back("pellucid:form", std::string(formNames[info.curvature.form]));
-        image.attributes.emplace_back("pellucid:axis", std::string(axisNames[info.curvature.axis]));
-    }
-    visitNumbers(info, [&](const char* name, float value) { image.attributes.emplace_back(name, value); });
+    image.attributes = describeLut(info);
     return image;
-}
-
-// Over the values as they are read back: halves are rounded first.
-std::string checkSum(const Image& image) {
-    std::vector<float> values = image.interleaved(rgb);
-    if (image.channel("R").type == ChannelType::Half)
-        for (float& value : values) value = float(half(value));
-    return contentHash(values.data(), values.size() * sizeof(float));
 }
 
 std::vector<uint8_t> withAlpha(const std::vector<uint16_t>& rgbHalves) {
@@ -120,7 +68,7 @@ std::map<std::string, std::string> keyValues(const Image& image) {
 
 void writeTexture(const std::string& path, const Lut& lut, Texture::Format format,
                   std::span<const uint8_t> bytes) {
-    const auto [width, height] = sizeOf(lut.info());
+    const auto [width, height] = lutSize(lut.info());
     const Texture texture{format, width, height, bytes};
     if (extensionOf(path) == "dds")
         writeDds(path, texture);
@@ -139,7 +87,7 @@ void checkLutPathBc6h(const std::string& path) {
 
 TexelError writeLutBc6h(const std::string& path, const Lut& lut) {
     checkLutPathBc6h(path);
-    const auto [width, height] = sizeOf(lut.info());
+    const auto [width, height] = lutSize(lut.info());
     const std::vector<uint16_t> texels = lut.read<uint16_t>(PEL_LUT_HALF);
     const std::vector<uint8_t> blocks = encodeBc6h(width, height, texels);
     writeTexture(path, lut, Texture::Format::Bc6hUnsigned, blocks);
@@ -169,7 +117,7 @@ PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncodin
 void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncoding> requested) {
     const PelLutEncoding encoding = checkLutPath(path, requested);
     const PelLutInfo info = lut.info();
-    const auto [width, height] = sizeOf(info);
+    const auto [width, height] = lutSize(info);
     const std::string extension = extensionOf(path);
     if (encoding == PEL_LUT_FACEWORKS8) {
         const std::vector<uint8_t> texels = lut.read<uint8_t>(encoding);
@@ -202,9 +150,9 @@ void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLut
         text << "is a table whose " << what << " is " << is << "; " << asked << " is asked for";
         throw FileError(path, text.str());
     };
-    if (found.kind != wanted.kind) refuse("kind", kindNames[found.kind], kindNames[wanted.kind]);
-    const auto [width, height] = sizeOf(found);
-    const auto [askedWidth, askedHeight] = sizeOf(wanted);
+    if (found.kind != wanted.kind) refuse("kind", lutKindNames[found.kind], lutKindNames[wanted.kind]);
+    const auto [width, height] = lutSize(found);
+    const auto [askedWidth, askedHeight] = lutSize(wanted);
     const PelCurvatureLutDesc &c = found.curvature, &askedC = wanted.curvature;
     const PelShadowLutDesc &s = found.shadow, &askedS = wanted.shadow;
     const bool curvature = found.kind == PEL_LUT_CURVATURE;
@@ -216,35 +164,13 @@ void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLut
         same("height", height, askedHeight);
         same("diffusion_radius", curvature ? c.diffusionRadius : s.diffusionRadius,
              curvature ? askedC.diffusionRadius : askedS.diffusionRadius);
-        same("form", formNames[c.form], formNames[askedC.form]);
-        same("axis", axisNames[c.axis], axisNames[askedC.axis]);
+        same("form", lutFormNames[c.form], lutFormNames[askedC.form]);
+        same("axis", lutAxisNames[c.axis], lutAxisNames[askedC.axis]);
         same("radius_min", c.radiusMin, askedC.radiusMin);
         same("radius_max", c.radiusMax, askedC.radiusMax);
         same("width_min", s.widthMin, askedS.widthMin);
         same("width_max", s.widthMax, askedS.widthMax);
         same("sharpening", s.sharpening, askedS.sharpening);
-    }
-}
-
-void writeCheckedLut(const std::string& path, const Lut& lut, PelLutEncoding encoding,
-                     const std::string& key) {
-    Image image = describedImage(lut, encoding);
-    image.attributes.emplace_back("pellucid:key", key);
-    image.attributes.emplace_back("pellucid:checksum", checkSum(image));
-    writeExr(path, image);
-}
-
-bool verifyLut(const std::string& path, const std::string& key) {
-    try {
-        const Image image = readImage(path);
-        const auto holds = [&](const char* name, const std::string& value) {
-            const Attribute* attribute = image.attribute(name);
-            return attribute && std::holds_alternative<std::string>(*attribute) &&
-                   std::get<std::string>(*attribute) == value;
-        };
-        return holds("pellucid:key", key) && holds("pellucid:checksum", checkSum(image));
-    } catch (const FileError&) {
-        return false;
     }
 }
 
@@ -261,10 +187,10 @@ Lut readLut(const Device& device, const std::string& path) {
     PelLutInfo info = pelLutInfoDefaults();
     const auto needText = [&](const char* name) { return need(name, static_cast<std::string*>(nullptr)); };
     const int format = need("pellucid:format", static_cast<int*>(nullptr));
-    if (format != formatVersion)
+    if (format != lutFormatVersion)
         throw FileError(path, "is written in format " + std::to_string(format) +
-                                  "; this program reads format " + std::to_string(formatVersion));
-    info.kind = PelLutKind(indexOf(path, "pellucid:kind", needText("pellucid:kind"), kindNames));
+                                  "; this program reads format " + std::to_string(lutFormatVersion));
+    info.kind = PelLutKind(indexOf(path, "pellucid:kind", needText("pellucid:kind"), lutKindNames));
     if (info.kind != PEL_LUT_SPECULAR) {
         const std::string profile = needText("pellucid:profile");
         if (profile.empty() || profile.size() >= sizeof info.profile)
@@ -273,14 +199,14 @@ Lut readLut(const Device& device, const std::string& path) {
     }
     if (info.kind == PEL_LUT_CURVATURE) {
         info.curvature.form =
-            PelCurvatureForm(indexOf(path, "pellucid:form", needText("pellucid:form"), formNames));
+            PelCurvatureForm(indexOf(path, "pellucid:form", needText("pellucid:form"), lutFormNames));
         info.curvature.axis =
-            PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), axisNames));
+            PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), lutAxisNames));
     }
     info.curvature.width = info.shadow.width = info.specular.width = uint32_t(image.width);
     info.curvature.height = info.shadow.height = info.specular.height = uint32_t(image.height);
-    visitNumbers(info,
-                 [&](const char* name, float& value) { value = need(name, static_cast<float*>(nullptr)); });
+    visitLutNumbers(
+        info, [&](const char* name, float& value) { value = need(name, static_cast<float*>(nullptr)); });
     try {
         return Lut(device, info, image.interleaved(rgb));
     } catch (const Error& e) {

@@ -35,10 +35,4 @@ Lut readLut(const Device& device, const std::string& path);
 void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLutInfo& wanted,
                   const std::vector<std::string>& keys);
 
-// As .exr with two attributes more: `key`, and a check sum of the texels as stored. verifyLut tells whether a
-// file holds the texels that were written for that key; a missing, truncated or changed file does not.
-void writeCheckedLut(const std::string& path, const Lut& lut, PelLutEncoding encoding,
-                     const std::string& key);
-bool verifyLut(const std::string& path, const std::string& key);
-
 }  // namespace pellucid::io

@@ -117,13 +117,18 @@ ProfileFile parseProfile(const std::string& file, const std::string& text) {
     return result;
 }
 
+std::optional<std::string_view> libraryProfile(std::string_view name) {
+    for (const LibraryProfile& entry : profileLibrary())
+        if (entry.name == name) return entry.text;
+    return {};
+}
+
 ProfileFile findProfile(const std::string& nameOrPath) {
     if (extensionOf(nameOrPath) == "toml") return parseProfile(nameOrPath, readWholeFile(nameOrPath));
+    if (const auto text = libraryProfile(nameOrPath)) return parseProfile(nameOrPath, std::string(*text));
     std::string known;
-    for (const LibraryProfile& entry : profileLibrary()) {
-        if (entry.name == nameOrPath) return parseProfile(nameOrPath, std::string(entry.text));
+    for (const LibraryProfile& entry : profileLibrary())
         known.append(known.empty() ? "" : ", ").append(entry.name);
-    }
     throw FileError(nameOrPath, "is no material of the library (" + known + ") and no .toml file");
 }
 

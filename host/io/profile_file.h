@@ -1,6 +1,7 @@
 // Diffusion profiles as TOML files, and a library of materials in the same form. Keys and units:
 // docs/profiles.md.
 #pragma once
+#include <optional>
 #include <pellucid/pellucid.hpp>
 #include <span>
 #include <string>
@@ -26,5 +27,8 @@ ProfileFile parseProfile(const std::string& file, const std::string& text);
 // A material of the library by name, or a file whose name ends in .toml. Throws FileError; an unknown name
 // lists the library.
 ProfileFile findProfile(const std::string& nameOrPath);
+
+// The text of a material of the library; none if there is no such name.
+std::optional<std::string_view> libraryProfile(std::string_view name);
 
 }  // namespace pellucid::io

@@ -57,6 +57,18 @@ class Tables(unittest.TestCase):
                 self.assertEqual(header["pellucid:axis"], "root")
                 self.assertAlmostEqual(header["pellucid:radiusMax"], 100)
 
+    def test_batch(self):
+        openexr = reader("OpenEXR")
+        folder = Path(self.folder.name)
+        (folder / "m.toml").write_text('[[lut]]\nsize = 13\naxis = "root"\n')
+        subprocess.run([COMMAND, "batch", folder / "m.toml", "-o", folder / "out"], check=True, stdout=subprocess.DEVNULL)
+        (path,) = (folder / "out").iterdir()
+        expected = np.load(self.table("square.npy", "half", "13x13"))
+        with openexr.File(str(path), separate_channels=True) as file:
+            self.assertEqual(len(file.header()["pellucid:checksum"]), 16)
+            for c, name in enumerate("RGB"):
+                self.assertTrue(np.array_equal(file.channels()[name].pixels, expected[..., c]))
+
     def test_8_bit(self):
         reader("PIL")
         from PIL import Image

@@ -22,4 +22,5 @@ PYBIND11_MODULE(_native, module) {
     bindProfile(module);
     bindLut(module);
     bindShader(module);
+    bindBatch(module);
 }

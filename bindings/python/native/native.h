@@ -93,5 +93,6 @@ void bindMesh(py::module_& module);
 void bindProfile(py::module_& module);
 void bindLut(py::module_& module);
 void bindShader(py::module_& module);
+void bindBatch(py::module_& module);
 
 }  // namespace pel::python

@@ -10,7 +10,7 @@ import venv
 from pathlib import Path
 
 BUILD_NEEDS = ["scikit-build-core>=0.10", "pybind11>=2.10"]
-TEST_NEEDS = ["pytest>=7", "tqdm", "pyopencl", "trimesh", "scipy", "embreex", "pillow"]
+TEST_NEEDS = ["pytest>=7", "tqdm", "pyopencl", "trimesh", "scipy", "embreex", "pillow", "distributed", "fsspec"]
 
 
 def run(*command, **options):

@@ -1,0 +1,85 @@
+// Manifests and the files of batches, by the same code as the command's.
+#include "progress.h"
+
+#ifdef PELLUCID_BATCH
+#include "io/batch_entry.h"
+#include "io/lut_exr.h"
+
+namespace pel::python {
+
+namespace {
+using pellucid::io::BatchManifest;
+
+BatchManifest read(const std::string& path) {
+    try {
+        return pellucid::io::readManifest(path);
+    } catch (const std::exception& e) {
+        throw py::value_error(e.what());
+    }
+}
+
+BatchManifest parsed(const std::string& path, const std::string& text, const std::map<std::string, std::string>& profiles) {
+    try {
+        return pellucid::io::parseManifest(path, text, profiles);
+    } catch (const std::exception& e) {
+        throw py::value_error(e.what());
+    }
+}
+
+const pellucid::io::BatchEntry& entryOf(const BatchManifest& m, size_t index) {
+    if (index >= m.entries.size())
+        throw py::index_error("entry " + std::to_string(index) + " of " + std::to_string(m.entries.size()));
+    return m.entries[index];
+}
+
+py::bytes made(const BatchManifest& m, const Device& device, size_t index) {
+    const pellucid::io::BatchEntry& entry = entryOf(m, index);
+    std::string bytes;
+    call([&] {
+        try {
+            bytes = pellucid::io::makeEntryFile(device.handle, entry);
+            return PEL_SUCCESS;
+        } catch (const pellucid::Error& e) {
+            return e.code();
+        }
+    });
+    return py::bytes(bytes);
+}
+}  // namespace
+
+void bindBatch(py::module_& module) {
+    py::class_<BatchManifest>(module, "Manifest")
+        .def_static("read", &read)
+        .def_static("parse", &parsed)
+        .def("__len__", [](const BatchManifest& m) { return m.entries.size(); })
+        .def("entry",
+             [](const BatchManifest& m, size_t index) {
+                 const auto& e = entryOf(m, index);
+                 return std::make_tuple(e.file, e.key, e.line);
+             })
+        .def("errors",
+             [](const BatchManifest& m) {
+                 std::vector<std::pair<int, std::string>> errors;
+                 for (const auto& e : m.errors) errors.emplace_back(e.line, e.message);
+                 return errors;
+             })
+        .def("duplicates", [](const BatchManifest& m) { return m.duplicates; })
+        .def("text", [](const BatchManifest& m) { return m.text; })
+        .def("profiles", [](const BatchManifest& m) { return m.profiles; })
+        .def("make", &made);
+    module.def("verify_file", [](const py::bytes& file, const std::string& key) {
+        const std::string_view bytes = file;
+        py::gil_scoped_release release;
+        return pellucid::io::verifyLutExr(bytes, key);
+    });
+}
+
+}  // namespace pel::python
+
+#else  // built without toml++: no manifests
+
+namespace pel::python {
+void bindBatch(py::module_&) {}
+}  // namespace pel::python
+
+#endif

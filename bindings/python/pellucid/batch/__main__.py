@@ -1,0 +1,64 @@
+"""python -m pellucid.batch MANIFEST --out DIR [--scheduler ADDRESS]: see docs/batch.md. Exit codes as the command's."""
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser("python -m pellucid.batch", description="Make the look-up tables of a manifest that are "
+                                     "not there yet, on a Dask cluster or the processes of this machine.")
+    parser.add_argument("manifest", help="TOML: [[lut]] and [[grid]] (docs/batch.md)")
+    parser.add_argument("--out", "-o", required=True, help="a folder that all workers see, or a URL that fsspec knows")
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, such as tcp://host:8786; without it: "
+                        "processes of this machine, one per device")
+    parser.add_argument("--workers", type=int, metavar="N", help="without --scheduler: how many processes")
+    parser.add_argument("--device", action="append", default=[], metavar="D", help="without --scheduler: device by number, "
+                        "name or type; several are taken by turns")
+    parser.add_argument("--timeout", type=float, default=120, metavar="S",
+                        help="give a worker up that finishes nothing for so many seconds (default: 120)")
+    parser.add_argument("--patience", type=float, default=300, metavar="S",
+                        help="give up after so many seconds without any worker (default: 300)")
+    parser.add_argument("--jobs", "-j", type=int, default=0, metavar="N", help="tables in flight per worker (default: four "
+                        "per core)")
+    parser.add_argument("--no-read-back", action="store_true", help="believe the workers' check sums")
+    parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
+    a = parser.parse_args()
+    if a.scheduler and (a.workers or a.device):
+        parser.error("--workers and --device are for processes of this machine; with --scheduler the cluster has its own")
+    if a.timeout <= 0 or a.patience < 0 or a.jobs < 0 or (a.workers is not None and a.workers < 1):
+        parser.error("--timeout must be above 0, --workers 1 or more, --jobs and --patience 0 or more")
+
+    def fail(code: int, message: object) -> int:
+        print(f"pellucid.batch: {message}", file=sys.stderr)
+        return code
+
+    try:
+        from . import BatchError, run
+    except ImportError as e:
+        return fail(4, e)
+    error = None
+    try:
+        summary = run(a.manifest, a.out, scheduler=a.scheduler, workers=a.workers, device=a.device, timeout=a.timeout,
+                      jobs=a.jobs, patience=a.patience, read_back=not a.no_read_back, progress=True)
+    except ValueError as e:
+        return fail(3, e)
+    except BatchError as e:
+        if not hasattr(e, "summary"):
+            return fail(4, e)
+        error, summary = e, e.summary
+    except KeyboardInterrupt:
+        return fail(4, "interrupted; the same command goes on from here")
+    if a.json:
+        print(json.dumps(summary.to_dict(), indent=2))
+    else:
+        print(f"{summary.entries} tables: {summary.made} made ({summary.redone} of them anew), {summary.kept} were there, "
+              f"{summary.failed} failed")
+    if error is not None:
+        return fail(4 if "no worker" in str(error) else 3, error)
+    return fail(3, f"{a.manifest}: {summary.failed} of its entries failed; they are listed above") if summary.failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,75 @@
+"""What a batch came to, and how it is told on the way."""
+from __future__ import annotations
+
+import sys
+import time
+from collections import deque
+from dataclasses import asdict, dataclass, field
+from typing import Any, TextIO
+
+
+class BatchError(Exception):
+    """The batch stopped: the output is full or gone, or no worker is left. `summary` says how far it came."""
+
+    summary: Summary
+
+
+@dataclass
+class Summary:
+    """Counts of a batch; `failed` are entries that make no sense, or that no worker could make."""
+
+    entries: int = 0
+    made: int = 0
+    kept: int = 0
+    redone: int = 0  # of `made`: in place of a file that was damaged
+    duplicates: int = 0
+    failed: int = 0
+    retried: int = 0  # pieces of work that a worker lost, garbled or sat on, given to another
+    workers_lost: int = 0
+    workers_dismissed: int = 0  # hung, or gave garbage
+    total_ms: float = 0.0
+    per_second: float = 0.0
+    made_by: dict[str, int] = field(default_factory=dict)
+    warnings: list[str] = field(default_factory=list)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same for JSON."""
+        return asdict(self)
+
+
+class Display:
+    """A bar with rate and time left on a terminal, a line every ten seconds elsewhere."""
+
+    def __init__(self, total: int, stream: TextIO = sys.stderr, quiet: bool = False) -> None:
+        self._total, self._stream, self._quiet = total, stream, quiet
+        self._terminal = stream.isatty()
+        self._start = self._spoken = time.monotonic()
+        self._past = deque([(self._start, 0)])
+        self._shown = False
+
+    def message(self, text: str) -> None:
+        if not self._quiet:
+            self._stream.write(("\r\033[K" if self._shown else "") + text + "\n")
+            self._stream.flush()
+            self._shown = False
+
+    def show(self, done: int, last: bool = False) -> None:
+        now = time.monotonic()
+        if self._quiet or not self._total or now - self._start < 0.5:
+            return
+        if not last and now - self._spoken < (0.1 if self._terminal else 10):
+            return
+        self._spoken = now
+        self._past.append((now, done))
+        while len(self._past) > 2 and now - self._past[1][0] > 10:
+            self._past.popleft()
+        then, before = (self._start, 0) if last else self._past[0]
+        rate = (done - before) / max(now - then, 1e-3)
+        left = f", {(self._total - done) / rate:.0f} s left" if rate > 0 and not last else ""
+        if self._terminal:
+            bar = ("#" * (30 * done // self._total)).ljust(30, ".")
+            self._stream.write(f"\r\033[K[{bar}] {done}/{self._total}, {rate:.1f}/s{left}" + ("\n" if last else ""))
+            self._shown = not last
+        else:
+            self._stream.write(f"{done} of {self._total}, {rate:.1f} per second{left}\n")
+        self._stream.flush()

@@ -1,0 +1,108 @@
+"""A batch on a cluster that is there, or on one of this machine's processes, one per device."""
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+from collections.abc import Iterator, Sequence
+from typing import Any, Optional
+
+from ..device import devices
+from .manifest import Manifest
+from .report import BatchError, Display, Summary
+from .store import Store, StoreError
+
+try:
+    import dask
+    import distributed
+except ImportError as e:
+    raise ImportError("batches run on Dask, which is not installed: pip install pellucid[batch]") from e
+
+
+@contextlib.contextmanager
+def _local_client(count: Optional[int], selectors: Sequence[str]) -> Iterator[Any]:
+    """Processes of this machine, each with a device of its own by turns, restarted when they die."""
+    chosen = list(selectors) or [str(i) for i in range(len(devices()))]
+    if not chosen:
+        raise BatchError("no OpenCL device; Debian's pocl-opencl-icd brings one for any CPU")
+    if not selectors and os.environ.get("PELLUCID_DEVICE"):
+        chosen = [os.environ["PELLUCID_DEVICE"]]
+    with dask.config.set({"distributed.admin.system-monitor.interval": "10s"}):
+        workers = {i: {"cls": distributed.Nanny,
+                       "options": {"nthreads": 1, "memory_limit": 0, "silence_logs": logging.CRITICAL,
+                                   "env": {"PELLUCID_DEVICE": chosen[i % len(chosen)]}}}
+                   for i in range(count or len(chosen))}
+        scheduler = {"cls": distributed.Scheduler, "options": {"host": "127.0.0.1", "port": 0, "dashboard": False}}
+        with distributed.SpecCluster(workers=workers, scheduler=scheduler, silence_logs=logging.CRITICAL) as cluster:
+            with distributed.Client(cluster) as client:
+                yield client
+
+
+@contextlib.contextmanager
+def _client(scheduler: Any, count: Optional[int], selectors: Sequence[str]) -> Iterator[Any]:
+    if scheduler is None:
+        with _local_client(count, selectors) as client:
+            yield client
+    elif isinstance(scheduler, distributed.Client):
+        yield scheduler
+    else:
+        try:
+            client = distributed.Client(scheduler)
+        except (OSError, ValueError) as e:
+            raise BatchError(f"no scheduler at {scheduler}: {e}") from e
+        with client:
+            yield client
+
+
+def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str], *, scheduler: Any = None,
+        workers: Optional[int] = None, device: Sequence[str] = (), timeout: float = 120.0, jobs: int = 0,
+        patience: float = 300.0, read_back: bool = True, progress: bool = False) -> Summary:
+    """Makes the tables of a manifest that are not in `out` yet.
+
+    Parameters
+    ----------
+    manifest : path or Manifest
+    out : path or URL
+        A folder that all workers see under this name, or what fsspec knows (s3://...).
+    scheduler : address, Client or None
+        A Dask cluster whose workers have this package. None: processes of this machine.
+    workers : int, optional
+        Without a scheduler: how many processes; one per device without it.
+    device : selectors
+        Without a scheduler: devices that the processes take by turns; all without it. On a cluster every worker takes
+        its own, by its PELLUCID_DEVICE.
+    timeout : seconds
+        A worker that has work and finishes nothing for that long is given up, and its work goes to another.
+    jobs : int
+        Entries in flight per worker; 0: four per core.
+    patience : seconds
+        How long to wait when there is no worker.
+    read_back : bool
+        False: believe the workers' check sums instead of reading every file once.
+    progress : bool
+        On standard error.
+
+    Returns
+    -------
+    Summary
+
+    Raises
+    ------
+    ValueError
+        It is no manifest.
+    BatchError
+        The output is full or gone, there is no scheduler, or no worker for too long. What is made is kept: the same call
+        goes on from there.
+    """
+    if not isinstance(manifest, Manifest):
+        manifest = Manifest(manifest)
+    try:
+        store = Store(out)
+        store.prepare()
+    except StoreError as e:
+        raise BatchError(str(e)) from e
+    from .dispatch import Dispatcher
+
+    with _client(scheduler, workers, device) as client:
+        return Dispatcher(client, manifest, store, timeout=timeout, jobs=jobs, patience=patience, read_back=read_back,
+                          device="", display=Display(len(manifest), quiet=not progress)).run()

@@ -1,0 +1,100 @@
+"""Where the files of a batch go: a folder that all workers see, or an object store."""
+from __future__ import annotations
+
+import itertools
+import os
+import socket
+from pathlib import Path
+from typing import Any, Optional
+
+_counter = itertools.count()
+
+
+class StoreError(Exception):
+    """The output is full, gone or not allowed: no entry will fare better."""
+
+
+class Store:
+    """A folder, or whatever fsspec knows by a URL ("s3://bucket/tables", "gs://...", "memory://tables").
+
+    Files appear complete or not at all: in a folder by a temporary name, a flush to the disk and a rename, as the command does
+    it; an object store's `put` is so by itself.
+    """
+
+    def __init__(self, out: str | os.PathLike[str]) -> None:
+        self.out = os.fspath(out)
+        if self.out.startswith("file://"):
+            self.out = self.out[len("file://"):]
+        self._files: Any = None
+        if "://" in self.out:
+            try:
+                import fsspec
+            except ImportError as e:
+                raise StoreError(f"{self.out} needs fsspec: pip install pellucid[batch]") from e
+            try:
+                self._files, self._root = fsspec.core.url_to_fs(self.out)
+            except (ImportError, ValueError) as e:
+                raise StoreError(f"{self.out}: {e}") from e
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Store, (self.out,)
+
+    @property
+    def local(self) -> bool:
+        """Whether it is a folder."""
+        return self._files is None
+
+    def prepare(self) -> None:
+        """Makes the folder if need be."""
+        try:
+            if self._files is None:
+                Path(self.out).mkdir(parents=True, exist_ok=True)
+            else:
+                self._files.makedirs(self._root, exist_ok=True)
+        except OSError as e:
+            raise StoreError(f"{self.out}: {e.strerror or e}") from e
+
+    def read(self, name: str) -> Optional[bytes]:
+        """The file's bytes, None if there is none."""
+        try:
+            if self._files is None:
+                return (Path(self.out) / name).read_bytes()
+            return self._files.cat_file(f"{self._root}/{name}")
+        except FileNotFoundError:
+            return None
+        except OSError as e:
+            raise StoreError(f"{self.out}/{name}: cannot be read: {e.strerror or e}") from e
+
+    def write(self, name: str, data: bytes) -> None:
+        """Puts a file there, in place of what had its name."""
+        try:
+            if self._files is None:
+                self._write_local(Path(self.out), name, data)
+            else:
+                self._files.pipe_file(f"{self._root}/{name}", data)
+        except OSError as e:
+            raise StoreError(f"{self.out}/{name}: cannot be written: {e.strerror or e}") from e
+
+    @staticmethod
+    def _write_local(folder: Path, name: str, data: bytes) -> None:
+        stem, _, extension = name.rpartition(".")
+        # Of the form that the command removes when it finds it abandoned.
+        tag = f"{_fnv(socket.gethostname().encode()):016x}"[:4]
+        temporary = folder / f".{stem}.{tag}-{os.getpid()}-{next(_counter)}.tmp.{extension}"
+        try:
+            with open(temporary, "wb", buffering=0) as file:
+                view = memoryview(data)
+                while view:
+                    view = view[file.write(view):]
+                os.fsync(file.fileno())
+            os.replace(temporary, folder / name)
+        except BaseException:
+            temporary.unlink(missing_ok=True)
+            raise
+
+
+def _fnv(data: bytes) -> int:
+    value = 14695981039346656037
+    for byte in data:
+        value = (value ^ byte) * 1099511628211 % 2**64
+    return value
