@@ -178,6 +178,66 @@ void fromSphere(benchmark::State& state) {
     state.counters["max"] = worst;
 }
 
+// Largest difference of a form from the arc without its cut on a cylinder, skin: what a surface that bends
+// one way receives, with light that goes round it as often as it likes.
+void fromCylinder(benchmark::State& state) {
+    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    desc.form = PelCurvatureForm(state.range(0));
+    desc.width = 128;
+    desc.height = 1;
+    desc.radiusMin = desc.radiusMax = float(state.range(1));
+    const auto skin = reference::skinProfile();
+    double worst[3] = {};
+    for (auto _ : state) {
+        const auto ours = Lut(device(), desc).read<float>(PEL_LUT_FLOAT);
+        for (int x = 0; x < 128; ++x) {
+            const double u = -1 + (x + 0.5) / 64;
+            const auto exact =
+                reference::curvatureD(reference::Form::arc, *skin, u, double(state.range(1)), 1e9);
+            for (int k = 0; k < 3; ++k)
+                worst[k] = std::max(worst[k], std::abs(ours[size_t(x) * 3 + size_t(k)] - exact[k]));
+        }
+    }
+    state.counters["red"] = worst[0];
+    state.counters["green"] = worst[1];
+    state.counters["blue"] = worst[2];
+}
+
+// A root table of 64x64 for 2.7 mm and r = 1 to 100 mm, read for a material of another radius at curvature
+// times the ratio (section 6), against that material's own integral: over the curvatures that the table
+// holds, and, `beyond`, up to r = 1 mm and 100 mm where it is clamped.
+void runtimeRadius(benchmark::State& state) {
+    constexpr int side = 64;
+    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    desc.width = desc.height = side;
+    desc.axis = PEL_AXIS_ROOT;
+    const double ratio = double(state.range(1)) / 100;
+    desc.form = PelCurvatureForm(state.range(0));
+    constexpr reference::Form trueForms[] = {reference::Form::arc, reference::Form::ring,
+                                             reference::Form::halfRing, reference::Form::sphere};
+    const auto profile = reference::profileForRadius(reference::skinProfile(), 2.7 * ratio);
+    double within = 0, beyond = 0;
+    for (auto _ : state) {
+        const auto texels = Lut(device(), desc).read<float>(PEL_LUT_FLOAT);
+        std::mt19937 random(9);
+        std::uniform_real_distribution<double> even(0, 1);
+        for (int i = 0; i < 1500; ++i) {
+            const double c = std::pow(10, -2 + 2 * even(random)), at = c * ratio;
+            double u = 2 * even(random) - 1;
+            if (i % 2) u = std::clamp(u * 4 * at, -1.0, 1.0);
+            const double s = std::copysign(std::sqrt(std::abs(u)), u), v = (std::sqrt(at) - 0.1) / 0.9;
+            const Rgb value = lookUp(texels, side, side, (s + 1) / 2 * (side - 1), v * (side - 1));
+            const auto truth = reference::curvatureD(trueForms[desc.form], *profile, u, 1 / c);
+            for (int k = 0; k < 3; ++k) {
+                double& worst = at >= 0.01 && at <= 1 ? within : beyond;
+                worst = std::max(worst, std::abs(value[size_t(k)] - truth[k]));
+            }
+        }
+    }
+    state.counters["within"] = within;
+    state.counters["beyond"] = beyond;
+}
+
 BENCHMARK(lookUpError)
     ->ArgNames({"side", "axis", "encoding"})
     ->ArgsProduct({{32, 63, 64, 89, 127, 128, 256, 512, 1024}, {0, 1}, {0, 1, 2}})
@@ -185,6 +245,14 @@ BENCHMARK(lookUpError)
 BENCHMARK(energy)
     ->ArgNames({"form", "radius_mm"})
     ->ArgsProduct({{0, 1, 2, 3}, {1, 3, 10, 100}})
+    ->Iterations(1);
+BENCHMARK(fromCylinder)
+    ->ArgNames({"form", "radius_mm"})
+    ->ArgsProduct({{0, 1, 2, 3}, {1, 3, 10, 100}})
+    ->Iterations(1);
+BENCHMARK(runtimeRadius)
+    ->ArgNames({"form", "percent"})
+    ->ArgsProduct({{0, 3}, {37, 50, 100, 150, 200}})
     ->Iterations(1);
 BENCHMARK(fromSphere)
     ->ArgNames({"form", "radius_mm"})

@@ -62,8 +62,36 @@ void curvatureArc(benchmark::State& state) {
     integrate(state, curvatureDesc(state));
 }
 
+void curvatureSphere(benchmark::State& state) {
+    PelCurvatureLutDesc desc = curvatureDesc(state);
+    desc.form = PEL_FORM_SPHERE;
+    integrate(state, desc);
+}
+
 void shadow(benchmark::State& state) {
     integrate(state, shadowDesc(state));
+}
+
+// A measured profile of 32 distances, in each form and as a shadow table (form 4).
+void measured(benchmark::State& state) {
+    std::vector<float> distances, values;
+    for (int i = 0; i < 32; ++i) {
+        distances.push_back(0.4f * float(i));
+        for (float decay : {2.0f, 1.0f, 0.5f}) values.push_back(std::exp(-0.4f * float(i) / decay));
+    }
+    const Profile profile = Profile::table(distances, values);
+    if (state.range(1) == 4) {
+        PelShadowLutDesc desc = shadowDesc(state);
+        desc.profile = profile.get();
+        desc.diffusionRadius = 0;
+        integrate(state, desc);
+        return;
+    }
+    PelCurvatureLutDesc desc = curvatureDesc(state);
+    desc.profile = profile.get();
+    desc.diffusionRadius = 0;
+    desc.form = PelCurvatureForm(state.range(1));
+    integrate(state, desc);
 }
 
 // Largest difference from the device's table: the speed of a wrong answer is worth nothing.
@@ -100,7 +128,13 @@ void shadowSampled(benchmark::State& state) {
 }
 
 BENCHMARK(curvatureArc)->ArgName("side")->Arg(512)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(curvatureSphere)->ArgName("side")->Arg(512)->UseManualTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(shadow)->ArgName("side")->Arg(512)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(measured)
+    ->ArgNames({"side", "form"})
+    ->ArgsProduct({{512}, {0, 1, 2, 3, 4}})
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(curvatureSampled)
     ->ArgName("side")
     ->Arg(512)

@@ -122,7 +122,12 @@ inline Rgb kernelAt(__global const LutGaussian* gaussians, const uint first, con
     Rgb sum = {0.0f, 0.0f, 0.0f};
     for (uint g = first; g < end; ++g) {
         const LutGaussian G = gaussians[g];
-        const floatw x = fmin(radius / G.sigma, 1e8f);  // radius in sigmas
+#if PEL_FORM == FORM_SPHERE
+        // In sigmas; as small as 1e-6 light is even, and the same limit stands where the sum is normalised.
+        const floatw x = clamp(radius / G.sigma, 1e-6f, 1e8f);
+#else
+        const floatw x = fmin(radius / G.sigma, 1e8f);
+#endif
 #if PEL_FORM == FORM_ARC
         const floatw e = exp(-0.5f * (x * t) * (x * t)) * (0.39894228f * x);
 #elif PEL_FORM == FORM_SPHERE
@@ -265,6 +270,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvatureRo
     frontTotal = (Rgb){1.0f - 2.0f * missing.r * scale.r, 1.0f - 2.0f * missing.g * scale.g,
                        1.0f - 2.0f * missing.b * scale.b};
 #endif
+    // What is all but 0 there may come out below it: no texel may.
+    back = (Rgb){fmax(back.r, 0.0f), fmax(back.g, 0.0f), fmax(back.b, 0.0f)};
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES + 2, back);
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES + 3, frontTotal);
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES + 4, scale);

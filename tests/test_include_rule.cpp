@@ -28,7 +28,9 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"bindings/cli", {"host/include/pellucid", "host/io", "host/sample", "bindings/bench"}},
     {"bindings/python", {"host/include/pellucid", "host/io"}},
     {"examples", {"host/include/pellucid"}},
-    {"bench", {"host/include/pellucid", "host/io", "host/sample", "tests/reference", "tests"}},
+    {"bench",
+     {"kernels/shared", "kernels/lib", "host/include/pellucid", "host/io", "host/sample", "tests/reference",
+      "tests"}},
     {"tests", {"host/include/pellucid", "host/io", "host/sample", "bindings/bench", "tests/reference"}},
     {"tests/reference", {}},
 };

@@ -28,6 +28,8 @@ inline constexpr Tolerance peerBytes{"peerBytes", 2,
 inline constexpr Tolerance profileEvaluation{
     "profileEvaluation", 3e-6,
     "relative; the mixtures of Gaussians that stand for burley and dipole leave 1e-6"};
+inline constexpr Tolerance lineIntegral{
+    "lineIntegral", 2e-5, "of P near the centre: panels over a table's corners, and what lies beyond 20 radii"};
 inline constexpr Tolerance normalBlend{"normalBlend", 0.05,
                                        "of the factors 1, 0.3, 0 that were chosen by eye for skin"};
 inline constexpr Tolerance sampledEnergy{

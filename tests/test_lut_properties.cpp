@@ -1,0 +1,317 @@
+// What holds for every look-up table: random profiles of each kind, every form, large tables, and numbers at
+// the edges of float.
+#include <gtest/gtest.h>
+
+#include <pellucid/pellucid.hpp>
+
+#include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "reference/lut.h"
+#include "tolerances.h"
+
+using namespace pellucid;
+
+namespace {
+
+constexpr PelCurvatureForm forms[] = {PEL_FORM_ARC, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_SPHERE};
+
+using Random = std::mt19937;
+float logUniform(Random& random, double least, double most) {
+    return float(least * std::pow(most / least, std::uniform_real_distribution<>(0, 1)(random)));
+}
+
+// The same random numbers with every length times `scale`: the same profile, larger.
+Profile randomProfile(PelProfileKind kind, unsigned seed, float scale) {
+    Random random(seed);
+    if (kind == PEL_PROFILE_GAUSSIANS) {
+        std::vector<PelGaussian> gaussians(1 + random() % 8);
+        for (PelGaussian& g : gaussians) {
+            g.variance = logUniform(random, 1e-3, 10) * scale * scale;
+            for (float& w : g.weight) w = logUniform(random, 1e-2, 1);
+        }
+        return Profile::gaussians(gaussians);
+    }
+    float a[3], b[3];
+    if (kind == PEL_PROFILE_BURLEY) {
+        for (int c = 0; c < 3; ++c) {
+            a[c] = logUniform(random, 0.1, 3) * scale;
+            b[c] = logUniform(random, 0.1, 1);
+        }
+        return Profile::burley(a, b);
+    }
+    if (kind == PEL_PROFILE_DIPOLE) {
+        for (int c = 0; c < 3; ++c) {
+            a[c] = logUniform(random, 1e-3, 1) / scale;
+            b[c] = logUniform(random, 0.3, 3) / scale;
+        }
+        return Profile::dipole(a, b, 1.3f);
+    }
+    std::vector<float> distances, values;  // a table that falls
+    const size_t count = 3 + random() % 40;
+    float d = logUniform(random, 1e-3, 0.1), value[3] = {1, 1, 1};
+    for (size_t i = 0; i < count; ++i) {
+        distances.push_back(d * scale);
+        d += logUniform(random, 0.05, 1);
+        for (float& v : value) {
+            values.push_back(v);
+            v *= logUniform(random, 0.3, 1);
+        }
+    }
+    return Profile::table(distances, values);
+}
+
+constexpr PelProfileKind kinds[] = {PEL_PROFILE_GAUSSIANS, PEL_PROFILE_BURLEY, PEL_PROFILE_DIPOLE,
+                                    PEL_PROFILE_TABLE};
+
+PelCurvatureLutDesc describe(const Profile& profile, PelCurvatureForm form, uint32_t width, uint32_t height,
+                             double least, double most) {
+    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    desc.width = width;
+    desc.height = height;
+    desc.form = form;
+    desc.axis = PEL_AXIS_ROOT;
+    desc.diffusionRadius = 0;
+    desc.profile = profile.get();
+    desc.radiusMin = float(least * profile.info().radius);
+    desc.radiusMax = float(most * profile.info().radius);
+    return desc;
+}
+
+double bound(PelProfileKind kind) {
+    return kind == PEL_PROFILE_GAUSSIANS ? tolerance::lutTexelGaussians : tolerance::lutTexelOther;
+}
+
+}  // namespace
+
+// D rises with N.L: max(cos, 0) and every kernel here fall symmetrically from their middle, and so does what
+// one makes of the other. It is no less than 0 and no more than 1; lit and dark side differ by N.L times one
+// number.
+TEST(LutProperties, CurvatureRisesIsBoundedAndScales) {
+    const Device device("");
+    constexpr uint32_t width = 65, height = 24;
+    for (PelProfileKind kind : kinds)
+        for (unsigned seed = 0; seed < 4; ++seed) {
+            const Profile profile = randomProfile(kind, seed, 1), large = randomProfile(kind, seed, 1000);
+            for (PelCurvatureForm form : forms) {
+                const auto D =
+                    Lut(device, describe(profile, form, width, height, 0.05, 1e4)).read<float>(PEL_LUT_FLOAT);
+                const auto scaled =
+                    Lut(device, describe(large, form, width, height, 0.05, 1e4)).read<float>(PEL_LUT_FLOAT);
+                const auto where = [&](size_t i) {
+                    return ::testing::Message()
+                           << "kind " << int(kind) << " seed " << seed << " form " << int(form) << " texel "
+                           << i / 3 % width << ", " << i / 3 / width;
+                };
+                for (size_t i = 0; i < D.size(); ++i) {
+                    ASSERT_GE(D[i], 0) << where(i);
+                    ASSERT_LE(D[i], 1 + bound(kind)) << where(i);
+                    ASSERT_NEAR(D[i], scaled[i], bound(kind)) << where(i);
+                    const size_t x = i / 3 % width;
+                    if (x > 0) {
+                        ASSERT_GE(D[i] - D[i - 3], -bound(kind)) << where(i);
+                    }
+                    if (x < width / 2) {  // (D(u) - D(-u)) / u is the same along the row
+                        const size_t mirror = i + 3 * (width - 1 - 2 * x), last = i + 3 * (width - 1 - x);
+                        const double s = 1 - 2.0 * double(x) / (width - 1);
+                        ASSERT_NEAR(D[mirror] - D[i], s * s * (D[last] - D[i - 3 * x]), bound(kind))
+                            << where(i);
+                    }
+                }
+            }
+        }
+}
+
+TEST(LutProperties, SphereKeepsTheEnergy) {
+    const Device device("");
+    constexpr uint32_t width = 2049, height = 5;
+    for (PelProfileKind kind : kinds)
+        for (unsigned seed = 0; seed < 4; ++seed) {
+            const Profile profile = randomProfile(kind, seed, 1);
+            const auto D = Lut(device, describe(profile, PEL_FORM_SPHERE, width, height, 0.05, 100))
+                               .read<float>(PEL_LUT_FLOAT);
+            for (uint32_t y = 0; y < height; ++y)
+                for (size_t c = 0; c < 3; ++c) {
+                    double mean = 0;  // over u = s |s|: du/2 = |s| ds
+                    for (uint32_t x = 0; x < width; ++x)
+                        mean += D[(size_t(y) * width + x) * 3 + c] * std::abs(-1 + x / 1024.0) / 1024 *
+                                (x % 2048 ? 1 : 0.5);
+                    EXPECT_NEAR(mean, 0.25, tolerance::sphereMean)
+                        << int(kind) << " seed " << seed << " row " << y;
+                }
+        }
+}
+
+// T + T mirrored is the whole, T rises with the shadow value.
+TEST(LutProperties, ShadowRisesAndIsOdd) {
+    const Device device("");
+    constexpr uint32_t width = 64, height = 12;
+    for (PelProfileKind kind : kinds)
+        for (unsigned seed = 0; seed < 4; ++seed) {
+            const Profile profile = randomProfile(kind, seed, 1);
+            PelShadowLutDesc desc = pelShadowLutDescDefaults();
+            desc.width = width;
+            desc.height = height;
+            desc.profile = profile.get();
+            desc.diffusionRadius = 0;
+            desc.widthMin = 0.3f * profile.info().radius;
+            desc.widthMax = 300 * profile.info().radius;
+            desc.sharpening = seed % 2 ? 1 : 10;
+            const auto T = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+            for (size_t i = 0; i < T.size(); ++i) {
+                const size_t x = i / 3 % width;
+                ASSERT_GE(T[i], -bound(kind));
+                ASSERT_LE(T[i], 1 + bound(kind));
+                if (x > 0) {
+                    ASSERT_GE(T[i] - T[i - 3], -bound(kind)) << "kind " << int(kind) << " seed " << seed;
+                }
+                ASSERT_NEAR(T[i] + T[i + 3 * (width - 1) - 6 * x], T[i % 3] + T[3 * (width - 1) + i % 3],
+                            bound(kind));
+            }
+        }
+}
+
+// P(s) is the integral of R along a line at distance s, by Boost's rule, for the library's own profiles.
+TEST(LutProperties, LineSpreadIsTheIntegralOfRadial) {
+    using Rule = boost::math::quadrature::gauss_kronrod<double, 31>;
+    std::vector<Profile> profiles{Profile::skin()};
+    for (PelProfileKind kind : kinds)
+        for (unsigned seed = 0; seed < 3; ++seed) profiles.push_back(randomProfile(kind, seed, 1));
+    for (const Profile& profile : profiles) {
+        const double radius = profile.info().radius;
+        // Twenty radii hold all but 1e-6 of P; a table's corners are met by many short panels.
+        for (double s : {0.05 * radius, 0.4 * radius, 1.5 * radius}) {
+            const auto P = profile.lineSpread({s, 0.05 * radius});
+            double sum[3] = {};
+            constexpr int panels = 40;
+            for (int i = 0; i < panels; ++i) {
+                const auto at = [&](int k) {
+                    return s * std::sinh(std::asinh(20 * radius / s) * k / panels);
+                };
+                for (int c = 0; c < 3; ++c)
+                    sum[c] +=
+                        2 * Rule::integrate([&](double t) { return profile.radial({std::hypot(s, t)})[c]; },
+                                            at(i), at(i + 1), 10, 1e-6);
+            }
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(sum[c], P[c], tolerance::lineIntegral * P[3 + c])
+                    << profile.info().name << " s " << s;
+        }
+    }
+}
+
+// 4096 x 4096 texels of each form: some rows and columns, the outermost among them, against the integral.
+TEST(LutProperties, LargestTables) {
+    const Device device("");
+    constexpr uint32_t side = 4096;
+    const auto skin = reference::skinProfile();
+    const Profile profile = Profile::skin();
+    const reference::Form trueForms[] = {reference::Form::arc, reference::Form::ring,
+                                         reference::Form::halfRing, reference::Form::sphere};
+    Random random(23);
+    for (PelCurvatureForm form : forms) {
+        PelCurvatureLutDesc desc = describe(profile, form, side, side, 0.05, 1e4);
+        desc.axis = PEL_AXIS_LINEAR;
+        const auto D = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+        const reference::CurvatureLutSpec spec{trueForms[form], int(side), int(side), desc.radiusMin,
+                                               desc.radiusMax};
+        for (int i = 0; i < 160; ++i) {
+            const int edges[] = {0, int(side) - 1, int(side) / 2};
+            const int x = i % 4 == 3 ? int(random() % side) : edges[i % 4],
+                      y = i < 9 ? edges[i / 3] : int(random() % side);
+            const reference::Rgb truth = reference::curvatureTexel(spec, *skin, x, y);
+            for (int c = 0; c < 3; ++c)
+                ASSERT_NEAR(D[(size_t(y) * side + size_t(x)) * 3 + size_t(c)], truth[c],
+                            tolerance::lutTexelGaussians)
+                    << "form " << int(form) << " texel " << x << ", " << y;
+        }
+    }
+}
+
+// N.L = +-1 exactly, where the oracle's angle is pi and 0; one column; one radius.
+TEST(LutProperties, EndsOfTheAxesAreExact) {
+    const Device device("");
+    const auto skin = reference::skinProfile();
+    const Profile profile = Profile::skin();
+    const reference::Form trueForms[] = {reference::Form::arc, reference::Form::ring,
+                                         reference::Form::halfRing, reference::Form::sphere};
+    for (PelCurvatureForm form : forms)
+        for (double r : {0.05, 1.0, 30.0}) {
+            const auto D = Lut(device, describe(profile, form, 3, 1, r, r)).read<float>(PEL_LUT_FLOAT);
+            const auto one = Lut(device, describe(profile, form, 1, 1, r, r)).read<float>(PEL_LUT_FLOAT);
+            for (size_t x = 0; x < 3; ++x) {
+                const reference::Rgb truth =
+                    reference::curvatureD(trueForms[form], *skin, double(x) - 1, r * 2.7);
+                for (int c = 0; c < 3; ++c) {
+                    EXPECT_NEAR(D[3 * x + size_t(c)], truth[c], tolerance::lutTexelGaussians)
+                        << int(form) << " r " << r;
+                    if (x == 1) {
+                        EXPECT_NEAR(one[size_t(c)], truth[c], tolerance::lutTexelGaussians);
+                    }
+                }
+            }
+        }
+}
+
+TEST(LutProperties, WeightsAndVariancesAtTheEdgesOfFloat) {
+    const Device device("");
+    constexpr float most = std::numeric_limits<float>::max(), tiny = std::numeric_limits<float>::denorm_min();
+    const auto texels = [&](const Profile& profile, PelCurvatureForm form, float least, float largest,
+                            float radius) {
+        PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+        desc.width = 33;
+        desc.height = 4;
+        desc.form = form;
+        desc.profile = profile.get();
+        desc.radiusMin = least;
+        desc.radiusMax = largest;
+        desc.diffusionRadius = radius;
+        return Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+    };
+    const Profile plain = Profile::gaussians({{1, {1, 1, 1}}, {4, {1, 3, 1}}});
+    for (PelCurvatureForm form : forms) {
+        // Weights are shares, whatever their size: their sum leaves the range of float here.
+        const auto expected = texels(plain, form, 1, 50, 0);
+        for (float unit : {0x1p126f, 0x1p-120f, 0x1p90f})
+            EXPECT_EQ(texels(Profile::gaussians({{1, {unit, unit, unit}}, {4, {unit, 3 * unit, unit}}}), form,
+                             1, 50, 0),
+                      expected);
+        // A term that weighs nothing beside the others, however wide; but it sets the profile's radius, and
+        // with it where an arc is cut.
+        if (form != PEL_FORM_ARC) {
+            const auto beside =
+                texels(Profile::gaussians({{1, {1, 1, 1}}, {4, {1, 3, 1}}, {9, {tiny, tiny, tiny}}}), form, 1,
+                       50, 0);
+            for (size_t i = 0; i < beside.size(); ++i)
+                EXPECT_NEAR(beside[i], expected[i], tolerance::lutTexelGaussians) << int(form) << ' ' << i;
+        }
+        // No width at all: the light itself. Endless width: hardly any light where it is spread along an arc,
+        // and even light where what there is stays on the circle or the sphere.
+        const auto narrow = texels(Profile::gaussians({{tiny, {1, 1, 1}}}), form, 1, 50, 0);
+        const auto wide = texels(Profile::gaussians({{most, {1, 1, 1}}}), form, 1, 50, 0);
+        const double even = form == PEL_FORM_ARC ? 0 : form == PEL_FORM_SPHERE ? 0.25 : 1 / std::numbers::pi;
+        const double kept =
+            form == PEL_FORM_ARC ? std::erf(10 / 2.7 / std::numbers::sqrt2) : 1;  // within the cut
+        for (size_t i = 0; i < narrow.size(); ++i) {
+            const double u = -1 + (double(i / 3 % 33) + 0.5) * 2 / 33;
+            EXPECT_NEAR(narrow[i], kept * std::max(0.0, u), tolerance::lutTexelGaussians) << int(form);
+            if (form != PEL_FORM_HALF_RING) {
+                EXPECT_NEAR(wide[i], even, tolerance::lutTexelGaussians) << int(form);
+            } else {  // the mean over the half circle round the point
+                const double theta = std::acos(u);
+                EXPECT_NEAR(wide[i], (1 + std::cos(theta)) / std::numbers::pi, tolerance::lutTexelGaussians);
+            }
+        }
+    }
+    const auto refused = [](auto make) {
+        EXPECT_THROW(make(), Error);
+        EXPECT_FALSE(std::string(pelGetErrorMessage()).empty());
+    };
+    refused([&] { Profile::gaussians({{INFINITY, {1, 1, 1}}}); });
+    refused([&] { Profile::gaussians({{1, {most, INFINITY, 1}}}); });
+    refused([&] { Profile::gaussians({{1, {0, 0, 0}}}); });
+    refused([&] { Profile::table({0, 1}, {most, 1, 1, INFINITY, 1, 1}); });
+}
