@@ -11,7 +11,9 @@ if(TARGET pellucid_cli)
 endif()
 install(EXPORT pellucidTargets NAMESPACE pellucid:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/pellucid)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/pellucidConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-file(WRITE ${PROJECT_BINARY_DIR}/pellucidConfig.cmake "include(\${CMAKE_CURRENT_LIST_DIR}/pellucidTargets.cmake)\n")
+file(WRITE ${PROJECT_BINARY_DIR}/pellucidConfig.cmake "include(\${CMAKE_CURRENT_LIST_DIR}/pellucidTargets.cmake)
+# The folder that a renderer's own OpenCL kernels include \"lib/...\" from.
+get_filename_component(pellucid_KERNELS \"\${CMAKE_CURRENT_LIST_DIR}/../../../${CMAKE_INSTALL_DATADIR}/pellucid/kernels\" ABSOLUTE)\n")
 install(FILES ${PROJECT_BINARY_DIR}/pellucidConfig.cmake ${PROJECT_BINARY_DIR}/pellucidConfigVersion.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/pellucid)
 configure_file(${PROJECT_SOURCE_DIR}/cmake/pellucid.pc.in ${PROJECT_BINARY_DIR}/pellucid.pc.in @ONLY)

@@ -28,6 +28,7 @@ def write(path, unit, camera, lamps, sky, materials, curvature):
         "# Written by bindings/blender/render_gbuffer.py. Axes: Blender's world, Z up. Lengths: Blender units,",
         f"# of {unit:g} mm each.",
         "version = 1",
+        "blur_normals = 1",
         "",
         "[channels]",
         'material = "IndexMA.X"',
@@ -53,6 +54,7 @@ def write(path, unit, camera, lamps, sky, materials, curvature):
         lines += ["color = " + value(lamp.color)]
         if lamp.map_file:
             lines += ["", "[light.shadow_map]", "file = " + value(lamp.map_file), 'channel = "R"']
+            lines += ["filter_texels = 48", "bias = " + number(0.5 / unit)]
             lines += ["world_to_shadow = " + value([v for row in lamp.to_shadow for v in row])]
             if lamp.kind == "SUN":
                 lines += ['projection = "parallel"', "depth_range = " + number(lamp.depth_range)]

@@ -73,7 +73,50 @@ class MeshTopology:
                                                    int(to_enum(Weld, weld, "weld")), weld_tolerance, address, stride,
                                                    self.report._data)
 
-    def curvature(self, positions: Any, normals: Any, out: Optional[NDArray[np.float32]] = None, *,
+    @classmethod
+    def load(cls, device: Device, data: bytes | bytearray | memoryview) -> MeshTopology:
+        """A topology from what `save` gave, without analysing again.
+
+        Raises
+        ------
+        PellucidError
+            Data that is damaged, or of another version of the library.
+        """
+        self = cls.__new__(cls)
+        self.device, self.report = device, MeshReport()
+        self._handle = _native.MeshTopology.load(device._handle, bytes(data), self.report._data)
+        self.num_vertices = int(self.report.vertices)
+        return self
+
+    def save(self) -> bytes:
+        """The analysis as bytes, for machines of the same byte order and this version of the library."""
+        return self._handle.save()
+
+    def normals(self, positions: Any, out: Optional[NDArray[np.float32]] = None) -> NDArray[np.float32]:
+        """Unit normals from positions: those of a vertex's triangles, weighted by their angles there.
+
+        Vertices that were welded share one; (0, 0, 0) where no triangle has a plane.
+
+        Parameters
+        ----------
+        positions : (n, 3) float32
+            Any positive row stride, in place; or Vertices of a Buffer.
+        out : (n, 3) float32, optional
+            Where the result goes; a new array without it.
+        """
+        result = out if isinstance(out, Vertices) else output_array(out, (self.num_vertices, 3), np.float32, "out")
+        self.submit_normals(positions, result).wait()
+        return result
+
+    def submit_normals(self, positions: Any, out: Any, *, waits: Iterable[Event] = ()) -> Event:
+        """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
+        views = [vertex_view(self.device, positions, 3, "positions"), vertex_view(self.device, out, 3, "out", output=True)]
+        p, n = (v.native for v in views)
+        event = submit(views, _handles(waits), lambda w: self._handle.normals(p, n, w))
+        _flight.hold(event, self, views)
+        return Event(event)
+
+    def curvature(self, positions: Any, normals: Any = None, out: Optional[NDArray[np.float32]] = None, *,
                   params: Optional[CurvatureParams] = None, estimator: CurvatureEstimator | str | None = None,
                   quantity: CurvatureQuantity | str | None = None, smoothing_passes: Optional[int] = None,
                   scale: Optional[float] = None, report: bool = False) -> NDArray[np.float32]:
@@ -82,7 +125,8 @@ class MeshTopology:
         Parameters
         ----------
         positions, normals : (n, 3) float32
-            Any positive row stride, in place; or Vertices of a Buffer. Normals are of unit length.
+            Any positive row stride, in place; or Vertices of a Buffer. Normals are of unit length; None: they are made from the
+            positions.
         out : (n,) float32, optional
             Where the result goes, any positive stride; a new array without it. (n, 2) for the quantity "principal", (n, 8)
             for "frame".
@@ -113,9 +157,13 @@ class MeshTopology:
 
     def _submit(self, positions: Any, normals: Any, out: Any, params: CurvatureParams, report: Optional[MeshReport],
                 waits: Iterable[Event]) -> Event:
-        views = [vertex_view(self.device, positions, 3, "positions"), vertex_view(self.device, normals, 3, "normals"),
+        views = [vertex_view(self.device, positions, 3, "positions"),
                  vertex_view(self.device, out, _COMPONENTS.get(params.quantity, 1), "out", output=True)]
-        p, n, c = (v.native for v in views)
+        p, c = (v.native for v in views)
+        n = None
+        if normals is not None:
+            views.append(vertex_view(self.device, normals, 3, "normals"))
+            n = views[-1].native
         event = submit(views, _handles(waits), lambda w: self._handle.curvature(
             params._data, p, n, c, None if report is None else report._data, w))
         _flight.hold(event, self, views)

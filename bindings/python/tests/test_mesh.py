@@ -93,6 +93,37 @@ def test_buffers_and_dlpack(device, sphere):
     assert np.array_equal(topology.curvature(Tensor(sphere.positions), memoryview(sphere.normals)), expected)
 
 
+@pytest.mark.parametrize("moving", [False, True])
+def test_normals_are_made(device, moving_device, sphere, moving):
+    topology = pel.MeshTopology(moving_device if moving else device, sphere.triangles, len(sphere.positions))
+    vertex = interleaved(sphere)
+    made = topology.normals(vertex["p"], out=vertex["n"])
+    assert np.shares_memory(made, vertex) and np.array_equal(vertex["p"], sphere.positions)
+    # The triangles' own directions by their angles at the vertex, in double precision.
+    p = sphere.positions.astype(np.float64)
+    sums = np.zeros_like(p)
+    for corner in range(3):
+        a, b, c = (p[sphere.triangles[:, (corner + k) % 3]] for k in range(3))
+        face = np.cross(b - a, c - a)
+        cosine = ((b - a) * (c - a)).sum(1) / np.linalg.norm(b - a, axis=1) / np.linalg.norm(c - a, axis=1)
+        np.add.at(sums, sphere.triangles[:, corner],
+                  face / np.linalg.norm(face, axis=1)[:, None] * np.arccos(np.clip(cosine, -1, 1))[:, None])
+    assert np.abs(made - sums / np.linalg.norm(sums, axis=1)[:, None]).max() < 1e-4
+    # Curvature without normals is that with these.
+    with_made = topology.curvature(sphere.positions, np.ascontiguousarray(made), estimator="tensor")
+    assert np.array_equal(topology.curvature(sphere.positions, estimator="tensor"), with_made)
+
+
+def test_a_topology_is_saved_and_loaded(device, sphere):
+    topology = pel.MeshTopology(device, sphere.triangles, len(sphere.positions))
+    data = topology.save()
+    again = pel.MeshTopology.load(device, data)
+    assert again.num_vertices == len(sphere.positions) and again.report.triangles == len(sphere.triangles)
+    assert np.array_equal(again.curvature(sphere.positions, sphere.normals), topology.curvature(sphere.positions, sphere.normals))
+    with pytest.raises(pel.PellucidError):
+        pel.MeshTopology.load(device, data[:-4])
+
+
 def test_welding_joins_a_seam(device, sphere, tolerance):
     split = sphere.triangles.ravel()
     positions, normals = sphere.positions[split], sphere.normals[split]
