@@ -1,0 +1,160 @@
+// Every kernel once, at sizes that are no multiple of anything, against the oracle: quick enough for
+// Oclgrind, which looks for reads and writes out of bounds, races and uninitialised values (./run check
+// oclgrind).
+#include <gtest/gtest.h>
+
+#include "reference/lut.h"
+#include "reference/surfaces.h"
+#include "shade_scene.h"
+#include "tolerances.h"
+
+using namespace pellucid;
+
+namespace {
+
+// Never released: Oclgrind's own statics are gone before the program's.
+const Device& device() {
+    static const Device& device = *new Device("");
+    return device;
+}
+
+struct SmallMesh {
+    reference::AnalyticMesh truth =
+        reference::tessellate(reference::torusSurface(30, 10), 11, 7, reference::Tessellation::irregular);
+    uint32_t vertices = uint32_t(truth.mesh.positions.size());
+    std::vector<float> positions, normals, uvs;
+    std::vector<uint32_t> indices;
+    MeshTopology topology;
+    Buffer positionBuffer, normalBuffer;
+
+    SmallMesh() {
+        reference::Mesh& mesh = truth.mesh;
+        const auto round = [](reference::Vec3& v, std::vector<float>& to) {
+            for (int i = 0; i < 3; ++i) to.push_back(float(v[i])), v[i] = to.back();
+        };
+        for (auto& p : mesh.positions) round(p, positions);
+        for (auto& n : mesh.normals) round(n, normals);
+        for (auto& t : mesh.uvs)
+            uvs.insert(uvs.end(), {float(t.x), float(t.y)}), t = {uvs.end()[-2], uvs.end()[-1]};
+        for (const auto& t : mesh.triangles)
+            indices.insert(indices.end(), {uint32_t(t[0]), uint32_t(t[1]), uint32_t(t[2])});
+        PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
+        desc.numVertices = vertices;
+        desc.indices = indices.data();
+        desc.numIndices = indices.size();
+        topology = MeshTopology(device(), desc);
+        positionBuffer = Buffer(device(), positions);
+        normalBuffer = Buffer(device(), normals);
+    }
+    PelVertexView view(const Buffer& buffer) const { return vertexView(buffer, vertices); }
+    std::vector<float> curvature(const PelCurvatureParams& params, uint32_t components = 1) const {
+        const Buffer out(device(), vertices * components * sizeof(float));
+        topology.curvature(params, view(positionBuffer), view(normalBuffer), view(out));
+        return out.readAll<float>();
+    }
+};
+
+double worst(const std::vector<float>& values, const std::vector<double>& truth) {
+    double difference = 0, largest = 0;
+    for (size_t i = 0; i < truth.size(); ++i) {
+        difference = std::max(difference, std::abs(values[i] - truth[i]));
+        largest = std::max(largest, std::abs(truth[i]));
+    }
+    return difference / largest;
+}
+
+}  // namespace
+
+TEST(Small, Curvature) {
+    const SmallMesh m;
+    PelCurvatureParams params = pelCurvatureParamsDefaults();
+    params.estimator = PEL_CURVATURE_EDGE;
+    params.smoothingPasses = 2;
+    EXPECT_LT(worst(m.curvature(params),
+                    reference::smoothed(m.truth.mesh, reference::edgeCurvature(m.truth.mesh), 2)),
+              tolerance::edgeCurvature);
+    params.estimator = PEL_CURVATURE_TENSOR;
+    params.smoothingPasses = 0;
+    params.quantity = PEL_QUANTITY_PRINCIPAL;
+    std::vector<double> principal;
+    for (const auto& k : reference::tensorCurvature(m.truth.mesh))
+        principal.insert(principal.end(), {k.first, k.second});
+    EXPECT_LT(worst(m.curvature(params, 2), principal), 1e-4);
+    // A fit to eleven by seven vertices says little: finite, and of the right order.
+    for (const PelCurvatureQuantity quantity :
+         {PEL_QUANTITY_ABSOLUTE, PEL_QUANTITY_GAUSSIAN, PEL_QUANTITY_FRAME}) {
+        params.estimator = PEL_CURVATURE_QUADRIC;
+        params.quantity = quantity;
+        params.smoothingRadius = quantity == PEL_QUANTITY_FRAME ? 0.0f : 5.0f;
+        params.smoothingCrease = 1;
+        for (const float v : m.curvature(params, quantity == PEL_QUANTITY_FRAME ? 8 : 1))
+            EXPECT_LE(std::abs(v), 1.0f + 1e-5f);
+    }
+}
+
+TEST(Small, NormalsAndUvScale) {
+    const SmallMesh m;
+    const Buffer out(device(), m.vertices * 3 * sizeof(float)), uvs(device(), m.uvs);
+    m.topology.normals(m.view(m.positionBuffer), m.view(out));
+    std::vector<double> truth;
+    for (const auto& n : reference::estimatedNormals(m.truth.mesh))
+        truth.insert(truth.end(), {n.x, n.y, n.z});
+    EXPECT_LT(worst(out.readAll<float>(), truth), 1e-5);
+    const double scale = reference::uvScale(m.truth.mesh);
+    EXPECT_NEAR(m.topology.uvScale(m.view(m.positionBuffer), m.view(uvs)) / scale, 1, 1e-5);
+}
+
+TEST(Small, CurvatureTables) {
+    const std::pair<PelCurvatureForm, reference::Form> forms[] = {
+        {PEL_FORM_ARC, reference::Form::arc},
+        {PEL_FORM_RING, reference::Form::ring},
+        {PEL_FORM_HALF_RING, reference::Form::halfRing},
+        {PEL_FORM_SPHERE, reference::Form::sphere}};
+    for (const auto& [form, other] : forms) {
+        PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+        desc.width = 5, desc.height = 3, desc.form = form;
+        const Lut lut(device(), desc);
+        const std::vector<float> texels = lut.read<float>(PEL_LUT_FLOAT);
+        reference::CurvatureLutSpec spec;
+        spec.form = other, spec.width = 5, spec.height = 3;
+        const auto skin = reference::profileForRadius(reference::skinProfile(), desc.diffusionRadius);
+        for (int i = 0; i < 15; ++i) {
+            const reference::Rgb truth = reference::curvatureTexel(spec, *skin, i % 5, i / 5);
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(texels[size_t(3 * i + c)], truth[c], 1e-5) << form;
+        }
+        EXPECT_EQ(lut.read<uint16_t>(PEL_LUT_HALF).size(), 45u);
+        EXPECT_EQ(lut.read<uint8_t>(PEL_LUT_FACEWORKS8).size(), 60u);
+    }
+}
+
+TEST(Small, ShadowAndSpecularTables) {
+    PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+    shadow.width = 5, shadow.height = 3;
+    const std::vector<float> texels = Lut(device(), shadow).read<float>(PEL_LUT_FLOAT);
+    const reference::ShadowLutSpec spec{
+        5, 3, shadow.widthMin, shadow.widthMax, shadow.diffusionRadius, shadow.sharpening};
+    const auto skin = reference::skinProfile();
+    PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
+    specular.width = 5, specular.height = 3;
+    const std::vector<float> lobes = Lut(device(), specular).read<float>(PEL_LUT_FLOAT);
+    for (int i = 0; i < 15; ++i) {
+        const reference::Rgb truth = reference::shadowTexel(spec, *skin, i % 5, i / 5);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(texels[size_t(3 * i + c)], truth[c], 1e-5);
+        EXPECT_NEAR(lobes[size_t(3 * i)], reference::beckmannEncoded((i % 5 + 0.5) / 5, (i / 5 + 0.5) / 3),
+                    1e-5);
+    }
+}
+
+TEST(Small, Shading) {
+    shade_test::Frame frame = shade_test::randomFrame(3, 19, 9, 2);
+    frame.materials.at(7).thicknessTaps = 8;
+    const auto tables = shade_test::makeTables(device(), 12, 7);
+    const std::vector<float> out = shade_test::shade(device(), frame, tables);
+    double difference = 0;
+    for (size_t i = 0; i < frame.pixels(); ++i) {
+        const reference::Rgb sum = shade_test::truth(frame, tables, i).sum();
+        for (int c = 0; c < 3; ++c)
+            difference = std::max(difference, std::abs(sum[c] - out[3 * i + size_t(c)]));
+    }
+    EXPECT_LT(difference, tolerance::shadeSum);
+}
