@@ -268,7 +268,7 @@ constexpr const char* after = R"(
   gets the same rounded positions, so that the figures are the library's own error, not that loss. Scale by itself costs nothing
   between 1e-6 and 1e6.
 - **Tables.** A texel is a sum of at most a few hundred terms of one sign each; errors stay near one unit in the last place of 1.
-  What limits a look-up is the table's resolution and 9 bits of texel fraction, not its values.
+  What limits a look-up is the table's resolution, not its values.
 - **Shading.** Sums of a few terms of order one: 1e-6. Sharp speculars multiply the error of the half vector by 1/m^2, so that relative
   error grows as roughness falls; thickness subtracts two depths, and inherits the shadow map's own steps.
 
@@ -281,10 +281,9 @@ constexpr const char* after = R"(
 | curvature, normals | zero-length edges, repeated indices, unreferenced vertices | skipped, 0 where nothing is left; counted |
 | UV scale | triangles too small to measure | skipped; an error when none is left |
 | tables, profiles | NaN, Inf or out of range in a description | refused with PEL_ERROR_INVALID_ARGUMENT, which names the field |
-| tables from texels | NaN or Inf in a texel | refused |
 | shading | NaN or Inf in any image of a pixel | that pixel is `invalidColor` (0 by default) and counted; no neighbour changes |
 | shading | shadow map texel NaN | no thickness from that tap |
-| shading | NaN or Inf in a light, material, matrix or camera | refused at the call that sets it |
+| shading | NaN or Inf in a light, material, matrix or camera | refused, with the name of the field |
 )";
 
 }  // namespace

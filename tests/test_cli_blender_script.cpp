@@ -97,6 +97,9 @@ TEST_F(BlenderScript, ABlendFileGivesBlendersLambertPicture) {
         }
         // Blender's picture has no light from the world in it.
         scene.ambient = pelAmbientDefaults();
+        // Nor soft shadows.
+        EXPECT_EQ(scene.lights[0].light.shadowFilterTexels, 48u);
+        scene.lights[0].light.shadowFilterTexels = 0;
         io::writeScene(path("lambert.toml"), scene);
         const std::vector<float> out = shade(folder + "/gbuffer.exr", path("lambert.toml"));
         ASSERT_FALSE(out.empty());
