@@ -125,6 +125,40 @@ TEST(LutProperties, CurvatureRisesIsBoundedAndScales) {
         }
 }
 
+// Random sums of Gaussians in every form, some texels each, against the integral.
+TEST(LutProperties, RandomGaussiansEqualTheIntegral) {
+    const Device device("");
+    const reference::Form trueForms[] = {reference::Form::arc, reference::Form::ring,
+                                         reference::Form::halfRing, reference::Form::sphere};
+    for (unsigned seed = 100; seed < 112; ++seed) {
+        Random random(seed);
+        std::vector<PelGaussian> gaussians(1 + random() % 6);
+        std::vector<reference::Gaussian> same;
+        for (PelGaussian& g : gaussians) {
+            g.variance = logUniform(random, 1e-4, 100);
+            for (float& w : g.weight) w = logUniform(random, 1e-3, 1);
+            same.push_back({g.variance, {g.weight[0], g.weight[1], g.weight[2]}});
+        }
+        const Profile profile = Profile::gaussians(gaussians);
+        const auto truth = reference::gaussiansProfile(same);
+        for (PelCurvatureForm form : forms) {
+            const PelCurvatureLutDesc desc = describe(profile, form, 41, 9, 0.05, 1e4);
+            const auto D = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+            for (int i = 0; i < 9; ++i) {
+                const int x = int(random() % 41);
+                const double s = -1 + x / 20.0, first = std::sqrt(1 / double(desc.radiusMax)),
+                             last = std::sqrt(1 / double(desc.radiusMin)),
+                             c = first + i / 8.0 * (last - first);
+                const reference::Rgb exact =
+                    reference::curvatureD(trueForms[form], *truth, s * std::abs(s), 1 / (c * c));
+                for (int k = 0; k < 3; ++k)
+                    EXPECT_NEAR(D[size_t(i * 41 + x) * 3 + size_t(k)], exact[k], tolerance::lutTexelGaussians)
+                        << "seed " << seed << " form " << int(form) << " texel " << x << ", " << i;
+            }
+        }
+    }
+}
+
 TEST(LutProperties, SphereKeepsTheEnergy) {
     const Device device("");
     constexpr uint32_t width = 2049, height = 5;
