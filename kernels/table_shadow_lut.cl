@@ -2,8 +2,8 @@
 // far side U = mass - T is integrated: with the ramp of half width b about -zeta and the mass M1(x) of P beyond x,
 //   U = int_{-1}^{1} 3/4 (1 - y^2) M1(zeta + b y) dy
 //     = 3/(2 b^2) (M2(e1) + M2(e2)) - 3/(2 b^3) (M3(e1) - M3(e2)),   e1 = zeta - b, e2 = zeta + b
-// with the further tails of shared/lut_integral.h: the second where b is no less than half a radius, the
-// first, cell by cell of the list of tails, where the second would cancel.
+// with the further tails of shared/lut_integral.h: the second where b is no less than a quarter of a radius,
+// which leaves 2e-6 of rounding, the first, cell by cell of the list of tails, where the second would cancel.
 //
 // One work-item: PEL_COLUMNS columns of the lit half of one row, and their mirror images. The row behind the last is a
 // copy of it, and the column behind the last likewise (shared/lut.h).
@@ -53,7 +53,7 @@ inline float4 rampOnSide(__global const float4* tails, const float zeta, const f
 inline float4 farSide(__global const float4* tails, const float zeta, const float b, const float4 mass,
                       const float end) {
     if (zeta - b >= end) return (float4)(0.0f);
-    if (b < 0.5f) {
+    if (b < 0.25f) {
         const float before = rampBefore(clamp(-zeta / b, -1.0f, 1.0f));  // the part at x < 0
         return mass * before + rampOnSide(tails, zeta, b, 1.0f, end) - rampOnSide(tails, zeta, b, -1.0f, end);
     }
