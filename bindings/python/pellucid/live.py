@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _flight, _native
-from ._arrays import Image, submit, vertex_view
+from ._arrays import Image, View, submit, vertex_view
 from ._types import CurvatureParams, LiveMeshStats, ScreenCurvatureParams
 from .device import Device, Event, _filled, _handles
 from .mesh import _COMPONENTS, MeshTopology
@@ -28,6 +28,7 @@ class LiveMesh:
         self.topology = topology
         self.params = CurvatureParams() if params is None else params.copy()
         self._handle = _native.LiveMesh.create(topology._handle, self.params._data)
+        self._out: Optional[tuple[Any, View]] = None
 
     def update(self, positions: Any, normals: Any, out: Any, changed: Optional[Iterable[tuple[int, int]]] = None) -> None:
         """Writes to `out` what the change asks for, and waits; the same bits as measuring everything anew.
@@ -57,16 +58,22 @@ class LiveMesh:
         device = self.topology.device
         p = vertex_view(device, positions, 3, "positions")
         n = None if normals is None else vertex_view(device, normals, 3, "normals")
-        c = vertex_view(device, out, _COMPONENTS.get(self.params.quantity, 1), "out", output=True)
+        c = self._target(out)
         ranges = None if changed is None else [(int(first), int(count)) for first, count in changed]
         views = [v for v in (p, n, c) if v is not None]
-        if not device._in_place and ranges is not None and hasattr(c.span, "upload"):
-            # The device's own copy of `out` is a new one each time: all of it is written.
-            ranges = None
         event = submit(views, _handles(waits), lambda w: self._handle.update(
             p.native, None if n is None else n.native, c.native, ranges, w))
         _flight.hold(event, self, views)
         return Event(event)
+
+    def _target(self, out: Any) -> View:
+        """The view of `out`, the same buffer again for the same array: another one would be written whole."""
+        key = (out.ctypes.data, out.shape, out.strides, out.dtype) if isinstance(out, np.ndarray) else None
+        if key is not None and self._out is not None and self._out[0] == key:
+            return self._out[1]
+        view = vertex_view(self.topology.device, out, _COMPONENTS.get(self.params.quantity, 1), "out", output=True)
+        self._out = None if key is None else (key, view)
+        return view
 
     def stats(self) -> LiveMeshStats:
         """What the last update did."""
