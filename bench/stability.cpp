@@ -223,7 +223,7 @@ Operation shading(const char* name, bool specularOnly) {
             "albedo, curvature -0.1 to 1.2 /mm, wide shadow, normals up to 25 degrees apart, roughness 0.05 "
             "to 0.45, N.L and V.H at all "
             "angles; three kinds of light; all terms",
-            "absolute", 6, [=](const Point& p, std::string& where) {
+            "absolute, relative above 1", 6, [=](const Point& p, std::string& where) {
                 shade_test::Frame f = shade_test::randomFrame(uint32_t(1 + p[0] * 40), 61, 31, 3);
                 for (auto& [id, m] : f.materials) {
                     m.roughness = float(logBetween(p[1], 0.05, 0.3));
@@ -267,7 +267,7 @@ constexpr const char* after = R"(
   error, 6e-8 D of its size, and edges of 1/n of its size have lost n D of their digits before Pellucid sees them; the oracle above
   gets the same rounded positions, so that the figures are the library's own error, not that loss. Scale by itself costs nothing
   between 1e-6 and 1e6.
-- **Tables.** A texel is a sum of at most a few hundred terms of one sign each; errors stay near one unit in the last place of 1.
+- **Tables.** A texel is a sum of at most a few hundred terms of one sign each; errors stay within some units in the last place of 1, thirty for rings.
   What limits a look-up is the table's resolution, not its values.
 - **Shading.** Sums of a few terms of order one: 1e-6. Sharp speculars multiply the error of the half vector by 1/m^2, so that relative
   error grows as roughness falls; thickness subtracts two depths, and inherits the shadow map's own steps.
