@@ -310,8 +310,8 @@ static inline void shadePixels(const Scene* scene, __global uchar* radiance, con
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade(
-    __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials,
-    __global const PelShadeLight* lights, __global const float4* luts, __global const uint* list,
+    __global const PelShadeFrame* restrict frame, __global const PelShadeMaterial* restrict materials,
+    __global const PelShadeLight* restrict lights, __global const float4* restrict luts, __global const uint* restrict list,
     __global uint* counters, __global uchar* radiance, __global uchar* material, __global uchar* position,
     __global uchar* depth, __global uchar* normalGeometric, __global uchar* normalShading,
     __global uchar* normalBlurred, __global uchar* curvature, __global uchar* albedo, __global uchar* occlusion,

@@ -149,8 +149,8 @@ TEST(BlurNormals, BadPixelsStayAlone) {
         const auto far = [&](size_t centre) {
             return std::abs(int(i % 120) - int(centre % 120)) > 12 || std::abs(int(i / 120) - int(centre / 120)) > 12;
         };
-        if (far(normal) && far(position))
-            for (int c = 0; c < 3; ++c) EXPECT_EQ(after[3 * i + c], before[3 * i + c]) << i;
+        for (int c = 0; c < 3 && far(normal) && far(position); ++c)
+            EXPECT_EQ(after[3 * i + c], before[3 * i + c]) << i;
     }
     EXPECT_LE(againstOracle(bad, after).error, tolerance::shadeTerm);
 }
@@ -301,7 +301,9 @@ TEST(NormalMap, MaterialsWithoutOneKeepTheirNormal) {
         size_t close = 0, of = 0;
         for (size_t i = 0; i < m.frame.pixels(); ++i) {
             const float id = m.frame.slots[PEL_SLOT_MATERIAL].values[i];
-            if (id == 1) EXPECT_LE(difference(shownNormal(shown, i), mappedTruth(m, i)), tolerance::mappedNormal);
+            if (id == 1) {
+                EXPECT_LE(difference(shownNormal(shown, i), mappedTruth(m, i)), tolerance::mappedNormal);
+            }
             if (id != 2) continue;
             const Vec3 right = blur ? *blurred[i] : m.frame.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i);
             ++of;
@@ -373,9 +375,10 @@ TEST(NormalMap, BytesDecodeToTheSame) {
     shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, m.frame.width, m.frame.height));
     shader.commit().execute();
     const auto shown = target.readAll<float>();
-    for (size_t i = 0; i < m.frame.pixels(); ++i)
-        if (m.frame.slots[PEL_SLOT_MATERIAL].values[i] != 0)
-            EXPECT_LE(difference(shownNormal(shown, i), mappedTruth(m, i)), tolerance::mappedNormal) << i;
+    for (size_t i = 0; i < m.frame.pixels(); ++i) {
+        if (m.frame.slots[PEL_SLOT_MATERIAL].values[i] == 0) continue;
+        EXPECT_LE(difference(shownNormal(shown, i), mappedTruth(m, i)), tolerance::mappedNormal) << i;
+    }
 }
 
 }  // namespace

@@ -120,8 +120,8 @@ inline constexpr Tolerance diskSpacing{
     "diskSpacing", 0.65, "least distance over that of a hexagonal packing: 0.7 to 0.75 is called blue noise, 0 is white"};
 inline constexpr Tolerance diskEdge{
     "diskEdge", 0.55, "RMS error over straight edges, relative to as many random points"};
-inline constexpr Tolerance peerTapsMean{"peerTapsMean", 0.02, "relative: means over 20,000 pixels, other taps"};
-inline constexpr Tolerance peerTapsRms{"peerTapsRms", 0.2, "of the mean: pixel by pixel with 8 other taps"};
+inline constexpr Tolerance peerTapsMean{"peerTapsMean", 0.002, "relative: means over 20,000 pixels, other taps"};
+inline constexpr Tolerance peerTapsRms{"peerTapsRms", 0.08, "of the mean: pixel by pixel with 8 other taps"};
 inline constexpr Tolerance blurResponse{
     "blurResponse", 0.02, "share of a wave that is left: 13 taps stand for an integral over the kernel"};
 inline constexpr Tolerance mappedNormal{
