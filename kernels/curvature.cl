@@ -21,16 +21,16 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     floatw px, py, pz, nx, ny, nz;
     positions += positionOffset;
     normals += normalOffset;
-    gather3(positions, ring.self, &px, &py, &pz);
-    gather3(normals, ring.self, &nx, &ny, &nz);
+    gather3(positions, ring.last, ring.self, &px, &py, &pz);
+    gather3(normals, ring.last, ring.self, &nx, &ny, &nz);
     usable_normals(&nx, &ny, &nz);
     // Squares order as their roots do: two roots at the end instead of two per edge.
     floatw low = INFINITY, high = -1.0f;
     for (; ring.row < ring.end; ++ring.row) {
         const uintw other = RING_SLOT(ring_entry(&ring, rings));
         floatw dx, dy, dz, mx, my, mz;
-        gather3(positions, other, &dx, &dy, &dz);
-        gather3(normals, other, &mx, &my, &mz);
+        gather3(positions, ring.last, other, &dx, &dy, &dz);
+        gather3(normals, ring.last, other, &mx, &my, &mz);
         usable_normals(&mx, &my, &mz);
         dx -= px, dy -= py, dz -= pz;
         mx -= nx, my -= ny, mz -= nz;
@@ -38,8 +38,8 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
         const floatw ratio = fma(mx, mx, fma(my, my, mz * mz)) / length2;
         // Fails for edges without length (fillers among them) and for whatever is not finite at either end.
         const maskw usable = (length2 >= MESH_MIN_LENGTH2) & (length2 < INFINITY) & (ratio < INFINITY);
-        low = selectw(low, fmin(low, ratio), usable);
-        high = selectw(high, fmax(high, ratio), usable);
+        low = selectw(low, ratio, usable & (ratio < low));
+        high = selectw(high, ratio, usable & (ratio > high));
     }
     storew(selectw((floatw)(NAN), 0.5f * (sqrt(low) + sqrt(high)), high >= 0.0f), first, curvature);
 }

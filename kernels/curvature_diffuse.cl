@@ -31,7 +31,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
     const floatw zero = 0.0f;
     const Vec3w none = vec3(zero, zero, zero);
     Vec3w origin;
-    gather3(positions, ring.self, &origin.x, &origin.y, &origin.z);
+    gather3(positions, ring.last, ring.self, &origin.x, &origin.y, &origin.z);
 
     floatw area = zero, pending = zero;
     Vec3w start = none, previous = none;
@@ -45,7 +45,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
         const maskw filler = slot == ring.self;
         const maskw starts = (entry & (uintw)(MESH_START)) != 0;
         Vec3w current;
-        gather3(positions, slot, &current.x, &current.y, &current.z);
+        gather3(positions, ring.last, slot, &current.x, &current.y, &current.z);
         current = sub3(current, origin);
         const maskw ends = walking & (filler | starts);
         // Each triangle gives the cotangent at either neighbour to the edge to the other one.
@@ -78,7 +78,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
     }
 
     Vec3w n;
-    gather3(normals, ring.self, &n.x, &n.y, &n.z);
+    gather3(normals, ring.last, ring.self, &n.x, &n.y, &n.z);
     usable_normals(&n.x, &n.y, &n.z);
     const floatw half_ = selectw(zero, 0.5f / area, area > zero);
     floatw rate = zero;
@@ -87,7 +87,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
         floatw weight = loadw(at, weights) * half_;
         if (crease2 > 0.0f) {
             Vec3w m;
-            gather3(normals, RING_SLOT(ring_entry(&ring, rings)), &m.x, &m.y, &m.z);
+            gather3(normals, ring.last, RING_SLOT(ring_entry(&ring, rings)), &m.x, &m.y, &m.z);
             usable_normals(&m.x, &m.y, &m.z);
             const Vec3w turn = sub3(m, n);
             // Uneven weights bound values by their neighbours' only where none is negative.

@@ -53,6 +53,7 @@
 typedef struct Chart {
     Vec3w origin, u, v, n;
     floatw scale, xx, xy, yy;
+    uint last;  // slot of the mesh
 } Chart;
 
 typedef struct Fit {
@@ -64,7 +65,7 @@ typedef struct Fit {
 
 inline void add_point(Fit* fit, uintw slot, maskw counts, const Chart* chart, __global const float* positions) {
     Vec3w p;
-    gather3(positions, slot, &p.x, &p.y, &p.z);
+    gather3(positions, chart->last, slot, &p.x, &p.y, &p.z);
     p = scale3(sub3(p, chart->origin), chart->scale);
     const floatw distance2 = dot3(p, p);
     counts &= finitew(distance2);
@@ -148,7 +149,7 @@ inline maskw scale_chart(Chart* chart, RingCursor ring, __global const uint* rin
     for (; ring.row < ring.end; ++ring.row) {
         const uintw slot = RING_SLOT(ring_entry(&ring, rings));
         Vec3w p;
-        gather3(positions, slot, &p.x, &p.y, &p.z);
+        gather3(positions, ring.last, slot, &p.x, &p.y, &p.z);
         p = sub3(p, chart->origin);
         const floatw length2 = dot3(p, p);
         const maskw counts = finitew(length2);
@@ -187,8 +188,9 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     positions += positionOffset;
     normals += normalOffset;
     Chart chart;
-    gather3(positions, ring.self, &chart.origin.x, &chart.origin.y, &chart.origin.z);
-    gather3(normals, ring.self, &chart.n.x, &chart.n.y, &chart.n.z);
+    chart.last = ring.last;
+    gather3(positions, ring.last, ring.self, &chart.origin.x, &chart.origin.y, &chart.origin.z);
+    gather3(normals, ring.last, ring.self, &chart.n.x, &chart.n.y, &chart.n.z);
     usable_normals(&chart.n.x, &chart.n.y, &chart.n.z);
     const maskw sound = finite3(chart.origin) & finite3(chart.n);
     chart.n = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(1.0f)), chart.n, sound);

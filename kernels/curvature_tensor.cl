@@ -17,12 +17,12 @@ typedef struct Corner {
     maskw usable;
 } Corner;
 
-inline Corner corner_load(uintw slot, Vec3w origin, __global const float* positions,
+inline Corner corner_load(uintw slot, uint last, Vec3w origin, __global const float* positions,
                           __global const float* normals) {
     Corner c;
     Vec3w p;
-    gather3(positions, slot, &p.x, &p.y, &p.z);
-    gather3(normals, slot, &c.normal.x, &c.normal.y, &c.normal.z);
+    gather3(positions, last, slot, &p.x, &p.y, &p.z);
+    gather3(normals, last, slot, &c.normal.x, &c.normal.y, &c.normal.z);
     usable_normals(&c.normal.x, &c.normal.y, &c.normal.z);
     c.offset = sub3(p, origin);
     c.usable = finite3(c.offset) & finite3(c.normal);
@@ -100,8 +100,8 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     normals += normalOffset;
     const Vec3w zero = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
     Vec3w origin, n, u, v;
-    gather3(positions, ring.self, &origin.x, &origin.y, &origin.z);
-    gather3(normals, ring.self, &n.x, &n.y, &n.z);
+    gather3(positions, ring.last, ring.self, &origin.x, &origin.y, &origin.z);
+    gather3(normals, ring.last, ring.self, &n.x, &n.y, &n.z);
     usable_normals(&n.x, &n.y, &n.z);
     const maskw sound = finite3(origin) & finite3(n);
     n = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(1.0f)), n, sound);
@@ -121,7 +121,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
         const uintw slot = RING_SLOT(entry);
         const maskw filler = slot == ring.self;
         const maskw starts = (entry & (uintw)(MESH_START)) != 0;
-        const Corner current = corner_load(slot, origin, positions, normals);
+        const Corner current = corner_load(slot, ring.last, origin, positions, normals);
         const floatw length2 = dot3(current.offset, current.offset);
         scale = selectw(scale, 1.0f / sqrt(length2),
                         !(scale > 0.0f) & (length2 >= MESH_MIN_LENGTH2) & finitew(length2));

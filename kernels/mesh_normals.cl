@@ -22,7 +22,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_norma
     const floatw zero = 0.0f;
     const Vec3w none = vec3(zero, zero, zero);
     Vec3w origin;
-    gather3(positions, ring.self, &origin.x, &origin.y, &origin.z);
+    gather3(positions, ring.last, ring.self, &origin.x, &origin.y, &origin.z);
 
     Vec3w sum = none, start = none, previous = none;
     maskw walking = start.x > zero, closed = walking, flipped = walking;
@@ -34,7 +34,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_norma
         const maskw filler = slot == ring.self;
         const maskw starts = (entry & (uintw)(MESH_START)) != 0;
         Vec3w current;
-        gather3(positions, slot, &current.x, &current.y, &current.z);
+        gather3(positions, ring.last, slot, &current.x, &current.y, &current.z);
         current = sub3(current, origin);
         // At unit length, so that no product leaves the range of float; an edge without length stays 0.
         const floatw length2 = dot3(current, current);
