@@ -165,6 +165,19 @@ BENCHMARK(estimatorDevice)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
+// From what fits into a cache to what fits nowhere: is the cost of a vertex the same?
+BENCHMARK(edgeDevice)
+    ->ArgNames({"vertices", "shuffled", "passes"})
+    ->ArgsProduct({{10000, 10000000}, {0}, {2}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+BENCHMARK(estimatorDevice)
+    ->ArgNames({"vertices", "shuffled", "estimator"})
+    ->ArgsProduct({{10000, 10000000}, {0}, {PEL_CURVATURE_QUADRIC}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 BENCHMARK(topologyAnalysis)
     ->ArgNames({"vertices", "shuffled", "weld"})
     ->ArgsProduct({{1000000}, {0, 1}, {0, 1}})

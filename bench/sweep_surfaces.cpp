@@ -1,0 +1,120 @@
+// Error of every curvature estimator on every surface whose curvature is known, as rows of docs/curvature.md:
+// tessellations of about 20,000 vertices, exact normals; "noisy": the irregular one with noise of 2 % of an edge, normals
+// from the mesh, smoothed over three edges. RMS error of mean curvature in percent of the RMS curvedness of the truth
+// (which does not vanish on a saddle), away from borders; of a plane times its side. Behind the slash: the border itself
+// and its ring.
+//   sweep_surfaces [CELLS]   of a grid's side, default 140
+#include <pellucid/pellucid.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+
+#include "reference/surfaces.h"
+#include "reference_meshes.h"
+
+using namespace pellucid;
+using reference::Tessellation;
+
+namespace {
+
+const Device& device() {
+    static const Device device("");
+    return device;
+}
+
+double meanEdge(const fixture::Mesh& mesh) {
+    double sum = 0;
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+        double square = 0;
+        for (size_t k = 0; k < 3; ++k)
+            square += std::pow(mesh.positions[3 * mesh.indices[i] + k] - mesh.positions[3 * mesh.indices[i + 1] + k], 2);
+        sum += std::sqrt(square);
+    }
+    return sum / double(mesh.indices.size() / 3);
+}
+
+// Vertices within a ring of an edge of one triangle.
+std::vector<bool> nearBorder(const fixture::Mesh& mesh) {
+    std::map<std::pair<uint32_t, uint32_t>, int> edges;
+    for (size_t i = 0; i < mesh.indices.size(); ++i) {
+        const uint32_t a = mesh.indices[i], b = mesh.indices[i % 3 == 2 ? i - 2 : i + 1];
+        ++edges[{std::min(a, b), std::max(a, b)}];
+    }
+    std::vector<bool> near(mesh.vertices());
+    for (const auto& [edge, triangles] : edges)
+        if (triangles == 1) near[edge.first] = near[edge.second] = true;
+    std::vector<bool> wider = near;
+    for (const auto& [edge, triangles] : edges)
+        if (near[edge.first] || near[edge.second]) wider[edge.first] = wider[edge.second] = true;
+    return wider;
+}
+
+struct Sum {
+    double error = 0, truth = 0;
+    double percent(bool plane) const { return 100 * std::sqrt(error / (plane ? 1 : truth)); }
+};
+
+void measure(const reference::AnalyticMesh& truth, bool plane, bool noisy, PelCurvatureEstimator estimator) {
+    const fixture::Mesh mesh = fixture::pairOf(truth.mesh).mesh;
+    const uint32_t n = mesh.vertices();
+    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
+    desc.numVertices = n;
+    desc.indices = mesh.indices.data();
+    desc.numIndices = mesh.indices.size();
+    const MeshTopology topology(device(), desc);
+    const Buffer positions(device(), mesh.positions), normals(device(), mesh.normals), out(device(), n * sizeof(float));
+    PelCurvatureParams params = pelCurvatureParamsDefaults();
+    params.estimator = estimator;
+    params.quantity = estimator == PEL_CURVATURE_EDGE ? PEL_QUANTITY_ABSOLUTE : PEL_QUANTITY_MEAN;
+    params.smoothingPasses = 0;
+    params.smoothingRadius = noisy ? float(3 * meanEdge(mesh)) : 0.0f;
+    topology.curvature(params, vertexView(positions, n), vertexView(normals, n), vertexView(out, n));
+    const std::vector<float> values = out.readAll<float>();
+    const std::vector<bool> border = nearBorder(mesh);
+    Sum sums[2];
+    size_t counts[2] = {0, 0};
+    for (uint32_t v = 0; v < n; ++v) {
+        const reference::PrincipalCurvatures& k = truth.truth[v].curvature;
+        Sum& sum = sums[border[v]];
+        const double wanted = estimator == PEL_CURVATURE_EDGE ? std::abs(k.mean()) : k.mean();
+        sum.error += std::pow(values[v] - wanted, 2);
+        sum.truth += (k.first * k.first + k.second * k.second) / 2;
+        ++counts[border[v]];
+    }
+    if (plane)
+        for (int i = 0; i < 2; ++i) sums[i].error /= double(std::max<size_t>(counts[i], 1));
+    std::printf(" %.2g", sums[0].percent(plane));
+    if (counts[1]) std::printf(" / %.2g", sums[1].percent(plane));
+    std::printf(" |");
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const int cells = argc > 1 ? std::atoi(argv[1]) : 140;
+    const double pi = 3.14159265358979;
+    const std::pair<const char*, reference::Surface> surfaces[] = {
+        {"plane", reference::planeSurface(1)},           {"sphere", reference::sphereSurface(1)},
+        {"cylinder", reference::cylinderSurface(1, 6)},  {"cone", reference::coneSurface(pi / 6, 1, 4)},
+        {"torus", reference::torusSurface(3, 1)},        {"ellipsoid", reference::ellipsoidSurface(3, 2, 1.5)},
+        {"monkey saddle", reference::monkeySaddle(1)},
+    };
+    const std::pair<const char*, Tessellation> kinds[] = {{"regular", Tessellation::regular},
+                                                          {"irregular", Tessellation::irregular},
+                                                          {"valence-varying", Tessellation::valenceVarying},
+                                                          {"noisy", Tessellation::irregular}};
+    std::printf("| | | `edge` | `tensor` | `quadric` |\n|---|---|---|---|---|\n");
+    for (const auto& [name, surface] : surfaces)
+        for (const auto& [kind, tessellation] : kinds) {
+            const bool noisy = *kind == 'n';
+            reference::AnalyticMesh mesh = tessellate(surface, cells, cells, tessellation);
+            if (noisy) addNoise(mesh.mesh, 0.02, 11);
+            std::printf("| %s | %s |", name, kind);
+            for (auto estimator : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC})
+                measure(mesh, *name == 'p', noisy, estimator);
+            std::printf("\n");
+        }
+}
