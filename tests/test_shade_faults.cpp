@@ -43,16 +43,17 @@ F* next(const char* name) {
 
 }  // namespace
 
-void* operator new(size_t bytes) {
+// Not inlined: the compiler would see free() of what it takes for another allocator's memory.
+[[gnu::noinline]] void* operator new(size_t bytes) {
     if (fault.load() == Fault::hostMemory && inLibrary(__builtin_return_address(0)) && strikes(Fault::hostMemory))
         throw std::bad_alloc();
     if (void* memory = std::malloc(bytes ? bytes : 1)) return memory;
     throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept {
+[[gnu::noinline]] void operator delete(void* memory) noexcept {
     std::free(memory);
 }
-void operator delete(void* memory, size_t) noexcept {
+[[gnu::noinline]] void operator delete(void* memory, size_t) noexcept {
     std::free(memory);
 }
 
