@@ -260,7 +260,8 @@ TEST_F(Shade, DemoPicturesAreThoseThatShadeMakesOfItsGBuffer) {
     ASSERT_EQ(demo.exitCode, 0) << demo.err;
     expectReport(demo.json());
     EXPECT_GE(demo.json().at("stages").size(), 6u);
-    for (const auto& entry : demo.json().at("pictures")) {
+    const auto report = demo.json();
+    for (const auto& entry : report.at("pictures")) {
         EXPECT_GT(std::filesystem::file_size(entry.get<std::string>()), 0u) << entry;
     }
     for (const std::string view : {"key", "backlit"}) {
