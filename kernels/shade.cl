@@ -249,10 +249,6 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
     return add3(mul3(albedo, diffuse), specular);
 }
 
-static inline Vec3w select3(Vec3w f, Vec3w t, maskw mask) {
-    return vec3(selectw(f.x, t.x, mask), selectw(f.y, t.y, mask), selectw(f.z, t.z, mask));
-}
-
 // Writes one output beside radiance.
 static inline void storePart(const int format, __global uchar* buffer, __global const PelShadeImage* image, uint x, uint y,
                              Vec3w part, Vec3w invalid, maskw valid, maskw active) {

@@ -4,22 +4,11 @@
 #include <cmath>
 
 #include "ops/shade_tables.h"
+#include "ops/shader.h"
 #include "ops/shader_check.h"
-#include "shared/features.h"
 #include "shared/screen.h"
 
 namespace pel {
-namespace {
-
-// Tight rows of at least a vector are read in vectors, others pixel by pixel (kernels/lib/image.clh).
-std::string formatOf(const ImageView& view, uint32_t mathWidth) {
-    if (!view) return "0";
-    const bool vectors = view.tightlyPacked() && view.width >= mathWidth;
-    return std::to_string(uint32_t(view.format) | (vectors ? 0u : uint32_t(PEL_FMT_STRIDED)));
-}
-
-}  // namespace
-
 void checkScreenCurvature(const PelScreenCurvatureParams& params, const ScreenCurvatureImages& images) {
     if (!std::isfinite(params.scale) || params.scale < 0)
         invalidArgument("PelScreenCurvatureParams.scale is ", params.scale,
@@ -70,11 +59,11 @@ void screenCurvature(Device& device, const PelScreenCurvatureParams& params,
     if (images.ids) frame.ids = describeImage(images.ids);
     frame.curvature = describeImage(images.curvature);
     cl::Launch launch(device.programs().get("screen_curvature.cl",
-                                            {{"PEL_FORMAT_NORMAL", formatOf(images.normals, lanes)},
-                                             {"PEL_FORMAT_POSITION", formatOf(images.positions, lanes)},
-                                             {"PEL_FORMAT_DEPTH", formatOf(images.depth, lanes)},
-                                             {"PEL_FORMAT_IDS", formatOf(images.ids, lanes)},
-                                             {"PEL_FORMAT_CURVATURE", formatOf(images.curvature, lanes)}}),
+                                            {{"PEL_FORMAT_NORMAL", text(formatCode(images.normals, lanes))},
+                                             {"PEL_FORMAT_POSITION", text(formatCode(images.positions, lanes))},
+                                             {"PEL_FORMAT_DEPTH", text(formatCode(images.depth, lanes))},
+                                             {"PEL_FORMAT_IDS", text(formatCode(images.ids, lanes))},
+                                             {"PEL_FORMAT_CURVATURE", text(formatCode(images.curvature, lanes))}}),
                       "screen_curvature");
     // Copied here and now: the queue, which may be busy, has no part in it.
     const cl::Memory memory = device.allocate(sizeof frame, &frame);
