@@ -14,6 +14,11 @@ using Clock = std::chrono::steady_clock;
 // How long Ctrl-C may go unnoticed.
 constexpr auto signalPeriod = std::chrono::milliseconds(50);
 
+// Calls on threads of their own, abandoned ones among them, which the process must outlive.
+std::mutex abandonedMutex;
+std::condition_variable noneRuns;
+int running = 0;
+
 void raiseSignals() {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
@@ -63,13 +68,23 @@ void callInterruptibly(std::function<PelError()> body) {
         std::string message;
     };
     const auto state = std::make_shared<State>();
-    std::thread([state, body = std::move(body)] {
+    {
+        std::lock_guard lock(abandonedMutex);
+        ++running;
+    }
+    std::thread([state, body = std::move(body)]() mutable {
         const PelError error = body();
-        std::lock_guard lock(state->mutex);
-        state->error = error;
-        if (error != PEL_SUCCESS) state->message = pelGetErrorMessage();
-        state->done = true;
-        state->changed.notify_one();
+        const std::string message = error == PEL_SUCCESS ? "" : pelGetErrorMessage();
+        body = nullptr;  // what it holds goes before the interpreter is told that nothing runs
+        {
+            std::lock_guard lock(state->mutex);
+            state->error = error;
+            state->message = message;
+            state->done = true;
+            state->changed.notify_one();
+        }
+        std::lock_guard lock(abandonedMutex);
+        if (--running == 0) noneRuns.notify_all();
     }).detach();
     for (bool done = false; !done;) {
         {
@@ -80,6 +95,12 @@ void callInterruptibly(std::function<PelError()> body) {
         if (!done) raiseSignals();
     }
     throwOn(state->error, state->message);
+}
+
+void waitForAbandoned() {
+    py::gil_scoped_release release;
+    std::unique_lock lock(abandonedMutex);
+    noneRuns.wait(lock, [] { return running == 0; });
 }
 
 PelImageDesc imageDesc(const ImageView& v) {

@@ -40,6 +40,7 @@ void bindDevice(py::module_& module) {
     py::module_::import("atexit").attr("register")(py::cpp_function([] {
         pelSetErrorCallback(nullptr, nullptr);
         errorCallback = py::none();
+        waitForAbandoned();
     }));
     module.def("devices", [] {
         uint32_t count = 0;

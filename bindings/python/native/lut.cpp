@@ -1,3 +1,6 @@
+#include <memory>
+
+#include "io/bc6h.h"
 #include "progress.h"
 
 namespace pel::python {
@@ -11,10 +14,31 @@ std::pair<pellucid::Lut, pellucid::Event> created(const Device& d, const py::obj
     call([&, what = structOf<Desc>(desc)] { return Create(d.handle.get(), what, &handle, submit.get()); });
     return {pellucid::Lut(handle), submit.done()};
 }
+
+// Blocks of three halves per texel, and what they cost. On a copy of the texels, for Ctrl-C may abandon it.
+py::tuple encodedBc6h(uint32_t width, uint32_t height, uintptr_t texels) {
+    struct Work {
+        std::vector<uint16_t> texels;
+        std::vector<uint8_t> blocks;
+        pellucid::io::TexelError error;
+    };
+    const auto work = std::make_shared<Work>();
+    const auto* first = static_cast<const uint16_t*>(pointer(texels));
+    work->texels.assign(first, first + size_t(width) * height * 3);
+    callInterruptibly([work, width, height] {
+        work->blocks = pellucid::io::encodeBc6h(width, height, work->texels);
+        work->error =
+            pellucid::io::differenceOf(work->texels, pellucid::io::decodeBc6h(width, height, work->blocks));
+        return PEL_SUCCESS;
+    });
+    return py::make_tuple(py::bytes(reinterpret_cast<const char*>(work->blocks.data()), work->blocks.size()),
+                          work->error.max, work->error.rms);
+}
 }  // namespace
 
 void bindLut(py::module_& module) {
     using pellucid::Lut;
+    module.def("encode_bc6h", &encodedBc6h);
     py::class_<Lut>(module, "Lut")
         .def_static("curvature", created<PelCurvatureLutDesc, pelCurvatureLutCreate>)
         .def_static("shadow", created<PelShadowLutDesc, pelShadowLutCreate>)
@@ -32,11 +56,6 @@ void bindLut(py::module_& module) {
             PelLutInfo info = pelLutInfoDefaults();
             call([&] { return pelLutGetInfo(l.get(), &info); });
             return bytesOf(info);
-        })
-        .def("size", [](const Lut& l, uint32_t encoding) {
-            size_t bytes = 0;
-            call([&] { return pelLutGetSize(l.get(), PelLutEncoding(encoding), &bytes); });
-            return bytes;
         })
         .def("clipped", [](const Lut& l) {
             uint64_t clipped = 0;

@@ -35,6 +35,9 @@ void waitInterruptibly(const pellucid::Event& event);
 // Runs a blocking call that is safe to abandon on a thread of its own, likewise.
 void callInterruptibly(std::function<PelError()> body);
 
+// For the end of the process: until none of those threads is left.
+void waitForAbandoned();
+
 // The bytes of a C structure that a Python object holds; throws unless they are one T.
 template <class T>
 T* structOf(const py::object& object) {

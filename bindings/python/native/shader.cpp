@@ -1,10 +1,31 @@
+#include <memory>
+#include <mutex>
+
 #include "progress.h"
 
 namespace pel::python {
 
+namespace {
+// A shader, and a lock that lets later calls wait for one that Ctrl-C abandoned; a progress callback may ask for counters meanwhile.
+struct Shader {
+    std::shared_ptr<std::recursive_mutex> busy = std::make_shared<std::recursive_mutex>();
+    pellucid::Shader handle;
+
+    explicit Shader(PelShader shader) : handle(shader) {}
+    PelShader get() const { return handle.get(); }
+};
+
+template <class Body>
+void locked(const Shader& shader, Body&& body) {
+    call([&] {
+        std::lock_guard lock(*shader.busy);
+        return body();
+    });
+}
+}  // namespace
+
 void bindShader(py::module_& module) {
     using pellucid::Lut;
-    using pellucid::Shader;
     py::class_<Shader>(module, "Shader")
         .def_static("create", [](const Device& d) {
             PelShader handle = nullptr;
@@ -12,16 +33,16 @@ void bindShader(py::module_& module) {
             return Shader(handle);
         })
         .def("set_options", [](const Shader& s, const py::object& options) {
-            call([&, o = structOf<PelShaderOptions>(options)] { return pelShaderSetOptions(s.get(), o); });
+            locked(s, [&, o = structOf<PelShaderOptions>(options)] { return pelShaderSetOptions(s.get(), o); });
         })
         .def("set_image", [](const Shader& s, uint32_t slot, const std::optional<ImageView>& image) {
             const PelImageDesc desc = image ? imageDesc(*image) : pelImageDescDefaults();
-            call([&] { return pelShaderSetImage(s.get(), PelImageSlot(slot), image ? &desc : nullptr); });
+            locked(s, [&] { return pelShaderSetImage(s.get(), PelImageSlot(slot), image ? &desc : nullptr); });
         })
         .def("set_material", [](const Shader& s, uint32_t id, const py::object& material, const Lut* curvature,
                                 const Lut* shadow) {
             const PelMaterial* m = material.is_none() ? nullptr : structOf<PelMaterial>(material);
-            call([&] {
+            locked(s, [&] {
                 return pelShaderSetMaterial(s.get(), id, m, curvature ? curvature->get() : nullptr,
                                             shadow ? shadow->get() : nullptr);
             });
@@ -29,32 +50,40 @@ void bindShader(py::module_& module) {
         .def("set_normal_map", [](const Shader& s, uint32_t id, const std::vector<ImageView>& levels) {
             std::vector<PelImageDesc> all;
             for (const ImageView& level : levels) all.push_back(imageDesc(level));
-            call([&] { return pelShaderSetNormalMap(s.get(), id, all.data(), uint32_t(all.size())); });
+            locked(s, [&] { return pelShaderSetNormalMap(s.get(), id, all.data(), uint32_t(all.size())); });
         })
         .def("set_lights", [](const Shader& s, const std::vector<py::object>& lights) {
             std::vector<PelLight> all;
             for (const py::object& light : lights) all.push_back(*structOf<PelLight>(light));
-            call([&] { return pelShaderSetLights(s.get(), all.data(), uint32_t(all.size())); });
+            locked(s, [&] { return pelShaderSetLights(s.get(), all.data(), uint32_t(all.size())); });
         })
         .def("set_light_image", [](const Shader& s, uint32_t light, uint32_t slot, const std::optional<ImageView>& image) {
             const PelImageDesc desc = image ? imageDesc(*image) : pelImageDescDefaults();
-            call([&] { return pelShaderSetLightImage(s.get(), light, PelLightSlot(slot), image ? &desc : nullptr); });
+            locked(s, [&] { return pelShaderSetLightImage(s.get(), light, PelLightSlot(slot), image ? &desc : nullptr); });
         })
         .def("set_ambient", [](const Shader& s, const py::object& ambient) {
-            call([&, a = structOf<PelAmbient>(ambient)] { return pelShaderSetAmbient(s.get(), a); });
+            locked(s, [&, a = structOf<PelAmbient>(ambient)] { return pelShaderSetAmbient(s.get(), a); });
         })
         .def("set_camera", [](const Shader& s, const py::object& camera) {
-            call([&, c = structOf<PelCamera>(camera)] { return pelShaderSetCamera(s.get(), c); });
+            locked(s, [&, c = structOf<PelCamera>(camera)] { return pelShaderSetCamera(s.get(), c); });
         })
-        .def("commit", [](const Shader& s) { call([&] { return pelShaderCommit(s.get()); }); })
+        // Compilers take seconds, on some devices minutes.
+        .def("commit", [](const Shader& s) {
+            callInterruptibly([s] {
+                std::lock_guard lock(*s.busy);
+                return pelShaderCommit(s.get());
+            });
+        })
         .def("execute", [](const Shader& s, const Waits& waits) {
             Submit submit(waits);
-            call([&] { return pelShaderExecute(s.get(), submit.get()); });
+            locked(s, [&] { return pelShaderExecute(s.get(), submit.get()); });
             return submit.done();
         })
+        // Blocking, so that the device's progress callback is told; Ctrl-C is noticed there.
+        .def("execute_told", [](const Shader& s) { locked(s, [&] { return pelShaderExecute(s.get(), nullptr); }); })
         .def("stats", [](const Shader& s) {
             PelShaderStats stats = pelShaderStatsDefaults();
-            call([&] { return pelShaderGetStats(s.get(), &stats); });
+            locked(s, [&] { return pelShaderGetStats(s.get(), &stats); });
             return bytesOf(stats);
         });
 }

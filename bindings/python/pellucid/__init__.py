@@ -13,7 +13,7 @@ from ._errors import PellucidError
 from ._types import *  # noqa: F401,F403
 from ._types import __all__ as _type_names
 from .device import Buffer, Device, Event, devices, set_error_callback
-from .live import LiveMesh, screen_curvature
+from .live import LiveMesh, screen_curvature, submit_screen_curvature
 from .lut import Lut
 from .mesh import MeshTopology
 from .profile import Profile
@@ -23,4 +23,4 @@ _number = _native.version()
 __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
 
 __all__ = ["Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile", "Shader",
-           "Vertices", "devices", "screen_curvature", "set_error_callback", *_type_names]
+           "Vertices", "devices", "screen_curvature", "set_error_callback", "submit_screen_curvature", *_type_names]

@@ -87,13 +87,16 @@ class View:
         return (handle, *self._tail)
 
 
-def submit(views: list[View], waits: list[_native.Event], enqueue: Any) -> _native.Event:
-    """Moves inputs, enqueues with `enqueue(waits)`, moves results; returns the event of the last step."""
+def submit(views: list[View], waits: list[_native.Event], enqueue: Any) -> Any:
+    """Moves inputs, enqueues with `enqueue(waits)`, moves results; returns the event of the last step.
+
+    None where the work was done inside `enqueue` and nothing moves back.
+    """
     spans = {id(v.span): v.span for v in views if isinstance(v.span, Span)}.values()
     for span in spans:
         if span.moves:
             span.upload(waits)
-    event: _native.Event = enqueue(waits)
+    event = enqueue(waits)
     for span in spans:
         event = span.download() or event
     return event

@@ -97,16 +97,23 @@ def screen_curvature(device: Device, normals: Any, positions: Any = None, *, dep
         A new array without it.
     params : ScreenCurvatureParams, optional
     """
+    result = np.empty(np.shape(normals)[:2], np.float32) if out is None else out
+    submit_screen_curvature(device, normals, positions, result, depth=depth, ids=ids, params=params).wait()
+    return result
+
+
+def submit_screen_curvature(device: Device, normals: Any, positions: Any, out: Any, *, depth: Any = None, ids: Any = None,
+                            params: Optional[ScreenCurvatureParams] = None, waits: Iterable[Event] = ()) -> Event:
+    """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
     def image(value: Any, what: str, **kind: bool) -> Optional[Image]:
         return value if value is None or isinstance(value, Image) else Image(device, value, _slot=what, **kind)
 
     settings = ScreenCurvatureParams() if params is None else params
-    result = np.empty(np.shape(normals)[:2], np.float32) if out is None else out
     images = [image(normals, "normals"), image(positions, "positions"), image(depth, "depth"), image(ids, "ids", _ids=True),
-              image(result, "out", _output=True)]
+              image(out, "out", _output=True)]
     n, p, d, i, c = (None if x is None else x._view.native for x in images)
     views = [x._view for x in images if x is not None]
-    event = submit(views, [], lambda w: _native.screen_curvature(device._handle, settings._data, n, p, d, i, c, w))
+    event = submit(views, _handles(waits),
+                   lambda w: _native.screen_curvature(device._handle, settings._data, n, p, d, i, c, w))
     _flight.hold(event, views)
-    Event(event).wait()
-    return result
+    return Event(event)

@@ -138,12 +138,22 @@ class Shader:
     def execute(self) -> None:
         """Shades, and waits for the result.
 
+        A progress callback of the device (Device.set_progress) is told how far it is, about every million pixels; cancelled
+        by it, some pixels are shaded and others not.
+
         Raises
         ------
         PellucidError
-            INVALID_STATE when something was set after the last commit.
+            INVALID_STATE when something was set after the last commit; CANCELLED by a progress callback.
         """
-        self.submit().wait()
+        if self.device._handle.progress is None:
+            self.submit().wait()
+            return
+        images = list(self._images.values())
+        event = submit([i._view for i in images], [], lambda waits: self._handle.execute_told())
+        if event is not None:  # results are on their way back to the arrays
+            _flight.hold(event, self, images)
+            Event(event).wait()
 
     def submit(self, waits: Iterable[Event] = ()) -> Event:
         """Shades after `waits`, without waiting: leave the images alone until the event is done."""

@@ -1,5 +1,6 @@
 """The GIL, Ctrl-C, progress callbacks, and memory that outlives the name it had."""
 import gc
+import os
 import signal
 import subprocess
 import sys
@@ -154,6 +155,44 @@ def test_ctrl_c_within_a_second(what):
         child.send_signal(signal.SIGINT)
         word, when = child.stdout.readline().split()
         assert word == "interrupted" and float(when) - sent < 1
+    finally:
+        child.kill()
+        child.wait()
+
+
+COMPILE = textwrap.dedent("""
+    import time
+    import numpy as np
+    import pellucid as pel
+    device = pel.Device()
+    image = np.ones((8, 8, 3), np.float32)
+    shader = pel.Shader(device).set_image("radiance", image).set_image("normal_shading", image)
+    shader.set_image("position", image).set_camera(pel.Camera()).set_ambient(pel.Ambient(constant=(1, 1, 1)))
+    shader.set_material(1, pel.Material(specular=1, deep_scatter_color=(1, 1, 1), thickness_taps=32), pel.Lut.curvature(
+        device, width=8, height=8)).set_lights([pel.Light(shadow_filter_texels=48, shadow_depth_range=1)])
+    shader.set_light_image(0, "shadow_map", image[..., 0]).set_image("curvature", image[..., 1])
+    print("go", flush=True)
+    try:
+        shader.commit()
+    except KeyboardInterrupt:
+        print(time.time(), flush=True)
+    start = time.time()
+    shader.commit()  # waits for the compiler that was left alone
+    print(time.time() - start, flush=True)
+""")
+
+
+def test_ctrl_c_while_a_compiler_works(tmp_path):
+    fresh = {**os.environ, "POCL_CACHE_DIR": str(tmp_path), "CUDA_CACHE_DISABLE": "1", "NEO_CACHE_PERSISTENT": "0"}
+    child = subprocess.Popen([sys.executable, "-c", COMPILE], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=fresh)
+    try:
+        assert child.stdout.readline() == "go\n"
+        time.sleep(0.1)
+        sent = time.time()
+        child.send_signal(signal.SIGINT)
+        assert float(child.stdout.readline()) - sent < 1
+        assert float(child.stdout.readline()) > 0.01, "the compiler had finished before Ctrl-C was noticed"
+        assert child.wait(60) == 0
     finally:
         child.kill()
         child.wait()

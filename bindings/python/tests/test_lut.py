@@ -1,4 +1,7 @@
 """Look-up tables, against the integrals written out again in NumPy."""
+import io
+import struct
+
 import numpy as np
 import pytest
 
@@ -54,6 +57,22 @@ def test_encodings(device):
     residual = full.astype(float) - np.maximum(u, 0)[None, :, None]
     assert lut.clipped_texels() == (np.abs(residual) > 0.25).any(axis=2).sum() > 0
     assert lut.info.curvature.radius_min == 0.5 and lut.info.kind is pel.LutKind.CURVATURE
+
+
+def test_bc6h_is_as_near_as_it_says(device, tolerance):
+    lut = pel.Lut.curvature(device, width=62, height=31, axis="root")
+    blocks, error_max, error_rms = lut.read_bc6h()
+    assert blocks.shape == (8, 16, 16) and blocks.dtype == np.uint8 and blocks.flags.writeable
+    halves = lut.read("half").astype(float)
+    assert 0 < error_rms < error_max < 0.02 and error_rms < 2e-3
+    image = pytest.importorskip("PIL.Image")
+    # Another reader: Pillow decodes to 8 bits, which adds half a step.
+    header = struct.pack("<4s7I44x", b"DDS ", 124, 0x81007, 31, 62, blocks.nbytes, 0, 1)
+    header += struct.pack("<2I4s20x2I12x", 32, 4, b"DX10", 0x1000, 0) + struct.pack("<5I", 95, 3, 0, 1, 0)
+    seen = np.asarray(image.open(io.BytesIO(header + blocks.tobytes())).convert("RGB")).astype(float)
+    assert seen.shape == halves.shape
+    assert np.abs(seen / 255 - np.clip(halves, 0, 1)).max() < error_max + 1.1 / 255
+    assert np.array_equal(lut.read_bc6h()[0], blocks)
 
 
 def test_measured_profiles(device):

@@ -252,3 +252,38 @@ def test_outputs_add_up_to_radiance(device, view, tolerance):
     assert all(image[view.inside].max() > 0.01 for image in parts.values())
     assert np.abs(sum(parts.values()) - out).max() < tolerance["shadeTerm"]
     assert (thickness == 4 * view.inside).all()
+
+
+class Fractions:
+    def __init__(self, last=2.0):
+        self.seen, self.last = [], last
+
+    def __call__(self, fraction, what):
+        assert what == "shading"
+        self.seen.append(fraction)
+        return fraction < self.last
+
+
+@pytest.mark.parametrize("moving", [False, True])
+def test_progress_of_a_large_frame(moving):
+    device = pel.Device()
+    if moving:
+        device._in_place = False
+    normal = np.zeros((1500, 2000, 3), np.float32)
+    normal[..., 2] = 1
+    images = [np.zeros_like(normal) for _ in range(3)]
+    shaders = [pel.Shader(device).set_image("radiance", i).set_image("normal_shading", normal).set_material(1, pel.Material())
+               .set_lights([pel.Light()]).commit() for i in images]
+    shaders[0].execute()
+    told = Fractions()
+    device.set_progress(told)
+    shaders[1].execute()
+    assert told.seen[0] == 0 and told.seen[-1] == 1 and len(told.seen) > 3 and told.seen == sorted(told.seen)
+    assert np.array_equal(images[1], images[0]) and images[0].any()
+    device.set_progress(Fractions(0.5))
+    with pytest.raises(pel.PellucidError) as caught:
+        shaders[2].execute()
+    assert caught.value.code is pel.ErrorCode.CANCELLED
+    device.set_progress(None)
+    shaders[2].execute()
+    assert np.array_equal(images[2], images[0])
