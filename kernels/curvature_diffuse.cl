@@ -2,7 +2,9 @@
 // a standard deviation of the radius (a Gaussian blur where the surface is flat). Twice the triangles give
 // the same answer.
 //
-// The Laplacian is the cotangent one [Pinkall & Polthier 1993] over Voronoi areas. Time runs in
+// The Laplacian is the cotangent one [Pinkall & Polthier 1993] over Voronoi areas; or, with DIFFUSE_AREA, each edge has
+// the area of its triangles over the square of its length, and the slot the sum of those areas over 4: the ring's
+// second moment, the sum of weight times length^2, is then that of the Laplacian, 4, and no weight is negative. Time runs in
 // MESH_SUPER_STEPS super steps of Runge-Kutta-Legendre of first order [Meyer, Balsara & Aslam, JCP 2014],
 // whose number of stages grows with radius / edge, not with its square. A wave that the exact blur leaves
 // exp(-x) of is left J0(2 sqrt(x / 4))^4 of: 1.6 % less where it matters most, x = 1/2, and below 3 % of all
@@ -10,7 +12,7 @@
 //
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h); planes as in
 // curvature.cl. One work-item: PEL_WIDTH slots (of plane get_global_id(1) in diffuse_stage). Variants:
-// MESH_STRIDE (lib/mesh_ring.clh).
+// MESH_STRIDE (lib/mesh_ring.clh), DIFFUSE_AREA.
 
 #include "lib/mesh_triangle.clh"
 
@@ -55,9 +57,16 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
         const maskw triangle = walking & (!ends | closed) & finitew(doubled2) &
                                (doubled2 > TRIANGLE_FLAT * dot3(previous, previous) * dot3(other, other));
         const floatw doubled = sqrt(selectw((floatw)(1.0f), doubled2, triangle));
+#if DIFFUSE_AREA
+        // What stands at a neighbour belongs to the edge to the other one, as the cotangents do.
+        const floatw atOther = selectw(zero, 4.0f * doubled / dot3(previous, previous), triangle);
+        const floatw atPrevious = selectw(zero, 4.0f * doubled / dot3(other, other), triangle);
+        const floatw part = doubled;  // the triangle at both of its edges
+#else
         const floatw atOther = selectw(zero, -dot3(other, between) / doubled, triangle);
         const floatw atPrevious = selectw(zero, dot3(previous, between) / doubled, triangle);
         const floatw part = corner_area(previous, other, doubled);
+#endif
         area += selectw(zero, part, triangle & finitew(part));
         if (row > begin) {
             const uint at = (row - 1) * MESH_LANES + ring.lane;

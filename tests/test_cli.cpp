@@ -105,6 +105,7 @@ TEST_F(Cli, WrongUseIsRefused) {
     expectRefused({"curvature", mesh, "-o", path("c.npy"), "--quantity", "size"}, 2, "gaussian");
     expectRefused({"curvature", mesh, "-o", path("c.npy"), "--weld", "-1"}, 2, "tolerance above 0");
     expectRefused({"curvature", mesh, "-o", path("c.npy"), "--smooth-radius", "-1"}, 2, "--smooth-radius");
+    expectRefused({"curvature", mesh, "-o", path("c.npy"), "--smooth-weights", "length"}, 2, "cotangent");
     expectRefused({"curvature", mesh, "-o", path("c.npy"), "--picture", path("c.jpg")}, 2, ".png");
     expectRefused({"curvature", mesh, "-o", path("c.npy"), "--scale", "nan"}, 2, "scale");
 }
@@ -153,6 +154,14 @@ TEST_F(Cli, CurvatureQuantitiesWeldAndPicture) {
     for (float v : npy::read<float>(path("m.npy")).data)
         EXPECT_NEAR(v, 0.25f, 0.25f * tolerance::tensorCurvature);
     EXPECT_GT(std::filesystem::file_size(path("m.png")), 1000u);
+    const std::string horned = icosahedron("9 9 9\n", "3 0 1 12\n", 13, 21);
+    const auto smoothed = [&](const char* weights) {
+        EXPECT_EQ(run({"curvature", horned, "-o", path("w.npy"), "--smooth-radius", "0.6", "--smooth-weights", weights})
+                      .exitCode,
+                  0);
+        return npy::read<float>(path("w.npy")).data;
+    };
+    EXPECT_NE(smoothed("cotangent"), smoothed("area"));
 }
 
 TEST_F(Cli, WhatCanBeRepairedIsCounted) {

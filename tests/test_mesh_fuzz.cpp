@@ -80,6 +80,7 @@ TEST(MeshFuzz, EveryEstimatorStaysFiniteOnBrokenData) {
         params.smoothingPasses = seed % 2;
         params.smoothingRadius = seed % 4 == 0 ? 0.3f : 0.0f;
         params.smoothingStages = 12;
+        params.smoothingWeights = PelSmoothingWeights(seed % 8 == 0);
         PelMeshTopologyDesc desc =
             seed % 2 ? weldedDesc(mesh, seed % 4 == 1 ? 0.2f : 0.0f) : topologyDesc(mesh);
         const std::vector<float> values =

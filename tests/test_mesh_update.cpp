@@ -85,6 +85,7 @@ TEST(LiveMesh, APartGivesTheBitsOfTheWhole) {
         params.smoothingPasses = c.passes;
         params.smoothingRadius = c.radius;
         params.smoothingCrease = c.radius > 0 ? 0.5f : 0;
+        params.smoothingWeights = c.given ? PEL_SMOOTHING_COTANGENT : PEL_SMOOTHING_AREA;
         Pose pose(c.welded ? shuffleVertices(mesh, 4).mesh : mesh, c.given, c.floats);
         const MeshTopology topology(device(),
                                     c.welded ? weldedDesc(pose.mesh, 0.04f) : topologyDesc(pose.mesh));

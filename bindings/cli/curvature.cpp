@@ -17,7 +17,7 @@ namespace {
 
 struct Arguments {
     Run::Options run;
-    std::string mesh, output, picture, weld = "none", up = "z", estimator = "quadric", quantity = "absolute";
+    std::string mesh, output, picture, weld = "none", up = "z", estimator = "quadric", quantity = "absolute", smoothingWeights = "cotangent";
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     double creaseDegrees = 0;
 };
@@ -30,6 +30,9 @@ const std::map<std::string, PelCurvatureQuantity> quantities = {
     {"curvedness", PEL_QUANTITY_CURVEDNESS}, {"mean", PEL_QUANTITY_MEAN},
     {"gaussian", PEL_QUANTITY_GAUSSIAN},     {"first", PEL_QUANTITY_FIRST},
     {"second", PEL_QUANTITY_SECOND}};
+
+const std::map<std::string, PelSmoothingWeights> weights = {{"cotangent", PEL_SMOOTHING_COTANGENT},
+                                                            {"area", PEL_SMOOTHING_AREA}};
 
 template <class T>
 std::vector<std::string> namesOf(const std::map<std::string, T>& values) {
@@ -72,6 +75,7 @@ void run(const Arguments& a) {
     PelCurvatureParams params = a.params;
     params.estimator = estimators.at(a.estimator);
     params.quantity = quantities.at(a.quantity);
+    params.smoothingWeights = weights.at(a.smoothingWeights);
     params.smoothingCrease = float(a.creaseDegrees * 3.14159265358979 / 180);
     Run run(a.run);
     io::MeshData mesh = io::loadMesh(a.mesh);
@@ -132,6 +136,10 @@ void addCurvature(CLI::App& app) {
         ->add_option("--smooth-crease", a->creaseDegrees,
                      "with --smooth-radius: degrees between normals that stop it")
         ->check(CLI::Range(0.0, 180.0));
+    command
+        ->add_option("--smooth-weights", a->smoothingWeights, "with --smooth-radius: how neighbours are weighed")
+        ->check(CLI::IsMember(namesOf(weights)))
+        ->capture_default_str();
     command->add_option("--picture", a->picture,
                         "PNG to write as well: the mesh coloured by the values, with a colour bar");
     command

@@ -50,7 +50,7 @@ class MeshTopology final : public Object {
     // Entries of the rings, fillers included.
     size_t ringEntries() const { return ringEntries_; }
     // How fast the finest parts of the mesh even out, 1/length^2; 0: not measured yet. Guarded by lock().
-    float diffusionRate = 0;
+    float diffusionRate[2] = {0, 0};
 
     explicit MeshTopology(Ref<Device> device) : Object(kind), device_(std::move(device)) {}
 

@@ -54,6 +54,9 @@ void checkCurvatureParams(const PelCurvatureParams& params) {
     if (!(params.smoothingCrease >= 0 && params.smoothingCrease <= 3.14159265f))
         invalidArgument("PelCurvatureParams.smoothingCrease is ", params.smoothingCrease,
                         "; an angle from 0 to pi is needed");
+    if (params.smoothingWeights < PEL_SMOOTHING_COTANGENT || params.smoothingWeights > PEL_SMOOTHING_AREA)
+        invalidArgument("PelCurvatureParams.smoothingWeights is ", int(params.smoothingWeights),
+                        ", which is no PelSmoothingWeights");
     if (params.smoothingStages > 4000)
         invalidArgument("PelCurvatureParams.smoothingStages is ", params.smoothingStages,
                         "; 0 (chosen from the mesh) to 4000 are allowed");

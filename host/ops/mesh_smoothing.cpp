@@ -8,19 +8,21 @@ namespace {
 
 constexpr uint32_t mostStages = 4000;
 
-cl::Program program(const MeshTopology& topology, const SlotData& data, const Rows& rows) {
+cl::Program program(const MeshTopology& topology, const SlotData& data, const Rows& rows,
+                    PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT) {
     return topology.device().programs().get("curvature_diffuse.cl",
                                             {{"MESH_STRIDE", std::to_string(data.stride)},
                                              {"MESH_LISTED", listed(rows)},
+                                             {"DIFFUSE_AREA", std::to_string(weights == PEL_SMOOTHING_AREA)},
                                              {"PEL_WIDTH", std::to_string(width(topology.device()))}});
 }
 
 // Weights for a diffusion over `time`, length^2; returns the memory that holds them.
-const cl::Memory& makeWeights(MeshTopology& topology, const SlotData& data, float time, float limit,
-                              float crease2, const Scratch& scratch, const cl::Memory& rates,
+const cl::Memory& makeWeights(MeshTopology& topology, const SlotData& data, PelSmoothingWeights kind, float time,
+                              float limit, float crease2, const Scratch& scratch, const cl::Memory& rates,
                               const Rows& rows) {
     const cl::Memory& weights = scratch(MeshTopology::scratchWeights, topology.ringEntries() * sizeof(float));
-    cl::Launch launch(program(topology, data, rows), "diffuse_weights");
+    cl::Launch launch(program(topology, data, rows, kind), "diffuse_weights");
     ringArguments(topology, launch, rows);
     launch.arg(data.positions.memory).arg(data.positions.layout.offset);
     launch.arg(data.normals.memory).arg(data.normals.layout.offset);
@@ -31,9 +33,9 @@ const cl::Memory& makeWeights(MeshTopology& topology, const SlotData& data, floa
 
 // The rate that all but the worst percent of the slots stay below: slivers must not set the price for
 // everybody.
-float measureRate(MeshTopology& topology, const SlotData& data, const Scratch& scratch,
+float measureRate(MeshTopology& topology, const SlotData& data, PelSmoothingWeights kind, const Scratch& scratch,
                   const cl::Memory& rates) {
-    makeWeights(topology, data, 0.0f, 0.0f, 0.0f, scratch, rates, {});
+    makeWeights(topology, data, kind, 0.0f, 0.0f, 0.0f, scratch, rates, {});
     std::vector<float> values(topology.slots());
     topology.device().read(rates.get(), 0, values.size() * sizeof(float), values.data(), true);
     const auto place = values.begin() + std::ptrdiff_t(values.size() / 100 * 99);
@@ -66,15 +68,16 @@ void smoothUniform(MeshTopology& topology, const cl::Defines& defines, uint32_t 
 Diffusion planDiffusion(MeshTopology& topology, const SlotData& data, const PelCurvatureParams& params,
                         const Scratch& scratch, const cl::Memory& rates) {
     Diffusion diffusion;
+    diffusion.weights = params.smoothingWeights;
     const float radius = params.smoothingRadius;
     if (!(radius > 0) || topology.ringEntries() == 0) return diffusion;
     // A blur of standard deviation r is the heat equation after r^2 / 2; this is the time of one super step.
     diffusion.time = 0.5f * radius * radius / MESH_SUPER_STEPS;
     uint32_t stages = params.smoothingStages;
     if (stages == 0) {
-        if (!(topology.diffusionRate > 0))
-            topology.diffusionRate = measureRate(topology, data, scratch, rates);
-        const double wanted = MESH_SUPER_STEPS * std::sqrt(2.0 * diffusion.time * topology.diffusionRate);
+        float& rate = topology.diffusionRate[params.smoothingWeights];
+        if (!(rate > 0)) rate = measureRate(topology, data, params.smoothingWeights, scratch, rates);
+        const double wanted = MESH_SUPER_STEPS * std::sqrt(2.0 * diffusion.time * rate);
         if (wanted > mostStages)
             invalidArgument("PelCurvatureParams.smoothingRadius is ", radius, ", which would take ", wanted,
                             " stages on a mesh this fine; at most ", mostStages, " are done");
@@ -91,7 +94,7 @@ void smoothToRadius(MeshTopology& topology, const SlotData& data, const Diffusio
                     SlotPlanes& values, const Scratch& scratch, const Rows& weighed, const RowsOfPass& rows) {
     const float span = spanOf(diffusion.stages);
     // `to` is free until the first stage.
-    const cl::Memory& weights = makeWeights(topology, data, diffusion.time, 0.5f * span, diffusion.turn2,
+    const cl::Memory& weights = makeWeights(topology, data, diffusion.weights, diffusion.time, 0.5f * span, diffusion.turn2,
                                             scratch, values.to, weighed);
     for (uint32_t stage = 0; stage < diffusion.passes(); ++stage) {
         const uint32_t j = stage % diffusion.stages + 1;

@@ -27,6 +27,7 @@ void smoothUniform(MeshTopology& topology, const cl::Defines& defines, uint32_t 
 struct Diffusion {
     float time = 0, turn2 = 0;  // of a super step, length^2; square of the normal's change at a crease
     uint32_t stages = 0;        // of each super step
+    PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT;
     uint32_t passes() const { return stages * MESH_SUPER_STEPS; }
 };
 Diffusion planDiffusion(MeshTopology& topology, const SlotData& data, const PelCurvatureParams& params,

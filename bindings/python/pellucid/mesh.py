@@ -142,7 +142,7 @@ class MeshTopology:
         if report:
             # A call that reports blocks where Ctrl-C is not seen, so it is a short one, without smoothing.
             found, unsmoothed = MeshReport(), settings.copy()
-            unsmoothed.smoothing_passes = 0
+            unsmoothed.smoothing_passes, unsmoothed.smoothing_radius = 0, 0.0
             self._submit(positions, normals, result, unsmoothed, found, ()).wait()
             self.report = found
         self._submit(positions, normals, result, settings, None, ()).wait()

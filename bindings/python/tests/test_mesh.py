@@ -26,6 +26,20 @@ def test_scale_and_params(device, sphere):
     assert params.scale == 3
 
 
+def test_smoothing_to_a_radius_by_either_weights(device, make_sphere):
+    mesh = make_sphere(5.0)
+    rough = curvature_of(device, mesh, smoothing_passes=0)
+    spread = {}
+    for weights in ("cotangent", "area"):
+        params = pel.CurvatureParams(smoothing_passes=0, smoothing_radius=1.0, smoothing_weights=weights)
+        assert params.smoothing_weights == pel.SmoothingWeights[weights.upper()]
+        spread[weights] = curvature_of(device, mesh, params=params)
+        assert np.ptp(spread[weights]) < np.ptp(rough)
+    assert not np.array_equal(spread["cotangent"], spread["area"])
+    with pytest.raises(ValueError, match="cotangent, area"):
+        pel.CurvatureParams(smoothing_weights="length")
+
+
 def test_quantities_have_their_shapes(device, make_sphere):
     mesh = make_sphere(5.0)
     frame = curvature_of(device, mesh, estimator="tensor", quantity="frame")

@@ -301,6 +301,16 @@ typedef enum PelCurvatureQuantity {
                                       smoothed; 0 where nothing was measured */
 } PelCurvatureQuantity;
 
+/* How a smoothing to a radius weighs the neighbours of a vertex. Either way a mesh of twice the triangles gives the same
+ * answer. */
+typedef enum PelSmoothingWeights {
+    PEL_SMOOTHING_COTANGENT = 0, /* cotangents over Voronoi areas [Pinkall & Polthier 1993]: spreads alike in all directions,
+                                    whatever the triangles. Default */
+    PEL_SMOOTHING_AREA = 1       /* area of an edge's triangles over the square of its length: never negative, so that no
+                                    value leaves the range of its neighbours; on stretched cells it spreads further along
+                                    than across */
+} PelSmoothingWeights;
+
 typedef struct PelCurvatureParams {
     uint32_t structSize;
     PelCurvatureEstimator estimator;
@@ -314,6 +324,7 @@ typedef struct PelCurvatureParams {
                                  that sharp features stay; 0: none stay */
     uint32_t smoothingStages; /* with a radius: work spent, about 4 * radius / edge length; 0: chosen from the mesh. Too
                                  few smooth less, never wrongly */
+    PelSmoothingWeights smoothingWeights; /* with a radius */
 } PelCurvatureParams;
 
 /* Curvature at each vertex. `positions`, `normals`: xyz float32 per vertex, as many as the topology has; normals are of
