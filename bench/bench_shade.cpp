@@ -3,7 +3,9 @@
 //
 // Frames: `full` is a screen of folded skin, `head` a 1280 x 720 view of a ball that covers as much as the
 // demo's head, `key` and `backlit` the two views of the demo, from where `pellucid demo` left them (out/demo, or
-// PELLUCID_DEMO_DIR).
+// PELLUCID_DEMO_DIR). `lit` is what a renderer without scattering shades there: Lambert with a plain shadow, ambient and
+// specular; `plain` leaves out the shadow and the ambient light too. `packed`: the images in compact formats, 24 bytes a
+// pixel read and 8 written, instead of float32.
 #include <benchmark/benchmark.h>
 
 #include <pellucid/pellucid.hpp>
@@ -17,6 +19,7 @@
 #include "baseline_shade.h"
 #include "io/image_file.h"
 #include "io/scene_file.h"
+#include "pack_images.h"
 
 using namespace pellucid;
 using baseline::Effort;
@@ -134,6 +137,14 @@ void describeScene(Scene& s, int taps) {
         for (int c = 0; c < 3; ++c) s.ambient.sh[i][c] = 0.3f / float(1 + i + c);
 }
 
+// A parallel camera along -z that sees `scale` of length a pixel, to the depth of `reach` on either side of the origin.
+void describeCamera(Scene& s, float scale, float reach) {
+    const float w = float(s.frame.width), h = float(s.frame.height);
+    const float rows[16] = {0.5f * scale * w, 0, 0, -0.5f * scale, 0, 0.5f * scale * h, 0, 0.5f * scale,
+                            0, 0, 2 * reach, -reach, 0, 0, 0, 1};
+    std::copy_n(rows, 16, s.camera.inverseViewProjection);
+}
+
 // The baselines take their numbers from what the library is given.
 void fillSettings(Scene& s) {
     ShadeSettings& b = s.settings;
@@ -224,11 +235,13 @@ Scene& scene(View view, int taps, int coverage = 100) {
     static std::map<std::tuple<int, int, int>, std::unique_ptr<Scene>> scenes;
     auto& slot = scenes[{view, taps, coverage}];
     if (slot) return *slot;
-    if (view == full)
+    if (view == full) {
         slot = makeScene(foldedSkin(1920, 1080, coverage / 100.0), taps);
-    else if (view == head)
+        describeCamera(*slot, 0.1f, 12);
+    } else if (view == head) {
         slot = makeScene(ball(1280, 720), taps);
-    else
+        describeCamera(*slot, 110 / (0.45f * 720), 110);
+    } else
         slot = readDemoView(demoDirectory(), view == key ? "key" : "backlit");
     return *slot;
 }
@@ -238,35 +251,52 @@ struct Prepared {
     Buffer target;
 };
 
-// plain: diffuse and specular alone, in the same framework.
-Prepared prepare(const Scene& s, uint32_t lights, bool plain) {
+enum class Terms { scattering, lit, plain };
+enum class Storage { float32, packed };
+
+Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage = Storage::float32) {
     const auto w = uint32_t(s.frame.width), h = uint32_t(s.frame.height);
+    const bool packed = storage == Storage::packed;
     Prepared p{Shader(device()), Buffer(device(), size_t(w) * h * 12)};
-    const auto set = [&](PelImageSlot slot, const std::vector<float>& image, PelFormat format) {
+    const auto set = [&](PelImageSlot slot, const auto& image, PelFormat format) {
         p.shader.set(slot, imageDesc(Buffer(device(), image), format, w, h));
     };
-    p.shader.set(PEL_SLOT_RADIANCE, imageDesc(p.target, PEL_FORMAT_RGB32F, w, h));
-    p.shader.set(PEL_SLOT_MATERIAL, imageDesc(Buffer(device(), s.frame.id), PEL_FORMAT_R8_UINT, w, h));
-    set(PEL_SLOT_POSITION, s.frame.position, PEL_FORMAT_RGB32F);
-    set(PEL_SLOT_NORMAL_SHADING, s.frame.shading, PEL_FORMAT_RGB32F);
-    set(PEL_SLOT_ALBEDO, s.frame.albedo, PEL_FORMAT_RGB32F);
+    const auto setNormal = [&](PelImageSlot slot, const std::vector<float>& image) {
+        packed ? set(slot, packing::octahedral(image), PEL_FORMAT_OCT16X2_SNORM) : set(slot, image, PEL_FORMAT_RGB32F);
+    };
+    p.shader.set(PEL_SLOT_RADIANCE, imageDesc(p.target, packed ? PEL_FORMAT_RGBA16F : PEL_FORMAT_RGB32F, w, h));
+    set(PEL_SLOT_MATERIAL, s.frame.id, PEL_FORMAT_R8_UINT);
+    setNormal(PEL_SLOT_NORMAL_SHADING, s.frame.shading);
+    if (packed) {
+        set(PEL_SLOT_DEPTH, packing::depths(s.frame.position, s.camera, s.frame.width, s.frame.height), PEL_FORMAT_R32F);
+        set(PEL_SLOT_ALBEDO, packing::srgb8(s.frame.albedo), PEL_FORMAT_RGBA8_SRGB);
+    } else {
+        set(PEL_SLOT_POSITION, s.frame.position, PEL_FORMAT_RGB32F);
+        set(PEL_SLOT_ALBEDO, s.frame.albedo, PEL_FORMAT_RGB32F);
+    }
     std::vector<PelLight> all(lights, s.light);
     for (uint32_t i = 1; i < lights; ++i) std::swap(all[i].toLight[i % 3], all[i].toLight[(i + 1) % 3]);
     p.shader.set(all).set(s.camera);
-    if (plain) {
-        p.shader.setMaterial(1, s.material);
-    } else {
-        set(PEL_SLOT_NORMAL_GEOMETRIC, s.frame.geometric, PEL_FORMAT_RGB32F);
-        set(PEL_SLOT_NORMAL_BLURRED, s.frame.blurred, PEL_FORMAT_RGB32F);
-        set(PEL_SLOT_CURVATURE, s.frame.curvature, PEL_FORMAT_R32F);
+    if (terms != Terms::plain) {
         p.shader.set(s.ambient);
-        p.shader.setMaterial(1, s.material, s.curvatureLut, s.shadowLut);
-        const Buffer wide(device(), s.frame.wide), map(device(), s.frame.map);
+        const Buffer wide = packed ? Buffer(device(), packing::unorm8(s.frame.wide)) : Buffer(device(), s.frame.wide);
+        for (uint32_t i = 0; i < lights; ++i)
+            p.shader.set(i, PEL_LIGHT_WIDE_SHADOW, imageDesc(wide, packed ? PEL_FORMAT_R8_UNORM : PEL_FORMAT_R32F, w, h));
+    }
+    PelMaterial material = s.material;
+    if (terms != Terms::scattering) {
+        std::fill_n(material.deepScatterColor, 3, 0.0f);
+        p.shader.setMaterial(1, material);
+    } else {
+        setNormal(PEL_SLOT_NORMAL_GEOMETRIC, s.frame.geometric);
+        setNormal(PEL_SLOT_NORMAL_BLURRED, s.frame.blurred);
+        packed ? set(PEL_SLOT_CURVATURE, packing::halves(s.frame.curvature), PEL_FORMAT_R16F)
+               : set(PEL_SLOT_CURVATURE, s.frame.curvature, PEL_FORMAT_R32F);
+        p.shader.setMaterial(1, material, s.curvatureLut, s.shadowLut);
+        const Buffer map(device(), s.frame.map);
         const auto size = uint32_t(s.frame.mapSize);
-        for (uint32_t i = 0; i < lights; ++i) {
-            p.shader.set(i, PEL_LIGHT_WIDE_SHADOW, imageDesc(wide, PEL_FORMAT_R32F, w, h));
+        for (uint32_t i = 0; i < lights; ++i)
             p.shader.set(i, PEL_LIGHT_SHADOW_MAP, imageDesc(map, PEL_FORMAT_R32F, size, size));
-        }
     }
     p.shader.commit().execute();
     return p;
@@ -286,9 +316,10 @@ void compare(benchmark::State& state, const Prepared& p, const std::vector<float
     state.counters["max_difference"] = worst;
 }
 
-void library(benchmark::State& state, View view, int taps, int coverage, uint32_t lights, bool plain) {
+void library(benchmark::State& state, View view, int taps, int coverage, uint32_t lights, Terms terms,
+             Storage storage = Storage::float32) {
     const Scene& s = scene(view, taps, coverage);
-    const Prepared p = prepare(s, lights, plain);
+    const Prepared p = prepare(s, lights, terms, storage);
     for (auto _ : state) p.shader.execute();
     perPixel(state, s.frame);
 }
@@ -296,7 +327,7 @@ void library(benchmark::State& state, View view, int taps, int coverage, uint32_
 void openMp(benchmark::State& state, View view, int taps, Effort effort) {
     Scene& s = scene(view, taps);
     for (auto _ : state) baseline::shadeOpenMp(s.frame, s.settings, s.curvature, s.shadow, effort, s.out);
-    compare(state, prepare(s, 1, false), s.out);
+    compare(state, prepare(s, 1, Terms::scattering), s.out);
     perPixel(state, s.frame);
 }
 
@@ -307,7 +338,7 @@ void port(benchmark::State& state, View view, int taps) {
     baseline::ShadePort naive(context, id, queue, s.frame, s.settings, s.curvature, s.shadow);
     naive.run();
     for (auto _ : state) naive.run();
-    compare(state, prepare(s, 1, false), naive.result());
+    compare(state, prepare(s, 1, Terms::scattering), naive.result());
     perPixel(state, s.frame);
 }
 
@@ -318,21 +349,26 @@ void port(benchmark::State& state, View view, int taps) {
     CASE(openMp, name, __VA_ARGS__, Effort::Straight);        \
     CASE(openMp, name##_skipping, __VA_ARGS__, Effort::Skipping)
 
-CASE(library, full_surface, full, 0, 100, 1u, false);
+CASE(library, full_surface, full, 0, 100, 1u, Terms::scattering);
 CASE(port, full_surface, full, 0);
 OPEN_MP(full_surface, full, 0);
-CASE(library, full_32taps, full, 32, 100, 1u, false);
+CASE(library, full_32taps, full, 32, 100, 1u, Terms::scattering);
 CASE(port, full_32taps, full, 32);
 OPEN_MP(full_32taps, full, 32);
-CASE(library, full_plain, full, 0, 100, 1u, true);
-CASE(library, full_coverage10, full, 32, 10, 1u, false);
-CASE(library, full_coverage0, full, 32, 0, 1u, false);
-CASE(library, full_32taps_4lights, full, 32, 100, 4u, false);
-CASE(library, full_surface_4lights, full, 0, 100, 4u, false);
-CASE(library, head_plain, head, 0, 100, 1u, true);
-CASE(library, head_surface, head, 0, 100, 1u, false);
-CASE(library, head_8taps, head, 8, 100, 1u, false);
-CASE(library, head_32taps, head, 32, 100, 1u, false);
+CASE(library, full_lit, full, 0, 100, 1u, Terms::lit);
+CASE(library, full_plain, full, 0, 100, 1u, Terms::plain);
+CASE(library, full_surface_packed, full, 0, 100, 1u, Terms::scattering, Storage::packed);
+CASE(library, full_32taps_packed, full, 32, 100, 1u, Terms::scattering, Storage::packed);
+CASE(library, full_lit_packed, full, 0, 100, 1u, Terms::lit, Storage::packed);
+CASE(library, full_coverage10, full, 32, 10, 1u, Terms::scattering);
+CASE(library, full_coverage0, full, 32, 0, 1u, Terms::scattering);
+CASE(library, full_32taps_4lights, full, 32, 100, 4u, Terms::scattering);
+CASE(library, full_surface_4lights, full, 0, 100, 4u, Terms::scattering);
+CASE(library, head_plain, head, 0, 100, 1u, Terms::plain);
+CASE(library, head_lit, head, 0, 100, 1u, Terms::lit);
+CASE(library, head_surface, head, 0, 100, 1u, Terms::scattering);
+CASE(library, head_8taps, head, 8, 100, 1u, Terms::scattering);
+CASE(library, head_32taps, head, 32, 100, 1u, Terms::scattering);
 OPEN_MP(head_32taps, head, 32);
 CASE(port, head_32taps, head, 32);
 
@@ -348,8 +384,11 @@ int main(int argc, char** argv) {
         };
         for (const View view : {key, backlit}) {
             const std::string name = view == key ? "demo_key" : "demo_backlit";
-            add("library/" + name, library, view, 32, 100, 1u, false);
-            add("library/" + name + "_plain", library, view, 32, 100, 1u, true);
+            add("library/" + name, library, view, 32, 100, 1u, Terms::scattering, Storage::float32);
+            add("library/" + name + "_lit", library, view, 32, 100, 1u, Terms::lit, Storage::float32);
+            add("library/" + name + "_plain", library, view, 32, 100, 1u, Terms::plain, Storage::float32);
+            add("library/" + name + "_packed", library, view, 32, 100, 1u, Terms::scattering, Storage::packed);
+            add("library/" + name + "_lit_packed", library, view, 32, 100, 1u, Terms::lit, Storage::packed);
             add("openMp/" + name, openMp, view, 32, Effort::Straight);
             add("openMp/" + name + "_skipping", openMp, view, 32, Effort::Skipping);
             add("port/" + name, port, view, 32);
