@@ -253,8 +253,9 @@ struct Prepared {
 
 enum class Terms { scattering, lit, plain };
 enum class Storage { float32, packed };
+enum class Given { all, noBlurredNormal, noWideShadow };  // what the host does not give, the library makes
 
-Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage = Storage::float32) {
+Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage = Storage::float32, Given given = Given::all) {
     const auto w = uint32_t(s.frame.width), h = uint32_t(s.frame.height);
     const bool packed = storage == Storage::packed;
     Prepared p{Shader(device()), Buffer(device(), size_t(w) * h * 12)};
@@ -276,6 +277,7 @@ Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage =
     }
     std::vector<PelLight> all(lights, s.light);
     for (uint32_t i = 1; i < lights; ++i) std::swap(all[i].toLight[i % 3], all[i].toLight[(i + 1) % 3]);
+    if (given == Given::noWideShadow) all[0].shadowFilterTexels = 48;
     p.shader.set(all).set(s.camera);
     if (terms != Terms::plain) {
         p.shader.set(s.ambient);
@@ -298,6 +300,12 @@ Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage =
         for (uint32_t i = 0; i < lights; ++i)
             p.shader.set(i, PEL_LIGHT_SHADOW_MAP, imageDesc(map, PEL_FORMAT_R32F, size, size));
     }
+    if (given == Given::noBlurredNormal) {
+        PelShaderOptions options = pelShaderOptionsDefaults();
+        options.blurNormals = 1;
+        p.shader.set(options).clear(PEL_SLOT_NORMAL_BLURRED);
+    }
+    if (given == Given::noWideShadow) check(pelShaderSetLightImage(p.shader.get(), 0, PEL_LIGHT_WIDE_SHADOW, nullptr));
     p.shader.commit().execute();
     return p;
 }
@@ -317,9 +325,9 @@ void compare(benchmark::State& state, const Prepared& p, const std::vector<float
 }
 
 void library(benchmark::State& state, View view, int taps, int coverage, uint32_t lights, Terms terms,
-             Storage storage = Storage::float32) {
+             Storage storage = Storage::float32, Given given = Given::all) {
     const Scene& s = scene(view, taps, coverage);
-    const Prepared p = prepare(s, lights, terms, storage);
+    const Prepared p = prepare(s, lights, terms, storage, given);
     for (auto _ : state) p.shader.execute();
     perPixel(state, s.frame);
 }
@@ -377,18 +385,21 @@ CASE(port, head_32taps, head, 32);
 int main(int argc, char** argv) {
     if (std::ifstream(demoDirectory() + "/key.toml")) {
         const auto add = [](const std::string& name, auto function, auto... arguments) {
-            benchmark::RegisterBenchmark(name.c_str(), function, arguments...)
+            benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { function(state, arguments...); })
                 ->Unit(benchmark::kMillisecond)
                 ->MeasureProcessCPUTime()
                 ->UseRealTime();
         };
+        const auto shadeLibrary = [](benchmark::State& state, auto... arguments) { library(state, arguments...); };
         for (const View view : {key, backlit}) {
             const std::string name = view == key ? "demo_key" : "demo_backlit";
-            add("library/" + name, library, view, 32, 100, 1u, Terms::scattering, Storage::float32);
-            add("library/" + name + "_lit", library, view, 32, 100, 1u, Terms::lit, Storage::float32);
-            add("library/" + name + "_plain", library, view, 32, 100, 1u, Terms::plain, Storage::float32);
-            add("library/" + name + "_packed", library, view, 32, 100, 1u, Terms::scattering, Storage::packed);
-            add("library/" + name + "_lit_packed", library, view, 32, 100, 1u, Terms::lit, Storage::packed);
+            add("library/" + name, shadeLibrary, view, 32, 100, 1u, Terms::scattering);
+            add("library/" + name + "_lit", shadeLibrary, view, 32, 100, 1u, Terms::lit);
+            add("library/" + name + "_plain", shadeLibrary, view, 32, 100, 1u, Terms::plain);
+            add("library/" + name + "_packed", shadeLibrary, view, 32, 100, 1u, Terms::scattering, Storage::packed);
+            add("library/" + name + "_lit_packed", shadeLibrary, view, 32, 100, 1u, Terms::lit, Storage::packed);
+            add("library/" + name + "_blur", shadeLibrary, view, 32, 100, 1u, Terms::scattering, Storage::float32, Given::noBlurredNormal);
+            add("library/" + name + "_filter", shadeLibrary, view, 32, 100, 1u, Terms::scattering, Storage::float32, Given::noWideShadow);
             add("openMp/" + name, openMp, view, 32, Effort::Straight);
             add("openMp/" + name + "_skipping", openMp, view, 32, Effort::Skipping);
             add("port/" + name, port, view, 32);

@@ -7,113 +7,161 @@
 // material, beyond the radius, and at a depth edge: a step more than PEL_BLUR_GAP times as long as the longest before it.
 // Taps with a NaN or Inf are passed over.
 //
-// Inputs: shading normals, positions or depth, material ids. Output: (Nb, 1) per pixel of a material without normal map;
-// NaN where the pixel's own normal or position is. One work-group: a run of tiles; one work-item: one pixel at a time
-// (PEL_WIDTH 1). Launches: prepare_normals, blur_normals along x, blur_normals along y.
+// Inputs: shading normals, positions or depth, material ids. Output: Nb of each pixel of a material without normal map;
+// NaN where the pixel's own normal or position is. One work-group: a run of tiles; one work-item: PEL_WIDTH pixels of a row
+// at a time, whose taps are PEL_WIDTH neighbours as long as they share a step, which is nearly always.
+// Launches: prepare_normals, blur_normals along x, blur_normals along y.
+#include "lib/planes.clh"
 #include "lib/tiles.clh"
 #include "shared/shade_passes.h"
 
-// w: 1, or 0 where the normal or the position is no number.
+// Ids of PEL_WIDTH pixels from `first` on that this work-item takes: those from x on which have a material; others are 0.
+static inline uintw ownIds(__global const PelShadeFrame* frame, __global uchar* material, uint x, uint y, uint first) {
+    const intw column = lanesw() + (int)first;
+    const uintw id = loadIds(frame, material, first, y);
+    return selectw((uintw)(0), id, (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id));
+}
+
+// tags: the id where normal and position are numbers, its negative where not, 0 where there is no material: of every pixel,
+// since taps go beyond the tiles of the list.
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void prepare_normals(
     __global const PelShadeFrame* frame, __global const uint* list, __global uchar* material, __global uchar* normal,
-    __global uchar* position, __global uchar* depth, __global float4* normals, __global float4* positions) {
-    const TileRun run = tileRun(frame, list);
-    for (uint i = run.begin; i < run.end; ++i) {
-        const uint2 origin = tileOrigin(frame, list, i);
-        for (uint pixel = get_local_id(0); pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP) {
+    __global uchar* position, __global uchar* depth, __global float* normals, __global float* positions, __global float* tags,
+    uint plane) {
+    if (PEL_FORMAT_MATERIAL && list[0] == 0) return;
+    const uint groups = get_num_groups(0), group = get_group_id(0);
+    const uint end = (uint)((ulong)frame->tiles * (group + 1) / groups);
+    for (uint tile = (uint)((ulong)frame->tiles * group / groups); tile < end; ++tile) {
+        const uint2 origin = (uint2)(tile % frame->tilesX * PEL_TILE_WIDTH, tile / frame->tilesX * PEL_TILE_HEIGHT);
+        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP * PEL_WIDTH) {
             const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
             if (x >= frame->width || y >= frame->height) continue;
-            if (!hasMaterial(frame, loadIds(frame, material, x, y))) continue;
-            const Vec3w n = loadNormal(PEL_FORMAT_NORMAL_SHADING,
-                                       imageSpan(normal, &frame->images[PEL_IMAGE_NORMAL_SHADING], x, y));
-            const Vec3w p = loadPosition(frame, position, depth, x, y);
-            const size_t at = (size_t)y * frame->width + x;
-            const bool valid = finite3(n) && finite3(p);
-            normals[at] = valid ? (float4)(n.x, n.y, n.z, 1.0f) : (float4)(0.0f);
-            positions[at] = valid ? (float4)(p.x, p.y, p.z, 0.0f) : (float4)(0.0f);
+            const uint first = vectorStart(x, frame->width);
+            const intw column = lanesw() + (int)first;
+            const uintw id = ownIds(frame, material, x, y, first);
+            const maskw own = (column >= (int)x) & (column < (int)frame->width), held = id != 0;
+            const size_t at = PEL_PLANE_GUARD + (size_t)y * frame->width + first;
+            floatw tag = 0.0f;
+            if (anyw(held)) {
+                const Vec3w n = loadNormal(PEL_FORMAT_NORMAL_SHADING,
+                                           imageSpan(normal, &frame->images[PEL_IMAGE_NORMAL_SHADING], first, y));
+                const Vec3w p = loadPosition(frame, position, depth, first, y);
+                tag = convert_floatw(id);
+                tag = selectw(-tag, tag, finite3(n) & finite3(p));
+                storePlanes(normals, plane, at, n, held);
+                storePlanes(positions, plane, at, p, held);
+            }
+            storePlane(tags, at, tag, own);
         }
     }
 }
 
 typedef struct Field {
     __global const PelShadeFrame* frame;
-    __global uchar* material;
-    __global const float4 *normals, *positions;
-    uint id;
+    __global const float *normals, *positions, *tags;
+    uint plane;
+    bool alongY;
 } Field;
 
-// Whether (x, y) is a pixel of the material that is being blurred.
-static inline bool sameMaterial(const Field* f, int x, int y) {
-    return x >= 0 && y >= 0 && x < (int)f->frame->width && y < (int)f->frame->height &&
-           loadIds(f->frame, f->material, (uint)x, (uint)y) == f->id;
+// The lanes of `mask` whose pixel `offset` away along the axis has the same material. x, y: of the first lane.
+static inline maskw sameMaterial(const Field* f, int x, int y, int offset, size_t at, floatw id, maskw mask) {
+    if (f->alongY) {
+        if (y + offset < 0 || y + offset >= (int)f->frame->height) return mask & 0;
+    } else {
+        const intw column = lanesw() + (x + offset);
+        mask &= (column >= 0) & (column < (int)f->frame->width);
+    }
+    return mask & (fabs(loadw(at, f->tags)) == id);
 }
 
 // Distance to a direct neighbour; Inf where there is none to compare with.
-static inline float neighbourDistance(const Field* f, int x, int y, float4 p) {
-    if (!sameMaterial(f, x, y)) return INFINITY;
-    const size_t at = (size_t)y * f->frame->width + (size_t)x;
-    return f->normals[at].w == 0.0f ? INFINITY : length(f->positions[at] - p);
+static inline floatw neighbourDistance(const Field* f, int x, int y, int offset, size_t at, Vec3w p, floatw id, maskw mask) {
+    mask = sameMaterial(f, x, y, offset, at, id, mask);
+    if (!anyw(mask)) return (floatw)(INFINITY);
+    mask &= loadw(at, f->tags) > 0.0f;
+    const Vec3w away = sub3(loadPlanes(f->positions, f->plane, at), p);
+    return selectw((floatw)(INFINITY), sqrt(dot3(away, away)), mask);
 }
 
-// The mean along (dx, dy), one of them 1, the other 0.
-static inline float4 blurAlong(const Field* f, int x, int y, int dx, int dy, float radius) {
-    const size_t centre = (size_t)y * f->frame->width + (size_t)x;
-    const float4 p = f->positions[centre];
-    float4 sum = (float4)(f->normals[centre].xyz, 1.0f);
-    const float s = fmin(neighbourDistance(f, x - dx, y - dy, p), neighbourDistance(f, x + dx, y + dy, p));
-    if (!(s < INFINITY)) return sum;
-    const float taps = ceil(radius / (s * PEL_BLUR_TAPS)); // Inf or NaN where two pixels lie in one place
-    const int step = (int)fmin(fmax(taps, 1.0f), (float)PEL_BLUR_STEP_MAX);
-    const float perRadius2 = 1.0f / (radius * radius);
-    for (int side = -1; side <= 1; side += 2) {
-        float4 before = p;
-        float longest = (float)step * s;
-        for (int k = 1; k <= PEL_BLUR_TAPS; ++k) {
-            const int qx = x + side * k * step * dx, qy = y + side * k * step * dy;
-            if (!sameMaterial(f, qx, qy)) break;
-            const size_t at = (size_t)qy * f->frame->width + (size_t)qx;
-            const float4 n = f->normals[at];
-            if (n.w == 0.0f) continue;
-            const float4 q = f->positions[at];
-            const float gap = length(q - before);
-            const float d2 = dot(q - p, q - p) * perRadius2;
-            if (gap > PEL_BLUR_GAP * longest || d2 >= 1.0f) break;
-            const float weight = (1.0f - d2) * (1.0f - d2);
-            sum += weight * (float4)(n.xyz, 1.0f);
-            longest = fmax(longest, gap);
-            before = q;
+// The greatest value of the lanes of `mask`, all of them positive; 0 for none.
+static inline int greatest(intw value, maskw mask) {
+    return (int)greatestId(as_uintw(value), mask);
+}
+
+// The sum of a pixel's normal and of those along the axis, of the lanes of `mask`.
+static inline Vec3w blurAlong(const Field* f, int x, int y, floatw id, floatw radius, maskw mask) {
+    const size_t centre = PEL_PLANE_GUARD + (size_t)y * f->frame->width + (size_t)x;
+    const long pixel = f->alongY ? (long)f->frame->width : 1; // from one pixel to the next along the axis
+    const Vec3w p = loadPlanes(f->positions, f->plane, centre);
+    Vec3w sum = loadPlanes(f->normals, f->plane, centre);
+    floatw total = 1.0f;
+    const floatw s = fmin(neighbourDistance(f, x, y, -1, centre - pixel, p, id, mask),
+                          neighbourDistance(f, x, y, 1, centre + pixel, p, id, mask));
+    const floatw taps = ceil(radius / (s * (float)PEL_BLUR_TAPS)); // Inf or NaN where two pixels lie in one place
+    const intw steps = convert_intw(fmin(fmax(taps, (floatw)(1.0f)), (floatw)((float)PEL_BLUR_STEP_MAX)));
+    const floatw perRadius2 = 1.0f / (radius * radius);
+    maskw left = mask & (s < INFINITY);
+    while (anyw(left)) {
+        const int step = greatest(steps, left);
+        const maskw these = left & (steps == step);
+        left &= notw(these);
+        for (int side = -1; side <= 1; side += 2) {
+            Vec3w before = p;
+            floatw longest2 = squarew((float)step * s);
+            maskw on = these;
+            for (int k = 1; k <= PEL_BLUR_TAPS; ++k) {
+                const int offset = side * k * step;
+                const size_t at = centre + (size_t)(offset * pixel);
+                on = sameMaterial(f, x, y, offset, at, id, on);
+                if (!anyw(on)) break;
+                const maskw valid = on & (loadw(at, f->tags) > 0.0f);
+                const Vec3w q = loadPlanes(f->positions, f->plane, at), away = sub3(q, p);
+                const Vec3w hop = sub3(q, before);
+                const floatw gap2 = dot3(hop, hop), d2 = dot3(away, away) * perRadius2;
+                const maskw end = valid & ((gap2 > (float)(PEL_BLUR_GAP * PEL_BLUR_GAP) * longest2) | (d2 >= 1.0f));
+                const maskw take = valid & notw(end);
+                const floatw weight = (1.0f - d2) * (1.0f - d2);
+                const Vec3w n = loadPlanes(f->normals, f->plane, at);
+                sum = select3(sum, add3(sum, scale3(n, weight)), take);
+                total = selectw(total, total + weight, take);
+                longest2 = selectw(longest2, fmax(longest2, gap2), take);
+                before = select3(before, q, take);
+                on &= notw(end);
+            }
         }
     }
-    return (float4)(sum.xyz / sum.w, 1.0f);
+    return scale3(sum, 1.0f / total);
 }
 
-// `from` and `to` differ; along y `to` may hold the unblurred normals.
+// `from` and `to` differ; along y `to` holds the unblurred normals, which stay where the mean vanishes.
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void blur_normals(
     __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials, __global const uint* list,
-    __global uchar* material, __global const float4* from, __global const float4* positions, __global float4* to,
-    uint alongY) {
+    __global uchar* material, __global const float* from, __global const float* positions, __global const float* tags,
+    __global float* to, uint plane, uint alongY) {
     const TileRun run = tileRun(frame, list);
+    const Field field = {frame, from, positions, tags, plane, alongY != 0};
     for (uint i = run.begin; i < run.end; ++i) {
         const uint2 origin = tileOrigin(frame, list, i);
-        for (uint pixel = get_local_id(0); pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP) {
+        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP * PEL_WIDTH) {
             const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
             if (x >= frame->width || y >= frame->height) continue;
-            const uint id = loadIds(frame, material, x, y);
-            if (!hasMaterial(frame, id) || materials[id].hasNormalMap) continue;
-            const Field field = {frame, material, from, positions, id};
-            const size_t at = (size_t)y * frame->width + x;
-            float4 n = from[at];
-            if (n.w != 0.0f) n = blurAlong(&field, (int)x, (int)y, !alongY, (int)alongY, materials[id].diffusionRadius);
+            const uint first = vectorStart(x, frame->width);
+            const uintw id = ownIds(frame, material, x, y, first);
+#define PEL_RADIUS_(k, s) (id s && !materials[id s].hasNormalMap ? materials[id s].diffusionRadius : 0.0f)
+            const floatw radius = PEL_LANES(PEL_RADIUS_);
+#undef PEL_RADIUS_
+            const maskw wanted = radius > 0.0f;
+            if (!anyw(wanted)) continue;
+            const size_t at = PEL_PLANE_GUARD + (size_t)y * frame->width + first;
+            const maskw valid = wanted & (loadw(at, tags) > 0.0f);
+            Vec3w n = blurAlong(&field, (int)first, (int)y, convert_floatw(id), radius, valid);
             if (alongY) {
-                const float length2 = dot(n.xyz, n.xyz);
-                if (n.w == 0.0f)
-                    n = (float4)(NAN); // the shading pass makes it the invalid colour
-                else if (length2 > 1e-12f)
-                    n = (float4)(n.xyz / sqrt(length2), 1.0f);
-                else
-                    n = to[at];
+                const floatw length2 = dot3(n, n);
+                n = select3(loadPlanes(to, plane, at), scale3(n, 1.0f / sqrt(length2)), length2 > 1e-12f);
+                const floatw none = NAN; // the shading pass makes it the invalid colour
+                n = select3(vec3(none, none, none), n, valid);
             }
-            to[at] = n;
+            storePlanes(to, plane, at, n, wanted);
         }
     }
 }

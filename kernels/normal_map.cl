@@ -1,15 +1,16 @@
 // Blurred normals from a tangent-space normal map (section 6, "blurred-normal mip"): trilinear, at the level whose texels
 // are as long as the diffusion radius, but never sharper than the pixel's own level of detail.
 //
-// Inputs: UV, their gradients (or none), tangents, geometric normals, ids, one material's map. Output: (Nb, 1) per pixel of
+// Inputs: UV, their gradients (or none), tangents, geometric normals, ids, one material's map. Output: planes of Nb per pixel of
 // that material, and the geometric normal where PelNormalMap.fallback asks for it; NaN where an input is. One work-group: a
 // run of tiles; one work-item: one pixel at a time (PEL_WIDTH 1). PEL_NORMAL_SLOT: where the geometric normals are.
 #include "lib/normal_map.clh"
+#include "lib/planes.clh"
 #include "lib/tiles.clh"
 
 #define PEL_AT(buffer, slot) imageSpan(buffer, &frame->images[slot], x, y)
 
-static inline float4 mappedNormal(__global const PelShadeFrame* frame, __global const PelNormalMap* chain, __global uchar* map,
+static inline Vec3w mappedNormal(__global const PelShadeFrame* frame, __global const PelNormalMap* chain, __global uchar* map,
                                   __global uchar* uv, __global uchar* gradient, __global uchar* tangent, Vec3w ng, uint x,
                                   uint y) {
     const Span uvSpan = PEL_AT(uv, PEL_IMAGE_UV), tangentSpan = PEL_AT(tangent, PEL_IMAGE_TANGENT);
@@ -29,17 +30,16 @@ static inline float4 mappedNormal(__global const PelShadeFrame* frame, __global 
         valid = valid && finitew(g.x) && finitew(g.y) && finitew(g.z) && finitew(g.w);
         if (valid) level = fmax(level, footprintLevel(g, (float)chain->levels[0].width, (float)chain->levels[0].height));
     }
-    if (!valid) return (float4)(NAN);
+    if (!valid) return vec3(NAN, NAN, NAN);
     const float3 m = sampleNormalMap(PEL_FORMAT_NORMAL_MAP, map, chain, u, v, level);
     const Vec3w b = scale3(cross3(ng, t), side);
-    const Vec3w n = normalize3(add3(add3(scale3(t, m.x), scale3(b, m.y)), scale3(ng, m.z)));
-    return (float4)(n.x, n.y, n.z, 1.0f);
+    return normalize3(add3(add3(scale3(t, m.x), scale3(b, m.y)), scale3(ng, m.z)));
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void normal_map(
     __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials, __global const uint* list,
     __global uchar* material, __global uchar* normal, __global uchar* uv, __global uchar* gradient, __global uchar* tangent,
-    __global const PelNormalMap* chain, __global uchar* map, __global float4* to) {
+    __global const PelNormalMap* chain, __global uchar* map, __global float* to, uint plane) {
     const TileRun run = tileRun(frame, list);
     for (uint i = run.begin; i < run.end; ++i) {
         const uint2 origin = tileOrigin(frame, list, i);
@@ -51,9 +51,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void normal
             const bool plain = chain->fallback && !materials[id].hasNormalMap;
             if (id != chain->material && !plain) continue;
             const Vec3w ng = loadNormal(PEL_FORMAT_NORMAL, PEL_AT(normal, PEL_NORMAL_SLOT));
-            to[(size_t)y * frame->width + x] =
-                plain ? (float4)(ng.x, ng.y, ng.z, 1.0f)
-                      : mappedNormal(frame, chain, map, uv, gradient, tangent, ng, x, y);
+            storePlanes(to, plane, PEL_PLANE_GUARD + (size_t)y * frame->width + x,
+                        plain ? ng : mappedNormal(frame, chain, map, uv, gradient, tangent, ng, x, y), 1);
         }
     }
 }

@@ -64,7 +64,7 @@ TEST(BlurNormals, OffCostsNothingAndAnImageGoesFirst) {
     EXPECT_EQ(off.launches, 2u);
     f.options.blurNormals = 1;
     EXPECT_NE(plain, shade(device(), f, tables(), &on));
-    EXPECT_GE(on.scratchBytes, off.scratchBytes + 48 * f.pixels());
+    EXPECT_GE(on.scratchBytes, off.scratchBytes + 40 * f.pixels());
     f.slots[PEL_SLOT_NORMAL_BLURRED] = f.slots[PEL_SLOT_NORMAL_GEOMETRIC];
     EXPECT_EQ(plain, shade(device(), f, tables(), &given));
     EXPECT_EQ(given.launches, off.launches);

@@ -72,10 +72,17 @@ ShaderState ShadePasses::plan(const Ref<Device>& device, const ShaderState& stat
     const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
     const size_t pixels = size_t(frame.width) * frame.height;
     const bool blur = features & PEL_FEATURE_BLUR_NORMALS, map = features & PEL_FEATURE_NORMAL_MAP;
-    resize(normals_, device, blur || map ? pixels * sizeof(cl_float4) : 0);
-    resize(positions_, device, blur ? pixels * sizeof(cl_float4) : 0);
-    resize(between_, device, blur ? pixels * sizeof(cl_float4) : 0);
-    if (normals_) plan.images[PEL_SLOT_NORMAL_BLURRED] = scratchImage(normals_, frame, PEL_FORMAT_RGBA32F);
+    const size_t plane = (pixels + 2 * PEL_PLANE_GUARD) * sizeof(float);
+    resize(normals_, device, blur || map ? 3 * plane : 0);
+    resize(positions_, device, blur ? 3 * plane : 0);
+    resize(between_, device, blur ? 3 * plane : 0);
+    resize(tags_, device, blur ? plane : 0);
+    planeValues_ = uint32_t(plane / sizeof(float));
+    if (normals_) {
+        ImageView& image = plan.images[PEL_SLOT_NORMAL_BLURRED];
+        image = scratchImage(normals_, frame, PEL_FORMAT_PLANAR_RGB32F, PEL_PLANE_GUARD * sizeof(float));
+        image.planeStride = plane;
+    }
 
     mappedMaterials_.clear();
     for (const auto& [id, material] : state.materials)
@@ -107,10 +114,10 @@ void ShadePasses::build(Device& device, const ShaderState& plan, uint32_t featur
     };
     blurProgram_ = mapProgram_ = shadowProgram_ = cl::Program();
     if (features & PEL_FEATURE_BLUR_NORMALS) {
-        cl::Defines all = common(1);
+        cl::Defines all = common(width);
         all.erase("PEL_FORMAT_NORMAL");
         all.erase("PEL_NORMAL_SLOT");
-        all["PEL_FORMAT_NORMAL_SHADING"] = code(PEL_SLOT_NORMAL_SHADING, 1);
+        all["PEL_FORMAT_NORMAL_SHADING"] = code(PEL_SLOT_NORMAL_SHADING, width);
         blurProgram_ = device.programs().get("blur_normals.cl", all);
     }
     if (features & PEL_FEATURE_NORMAL_MAP) {
@@ -164,7 +171,7 @@ void ShadePasses::enqueue(Device& device, const ShaderState& plan, const ShadeTa
              {PEL_SLOT_MATERIAL, normalSlot(plan), PEL_SLOT_UV, PEL_SLOT_UV_GRADIENT, PEL_SLOT_TANGENT})
             launch.arg(memoryOf(plan.images[slot]));
         launch.arg(mapConstants_[k]).arg(memoryOf(plan.materials.at(mappedMaterials_[k]).normalMap[0]));
-        launch.arg(normals_->memory());
+        launch.arg(normals_->memory()).arg(cl_uint(planeValues_));
         events.push_back(device.launch(launch, range));
     }
     for (size_t k = 0; k < filteredLights_.size(); ++k) {
@@ -186,21 +193,21 @@ void ShadePasses::enqueueBlur(Device& device, const ShaderState& plan, const Sha
     cl::Launch prepare(blurProgram_, "prepare_normals");
     prepare.arg(tables.frameMemory()).arg(list).arg(material).arg(memoryOf(plan.images[PEL_SLOT_NORMAL_SHADING]));
     prepare.arg(memoryOf(plan.images[PEL_SLOT_POSITION])).arg(memoryOf(plan.images[PEL_SLOT_DEPTH]));
-    prepare.arg(normals_->memory()).arg(positions_->memory());
+    prepare.arg(normals_->memory()).arg(positions_->memory()).arg(tags_->memory()).arg(cl_uint(planeValues_));
     events.push_back(device.launch(prepare, range));
     for (cl_uint alongY : {0u, 1u}) {
         const cl::Memory &from = alongY ? between_->memory() : normals_->memory(),
                          &to = alongY ? normals_->memory() : between_->memory();
         cl::Launch blur(blurProgram_, "blur_normals");
         blur.arg(tables.frameMemory()).arg(tables.materials()).arg(list).arg(material);
-        blur.arg(from).arg(positions_->memory()).arg(to).arg(alongY);
+        blur.arg(from).arg(positions_->memory()).arg(tags_->memory()).arg(to).arg(cl_uint(planeValues_)).arg(alongY);
         events.push_back(device.launch(blur, range));
     }
 }
 
 size_t ShadePasses::scratchBytes() const {
     size_t bytes = 0;
-    for (const Ref<Buffer>& buffer : {normals_, wideShadows_, positions_, between_})
+    for (const Ref<Buffer>& buffer : {normals_, wideShadows_, positions_, between_, tags_})
         if (buffer) bytes += buffer->bytes();
     for (const auto& sent : sent_) bytes += sent.size();
     return bytes;

@@ -31,7 +31,8 @@ class ShadePasses {
     std::vector<uint32_t> filteredLights_;   // of plan.lights
     std::vector<uint32_t> mappedMaterials_;  // ids
     Ref<Buffer> normals_, wideShadows_;      // what the shading kernel reads
-    Ref<Buffer> positions_, between_;        // of the blur alone
+    Ref<Buffer> positions_, between_, tags_;  // of the blur alone
+    uint32_t planeValues_ = 0;                // from one plane of normals or positions to the next
     std::vector<cl::Memory> lightConstants_, mapConstants_;
     std::vector<std::vector<unsigned char>> sent_;  // what those hold
     cl::Program blurProgram_, mapProgram_, shadowProgram_;
