@@ -130,7 +130,7 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
     const LightSample sample = sampleLight(light, p->position);
     const maskw reached = active & (sample.strength > 0.0f);
     const bool wantsThickness = PEL_FORMAT_OUT_THICKNESS && !parts->measured;
-    if (SKIPPING && !wantsThickness && !anyw(reached)) return;
+    if (SKIPPING && !(wantsThickness || anyw(reached))) return;
     const Vec3w l = sample.direction;
     const floatw nl = dot3(p->n, l), bl = dot3(p->nb, l);
     const Vec3w color = scale3(loadUniform3(light->color), sample.strength);
@@ -166,7 +166,7 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
         const bool colored = material->deepScatterColor[0] != 0.0f || material->deepScatterColor[1] != 0.0f ||
                              material->deepScatterColor[2] != 0.0f;
         if (colored && (taps || PEL_FORMAT_THICKNESS)) {
-            const maskw needed = SKIPPING && !wantsThickness ? reached & (back > 0.0f) : (maskw)(-1);
+            const maskw needed = !SKIPPING || wantsThickness ? (maskw)(-1) : reached & (back > 0.0f);
             if (anyw(needed)) {
                 floatw thickness = p->thickness;
                 if (!PEL_FORMAT_THICKNESS)
