@@ -5,7 +5,7 @@
 // One work-group takes one tile after another from the list; one work-item PEL_WIDTH pixels of a row at a time.
 // Variants: PEL_FEATURES (shared/features.h) and the format of each image, PEL_FORMAT_<SLOT>, 0 where there is none;
 // all wide shadows have one format, and all shadow maps. Unused buffers are NULL.
-#include "lib/ambient.clh"
+#include "lib/ambient_cube.clh"
 #include "lib/deep_scatter.clh"
 #include "lib/direct.clh"
 #include "lib/ggx.clh"
@@ -33,6 +33,7 @@ typedef struct Scene {
     __global uchar *position, *depth, *normalGeometric, *normalShading, *normalBlurred, *curvature, *albedo;
     __global uchar *occlusion, *thickness, *roughness, *specular;
     __global uchar* lightImages[PEL_LIGHT_BUFFERS];
+    __global const float4* cube; // nodes of lib/ambient_cube.clh
 } Scene;
 
 typedef struct Outputs {
@@ -45,7 +46,8 @@ typedef struct Pixels {
     NormalPair pair;
     Vec3w albedo;
     floatw curvature, occlusion, thickness, roughness, specular;
-    maskw valid; // no input is NaN or Inf
+    floatw turnCosine, turnSine; // of the disk of taps; PEL_BIT_ROTATE_TAPS only
+    maskw valid;                 // no input is NaN or Inf
 } Pixels;
 
 // The parts that outputs beside radiance take (PEL_FORMAT_OUT_...); not computed where there is none.
@@ -88,6 +90,7 @@ static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
         p.valid &= finite3(p.position);
         p.toCamera = normalize3(sub3(loadUniform3(frame->cameraPosition), p.position));
     }
+    if (HAS(PEL_BIT_ROTATE_TAPS)) tapTurn(x, y, &p.turnCosine, &p.turnSine);
     if (PEL_FORMAT_ALBEDO) {
         p.albedo = loadColor(PEL_FORMAT_ALBEDO, SPAN(albedo, ALBEDO));
         p.valid &= finite3(p.albedo);
@@ -120,7 +123,26 @@ static inline floatw measureThickness(const Scene* scene, __global const PelShad
     const Vec3w inside = sub3(p->position, scale3(p->ng, (floatw)(material->deepScatterNormalOffset)));
     return thicknessTaps(PEL_FORMAT_SHADOW_MAP, scene->lightImages[light->mapBuffer], light,
                          shadowCoordinates(light->worldToShadow, inside), material->thicknessFilterRadius,
-                         material->thicknessTaps, beyondCutoff ? INFINITY : material->thicknessCutoff, needed);
+                         material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine, p->turnSine,
+                         beyondCutoff ? INFINITY : material->thicknessCutoff, needed);
+}
+
+// Ambient light at the three normals.
+static inline Vec3w ambientOfPixels(const Scene* scene, float3 blend, const Pixels* p) {
+    __global const PelShadeFrame* frame = scene->frame;
+    if (!HAS(PEL_BIT_AMBIENT_CUBE)) return ambientLight(frame->ambient, blend, p->n, p->nb);
+    const Vec3w e = cubeAmbientLight(scene->cube, frame->cubeSize, blend, p->n, p->nb);
+    return HAS(PEL_BIT_CUBE_ALONE) ? e : add3(e, ambientLight(frame->ambient, blend, p->n, p->nb));
+}
+
+// And on the far side, in all channels along one normal.
+static inline Vec3w ambientBehind(const Scene* scene, Vec3w behind) {
+    __global const PelShadeFrame* frame = scene->frame;
+    const Vec3w e = HAS(PEL_BIT_CUBE_ALONE) ? cubeIrradiance(scene->cube, frame->cubeSize, behind)
+                                            : vec3(irradiance(frame->ambient, 0, behind), irradiance(frame->ambient, 1, behind),
+                                                   irradiance(frame->ambient, 2, behind));
+    if (!HAS(PEL_BIT_AMBIENT_CUBE) || HAS(PEL_BIT_CUBE_ALONE)) return e;
+    return add3(e, cubeIrradiance(scene->cube, frame->cubeSize, behind));
 }
 
 // What one light adds to pixels of one material: diffuse and deep scatter are multiplied by albedo later.
@@ -220,7 +242,7 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
     parts->measured = PEL_FORMAT_THICKNESS != 0;
     if (PEL_FORMAT_THICKNESS && PEL_FORMAT_OUT_THICKNESS) parts->thickness = p->thickness;
     if (HAS(PEL_BIT_AMBIENT)) {
-        diffuse = ambientLight(frame->ambient, vload3(0, material->normalBlend), p->n, p->nb);
+        diffuse = ambientOfPixels(scene, vload3(0, material->normalBlend), p);
         if (PEL_FORMAT_AMBIENT_OCCLUSION) diffuse = scale3(diffuse, p->occlusion);
         if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = diffuse;
     }
@@ -228,10 +250,10 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
         const floatw through = material->deepScatterAmbient * transmittance(p->thickness, material->deepScatterFalloff,
                                                                             material->thicknessCutoff);
         if (!SKIPPING || anyw(active & (through > 0.0f))) {
-            const Vec3w behind = scale3(p->nb, (floatw)(-1.0f));
-            const Vec3w e = vec3(irradiance(frame->ambient, 0, behind), irradiance(frame->ambient, 1, behind),
-                                 irradiance(frame->ambient, 2, behind));
-            const Vec3w deep = scale3(mul3(loadUniform3(material->deepScatterColor), e), through);
+            const Vec3w e = ambientBehind(scene, scale3(p->nb, (floatw)(-1.0f)));
+            Vec3w deep = scale3(mul3(loadUniform3(material->deepScatterColor), e), through);
+            // A cube may hold NaN, which must not matter where nothing comes through.
+            if (HAS(PEL_BIT_AMBIENT_CUBE)) deep = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), deep, through > 0.0f);
             diffuse = add3(diffuse, deep);
             if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = deep;
         }
@@ -317,11 +339,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
     __global uchar* light9, __global uchar* light10, __global uchar* light11, __global uchar* light12,
     __global uchar* light13, __global uchar* light14, __global uchar* light15,
     __global uchar* outDiffuse, __global uchar* outDeepScatter, __global uchar* outSpecular, __global uchar* outThickness,
-    uint part, uint parts) {
+    __global const float4* cube, uint part, uint parts) {
     const Scene scene = {frame, materials, lights, luts, position, depth, normalGeometric, normalShading,
                          normalBlurred, curvature, albedo, occlusion, thickness, roughness, specular,
                          {light0, light1, light2, light3, light4, light5, light6, light7, light8, light9,
-                          light10, light11, light12, light13, light14, light15}};
+                          light10, light11, light12, light13, light14, light15}, cube};
     const Outputs out = {outDiffuse, outDeepScatter, outSpecular, outThickness};
     Counts counts = {{0}};
     const uint tiles = PEL_FORMAT_MATERIAL ? list[0] : frame->tiles;

@@ -66,6 +66,7 @@ struct Frame {
     std::vector<Light> lights;
     std::map<uint32_t, PelMaterial> materials;
     PelAmbient ambient = pelAmbientDefaults();
+    reference::CubeMap cube;  // ambient light; size 0: none
     PelCamera camera = pelCameraDefaults();
     PelShaderOptions options = pelShaderOptionsDefaults();
     bool curvatureLut = true, shadowLut = true;
@@ -228,6 +229,12 @@ constexpr PelFormat floatFormats[] = {PEL_FORMAT_UNDEFINED, PEL_FORMAT_R32F, PEL
 inline void setFrame(const pellucid::Device& device, pellucid::Shader& shader, const Frame& f,
                      const Tables& tables) {
     shader.set(f.options).set(f.ambient).set(f.camera);
+    if (const uint32_t size = uint32_t(f.cube.size)) {
+        std::vector<float> texels;
+        for (const Rgb& t : f.cube.texels) texels.insert(texels.end(), {float(t.x), float(t.y), float(t.z)});
+        shader.setAmbientCube(
+            pellucid::imageDesc(pellucid::Buffer(device, texels), PEL_FORMAT_RGB32F, size, 6 * size));
+    }
     for (int slot = 1; slot < PEL_SLOT_OUT_DIFFUSE; ++slot)
         if (const Image& image = f.slots[slot]; !image.values.empty())
             shader.set(PelImageSlot(slot),
@@ -315,8 +322,10 @@ inline reference::PixelLight truthLight(const Frame& f, const PelMaterial& mater
             map,
             reference::shadowCoordinates(m, f.slots[PEL_SLOT_POSITION].vec(i), f.slots[normal].vec(i),
                                          material.deepScatterNormalOffset),
-            diskTaps(material.thicknessTaps), material.thicknessFilterRadius, decoding,
-            reference::MapFilter::bilinear);
+            f.options.rotateTaps
+                ? reference::turnedTaps(diskTaps(material.thicknessTaps), uint32_t(i % f.width), uint32_t(i / f.width))
+                : diskTaps(material.thicknessTaps),
+            material.thicknessFilterRadius, decoding, reference::MapFilter::bilinear);
     }
     return out;
 }
@@ -367,6 +376,7 @@ inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
     std::vector<reference::PixelLight> lights;
     for (const Light& light : f.lights) lights.push_back(truthLight(f, m, light, i));
     reference::Ambient ambient{{f.ambient.constant[0], f.ambient.constant[1], f.ambient.constant[2]}, {}};
+    if (f.cube.size) ambient.cube = &f.cube;
     for (int k = 0; k < 9; ++k)
         ambient.harmonics[k] = {f.ambient.sh[k][0], f.ambient.sh[k][1], f.ambient.sh[k][2]};
     reference::Shaded shaded = reference::shadePixel(material, pixel, lights, ambient);

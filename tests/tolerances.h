@@ -109,6 +109,10 @@ inline constexpr Tolerance shadeTerm{"shadeTerm", 5e-5,
                                      "one term alone: bilinear weights and a few dozen float operations"};
 inline constexpr Tolerance shadeSum{"shadeSum", 2e-4, "all terms added and multiplied by light and albedo"};
 
+inline constexpr Tolerance cubeOfHarmonics{
+    "cubeOfHarmonics", 6e-4, "32 texels along an edge: bilinear between directions up to 3.6 degrees apart, 3.5e-4 measured"};
+inline constexpr Tolerance cubeSeam{
+    "cubeSeam", 1e-4, "directions 4e-6 apart over texels of white noise, 1/3 apart and less"};
 inline constexpr Tolerance shadeThickness{"shadeThickness", 2e-3,
                                           "length: depths of a map that spans 200 to 700, through one float division"};
 inline constexpr Tolerance ggxEnergy{"ggxEnergy", 3e-3, "against a mean of 100,000 random half vectors"};

@@ -69,6 +69,15 @@ PelError pelShaderSetAmbient(PelShader shader, const PelAmbient* ambient) {
     });
 }
 
+PelError pelShaderSetAmbientCube(PelShader shader, const PelImageDesc* faces) {
+    return entry([&] {
+        Shader& s = fromHandle<Shader>(shader);
+        if (!faces) return s.setAmbientCube(nullptr);
+        const PelImageDesc desc = readStruct(faces, pelImageDescDefaults(), "PelImageDesc");
+        s.setAmbientCube(&desc);
+    });
+}
+
 PelError pelShaderSetCamera(PelShader shader, const PelCamera* camera) {
     return entry(
         [&] { fromHandle<Shader>(shader).setCamera(readStruct(camera, pelCameraDefaults(), "PelCamera")); });

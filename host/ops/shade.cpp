@@ -14,8 +14,10 @@ static_assert(PEL_BIT_DIRECT_SCATTER == PEL_FEATURE_DIRECT_SCATTER && PEL_BIT_SH
               PEL_BIT_THICKNESS_TAPS == PEL_FEATURE_THICKNESS_TAPS &&
               PEL_BIT_SPECULAR == PEL_FEATURE_SPECULAR);
 // What the passes before it do does not make another variant of the shading kernel.
-constexpr uint32_t shadeFeatures = (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER;
-static_assert(PEL_BIT_GGX == PEL_FEATURE_GGX && PEL_BIT_AMBIENT_SCATTER == PEL_FEATURE_AMBIENT_SCATTER);
+constexpr uint32_t shadeFeatures = (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER |
+                                   PEL_FEATURE_AMBIENT_CUBE;
+static_assert(PEL_BIT_GGX == PEL_FEATURE_GGX && PEL_BIT_AMBIENT_SCATTER == PEL_FEATURE_AMBIENT_SCATTER &&
+              PEL_BIT_AMBIENT_CUBE == PEL_FEATURE_AMBIENT_CUBE);
 static_assert(PEL_IMAGE_OUT_DIFFUSE == PEL_SLOT_OUT_DIFFUSE && PEL_IMAGE_OUT_DEEP_SCATTER == PEL_SLOT_OUT_DEEP_SCATTER &&
               PEL_IMAGE_OUT_SPECULAR == PEL_SLOT_OUT_SPECULAR && PEL_IMAGE_OUT_THICKNESS == PEL_SLOT_OUT_THICKNESS);
 
@@ -85,6 +87,8 @@ cl::Defines variant(const ShaderState& state, uint32_t features, const Device& d
     if (state.options.accumulate) features |= PEL_BIT_ACCUMULATE;
     if (state.options.disableSkipping) features |= PEL_BIT_NO_SKIPPING;
     if (state.options.countPixels) features |= PEL_BIT_COUNT;
+    if (state.options.rotateTaps && features & PEL_BIT_THICKNESS_TAPS) features |= PEL_BIT_ROTATE_TAPS;
+    if (features & PEL_BIT_AMBIENT_CUBE && isBlack(state.ambient)) features |= PEL_BIT_CUBE_ALONE;
     uint32_t wide = 0, map = 0;
     for (const ShaderLight& light : state.lights) {
         if (light.params.type != PEL_LIGHT_DIRECTIONAL) features |= PEL_BIT_POSITIONAL;
@@ -139,6 +143,7 @@ void Shader::commit() {
              {"PEL_FEATURES", state_.options.disableSkipping ? text(PEL_BIT_NO_SKIPPING) : "0"},
              {"PEL_CLASSIFY_GROUP", text(classifyGroup)}});
     passes.build(device, plan, features);
+    cube_.prepare(device, state_.ambientCube);
     programsBuilt_ += device.programs().built() - before;
     bytesUploaded_ += tables_.update(device, plan) + passes.upload(device, plan);
     const size_t listBytes = classify ? (1 + size_t(tables_.frame().tiles)) * sizeof(cl_uint) : 0;
@@ -172,6 +177,7 @@ void Shader::execute(bool blocking) {
         enqueueTiles();
     }
     if (state_.options.countPixels) clear(counters_, PEL_COUNTERS * sizeof zero);
+    cube_.enqueue(*device_, state_.ambientCube, events_);
     passes_.enqueue(*device_, plan_, tables_, tileList_, counters_, events_);
     const uint64_t pixels = uint64_t(tables_.frame().width) * tables_.frame().height;
     const bool tell = blocking && device_->hasProgress();
@@ -213,6 +219,7 @@ void Shader::enqueueShade(uint32_t part, uint32_t parts) {
         const ImageView& view = plan_.images[slot];
         launch.arg(view ? view.buffer->memory() : cl::Memory());
     }
+    launch.arg(cube_.nodes());
     launch.arg(cl_uint(part)).arg(cl_uint(parts));
     // Groups take tiles in turn, so that no host waits for their count.
     events_.push_back(device_->launch(launch, tileRange(*device_, tables_.frame().tiles)));
@@ -224,7 +231,7 @@ PelShaderStats Shader::stats() {
     stats.features = features_;
     stats.programsBuilt = programsBuilt_;
     stats.scratchBytes =
-        tables_.scratchBytes() + passes_.scratchBytes() + tileListBytes_ + (counters_ ? PEL_COUNTERS * sizeof(cl_uint) : 0);
+        tables_.scratchBytes() + passes_.scratchBytes() + cube_.scratchBytes() + tileListBytes_ + (counters_ ? PEL_COUNTERS * sizeof(cl_uint) : 0);
     if (!executed_) return stats;
     stats.launches = launches_;
     stats.bytesUploaded = uploadedBefore_;

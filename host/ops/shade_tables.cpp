@@ -121,6 +121,7 @@ void ShadeTables::fillFrame(const ShaderState& state) {
     copy(frame_.cameraPosition, state.camera.position);
     copy(frame_.inverseViewProjection, state.camera.inverseViewProjection);
     copy(frame_.invalidColor, state.options.invalidColor);
+    frame_.cubeSize = std::min(state.ambientCube.width, state.ambientCube.height);
     // Factors of the orthonormal real spherical harmonics.
     const double pi = 3.14159265358979323846, one = std::sqrt(3 / (4 * pi)), two = std::sqrt(15 / (4 * pi));
     const double factors[9] = {std::sqrt(1 / (4 * pi)),  one, one,      one, two, two,

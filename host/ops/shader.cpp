@@ -106,6 +106,16 @@ void Shader::setAmbient(const PelAmbient& ambient) {
     committed_ = false;
 }
 
+void Shader::setAmbientCube(const PelImageDesc* faces) {
+    ImageView view;
+    if (faces) {
+        view = makeImageView(*faces, *device_, "ambient cube");
+        checkAmbientCube(view);
+    }
+    state_.ambientCube = view;
+    committed_ = false;
+}
+
 void Shader::setCamera(const PelCamera& camera) {
     checkCamera(camera);
     state_.camera = camera;

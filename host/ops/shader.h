@@ -6,6 +6,7 @@
 
 #include "core/image_view.h"
 #include "core/lut.h"
+#include "ops/ambient_cube.h"
 #include "ops/shade_passes.h"
 #include "ops/shade_tables.h"
 
@@ -28,6 +29,7 @@ struct ShaderState {
     std::map<uint32_t, ShaderMaterial> materials;
     std::vector<ShaderLight> lights;
     PelAmbient ambient = pelAmbientDefaults();
+    ImageView ambientCube;  // six faces
     PelCamera camera = pelCameraDefaults();
 };
 
@@ -47,6 +49,9 @@ inline bool filtersShadow(const ShaderLight& light) {
     return !light.images[PEL_LIGHT_WIDE_SHADOW] && light.images[PEL_LIGHT_SHADOW_MAP] && light.params.shadowFilterTexels > 0;
 }
 
+// Whether PelAmbient gives no light; there may be a cube map beside it.
+bool isBlack(const PelAmbient& ambient);
+
 // PelFeature bits of what is bound and non-zero. Throws when something needed is missing or does not fit.
 uint32_t deriveFeatures(const ShaderState& state);
 
@@ -62,6 +67,7 @@ class Shader final : public Object {
     void setLights(const PelLight* lights, uint32_t count);
     void setLightImage(uint32_t light, PelLightSlot slot, const PelImageDesc* image);
     void setAmbient(const PelAmbient& ambient);
+    void setAmbientCube(const PelImageDesc* faces);
     void setCamera(const PelCamera& camera);
     void commit();
     // `blocking`: the caller waits, and may want to hear how far it is.
@@ -78,6 +84,7 @@ class Shader final : public Object {
     ShaderState state_;  // as the caller set it
     ShaderState plan_;   // as of the last commit, with the images that the passes make in their slots
     ShadePasses passes_;
+    AmbientCube cube_;
     ShadeTables tables_;
     bool committed_ = false;
     uint32_t features_ = 0;

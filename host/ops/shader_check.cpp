@@ -223,6 +223,13 @@ void checkAmbient(const PelAmbient& ambient) {
     finite("PelAmbient", "sh", &ambient.sh[0][0], 27);
 }
 
+void checkAmbientCube(const ImageView& faces) {
+    checkContent(faces, Content::color, "ambient cube");
+    if (faces.height != 6 * faces.width && faces.width != 6 * faces.height)
+        invalidArgument("the ambient cube image is ", faces.width, " x ", faces.height,
+                        "; six square faces one below the other are n x 6n pixels, side by side 6n x n");
+}
+
 void checkCamera(const PelCamera& camera) {
     finite("PelCamera", "position", camera.position, 3);
     finite("PelCamera", "inverseViewProjection", camera.inverseViewProjection, 16);

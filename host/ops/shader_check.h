@@ -11,6 +11,7 @@ void checkMaterial(const PelMaterial& material);
 void checkLight(const PelLight& light, uint32_t index);
 void checkLightMap(const PelLight& light, uint32_t index);  // the fields that a shadow map needs
 void checkAmbient(const PelAmbient& ambient);
+void checkAmbientCube(const ImageView& faces);
 void checkCamera(const PelCamera& camera);
 void checkOptions(const PelShaderOptions& options);
 

@@ -10,11 +10,6 @@ bool black(const float (&c)[3]) {
     return c[0] == 0 && c[1] == 0 && c[2] == 0;
 }
 
-bool ambientIsBlack(const PelAmbient& a) {
-    return black(a.constant) &&
-           std::all_of(std::begin(a.sh), std::end(a.sh), [](auto& c) { return black(c); });
-}
-
 void need(bool present, const char* what, const char* why) {
     if (!present) invalidArgument("the ", what, " is needed ", why, ", and not set");
 }
@@ -42,6 +37,10 @@ void checkSizes(const ShaderState& state) {
                 "read");
     };
     for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot) check(state.images[slot], slotName(PelImageSlot(slot)), slot);
+    if (const ImageView& cube = state.ambientCube) {
+        checkOutputs(cube, "ambient cube", -1);
+        if (overlapsElsewhere(target, cube)) invalidArgument("the radiance image overlaps the ambient cube in memory");
+    }
     for (size_t i = 0; i < state.lights.size(); ++i) {
         check(state.lights[i].images[PEL_LIGHT_WIDE_SHADOW], text("wide shadow ", i));
         const ImageView& map = state.lights[i].images[PEL_LIGHT_SHADOW_MAP];
@@ -84,6 +83,11 @@ void checkMapFormats(const ShaderState& state) {
 
 }  // namespace
 
+bool isBlack(const PelAmbient& a) {
+    return black(a.constant) &&
+           std::all_of(std::begin(a.sh), std::end(a.sh), [](auto& c) { return black(c); });
+}
+
 uint32_t deriveFeatures(const ShaderState& state) {
     const auto& images = state.images;
     need(bool(images[PEL_SLOT_RADIANCE]), "radiance image", "as the output");
@@ -110,7 +114,8 @@ uint32_t deriveFeatures(const ShaderState& state) {
     uint32_t features = 0;
     if (wide) features |= PEL_FEATURE_SHADOW;
     if (filtered) features |= PEL_FEATURE_FILTER_SHADOW;
-    if (!ambientIsBlack(state.ambient)) features |= PEL_FEATURE_AMBIENT;
+    if (!isBlack(state.ambient)) features |= PEL_FEATURE_AMBIENT;
+    if (state.ambientCube) features |= PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE;
     if (!state.lights.empty())
         for (const auto& [id, material] : state.materials) {
             if (material.curvatureLut && images[PEL_SLOT_CURVATURE]) features |= PEL_FEATURE_DIRECT_SCATTER;

@@ -59,6 +59,7 @@ typedef struct PelShadeFrame {
     // and the constant term are folded in.
     float ambient[9][3];
     float invalidColor[3]; // radiance of a pixel with NaN or Inf input
+    PelUint32 cubeSize;    // texels along an edge of the ambient cube map; 0: none
     PelShadeImage images[PEL_IMAGE_SLOTS];
 } PelShadeFrame;
 
@@ -125,7 +126,7 @@ typedef struct PelShadeLight {
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelShadeImage) == 32 && sizeof(PelShadeLut) == 40);
-static_assert(sizeof(PelShadeFrame) == 4 * (5 + 8 + 3 + 16 + 27 + 3) + PEL_IMAGE_SLOTS * 32);
+static_assert(sizeof(PelShadeFrame) == 4 * (5 + 8 + 3 + 16 + 27 + 3 + 1) + PEL_IMAGE_SLOTS * 32);
 static_assert(sizeof(PelShadeMaterial) == 4 * 26 + 2 * sizeof(PelShadeLut));
 static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64);
 #endif

@@ -81,7 +81,8 @@ Rgb irradiance(const Ambient& ambient, Vec3 n) {
                              0.5 * band2 * (n.x * n.x - n.y * n.y)};
     Rgb sum = ambient.constant;
     for (int i = 0; i < 9; ++i) sum = sum + basis[i] * ambient.harmonics[i];
-    return {max0(sum.x), max0(sum.y), max0(sum.z)};
+    sum = {max0(sum.x), max0(sum.y), max0(sum.z)};
+    return ambient.cube ? sum + sampleCube(*ambient.cube, n) : sum;
 }
 
 Rgb ambientTerm(const Ambient& ambient, Vec3 shading, Vec3 blurred, Rgb blend) {
@@ -121,6 +122,16 @@ double thickness(const ShadowMap& map, Vec3 uvDepth, const std::vector<Vec2>& ta
         sum += max0(receiver - decoding.distance(sampleMap(map, uvDepth.x + filterRadius * tap.x,
                                                            uvDepth.y + filterRadius * tap.y, filter)));
     return sum / double(taps.size());
+}
+
+std::vector<Vec2> turnedTaps(std::vector<Vec2> taps, uint32_t column, uint32_t row) {
+    const double plastic = 1.32471795724474602596;  // p³ = p + 1
+    const auto turns = [](double fraction) { return std::floor(fraction * 0x1p32) * 0x1p-32; };
+    const double turn = std::fmod(column * turns(1 / plastic) + row * turns(1 / (plastic * plastic)), 1.0);
+    const double angle = 2 * std::numbers::pi * turn;
+    for (Vec2& tap : taps)
+        tap = {tap.x * std::cos(angle) - tap.y * std::sin(angle), tap.x * std::sin(angle) + tap.y * std::cos(angle)};
+    return taps;
 }
 
 double deepScatter(double t, double radius, Vec3 blurred, Vec3 toLight) {

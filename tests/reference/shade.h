@@ -5,8 +5,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
+#include "reference/cube.h"
 #include "reference/vec.h"
 
 namespace reference {
@@ -40,9 +42,11 @@ double sharpenedShadow(double wide, double sharpening);
 std::array<Vec3, 3> ambientNormals(Vec3 shading, Vec3 blurred, Rgb blend = {1, 0.3, 0});
 // Irradiance / pi: constant plus real orthonormal spherical harmonics in the order 1; y, z, x; xy, yz, 3z²-1,
 // xz, x²-y². Negative sums are 0.
+// A cube map's light is added to that.
 struct Ambient {
     Rgb constant;
     std::array<Rgb, 9> harmonics{};
+    const CubeMap* cube = nullptr;
 };
 Rgb irradiance(const Ambient& ambient, Vec3 normal);
 Rgb ambientTerm(const Ambient& ambient, Vec3 shading, Vec3 blurred, Rgb blend = {1, 0.3, 0});
@@ -76,6 +80,9 @@ Vec3 shadowCoordinates(const Matrix4& worldToShadow, Vec3 position, Vec3 normal,
 // as any.
 double thickness(const ShadowMap& map, Vec3 uvDepth, const std::vector<Vec2>& taps, double filterRadius,
                  const DepthDecoding& decoding, MapFilter filter);
+// The taps of the pixel in that column and row, turned by 2 pi (column a + row b), a and b the powers -1 and -2 of the plastic
+// number 1.3247 (the R2 sequence), each rounded to 32 bits.
+std::vector<Vec2> turnedTaps(std::vector<Vec2> taps, uint32_t column, uint32_t row);
 double deepScatter(double thickness, double radius, Vec3 blurred, Vec3 toLight);
 
 // --- specular ---

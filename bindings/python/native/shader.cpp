@@ -64,6 +64,10 @@ void bindShader(py::module_& module) {
         .def("set_ambient", [](const Shader& s, const py::object& ambient) {
             locked(s, [&, a = structOf<PelAmbient>(ambient)] { return pelShaderSetAmbient(s.get(), a); });
         })
+        .def("set_ambient_cube", [](const Shader& s, const std::optional<ImageView>& faces) {
+            const PelImageDesc desc = faces ? imageDesc(*faces) : pelImageDescDefaults();
+            call([&] { return pelShaderSetAmbientCube(s.get(), faces ? &desc : nullptr); });
+        })
         .def("set_camera", [](const Shader& s, const py::object& camera) {
             locked(s, [&, c = structOf<PelCamera>(camera)] { return pelShaderSetCamera(s.get(), c); });
         })

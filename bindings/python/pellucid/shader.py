@@ -111,6 +111,28 @@ class Shader:
         self._handle.set_ambient(ambient._data)
         return self
 
+    def set_ambient_cube(self, faces: Any) -> Shader:
+        """Sets an irradiance cube map, whose light is added to that of `set_ambient`.
+
+        Parameters
+        ----------
+        faces : array, Image or None
+            Irradiance / pi: (6, n, n, 3 or 4), or those faces one below the other, (6 n, n, 3 or 4), or side by side,
+            (n, 6 n, 3 or 4); float16, float32, or uint8 with 4 components. +x, -x, +y, -y, +z, -z, oriented as in OpenGL and
+            Direct3D: to the right and down, +x runs along -z and -y, -x along z and -y, +y along x and z, -y along x and -z,
+            +z along x and -y, -z along -x and -y. Read at each execution. None removes it.
+        """
+        if getattr(faces, "ndim", 0) == 4:
+            if faces.shape[0] != 6:
+                raise ValueError(f"the ambient cube has the shape {faces.shape}; six faces, (6, n, n, 3 or 4), would be right")
+            faces = faces.view()
+            try:
+                faces.shape = (6 * faces.shape[1], *faces.shape[2:])
+            except AttributeError:
+                raise ValueError("the ambient cube's faces lie apart in memory; numpy.ascontiguousarray puts them together") from None
+        self._keep("ambient_cube", faces, "ambient_cube", False, False, self._handle.set_ambient_cube)
+        return self
+
     def set_camera(self, camera: Camera) -> Shader:
         """Sets the viewpoint, which specular and depth images need."""
         self._handle.set_camera(camera._data)

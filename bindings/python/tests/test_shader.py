@@ -287,3 +287,42 @@ def test_progress_of_a_large_frame(moving):
     device.set_progress(None)
     shaders[2].execute()
     assert np.array_equal(images[2], images[0])
+
+
+def cube_directions(n):
+    """The directions of the texels of a cube map's six faces, (6, n, n, 3)."""
+    s, t = np.meshgrid((2 * np.arange(n) + 1) / n - 1, (2 * np.arange(n) + 1) / n - 1)
+    one = np.ones_like(s)
+    return np.stack([np.stack(f, -1) for f in [(one, -t, -s), (-one, -t, s), (s, one, t), (s, -one, -t), (s, -t, one), (-s, -t, -one)]])
+
+
+def test_ambient_cube(device, view, tolerance):
+    # Light that grows along (1, 2, -1): a cube of it against the harmonics of order 1.
+    d = cube_directions(32)
+    d /= np.linalg.norm(d, axis=-1, keepdims=True)
+    cube = np.repeat((0.6 + d @ [0.1, 0.2, -0.1])[..., None], 3, -1).astype(np.float32)
+    out = np.zeros((HEIGHT, WIDTH, 3), np.float32)
+    shader = shader_for(device, view, out).set_lights([]).set_ambient_cube(cube).commit()
+    shader.execute()
+    assert shader.stats().features == pel.Feature.AMBIENT | pel.Feature.AMBIENT_CUBE
+    expected = view.albedo * (0.6 + view.normal @ np.float32([0.1, 0.2, -0.1]))[..., None]
+    assert np.abs(out - expected)[view.inside].max() < tolerance["cubeOfHarmonics"]
+    once = out.copy()
+    cube *= 2  # in place: seen by the next execution
+    shader.execute()
+    assert np.abs(out - 2 * once).max() < 1e-6
+    shader.set_ambient_cube(np.concatenate(list(cube), 1)).commit().execute()  # side by side
+    assert np.abs(out - 2 * once).max() < 1e-6
+    shader.set_ambient_cube(None).commit().execute()
+    assert not out.any()
+    for wrong, message in [(np.zeros((5, 4, 4, 3), np.float32), "six faces"), (np.zeros((4, 4, 3), np.float32), "4 x 4"),
+                           (np.zeros((6, 5, 4, 3), np.float32)[:, :4], "ascontiguousarray"),
+                           (np.zeros((12, 2), np.float32), "three components")]:
+        with pytest.raises((ValueError, pel.PellucidError), match=message):
+            shader.set_ambient_cube(wrong)
+
+
+def test_turned_taps_are_an_option(device, view):
+    shader = shader_for(device, view, np.zeros((HEIGHT, WIDTH, 3), np.float32))
+    assert not pel.ShaderOptions().rotate_taps
+    shader.set_options(rotate_taps=1).commit().execute()  # no taps here: allowed, and nothing to turn

@@ -673,7 +673,8 @@ typedef struct PelMaterial {
     float roughness2;              /* of the second lobe of GGX; multiplied by the roughness image too; 0.15 */
     float lobeMix;                 /* its share, 0 to 1; 0.15 */
     float deepScatterAmbient;      /* share of ambient light that comes through from behind: times deepScatterColor and the
-                                      irradiance on -Nb. Needs a thickness image; 0 */
+                                      irradiance on -Nb. Needs PEL_SLOT_THICKNESS, measured along the
+                                      inward normal: off without it, also with shadow maps; 0 */
 } PelMaterial;
 
 /* Light from everywhere: E(n) = constant + sum of sh[i] * basis_i(n) over the 9 orthonormal real spherical harmonics of
@@ -705,7 +706,8 @@ typedef enum PelFeature {
     PEL_FEATURE_FILTER_SHADOW = 1 << 9, /* a wide shadow made from a shadow map */
     PEL_FEATURE_GGX = 1 << 10,          /* specular with PEL_SPECULAR_GGX */
     PEL_FEATURE_AMBIENT_SCATTER = 1 << 11, /* deepScatterAmbient, ambient light and a thickness image */
-    PEL_FEATURE_OUTPUTS = 1 << 12       /* an output beside radiance */
+    PEL_FEATURE_OUTPUTS = 1 << 12,      /* an output beside radiance */
+    PEL_FEATURE_AMBIENT_CUBE = 1 << 13  /* ambient light from a cube map */
 } PelFeature;
 
 /* What a shader did: counts of its last execution unless they say total. */
@@ -736,6 +738,8 @@ typedef struct PelShaderOptions {
     float invalidColor[3];    /* radiance of a pixel with a NaN or Inf input; default 0 */
     uint32_t blurNormals;     /* 1: without PEL_SLOT_NORMAL_BLURRED, blurred normals are shading normals blurred on screen
                                  over PelMaterial.diffusionRadius; needs positions or depth */
+    uint32_t rotateTaps;      /* 1: the disk of thickness taps is turned by an angle that depends on the pixel's column and row
+                                 alone, so that what few taps miss is noise, not bands (docs/shading.md, "Turned taps") */
 } PelShaderOptions;
 
 PEL_API PelError pelShaderCreate(PelDevice device, PelShader* shader);
@@ -757,6 +761,14 @@ PEL_API PelError pelShaderSetNormalMap(PelShader shader, uint32_t id, const PelI
 PEL_API PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t count);
 PEL_API PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot, const PelImageDesc* image);
 PEL_API PelError pelShaderSetAmbient(PelShader shader, const PelAmbient* ambient);
+/* An irradiance cube map, added to PelAmbient: irradiance / pi (the cosine already convolved in) of the six normals +x, -x, +y,
+ * -y, +z, -z and those between. Six square faces in one image, one below the other (height = 6 * width) or side by side (width =
+ * 6 * height); a colour format. With s to the right and t down, both from -1 to 1, a face's point (s, t) is the normal
+ *     +x ( 1, -t, -s)   +y (s,  1,  t)   +z ( s, -t,  1)
+ *     -x (-1, -t,  s)   -y (s, -1, -t)   -z (-s, -t, -1)
+ * as in OpenGL, Direct3D and Vulkan. Bilinear, without seams between faces; negative values count as 0. Read at each execution.
+ * NULL removes it. Errors: PEL_ERROR_INVALID_ARGUMENT for another shape or a format that is no colour. */
+PEL_API PelError pelShaderSetAmbientCube(PelShader shader, const PelImageDesc* faces);
 PEL_API PelError pelShaderSetCamera(PelShader shader, const PelCamera* camera);
 /* Checks that everything fits together, derives the features and builds what they need. */
 PEL_API PelError pelShaderCommit(PelShader shader);

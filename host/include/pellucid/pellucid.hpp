@@ -340,6 +340,8 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
         return done(pelShaderSetLightImage(h_, light, slot, &image));
     }
     Shader& set(const PelAmbient& ambient) { return done(pelShaderSetAmbient(h_, &ambient)); }
+    Shader& setAmbientCube(const PelImageDesc& faces) { return done(pelShaderSetAmbientCube(h_, &faces)); }
+    Shader& clearAmbientCube() { return done(pelShaderSetAmbientCube(h_, nullptr)); }
     Shader& set(const PelCamera& camera) { return done(pelShaderSetCamera(h_, &camera)); }
     Shader& commit() { return done(pelShaderCommit(h_)); }
     void execute(const PelSubmit* submit = nullptr) const { check(pelShaderExecute(h_, submit)); }
