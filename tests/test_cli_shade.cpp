@@ -94,6 +94,93 @@ TEST_F(Shade, TablesOfMaterialsAndProfileFiles) {
     expectRefused(command("p.toml", "c.exr"), 3, "granite");
 }
 
+TEST_F(Shade, PartsOfThePictureAddUpToIt) {
+    // A wall 3 thick, given per pixel; light from the front and from behind.
+    io::Image thick = gbuffer_;
+    thick.addInterleaved(std::vector<std::string>{"Wall.V"}, std::vector<float>(size_t(width * height), 3.0f));
+    std::vector<float> positions;
+    for (int i = 0; i < width * height; ++i) positions.insert(positions.end(), {float(i % width), float(i / width), 0.0f});
+    thick.addInterleaved(std::vector<std::string>{"P.X", "P.Y", "P.Z"}, positions);
+    io::writeExr(path("thick.exr"), thick);
+    scene_.channels[PEL_SLOT_THICKNESS] = {"Wall.V"};
+    scene_.channels[PEL_SLOT_POSITION] = {"P.X", "P.Y", "P.Z"};
+    scene_.camera.position[2] = 50;
+    scene_.lights.push_back(scene_.lights[0]);
+    scene_.lights[1].light.toLight[2] = -1;
+    std::fill_n(scene_.materials[0].material.deepScatterColor, 3, 0.5f);
+    scene_.materials[0].material.specular = 1;
+    scene_.outputs[PEL_SLOT_OUT_THICKNESS] = "own name.exr";  // beside the scene
+    io::writeScene(path("parts.toml"), scene_);
+    std::vector<std::string> arguments = command("parts.toml", "thick.exr");
+    arguments.insert(arguments.end(), {"--outputs", "all", "--json", "--stats"});
+    const Result result = run(arguments);
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const auto report = result.json();
+    ASSERT_EQ(report.at("outputs").size(), 5u);
+    for (const auto& file : report.at("outputs")) EXPECT_TRUE(std::filesystem::exists(file.get<std::string>())) << file;
+    const auto channel = [&](const std::string& file, const std::string& name) {
+        return io::readImage(path(file)).channel(name).pixels;
+    };
+    for (const char* name : {"R", "G", "B"}) {
+        const auto sum = channel("o.exr", name), diffuse = channel("o_diffuse.exr", name),
+                   deep = channel("o_deep_scatter.exr", name), specular = channel("o_specular.exr", name);
+        double most[3] = {};
+        for (size_t i = 0; i < sum.size(); ++i) {
+            EXPECT_NEAR(sum[i], diffuse[i] + deep[i] + specular[i], 1e-6f);
+            most[0] = std::max<double>(most[0], diffuse[i]), most[1] = std::max<double>(most[1], deep[i]);
+            most[2] = std::max<double>(most[2], specular[i]);
+        }
+        for (double m : most) EXPECT_GT(m, 0.001);
+    }
+    const auto thickness = channel("o_thickness.exr", "Thickness.V");
+    for (size_t i = 0; i < thickness.size(); ++i) EXPECT_EQ(thickness[i], i % width < 2 ? 0.0f : 3.0f);
+    EXPECT_EQ(thickness, channel("own name.exr", "Thickness.V"));
+
+    arguments = command("parts.toml", "thick.exr");
+    arguments.insert(arguments.end(), {"--outputs", "diffus"});
+    expectRefused(arguments, 2, "diffus");
+    scene_.outputs[PEL_SLOT_OUT_THICKNESS] = "o.exr";
+    io::writeScene(path("parts.toml"), scene_);
+    expectRefused(command("parts.toml", "thick.exr"), 3, "written twice");
+    scene_.outputs[PEL_SLOT_OUT_THICKNESS] = "o.png";
+    io::writeScene(path("parts.toml"), scene_);
+    expectRefused(command("parts.toml", "thick.exr"), 3, ".exr");
+}
+
+TEST_F(Shade, AnAmbientCubeIsReadFromAFile) {
+    // Faces of one texel: +x is red, +z is blue, the others black; no lights.
+    io::Image cube;
+    cube.width = 1;
+    cube.height = 6;
+    std::vector<float> texels(18, 0.0f);
+    texels[0] = 1, texels[14] = 1;
+    cube.addInterleaved(std::vector<std::string>{"R", "G", "B"}, texels);
+    io::writeExr(path("cube.exr"), cube);
+    scene_.ambientCube = "cube.exr";
+    scene_.lights.clear();
+    scene_.materials[0].material.deepScatterAmbient = 0.5f;
+    io::writeScene(path("cube.toml"), scene_);
+    std::vector<std::string> arguments = command("cube.toml");
+    arguments.insert(arguments.end(), {"--json", "--stats", "--outputs", "thickness"});
+    const Result result = run(arguments);
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(result.json().at("stats").at("features"), nlohmann::json({"ambient", "outputs", "ambient_cube"}));
+    EXPECT_NE(result.err.find("deep_scatter_ambient of material 1 does nothing"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("thickness output is 0 everywhere"), std::string::npos) << result.err;
+    const io::Image shaded = io::readImage(path("o.exr"));
+    for (size_t i = 2; i < size_t(width); ++i) {
+        // From the middle of a face, 1, to the edge, where two faces meet, 1/2: linear in the tangent.
+        const double angle = 0.2 * double(i), tangent = std::tan(angle);
+        const double red = angle > M_PI / 4 ? 1 - 0.5 * std::abs(1 / tangent) : 0.5 * tangent;
+        EXPECT_NEAR(shaded.channel("R").pixels[i], 0.5 * red, 1e-5) << i;
+        EXPECT_NEAR(shaded.channel("G").pixels[i], 0, 1e-6);
+    }
+    cube.height = 5;
+    for (io::Channel& c : cube.channels) c.pixels.resize(5);
+    io::writeExr(path("cube.exr"), cube);
+    expectRefused(command("cube.toml"), 3, "six square faces");
+}
+
 TEST_F(Shade, PlainLightIsAlbedoTimesCosine) {
     std::vector<std::string> arguments = command();
     arguments.insert(arguments.end(), {"--json", "--stats"});

@@ -80,6 +80,11 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     scene.lights[1].shadowMapFile.clear();
     scene.lights[0].shadowMapChannel = "odd \"name\" \\ here";
     scene.blurNormals = 1;
+    scene.rotateTaps = 1;
+    scene.ambientCube = path("sky.exr");
+    scene.outputs[PEL_SLOT_OUT_SPECULAR] = path("parts/shine.exr");
+    scene.outputs[PEL_SLOT_OUT_THICKNESS] = path("t.exr");
+    scene.materials[0].material.thicknessTaps = 16;
     scene.channels[PEL_SLOT_UV] = {"UV.U", "UV.V"};
     scene.channels[PEL_SLOT_TANGENT] = {"T.X", "T.Y", "T.Z", "T.W"};
     scene.materials[0].normalMap = path("normals.png");
@@ -92,6 +97,9 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     const SceneFile again = readScene(path("out.toml"));
     EXPECT_EQ(again.channels, scene.channels);
     EXPECT_EQ(again.blurNormals, 1u);
+    EXPECT_EQ(again.rotateTaps, 1u);
+    EXPECT_EQ(again.ambientCube, scene.ambientCube);
+    EXPECT_EQ(again.outputs, scene.outputs);
     EXPECT_EQ(again.materials[0].normalMap, scene.materials[0].normalMap);
     const auto same = [](const auto& a, const auto& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
     EXPECT_TRUE(same(again.camera, scene.camera));
@@ -146,7 +154,7 @@ TEST_F(SceneFileTest, WrongTypesAndValuesNameLineKeyAndWhatIsRight) {
     EXPECT_TRUE(
         contains(errorOf("curvature = \"Curvature.C\"", "curvature = 7"), "one channel name would be right"));
     EXPECT_TRUE(contains(errorOf("\"Normal.X\", ", ""), "has 2 names; an array of 3 channel names"));
-    EXPECT_TRUE(contains(errorOf("specular = 1.5", "thickness_taps = 16"), "0, 8 or 32"));
+    EXPECT_TRUE(contains(errorOf("specular = 1.5", "thickness_taps = 12"), "0, 8, 16 or 32"));
     EXPECT_TRUE(contains(errorOf("[camera]", "[[camera]]"), "a table would be right"));
     EXPECT_TRUE(contains(errorOf("[[material]]", "[material]"), "[[material]]"));
 }

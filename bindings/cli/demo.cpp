@@ -135,7 +135,12 @@ void run(Arguments a) {
     for (const DemoViewRequest& request : requests(a))
         views.push_back(shadeView(run, stages, luts, scene, request, a.output));
 
-    const std::vector<std::string> files = writePictures(a.output, views, curvatureLut, shadowLut);
+    std::vector<std::string> files = writePictures(a.output, views, curvatureLut, shadowLut);
+    const DemoView& backlit = views.back().view;
+    Frame parts(run.device(), backlit.gbuffer, backlit.scene, luts, backlit.shadowMaps, pelShaderOptionsDefaults(),
+                {PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER, PEL_SLOT_OUT_SPECULAR, PEL_SLOT_OUT_THICKNESS});
+    parts.shade();
+    files.push_back(writeParts(a.output, backlit, parts));
     run.report["output"] = a.output;
     run.report["pictures"] = files;
     run.report["stages"] = stages.json();

@@ -46,7 +46,58 @@ io::Picture lutPicture(const Lut& lut) {
     return {lutSize, lutSize, io::toSrgb8(shown, {1.0f, 1.0f})};
 }
 
+// What is not background, with a margin.
+struct Crop {
+    int left, top, right, bottom;  // pixels, the last two exclusive
+};
+
+Crop coveredPart(const DemoView& view) {
+    constexpr int margin = 16;
+    const int width = view.gbuffer.width, height = view.gbuffer.height;
+    const std::vector<float>& material = view.gbuffer.channel("Material.I").pixels;
+    Crop c{width, height, 0, 0};
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            if (material[size_t(y) * width + x] > 0)
+                c = {std::min(c.left, x), std::min(c.top, y), std::max(c.right, x + 1), std::max(c.bottom, y + 1)};
+    if (c.right == 0) return {0, 0, width, height};
+    return {std::max(c.left - margin, 0), std::max(c.top - margin, 0), std::min(c.right + margin, width),
+            std::min(c.bottom + margin, height)};
+}
+
+io::Picture cropped(const io::Picture& picture, const Crop& c) {
+    io::Picture part(c.right - c.left, c.bottom - c.top);
+    for (int y = 0; y < part.height; ++y)
+        std::copy_n(&picture.rgb[3 * (size_t(c.top + y) * picture.width + c.left)], 3 * part.width,
+                    &part.rgb[3 * size_t(y) * part.width]);
+    return part;
+}
+
 }  // namespace
+
+std::string writeParts(const std::string& folder, const DemoView& view, const Frame& frame) {
+    constexpr float longest = 30;  // mm; hardly anything comes through more
+    const Crop part = coveredPart(view);
+    std::vector<io::Tile> tiles;
+    const auto add = [&](const char* title, const io::Picture& whole) {
+        tiles.push_back({title, io::shrunk(cropped(whole, part), sheetShrink)});
+    };
+    add("sum", developed(view, frame.radiance()));
+    add("diffuse", developed(view, frame.output(PEL_SLOT_OUT_DIFFUSE)));
+    add("deep scatter", developed(view, frame.output(PEL_SLOT_OUT_DEEP_SCATTER)));
+    add("specular", developed(view, frame.output(PEL_SLOT_OUT_SPECULAR)));
+    add("thickness", io::colored(view.gbuffer.width, view.gbuffer.height, frame.output(PEL_SLOT_OUT_THICKNESS), 0, longest,
+                                 view.gbuffer.channel("Material.I").pixels));
+    const io::Picture bar = io::colorBar(tiles.back().picture.width, 0, longest, "mm", 1);
+    io::Picture both(bar.width, tiles.back().picture.height + bar.height);
+    both.paste(0, 0, tiles.back().picture);
+    both.paste(0, tiles.back().picture.height, bar);
+    tiles.back().picture = both;
+    const io::Picture sheet = io::contactSheet(tiles, int(tiles.size()));
+    const std::string file = folder + "/" + view.name + "_parts.png";
+    io::writeImage8(file, sheet.width, sheet.height, 3, sheet.rgb);
+    return file;
+}
 
 std::vector<std::string> writePictures(const std::string& folder, const std::vector<ShadedView>& views,
                                        const Lut& curvatureLut, const Lut& shadowLut) {

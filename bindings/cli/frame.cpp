@@ -38,6 +38,16 @@ bool isScreenCurvature(const io::Image& gbuffer, const io::SceneFile& scene) {
                         [](const auto& c) { return c.name == "screen"; });
 }
 
+// R, G and B, or the first three channels; `need` says what the image should have.
+std::vector<std::string> colorChannels(const std::string& file, const io::Image& image, const char* need) {
+    if (image.channels.size() < 3)
+        throw io::FileError(file, "has " + std::to_string(image.channels.size()) + " channels; " + need);
+    std::vector<std::string> names{"R", "G", "B"};
+    if (!(image.has("R") && image.has("G") && image.has("B")))
+        for (size_t c = 0; c < 3; ++c) names[c] = image.channels[c].name;
+    return names;
+}
+
 }  // namespace
 
 Lut LutStore::get(const io::SceneFile& scene, const std::string& name, PelLutKind kind) {
@@ -52,13 +62,21 @@ Lut LutStore::get(const io::SceneFile& scene, const std::string& name, PelLutKin
 }
 
 Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene, LutStore& luts,
-             const ShadowMaps& shadowMaps, const PelShaderOptions& options)
+             const ShadowMaps& shadowMaps, const PelShaderOptions& options, const std::vector<PelImageSlot>& outputs)
     : shader_(device), radiance_(device, gbuffer.pixelCount() * 3 * sizeof(float)) {
     PelShaderOptions all = options;
     all.blurNormals |= scene.blurNormals;
+    all.rotateTaps |= scene.rotateTaps;
     shader_.set(all);
     shader_.set(PEL_SLOT_RADIANCE,
                 imageDesc(radiance_, PEL_FORMAT_RGB32F, uint32_t(gbuffer.width), uint32_t(gbuffer.height)));
+    for (PelImageSlot slot : outputs) {
+        const bool length = slot == PEL_SLOT_OUT_THICKNESS;
+        const Buffer buffer(device, gbuffer.pixelCount() * (length ? 1 : 3) * sizeof(float));
+        shader_.set(slot, imageDesc(buffer, length ? PEL_FORMAT_R32F : PEL_FORMAT_RGB32F, uint32_t(gbuffer.width),
+                                    uint32_t(gbuffer.height)));
+        outputs_[slot] = buffer;
+    }
     for (size_t slot = 0; slot < scene.channels.size(); ++slot)
         if (slot == PEL_SLOT_CURVATURE && isScreenCurvature(gbuffer, scene))
             shader_.set(PEL_SLOT_CURVATURE, measureCurvature(device, gbuffer, scene));
@@ -86,20 +104,23 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
         shader_.set(i, PEL_LIGHT_SHADOW_MAP, upload(device, map, {channel}));
     }
     shader_.set(scene.ambient);
+    if (!scene.ambientCube.empty()) setAmbientCube(device, scene.ambientCube);
     shader_.set(scene.camera);
     shader_.commit();
 }
 
+void Frame::setAmbientCube(const Device& device, const std::string& file) {
+    const io::Image image = io::readImage(file);
+    if (image.height != 6 * image.width && image.width != 6 * image.height)
+        throw io::FileError(file, "is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                                      "; a cube map is six square faces, one below the other (n x 6n) or side by side (6n x n)");
+    shader_.setAmbientCube(upload(device, image, colorChannels(file, image, "a cube map needs three: red, green, blue")));
+}
+
 void Frame::setNormalMap(const Device& device, uint32_t id, const std::string& file) {
     const io::Image image = io::readImage(file);
-    if (image.channels.size() < 3)
-        throw io::FileError(file, "has " + std::to_string(image.channels.size()) +
-                                      " channels; a normal map needs three: x, y, z, from 0 to 1");
-    const bool named = image.has("R") && image.has("G") && image.has("B");
-    std::vector<std::string> names{"R", "G", "B"};
-    if (!named)
-        for (size_t c = 0; c < 3; ++c) names[c] = image.channels[c].name;
-    std::vector<float> normals = image.interleaved(names);
+    std::vector<float> normals =
+        image.interleaved(colorChannels(file, image, "a normal map needs three: x, y, z, from 0 to 1"));
     for (float& v : normals) v = 2 * v - 1;
     const io::MipChain chain = io::mipChain(image.width, image.height, std::move(normals));
     inputs_.emplace_back(device, chain.texels);
@@ -151,6 +172,14 @@ void writeRadiance(const std::string& path, int width, int height, const std::ve
     io::writeExr(path, image);
 }
 
+void writeThickness(const std::string& path, int width, int height, const std::vector<float>& lengths) {
+    io::Image image;
+    image.width = width;
+    image.height = height;
+    image.addInterleaved(std::vector<std::string>{"Thickness.V"}, lengths);
+    io::writeExr(path, image);
+}
+
 nlohmann::ordered_json toJson(const PelShaderStats& s) {
     static constexpr std::pair<PelFeature, const char*> names[] = {
         {PEL_FEATURE_DIRECT_SCATTER, "direct_scatter"},
@@ -165,7 +194,8 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
         {PEL_FEATURE_FILTER_SHADOW, "filter_shadow"},
         {PEL_FEATURE_GGX, "ggx"},
         {PEL_FEATURE_AMBIENT_SCATTER, "ambient_scatter"},
-        {PEL_FEATURE_OUTPUTS, "outputs"}};
+        {PEL_FEATURE_OUTPUTS, "outputs"},
+        {PEL_FEATURE_AMBIENT_CUBE, "ambient_cube"}};
     nlohmann::ordered_json features = nlohmann::ordered_json::array();
     for (const auto& [bit, name] : names)
         if (s.features & bit) features.push_back(name);

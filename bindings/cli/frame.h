@@ -26,14 +26,17 @@ using ShadowMaps = std::map<std::string, io::Image>;
 
 class Frame {
   public:
-    // Uploads what the scene names and commits. `shadowMaps` holds maps that are in memory already, by the
+    // Uploads what the scene names and commits. `outputs`: slots beside radiance that are wanted. `shadowMaps` holds maps that are in memory already, by the
     // name that the scene gives them; others are read from files. Throws FileError when a channel is missing.
     Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene, LutStore& luts,
-          const ShadowMaps& shadowMaps = {}, const PelShaderOptions& options = pelShaderOptionsDefaults());
+          const ShadowMaps& shadowMaps = {}, const PelShaderOptions& options = pelShaderOptionsDefaults(),
+          const std::vector<PelImageSlot>& outputs = {});
 
     void shade() { shader_.execute(); }
     // RGB per pixel, interleaved; 0 where there is no material.
     std::vector<float> radiance() const { return radiance_.readAll<float>(); }
+    // One of `outputs`: RGB interleaved, or a value per pixel of PEL_SLOT_OUT_THICKNESS.
+    std::vector<float> output(PelImageSlot slot) const { return outputs_.at(slot).readAll<float>(); }
     PelShaderStats stats() const { return shader_.stats(); }
     uint64_t inputBytes() const { return inputBytes_; }
 
@@ -41,17 +44,20 @@ class Frame {
     void setNormalMap(const Device& device, uint32_t id, const std::string& file);
     // Curvature from normals and positions or depth of the G-buffer (pelScreenCurvature).
     PelImageDesc measureCurvature(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene);
+    void setAmbientCube(const Device& device, const std::string& file);
     PelImageDesc upload(const Device& device, const io::Image& image,
                         const std::vector<std::string>& channels);
 
     Shader shader_;
     Buffer radiance_;
     std::vector<Buffer> inputs_;
+    std::map<PelImageSlot, Buffer> outputs_;
     uint64_t inputBytes_ = 0;
 };
 
-// Writes RGB radiance as R, G, B of a float EXR.
+// Writes RGB radiance as R, G, B of a float EXR, lengths as Thickness.V.
 void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance);
+void writeThickness(const std::string& path, int width, int height, const std::vector<float>& lengths);
 
 // The counters as an object of a report.
 nlohmann::ordered_json toJson(const PelShaderStats& stats);

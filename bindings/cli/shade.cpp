@@ -1,7 +1,11 @@
 // pellucid shade: a host's G-buffer and a scene file in, radiance out.
+#include <algorithm>
+#include <set>
+
 #include "frame.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
+#include "io/scene_keys.h"
 
 namespace pellucid::cli {
 namespace {
@@ -9,8 +13,40 @@ namespace {
 struct Arguments {
     Run::Options run;
     std::string gbuffer, scene, output;
+    std::vector<std::string> parts;
     bool stats = false;
 };
+
+// The files to write beside radiance: those of the scene, and those of --outputs, named after -o.
+std::vector<std::pair<PelImageSlot, std::string>> outputFiles(const Arguments& a, const io::SceneFile& scene) {
+    std::vector<std::pair<PelImageSlot, std::string>> files;
+    const std::string stem = a.output.substr(0, a.output.size() - 4);
+    for (const auto& [slot, key] : io::outputKeys) {
+        if (!scene.outputs[slot].empty()) files.emplace_back(slot, scene.outputs[slot]);
+        for (const std::string& part : a.parts)
+            if (part == key || part == "all") {
+                files.emplace_back(slot, stem + "_" + std::string(key) + ".exr");
+                break;
+            }
+    }
+    return files;
+}
+
+void writeOutput(const std::string& path, PelImageSlot slot, const io::Image& gbuffer, const Frame& frame) {
+    (slot == PEL_SLOT_OUT_THICKNESS ? writeThickness : writeRadiance)(path, gbuffer.width, gbuffer.height, frame.output(slot));
+}
+
+// What the scene asks for and will not get.
+void warnOfNothing(Run& run, const io::SceneFile& scene, const std::vector<PelImageSlot>& outputs, uint32_t features) {
+    for (const io::SceneMaterial& m : scene.materials)
+        if (m.material.deepScatterAmbient > 0 && scene.channels[PEL_SLOT_THICKNESS].empty())
+            run.warn("deep_scatter_ambient of material " + std::to_string(m.id) +
+                     " does nothing without a thickness channel: shadow maps tell how thick a body is along their light alone");
+    const bool wanted = std::find(outputs.begin(), outputs.end(), PEL_SLOT_OUT_THICKNESS) != outputs.end();
+    if (wanted && scene.channels[PEL_SLOT_THICKNESS].empty() && !(features & PEL_FEATURE_THICKNESS_TAPS))
+        run.warn("the thickness output is 0 everywhere: there is neither a thickness channel, nor a light with a shadow map and a "
+                 "material with thickness_taps and a deep_scatter_color");
+}
 
 void run(const Arguments& a) {
     try {
@@ -22,18 +58,30 @@ void run(const Arguments& a) {
     Run run(a.run);
     const io::SceneFile scene = io::readScene(a.scene);
     const io::Image gbuffer = io::readImage(a.gbuffer);
+    const auto files = outputFiles(a, scene);
+    std::vector<PelImageSlot> outputs;
+    std::set<std::string> distinct{a.output};
+    for (const auto& [slot, file] : files) {
+        if (outputs.empty() || outputs.back() != slot) outputs.push_back(slot);
+        io::requireExtension(file, {"exr"});
+        if (!distinct.insert(file).second) throw io::FileError(file, "would be written twice; give each output a name of its own");
+        io::checkWritable(file);
+    }
     LutStore luts(run.device());
     PelShaderOptions options = pelShaderOptionsDefaults();
     options.countPixels = a.stats;
     try {
-        Frame frame(run.device(), gbuffer, scene, luts, {}, options);
+        Frame frame(run.device(), gbuffer, scene, luts, {}, options, outputs);
         frame.shade();
         writeRadiance(a.output, gbuffer.width, gbuffer.height, frame.radiance());
+        for (const auto& [slot, file] : files) writeOutput(file, slot, gbuffer, frame);
         run.report["output"] = a.output;
+        for (const auto& [slot, file] : files) run.report["outputs"].push_back(file);
         run.report["width"] = gbuffer.width;
         run.report["height"] = gbuffer.height;
         run.report["pixels"] = gbuffer.pixelCount();
         const PelShaderStats stats = frame.stats();
+        warnOfNothing(run, scene, outputs, stats.features);
         if (a.stats) run.report["stats"] = toJson(stats);
         if (stats.pixelsInvalid > 0)
             run.warn(std::to_string(stats.pixelsInvalid) + " pixels have NaN or Inf inputs; they are 0");
@@ -55,6 +103,9 @@ void addShade(CLI::App& app) {
     command->add_option("--scene", a->scene, "scene file (TOML): lights, materials, which channel is what")
         ->required();
     command->add_option("-o,--output", a->output, "EXR to write: radiance R, G, B")->required();
+    command->add_option("--outputs", a->parts, "parts of the picture to write beside it, as OUT_diffuse.exr and so on")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"diffuse", "deep_scatter", "specular", "thickness", "all"}));
     command->add_flag("--stats", a->stats, "count tiles and pixels per feature");
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });

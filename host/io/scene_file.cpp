@@ -65,10 +65,10 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
             throw FileError(scene.source, "material id " + std::to_string(m.id) + " is used twice", m.line);
         }
         if (m.material.thicknessTaps != 0 && m.material.thicknessTaps != 8 &&
-            m.material.thicknessTaps != 32) {
+            m.material.thicknessTaps != 16 && m.material.thicknessTaps != 32) {
             throw FileError(scene.source,
                             "'thickness_taps' is " + std::to_string(m.material.thicknessTaps) +
-                                "; 0, 8 or 32 would be right",
+                                "; 0, 8, 16 or 32 would be right",
                             m.line);
         }
         if (!m.normalMap.empty())
@@ -110,8 +110,10 @@ SceneFile readScene(const std::string& path) {
     reader.integer("version", version, sceneVersion, sceneVersion);
     if (version == 0) reader.fail("version", "is missing; this program writes and reads version 1");
     reader.integer("blur_normals", scene.blurNormals, 0, 1);
+    reader.integer("rotate_taps", scene.rotateTaps, 0, 1);
     reader.table("camera", true, [&](TomlReader& r) { cameraKeys(r, scene.camera); });
-    reader.table("ambient", true, [&](TomlReader& r) { ambientKeys(r, scene.ambient); });
+    reader.table("ambient", true, [&](TomlReader& r) { ambientKeys(r, scene); });
+    reader.table("outputs", true, [&](TomlReader& r) { outputFileKeys(r, scene); });
     reader.tables("curvature_lut", [&](TomlReader& r) { readLut(r, scene, PEL_LUT_CURVATURE); });
     reader.tables("shadow_lut", [&](TomlReader& r) { readLut(r, scene, PEL_LUT_SHADOW); });
     reader.tables("material", [&](TomlReader& r) {
@@ -137,6 +139,10 @@ SceneFile readScene(const std::string& path) {
     }
     for (SceneMaterial& m : scene.materials) {
         if (!m.normalMap.empty()) m.normalMap = (folder / m.normalMap).string();
+    }
+    if (!scene.ambientCube.empty()) scene.ambientCube = (folder / scene.ambientCube).string();
+    for (std::string& output : scene.outputs) {
+        if (!output.empty()) output = (folder / output).string();
     }
     for (SceneLight& l : scene.lights) {
         if (!l.shadowMapFile.empty()) l.shadowMapFile = (folder / l.shadowMapFile).string();

@@ -43,6 +43,9 @@ struct SceneFile {
     std::array<std::vector<std::string>, PEL_SLOT_COUNT>
         channels;  // of the G-buffer per image slot; empty: slot not set
     uint32_t blurNormals = 0;  // PelShaderOptions.blurNormals
+    uint32_t rotateTaps = 0;   // PelShaderOptions.rotateTaps
+    std::string ambientCube;   // image of an irradiance cube map, six faces below or beside one another; "": none
+    std::array<std::string, PEL_SLOT_COUNT> outputs;  // EXR files to write per output slot beside radiance; "": none
     PelCamera camera = pelCameraDefaults();
     PelAmbient ambient = pelAmbientDefaults();
     std::vector<SceneLight> lights;

@@ -41,6 +41,22 @@ constexpr SlotKey slotKeys[] = {
     {PEL_SLOT_TANGENT, "tangent", 4},
 };
 
+struct OutputKey {
+    PelImageSlot slot;
+    std::string_view key;
+};
+constexpr OutputKey outputKeys[] = {
+    {PEL_SLOT_OUT_DIFFUSE, "diffuse"},
+    {PEL_SLOT_OUT_DEEP_SCATTER, "deep_scatter"},
+    {PEL_SLOT_OUT_SPECULAR, "specular"},
+    {PEL_SLOT_OUT_THICKNESS, "thickness"},
+};
+
+template <class Visitor, class Scene>
+void outputFileKeys(Visitor& v, Scene& scene) {
+    for (const OutputKey& k : outputKeys) v.text(k.key, scene.outputs[k.slot]);
+}
+
 template <class Visitor, class Scene>
 void channelKeys(Visitor& v, Scene& scene) {
     for (const SlotKey& k : slotKeys) v.texts(k.key, scene.channels[k.slot], k.components);
@@ -52,10 +68,11 @@ void cameraKeys(Visitor& v, Camera& camera) {
     v.numbers("inverse_view_projection", camera.inverseViewProjection, 16, Range::Any);
 }
 
-template <class Visitor, class Ambient>
-void ambientKeys(Visitor& v, Ambient& ambient) {
-    v.numbers("constant", ambient.constant, 3, Range::NotNegative);
-    v.rows("sh", ambient.sh[0], 9, 3);
+template <class Visitor, class Scene>
+void ambientKeys(Visitor& v, Scene& scene) {
+    v.numbers("constant", scene.ambient.constant, 3, Range::NotNegative);
+    v.rows("sh", scene.ambient.sh[0], 9, 3);
+    v.text("cube", scene.ambientCube);
 }
 
 template <class Visitor, class Light>

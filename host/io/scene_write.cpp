@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <span>
 
@@ -81,6 +82,7 @@ void writeScene(const std::string& path, const SceneFile& scene) {
     std::string out =
         "# A scene of `pellucid shade`. Lengths are in the unit of the G-buffer's positions.\nversion = 1\n";
     if (scene.blurNormals) TomlWriter(out).integer("blur_normals", scene.blurNormals, 0, 1);
+    if (scene.rotateTaps) TomlWriter(out).integer("rotate_taps", scene.rotateTaps, 0, 1);
     const auto table = [&](const std::string& header, const std::string& name, auto&& function) {
         out += "\n" + header + "\n";
         TomlWriter writer(out, name);
@@ -88,7 +90,9 @@ void writeScene(const std::string& path, const SceneFile& scene) {
     };
     table("[channels]", "channels", [&](TomlWriter& w) { channelKeys(w, scene); });
     table("[camera]", "camera", [&](TomlWriter& w) { cameraKeys(w, scene.camera); });
-    table("[ambient]", "ambient", [&](TomlWriter& w) { ambientKeys(w, scene.ambient); });
+    table("[ambient]", "ambient", [&](TomlWriter& w) { ambientKeys(w, scene); });
+    if (std::any_of(scene.outputs.begin(), scene.outputs.end(), [](auto& o) { return !o.empty(); }))
+        table("[outputs]", "outputs", [&](TomlWriter& w) { outputFileKeys(w, scene); });
     for (const SceneLight& light : scene.lights) {
         table("[[light]]", "light", [&](TomlWriter& w) { lightKeys(w, light); });
     }
