@@ -22,7 +22,7 @@ inline uintw loadObjectId(const int format, Span s) {
 #undef ID_AT
         }
         case PEL_FMT_R32_UINT:
-            return gatherWord(s);
+            return loadWord(format, s);
         default:
             return as_uintw(loadScalar(format, s));
     }
