@@ -1,7 +1,14 @@
 // Curvature by a local polynomial through the two-ring of each slot (mathematics, section 5): heights over the tangent
 // plane of the given normal, fitted by least squares with slope, quadratic and cubic terms. The slope re-estimates the
 // normal; the cubic terms take what would otherwise lean the quadratic ones on irregular meshes, and are not used
-// further. Positions alone decide: a normal only says which way the height is.
+// further. Positions alone decide: a normal only says which way the height is; one that lies in its ring's plane, as where
+// a sliver was folded over by noise, is replaced by the mean of its neighbours'.
+//
+// Heights are bent first: q becomes q r^2 / (r^2 + q^2), r being the distance along the plane. A circle through the slot
+// that touches the plane, q = k (r^2 + q^2) / 2, then is exactly the parabola k r^2 / 2, so that spheres and cylinders
+// leave no terms of fourth order, which a fit of third order would mistake for quadratic ones: the more, the longer its
+// cells. The plane must touch the surface for that. The ring's own slope, where it is no small one, is taken off before,
+// and the bending fades out where the ring is steep in spite of it.
 //
 // The two-ring is walked as the rings of the ring. Where those are closed, their walks begin behind the slot's own
 // neighbours and leave out the last vertex, which the next walk begins with: each vertex of the two-ring then counts
@@ -32,12 +39,28 @@
 #define RIDGE_QUADRATIC 1e-7f
 #define RIDGE_CUBIC 1e-5f
 
+// The same on a border, where a two-ring has three rows of vertices only, which leave a cubic across it open: more of it
+// costs as much on smooth surfaces as it gains, and noise of 2 % of an edge is two to three times as large with less.
+#define RIDGE_CUBIC_BORDER 3e-4f
+
 // Root mean square of a coordinate over a round ring, in units of its reach: such a ring keeps its shape.
 #define CHART_SIZE 0.70710678f
 
 // Square of the chart's radius beyond which a point is no neighbour: a round two-ring has radius 1. Next to a vertex of
 // many neighbours (the pole of a sphere) the two-ring is a wide circle, of which only the near part tells.
 #define FARTHEST2 4.0f
+
+// The ring's slope is fitted with this much of the squared reach on the diagonal, so that across slivers the curvature
+// along them does not count as slope; slopes well below MIN_SLOPE are the surface's own and stay.
+#define SLOPE_RIDGE 0.03f
+#define MIN_SLOPE 0.05f
+
+// Squared height over squared width of a ring at which bending is down to a half: 16 degrees of tilt, or a
+// cap of edge / radius 0.4. Beyond STEEP_DOUBTFUL the normal is compared with its neighbours'; a cosine below WRONG_NORMAL
+// replaces it.
+#define STEEP 0.04f
+#define STEEP_DOUBTFUL 0.05f
+#define WRONG_NORMAL 0.8f
 
 // Squared width over squared length below which a ring counts as a line: slivers of 1 : 1000.
 #define MOST_UNEVEN 1e-6f
@@ -47,11 +70,15 @@
 #define MONOMIAL(a, b) (((a) + (b)) * ((a) + (b) + 1) / 2 - 3 + (b))  // of x^a y^b, a + b >= 2
 #define MONOMIALS 25
 
-// From offsets to the coordinates of the fit: x = xx X, y = xy X + yy Y, z = scale * height, with X and Y along the
+// From offsets to the coordinates of the fit: x = xx X, y = xy X + yy Y, z = scale * bent height, with X and Y along the
 // tangent vectors. They are as long along the ring as across it, so that slivers fit as well as other triangles: in
 // coordinates of one unit the sixth powers of a short direction would drown in the rounding of a long one's.
 typedef struct Chart {
     Vec3w origin, u, v, n;
+    Vec3w height;         // n without the ring's slope: dot3 with it gives q
+    floatw su, sv, bend;  // that slope; how much of the bending is done, 0 to 1
+    floatw steepness;     // squared height over squared width of the ring
+    floatw ridge;         // of the cubic terms
     floatw scale, xx, xy, yy;
     uint last;  // slot of the mesh
 } Chart;
@@ -67,15 +94,17 @@ inline void add_point(Fit* fit, uintw slot, maskw counts, const Chart* chart, __
     Vec3w p;
     gather3(positions, chart->last, slot, &p.x, &p.y, &p.z);
     p = scale3(sub3(p, chart->origin), chart->scale);
-    const floatw distance2 = dot3(p, p);
-    counts &= finitew(distance2);
     const floatw zero = 0.0f;
-    const floatw along = dot3(p, chart->u), across = dot3(p, chart->v);
+    const floatw along = dot3(p, chart->u), across = dot3(p, chart->v), q = dot3(p, chart->height);
+    const floatw flat2 = fma(along, along, across * across), softened = WEIGHT_SOFTENING + dot3(p, p);
+    const floatw bent = fma(chart->bend * q, q, flat2) + 1e-30f;
+    counts &= finitew(softened * bent);
+    const floatw inverse = 1.0f / (softened * bent);  // of both in one division
     floatw x = chart->xx * along, y = fma(chart->xy, along, chart->yy * across);
     counts &= fma(x, x, y * y) <= FARTHEST2;
     x = selectw(zero, x, counts), y = selectw(zero, y, counts);
-    const floatw z = selectw(zero, dot3(p, chart->n), counts);
-    const floatw weight = selectw(zero, 1.0f / (WEIGHT_SOFTENING + distance2), counts);
+    const floatw z = selectw(zero, q * flat2 * (softened * inverse), counts);
+    const floatw weight = selectw(zero, bent * inverse, counts);
     fit->weight += weight;
     // weight x^a, then times y as often as the degree allows.
     floatw column = weight;
@@ -113,11 +142,11 @@ inline void assemble(Fit* fit) {
 
 // Cholesky without roots, in place; the solution replaces the right side. A pivot that is lost to rounding
 // drops its term.
-inline void solve(Fit* fit) {
+inline void solve(Fit* fit, floatw ridge) {
     floatw inverse[TERMS];
 #pragma unroll
     for (int i = 0; i < TERMS; ++i) {
-        fit->products[PRODUCT(i, i)] += fit->weight * (i < 5 ? RIDGE_QUADRATIC : RIDGE_CUBIC);
+        fit->products[PRODUCT(i, i)] += fit->weight * (i < 5 ? (floatw)(RIDGE_QUADRATIC) : ridge);
         floatw pivot = fit->products[PRODUCT(i, i)];
         const floatw whole = pivot;
 #pragma unroll
@@ -145,9 +174,11 @@ inline void solve(Fit* fit) {
 // The chart's scales from the ring's second moments in the tangent plane; false for a ring without extent.
 inline maskw scale_chart(Chart* chart, RingCursor ring, __global const uint* rings, __global const float* positions) {
     const floatw zero = 0.0f, one = 1.0f;
-    floatw reach2 = zero, suu = zero, suv = zero, svv = zero, snn = zero, count = zero;
+    floatw reach2 = zero, suu = zero, suv = zero, svv = zero, sun = zero, svn = zero, snn = zero, count = zero;
+    maskw border = count > zero;
     for (; ring.row < ring.end; ++ring.row) {
-        const uintw slot = RING_SLOT(ring_entry(&ring, rings));
+        const uintw entry = ring_entry(&ring, rings), slot = RING_SLOT(entry);
+        border |= (entry & (uintw)(MESH_SINGLE)) != 0;
         Vec3w p;
         gather3(positions, ring.last, slot, &p.x, &p.y, &p.z);
         p = sub3(p, chart->origin);
@@ -157,7 +188,7 @@ inline maskw scale_chart(Chart* chart, RingCursor ring, __global const uint* rin
         const floatw along = selectw(zero, dot3(p, chart->u), counts), across = selectw(zero, dot3(p, chart->v), counts);
         const floatw height = selectw(zero, dot3(p, chart->n), counts);
         suu = fma(along, along, suu), suv = fma(along, across, suv), svv = fma(across, across, svv);
-        snn = fma(height, height, snn);
+        sun = fma(along, height, sun), svn = fma(across, height, svn), snn = fma(height, height, snn);
         count += selectw(zero, one, slot != ring.self);
     }
     const maskw spread = reach2 >= MESH_MIN_LENGTH2;
@@ -166,7 +197,16 @@ inline maskw scale_chart(Chart* chart, RingCursor ring, __global const uint* rin
     chart->scale = 0.5f / sqrt(reach2);
     // The moments' inverse square root (Cholesky): with it the ring is as wide as long.
     const floatw inverse = 1.0f / (reach2 * fmax(count, one));
-    suu *= inverse, suv *= inverse, svv *= inverse, snn *= inverse;
+    suu *= inverse, suv *= inverse, svv *= inverse, sun *= inverse, svn *= inverse, snn *= inverse;
+    const floatw a = suu + SLOPE_RIDGE, c = svv + SLOPE_RIDGE, determinant = fma(a, c, -suv * suv);
+    const floatw su = fma(c, sun, -suv * svn) / determinant, sv = fma(a, svn, -suv * sun) / determinant;
+    const floatw slope2 = fma(su, su, sv * sv), part = slope2 / (slope2 + MIN_SLOPE * MIN_SLOPE);
+    chart->su = su * part, chart->sv = sv * part;
+    chart->height = sub3(chart->n, add3(scale3(chart->u, chart->su), scale3(chart->v, chart->sv)));
+    chart->ridge = selectw((floatw)(RIDGE_CUBIC), (floatw)(RIDGE_CUBIC_BORDER), border);
+    chart->steepness = snn / (suu + svv + 1e-20f);
+    const floatw steep = chart->steepness / STEEP;
+    chart->bend = 1.0f / fma(steep, steep, one);
     // A ring that is thinner than high is no sliver: its normal is wrong, as where a triangle is folded over.
     const floatw least = fmax(MOST_UNEVEN * (suu + svv), snn) + 1e-20f;
     suu = fmax(suu, least);
@@ -176,6 +216,24 @@ inline maskw scale_chart(Chart* chart, RingCursor ring, __global const uint* rin
     chart->yy = CHART_SIZE / sqrt(rest);
     chart->xy = -slope * chart->yy;
     return spread;
+}
+
+inline void orient_chart(Chart* chart, Vec3w normal) {
+    chart->n = normal;
+    tangent_frame(normal, &chart->u, &chart->v);
+}
+
+// Mean direction of the normals of the ring; NaN where they cancel out.
+inline Vec3w ring_normal(RingCursor ring, __global const uint* rings, __global const float* normals) {
+    Vec3w sum = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    for (; ring.row < ring.end; ++ring.row) {
+        const uintw slot = RING_SLOT(ring_entry(&ring, rings));
+        Vec3w n;
+        gather3(normals, ring.last, slot, &n.x, &n.y, &n.z);
+        usable_normals(&n.x, &n.y, &n.z);
+        sum = select3(sum, add3(sum, n), finite3(n) & (slot != ring.self));
+    }
+    return scale3(sum, 1.0f / sqrt(dot3(sum, sum)));
 }
 
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_quadric(
@@ -190,12 +248,21 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     Chart chart;
     chart.last = ring.last;
     gather3(positions, ring.last, ring.self, &chart.origin.x, &chart.origin.y, &chart.origin.z);
-    gather3(normals, ring.last, ring.self, &chart.n.x, &chart.n.y, &chart.n.z);
-    usable_normals(&chart.n.x, &chart.n.y, &chart.n.z);
-    const maskw sound = finite3(chart.origin) & finite3(chart.n);
-    chart.n = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(1.0f)), chart.n, sound);
-    tangent_frame(chart.n, &chart.u, &chart.v);
-    const maskw spread = scale_chart(&chart, ring, rings, positions) & sound;
+    Vec3w given;
+    gather3(normals, ring.last, ring.self, &given.x, &given.y, &given.z);
+    usable_normals(&given.x, &given.y, &given.z);
+    const maskw sound = finite3(chart.origin) & finite3(given);
+    orient_chart(&chart, select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(1.0f)), given, sound));
+    maskw spread = scale_chart(&chart, ring, rings, positions) & sound;
+    const maskw doubtful = spread & (chart.steepness > STEEP_DOUBTFUL);
+    if (anyw(doubtful)) {
+        const Vec3w mean = ring_normal(ring, rings, normals);
+        const maskw wrong = doubtful & (dot3(mean, chart.n) < WRONG_NORMAL);
+        if (anyw(wrong)) {
+            orient_chart(&chart, select3(chart.n, mean, wrong));
+            spread = scale_chart(&chart, ring, rings, positions) & sound;
+        }
+    }
 
     Fit fit;
 #pragma unroll
@@ -240,12 +307,12 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
         }
     }
     assemble(&fit);
-    solve(&fit);
+    solve(&fit, chart.ridge);
 
     // Back to derivatives of the height, in units of the reach, by the tangent vectors.
     const floatw fx = fit.right[0], fxx = fit.right[2], fxy = fit.right[3];
     const floatw fy = fit.right[1], fyy = fit.right[4];
-    const floatw du = fma(chart.xx, fx, chart.xy * fy), dv = chart.yy * fy;
+    const floatw du = chart.su + fma(chart.xx, fx, chart.xy * fy), dv = fma(chart.yy, fy, chart.sv);
     const floatw duu = chart.xx * fma(chart.xx, fxx, 2.0f * chart.xy * fxy) + chart.xy * chart.xy * fyy;
     const floatw duv = chart.yy * fma(chart.xx, fxy, chart.xy * fyy), dvv = chart.yy * chart.yy * fyy;
     // The second fundamental form of the graph, in an orthonormal frame of its tangent plane at the slot.

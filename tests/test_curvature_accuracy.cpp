@@ -93,6 +93,9 @@ TEST(CurvatureAccuracy, IrregularTorus) {
               tolerance::torusExactNormals);
     EXPECT_LE(torusError(100, Tessellation::irregular, false, PEL_CURVATURE_QUADRIC),
               tolerance::torusEstimatedNormals);
+    for (bool exactNormals : {true, false})
+        EXPECT_LE(torusError(100, Tessellation::irregular, exactNormals, PEL_CURVATURE_QUADRIC),
+                  tolerance::torusQuadric);
     EXPECT_LE(torusError(140, Tessellation::irregular, true, PEL_CURVATURE_TENSOR),
               tolerance::torusExactNormals);
 }
@@ -138,6 +141,77 @@ TEST(CurvatureAccuracy, SliversAtThePolesOfASphere) {
         for (float value : k) worst = std::max(worst, std::abs(value * radius - 1));
         EXPECT_LE(worst, tolerance::sliverSphere) << "radius " << radius;
     }
+}
+
+TEST(CurvatureAccuracy, LongCellsOfASphere) {
+    // Cells up to 16 times longer than wide. What bends along them in fourth order must not count as bending across.
+    const std::vector<float> k = principal(latLongSphere(400, 50, 1), PEL_CURVATURE_QUADRIC);
+    double worst = 0;
+    for (float value : k) worst = std::max(worst, std::abs(value - 1.0));
+    EXPECT_LE(worst, tolerance::longCells);
+}
+
+TEST(CurvatureAccuracy, TiltedNormalsOnlySayWhichWayIsUp) {
+    const AnalyticMesh truth = tessellate(reference::torusSurface(3, 1), 160, 80, Tessellation::irregular);
+    Mesh mesh = pairOf(truth.mesh).mesh;
+    for (size_t v = 0; v < mesh.vertices(); ++v) {
+        // About an axis that differs from vertex to vertex.
+        float* n = &mesh.normals[3 * v];
+        const reference::Vec3 normal{n[0], n[1], n[2]};
+        const reference::Vec3 sideways =
+            normalized(cross(normal, reference::Vec3{std::sin(0.7 * double(v)), std::cos(0.7 * double(v)), 0.3}));
+        const reference::Vec3 tilted = std::cos(0.17) * normal + std::sin(0.17) * sideways;
+        for (int c = 0; c < 3; ++c) n[c] = float(tilted[c]);
+    }
+    EXPECT_LE(rmsError(truth, mesh, PEL_CURVATURE_QUADRIC), tolerance::tiltedNormals);
+}
+
+TEST(CurvatureAccuracy, ANormalInItsOwnPlaneIsReplaced) {
+    // As noise leaves it that folds a sliver over. Its neighbours' normals say what it should be.
+    const Mesh mesh = pairOf(tessellate(reference::torusSurface(3, 1), 100, 60, Tessellation::irregular).mesh).mesh;
+    Mesh broken = mesh;
+    std::vector<size_t> faulty;
+    for (size_t v = 37; v < mesh.vertices(); v += 407) {
+        const size_t next = v + 1;  // the step to it lies about in the plane
+        double length = 0;
+        float step[3];
+        for (int c = 0; c < 3; ++c) {
+            step[c] = mesh.positions[3 * next + c] - mesh.positions[3 * v + c];
+            length += step[c] * step[c];
+        }
+        for (int c = 0; c < 3; ++c) broken.normals[3 * v + c] = float(step[c] / std::sqrt(length));
+        faulty.push_back(v);
+    }
+    const std::vector<float> expected = principal(mesh, PEL_CURVATURE_QUADRIC),
+                             values = principal(broken, PEL_CURVATURE_QUADRIC);
+    for (size_t v : faulty)
+        for (int i = 0; i < 2; ++i)
+            EXPECT_NEAR(values[2 * v + i], expected[2 * v + i], tolerance::replacedNormal) << v;
+}
+
+TEST(CurvatureAccuracy, NoisySphereAndItsBorder) {
+    // Noise of 2 % of an edge, smoothed to three edges: away from the border, and on it.
+    AnalyticMesh sphere = tessellate(reference::sphereSurface(1), 140, 140, Tessellation::irregular);
+    addNoise(sphere.mesh, 0.02, 11);
+    const Mesh mesh = pairOf(sphere.mesh).mesh;
+    double edge = 0;
+    for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+        double square = 0;
+        for (int c = 0; c < 3; ++c)
+            square += std::pow(mesh.positions[3 * mesh.indices[i] + c] - mesh.positions[3 * mesh.indices[i + 1] + c], 2);
+        edge += std::sqrt(square) / (double(mesh.indices.size()) / 3);
+    }
+    PelCurvatureParams params = paramsOf(PEL_CURVATURE_QUADRIC, PEL_QUANTITY_MEAN);
+    params.smoothingRadius = float(3 * edge);
+    const std::vector<float> values = curvature(mesh, topologyDesc(mesh), params).values;
+    const std::vector<bool> border = onBorder(mesh, 2);
+    double error[2] = {0, 0}, count[2] = {0, 0};
+    for (size_t v = 0; v < values.size(); ++v) {
+        error[border[v]] += std::pow(values[v] - 1, 2);
+        count[border[v]] += 1;
+    }
+    EXPECT_LE(std::sqrt(error[0] / count[0]), tolerance::noisySphere);
+    EXPECT_LE(std::sqrt(error[1] / count[1]), tolerance::noisyBorder);
 }
 
 TEST(CurvatureAccuracy, DoesNotDependOnTheUnitOfLength) {

@@ -73,6 +73,18 @@ inline constexpr Tolerance normalComponent{
     "normalComponent", 1e-5, "float angles and cross products; slivers of irregular meshes lose a digit"};
 inline constexpr Tolerance sliverSphere{
     "sliverSphere", 0.01, "largest relative error of the quadric fit, triangles up to 60 times longer than wide"};
+inline constexpr Tolerance torusQuadric{
+    "torusQuadric", 0.002, "RMS, 20,000 vertices: twice what bent heights leave, half of what others would"};
+inline constexpr Tolerance longCells{
+    "longCells", 0.005, "largest relative error of the quadric fit, cells up to 16 times longer than wide"};
+inline constexpr Tolerance tiltedNormals{"tiltedNormals", 0.01,
+                                         "RMS, torus of 13,000 vertices whose normals are off by 10 degrees"};
+inline constexpr Tolerance replacedNormal{
+    "replacedNormal", 0.02, "1/length, curvatures up to 1: another frame of the same fit, 5 degrees off"};
+inline constexpr Tolerance noisySphere{
+    "noisySphere", 0.05, "RMS, noise of 2 % of the edges, smoothed to three: what is left where the noise is as long"};
+inline constexpr Tolerance noisyBorder{"noisyBorder", 0.15,
+                                       "the same in the outermost two rows, whose two-rings lie on one side"};
 inline constexpr Tolerance screenOracle{
     "screenOracle", 2e-5, "relative to 1/(a step): differences of float normals and positions of neighbours"};
 inline constexpr Tolerance screenSphere{

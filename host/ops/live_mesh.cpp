@@ -82,8 +82,7 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
     madeNormals_ = !normals.memory;
     target_ = curvature;
     const uint32_t ownReach = params_.estimator == PEL_CURVATURE_QUADRIC ? 2 : 1;
-    const uint32_t throughNormals = params_.estimator == PEL_CURVATURE_QUADRIC ? 1 : 2;
-    estimateReach_ = madeNormals_ ? std::max(ownReach, throughNormals) : ownReach;
+    estimateReach_ = madeNormals_ ? 2 : ownReach;  // the neighbours' normals, which are made of their rings
 
     const Scratch scratch = [&](MeshTopology::Scratch which, size_t bytes) -> const cl::Memory& {
         return keep(scratch_[which], bytes);
