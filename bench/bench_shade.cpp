@@ -332,6 +332,18 @@ void library(benchmark::State& state, View view, int taps, int coverage, uint32_
     perPixel(state, s.frame);
 }
 
+// Ambient light from a cube map of `size` texels along an edge in place of harmonics.
+void libraryCube(benchmark::State& state, View view, uint32_t size) {
+    const Scene& s = scene(view, 0);
+    Prepared p = prepare(s, 1, Terms::scattering);
+    std::vector<float> texels(size_t(18) * size * size);
+    for (size_t i = 0; i < texels.size(); ++i) texels[i] = 0.5f + 0.3f * std::sin(float(i % 1000));
+    p.shader.set(pelAmbientDefaults());
+    p.shader.setAmbientCube(imageDesc(Buffer(device(), texels), PEL_FORMAT_RGB32F, size, 6 * size)).commit();
+    for (auto _ : state) p.shader.execute();
+    perPixel(state, s.frame);
+}
+
 void openMp(benchmark::State& state, View view, int taps, Effort effort) {
     Scene& s = scene(view, taps);
     for (auto _ : state) baseline::shadeOpenMp(s.frame, s.settings, s.curvature, s.shadow, effort, s.out);
@@ -358,6 +370,7 @@ void port(benchmark::State& state, View view, int taps) {
     CASE(openMp, name##_skipping, __VA_ARGS__, Effort::Skipping)
 
 CASE(library, full_surface, full, 0, 100, 1u, Terms::scattering);
+CASE(libraryCube, full_surface_32, full, 32u);
 CASE(port, full_surface, full, 0);
 OPEN_MP(full_surface, full, 0);
 CASE(library, full_32taps, full, 32, 100, 1u, Terms::scattering);

@@ -2,8 +2,9 @@
 //
 //     bench_thickness [out/demo/backlit]    reads backlit.toml, backlit_gbuffer.exr, backlit_shadowmap.exr
 //
-// Prints one line per number of taps: time of the whole pass (median of 9, interleaved), and the error of thickness (mm) and of the
-// transmittance exp(-t^2 / 2 radius^2) at every 23rd pixel of skin that the light reaches from behind, RMS and largest.
+// Prints one line per number of taps, still and turned from pixel to pixel: time of the whole pass (median of 39, interleaved), and the
+// error of thickness (mm) and of the transmittance exp(-t^2 / 2 radius^2), RMS and largest, in every 23rd block of 4 x 4 pixels of
+// skin that the light reaches from behind; and RMS of the blocks' means, which is what a filter over pixels or frames leaves.
 #include <pellucid/pellucid.hpp>
 
 #include <algorithm>
@@ -47,8 +48,11 @@ int main(int argc, char** argv) try {
     shader.set(scene.camera);
 
     PelMaterial material = scene.materials.at(0).material;
-    const auto run = [&](uint32_t taps, bool output) {
+    const auto run = [&](uint32_t taps, bool turned, bool output) {
         material.thicknessTaps = taps;
+        PelShaderOptions options = pelShaderOptionsDefaults();
+        options.rotateTaps = turned;
+        shader.set(options);
         shader.setMaterial(scene.materials[0].id, material);
         if (output)
             shader.set(PEL_SLOT_OUT_THICKNESS, imageDesc(lengths, PEL_FORMAT_R32F, width, height));
@@ -74,36 +78,48 @@ int main(int argc, char** argv) try {
     const auto id = image.interleaved(scene.channels[PEL_SLOT_MATERIAL]);
     const auto at = [](const std::vector<float>& v, size_t i) { return Vec3{v[3 * i], v[3 * i + 1], v[3 * i + 2]}; };
     const Vec3 l{light.toLight[0], light.toLight[1], light.toLight[2]};
-    std::map<size_t, double> truth;
-    for (size_t i = 0, seen = 0; i < image.pixelCount(); ++i)
-        if (id[i] != 0 && dot(at(normal, i), l) < 0.3 && seen++ % 23 == 0)
-            truth[i] = thickness(truthMap, shadowCoordinates(m, at(position, i), at(normal, i), material.deepScatterNormalOffset),
-                                 many, material.thicknessFilterRadius, {false, light.shadowDepthRange, 0, 1},
-                                 reference::MapFilter::bilinear);
+    const auto behind = [&](size_t i) { return id[i] != 0 && dot(at(normal, i), l) < 0.3; };
+    std::vector<std::pair<size_t, double>> truth;  // pixels, 16 of each block
+    size_t seen = 0;
+    for (uint32_t y = 0; y + 4 <= height; y += 4)
+        for (uint32_t x = 0; x + 4 <= width; x += 4) {
+            std::vector<size_t> block;
+            for (uint32_t k = 0; k < 16; ++k)
+                if (const size_t i = size_t(y + k / 4) * width + x + k % 4; behind(i)) block.push_back(i);
+            if (block.size() < 16 || seen++ % 23) continue;
+            for (size_t i : block)
+                truth.emplace_back(i, thickness(truthMap,
+                                                shadowCoordinates(m, at(position, i), at(normal, i), material.deepScatterNormalOffset),
+                                                many, material.thicknessFilterRadius, {false, light.shadowDepthRange, 0, 1},
+                                                reference::MapFilter::bilinear));
+        }
 
-    const uint32_t counts[] = {0, 8, 16, 32};
-    std::map<uint32_t, std::vector<double>> times;
-    for (int round = 0; round < 10; ++round)
-        for (uint32_t taps : counts)
-            if (const double time = run(taps, false); round > 0) times[taps].push_back(time);
+    const std::pair<uint32_t, bool> cases[] = {{0, false}, {8, false}, {8, true}, {16, false}, {16, true}, {32, false}, {32, true}};
+    std::map<std::pair<uint32_t, bool>, std::vector<double>> times;
+    for (int round = 0; round < 40; ++round)
+        for (const auto& [taps, turned] : cases)
+            if (const double time = run(taps, turned, false); round > 0) times[{taps, turned}].push_back(time);
     std::printf("%s, %u x %u, %zu pixels compared\n", device.info().name, width, height, truth.size());
-    for (uint32_t taps : counts) {
-        auto& t = times[taps];
-        std::nth_element(t.begin(), t.begin() + 4, t.end());
-        std::printf("%2u taps: %7.2f ms", taps, t[4]);
+    const double radius = material.deepScatterRadius, count = double(truth.size());
+    const auto through = [&](double t) { return std::exp(-t * t / (2 * radius * radius)); };
+    for (const auto& [taps, turned] : cases) {
+        auto& t = times[{taps, turned}];
+        std::nth_element(t.begin(), t.begin() + 19, t.end());
+        std::printf("%2u taps%s: %6.2f ms", taps, turned ? ", turned" : "        ", t[19]);
         if (taps) {
-            run(taps, true);
+            run(taps, turned, true);
             const auto ours = lengths.readAll<float>();
-            double error = 0, worst = 0, through = 0, worstThrough = 0;
-            const double radius = material.deepScatterRadius;
-            for (const auto& [i, exact] : truth) {
-                const double d = ours[i] - exact,
-                             e = std::exp(-ours[i] * double(ours[i]) / (2 * radius * radius)) - std::exp(-exact * exact / (2 * radius * radius));
-                error += d * d, through += e * e;
-                worst = std::max(worst, std::abs(d)), worstThrough = std::max(worstThrough, std::abs(e));
+            double error = 0, worst = 0, light2 = 0, worstLight = 0, blocks = 0, sum = 0;
+            for (size_t k = 0; k < truth.size(); ++k) {
+                const auto& [i, exact] = truth[k];
+                const double d = ours[i] - exact, e = through(ours[i]) - through(exact);
+                error += d * d, light2 += e * e;
+                worst = std::max(worst, std::abs(d)), worstLight = std::max(worstLight, std::abs(e));
+                sum += e;
+                if (k % 16 == 15) blocks += 16 * (sum / 16) * (sum / 16), sum = 0;
             }
-            std::printf("   thickness RMS %.3f mm, largest %.2f; transmittance RMS %.4f, largest %.3f",
-                        std::sqrt(error / double(truth.size())), worst, std::sqrt(through / double(truth.size())), worstThrough);
+            std::printf("   thickness RMS %.3f mm, largest %.2f; transmittance RMS %.4f, largest %.3f; means of 4 x 4 RMS %.4f",
+                        std::sqrt(error / count), worst, std::sqrt(light2 / count), worstLight, std::sqrt(blocks / count));
         }
         std::printf("\n");
     }

@@ -61,11 +61,11 @@ static inline float4 cubeSample(const Faces* f, uint face, float2 at) {
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void ambient_cube(
-    __global const uchar* image, ulong offset, ulong step, ulong row, ulong plane, uint pixel, uint size,
-    __global float4* nodes) {
+    __global const uchar* image, ulong offset, ulong step, ulong row, ulong planeStep, uint pixel, uint size,
+    __global float* nodes) {
     const uint i = get_global_id(0), across = size + 2, face = get_global_id(1) / across, j = get_global_id(1) % across;
     if (i >= across || face >= 6) return;
-    const Faces f = {image + offset, step, row, plane, pixel, size};
+    const Faces f = {image + offset, step, row, planeStep, pixel, size};
     const bool edgeS = i == 0 || i > size, edgeT = j == 0 || j > size;
     float4 value;
     if (!edgeS && !edgeT) {
@@ -86,5 +86,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void ambient_cub
         }
         value = sum / count;
     }
-    nodes[(size_t)(face * across + j) * across + i] = value;
+    const size_t at = (size_t)(face * across + j) * across + i, plane = (size_t)6 * across * across;
+    nodes[at] = value.x;
+    nodes[at + plane] = value.y;
+    nodes[at + 2 * plane] = value.z;
 }

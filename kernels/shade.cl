@@ -33,7 +33,7 @@ typedef struct Scene {
     __global uchar *position, *depth, *normalGeometric, *normalShading, *normalBlurred, *curvature, *albedo;
     __global uchar *occlusion, *thickness, *roughness, *specular;
     __global uchar* lightImages[PEL_LIGHT_BUFFERS];
-    __global const float4* cube; // nodes of lib/ambient_cube.clh
+    __global const float* cube; // nodes of lib/ambient_cube.clh
 } Scene;
 
 typedef struct Outputs {
@@ -339,7 +339,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
     __global uchar* light9, __global uchar* light10, __global uchar* light11, __global uchar* light12,
     __global uchar* light13, __global uchar* light14, __global uchar* light15,
     __global uchar* outDiffuse, __global uchar* outDeepScatter, __global uchar* outSpecular, __global uchar* outThickness,
-    __global const float4* cube, uint part, uint parts) {
+    __global const float* cube, uint part, uint parts) {
     const Scene scene = {frame, materials, lights, luts, position, depth, normalGeometric, normalShading,
                          normalBlurred, curvature, albedo, occlusion, thickness, roughness, specular,
                          {light0, light1, light2, light3, light4, light5, light6, light7, light8, light9,

@@ -265,7 +265,7 @@ TEST(ShadeCube, ChangesAreSeenWithoutACommit) {
     shader.execute();
     EXPECT_EQ(target.readAll<float>()[0], 0.25f);
     EXPECT_EQ(shader.stats().bytesUploaded, 0u);
-    EXPECT_GE(shader.stats().scratchBytes, 6u * 9 * 16);
+    EXPECT_GE(shader.stats().scratchBytes, 18u * 9 * 4);
     shader.clearAmbientCube().commit().execute();
     EXPECT_EQ(target.readAll<float>()[0], 0.0f);
     EXPECT_EQ(shader.stats().features, 0u);

@@ -125,6 +125,8 @@ inline constexpr Tolerance cubeOfHarmonics{
     "cubeOfHarmonics", 6e-4, "32 texels along an edge: bilinear between directions up to 3.6 degrees apart, 3.5e-4 measured"};
 inline constexpr Tolerance cubeSeam{
     "cubeSeam", 1e-4, "directions 4e-6 apart over texels of white noise, 1/3 apart and less"};
+inline constexpr Tolerance specularTable{
+    "specularTable", 2e-4, "relative: the tenth power of a float value read at float coordinates up to 300"};
 inline constexpr Tolerance shadeThickness{"shadeThickness", 2e-3,
                                           "length: depths of a map that spans 200 to 700, through one float division"};
 inline constexpr Tolerance ggxEnergy{"ggxEnergy", 3e-3, "against a mean of 100,000 random half vectors"};

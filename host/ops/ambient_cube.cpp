@@ -25,7 +25,7 @@ void AmbientCube::prepare(Device& device, const ImageView& faces) {
     program_ = device.programs().get("ambient_cube.cl", {{"PEL_GROUP", text(group)},
                                                          {"PEL_WIDTH", "1"},
                                                          {"PEL_FORMAT_CUBE", text(formatCode(faces, 1))}});
-    const size_t across = edgeOf(faces) + size_t(2), bytes = 6 * across * across * sizeof(cl_float4);
+    const size_t across = edgeOf(faces) + size_t(2), bytes = 18 * across * across * sizeof(float);
     if (bytes == bytes_) return;
     bytes_ = 0;
     nodes_ = cl::Memory();
