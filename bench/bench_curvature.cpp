@@ -23,13 +23,23 @@ const Device& device() {
     return device;
 }
 
-enum Order { ordered = 0, shuffled = 1 };
+enum Order { ordered = 0, shuffled = 1, irregular = 2 };  // argument "order" of every case
 
-// A torus with 2:1 rings of about `vertices`; shuffled: neighbours in space are strangers in memory.
+// A torus with 2:1 rings of about `vertices`; shuffled: neighbours in space are strangers in memory; irregular: each cell is
+// cut along either diagonal, so that vertices have four to eight neighbours and no two of them alike.
 fixture::Mesh makeMesh(int64_t vertices, Order order) {
     const uint32_t sides = uint32_t(std::lround(std::sqrt(double(vertices) / 2)));
     fixture::Mesh mesh = fixture::torus(2 * sides, sides);
     if (order == ordered) return mesh;
+    if (order == irregular) {
+        std::mt19937 random(1);
+        for (size_t cell = 0; cell < mesh.indices.size(); cell += 6) {
+            uint32_t* i = &mesh.indices[cell];
+            const uint32_t q = i[1], r = i[2], s = i[5];
+            if (random() & 1) i[2] = s, i[3] = q, i[4] = r;
+        }
+        return mesh;
+    }
     fixture::Mesh result = fixture::shuffleVertices(mesh, 1).mesh;
     std::mt19937 random(1);
     for (size_t t = 0; t < result.indices.size() / 3; ++t) {
@@ -116,6 +126,28 @@ void deformingFrame(benchmark::State& state) {
     perVertex(state, c.vertices);
 }
 
+// Smoothing to a radius of three edges, on top of the cheapest estimator.
+void smoothedToRadius(benchmark::State& state) {
+    const Case& c = prepared(state);
+    const double pi = 3.14159265358979;
+    PelCurvatureParams params = edgeParams(0);
+    params.smoothingRadius = float(3 * std::sqrt(4 * pi * pi * 3 / double(c.vertices)));
+    run(c, params);
+    for (auto _ : state) run(c, params);
+    perVertex(state, c.vertices);
+}
+
+void madeNormals(benchmark::State& state) {
+    const Case& c = prepared(state);
+    const Buffer normals(device(), c.mesh.normals);
+    const auto make = [&] {
+        c.topology.normals(vertexView(c.positions, c.vertices), vertexView(normals, c.vertices));
+    };
+    make();
+    for (auto _ : state) make();
+    perVertex(state, c.vertices);
+}
+
 void edgeBaseline(benchmark::State& state) {
     const Case& c = prepared(state);
     baseline::CurvatureScratch scratch;
@@ -156,19 +188,19 @@ void copyBandwidth(benchmark::State& state) {
 }
 
 BENCHMARK(edgeDevice)
-    ->ArgNames({"vertices", "shuffled", "passes"})
-    ->ArgsProduct({{100000, 1000000}, {0, 1}, {0, 2}})
+    ->ArgNames({"vertices", "order", "passes"})
+    ->ArgsProduct({{100000, 1000000}, {0, 1, 2}, {0, 2}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 BENCHMARK(edgeBaseline)
-    ->ArgNames({"vertices", "shuffled", "passes"})
-    ->ArgsProduct({{100000, 1000000}, {0, 1}, {0, 2}})
+    ->ArgNames({"vertices", "order", "passes"})
+    ->ArgsProduct({{100000, 1000000}, {0, 1, 2}, {0, 2}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 BENCHMARK(estimatorDevice)
-    ->ArgNames({"vertices", "shuffled", "estimator"})
+    ->ArgNames({"vertices", "order", "estimator"})
     ->ArgsProduct({{100000, 1000000},
                    {0, 1},
                    {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}})
@@ -177,25 +209,37 @@ BENCHMARK(estimatorDevice)
     ->UseRealTime();
 // From what fits into a cache to what fits nowhere: is the cost of a vertex the same?
 BENCHMARK(edgeDevice)
-    ->ArgNames({"vertices", "shuffled", "passes"})
+    ->ArgNames({"vertices", "order", "passes"})
     ->ArgsProduct({{10000, 10000000}, {0}, {2}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 BENCHMARK(estimatorDevice)
-    ->ArgNames({"vertices", "shuffled", "estimator"})
+    ->ArgNames({"vertices", "order", "estimator"})
     ->ArgsProduct({{10000, 10000000}, {0}, {PEL_CURVATURE_QUADRIC}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 BENCHMARK(deformingFrame)
-    ->ArgNames({"vertices", "shuffled"})
+    ->ArgNames({"vertices", "order"})
     ->Args({100000, 0})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
+BENCHMARK(smoothedToRadius)
+    ->ArgNames({"vertices", "order"})
+    ->ArgsProduct({{1000000}, {0, 2}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+BENCHMARK(madeNormals)
+    ->ArgNames({"vertices", "order"})
+    ->ArgsProduct({{1000000}, {0, 2}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
 BENCHMARK(topologyAnalysis)
-    ->ArgNames({"vertices", "shuffled", "weld"})
+    ->ArgNames({"vertices", "order", "weld"})
     ->ArgsProduct({{1000000}, {0, 1}, {0, 1}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()

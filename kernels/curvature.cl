@@ -4,15 +4,16 @@
 // Results between passes: planes of one float per slot, 1/length (lib/principal.clh); NaN where nothing could
 // be measured. Such a slot stays out of its neighbours' means, and the last pass writes 0 for it, so that no
 // NaN ever spreads or leaves. One work-item: PEL_WIDTH slots (of plane get_global_id(1)); curvature_store:
-// one vertex of the caller. Variants: MESH_MAPPED 1: vertices find their slot in slotOf. MESH_STRIDE:
-// lib/mesh_ring.clh. MESH_LISTED: lib/mesh_vertex.clh. MESH_PLANES, MESH_QUANTITY (a PelCurvatureQuantity): what curvature_store reads and
-// writes.
+// one vertex of the caller. Variants: MESH_MAPPED 1: vertices find their slot in slotOf. MESH_STRIDE,
+// MESH_RUNS: lib/mesh_slots.clh. MESH_LISTED: lib/mesh_vertex.clh. MESH_PLANES, MESH_QUANTITY (a
+// PelCurvatureQuantity): what curvature_store reads and writes.
 
 #include "lib/mesh_ring.clh"
 
 // (min + max) / 2 of |dn| / |dp| over the edges of a slot [FaceWorks 1.0].
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_edge(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings, __global const float* positions,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
+    __global const uint* runs, __global const float* positions,
     uint positionOffset, __global const float* normals, uint normalOffset, uint planeStride,
     __global float* curvature) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
@@ -27,7 +28,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     // Squares order as their roots do: two roots at the end instead of two per edge.
     floatw low = INFINITY, high = -1.0f;
     for (; ring.row < ring.end; ++ring.row) {
-        const uintw other = RING_SLOT(ring_entry(&ring, rings));
+        const Slots other = ring_entry(&ring, rings, runs).slots;
         floatw dx, dy, dz, mx, my, mz;
         gather3(positions, ring.last, other, &dx, &dy, &dz);
         gather3(normals, ring.last, other, &mx, &my, &mz);
@@ -46,7 +47,8 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
 
 // The mean over a slot's triangles of their other two slots' values, itself not included.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_smooth(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings, uint planeStride,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
+    __global const uint* runs, uint planeStride,
     __global const float* from, __global float* to) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
@@ -56,14 +58,12 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     const floatw self = loadw(first, from);
     floatw sum = 0.0f, weight = 0.0f;
     for (; ring.row < ring.end; ++ring.row) {
-        const uintw entry = ring_entry(&ring, rings);
-        const uintw other = RING_SLOT(entry);
-        const floatw value = gather1(from, other);
-        const maskw counts = (value == value) & (other != ring.self);
-        sum = selectw(sum, fma(selectw((floatw)(2.0f), (floatw)(1.0f), as_intw(entry) < 0), value, sum),
-                      counts);
-        weight =
-            selectw(weight, weight + selectw((floatw)(2.0f), (floatw)(1.0f), as_intw(entry) < 0), counts);
+        const RingEntry entry = ring_entry(&ring, rings, runs);
+        const floatw value = gather1(from, entry.slots);
+        const floatw triangles = selectw((floatw)(2.0f), (floatw)(1.0f), as_intw(entry.bits) < 0);
+        const maskw counts = (value == value) & (entry.slots.each != ring.self.each);
+        sum = selectw(sum, fma(triangles, value, sum), counts);
+        weight = selectw(weight, weight + triangles, counts);
     }
     storew(selectw(self, sum / weight, (self == self) & (weight > 0.0f)), first, to);
 }

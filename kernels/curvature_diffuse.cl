@@ -12,7 +12,7 @@
 //
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h); planes as in
 // curvature.cl. One work-item: PEL_WIDTH slots (of plane get_global_id(1) in diffuse_stage). Variants:
-// MESH_STRIDE (lib/mesh_ring.clh), DIFFUSE_AREA.
+// MESH_STRIDE, MESH_RUNS (lib/mesh_slots.clh), DIFFUSE_AREA.
 
 #include "lib/mesh_triangle.clh"
 
@@ -21,7 +21,8 @@
 // down to it, which keeps every stage stable on slivers. crease2: square of the change of normal at which
 // weights fall to 1/e; 0: none do.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_weights(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings, __global const float* positions,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
+    __global const uint* runs, __global const float* positions,
     uint positionOffset, __global const float* normals, uint normalOffset, float time, float limit,
     float crease2, __global float* weights, __global float* rates) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
@@ -37,24 +38,18 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
 
     floatw area = zero, pending = zero;
     Vec3w start = none, previous = none;
-    maskw walking = start.x > zero, closed = walking;
+    RingWalk walk = {0, 0};
     uintw startRow = (uintw)(begin);
-    // One row more than there are: what follows the last neighbour ends its walk, as a filler does.
-    for (uint row = begin; row <= ring.end; ++row) {
-        ring.row = row;
-        const uintw entry = row < ring.end ? ring_entry(&ring, rings) : ring.self;
-        const uintw slot = RING_SLOT(entry);
-        const maskw filler = slot == ring.self;
-        const maskw starts = (entry & (uintw)(MESH_START)) != 0;
+    for (; ring.row < ring.behind; ++ring.row) {
+        const RingStep step = ring_step(&ring, &walk, rings, runs);
         Vec3w current;
-        gather3(positions, ring.last, slot, &current.x, &current.y, &current.z);
+        gather3(positions, ring.last, step.entry.slots, &current.x, &current.y, &current.z);
         current = sub3(current, origin);
-        const maskw ends = walking & (filler | starts);
         // Each triangle gives the cotangent at either neighbour to the edge to the other one.
-        const Vec3w other = select3(current, start, ends);
+        const Vec3w other = select3(current, start, step.ends);
         const Vec3w between = sub3(previous, other), across = cross3(previous, other);
         const floatw doubled2 = dot3(across, across);
-        const maskw triangle = walking & (!ends | closed) & finitew(doubled2) &
+        const maskw triangle = step.triangle & finitew(doubled2) &
                                (doubled2 > TRIANGLE_FLAT * dot3(previous, previous) * dot3(other, other));
         const floatw doubled = sqrt(selectw((floatw)(1.0f), doubled2, triangle));
 #if DIFFUSE_AREA
@@ -68,21 +63,20 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
         const floatw part = corner_area(previous, other, doubled);
 #endif
         area += selectw(zero, part, triangle & finitew(part));
-        if (row > begin) {
-            const uint at = (row - 1) * MESH_LANES + ring.lane;
-            storew(selectw(zero, pending + atOther, walking), at, weights);
+        if (ring.row > begin) {
+            const uint at = (ring.row - 1) * MESH_LANES + ring.lane;
+            storew(selectw(zero, pending + atOther, step.walking), at, weights);
         }
-        if (anyw(ends & closed)) {
+        const maskw closes = step.ends & step.triangle;
+        if (anyw(closes)) {
 #define ADD_TO_START_(i, s) \
-    if ((ends & closed) s) weights[startRow s * MESH_LANES + ring.lane + i] += atPrevious s;
+    if (closes s) weights[startRow s * MESH_LANES + ring.lane + i] += atPrevious s;
             PEL_EACH_LANE(ADD_TO_START_)
 #undef ADD_TO_START_
         }
-        pending = selectw(atPrevious, zero, starts);
-        start = select3(start, current, starts);
-        startRow = selectw(startRow, (uintw)(row), starts);
-        closed = selectw(closed, (entry & (uintw)(MESH_SINGLE)) == 0, starts);
-        walking = (walking | starts) & !filler;
+        pending = selectw(atPrevious, zero, step.starts);
+        start = select3(start, current, step.starts);
+        startRow = selectw(startRow, (uintw)(ring.row), step.starts);
         previous = current;
     }
 
@@ -96,7 +90,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
         floatw weight = loadw(at, weights) * half_;
         if (crease2 > 0.0f) {
             Vec3w m;
-            gather3(normals, ring.last, RING_SLOT(ring_entry(&ring, rings)), &m.x, &m.y, &m.z);
+            gather3(normals, ring.last, ring_entry(&ring, rings, runs).slots, &m.x, &m.y, &m.z);
             usable_normals(&m.x, &m.y, &m.z);
             const Vec3w turn = sub3(m, n);
             // Uneven weights bound values by their neighbours' only where none is negative.
@@ -117,7 +111,8 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
 
 // next = mu * current + nu * before + step * Laplacian(current); next may be before.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_stage(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings, __global const float* weights,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
+    __global const uint* runs, __global const float* weights,
     uint planeStride, __global const float* current, __global const float* before, __global float* next,
     float mu, float nu, float step) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
@@ -128,8 +123,10 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_st
     const floatw self = loadw(first, current);
     floatw change = 0.0f;
     for (; ring.row < ring.end; ++ring.row) {
-        const floatw difference = gather1(current, RING_SLOT(ring_entry(&ring, rings))) - self;
-        const floatw weight = loadw(ring.row * MESH_LANES + ring.lane, weights);
+        const floatw difference = gather1(current, ring_entry(&ring, rings, runs).slots) - self;
+        const size_t at = (size_t)ring.row * MESH_LANES + ring.lane;
+        const floatw weight = loadw(at, weights);
+        PEL_PREFETCH(weights + at + ROWS_AHEAD * MESH_LANES);
         // NaN: nothing was measured there. A slot that has none itself keeps its NaN.
         change = selectw(change, fma(weight, difference, change), difference == difference);
     }

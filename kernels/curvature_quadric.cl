@@ -21,10 +21,9 @@
 //
 // One work-item: PEL_WIDTH slots.
 //
-// Variants: MESH_STRIDE (lib/mesh_ring.clh), MESH_PLANES (lib/principal.clh).
+// Variants: MESH_STRIDE, MESH_RUNS (lib/mesh_slots.clh), MESH_PLANES (lib/principal.clh).
 
-#include "lib/mesh_ring.clh"
-#include "lib/principal.clh"
+#include "lib/mesh_frame.clh"
 
 #define TERMS 9  // u, v, u^2/2, u v, v^2/2, u^3/6, u^2 v/2, u v^2/2, v^3/6
 #define PRODUCTS (TERMS * (TERMS + 1) / 2)
@@ -92,7 +91,7 @@ typedef struct Fit {
 
 inline void add_point(Fit* fit, uintw slot, maskw counts, const Chart* chart, __global const float* positions) {
     Vec3w p;
-    gather3(positions, chart->last, slot, &p.x, &p.y, &p.z);
+    gather3(positions, chart->last, slots_anywhere(slot), &p.x, &p.y, &p.z);
     p = scale3(sub3(p, chart->origin), chart->scale);
     const floatw zero = 0.0f;
     const floatw along = dot3(p, chart->u), across = dot3(p, chart->v), q = dot3(p, chart->height);
@@ -172,15 +171,16 @@ inline void solve(Fit* fit, floatw ridge) {
 }
 
 // The chart's scales from the ring's second moments in the tangent plane; false for a ring without extent.
-inline maskw scale_chart(Chart* chart, RingCursor ring, __global const uint* rings, __global const float* positions) {
+inline maskw scale_chart(Chart* chart, RingCursor ring, __global const uint* rings, __global const uint* runs,
+                         __global const float* positions) {
     const floatw zero = 0.0f, one = 1.0f;
     floatw reach2 = zero, suu = zero, suv = zero, svv = zero, sun = zero, svn = zero, snn = zero, count = zero;
     maskw border = count > zero;
     for (; ring.row < ring.end; ++ring.row) {
-        const uintw entry = ring_entry(&ring, rings), slot = RING_SLOT(entry);
-        border |= (entry & (uintw)(MESH_SINGLE)) != 0;
+        const RingEntry entry = ring_entry(&ring, rings, runs);
+        border |= (entry.bits & (uintw)(MESH_SINGLE)) != 0;
         Vec3w p;
-        gather3(positions, ring.last, slot, &p.x, &p.y, &p.z);
+        gather3(positions, ring.last, entry.slots, &p.x, &p.y, &p.z);
         p = sub3(p, chart->origin);
         const floatw length2 = dot3(p, p);
         const maskw counts = finitew(length2);
@@ -189,7 +189,7 @@ inline maskw scale_chart(Chart* chart, RingCursor ring, __global const uint* rin
         const floatw height = selectw(zero, dot3(p, chart->n), counts);
         suu = fma(along, along, suu), suv = fma(along, across, suv), svv = fma(across, across, svv);
         sun = fma(along, height, sun), svn = fma(across, height, svn), snn = fma(height, height, snn);
-        count += selectw(zero, one, slot != ring.self);
+        count += selectw(zero, one, entry.slots.each != ring.self.each);
     }
     const maskw spread = reach2 >= MESH_MIN_LENGTH2;
     // In units of the ring's reach: powers up to the sixth must neither overflow nor vanish.
@@ -224,20 +224,22 @@ inline void orient_chart(Chart* chart, Vec3w normal) {
 }
 
 // Mean direction of the normals of the ring; NaN where they cancel out.
-inline Vec3w ring_normal(RingCursor ring, __global const uint* rings, __global const float* normals) {
+inline Vec3w ring_normal(RingCursor ring, __global const uint* rings, __global const uint* runs,
+                         __global const float* normals) {
     Vec3w sum = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
     for (; ring.row < ring.end; ++ring.row) {
-        const uintw slot = RING_SLOT(ring_entry(&ring, rings));
+        const Slots slots = ring_entry(&ring, rings, runs).slots;
         Vec3w n;
-        gather3(normals, ring.last, slot, &n.x, &n.y, &n.z);
+        gather3(normals, ring.last, slots, &n.x, &n.y, &n.z);
         usable_normals(&n.x, &n.y, &n.z);
-        sum = select3(sum, add3(sum, n), finite3(n) & (slot != ring.self));
+        sum = select3(sum, add3(sum, n), finite3(n) & (slots.each != ring.self.each));
     }
     return scale3(sum, 1.0f / sqrt(dot3(sum, sum)));
 }
 
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_quadric(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings, __global const float* positions,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
+    __global const uint* runs, __global const float* positions,
     uint positionOffset, __global const float* normals, uint normalOffset, uint planeStride,
     __global float* planes) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
@@ -247,20 +249,16 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     normals += normalOffset;
     Chart chart;
     chart.last = ring.last;
-    gather3(positions, ring.last, ring.self, &chart.origin.x, &chart.origin.y, &chart.origin.z);
-    Vec3w given;
-    gather3(normals, ring.last, ring.self, &given.x, &given.y, &given.z);
-    usable_normals(&given.x, &given.y, &given.z);
-    const maskw sound = finite3(chart.origin) & finite3(given);
-    orient_chart(&chart, select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(1.0f)), given, sound));
-    maskw spread = scale_chart(&chart, ring, rings, positions) & sound;
+    const SlotFrame frame = slot_frame(&ring, positions, normals);
+    chart.origin = frame.origin, chart.n = frame.n, chart.u = frame.u, chart.v = frame.v;
+    maskw spread = scale_chart(&chart, ring, rings, runs, positions) & frame.sound;
     const maskw doubtful = spread & (chart.steepness > STEEP_DOUBTFUL);
     if (anyw(doubtful)) {
-        const Vec3w mean = ring_normal(ring, rings, normals);
+        const Vec3w mean = ring_normal(ring, rings, runs, normals);
         const maskw wrong = doubtful & (dot3(mean, chart.n) < WRONG_NORMAL);
         if (anyw(wrong)) {
             orient_chart(&chart, select3(chart.n, mean, wrong));
-            spread = scale_chart(&chart, ring, rings, positions) & sound;
+            spread = scale_chart(&chart, ring, rings, runs, positions) & frame.sound;
         }
     }
 
@@ -272,8 +270,8 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     fit.weight = 0.0f;
     const uintw none = (uintw)(0), one = (uintw)(1);
     for (; ring.row < ring.end; ++ring.row) {
-        const uintw near_ = RING_SLOT(ring_entry(&ring, rings));
-        const maskw real = (near_ != ring.self) & spread;
+        const uintw near_ = ring_entry(&ring, rings, runs).slots.each;
+        const maskw real = (near_ != ring.self.each) & spread;
         add_point(&fit, near_, real, &chart, positions);
         // Each lane walks the ring of its own neighbour, in that one's slice. Where in it does this slot stand?
         const uintw begin = gather_uint(slices, near_ / MESH_LANES);
@@ -288,7 +286,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
             const maskw filled = inside & (RING_SLOT(entry) != near_);
             length += selectw(none, one, filled);
             walks += selectw(none, one, filled & ((entry & (uintw)(MESH_START)) != 0));
-            here = selectw(here, (uintw)(row), filled & (RING_SLOT(entry) == ring.self));
+            here = selectw(here, (uintw)(row), filled & (RING_SLOT(entry) == ring.self.each));
             closed &= !(filled & ((entry & (uintw)(MESH_SINGLE)) != 0));
         }
         closed &= (walks == 1) & (length > 2);
@@ -302,8 +300,8 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
             uintw row = selectw(none, from + step, inside);
             row -= selectw(none, length, row >= length);
             const uintw entry = gather_uint(rings, (begin + selectw(none, row, inside)) * MESH_LANES + near_ % MESH_LANES);
-            const uintw far_ = selectw(ring.self, RING_SLOT(entry), inside);
-            add_point(&fit, far_, inside & (far_ != ring.self), &chart, positions);
+            const uintw far_ = selectw(ring.self.each, RING_SLOT(entry), inside);
+            add_point(&fit, far_, inside & (far_ != ring.self.each), &chart, positions);
         }
     }
     assemble(&fit);

@@ -6,10 +6,10 @@
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h). Output:
 // lib/principal.clh. One work-item: PEL_WIDTH slots. Each triangle is solved once for each of its corners:
 // three times the arithmetic, but no memory between, no second pass, and nothing to add up atomically.
-// Variants: MESH_STRIDE (lib/mesh_ring.clh), MESH_PLANES (lib/principal.clh).
+// Variants: MESH_STRIDE, MESH_RUNS (lib/mesh_slots.clh), MESH_PLANES (lib/principal.clh).
 
+#include "lib/mesh_frame.clh"
 #include "lib/mesh_triangle.clh"
-#include "lib/principal.clh"
 
 typedef struct Corner {
     Vec3w offset;  // position from the slot's
@@ -17,12 +17,13 @@ typedef struct Corner {
     maskw usable;
 } Corner;
 
-inline Corner corner_load(uintw slot, uint last, Vec3w origin, __global const float* positions,
-                          __global const float* normals) {
+__attribute__((always_inline)) inline Corner corner_load(Slots slots, uint last, Vec3w origin,
+                                                         __global const float* positions,
+                                                         __global const float* normals) {
     Corner c;
     Vec3w p;
-    gather3(positions, last, slot, &p.x, &p.y, &p.z);
-    gather3(normals, last, slot, &c.normal.x, &c.normal.y, &c.normal.z);
+    gather3(positions, last, slots, &p.x, &p.y, &p.z);
+    gather3(normals, last, slots, &c.normal.x, &c.normal.y, &c.normal.z);
     usable_normals(&c.normal.x, &c.normal.y, &c.normal.z);
     c.offset = sub3(p, origin);
     c.usable = finite3(c.offset) & finite3(c.normal);
@@ -41,8 +42,8 @@ typedef struct Form {
 } Form;
 
 // Adds triangle (slot, a, b), whose corners' order does not matter.
-inline void add_triangle(Form* form, Vec3w n, Vec3w u, Vec3w v, Corner a, Corner b, maskw mask,
-                         floatw scale) {
+__attribute__((always_inline)) inline void add_triangle(Form* form, Vec3w n, Vec3w u, Vec3w v, Corner a,
+                                                        Corner b, maskw mask, floatw scale) {
     // In units of about the ring, so that products of lengths stay in the range of float.
     const Vec3w ea = scale3(a.offset, scale), eb = scale3(b.offset, scale);
     const Vec3w across = cross3(ea, eb);
@@ -90,7 +91,8 @@ inline void add_triangle(Form* form, Vec3w n, Vec3w u, Vec3w v, Corner a, Corner
 }
 
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_tensor(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings, __global const float* positions,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
+    __global const uint* runs, __global const float* positions,
     uint positionOffset, __global const float* normals, uint normalOffset, uint planeStride,
     __global float* planes) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
@@ -99,13 +101,9 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     positions += positionOffset;
     normals += normalOffset;
     const Vec3w zero = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
-    Vec3w origin, n, u, v;
-    gather3(positions, ring.last, ring.self, &origin.x, &origin.y, &origin.z);
-    gather3(normals, ring.last, ring.self, &n.x, &n.y, &n.z);
-    usable_normals(&n.x, &n.y, &n.z);
-    const maskw sound = finite3(origin) & finite3(n);
-    n = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(1.0f)), n, sound);
-    tangent_frame(n, &u, &v);
+    const SlotFrame frame = slot_frame(&ring, positions, normals);
+    const Vec3w n = frame.n, u = frame.u, v = frame.v;
+    const maskw sound = frame.sound;
 
     Form form = {0.0f, 0.0f, 0.0f, 0.0f};
     floatw scale = 0.0f;
@@ -113,28 +111,19 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     start.offset = start.normal = zero;
     start.usable = sound & (maskw)(0);
     previous = start;
-    maskw walking = start.usable, closed = start.usable;
-    // One row more than there are: what follows the last neighbour ends its walk, as a filler does.
-    for (uint row = ring.row; row <= ring.end; ++row) {
-        ring.row = row;
-        const uintw entry = row < ring.end ? ring_entry(&ring, rings) : ring.self;
-        const uintw slot = RING_SLOT(entry);
-        const maskw filler = slot == ring.self;
-        const maskw starts = (entry & (uintw)(MESH_START)) != 0;
-        const Corner current = corner_load(slot, ring.last, origin, positions, normals);
+    RingWalk walk = {0, 0};
+    for (; ring.row < ring.behind; ++ring.row) {
+        const RingStep step = ring_step(&ring, &walk, rings, runs);
+        const Corner current = corner_load(step.entry.slots, ring.last, frame.origin, positions, normals);
         const floatw length2 = dot3(current.offset, current.offset);
         scale = selectw(scale, 1.0f / sqrt(length2),
                         !(scale > 0.0f) & (length2 >= MESH_MIN_LENGTH2) & finitew(length2));
         // Inside a walk: the triangle to the neighbour before. At its end: the one back to its start, if it
         // is closed.
-        const maskw ends = walking & (filler | starts);
-        const maskw triangle = walking & (!ends | closed);
-        if (anyw(triangle))
-            add_triangle(&form, n, u, v, previous, corner_select(current, start, ends), triangle & sound,
-                         scale);
-        start = corner_select(start, current, starts);
-        closed = selectw(closed, (entry & (uintw)(MESH_SINGLE)) == 0, starts);
-        walking = (walking | starts) & !filler;
+        if (anyw(step.triangle))
+            add_triangle(&form, n, u, v, previous, corner_select(current, start, step.ends),
+                         step.triangle & sound, scale);
+        start = corner_select(start, current, step.starts);
         previous = current;
     }
     const maskw measured = sound & (form.weight > 0.0f);

@@ -6,13 +6,14 @@
 //
 // One work-item: PEL_WIDTH slots (mesh_normals), one vertex of the caller (mesh_normals_store).
 //
-// Variants: MESH_STRIDE (lib/mesh_ring.clh), also of the output; MESH_MAPPED 1: vertices find their slot in
+// Variants: MESH_STRIDE (also of the output), MESH_RUNS (lib/mesh_slots.clh); MESH_MAPPED 1: vertices find their slot in
 // slotOf.
 
 #include "lib/mesh_triangle.clh"
 
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_normals(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings, __global const float* positions,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
+    __global const uint* runs, __global const float* positions,
     uint positionOffset, __global float* normals, uint normalOffset) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
@@ -25,35 +26,27 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_norma
     gather3(positions, ring.last, ring.self, &origin.x, &origin.y, &origin.z);
 
     Vec3w sum = none, start = none, previous = none;
-    maskw walking = start.x > zero, closed = walking, flipped = walking;
-    // One row more than there are: what follows the last neighbour ends its walk, as a filler does.
-    for (uint row = ring.row; row <= ring.end; ++row) {
-        ring.row = row;
-        const uintw entry = row < ring.end ? ring_entry(&ring, rings) : ring.self;
-        const uintw slot = RING_SLOT(entry);
-        const maskw filler = slot == ring.self;
-        const maskw starts = (entry & (uintw)(MESH_START)) != 0;
+    RingWalk walk = {0, 0};
+    maskw flipped = 0;
+    for (; ring.row < ring.behind; ++ring.row) {
+        const RingStep step = ring_step(&ring, &walk, rings, runs);
         Vec3w current;
-        gather3(positions, ring.last, slot, &current.x, &current.y, &current.z);
+        gather3(positions, ring.last, step.entry.slots, &current.x, &current.y, &current.z);
         current = sub3(current, origin);
         // At unit length, so that no product leaves the range of float; an edge without length stays 0.
         const floatw length2 = dot3(current, current);
         const maskw long_ = (length2 >= MESH_MIN_LENGTH2) & finitew(length2);
         current = select3(none, scale3(current, inverseRootw(length2)), long_);
-        const maskw ends = walking & (filler | starts);
-        const maskw triangle = walking & (!ends | closed);
-        const Vec3w other = select3(current, start, ends);
+        const Vec3w other = select3(current, start, step.ends);
         const Vec3w across = cross3(previous, other);
         const floatw sine2 = dot3(across, across);
-        const maskw plane = triangle & (sine2 > TRIANGLE_FLAT);
+        const maskw plane = step.triangle & (sine2 > TRIANGLE_FLAT);
         const floatw sine = sqrt(selectw((floatw)(1.0f), sine2, plane));
         floatw weight = atan2(sine, dot3(previous, other)) / sine;
         weight = selectw(weight, -weight, flipped);
         sum = select3(sum, add3(sum, scale3(across, weight)), plane);
-        start = select3(start, current, starts);
-        closed = selectw(closed, (entry & (uintw)(MESH_SINGLE)) == 0, starts);
-        flipped = (entry & (uintw)(MESH_FLIPPED)) != 0;
-        walking = (walking | starts) & !filler;
+        start = select3(start, current, step.starts);
+        flipped = (step.entry.bits & (uintw)(MESH_FLIPPED)) != 0;
         previous = current;
     }
     const floatw length2 = dot3(sum, sum);

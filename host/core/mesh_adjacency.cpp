@@ -102,4 +102,18 @@ MeshSlices sliceAdjacency(const MeshAdjacency& adjacency) {
     return result;
 }
 
+std::vector<uint32_t> findRuns(const std::vector<uint32_t>& rows) {
+    std::vector<uint32_t> runs(rows.size() / MESH_LANES, MESH_NO_RUN);
+    size_t found = 0;
+    for (size_t r = 0; r < runs.size(); ++r) {
+        const uint32_t* row = rows.data() + r * MESH_LANES;
+        uint32_t lane = 1;
+        // Flags stand above the slot, and the last slot is below MESH_SLOT: a sum never reaches them.
+        while (lane < MESH_LANES && row[lane] == row[0] + lane) ++lane;
+        if (lane == MESH_LANES) runs[r] = row[0], ++found;
+    }
+    if (found * 2 < runs.size()) runs.clear();
+    return runs;
+}
+
 }  // namespace pel

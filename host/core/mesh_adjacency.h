@@ -32,4 +32,7 @@ struct MeshSlices {
 };
 MeshSlices sliceAdjacency(const MeshAdjacency& adjacency);
 
+// The runs among the rows (shared/mesh.h); empty where fewer than half of them are.
+std::vector<uint32_t> findRuns(const std::vector<uint32_t>& rows);
+
 }  // namespace pel

@@ -85,6 +85,7 @@ Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopology
     const MeshSlices rings = sliceAdjacency(adjacency);
     topology->slices_ = topology->upload(rings.slices);
     topology->rings_ = topology->upload(rings.rows);
+    topology->runs_ = topology->upload(findRuns(rings.rows));
     topology->ringEntries_ = rings.rows.size();
     progress(1.0);
     return topology;

@@ -32,6 +32,7 @@ class MeshTopology final : public Object {
     const cl::Memory& members() const { return members_; }
     const cl::Memory& slices() const { return slices_; }
     const cl::Memory& rings() const { return rings_; }
+    const cl::Memory& runs() const { return runs_; }  // empty also where there are few
 
     // Memory between the passes of one call, at least `bytes` long, kept for the next call. The queue is in
     // order, so that calls may share it as long as each enqueues its passes together: hold lock() meanwhile.
@@ -61,7 +62,7 @@ class MeshTopology final : public Object {
     Ref<Device> device_;
     PelMeshReport report_ = pelMeshReportDefaults();
     size_t ringEntries_ = 0;
-    cl::Memory indices_, slotOf_, memberOffsets_, members_, slices_, rings_;
+    cl::Memory indices_, slotOf_, memberOffsets_, members_, slices_, rings_, runs_;
     std::mutex mutex_;
     struct {
         cl::Memory memory;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/mesh_adjacency.h"
 #include "core/mesh_topology.h"
 
 namespace pel {
@@ -124,6 +125,7 @@ Ref<MeshTopology> MeshTopology::load(Ref<Device> device, const void* bytes, size
     topology->members_ = topology->upload(members);
     topology->slices_ = topology->upload(slices);
     topology->rings_ = topology->upload(rings);
+    topology->runs_ = topology->upload(findRuns(rings));
     topology->ringEntries_ = rings.size();
     return topology;
 }

@@ -87,6 +87,7 @@ cl::Defines passDefines(const MeshTopology& topology, const PelCurvatureParams& 
             {"MESH_PLANES", std::to_string(planesOf(params.quantity))},
             {"MESH_QUANTITY", std::to_string(params.quantity)},
             {"MESH_LISTED", "0"},
+            {"MESH_RUNS", haveRuns(topology)},
             {"PEL_WIDTH", std::to_string(width(topology.device()))}};
 }
 
@@ -98,6 +99,7 @@ void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params,
     const bool edge = params.estimator == PEL_CURVATURE_EDGE;
     if (!edge) {  // neither what is stored nor the mapping makes another program of these
         defines.erase("MESH_MAPPED");
+        defines["MESH_RUNS"] = "0";  // they compute far more than they read
         defines.erase("MESH_QUANTITY");
     }
     cl::Launch estimate(

@@ -21,6 +21,7 @@ cl::Program program(const MeshTopology& topology, uint32_t stride, const Rows& r
     cl::Defines defines = mapping(topology);
     defines["MESH_STRIDE"] = std::to_string(stride);
     defines["MESH_LISTED"] = listed(rows);
+    defines["MESH_RUNS"] = haveRuns(topology);
     defines["PEL_WIDTH"] = std::to_string(width(topology.device()));
     return topology.device().programs().get("mesh_normals.cl", defines);
 }

@@ -46,7 +46,11 @@ inline void rowArguments(const MeshTopology& topology, cl::Launch& launch, const
 
 inline void ringArguments(const MeshTopology& topology, cl::Launch& launch, const Rows& rows) {
     rowArguments(topology, launch, rows);
-    launch.arg(topology.slices()).arg(topology.rings());
+    launch.arg(topology.slices()).arg(topology.rings()).arg(topology.runs());
+}
+
+inline std::string haveRuns(const MeshTopology& topology) {
+    return topology.runs() ? "1" : "0";
 }
 
 inline cl::Defines mapping(const MeshTopology& topology) {

@@ -14,6 +14,7 @@ cl::Program program(const MeshTopology& topology, const SlotData& data, const Ro
                                             {{"MESH_STRIDE", std::to_string(data.stride)},
                                              {"MESH_LISTED", listed(rows)},
                                              {"DIFFUSE_AREA", std::to_string(weights == PEL_SMOOTHING_AREA)},
+                                             {"MESH_RUNS", haveRuns(topology)},
                                              {"PEL_WIDTH", std::to_string(width(topology.device()))}});
 }
 

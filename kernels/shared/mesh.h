@@ -27,6 +27,10 @@
 #define MESH_REPEAT 0x10000000u   // the neighbour stands further up in this list already
 #define MESH_SLOT 0x0fffffffu     // the neighbour
 
+// Rows of large parts of many meshes, of grids nearly all, are runs: MESH_LANES entries that follow one another, with the same
+// flags. runs[row] is the first entry of such a row, or this; meshes with few of them have none.
+#define MESH_NO_RUN 0xffffffffu
+
 // Edges shorter than the root of this (a length squared) are too short to measure: their square is no normal
 // float.
 #define MESH_MIN_LENGTH2 1.17549435e-38f
