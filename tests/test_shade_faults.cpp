@@ -103,6 +103,7 @@ TEST_P(ShadeFaults, EachAllocationInTurn) {
     f.options.blurNormals = f.options.countPixels = 1;
     f.curvatureLut = f.shadowLut = true;
     f.slots[PEL_SLOT_CURVATURE] = f.slots[PEL_SLOT_MATERIAL];
+    f.cube = {2, std::vector<Rgb>(24, Rgb{0.25, 0.5, 0.125})};
     const auto right = shade(device(), f, tables());  // the programs are built by now
 
     Shader shader(device());

@@ -108,4 +108,18 @@ TEST(ShadeTaps, WithoutTapsTheOptionMakesNoOtherKernel) {
     EXPECT_EQ(stats.programsBuilt, 0u) << "the first shader's variant is there already";
 }
 
+TEST(ShadeTaps, AmbientScatterIsOffWithoutAThicknessImage) {
+    // Shadow maps and taps are there, but measure along the lights.
+    Frame f = tapFrame(25, 40, 10);
+    const auto without = shade(device(), f, tables());
+    for (auto& [id, m] : f.materials) m.deepScatterAmbient = 0.7f;
+    PelShaderStats stats = pelShaderStatsDefaults();
+    EXPECT_EQ(shade(device(), f, tables(), &stats), without);
+    EXPECT_TRUE(stats.features & PEL_FEATURE_THICKNESS_TAPS);
+    EXPECT_FALSE(stats.features & PEL_FEATURE_AMBIENT_SCATTER);
+    f.slots[PEL_SLOT_THICKNESS] = f.slots[PEL_SLOT_CURVATURE];
+    (void)shade(device(), f, tables(), &stats);
+    EXPECT_TRUE(stats.features & PEL_FEATURE_AMBIENT_SCATTER);
+}
+
 }  // namespace
