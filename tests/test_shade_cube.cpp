@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "sample/sky.h"
 #include "shade_scene.h"
 #include "tolerances.h"
 
@@ -133,6 +134,48 @@ TEST(ShadeCube, SampledFromHarmonicsItIsThoseToSecondOrder) {
     EXPECT_LE(errors[1], 4.5 * errors[2]) << "a quarter of the error with twice the texels";
     EXPECT_GE(errors[1], 3 * errors[2]);
     EXPECT_LE(errors[0], 4.5 * errors[1]);
+}
+
+// Irradiance / pi of a sky by a midpoint rule of `rings` x 2 `rings` directions.
+struct SkyIrradiance {
+    std::vector<std::pair<Vec3, Rgb>> light;  // direction, radiance times solid angle over pi
+    explicit SkyIrradiance(const pellucid::sample::Sky& sky, int rings = 48) {
+        for (int i = 0; i < rings; ++i)
+            for (int j = 0; j < 2 * rings; ++j) {
+                const double z = (2 * i + 1.0) / rings - 1, phi = M_PI * (j + 0.5) / rings, r = std::sqrt(1 - z * z);
+                const auto l = sky.radiance({r * std::cos(phi), r * std::sin(phi), z});
+                light.push_back({{r * std::cos(phi), r * std::sin(phi), z}, (2.0 / (rings * rings)) * Rgb{l[0], l[1], l[2]}});
+            }
+    }
+    Rgb operator()(Vec3 n) const {
+        Rgb sum;
+        for (const auto& [d, l] : light) sum = sum + std::max(0.0, dot(d, n)) * l;
+        return sum;
+    }
+};
+
+TEST(ShadeCube, OfASkyItIsNearerThanHarmonics) {
+    const pellucid::sample::Sky sky;
+    const SkyIrradiance truth(sky);
+    const auto normals = randomNormals(21, 800);
+    Frame f = ambientFrame(normals), g = f;
+    const auto harmonics = pellucid::sample::projectIrradiance(sky);
+    for (size_t i = 0; i < 9; ++i)
+        for (size_t c = 0; c < 3; ++c) g.ambient.sh[i][c] = float(harmonics[i][c]);
+    f.cube = cubeOf(16, [&](Vec3 d) { return truth(reference::normalized(d)); });
+    const auto cube = shade(device(), f, tables()), nine = shade(device(), g, tables());
+    double errors[2] = {}, most = 0;
+    for (size_t i = 0; i < normals.size(); ++i) {
+        const Rgb exact = truth(normals[i]);
+        for (int c = 0; c < 3; ++c) {
+            errors[0] = std::max(errors[0], std::abs(cube[3 * i + c] - exact[c]));
+            errors[1] = std::max(errors[1], std::abs(nine[3 * i + c] - exact[c]));
+            most = std::max(most, exact[c]);
+        }
+    }
+    RecordProperty("cube", std::to_string(errors[0] / most));
+    RecordProperty("harmonics", std::to_string(errors[1] / most));
+    EXPECT_LE(errors[0], 0.25 * errors[1]);
 }
 
 TEST(ShadeCube, HasNoSeams) {
