@@ -31,7 +31,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void prepar
     if (PEL_FORMAT_MATERIAL && list[0] == 0) return;
     const uint groups = get_num_groups(0), group = get_group_id(0);
     const uint end = (uint)((ulong)frame->tiles * (group + 1) / groups);
-    for (uint tile = (uint)((ulong)frame->tiles * group / groups); tile < end; ++tile) {
+    for (uint i = (uint)((ulong)frame->tiles * group / groups); i < end; ++i) {
+        const uint tile = frame->firstTile + i;
         const uint2 origin = (uint2)(tile % frame->tilesX * PEL_TILE_WIDTH, tile / frame->tilesX * PEL_TILE_HEIGHT);
         for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP * PEL_WIDTH) {
             const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
@@ -40,7 +41,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void prepar
             const intw column = lanesw() + (int)first;
             const uintw id = ownIds(frame, material, x, y, first);
             const maskw own = (column >= (int)x) & (column < (int)frame->width), held = id != 0;
-            const size_t at = PEL_PLANE_GUARD + (size_t)y * frame->width + first;
+            const size_t at = scratchIndex(frame, first, y);
             floatw tag = 0.0f;
             if (anyw(held)) {
                 const Vec3w n = loadNormal(PEL_FORMAT_NORMAL_SHADING,
@@ -90,7 +91,7 @@ static inline int greatest(intw value, maskw mask) {
 
 // The sum of a pixel's normal and of those along the axis, of the lanes of `mask`.
 static inline Vec3w blurAlong(const Field* f, int x, int y, floatw id, floatw radius, maskw mask) {
-    const size_t centre = PEL_PLANE_GUARD + (size_t)y * f->frame->width + (size_t)x;
+    const size_t centre = scratchIndex(f->frame, (uint)x, (uint)y);
     const long pixel = f->alongY ? (long)f->frame->width : 1; // from one pixel to the next along the axis
     const Vec3w p = loadPlanes(f->positions, f->plane, centre);
     Vec3w sum = loadPlanes(f->normals, f->plane, centre);
@@ -152,7 +153,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void blur_n
 #undef PEL_RADIUS_
             const maskw wanted = radius > 0.0f;
             if (!anyw(wanted)) continue;
-            const size_t at = PEL_PLANE_GUARD + (size_t)y * frame->width + first;
+            const size_t at = scratchIndex(frame, first, y);
             const maskw valid = wanted & (loadw(at, tags) > 0.0f);
             Vec3w n = blurAlong(&field, (int)first, (int)y, convert_floatw(id), radius, valid);
             if (alongY) {

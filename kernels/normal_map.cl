@@ -51,7 +51,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void normal
             const bool plain = chain->fallback && !materials[id].hasNormalMap;
             if (id != chain->material && !plain) continue;
             const Vec3w ng = loadNormal(PEL_FORMAT_NORMAL, PEL_AT(normal, PEL_NORMAL_SLOT));
-            storePlanes(to, plane, PEL_PLANE_GUARD + (size_t)y * frame->width + x,
+            storePlanes(to, plane, scratchIndex(frame, x, y),
                         plain ? ng : mappedNormal(frame, chain, map, uv, gradient, tangent, ng, x, y), 1);
         }
     }

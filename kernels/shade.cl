@@ -1,7 +1,7 @@
 // The screen-space shading pass: section 6 of the mathematics for every pixel that has a material.
 //
 // Inputs: the images of PelImageSlot and of each light in the caller's layout (shared/shade.h), materials, lights, the
-// tables in one buffer, and the list of tiles from classify_tiles.cl. Output: radiance, linear RGB.
+// tables in one buffer, and the lists of tiles from classify_tiles.cl, of which it takes one. Output: radiance, linear RGB.
 // One work-group takes one tile after another from the list; one work-item PEL_WIDTH pixels of a row at a time.
 // Variants: PEL_FEATURES (shared/features.h) and the format of each image, PEL_FORMAT_<SLOT>, 0 where there is none;
 // all wide shadows have one format, and all shadow maps. Unused buffers are NULL.
@@ -47,7 +47,8 @@ typedef struct Pixels {
     Vec3w albedo;
     floatw curvature, occlusion, thickness, roughness, specular;
     floatw turnCosine, turnSine; // of the disk of taps; PEL_BIT_ROTATE_TAPS only
-    maskw valid;                 // no input is NaN or Inf
+    maskw valid;                 // no input that every material reads is NaN or Inf
+    uintw spoiled;               // PEL_BIT_... whose inputs are
 } Pixels;
 
 // The parts that outputs beside radiance take (PEL_FORMAT_OUT_...); not computed where there is none.
@@ -65,20 +66,31 @@ static inline void count(Counts* counts, const int which, maskw mask) {
     if (HAS(PEL_BIT_COUNT)) counts->of[which] += countw(mask);
 }
 
+#define READ_NB (PEL_BIT_DIRECT_SCATTER | PEL_BIT_AMBIENT | PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER)
+
+// Notes where an input of these features is no number. What ambient light and positional lights read, every material reads.
+static inline void spoil(Pixels* p, const uint features, maskw finite) {
+    if (HAS(features & (PEL_BIT_AMBIENT | PEL_BIT_POSITIONAL)))
+        p->valid &= finite;
+    else
+        p->spoiled |= selectw((uintw)(features), (uintw)(0), finite);
+}
+
 static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
     __global const PelShadeFrame* frame = scene->frame;
     Pixels p;
     p.n = loadNormal(PEL_FORMAT_NORMAL_SHADING, SPAN(normalShading, NORMAL_SHADING));
     p.valid = finite3(p.n);
+    p.spoiled = 0;
     p.ng = p.n;
     if (PEL_FORMAT_NORMAL_GEOMETRIC) {
         p.ng = loadNormal(PEL_FORMAT_NORMAL_GEOMETRIC, SPAN(normalGeometric, NORMAL_GEOMETRIC));
-        p.valid &= finite3(p.ng);
+        spoil(&p, PEL_BIT_SHADOW_LUT | PEL_BIT_THICKNESS_TAPS | (PEL_FORMAT_NORMAL_BLURRED ? 0 : READ_NB), finite3(p.ng));
     }
     p.nb = p.ng;
     if (PEL_FORMAT_NORMAL_BLURRED) {
         p.nb = loadNormal(PEL_FORMAT_NORMAL_BLURRED, SPAN(normalBlurred, NORMAL_BLURRED));
-        p.valid &= finite3(p.nb);
+        spoil(&p, READ_NB, finite3(p.nb));
     }
     p.pair = normalPair(p.n, p.nb);
     if (NEEDS_POSITION) {
@@ -87,7 +99,7 @@ static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
         else
             p.position = positionFromDepth(frame->inverseViewProjection, frame->width, frame->height, x, y,
                                            loadScalar(PEL_FORMAT_DEPTH, SPAN(depth, DEPTH)));
-        p.valid &= finite3(p.position);
+        spoil(&p, PEL_BIT_THICKNESS_TAPS | PEL_BIT_SPECULAR | PEL_BIT_POSITIONAL, finite3(p.position));
         p.toCamera = normalize3(sub3(loadUniform3(frame->cameraPosition), p.position));
     }
     if (HAS(PEL_BIT_ROTATE_TAPS)) tapTurn(x, y, &p.turnCosine, &p.turnSine);
@@ -95,16 +107,16 @@ static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
         p.albedo = loadColor(PEL_FORMAT_ALBEDO, SPAN(albedo, ALBEDO));
         p.valid &= finite3(p.albedo);
     }
-#define LOAD_SCALAR(feature, slot, name)                          \
-    if (feature && PEL_FORMAT_##slot) {                             \
+#define LOAD_SCALAR(features, slot, name)                         \
+    if (HAS(features) && PEL_FORMAT_##slot) {                     \
         p.name = loadScalar(PEL_FORMAT_##slot, SPAN(name, slot)); \
-        p.valid &= finitew(p.name);                                 \
+        spoil(&p, features, finitew(p.name));                     \
     }
-    LOAD_SCALAR(HAS(PEL_BIT_DIRECT_SCATTER), CURVATURE, curvature)
-    LOAD_SCALAR(HAS(PEL_BIT_AMBIENT), AMBIENT_OCCLUSION, occlusion)
-    LOAD_SCALAR(HAS(PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER), THICKNESS, thickness)
-    LOAD_SCALAR(HAS(PEL_BIT_SPECULAR), ROUGHNESS, roughness)
-    LOAD_SCALAR(HAS(PEL_BIT_SPECULAR), SPECULAR, specular)
+    LOAD_SCALAR(PEL_BIT_DIRECT_SCATTER, CURVATURE, curvature)
+    LOAD_SCALAR(PEL_BIT_AMBIENT, AMBIENT_OCCLUSION, occlusion)
+    LOAD_SCALAR(PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER, THICKNESS, thickness)
+    LOAD_SCALAR(PEL_BIT_SPECULAR, ROUGHNESS, roughness)
+    LOAD_SCALAR(PEL_BIT_SPECULAR, SPECULAR, specular)
 #undef LOAD_SCALAR
     return p;
 }
@@ -236,6 +248,8 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
 static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMaterial* material, Pixels* p, uint x,
                                   uint y, maskw active, Parts* parts, Vec3w* specularPart, Counts* counts) {
     __global const PelShadeFrame* frame = scene->frame;
+    // A pixel is spoiled by what its own material reads alone, so that its neighbours' materials do not matter.
+    p->valid &= ((p->spoiled & material->needs) == 0) | notw(active);
     Vec3w diffuse = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = diffuse;
     parts->diffuse = parts->deepScatter = diffuse;
     parts->thickness = 0.0f;
@@ -246,7 +260,7 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
         if (PEL_FORMAT_AMBIENT_OCCLUSION) diffuse = scale3(diffuse, p->occlusion);
         if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = diffuse;
     }
-    if (HAS(PEL_BIT_AMBIENT_SCATTER) && material->deepScatterAmbient != 0.0f) {
+    if (HAS(PEL_BIT_AMBIENT_SCATTER) && (material->needs & PEL_BIT_AMBIENT_SCATTER)) {
         const floatw through = material->deepScatterAmbient * transmittance(p->thickness, material->deepScatterFalloff,
                                                                             material->thicknessCutoff);
         if (!SKIPPING || anyw(active & (through > 0.0f))) {
@@ -339,20 +353,22 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
     __global uchar* light9, __global uchar* light10, __global uchar* light11, __global uchar* light12,
     __global uchar* light13, __global uchar* light14, __global uchar* light15,
     __global uchar* outDiffuse, __global uchar* outDeepScatter, __global uchar* outSpecular, __global uchar* outThickness,
-    __global const float* cube, uint part, uint parts) {
+    __global const float* cube, uint part, uint parts, uint which) {
     const Scene scene = {frame, materials, lights, luts, position, depth, normalGeometric, normalShading,
                          normalBlurred, curvature, albedo, occlusion, thickness, roughness, specular,
                          {light0, light1, light2, light3, light4, light5, light6, light7, light8, light9,
                           light10, light11, light12, light13, light14, light15}, cube};
     const Outputs out = {outDiffuse, outDeepScatter, outSpecular, outThickness};
     Counts counts = {{0}};
-    const uint tiles = PEL_FORMAT_MATERIAL ? list[0] : frame->tiles;
+    const bool listed = PEL_FORMAT_MATERIAL && which != PEL_EVERY_TILE;
+    const uint tiles = listed ? list[which] : frame->tiles;
+    const size_t listStart = PEL_TILE_LISTS + (size_t)which * frame->listTiles;
     // Each group takes a run of the list: neighbours in it share pages, and often cache lines, of the images.
     // Of long frames a launch takes one part of `parts`, so that the host may stop between them.
     const uint groups = get_num_groups(0) * parts, group = get_num_groups(0) * part + get_group_id(0);
     const uint end = (uint)((ulong)tiles * (group + 1) / groups);
     for (uint i = (uint)((ulong)tiles * group / groups); i < end; ++i) {
-        const uint tile = PEL_FORMAT_MATERIAL ? list[1 + i] : i;
+        const uint tile = listed ? list[listStart + i] : frame->firstTile + i;
         const uint tileX = tile % frame->tilesX * PEL_TILE_WIDTH, tileY = tile / frame->tilesX * PEL_TILE_HEIGHT;
         for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_SHADE_GROUP * PEL_WIDTH) {
             const uint x = tileX + pixel % PEL_TILE_WIDTH, y = tileY + pixel / PEL_TILE_WIDTH;

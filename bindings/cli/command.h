@@ -68,6 +68,7 @@ void addLut(CLI::App& app);
 void addProfile(CLI::App& app);
 void addBatch(CLI::App& app);
 void addShade(CLI::App& app);
+void addPrefill(CLI::App& app);
 void addDemo(CLI::App& app);
 void addBench(CLI::App& app);
 

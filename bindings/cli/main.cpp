@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
     addProfile(app);
     addBatch(app);
     addShade(app);
+    addPrefill(app);
     addDemo(app);
     addBench(app);
     try {

@@ -37,10 +37,11 @@ void expand(std::string_view name, std::set<std::string_view>& seen, std::string
 
 }  // namespace
 
-std::string kernelSource(std::string_view name) {
+std::string kernelSource(std::span<const std::string> names) {
     std::string out;
-    std::set<std::string_view> seen{name};
-    expand(name, seen, out);
+    std::set<std::string_view> seen;
+    for (const std::string& name : names)
+        if (seen.insert(name).second) expand(name, seen, out);
     return out;
 }
 

@@ -14,7 +14,8 @@ struct KernelFile {
 std::span<const KernelFile> kernelFiles();
 const char* kernelsHash();  // changes with any byte of any file
 
-// The file with its #include "..." lines replaced by the files they name (relative to kernels/), each once.
-std::string kernelSource(std::string_view name);
+// The files, one after the other, with their #include "..." lines replaced by the files they name (relative to kernels/), each
+// once.
+std::string kernelSource(std::span<const std::string> names);
 
 }  // namespace pel::cl

@@ -9,25 +9,34 @@ namespace pel::cl {
 ProgramCache::ProgramCache(Context context, cl_device_id device, uint32_t mathWidth)
     : context_(std::move(context)), device_(device), mathWidth_(mathWidth) {}
 
-Program ProgramCache::get(const std::string& file, const Defines& defines) {
-    Defines all = defines;
+Program ProgramCache::get(const ProgramKey& wanted) {
+    Defines all = wanted.defines;
     all.emplace("PEL_WIDTH", std::to_string(mathWidth_));
-    std::string options = "-cl-std=CL1.2";
+    std::string options = "-cl-std=CL1.2", key;
     for (const auto& [name, value] : all) options += " -D" + name + "=" + value;
-    const std::string key = file + " " + options;
+    for (const std::string& file : wanted.files) key += file + " ";
+    key += options;
 
-    std::lock_guard lock(mutex_);
-    if (auto found = programs_.find(key); found != programs_.end()) return found->second;
+    std::unique_lock lock(mutex_);
+    std::shared_ptr<Entry>& slot = programs_[key];
+    if (!slot) slot = std::make_shared<Entry>();
+    const std::shared_ptr<Entry> entry = slot;
+    lock.unlock();
+    // Who asks for the same program waits here for whoever builds it; after a failure the next one tries again.
+    std::lock_guard building(entry->building);
+    if (entry->program) return entry->program;
     const auto start = std::chrono::steady_clock::now();
-    Program program = build(file, options);
+    entry->program = build(wanted.files, options);
+    lock.lock();
+    ++built_;
     buildMilliseconds_ +=
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    return programs_.emplace(key, std::move(program)).first->second;
+    return entry->program;
 }
 
 uint32_t ProgramCache::built() const {
     std::lock_guard lock(mutex_);
-    return uint32_t(programs_.size());
+    return built_;
 }
 
 double ProgramCache::buildMilliseconds() const {
@@ -35,8 +44,8 @@ double ProgramCache::buildMilliseconds() const {
     return buildMilliseconds_;
 }
 
-Program ProgramCache::build(const std::string& file, const std::string& options) const {
-    const std::string source = kernelSource(file);
+Program ProgramCache::build(const std::vector<std::string>& files, const std::string& options) const {
+    const std::string source = kernelSource(files);
     const char* text = source.c_str();
     cl_int code = CL_SUCCESS;
     Program program(clCreateProgramWithSource(context_.get(), 1, &text, nullptr, &code));
@@ -47,7 +56,7 @@ Program ProgramCache::build(const std::string& file, const std::string& options)
     clGetProgramBuildInfo(program.get(), device_, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
     std::string log(size, '\0');
     clGetProgramBuildInfo(program.get(), device_, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
-    fail(PEL_ERROR_DEVICE, "kernel file ", file, " did not build with ", options, ": ", errorName(code), "\n",
+    fail(PEL_ERROR_DEVICE, "kernel file ", files[0], " did not build with ", options, ": ", errorName(code), "\n",
          log.c_str());
 }
 

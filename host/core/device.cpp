@@ -102,6 +102,11 @@ void Device::write(cl_mem memory, size_t offset, size_t bytes, const void* sourc
     countTransfer(bytes, 0);
 }
 
+void Device::fill(cl_mem memory, size_t offset, size_t bytes, uint32_t word) {
+    cl::check(clEnqueueFillBuffer(queue(), memory, &word, sizeof word, offset, bytes, 0, nullptr, nullptr),
+              "clEnqueueFillBuffer");
+}
+
 void Device::finish() {
     cl::check(clFinish(queue_.get()), "clFinish");
 }

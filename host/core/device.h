@@ -33,6 +33,9 @@ class Device final : public Object {
     void read(cl_mem memory, size_t offset, size_t bytes, void* destination, bool blocking);
     void write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking);
 
+    // Enqueues: `bytes`, a multiple of 4, from `offset` on become copies of `word`.
+    void fill(cl_mem memory, size_t offset, size_t bytes, uint32_t word);
+
     void finish();
     PelDeviceStats stats();
 

@@ -2,6 +2,8 @@
 #include "ops/shader.h"
 
 #include <algorithm>
+#include <bit>
+#include <set>
 
 #include "shared/features.h"
 
@@ -16,6 +18,10 @@ static_assert(PEL_BIT_DIRECT_SCATTER == PEL_FEATURE_DIRECT_SCATTER && PEL_BIT_SH
 // What the passes before it do does not make another variant of the shading kernel.
 constexpr uint32_t shadeFeatures = (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER |
                                    PEL_FEATURE_AMBIENT_CUBE;
+// Those that a material asks for (materialNeeds); the others hold for all of a frame.
+constexpr uint32_t materialFeatures = PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SHADOW_LUT | PEL_FEATURE_DEEP_SCATTER |
+                                      PEL_FEATURE_THICKNESS_TAPS | PEL_FEATURE_SPECULAR | PEL_FEATURE_GGX |
+                                      PEL_FEATURE_AMBIENT_SCATTER;
 static_assert(PEL_BIT_GGX == PEL_FEATURE_GGX && PEL_BIT_AMBIENT_SCATTER == PEL_FEATURE_AMBIENT_SCATTER &&
               PEL_BIT_AMBIENT_CUBE == PEL_FEATURE_AMBIENT_CUBE);
 static_assert(PEL_IMAGE_OUT_DIFFUSE == PEL_SLOT_OUT_DIFFUSE && PEL_IMAGE_OUT_DEEP_SCATTER == PEL_SLOT_OUT_DEEP_SCATTER &&
@@ -65,8 +71,10 @@ bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
             return features & (PEL_BIT_SPECULAR | PEL_BIT_THICKNESS_TAPS | PEL_BIT_POSITIONAL);
         case PEL_SLOT_DEPTH:
             return !state.images[PEL_SLOT_POSITION] && slotIsRead(state, PEL_SLOT_POSITION, features);
+        case PEL_SLOT_NORMAL_BLURRED:
+            return features & (PEL_BIT_DIRECT_SCATTER | PEL_BIT_AMBIENT | PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER);
         case PEL_SLOT_NORMAL_GEOMETRIC:
-            return !state.images[PEL_SLOT_NORMAL_BLURRED] ||
+            return (!state.images[PEL_SLOT_NORMAL_BLURRED] && slotIsRead(state, PEL_SLOT_NORMAL_BLURRED, features)) ||
                    features & (PEL_BIT_SHADOW_LUT | PEL_BIT_THICKNESS_TAPS);
         case PEL_SLOT_CURVATURE:
             return features & PEL_BIT_DIRECT_SCATTER;
@@ -82,7 +90,9 @@ bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
     }
 }
 
-cl::Defines variant(const ShaderState& state, uint32_t features, const Device& device) {
+}  // namespace
+
+cl::ProgramKey shadeKey(const ShaderState& state, uint32_t features, const Device& device) {
     features &= shadeFeatures;
     if (state.options.accumulate) features |= PEL_BIT_ACCUMULATE;
     if (state.options.disableSkipping) features |= PEL_BIT_NO_SKIPPING;
@@ -107,10 +117,11 @@ cl::Defines variant(const ShaderState& state, uint32_t features, const Device& d
             slotIsRead(state, slot, features) ? formatCode(state.images[slot], device.info().mathWidth) : 0;
         defines[formatDefines[slot]] = std::to_string(code);
     }
-    return defines;
+    cl::ProgramKey key{{"shade.cl"}, defines};
+    // In one program: a driver's cost per program is what a first frame waits for.
+    if (state.images[PEL_SLOT_MATERIAL]) key.files.push_back("classify_tiles.cl");
+    return key;
 }
-
-}  // namespace
 
 uint32_t shadeGroup(const Device& device) {
     return device.info().mathWidth > 1 ? 1 : 64;
@@ -128,37 +139,80 @@ cl::Range tileRange(const Device& device, uint32_t tiles) {
     return {{groups * group, 1, 1}, {group, 1, 1}};
 }
 
+std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t features) {
+    std::vector<uint32_t> variants{features};
+    // What else is written must not depend on the variant; and tests want every term everywhere.
+    if (!state.images[PEL_SLOT_MATERIAL] || state.options.tileLists != PEL_TILES_PER_VARIANT || state.options.disableSkipping ||
+        features & PEL_FEATURE_OUTPUTS)
+        return variants;
+    std::set<uint32_t> needed;
+    for (const auto& [id, material] : state.materials) needed.insert(materialNeeds(state, material));
+    std::vector<uint32_t> partial;
+    for (const uint32_t needs : needed) {
+        const uint32_t left = (features & ~materialFeatures) | needs;
+        // Another variant pays where it spares a term of its own (docs/shading.md, "Tiles").
+        if ((features & ~left) & (PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SPECULAR | PEL_FEATURE_DEEP_SCATTER)) partial.push_back(left);
+    }
+    std::ranges::stable_sort(partial, std::greater{}, [](uint32_t f) { return std::popcount(f); });
+    // The cheapest ones.
+    const size_t most = PEL_TILE_VARIANTS - 1;
+    if (partial.size() > most) partial.erase(partial.begin(), partial.end() - ptrdiff_t(most));
+    variants.insert(variants.end(), partial.begin(), partial.end());
+    return variants;
+}
+
+uint32_t Shader::tileRows() const {
+    return tables_.frame().tilesX ? tables_.frame().tiles / tables_.frame().tilesX : 0;
+}
+
 void Shader::commit() {
+    plan(UINT32_MAX);
+}
+
+void Shader::plan(uint32_t mostRows) {
     const uint32_t features = deriveFeatures(state_);
     Device& device = *device_;
     ShadePasses passes = passes_;
-    ShaderState plan = passes.plan(device_, state_, features);
-    const cl::Defines defines = variant(plan, features, device);
+    ShaderState plan = passes.plan(device_, state_, features, mostRows);
+    const std::vector<uint32_t> variants = variantFeatures(plan, features);
     const uint32_t before = device.programs().built();
-    cl::Program shade = device.programs().get("shade.cl", defines), classify;
-    if (state_.images[PEL_SLOT_MATERIAL])
-        classify = device.programs().get(
-            "classify_tiles.cl",
-            {{"PEL_FORMAT_MATERIAL", defines.at("PEL_FORMAT_MATERIAL")},
-             {"PEL_FEATURES", state_.options.disableSkipping ? text(PEL_BIT_NO_SKIPPING) : "0"},
-             {"PEL_CLASSIFY_GROUP", text(classifyGroup)}});
+    std::vector<cl::Program> programs;
+    for (const uint32_t variant : variants) programs.push_back(device.programs().get(shadeKey(plan, variant, device)));
     passes.build(device, plan, features);
     cube_.prepare(device, state_.ambientCube);
     programsBuilt_ += device.programs().built() - before;
-    bytesUploaded_ += tables_.update(device, plan) + passes.upload(device, plan);
-    const size_t listBytes = classify ? (1 + size_t(tables_.frame().tiles)) * sizeof(cl_uint) : 0;
+    const ImageView& frame = state_.images[PEL_SLOT_RADIANCE];
+    const uint32_t tilesX = (frame.width + PEL_TILE_WIDTH - 1) / PEL_TILE_WIDTH,
+                   rows = (frame.height + PEL_TILE_HEIGHT - 1) / PEL_TILE_HEIGHT;
+    const uint32_t listTiles = tilesX * std::min(rows, passes.bandRows() + 2 * passes.haloRows());
+    bytesUploaded_ += tables_.update(device, plan, variants, listTiles) + passes.upload(device, plan);
+    const size_t lists = variants.size() > 1 ? 1 + variants.size() : 1;
+    const size_t listBytes =
+        state_.images[PEL_SLOT_MATERIAL] ? (PEL_TILE_LISTS + lists * size_t(listTiles)) * sizeof(cl_uint) : 0;
     if (listBytes != tileListBytes_) {
         tileListBytes_ = 0;
-        tileList_ = listBytes ? device.allocate(listBytes) : cl::Memory();
+        tileLists_ = listBytes ? device.allocate(listBytes) : cl::Memory();
         tileListBytes_ = listBytes;
     }
     if (!counters_ && state_.options.countPixels) counters_ = device.allocate(PEL_COUNTERS * sizeof(cl_uint));
     plan_ = std::move(plan);
     passes_ = std::move(passes);
-    shadeProgram_ = shade;
-    classifyProgram_ = classify;
+    variants_ = variants;
+    shadePrograms_ = std::move(programs);
     features_ = features;
     committed_ = true;
+}
+
+// Less at a time. Returns false when that is not possible.
+bool Shader::halveBand() {
+    const uint32_t rows = std::min(passes_.bandRows(), tileRows());
+    if (!passes_.any() || rows <= 1) return false;
+    device_->finish();
+    committed_ = false;
+    plan_ = passes_.plan(device_, state_, features_, rows / 2);
+    bytesUploaded_ += tables_.update(*device_, plan_, variants_, tables_.frame().listTiles) + passes_.upload(*device_, plan_);
+    committed_ = true;
+    return true;
 }
 
 void Shader::execute(bool blocking) {
@@ -166,48 +220,119 @@ void Shader::execute(bool blocking) {
         fail(PEL_ERROR_INVALID_STATE,
              "something was set after the last pelShaderCommit, or nothing was committed yet");
     events_.clear();
-    const cl_uint zero = 0;
-    const auto clear = [&](const cl::Memory& memory, size_t bytes) {
-        cl::check(clEnqueueFillBuffer(device_->queue(), memory.get(), &zero, sizeof zero, 0, bytes, 0,
-                                      nullptr, nullptr),
-                  "clEnqueueFillBuffer");
-    };
-    if (classifyProgram_) {
-        clear(tileList_, sizeof zero);
-        enqueueTiles();
-    }
-    if (state_.options.countPixels) clear(counters_, PEL_COUNTERS * sizeof zero);
+    bands_ = 0;
+    if (state_.options.countPixels) device_->fill(counters_.get(), 0, PEL_COUNTERS * sizeof(cl_uint), 0);
     cube_.enqueue(*device_, state_.ambientCube, events_);
-    passes_.enqueue(*device_, plan_, tables_, tileList_, counters_, events_);
-    const uint64_t pixels = uint64_t(tables_.frame().width) * tables_.frame().height;
     const bool tell = blocking && device_->hasProgress();
-    const uint32_t parts = tell ? uint32_t(1 + pixels / pixelsPerPart) : 1;
-    for (uint32_t part = 0; part < parts; ++part) {
-        if (tell) {
-            device_->finish();
-            device_->progress(double(part) / parts, "shading");
+    const uint32_t end = tileRows();
+    for (uint32_t row = 0; row < end;) {
+        const Rows rows{row, row + std::min(passes_.bandRows(), end - row)};
+        bool begun = false;
+        try {
+            shadeRows(rows, tell, begun);
+        } catch (const Error& e) {
+            // Drivers may find out only now that memory does not suffice. Pixels that are shaded already stay as they are:
+            // where radiance lies over an input they could not be shaded again.
+            if (e.code() != PEL_ERROR_OUT_OF_MEMORY || begun || !halveBand()) throw;
+            continue;
         }
-        enqueueShade(part, parts);
+        row = rows.end;
+        ++bands_;
     }
-    if (tell) {
-        device_->finish();
-        device_->progress(1, "shading");
-    }
+    if (tell) device_->progress(1, "shading");
     launches_ = events_.size();
     uploadedBefore_ = std::exchange(bytesUploaded_, 0);
     executed_ = true;
 }
 
-void Shader::enqueueTiles() {
-    cl::Launch launch(classifyProgram_, "classify_tiles");
-    launch.arg(tables_.frameMemory()).arg(state_.images[PEL_SLOT_MATERIAL].buffer->memory()).arg(tileList_);
-    events_.push_back(device_->launch(launch, {{tables_.frame().tiles, 1, 1}, {classifyGroup, 1, 1}}));
+void Shader::addPrefillJobs(std::vector<std::function<void()>>& jobs) const {
+    const uint32_t features = deriveFeatures(state_);
+    const Ref<Device> device = device_;
+    const ShaderState plan = ShadePasses().plan(device, state_, features, 1);
+    for (const uint32_t variant : variantFeatures(plan, features))
+        jobs.push_back([device, key = shadeKey(plan, variant, *device)] { device->programs().get(key); });
+    Ref<Shader> shader = make<Shader>(device);
+    shader->state_ = state_;
+    jobs.push_back([shader] {
+        shader->plan(1);
+        shader->launchOnNothing();
+    });
 }
 
-void Shader::enqueueShade(uint32_t part, uint32_t parts) {
-    cl::Launch launch(shadeProgram_, "shade");
+// Every kernel that an execution launches, but in a frame of no tiles.
+void Shader::launchOnNothing() {
+    events_.clear();
+    if (state_.options.countPixels) device_->fill(counters_.get(), 0, PEL_COUNTERS * sizeof(cl_uint), 0);
+    const Rows one{0, 1};
+    cube_.enqueue(*device_, state_.ambientCube, events_);
+    tables_.setBand(*device_, 0, 0, 0);
+    enqueueTiles(one);
+    passes_.prepare(*device_, plan_, tables_, tileLists_, 1, events_);
+    passes_.enqueue(*device_, plan_, tables_, tileLists_, counters_, 1, events_);
+    for (uint32_t variant = 0; variant < variants_.size(); ++variant) enqueueShade(variant, one, 0, 1);
+    device_->finish();
+}
+
+void Shader::setRows(Rows rows, uint32_t scratchRow) {
+    const uint32_t tilesX = tables_.frame().tilesX;
+    tables_.setBand(*device_, rows.begin * tilesX, (rows.end - rows.begin) * tilesX, scratchRow);
+}
+
+// A band: its tiles are listed, the passes make what it needs, and it is shaded. `begun`: pixels may have been written.
+void Shader::shadeRows(Rows rows, bool tell, bool& begun) {
+    const uint32_t tilesX = tables_.frame().tilesX, end = tileRows(), halo = passes_.haloRows();
+    const Rows around{rows.begin - std::min(rows.begin, halo), std::min(rows.end + halo, end)};
+    const uint32_t scratchRow = around.begin * PEL_TILE_HEIGHT;
+    const bool whole = rows.begin == 0 && rows.end == end;
+    passes_.moveScratch(*device_, plan_, tables_, scratchRow);
+    setRows(around, scratchRow);
+    enqueueTiles(around);
+    passes_.prepare(*device_, plan_, tables_, tileLists_, (around.end - around.begin) * tilesX, events_);
+    if (around.begin != rows.begin || around.end != rows.end) {
+        setRows(rows, scratchRow);
+        enqueueTiles(rows);
+    }
+    if (!whole && tileListBytes_) {
+        const size_t bytes = PEL_TILE_LISTS * sizeof(cl_uint);
+        if (bandCountBytes_ < end * bytes) {
+            bandCounts_ = device_->allocate(end * bytes);
+            bandCountBytes_ = end * bytes;
+        }
+        cl::check(clEnqueueCopyBuffer(device_->queue(), tileLists_.get(), bandCounts_.get(), 0, bands_ * bytes, bytes, 0, nullptr,
+                                      nullptr),
+                  "clEnqueueCopyBuffer");
+    }
+    const uint32_t tiles = (rows.end - rows.begin) * tilesX;
+    passes_.enqueue(*device_, plan_, tables_, tileLists_, counters_, tiles, events_);
+    const uint32_t parts = tell ? uint32_t(1 + uint64_t(tiles) * PEL_TILE_PIXELS / pixelsPerPart) : 1;
+    for (uint32_t part = 0; part < parts; ++part) {
+        if (tell) {
+            device_->finish();
+            device_->progress((rows.begin + double(rows.end - rows.begin) * part / parts) / end, "shading");
+        }
+        for (uint32_t variant = 0; variant < variants_.size(); ++variant) {
+            enqueueShade(variant, rows, part, parts);
+            begun = true;
+        }
+    }
+    if (tell) device_->finish();
+}
+
+void Shader::enqueueTiles(Rows rows) {
+    const bool several = variants_.size() > 1, listAll = !several || passes_.any();
+    if (!tileListBytes_ || (state_.options.tileLists == PEL_TILES_NO_LIST && !passes_.any())) return;
+    device_->fill(tileLists_.get(), 0, PEL_TILE_LISTS * sizeof(cl_uint), 0);
+    cl::Launch launch(shadePrograms_[0], "classify_tiles");
+    launch.arg(tables_.frameMemory()).arg(tables_.materials()).arg(state_.images[PEL_SLOT_MATERIAL].buffer->memory());
+    launch.arg(tileLists_).arg(cl_uint(variants_.size())).arg(cl_uint(listAll));
+    const size_t tiles = size_t(rows.end - rows.begin) * tables_.frame().tilesX;
+    events_.push_back(device_->launch(launch, {{tiles, 1, 1}, {classifyGroup, 1, 1}}));
+}
+
+void Shader::enqueueShade(uint32_t variant, Rows rows, uint32_t part, uint32_t parts) {
+    cl::Launch launch(shadePrograms_[variant], "shade");
     launch.arg(tables_.frameMemory()).arg(tables_.materials()).arg(tables_.lights()).arg(tables_.luts());
-    launch.arg(tileList_).arg(counters_);
+    launch.arg(tileLists_).arg(counters_);
     for (int slot = 0; slot < PEL_SHADE_SLOTS; ++slot) {
         const ImageView& view = plan_.images[slot];
         launch.arg(view ? view.buffer->memory() : cl::Memory());
@@ -220,9 +345,12 @@ void Shader::enqueueShade(uint32_t part, uint32_t parts) {
         launch.arg(view ? view.buffer->memory() : cl::Memory());
     }
     launch.arg(cube_.nodes());
+    const uint32_t list = variants_.size() > 1 ? 1 + variant : 0;
     launch.arg(cl_uint(part)).arg(cl_uint(parts));
+    launch.arg(cl_uint(state_.options.tileLists == PEL_TILES_NO_LIST ? PEL_EVERY_TILE : list));
     // Groups take tiles in turn, so that no host waits for their count.
-    events_.push_back(device_->launch(launch, tileRange(*device_, tables_.frame().tiles)));
+    const uint32_t tiles = (rows.end - rows.begin) * tables_.frame().tilesX;
+    events_.push_back(device_->launch(launch, tileRange(*device_, tiles)));
 }
 
 PelShaderStats Shader::stats() {
@@ -231,16 +359,24 @@ PelShaderStats Shader::stats() {
     stats.features = features_;
     stats.programsBuilt = programsBuilt_;
     stats.scratchBytes =
-        tables_.scratchBytes() + passes_.scratchBytes() + cube_.scratchBytes() + tileListBytes_ + (counters_ ? PEL_COUNTERS * sizeof(cl_uint) : 0);
+        tables_.scratchBytes() + passes_.scratchBytes() + cube_.scratchBytes() + tileListBytes_ + bandCountBytes_ +
+        (counters_ ? PEL_COUNTERS * sizeof(cl_uint) : 0);
     if (!executed_) return stats;
     stats.launches = launches_;
     stats.bytesUploaded = uploadedBefore_;
     stats.tilesTotal = stats.tilesShaded = tables_.frame().tiles;
     stats.pixelsTotal = uint64_t(tables_.frame().width) * tables_.frame().height;
-    if (classifyProgram_ && committed_) {
-        cl_uint shaded = 0;
-        device_->read(tileList_.get(), 0, sizeof shaded, &shaded, true);
-        stats.tilesShaded = shaded;
+    stats.bands = bands_;
+    stats.variants = variants_.size();
+    if (tileListBytes_ && committed_ && (state_.options.tileLists != PEL_TILES_NO_LIST || passes_.any())) {
+        std::vector<cl_uint> counts(std::max<size_t>(bands_, 1) * PEL_TILE_LISTS);
+        device_->read(bands_ > 1 ? bandCounts_.get() : tileLists_.get(), 0, counts.size() * sizeof(cl_uint), counts.data(), true);
+        stats.tilesShaded = 0;
+        for (size_t i = 0; i < counts.size(); ++i) {
+            const size_t list = i % PEL_TILE_LISTS;
+            if (variants_.size() > 1 ? list > 0 : list == 0) stats.tilesShaded += counts[i];
+            if (list > 1) stats.tilesPartial += counts[i];
+        }
     }
     if (state_.options.countPixels && committed_) {
         cl_uint counts[PEL_COUNTERS];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "ops/shader.h"
 #include "shared/features.h"
@@ -19,7 +20,7 @@ const cl::Memory& memoryOf(const ImageView& view) {
     return view ? view.buffer->memory() : none;
 }
 
-// An image of the frame's size inside scratch memory.
+// An image as wide as the frame inside scratch memory.
 ImageView scratchImage(const Ref<Buffer>& buffer, const ImageView& frame, PelFormat format, uint64_t offset = 0) {
     ImageView view;
     view.buffer = buffer;
@@ -31,6 +32,13 @@ ImageView scratchImage(const Ref<Buffer>& buffer, const ImageView& frame, PelFor
     view.rowStride = view.width * view.pixelStride;
     view.planeStride = view.height * view.rowStride;
     return view;
+}
+
+// Where the image would begin if it had the rows before `row` too; may wrap round, as addresses do.
+void moveImage(Device& device, cl_mem memory, size_t at, const ImageView& view, uint32_t row) {
+    const uint64_t offset = view.byteOffset - uint64_t(row) * view.rowStride;
+    device.fill(memory, at, 4, uint32_t(offset));
+    device.fill(memory, at + 4, 4, uint32_t(offset >> 32));
 }
 
 // `buffer` with this many bytes; 0: none.
@@ -67,36 +75,87 @@ PelNormalMap describeNormalMap(const ShaderState& plan, uint32_t id, bool fallba
 
 }  // namespace
 
-ShaderState ShadePasses::plan(const Ref<Device>& device, const ShaderState& state, uint32_t features) {
-    ShaderState plan = state;
+// How many rows of tiles fit into the budget.
+void ShadePasses::chooseBand(const ShaderState& state, uint32_t mostRows) {
     const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
-    const size_t pixels = size_t(frame.width) * frame.height;
-    const bool blur = features & PEL_FEATURE_BLUR_NORMALS, map = features & PEL_FEATURE_NORMAL_MAP;
+    const uint32_t tileRows = (frame.height + PEL_TILE_HEIGHT - 1) / PEL_TILE_HEIGHT;
+    const bool blur = features_ & PEL_FEATURE_BLUR_NORMALS, map = features_ & PEL_FEATURE_NORMAL_MAP;
+    scratchPixelBytes_ = uint32_t(((blur || map) * 3 + blur * 7 + filteredLights_.size()) * sizeof(float));
+    haloRows_ = blur ? PEL_BLUR_TAPS * PEL_BLUR_STEP_MAX / PEL_TILE_HEIGHT : 0;
+    bandRows_ = std::max(1u, any() ? std::min(tileRows, mostRows) : tileRows);
+    const uint64_t budget = state.options.scratchBudget, rowBytes = uint64_t(frame.width) * scratchPixelBytes_;
+    const uint64_t guards = 2 * PEL_PLANE_GUARD * sizeof(float) * ((blur || map) * 3 + blur * 7);
+    const auto bytes = [&] { return scratchRows(frame.height) * rowBytes + guards; };
+    if (!budget || bytes() <= budget) return;
+    const uint64_t fit = (budget - std::min(budget, guards)) / rowBytes / PEL_TILE_HEIGHT;
+    bandRows_ = uint32_t(std::clamp<uint64_t>(fit, 2 * haloRows_ + 1, bandRows_ + 2 * haloRows_)) - 2 * haloRows_;
+    if (bytes() > budget)
+        fail(PEL_ERROR_OUT_OF_MEMORY, "PelShaderOptions.scratchBudget is ", budget, " bytes; a frame of ", frame.width, " x ",
+             frame.height, " with these passes needs at least ", bytes(), ", for ", scratchRows(frame.height), " rows of pixels");
+}
+
+uint32_t ShadePasses::scratchRows(uint32_t frameHeight) const {
+    return uint32_t(std::min<uint64_t>(frameHeight, (uint64_t(bandRows_) + 2 * haloRows_) * PEL_TILE_HEIGHT));
+}
+
+void ShadePasses::allocate(const Ref<Device>& device, const ImageView& frame) {
+    const size_t pixels = size_t(frame.width) * scratchRows(frame.height);
+    const bool blur = features_ & PEL_FEATURE_BLUR_NORMALS, map = features_ & PEL_FEATURE_NORMAL_MAP;
     const size_t plane = (pixels + 2 * PEL_PLANE_GUARD) * sizeof(float);
     resize(normals_, device, blur || map ? 3 * plane : 0);
     resize(positions_, device, blur ? 3 * plane : 0);
     resize(between_, device, blur ? 3 * plane : 0);
     resize(tags_, device, blur ? plane : 0);
     planeValues_ = uint32_t(plane / sizeof(float));
-    if (normals_) {
-        ImageView& image = plan.images[PEL_SLOT_NORMAL_BLURRED];
-        image = scratchImage(normals_, frame, PEL_FORMAT_PLANAR_RGB32F, PEL_PLANE_GUARD * sizeof(float));
-        image.planeStride = plane;
-    }
+    resize(wideShadows_, device, filteredLights_.size() * pixels * sizeof(float));
+}
 
+ShaderState ShadePasses::plan(const Ref<Device>& device, const ShaderState& state, uint32_t features, uint32_t mostRows) {
+    ShaderState plan = state;
+    const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
+    features_ = features;
     mappedMaterials_.clear();
     for (const auto& [id, material] : state.materials)
-        if (map && !material.normalMap.empty()) mappedMaterials_.push_back(id);
-
+        if (features & PEL_FEATURE_NORMAL_MAP && !material.normalMap.empty()) mappedMaterials_.push_back(id);
     filteredLights_.clear();
     for (uint32_t i = 0; i < state.lights.size(); ++i)
         if (features & PEL_FEATURE_FILTER_SHADOW && filtersShadow(state.lights[i])) filteredLights_.push_back(i);
-    resize(wideShadows_, device, filteredLights_.size() * pixels * sizeof(float));
+    chooseBand(state, mostRows);
+    for (bool fits = false; !fits;) {
+        try {
+            allocate(device, frame);
+            fits = true;
+        } catch (const Error& e) {  // less at a time may still be had
+            if (e.code() != PEL_ERROR_OUT_OF_MEMORY || bandRows_ == 1) throw;
+            bandRows_ = (bandRows_ + 1) / 2;
+        }
+    }
+    if (normals_) {
+        ImageView& image = plan.images[PEL_SLOT_NORMAL_BLURRED];
+        image = scratchImage(normals_, frame, PEL_FORMAT_PLANAR_RGB32F, PEL_PLANE_GUARD * sizeof(float));
+        image.planeStride = planeValues_ * sizeof(float);
+    }
+    const size_t lightBytes = size_t(frame.width) * scratchRows(frame.height) * sizeof(float);
     for (size_t k = 0; k < filteredLights_.size(); ++k)
         plan.lights[filteredLights_[k]].images[PEL_LIGHT_WIDE_SHADOW] =
-            scratchImage(wideShadows_, frame, PEL_FORMAT_R32F, k * pixels * sizeof(float));
-    features_ = features;
+            scratchImage(wideShadows_, frame, PEL_FORMAT_R32F, k * lightBytes);
     return plan;
+}
+
+void ShadePasses::moveScratch(Device& device, const ShaderState& plan, const ShadeTables& tables, uint32_t row) {
+    if (!any() || scratchRow_ == row) return;
+    scratchRow_.reset();
+    if (normals_)
+        moveImage(device, tables.frameMemory().get(),
+                  offsetof(PelShadeFrame, images) + PEL_SLOT_NORMAL_BLURRED * sizeof(PelShadeImage),
+                  plan.images[PEL_SLOT_NORMAL_BLURRED], row);
+    for (size_t k = 0; k < filteredLights_.size(); ++k) {
+        const ImageView& view = plan.lights[filteredLights_[k]].images[PEL_LIGHT_WIDE_SHADOW];
+        moveImage(device, tables.lights().get(), filteredLights_[k] * sizeof(PelShadeLight) + offsetof(PelShadeLight, wide), view,
+                  row);
+        moveImage(device, lightConstants_[k].get(), offsetof(PelWideShadow, out), view, row);
+    }
+    scratchRow_ = row;
 }
 
 void ShadePasses::build(Device& device, const ShaderState& plan, uint32_t features) {
@@ -145,6 +204,7 @@ void ShadePasses::build(Device& device, const ShaderState& plan, uint32_t featur
 }
 
 size_t ShadePasses::upload(Device& device, const ShaderState& plan) {
+    scratchRow_.reset();  // whatever is sent now says row 0
     lightConstants_.resize(filteredLights_.size());
     mapConstants_.resize(mappedMaterials_.size());
     sent_.resize(filteredLights_.size() + mappedMaterials_.size());
@@ -160,10 +220,22 @@ size_t ShadePasses::upload(Device& device, const ShaderState& plan) {
     return bytes;
 }
 
+void ShadePasses::prepare(Device& device, const ShaderState& plan, const ShadeTables& tables, const cl::Memory& list,
+                          uint32_t tiles, std::vector<cl::Event>& events) const {
+    if (!blurProgram_) return;
+    cl::Launch prepare(blurProgram_, "prepare_normals");
+    prepare.arg(tables.frameMemory()).arg(list).arg(memoryOf(plan.images[PEL_SLOT_MATERIAL]));
+    prepare.arg(memoryOf(plan.images[PEL_SLOT_NORMAL_SHADING]));
+    prepare.arg(memoryOf(plan.images[PEL_SLOT_POSITION])).arg(memoryOf(plan.images[PEL_SLOT_DEPTH]));
+    prepare.arg(normals_->memory()).arg(positions_->memory()).arg(tags_->memory()).arg(cl_uint(planeValues_));
+    events.push_back(device.launch(prepare, tileRange(device, tiles)));
+    enqueueBlur(device, plan, tables, list, tiles, false, events);
+}
+
 void ShadePasses::enqueue(Device& device, const ShaderState& plan, const ShadeTables& tables, const cl::Memory& list,
-                          const cl::Memory& counters, std::vector<cl::Event>& events) const {
-    const cl::Range range = tileRange(device, tables.frame().tiles);
-    if (blurProgram_) enqueueBlur(device, plan, tables, list, events);
+                          const cl::Memory& counters, uint32_t tiles, std::vector<cl::Event>& events) const {
+    const cl::Range range = tileRange(device, tiles);
+    if (blurProgram_) enqueueBlur(device, plan, tables, list, tiles, true, events);
     for (size_t k = 0; k < mappedMaterials_.size(); ++k) {
         cl::Launch launch(mapProgram_, "normal_map");
         launch.arg(tables.frameMemory()).arg(tables.materials()).arg(list);
@@ -187,22 +259,13 @@ void ShadePasses::enqueue(Device& device, const ShaderState& plan, const ShadeTa
 }
 
 void ShadePasses::enqueueBlur(Device& device, const ShaderState& plan, const ShadeTables& tables, const cl::Memory& list,
-                              std::vector<cl::Event>& events) const {
-    const cl::Range range = tileRange(device, tables.frame().tiles);
-    const cl::Memory& material = memoryOf(plan.images[PEL_SLOT_MATERIAL]);
-    cl::Launch prepare(blurProgram_, "prepare_normals");
-    prepare.arg(tables.frameMemory()).arg(list).arg(material).arg(memoryOf(plan.images[PEL_SLOT_NORMAL_SHADING]));
-    prepare.arg(memoryOf(plan.images[PEL_SLOT_POSITION])).arg(memoryOf(plan.images[PEL_SLOT_DEPTH]));
-    prepare.arg(normals_->memory()).arg(positions_->memory()).arg(tags_->memory()).arg(cl_uint(planeValues_));
-    events.push_back(device.launch(prepare, range));
-    for (cl_uint alongY : {0u, 1u}) {
-        const cl::Memory &from = alongY ? between_->memory() : normals_->memory(),
-                         &to = alongY ? normals_->memory() : between_->memory();
-        cl::Launch blur(blurProgram_, "blur_normals");
-        blur.arg(tables.frameMemory()).arg(tables.materials()).arg(list).arg(material);
-        blur.arg(from).arg(positions_->memory()).arg(tags_->memory()).arg(to).arg(cl_uint(planeValues_)).arg(alongY);
-        events.push_back(device.launch(blur, range));
-    }
+                              uint32_t tiles, bool alongY, std::vector<cl::Event>& events) const {
+    const cl::Memory &from = alongY ? between_->memory() : normals_->memory(),
+                     &to = alongY ? normals_->memory() : between_->memory();
+    cl::Launch blur(blurProgram_, "blur_normals");
+    blur.arg(tables.frameMemory()).arg(tables.materials()).arg(list).arg(memoryOf(plan.images[PEL_SLOT_MATERIAL]));
+    blur.arg(from).arg(positions_->memory()).arg(tags_->memory()).arg(to).arg(cl_uint(planeValues_)).arg(cl_uint(alongY));
+    events.push_back(device.launch(blur, tileRange(device, tiles)));
 }
 
 size_t ShadePasses::scratchBytes() const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cfloat>
+#include <cstddef>
 #include <cmath>
 
 #include "ops/shader.h"
@@ -46,14 +47,29 @@ PelShadeImage describeImage(const ImageView& view) {
     return image;
 }
 
-size_t ShadeTables::update(Device& device, const ShaderState& state) {
+size_t ShadeTables::update(Device& device, const ShaderState& state, const std::vector<uint32_t>& variants,
+                           uint32_t listTiles) {
     gatherLuts(device, state);
     fillFrame(state);
-    const auto materials = describeMaterials(state);
+    frame_.listTiles = listTiles;
+    const auto materials = describeMaterials(state, variants);
     const auto lights = describeLights(state);
-    return frameUpload_.update(device, &frame_, sizeof frame_) +
+    const size_t frameBytes = frameUpload_.update(device, &frame_, sizeof frame_);
+    if (frameBytes) band_ = {frame_.tiles, frame_.firstTile, frame_.scratchRow};
+    return frameBytes +
            materialUpload_.update(device, materials.data(), materials.size() * sizeof materials[0]) +
            lightUpload_.update(device, lights.data(), lights.size() * sizeof(PelShadeLight));
+}
+
+void ShadeTables::setBand(Device& device, uint32_t firstTile, uint32_t tiles, uint32_t scratchRow) {
+    const std::array<uint32_t, 3> band{tiles, firstTile, scratchRow};
+    static_assert(offsetof(PelShadeFrame, firstTile) == offsetof(PelShadeFrame, tiles) + 4 &&
+                  offsetof(PelShadeFrame, scratchRow) == offsetof(PelShadeFrame, tiles) + 8);
+    for (size_t i = 0; i < band.size(); ++i) {
+        if (band_[i] == band[i]) continue;
+        device.fill(frameMemory().get(), offsetof(PelShadeFrame, tiles) + 4 * i, 4, band[i]);
+        band_[i] = band[i];
+    }
 }
 
 size_t ShadeTables::scratchBytes() const {
@@ -133,7 +149,8 @@ void ShadeTables::fillFrame(const ShaderState& state) {
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) frame_.images[slot] = describeImage(state.images[slot]);
 }
 
-std::vector<PelShadeMaterial> ShadeTables::describeMaterials(const ShaderState& state) const {
+std::vector<PelShadeMaterial> ShadeTables::describeMaterials(const ShaderState& state,
+                                                             const std::vector<uint32_t>& variants) const {
     std::vector<PelShadeMaterial> table(state.materials.empty() ? 1 : state.materials.rbegin()->first + 1);
     for (const auto& [id, from] : state.materials) {
         const PelMaterial& m = from.params;
@@ -161,6 +178,9 @@ std::vector<PelShadeMaterial> ShadeTables::describeMaterials(const ShaderState& 
         to.lobeMix = m.lobeMix;
         to.deepScatterAmbient = m.deepScatterAmbient;
         to.hasNormalMap = !from.normalMap.empty();
+        to.needs = materialNeeds(state, from);
+        for (size_t i = 0; i < variants.size(); ++i)
+            if (!(to.needs & ~variants[i])) to.variants |= 1u << i;
     }
     return table;
 }

@@ -27,8 +27,10 @@ class CachedUpload {
 class ShadeTables {
   public:
     // Returns the bytes sent. The tables of all materials are copied into one buffer when there are several
-    // of them.
-    size_t update(Device& device, const ShaderState& state);
+    // of them. `variants`: features of each variant of the shading kernel; `listTiles`: PelShadeFrame.listTiles.
+    size_t update(Device& device, const ShaderState& state, const std::vector<uint32_t>& variants, uint32_t listTiles);
+    // What launches from now on take: `tiles` from `firstTile` on, with scratch images that begin at a row of pixels.
+    void setBand(Device& device, uint32_t firstTile, uint32_t tiles, uint32_t scratchRow);
 
     const PelShadeFrame& frame() const { return frame_; }
     const cl::Memory& frameMemory() const { return frameUpload_.memory(); }
@@ -44,10 +46,11 @@ class ShadeTables {
     PelShadeLut describe(const Lut* lut, float materialRadius) const;
     uint32_t lightBuffer(const cl::Memory& memory);
     void fillFrame(const ShaderState& state);
-    std::vector<PelShadeMaterial> describeMaterials(const ShaderState& state) const;
+    std::vector<PelShadeMaterial> describeMaterials(const ShaderState& state, const std::vector<uint32_t>& variants) const;
     std::vector<PelShadeLight> describeLights(const ShaderState& state);
 
     PelShadeFrame frame_{};
+    std::array<uint32_t, 3> band_{};  // tiles, firstTile and scratchRow as the device has them
     CachedUpload frameUpload_, materialUpload_, lightUpload_;
     std::vector<Ref<Lut>> gathered_;
     std::vector<uint32_t> offsets_;  // texels, of gathered_

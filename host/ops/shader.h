@@ -1,6 +1,7 @@
 // PelShader: what the caller set (ShaderState), and what a commit made of it (ShaderPlan).
 #pragma once
 #include <array>
+#include <functional>
 #include <map>
 #include <vector>
 
@@ -52,6 +53,13 @@ inline bool filtersShadow(const ShaderLight& light) {
 // Whether PelAmbient gives no light; there may be a cube map beside it.
 bool isBlack(const PelAmbient& ambient);
 
+// Those PelFeature bits that a material asks for by itself, as far as the rest is there.
+uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material);
+// The features that each variant of the shading kernel has: of the whole shader first, then fewer and fewer, for tiles whose
+// materials need no more.
+std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t features);
+// What makes a variant of the shading kernel and its classification: shaders that mean the same have equal keys.
+cl::ProgramKey shadeKey(const ShaderState& plan, uint32_t features, const Device& device);
 // PelFeature bits of what is bound and non-zero. Throws when something needed is missing or does not fit.
 uint32_t deriveFeatures(const ShaderState& state);
 
@@ -73,12 +81,24 @@ class Shader final : public Object {
     // `blocking`: the caller waits, and may want to hear how far it is.
     void execute(bool blocking);
     PelShaderStats stats();
+    // Jobs that build what a commit would, and launch each kernel on no tile. Throws what a commit would.
+    void addPrefillJobs(std::vector<std::function<void()>>& jobs) const;
     Device& device() const { return *device_; }
 
   private:
     ~Shader() override = default;
-    void enqueueTiles();
-    void enqueueShade(uint32_t part, uint32_t parts);
+    // Rows of tiles, [begin, end), that launches work on.
+    struct Rows {
+        uint32_t begin, end;
+    };
+    void plan(uint32_t mostRows);  // a commit
+    void setRows(Rows rows, uint32_t scratchRow);
+    void launchOnNothing();
+    void shadeRows(Rows rows, bool tell, bool& begun);
+    bool halveBand();
+    uint32_t tileRows() const;
+    void enqueueTiles(Rows rows);
+    void enqueueShade(uint32_t variant, Rows rows, uint32_t part, uint32_t parts);
 
     Ref<Device> device_;
     ShaderState state_;  // as the caller set it
@@ -88,9 +108,12 @@ class Shader final : public Object {
     ShadeTables tables_;
     bool committed_ = false;
     uint32_t features_ = 0;
-    cl::Program classifyProgram_, shadeProgram_;
-    cl::Memory tileList_, counters_;
-    size_t tileListBytes_ = 0;
+    std::vector<uint32_t> variants_;         // features
+    std::vector<cl::Program> shadePrograms_;  // one per variant; the first classifies tiles, too
+    cl::Memory tileLists_, counters_;
+    cl::Memory bandCounts_;  // the counts of the lists, band after band
+    size_t tileListBytes_ = 0, bandCountBytes_ = 0;
+    uint64_t bands_ = 0;
     uint64_t programsBuilt_ = 0, launches_ = 0, bytesUploaded_ = 0, uploadedBefore_ = 0;
     bool executed_ = false;
     std::vector<cl::Event> events_;

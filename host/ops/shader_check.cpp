@@ -237,6 +237,8 @@ void checkCamera(const PelCamera& camera) {
 
 void checkOptions(const PelShaderOptions& options) {
     finite("PelShaderOptions", "invalidColor", options.invalidColor, 3);
+    if (options.tileLists > PEL_TILES_NO_LIST)
+        invalidArgument("PelShaderOptions.tileLists is ", int(options.tileLists), ", which is none of PelTileLists");
 }
 
 }  // namespace pel

@@ -88,6 +88,31 @@ bool isBlack(const PelAmbient& a) {
            std::all_of(std::begin(a.sh), std::end(a.sh), [](auto& c) { return black(c); });
 }
 
+uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material) {
+    const auto& images = state.images;
+    const PelMaterial& m = material.params;
+    const auto some = [&](auto has) { return std::any_of(state.lights.begin(), state.lights.end(), has); };
+    const bool wide = some([](const ShaderLight& l) { return l.images[PEL_LIGHT_WIDE_SHADOW] || filtersShadow(l); });
+    const bool map = some([](const ShaderLight& l) { return bool(l.images[PEL_LIGHT_SHADOW_MAP]); });
+    uint32_t needs = 0;
+    if (!state.lights.empty()) {
+        if (material.curvatureLut && images[PEL_SLOT_CURVATURE]) needs |= PEL_FEATURE_DIRECT_SCATTER;
+        if (material.shadowLut && wide) needs |= PEL_FEATURE_SHADOW_LUT;
+        if (!black(m.deepScatterColor)) {
+            if (images[PEL_SLOT_THICKNESS])
+                needs |= PEL_FEATURE_DEEP_SCATTER;
+            else if (map && m.thicknessTaps)
+                needs |= PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS;
+        }
+        if (m.specular > 0) needs |= PEL_FEATURE_SPECULAR;
+        if (m.specular > 0 && m.specularModel == PEL_SPECULAR_GGX) needs |= PEL_FEATURE_GGX;
+    }
+    const bool ambient = !isBlack(state.ambient) || state.ambientCube;
+    if (ambient && images[PEL_SLOT_THICKNESS] && m.deepScatterAmbient > 0 && !black(m.deepScatterColor))
+        needs |= PEL_FEATURE_AMBIENT_SCATTER;
+    return needs;
+}
+
 uint32_t deriveFeatures(const ShaderState& state) {
     const auto& images = state.images;
     need(bool(images[PEL_SLOT_RADIANCE]), "radiance image", "as the output");
@@ -100,40 +125,20 @@ uint32_t deriveFeatures(const ShaderState& state) {
     checkLightFormats(state, PEL_LIGHT_WIDE_SHADOW);
     checkLightFormats(state, PEL_LIGHT_SHADOW_MAP);
 
-    bool wide = false, filtered = false, map = false, positional = false;
+    bool wide = false, filtered = false, positional = false;
     for (size_t i = 0; i < state.lights.size(); ++i) {
         const ShaderLight& light = state.lights[i];
         filtered |= filtersShadow(light);
         wide |= light.images[PEL_LIGHT_WIDE_SHADOW] || filtersShadow(light);
         positional |= light.params.type != PEL_LIGHT_DIRECTIONAL;
-        if (light.images[PEL_LIGHT_SHADOW_MAP]) {
-            map = true;
-            checkLightMap(light.params, uint32_t(i));
-        }
+        if (light.images[PEL_LIGHT_SHADOW_MAP]) checkLightMap(light.params, uint32_t(i));
     }
     uint32_t features = 0;
     if (wide) features |= PEL_FEATURE_SHADOW;
     if (filtered) features |= PEL_FEATURE_FILTER_SHADOW;
     if (!isBlack(state.ambient)) features |= PEL_FEATURE_AMBIENT;
     if (state.ambientCube) features |= PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE;
-    if (!state.lights.empty())
-        for (const auto& [id, material] : state.materials) {
-            if (material.curvatureLut && images[PEL_SLOT_CURVATURE]) features |= PEL_FEATURE_DIRECT_SCATTER;
-            if (material.shadowLut && wide) features |= PEL_FEATURE_SHADOW_LUT;
-            if (!black(material.params.deepScatterColor)) {
-                if (images[PEL_SLOT_THICKNESS])
-                    features |= PEL_FEATURE_DEEP_SCATTER;
-                else if (map && material.params.thicknessTaps)
-                    features |= PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS;
-            }
-            if (material.params.specular > 0) features |= PEL_FEATURE_SPECULAR;
-            if (material.params.specular > 0 && material.params.specularModel == PEL_SPECULAR_GGX)
-                features |= PEL_FEATURE_GGX;
-        }
-    if (features & PEL_FEATURE_AMBIENT && images[PEL_SLOT_THICKNESS])
-        for (const auto& [id, material] : state.materials)
-            if (material.params.deepScatterAmbient > 0 && !black(material.params.deepScatterColor))
-                features |= PEL_FEATURE_AMBIENT_SCATTER;
+    for (const auto& [id, material] : state.materials) features |= materialNeeds(state, material);
     for (int slot = PEL_SLOT_OUT_DIFFUSE; slot < PEL_SLOT_COUNT; ++slot)
         if (images[slot]) features |= PEL_FEATURE_OUTPUTS;
     // Blurred normals matter to scattered and ambient light; a host's image goes before ours, a map before the blur.

@@ -10,6 +10,11 @@
 #define PEL_TILE_PIXELS (PEL_TILE_WIDTH * PEL_TILE_HEIGHT)
 #define PEL_LIGHT_BUFFERS 16 // distinct buffers among all images of all lights
 #define PEL_MATERIALS 256    // ids 0 (background) to 255
+// Lists of tiles in one buffer: PEL_TILE_LISTS counts, then the lists, each with room for PelShadeFrame.listTiles. List 0 has
+// every tile with a material; list 1 + i the tiles of variant i of the shading kernel, where there are several.
+#define PEL_TILE_VARIANTS 3
+#define PEL_TILE_LISTS (1 + PEL_TILE_VARIANTS)
+#define PEL_EVERY_TILE 0xffffffffu // instead of a list's number: visit all tiles
 // Images of a frame: PelImageSlot.
 #define PEL_IMAGE_RADIANCE 0
 #define PEL_IMAGE_MATERIAL 1
@@ -50,7 +55,10 @@ typedef struct PelShadeFrame {
     PelUint32 width; // pixels
     PelUint32 height;
     PelUint32 tilesX; // tiles in a row
-    PelUint32 tiles;  // tiles in all
+    PelUint32 tiles;  // that this launch takes, from firstTile on; all of them unless the frame is shaded in bands
+    PelUint32 firstTile;
+    PelUint32 scratchRow; // pixel row at which the images that passes make begin
+    PelUint32 listTiles;  // room in each list of tiles
     PelUint32 lights;
     PelUint32 materialMask[PEL_MATERIALS / 32]; // bit i: id i has a material
     float cameraPosition[3];                    // length, world
@@ -93,6 +101,8 @@ typedef struct PelShadeMaterial {
     float roughness2;
     float lobeMix;
     float deepScatterAmbient;
+    PelUint32 needs;    // PEL_BIT_...: features that this material asks for
+    PelUint32 variants; // bit i: variant i of the shading kernel has all of them
 } PelShadeMaterial;
 
 typedef struct PelShadeLight {
@@ -126,8 +136,8 @@ typedef struct PelShadeLight {
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelShadeImage) == 32 && sizeof(PelShadeLut) == 40);
-static_assert(sizeof(PelShadeFrame) == 4 * (5 + 8 + 3 + 16 + 27 + 3 + 1) + PEL_IMAGE_SLOTS * 32);
-static_assert(sizeof(PelShadeMaterial) == 4 * 26 + 2 * sizeof(PelShadeLut));
+static_assert(sizeof(PelShadeFrame) == 4 * (8 + 8 + 3 + 16 + 27 + 3 + 1) + PEL_IMAGE_SLOTS * 32);
+static_assert(sizeof(PelShadeMaterial) == 4 * 28 + 2 * sizeof(PelShadeLut));
 static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64);
 #endif
 #endif

@@ -1,5 +1,6 @@
 #include <memory>
 #include <mutex>
+#include <vector>
 
 #include "progress.h"
 
@@ -90,6 +91,22 @@ void bindShader(py::module_& module) {
             locked(s, [&] { return pelShaderGetStats(s.get(), &stats); });
             return bytesOf(stats);
         });
+    module.def("prefill_programs", [](const Device& d, uint32_t groups, const std::vector<Shader>& shaders, uint32_t threads) {
+        std::vector<PelShader> handles;
+        for (const Shader& s : shaders) handles.push_back(s.get());
+        PelPrefill work = pelPrefillDefaults();
+        work.groups = groups;
+        work.shaders = handles.data();
+        work.numShaders = uint32_t(handles.size());
+        work.threads = threads;
+        uint32_t built = 0;
+        call([&] {
+            std::vector<std::unique_lock<std::recursive_mutex>> locks;
+            for (const Shader& s : shaders) locks.emplace_back(*s.busy);
+            return pelPrefillPrograms(d.handle.get(), &work, &built);
+        });
+        return built;
+    });
 }
 
 }  // namespace pel::python

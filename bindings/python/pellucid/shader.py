@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from . import _flight, _native
 from ._arrays import Image, submit
 from ._struct import to_enum
-from ._types import Ambient, Camera, Format, ImageSlot, Light, LightSlot, Material, ShaderOptions, ShaderStats
+from ._types import Ambient, Camera, Format, ImageSlot, Light, LightSlot, Material, ProgramGroup, ShaderOptions, ShaderStats
 from .device import Buffer, Device, Event, _filled, _handles
 from .lut import Lut
 
@@ -188,6 +188,37 @@ class Shader:
         """What the last execution did."""
         self.device.finish()
         return _filled(ShaderStats, self._handle.stats())
+
+
+def prefill_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Sequence[Shader] = (), threads: int = 0) -> int:
+    """Builds OpenCL programs before they are needed, so that no first commit or execution waits for a compiler.
+
+    The driver's own cache on disk, where it has one, keeps the result for later processes. A progress callback of the device
+    (Device.set_progress) is told how far it is; cancelled by it, what was built so far stays.
+
+    Parameters
+    ----------
+    device : Device
+        Whose programs.
+    groups : ProgramGroup
+        Programs that do not depend on a G-buffer, such as ``ProgramGroup.LUTS | ProgramGroup.CURVATURE``.
+    shaders : sequence of Shader
+        With images, materials and lights set as for a commit. Nothing of theirs is written, and only the formats and packing
+        of images matter: 16 x 1 pixels stand for a frame.
+    threads : int
+        That build at a time; 0: one per core. PoCL builds one by one.
+
+    Returns
+    -------
+    int
+        How many programs were not there before.
+
+    Raises
+    ------
+    PellucidError
+        What a shader's commit would raise; CANCELLED.
+    """
+    return int(_native.prefill_programs(device._handle, int(groups), [s._handle for s in shaders], threads))
 
 
 def _mip_chain(image: NDArray[Any]) -> list[NDArray[Any]]:

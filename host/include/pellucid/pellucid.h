@@ -728,7 +728,17 @@ typedef struct PelShaderStats {
     uint64_t pixelsInvalid;    /* with a NaN or Inf input */
     double deviceMilliseconds; /* kernels; 0 on a queue without profiling */
     uint64_t pixelsWideShadow; /* whose wide shadow was filtered from a shadow map, summed over lights */
+    uint64_t bands;            /* rows of tiles are shaded in this many rounds, to keep to PelShaderOptions.scratchBudget */
+    uint64_t variants;         /* of the shading kernel, each with a tile list of its own */
+    uint64_t tilesPartial;     /* shaded by a variant with fewer features than the shader has */
 } PelShaderStats;
+
+/* How the shading kernel finds its tiles. The same bits come out of each. */
+typedef enum PelTileLists {
+    PEL_TILES_PER_VARIANT = 0, /* a list per variant: tiles whose materials need less are shaded by a kernel that has less */
+    PEL_TILES_ONE_LIST = 1,    /* one list of all tiles with a material */
+    PEL_TILES_NO_LIST = 2      /* every tile is visited, and left again where it has no material; for measurements */
+} PelTileLists;
 
 typedef struct PelShaderOptions {
     uint32_t structSize;
@@ -740,6 +750,10 @@ typedef struct PelShaderOptions {
                                  over PelMaterial.diffusionRadius; needs positions or depth */
     uint32_t rotateTaps;      /* 1: the disk of thickness taps is turned by an angle that depends on the pixel's column and row
                                  alone, so that what few taps miss is noise, not bands (docs/shading.md, "Turned taps") */
+    uint64_t scratchBudget;   /* bytes that images which the passes make (blurred normals, wide shadows) may take: larger
+                                 frames are shaded in bands of rows, with the same bits as a result. 0: no limit, and bands
+                                 only when memory runs out */
+    PelTileLists tileLists;
 } PelShaderOptions;
 
 PEL_API PelError pelShaderCreate(PelDevice device, PelShader* shader);
@@ -777,6 +791,32 @@ PEL_API PelError pelShaderCommit(PelShader shader);
 PEL_API PelError pelShaderExecute(PelShader shader, const PelSubmit* submit);
 /* Waits for the last execution. */
 PEL_API PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats);
+
+/* ---- Programs ahead of their first use ---------------------------------------------------------------------- */
+
+/* Groups of programs that do not depend on a G-buffer; bits of PelPrefill.groups. */
+typedef enum PelProgramGroup {
+    PEL_PROGRAMS_LUTS = 1 << 0,       /* curvature, shadow and specular tables of sums of Gaussians, and their encodings */
+    PEL_PROGRAMS_TABLE_LUTS = 1 << 1, /* tables of profiles that are not such sums */
+    PEL_PROGRAMS_CURVATURE = 1 << 2   /* of meshes by every estimator, smoothing, UV scale */
+} PelProgramGroup;
+
+typedef struct PelPrefill {
+    uint32_t structSize;
+    uint32_t groups;          /* PelProgramGroup bits; 0: none */
+    const PelShader* shaders; /* numShaders of this device, with images, materials and lights set as for a commit; nothing of
+                                 theirs is written, and only the formats and packing of images matter: 16 x 1 pixels stand
+                                 for a frame */
+    uint32_t numShaders;
+    uint32_t threads;         /* that build at a time; 0: one per core, at most one per program. PoCL builds one by one */
+} PelPrefill;
+
+/* Builds the programs that the described work will need, so that neither the first commit nor the first execution pays for
+ * it, and launches each kernel on nothing, since some drivers compile only then. The driver's own cache on disk, where it has
+ * one, keeps the result for later processes. Tells a progress callback of the device how far it is; cancelled by it, what was
+ * built so far stays. `built`, if not NULL, receives the number of programs that were not there before. Errors:
+ * PEL_ERROR_INVALID_ARGUMENT as a shader's commit would return it; PEL_ERROR_CANCELLED. */
+PEL_API PelError pelPrefillPrograms(PelDevice device, const PelPrefill* work, uint32_t* built);
 
 #include "pellucid_defaults.h"
 

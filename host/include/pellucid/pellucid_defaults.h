@@ -107,6 +107,7 @@ static inline PelCamera pelCameraDefaults(void) {
 }
 static inline PelShaderStats pelShaderStatsDefaults(void) { PEL_ZEROED_(PelShaderStats, s); return s; }
 static inline PelShaderOptions pelShaderOptionsDefaults(void) { PEL_ZEROED_(PelShaderOptions, s); return s; }
+static inline PelPrefill pelPrefillDefaults(void) { PEL_ZEROED_(PelPrefill, s); return s; }
 /* clang-format on */
 
 #undef PEL_ZEROED_

@@ -1,0 +1,88 @@
+// pellucid prefill: builds programs before they are needed; the driver's cache on disk keeps them.
+#include <set>
+
+#include "frame.h"
+#include "io/file_error.h"
+
+namespace pellucid::cli {
+namespace {
+
+struct Arguments {
+    Run::Options run;
+    std::vector<std::string> scenes;
+    bool luts = false, tableLuts = false, curvature = false;
+    uint32_t threads = 0;
+};
+
+// A black image of the least size that is read as a frame's is, with these channels.
+io::Image blank(const std::set<std::string>& channels) {
+    io::Image image;
+    image.width = 16;
+    image.height = 2;
+    for (const std::string& name : channels)
+        if (!name.empty()) image.addInterleaved(std::vector{name}, std::vector<float>(image.pixelCount()));
+    return image;
+}
+
+// Shades such a frame: what is in files beside the scene is read, but for shadow maps.
+void prefillScene(const Device& device, const std::string& path) {
+    const io::SceneFile scene = io::readScene(path);
+    std::set<std::string> channels;
+    for (size_t slot = 0; slot < scene.channels.size(); ++slot)
+        if (slot != PEL_SLOT_CURVATURE || scene.channels[slot] != std::vector<std::string>{"screen"})
+            channels.insert(scene.channels[slot].begin(), scene.channels[slot].end());
+    ShadowMaps maps;
+    for (const io::SceneLight& light : scene.lights) {
+        channels.insert(light.wideShadow);
+        if (!light.shadowMapFile.empty())
+            maps[light.shadowMapFile] = blank({light.shadowMapChannel.empty() ? "Z" : light.shadowMapChannel});
+    }
+    LutStore luts(device);
+    Frame frame(device, blank(channels), scene, luts, maps);
+    frame.shade();
+}
+
+void run(const Arguments& a) {
+    Run run(a.run);
+    const auto stats = [&] {
+        PelDeviceStats s = pelDeviceStatsDefaults();
+        check(pelDeviceGetStats(run.device().get(), &s));
+        return s;
+    };
+    uint32_t groups = (a.luts ? PEL_PROGRAMS_LUTS : 0) | (a.tableLuts ? PEL_PROGRAMS_TABLE_LUTS : 0) |
+                      (a.curvature ? PEL_PROGRAMS_CURVATURE : 0);
+    if (!groups && a.scenes.empty()) groups = PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABLE_LUTS | PEL_PROGRAMS_CURVATURE;
+    const PelDeviceStats before = stats();
+    if (groups) prefillPrograms(run.device(), groups, {}, a.threads);
+    for (const std::string& scene : a.scenes) {
+        run.note("building what " + scene + " needs");
+        try {
+            prefillScene(run.device(), scene);
+        } catch (const Error& e) {
+            if (e.code() == PEL_ERROR_INVALID_ARGUMENT) throw InputError(scene + ": " + e.what());
+            throw;
+        }
+    }
+    const PelDeviceStats after = stats();
+    run.report["programs"] = after.programsBuilt - before.programsBuilt;
+    run.report["build_ms"] = after.buildMilliseconds - before.buildMilliseconds;
+    run.finish();
+}
+
+}  // namespace
+
+void addPrefill(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("prefill", "Build OpenCL programs ahead of their first use, for the driver's cache");
+    auto a = std::make_shared<Arguments>();
+    command->add_option("scene", a->scenes, "scene files (TOML) that `pellucid shade` will be given")->check(CLI::ExistingFile);
+    command->add_flag("--luts", a->luts, "look-up tables of sums of Gaussians");
+    command->add_flag("--table-luts", a->tableLuts, "look-up tables of measured profiles");
+    command->add_flag("--curvature", a->curvature, "curvature of meshes");
+    command->add_option("--threads", a->threads, "that build at a time; 0: one per core. PoCL builds one by one")
+        ->capture_default_str();
+    addRunOptions(*command, a->run);
+    command->callback([a] { run(*a); });
+    command->footer("Without scenes and flags: everything that does not depend on a scene.");
+}
+
+}  // namespace pellucid::cli
