@@ -9,6 +9,9 @@
 // its normal is the mean direction of theirs. MESH_LISTED (lib/mesh_vertex.clh): mesh_rows.
 
 #include "lib/mesh_vertex.clh"
+#include "lib/width.clh"
+
+#define MEMBERS_AHEAD 64
 
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_rows(
     uint slots, uint listed, __global const uint* list, __global const uint* memberOffsets, __global const uint* members,
@@ -18,6 +21,10 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_rows(
     if (slot >= slots) return;
 #if MESH_MAPPED
     const uint begin = memberOffsets[slot], end = memberOffsets[slot + 1], vertex = members[begin];
+    // Members stand anywhere in the caller's memory; no processor foresees where.
+    const uint ahead = members[min(begin + MEMBERS_AHEAD, positionLayout.count - 1)];
+    PEL_PREFETCH(positions + positionLayout.offset + (size_t)ahead * positionLayout.stride);
+    PEL_PREFETCH(normals + normalLayout.offset + (size_t)ahead * normalLayout.stride);
 #else
     const uint vertex = slot;
 #endif

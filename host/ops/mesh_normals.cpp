@@ -8,6 +8,7 @@ SlotData gatherRows(MeshTopology& topology, const VertexView& positions, const V
                     const cl::Memory& memory, const Rows& rows) {
     cl::Defines defines = mapping(topology);
     defines["MESH_LISTED"] = listed(rows);
+    defines["PEL_WIDTH"] = std::to_string(width(topology.device()));  // whether to fetch ahead
     cl::Launch gather(topology.device().programs().get("mesh_rows.cl", defines), "mesh_rows");
     rowArguments(topology, gather, rows);
     gather.arg(topology.memberOffsets()).arg(topology.members());

@@ -49,8 +49,9 @@ inline void ringArguments(const MeshTopology& topology, cl::Launch& launch, cons
     launch.arg(topology.slices()).arg(topology.rings()).arg(topology.runs());
 }
 
+// Whether a pass may read rows as runs: where that has been measured to pay.
 inline std::string haveRuns(const MeshTopology& topology) {
-    return topology.runs() ? "1" : "0";
+    return topology.runs() && width(topology.device()) > 1 ? "1" : "0";
 }
 
 inline cl::Defines mapping(const MeshTopology& topology) {
