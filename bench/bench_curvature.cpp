@@ -126,6 +126,21 @@ void deformingFrame(benchmark::State& state) {
     perVertex(state, c.vertices);
 }
 
+// The same frame where only some vertices moved, in the middle of the mesh.
+void livePart(benchmark::State& state) {
+    const Case& c = prepared(state);
+    PelCurvatureParams params = pelCurvatureParamsDefaults();
+    params.smoothingPasses = 2;
+    const LiveMesh live(c.topology, params);
+    const PelVertexView positions = vertexView(c.positions, c.vertices),
+                        normals = vertexView(c.normals, c.vertices),
+                        curvature = vertexView(c.curvature, c.vertices);
+    live.update(positions, &normals, curvature);
+    const std::vector<PelVertexRange> moved{{c.vertices / 2, uint32_t(state.range(2))}};
+    live.update(positions, &normals, curvature, moved);
+    for (auto _ : state) live.update(positions, &normals, curvature, moved);
+}
+
 // Smoothing to a radius of three edges, on top of the cheapest estimator.
 void smoothedToRadius(benchmark::State& state) {
     const Case& c = prepared(state);
@@ -223,6 +238,12 @@ BENCHMARK(estimatorDevice)
 BENCHMARK(deformingFrame)
     ->ArgNames({"vertices", "order"})
     ->Args({100000, 0})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+BENCHMARK(livePart)
+    ->ArgNames({"vertices", "order", "part"})
+    ->ArgsProduct({{100000}, {0}, {100, 1000, 10000}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
