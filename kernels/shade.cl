@@ -4,8 +4,9 @@
 // tables in one buffer, and the lists of tiles from classify_tiles.cl, of which it takes one. Output: radiance, linear RGB.
 // One work-group takes one tile after another from the list; one work-item PEL_WIDTH pixels of a row at a time.
 // Variants: PEL_FEATURES (shared/features.h) and the format of each image, PEL_FORMAT_<SLOT>, 0 where there is none;
-// all wide shadows have one format, and all shadow maps. Unused buffers are NULL.
+// all wide shadows have one format, and all shadow maps one and the same PEL_SHADOW_CONTENT. Unused buffers are NULL.
 #include "lib/ambient_cube.clh"
+#include "lib/cube_thickness.clh"
 #include "lib/deep_scatter.clh"
 #include "lib/direct.clh"
 #include "lib/ggx.clh"
@@ -128,15 +129,44 @@ static inline floatw loadWideShadow(const Scene* scene, __global const PelShadeL
                       imageSpan(scene->lightImages[light->wideBuffer], &light->wide, x, y));
 }
 
+// Thickness along a light with cascades: the finest that holds the point with its taps; 0 outside of all.
+static inline floatw measureInCascades(const Scene* scene, __global const PelShadeMaterial* material,
+                                       __global const PelShadeLight* light, const Pixels* p, Vec3w inside, float cutoff,
+                                       maskw needed) {
+    floatw thickness = 0.0f;
+    maskw left = needed;
+    for (uint i = 0; i < light->cascades && anyw(left); ++i) {
+        __global const PelShadeCascade* cascade = &light->cascade[i];
+        const Vec3w uvz = shadowCoordinates(cascade->worldToShadow, inside);
+        const float radiusU = material->thicknessFilterRadius * cascade->tapScale[0];
+        const float radiusV = material->thicknessFilterRadius * cascade->tapScale[1];
+        const maskw held = left & mapHolds(uvz, radiusU, radiusV);
+        if (!anyw(held)) continue;
+        __global const uchar* map = firstTexel(scene->lightImages[cascade->mapBuffer], &cascade->map);
+        const floatw some = thicknessOfMap(PEL_FORMAT_SHADOW_MAP, map, &cascade->map, light, cascade->depthRange, uvz, radiusU,
+                                           radiusV, material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine,
+                                           p->turnSine, cutoff, held);
+        thickness = selectw(thickness, some, held);
+        left &= notw(held);
+    }
+    return thickness;
+}
+
 // Length that the light travelled inside before it came out of the pixels of `needed`.
 static inline floatw measureThickness(const Scene* scene, __global const PelShadeMaterial* material,
                                       __global const PelShadeLight* light, const Pixels* p, maskw needed,
                                       bool beyondCutoff) {
     const Vec3w inside = sub3(p->position, scale3(p->ng, (floatw)(material->deepScatterNormalOffset)));
-    return thicknessTaps(PEL_FORMAT_SHADOW_MAP, scene->lightImages[light->mapBuffer], light,
+    const float cutoff = beyondCutoff ? INFINITY : material->thicknessCutoff;
+    if (HAS(PEL_BIT_SHADOW_CUBE) && light->projection >= PEL_MAP_CUBE)
+        return cubeThickness(PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map), light,
+                             cubePosition(light->worldToShadow, inside), material->thicknessFilterRadius,
+                             material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine, p->turnSine, cutoff, needed);
+    if (HAS(PEL_BIT_SHADOW_CASCADES) && light->cascades)
+        return measureInCascades(scene, material, light, p, inside, cutoff, needed);
+    return thicknessTaps(PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map), light,
                          shadowCoordinates(light->worldToShadow, inside), material->thicknessFilterRadius,
-                         material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine, p->turnSine,
-                         beyondCutoff ? INFINITY : material->thicknessCutoff, needed);
+                         material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine, p->turnSine, cutoff, needed);
 }
 
 // Ambient light at the three normals.

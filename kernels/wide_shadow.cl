@@ -2,8 +2,10 @@
 // of a material, filtered over the material's shadowFilterWidth.
 //
 // Inputs: positions or depth, geometric normals, ids, the shadow map. Output: R32F, 0 to 1; pixels that the light does not
-// reach get 1. One work-group: a run of tiles; one work-item: PEL_WIDTH pixels, whose filters it runs one after another,
-// PEL_WIDTH texels at a time. PEL_NORMAL_SLOT: where the geometric normals are.
+// reach get 1. Of a light with cascades the finest that holds a pixel's filter is read; of a cube, all faces under it
+// (lib/cube_filter.clh). One work-group: a run of tiles; one work-item: PEL_WIDTH pixels, whose filters it runs one after another,
+// PEL_WIDTH texels at a time. PEL_NORMAL_SLOT: where the geometric normals are; PEL_SHADOW_CONTENT: what texels hold.
+#include "lib/cube_filter.clh"
 #include "lib/light.clh"
 #include "lib/tiles.clh"
 #include "lib/wide_filter.clh"
@@ -17,7 +19,7 @@
 // PEL_WIDTH filters, one field after another.
 typedef struct Filters {
     float x[PEL_WIDTH], y[PEL_WIDTH], z[PEL_WIDTH], dzdx[PEL_WIDTH], dzdy[PEL_WIDTH];
-    float radiusX[PEL_WIDTH], radiusY[PEL_WIDTH], cone[PEL_WIDTH], perSoftness[PEL_WIDTH], step[PEL_WIDTH];
+    float radiusX[PEL_WIDTH], radiusY[PEL_WIDTH], cone[PEL_WIDTH], scale[PEL_WIDTH], step[PEL_WIDTH];
 } Filters;
 
 // Returns the lanes whose filter can be run; the others are behind the light, or no numbers.
@@ -60,10 +62,19 @@ static inline maskw makeFilters(__global const PelWideShadow* light, Vec3w p, Ve
     storew(radiusX, 0, f->radiusX);
     storew(radiusY, 0, f->radiusY);
     storew(light->coneSlope * tilt * 0.5f * width * zPerLength, 0, f->cone);
-    storew(1.0f / (light->softness * width * zPerLength), 0, f->perSoftness);
+#if PEL_SHADOW_CONTENT == PEL_CONTENT_MOMENTS
+    storew(1.0f / (floatw)(zPerLength), 0, f->scale);
+#elif PEL_SHADOW_CONTENT == PEL_CONTENT_EXPONENTIAL
+    storew((floatw)(light->exponent), 0, f->scale);
+#else
+    storew(1.0f / (light->softness * width * zPerLength), 0, f->scale);
+#endif
     storew(step, 0, f->step);
+    maskw held = -1;
+    if ((PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) && light->cascades)
+        held = mapHolds(vec3(u, v, z), 0.5f * width / extentU, 0.5f * width / extentV);
     // Far outside of the map, where integers would overflow, everything is lit.
-    return (w > 0.0f) & finite3(p) & finite3(n) & (fabs(x) < 1e6f) & (fabs(y) < 1e6f) & (radiusX < 1e6f) & (radiusY < 1e6f) &
+    return held & (w > 0.0f) & finite3(p) & finite3(n) & (fabs(x) < 1e6f) & (fabs(y) < 1e6f) & (radiusX < 1e6f) & (radiusY < 1e6f) &
            finitew(dzdx) & finitew(dzdy) & finitew(zPerLength);
 }
 
@@ -71,8 +82,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
     __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials, __global const PelShadeLight* lights,
     __global const uint* list, __global uint* counters, __global uchar* material, __global uchar* normal,
     __global uchar* position, __global uchar* depth, __global const PelWideShadow* wideShadow, uint lightIndex,
-    __global uchar* map, __global uchar* out) {
+    __global uchar* map0, __global uchar* map1, __global uchar* map2, __global uchar* map3, __global uchar* out) {
     const TileRun run = tileRun(frame, list);
+    const WideContent content = {wideShadow->perExponent, wideShadow->minDeviation * wideShadow->minDeviation,
+                                 wideShadow->bleeding};
+    const uint maps = (PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) ? max(wideShadow->cascades, 1u) : 1;
     uint filtered = 0;
     for (uint i = run.begin; i < run.end; ++i) {
         const uint2 origin = tileOrigin(frame, list, i);
@@ -90,21 +104,43 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
 #define PEL_WIDTH_(k, s) (active s ? materials[id s].shadowFilterWidth : 1.0f)
             const floatw width = PEL_LANES(PEL_WIDTH_);
 #undef PEL_WIDTH_
-            Filters f;
-            const maskw able = makeFilters(wideShadow, p, n, width, &f) & active;
-            maskw wanted = able;
-            if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING)) wanted &= sampleLight(&lights[lightIndex], p).strength > 0.0f;
-            if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(wanted);
-            const Span target = imageSpan(out, &wideShadow->out, first, y);
-#define PEL_FILTER_(k, s)                                                                                       \
-    if (active s) {                                                                                             \
-        const WideFilter one = {f.x[k], f.y[k], f.z[k], f.dzdx[k], f.dzdy[k], f.radiusX[k], f.radiusY[k],       \
-                                f.cone[k], f.perSoftness[k], (int)f.step[k]};                                   \
-        *(__global float*)(target.first + (k) * target.stride) =                                                \
-            wanted s ? wideShadowOfPixel(PEL_FORMAT_SHADOW_MAP, map, &wideShadow->map, &one) : 1.0f;            \
-    }
-            PEL_EACH_LANE(PEL_FILTER_)
+            maskw left = active;
+            if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING)) left &= sampleLight(&lights[lightIndex], p).strength > 0.0f;
+            float shown[PEL_WIDTH];
+            storew((floatw)(1.0f), 0, shown);
+            if ((PEL_FEATURES & PEL_BIT_SHADOW_CUBE) && wideShadow->projection >= PEL_MAP_CUBE) {
+                CubeFilters f;
+                __global const uchar* map = firstTexel(map0, &wideShadow->map);
+                __global const float* m = wideShadow->worldToShadow;
+                left &= makeCubeFilters(wideShadow, cubePosition(m, p), cubeTurned(m, n), width, PEL_FLATTEST_COSINE, &f);
+                if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(left);
+#define PEL_FILTER_(k, s) \
+    if (left s) shown[k] = wideShadowInCube(PEL_FORMAT_SHADOW_MAP, map, wideShadow, &f, k, &content);
+                PEL_EACH_LANE(PEL_FILTER_)
 #undef PEL_FILTER_
+            } else {
+                for (uint cascade = 0; cascade < maps && anyw(left); ++cascade) {
+                    Filters f;
+                    __global const PelWideShadow* light = wideShadow + cascade;
+                    __global const uchar* map = cascade == 0 ? map0 : cascade == 1 ? map1 : cascade == 2 ? map2 : map3;
+                    const maskw held = makeFilters(light, p, n, width, &f) & left;
+                    if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(held);
+                    left &= notw(held);
+#define PEL_FILTER_(k, s)                                                                                        \
+    if (held s) {                                                                                                \
+        const WideFilter one = {f.x[k], f.y[k], f.z[k], f.dzdx[k], f.dzdy[k], f.radiusX[k], f.radiusY[k],        \
+                                f.cone[k], f.scale[k], (int)f.step[k]};                                          \
+        shown[k] = wideShadowOfPixel(PEL_FORMAT_SHADOW_MAP, map, &light->map, &one, &content);                   \
+    }
+                    PEL_EACH_LANE(PEL_FILTER_)
+#undef PEL_FILTER_
+                }
+            }
+            const Span target = imageSpan(out, &wideShadow->out, first, y);
+#define PEL_STORE_(k, s) \
+    if (active s) *(__global float*)(target.first + (k) * target.stride) = shown[k];
+            PEL_EACH_LANE(PEL_STORE_)
+#undef PEL_STORE_
         }
     }
     if ((PEL_FEATURES & PEL_BIT_COUNT) && filtered) atomic_add(&counters[PEL_COUNT_WIDE_SHADOW], filtered);

@@ -149,6 +149,17 @@ inline constexpr Tolerance wideShadow{
     "wideShadow", 2e-4, "the kernel's polynomial for the weights is 5e-5 off; float sums over a thousand texels"};
 inline constexpr Tolerance wideShadowEdge{
     "wideShadowEdge", 0.01, "texels of 1/80 of the filter: where the edge falls between two of them"};
+inline constexpr Tolerance contentShadow{
+    "contentShadow", 2e-3, "variance is a difference of float squares: 1e-7 of z^2 is 0.1 mm in a map 300 mm deep"};
+inline constexpr Tolerance contentThickness{
+    "contentThickness", 0.02, "mm: between texels whose exponentials differ 10,000 times a float weight near 0 or 1 shows"};
+inline constexpr Tolerance mapThickness{
+    "mapThickness", 1e-3, "mm in a map 300 mm deep: float depths of 1e-7, and where a tap falls between texels"};
+inline constexpr Tolerance cubeThickness{
+    "cubeThickness", 0.01, "mm at 100 mm from the light: float depths with a near plane at 5 mm leave 2e-3 each"};
+inline constexpr Tolerance cubeAsPerspective{
+    "cubeAsPerspective", 0.02, "within 4 degrees of the axis, where disks across axis and direction differ by 0.25 %"};
+inline constexpr Tolerance cubeTurned{"cubeTurned", 0.03, "filters of 16 texels across that lie elsewhere on the map"};
 inline constexpr Tolerance peerTerm{"peerTerm", 1e-6,
                                     "the peer's float arithmetic and float LUT coordinates"};
 inline constexpr Tolerance peerSharpened{"peerSharpened", 1e-6, "the same, steeper by the sharpening"};

@@ -17,13 +17,16 @@ static_assert(PEL_BIT_DIRECT_SCATTER == PEL_FEATURE_DIRECT_SCATTER && PEL_BIT_SH
               PEL_BIT_SPECULAR == PEL_FEATURE_SPECULAR);
 // What the passes before it do does not make another variant of the shading kernel.
 constexpr uint32_t shadeFeatures = (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER |
-                                   PEL_FEATURE_AMBIENT_CUBE;
+                                   PEL_FEATURE_AMBIENT_CUBE | PEL_FEATURE_SHADOW_CUBE | PEL_FEATURE_SHADOW_CASCADES;
 // Those that a material asks for (materialNeeds); the others hold for all of a frame.
 constexpr uint32_t materialFeatures = PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SHADOW_LUT | PEL_FEATURE_DEEP_SCATTER |
                                       PEL_FEATURE_THICKNESS_TAPS | PEL_FEATURE_SPECULAR | PEL_FEATURE_GGX |
                                       PEL_FEATURE_AMBIENT_SCATTER;
 static_assert(PEL_BIT_GGX == PEL_FEATURE_GGX && PEL_BIT_AMBIENT_SCATTER == PEL_FEATURE_AMBIENT_SCATTER &&
-              PEL_BIT_AMBIENT_CUBE == PEL_FEATURE_AMBIENT_CUBE);
+              PEL_BIT_AMBIENT_CUBE == PEL_FEATURE_AMBIENT_CUBE && PEL_BIT_SHADOW_CUBE == PEL_FEATURE_SHADOW_CUBE &&
+              PEL_BIT_SHADOW_CASCADES == PEL_FEATURE_SHADOW_CASCADES);
+static_assert(PEL_MAP_CUBE == PEL_SHADOW_CUBE && PEL_MAP_CUBE_RADIAL == PEL_SHADOW_CUBE_RADIAL &&
+              PEL_CONTENT_MOMENTS == PEL_SHADOW_CONTENT_MOMENTS && PEL_CONTENT_EXPONENTIAL == PEL_SHADOW_CONTENT_EXPONENTIAL);
 static_assert(PEL_IMAGE_OUT_DIFFUSE == PEL_SLOT_OUT_DIFFUSE && PEL_IMAGE_OUT_DEEP_SCATTER == PEL_SLOT_OUT_DEEP_SCATTER &&
               PEL_IMAGE_OUT_SPECULAR == PEL_SLOT_OUT_SPECULAR && PEL_IMAGE_OUT_THICKNESS == PEL_SLOT_OUT_THICKNESS);
 
@@ -94,23 +97,28 @@ bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
 
 cl::ProgramKey shadeKey(const ShaderState& state, uint32_t features, const Device& device) {
     features &= shadeFeatures;
+    if (!(features & PEL_BIT_THICKNESS_TAPS)) features &= ~uint32_t(PEL_BIT_SHADOW_CUBE | PEL_BIT_SHADOW_CASCADES);
     if (state.options.accumulate) features |= PEL_BIT_ACCUMULATE;
     if (state.options.disableSkipping) features |= PEL_BIT_NO_SKIPPING;
     if (state.options.countPixels) features |= PEL_BIT_COUNT;
     if (state.options.rotateTaps && features & PEL_BIT_THICKNESS_TAPS) features |= PEL_BIT_ROTATE_TAPS;
     if (features & PEL_BIT_AMBIENT_CUBE && isBlack(state.ambient)) features |= PEL_BIT_CUBE_ALONE;
-    uint32_t wide = 0, map = 0;
+    uint32_t wide = 0, map = 0, content = 0;
     for (const ShaderLight& light : state.lights) {
         if (light.params.type != PEL_LIGHT_DIRECTIONAL) features |= PEL_BIT_POSITIONAL;
         wide |= formatCode(light.images[PEL_LIGHT_WIDE_SHADOW], device.info().mathWidth);
-        map |= formatCode(light.images[PEL_LIGHT_SHADOW_MAP], 1);
+        if (!light.images[PEL_LIGHT_SHADOW_MAP]) continue;
+        map |= mapFormatCode(light);
+        content = light.params.shadowContent;
     }
+    if (!(features & PEL_BIT_THICKNESS_TAPS)) map = content = 0;
     cl::Defines defines{
         {"PEL_FEATURES", std::to_string(features)},
         {"PEL_SHADE_GROUP", std::to_string(shadeGroup(device))},
         {"PEL_CLASSIFY_GROUP", std::to_string(classifyGroup)},
         {"PEL_FORMAT_WIDE_SHADOW", std::to_string(wide)},
-        {"PEL_FORMAT_SHADOW_MAP", std::to_string(features & PEL_BIT_THICKNESS_TAPS ? map : 0)}};
+        {"PEL_FORMAT_SHADOW_MAP", std::to_string(map)},
+        {"PEL_SHADOW_CONTENT", std::to_string(content)}};
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) {
         if (!isShadeSlot(slot)) continue;
         const uint32_t code =
@@ -131,6 +139,12 @@ uint32_t formatCode(const ImageView& view, uint32_t mathWidth) {
     if (!view) return 0;
     const bool vectors = view.tightlyPacked() && view.width >= mathWidth;
     return uint32_t(view.format) | (vectors ? 0 : PEL_FMT_STRIDED);
+}
+
+uint32_t mapFormatCode(const ShaderLight& light) {
+    uint32_t code = formatCode(light.images[PEL_LIGHT_SHADOW_MAP], 1);
+    for (uint32_t i = 1; i < light.params.shadowCascades; ++i) code |= formatCode(*shadowCascade(light, i).map, 1);
+    return code;
 }
 
 cl::Range tileRange(const Device& device, uint32_t tiles) {

@@ -48,16 +48,17 @@ void resize(Ref<Buffer>& buffer, const Ref<Device>& device, size_t bytes) {
     if (bytes) buffer = Buffer::create(device, bytes, nullptr);
 }
 
-// A buffer that holds `value`; written anew only when it changed. Returns the bytes sent.
+// A buffer that holds `values`; written anew only when they changed. Returns the bytes sent.
 template <class T>
-size_t send(Device& device, const T& value, cl::Memory& memory, std::vector<unsigned char>& sent) {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(&value);
-    if (memory && std::equal(sent.begin(), sent.end(), bytes, bytes + sizeof value)) return 0;
-    memory = device.allocate(sizeof value, nullptr);  // an execution that is queued keeps reading the old one
+size_t send(Device& device, const std::vector<T>& values, cl::Memory& memory, std::vector<unsigned char>& sent) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
+    const size_t size = values.size() * sizeof(T);
+    if (memory && sent.size() == size && std::equal(sent.begin(), sent.end(), bytes)) return 0;
+    memory = device.allocate(size, nullptr);  // an execution that is queued keeps reading the old one
     sent.clear();
-    device.write(memory.get(), 0, sizeof value, bytes, true);
-    sent.assign(bytes, bytes + sizeof value);
-    return sizeof value;
+    device.write(memory.get(), 0, size, bytes, true);
+    sent.assign(bytes, bytes + size);
+    return size;
 }
 
 PelNormalMap describeNormalMap(const ShaderState& plan, uint32_t id, bool fallback) {
@@ -194,11 +195,16 @@ void ShadePasses::build(Device& device, const ShaderState& plan, uint32_t featur
     }
     if (features & PEL_FEATURE_FILTER_SHADOW) {
         cl::Defines all = common(width);
-        all["PEL_FEATURES"] = text((plan.options.countPixels ? PEL_BIT_COUNT : 0) |
-                                   (plan.options.disableSkipping ? PEL_BIT_NO_SKIPPING : 0));
-        uint32_t map = 0;
-        for (uint32_t light : filteredLights_) map |= formatCode(plan.lights[light].images[PEL_LIGHT_SHADOW_MAP], 1);
+        uint32_t bits = (plan.options.countPixels ? PEL_BIT_COUNT : 0) | (plan.options.disableSkipping ? PEL_BIT_NO_SKIPPING : 0);
+        uint32_t map = 0, content = 0;
+        for (uint32_t light : filteredLights_) {
+            map |= mapFormatCode(plan.lights[light]);
+            content = plan.lights[light].params.shadowContent;
+            bits |= formFeatures(plan.lights[light].params) & (PEL_BIT_SHADOW_CUBE | PEL_BIT_SHADOW_CASCADES);
+        }
+        all["PEL_FEATURES"] = text(bits);
         all["PEL_FORMAT_SHADOW_MAP"] = text(map);
+        all["PEL_SHADOW_CONTENT"] = text(content);
         shadowProgram_ = device.programs().get("wide_shadow.cl", all);
     }
 }
@@ -210,12 +216,15 @@ size_t ShadePasses::upload(Device& device, const ShaderState& plan) {
     sent_.resize(filteredLights_.size() + mappedMaterials_.size());
     size_t bytes = 0;
     for (size_t k = 0; k < filteredLights_.size(); ++k) {
-        PelWideShadow constants = describeWideShadow(plan.lights[filteredLights_[k]], filteredLights_[k]);
-        bytes += send(device, constants, lightConstants_[k], sent_[k]);
+        const ShaderLight& light = plan.lights[filteredLights_[k]];
+        std::vector<PelWideShadow> maps;
+        for (uint32_t i = 0; i < std::max(light.params.shadowCascades, 1u); ++i)
+            maps.push_back(describeWideShadow(light, filteredLights_[k], i));
+        bytes += send(device, maps, lightConstants_[k], sent_[k]);
     }
     const bool fallback = !(features_ & PEL_FEATURE_BLUR_NORMALS);
     for (size_t k = 0; k < mappedMaterials_.size(); ++k)
-        bytes += send(device, describeNormalMap(plan, mappedMaterials_[k], fallback && k == 0), mapConstants_[k],
+        bytes += send(device, std::vector{describeNormalMap(plan, mappedMaterials_[k], fallback && k == 0)}, mapConstants_[k],
                       sent_[filteredLights_.size() + k]);
     return bytes;
 }
@@ -253,7 +262,11 @@ void ShadePasses::enqueue(Device& device, const ShaderState& plan, const ShadeTa
         for (PelImageSlot slot : {PEL_SLOT_MATERIAL, normalSlot(plan), PEL_SLOT_POSITION, PEL_SLOT_DEPTH})
             launch.arg(memoryOf(plan.images[slot]));
         launch.arg(lightConstants_[k]).arg(cl_uint(filteredLights_[k]));
-        launch.arg(memoryOf(light.images[PEL_LIGHT_SHADOW_MAP])).arg(wideShadows_->memory());
+        for (uint32_t i = 0; i < PEL_CASCADES; ++i) {
+            const bool read = i < std::max(light.params.shadowCascades, 1u);
+            launch.arg(read ? memoryOf(*shadowCascade(light, i).map) : cl::Memory());
+        }
+        launch.arg(wideShadows_->memory());
         events.push_back(device.launch(launch, range));
     }
 }
@@ -276,10 +289,28 @@ size_t ShadePasses::scratchBytes() const {
     return bytes;
 }
 
-PelWideShadow describeWideShadow(const ShaderLight& light, uint32_t index) {
+PelWideShadow describeWideShadow(const ShaderLight& light, uint32_t index, uint32_t cascade) {
     const PelLight& l = light.params;
+    const ShadowCascade from = shadowCascade(light, cascade);
+    const float(&matrix)[16] = *from.worldToShadow;
     PelWideShadow to{};
-    std::copy_n(l.worldToShadow, 16, to.worldToShadow);
+    std::copy_n(matrix, 16, to.worldToShadow);
+    to.projection = l.shadowProjection;
+    to.depthA = l.shadowDepthA;
+    to.depthB = l.shadowDepthB;
+    to.depthRange = from.depthRange;
+    to.exponent = float(l.shadowExponent / std::log(2.0));
+    if (l.shadowExponent != 0) to.perExponent = float(std::log(2.0) / l.shadowExponent);
+    to.minDeviation = l.shadowMinDeviation;
+    to.bleeding = l.shadowBleeding;
+    to.bias = l.shadowBias;
+    to.softness = l.shadowSoftness;
+    to.coneSlope = l.shadowConeSlope;
+    to.maxTexels = float(l.shadowFilterTexels);
+    to.cascades = l.shadowCascades;
+    to.map = describeImage(*from.map);
+    to.out = describeImage(light.images[PEL_LIGHT_WIDE_SHADOW]);
+    if (isCube(l)) return to;
     struct Vec {
         double x, y, z;
         Vec scaled(double s) const { return {x * s, y * s, z * s}; }
@@ -290,15 +321,15 @@ PelWideShadow describeWideShadow(const ShaderLight& light, uint32_t index) {
         void to(float (&out)[3]) const { out[0] = float(x), out[1] = float(y), out[2] = float(z); }
     };
     const auto row = [&](int r) {
-        const float* m = l.worldToShadow + 4 * r;
+        const float* m = matrix + 4 * r;
         return Vec{m[0], m[1], m[2]};
     };
     const bool perspective = l.shadowProjection == PEL_SHADOW_PERSPECTIVE;
-    const double w = perspective ? row(3).length() : l.worldToShadow[15];
+    const double w = perspective ? row(3).length() : matrix[15];
     // Along a ray of the light u and v stay what they are; across it they grow by 1 / extent per length.
     Vec forward = perspective ? row(3).scaled(1 / w) : row(0).cross(row(1));
     if (!perspective) {
-        const double length = forward.length(), sign = row(2).dot(forward) * w * l.shadowDepthRange < 0 ? -1 : 1;
+        const double length = forward.length(), sign = row(2).dot(forward) * w * from.depthRange < 0 ? -1 : 1;
         forward = forward.scaled(sign / length);
         to.zPerLength = float(row(2).dot(forward) / w);
     }
@@ -306,8 +337,8 @@ PelWideShadow describeWideShadow(const ShaderLight& light, uint32_t index) {
               down = row(1).minus(forward.scaled(row(1).dot(forward)));
     const double u = right.length(), v = down.length(), skew = right.dot(down) / (u * v);
     if (!(u > 0 && v > 0 && std::isfinite(forward.length()) && std::abs(skew) < 0.999 && (perspective || to.zPerLength != 0)))
-        invalidArgument("PelLight ", index,
-                        ".worldToShadow is singular: a wide shadow cannot be filtered from its shadow map");
+        invalidArgument("PelLight ", index, cascade ? text(".cascadeToShadow[", cascade - 1, "]") : ".worldToShadow",
+                        " is singular: a wide shadow cannot be filtered from its shadow map");
     right.scaled(1 / u).to(to.right);
     down.scaled(1 / v).to(to.down);
     forward.to(to.forward);
@@ -315,15 +346,6 @@ PelWideShadow describeWideShadow(const ShaderLight& light, uint32_t index) {
     to.extent[1] = float(std::abs(w) / v);
     to.centre[0] = float(row(0).dot(forward) / w);
     to.centre[1] = float(row(1).dot(forward) / w);
-    to.projection = l.shadowProjection;
-    to.depthA = l.shadowDepthA;
-    to.depthB = l.shadowDepthB;
-    to.bias = l.shadowBias;
-    to.softness = l.shadowSoftness;
-    to.coneSlope = l.shadowConeSlope;
-    to.maxTexels = float(l.shadowFilterTexels);
-    to.map = describeImage(light.images[PEL_LIGHT_SHADOW_MAP]);
-    to.out = describeImage(light.images[PEL_LIGHT_WIDE_SHADOW]);
     return to;
 }
 

@@ -54,7 +54,8 @@ class ShadePasses {
     cl::Program blurProgram_, mapProgram_, shadowProgram_;
 };
 
-// What the wide-shadow kernel needs of a light. Throws when worldToShadow does not tell across from along.
-PelWideShadow describeWideShadow(const ShaderLight& light, uint32_t index);
+// What the wide-shadow kernel needs of a light's map, or of the cascade-th of them. Throws when its matrix does not tell across
+// from along.
+PelWideShadow describeWideShadow(const ShaderLight& light, uint32_t index, uint32_t cascade = 0);
 
 }  // namespace pel

@@ -15,6 +15,12 @@ void copy(float (&to)[N], const float (&from)[N]) {
     std::copy_n(from, N, to);
 }
 
+// How far u (row 0) or v (row 1) of a parallel map goes per length.
+double uvPerLength(const float (&m)[16], int row) {
+    const float* r = m + 4 * row;
+    return std::sqrt(double(r[0]) * r[0] + double(r[1]) * r[1] + double(r[2]) * r[2]) / std::abs(double(m[15]));
+}
+
 // Texels of a table with its copied last column and row (shared/lut.h).
 size_t texelCount(const Lut& lut) {
     return size_t(lut.layout().rowTexels) * (lut.height() + 1);
@@ -219,6 +225,18 @@ std::vector<PelShadeLight> ShadeTables::describeLights(const ShaderState& state)
         to.mapBuffer = map ? lightBuffer(map.buffer->memory()) : PEL_LIGHT_BUFFERS;
         to.wide = describeImage(wide);
         to.map = describeImage(map);
+        if (l.shadowExponent != 0) to.perExponent = float(std::log(2.0) / l.shadowExponent);
+        to.cascades = map ? l.shadowCascades : 0;
+        for (uint32_t i = 0; i < to.cascades; ++i) {
+            const ShadowCascade c = shadowCascade(from, i);
+            PelShadeCascade& cascade = to.cascade[i];
+            copy(cascade.worldToShadow, *c.worldToShadow);
+            cascade.depthRange = c.depthRange;
+            cascade.mapBuffer = lightBuffer(c.map->buffer->memory());
+            cascade.map = describeImage(*c.map);
+            for (int r = 0; r < 2; ++r)
+                cascade.tapScale[r] = i == 0 ? 1.0f : float(uvPerLength(cascade.worldToShadow, r) / uvPerLength(l.worldToShadow, r));
+        }
         table.push_back(to);
     }
     return table;

@@ -37,6 +37,8 @@ struct ShaderState {
 // What a variant of a kernel knows of an image's layout: images whose pixels are read one by one get another one than tight
 // ones of at least mathWidth pixels a row.
 uint32_t formatCode(const ImageView& view, uint32_t mathWidth);
+// The same of a light's shadow map and its cascades together.
+uint32_t mapFormatCode(const ShaderLight& light);
 // CPUs run one vector of pixels after another in each work-item; GPUs want a full work-group in a tile.
 uint32_t shadeGroup(const Device& device);
 // Work-items that keep every unit busy to the end; each group takes a run of the frame's tiles.
@@ -44,6 +46,30 @@ cl::Range tileRange(const Device& device, uint32_t tiles);
 
 const char* slotName(PelImageSlot slot);
 const char* lightSlotName(PelLightSlot slot);
+
+// One of a light's cascades, 0 the finest.
+struct ShadowCascade {
+    const float (*worldToShadow)[16];
+    float depthRange;
+    const ImageView* map;
+};
+inline ShadowCascade shadowCascade(const ShaderLight& light, uint32_t index) {
+    const PelLight& l = light.params;
+    if (index == 0) return {&l.worldToShadow, l.shadowDepthRange, &light.images[PEL_LIGHT_SHADOW_MAP]};
+    return {&l.cascadeToShadow[index - 1], l.cascadeDepthRange[index - 1], &light.images[PEL_LIGHT_CASCADE_1 + index - 1]};
+}
+inline bool isCube(const PelLight& light) {
+    return light.shadowProjection >= PEL_SHADOW_CUBE;
+}
+// The PelFeature bits of the forms that a light's shadow map has.
+inline uint32_t formFeatures(const PelLight& l) {
+    uint32_t features = 0;
+    if (isCube(l)) features |= PEL_FEATURE_SHADOW_CUBE;
+    if (l.shadowCascades) features |= PEL_FEATURE_SHADOW_CASCADES;
+    if (l.shadowContent == PEL_SHADOW_CONTENT_EXPONENTIAL) features |= PEL_FEATURE_SHADOW_EXPONENTIAL;
+    if (l.shadowContent == PEL_SHADOW_CONTENT_MOMENTS) features |= PEL_FEATURE_SHADOW_MOMENTS;
+    return features;
+}
 
 // Whether a light's wide shadow is made from its shadow map.
 inline bool filtersShadow(const ShaderLight& light) {

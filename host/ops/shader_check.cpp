@@ -118,7 +118,8 @@ const char* slotName(PelImageSlot slot) {
 }
 
 const char* lightSlotName(PelLightSlot slot) {
-    return slot == PEL_LIGHT_WIDE_SHADOW ? "wide shadow" : "shadow map";
+    constexpr const char* names[PEL_LIGHT_SLOT_COUNT] = {"wide shadow", "shadow map", "cascade 1", "cascade 2", "cascade 3"};
+    return names[slot];
 }
 
 void checkImage(PelImageSlot slot, const ImageView& view) {
@@ -128,8 +129,8 @@ void checkImage(PelImageSlot slot, const ImageView& view) {
 void checkLightImage(PelLightSlot slot, const ImageView& view) {
     checkContent(view, Content::scalar, lightSlotName(slot));
     // Taps address the map with 32 bits.
-    if (slot == PEL_LIGHT_SHADOW_MAP && view.byteEnd() - view.byteOffset > UINT32_MAX)
-        fail(PEL_ERROR_UNSUPPORTED, "the shadow map spans ", view.byteEnd() - view.byteOffset,
+    if (slot != PEL_LIGHT_WIDE_SHADOW && view.byteEnd() - view.byteOffset > UINT32_MAX)
+        fail(PEL_ERROR_UNSUPPORTED, "the ", lightSlotName(slot), " image spans ", view.byteEnd() - view.byteOffset,
              " bytes; 4 GiB is the most");
 }
 
@@ -183,7 +184,15 @@ void checkLight(const PelLight& l, uint32_t index) {
         invalidArgument(name, ".shadowFilterTexels is ", l.shadowFilterTexels, "; it must be 0, or between 4 and 256");
     within(name.c_str(), {{"shadowBias", l.shadowBias, 0, huge},
                           {"shadowSoftness", l.shadowSoftness, 1e-3f, huge},
-                          {"shadowConeSlope", l.shadowConeSlope, 0, huge}});
+                          {"shadowConeSlope", l.shadowConeSlope, 0, huge},
+                          {"shadowMinDeviation", l.shadowMinDeviation, 0, huge},
+                          {"shadowBleeding", l.shadowBleeding, 0, 0.999f}});
+    if (l.shadowCascades > PEL_CASCADES)
+        invalidArgument(name, ".shadowCascades is ", l.shadowCascades, "; ", PEL_CASCADES, " are the most");
+    if (l.shadowContent > PEL_SHADOW_CONTENT_EXPONENTIAL)
+        invalidArgument(name, ".shadowContent is ", int(l.shadowContent), ", which is none of PelShadowContent");
+    if (l.shadowProjection > PEL_SHADOW_CUBE_RADIAL)
+        invalidArgument(name, ".shadowProjection is ", int(l.shadowProjection), ", which is none of PelShadowProjection");
     if (l.type > PEL_LIGHT_SPOT)
         invalidArgument(name, ".type is ", int(l.type), ", which is none of PelLightType");
     if (l.type == PEL_LIGHT_DIRECTIONAL) {
@@ -201,21 +210,6 @@ void checkLight(const PelLight& l, uint32_t index) {
         within(name.c_str(), {{"spotCosOuter", l.spotCosOuter, -1, 1}});
         within(name.c_str(), {{"spotCosInner", l.spotCosInner, l.spotCosOuter, 1}});
     }
-}
-
-void checkLightMap(const PelLight& l, uint32_t index) {
-    const std::string name = text("PelLight ", index);
-    if (l.shadowProjection > PEL_SHADOW_PERSPECTIVE)
-        invalidArgument(name, ".shadowProjection is ", int(l.shadowProjection),
-                        ", which is none of PelShadowProjection");
-    finite(name.c_str(), "worldToShadow", l.worldToShadow, 16);
-    finite(name.c_str(), "shadowDepthRange", &l.shadowDepthRange, 1);
-    finite(name.c_str(), "shadowDepthA", &l.shadowDepthA, 1);
-    finite(name.c_str(), "shadowDepthB", &l.shadowDepthB, 1);
-    if (l.shadowProjection == PEL_SHADOW_PARALLEL && l.shadowDepthRange == 0)
-        invalidArgument(name, ".shadowDepthRange is 0: the length that depths 0 to 1 span is needed");
-    if (l.shadowProjection == PEL_SHADOW_PERSPECTIVE && l.shadowDepthA == 0)
-        invalidArgument(name, ".shadowDepthA is 0: A and B of distance = 1 / (A z + B) are needed");
 }
 
 void checkAmbient(const PelAmbient& ambient) {

@@ -9,7 +9,8 @@ void checkLightImage(PelLightSlot slot, const ImageView& view);
 void checkNormalMap(const std::vector<ImageView>& levels);
 void checkMaterial(const PelMaterial& material);
 void checkLight(const PelLight& light, uint32_t index);
-void checkLightMap(const PelLight& light, uint32_t index);  // the fields that a shadow map needs
+// A light's shadow map as it is at commit: its form, its images and the fields that they need (shadow_map_check.cpp).
+void checkLightMap(const ShaderLight& light, uint32_t index);
 void checkAmbient(const PelAmbient& ambient);
 void checkAmbientCube(const ImageView& faces);
 void checkCamera(const PelCamera& camera);

@@ -43,11 +43,13 @@ void checkSizes(const ShaderState& state) {
     }
     for (size_t i = 0; i < state.lights.size(); ++i) {
         check(state.lights[i].images[PEL_LIGHT_WIDE_SHADOW], text("wide shadow ", i));
-        const ImageView& map = state.lights[i].images[PEL_LIGHT_SHADOW_MAP];
-        if (!map) continue;
-        checkOutputs(map, text("shadow map ", i), -1);
-        if (overlapsElsewhere(target, map))
-            invalidArgument("the radiance image overlaps shadow map ", i, " in memory");
+        for (int slot = PEL_LIGHT_SHADOW_MAP; slot < PEL_LIGHT_SLOT_COUNT; ++slot) {
+            const ImageView& map = state.lights[i].images[slot];
+            if (!map) continue;
+            const std::string what = text(lightSlotName(PelLightSlot(slot)), " ", i);
+            checkOutputs(map, what, -1);
+            if (overlapsElsewhere(target, map)) invalidArgument("the radiance image overlaps ", what, " in memory");
+        }
     }
 }
 
@@ -65,6 +67,23 @@ void checkLightFormats(const ShaderState& state, PelLightSlot slot) {
         if (view.format != first->format)
             fail(PEL_ERROR_UNSUPPORTED, "one ", lightSlotName(slot), " image has format ", first->info().name,
                  ", another ", view.info().name, "; those of all lights need the same");
+    }
+}
+
+// One kernel reads all maps, cascades too.
+void checkMapForms(const ShaderState& state) {
+    const ShaderLight* first = nullptr;
+    for (const ShaderLight& light : state.lights) {
+        const ImageView& map = light.images[PEL_LIGHT_SHADOW_MAP];
+        if (!map) continue;
+        if (!first) first = &light;
+        if (light.params.shadowContent != first->params.shadowContent)
+            fail(PEL_ERROR_UNSUPPORTED, "one light has shadowContent ", int(first->params.shadowContent), ", another ",
+                 int(light.params.shadowContent), "; the shadow maps of all lights need the same");
+        for (uint32_t i = 1; i < light.params.shadowCascades; ++i)
+            if (const ImageView& cascade = *shadowCascade(light, i).map; cascade && cascade.format != map.format)
+                fail(PEL_ERROR_UNSUPPORTED, "the first cascade has format ", map.info().name, ", another ", cascade.info().name,
+                     "; all shadow maps need the same");
     }
 }
 
@@ -124,14 +143,19 @@ uint32_t deriveFeatures(const ShaderState& state) {
         invalidArgument("without a material image all pixels are of material 1, which is not set");
     checkLightFormats(state, PEL_LIGHT_WIDE_SHADOW);
     checkLightFormats(state, PEL_LIGHT_SHADOW_MAP);
+    checkMapForms(state);
 
     bool wide = false, filtered = false, positional = false;
+    uint32_t forms = 0;
     for (size_t i = 0; i < state.lights.size(); ++i) {
         const ShaderLight& light = state.lights[i];
         filtered |= filtersShadow(light);
         wide |= light.images[PEL_LIGHT_WIDE_SHADOW] || filtersShadow(light);
         positional |= light.params.type != PEL_LIGHT_DIRECTIONAL;
-        if (light.images[PEL_LIGHT_SHADOW_MAP]) checkLightMap(light.params, uint32_t(i));
+        if (light.images[PEL_LIGHT_SHADOW_MAP]) {
+            checkLightMap(light, uint32_t(i));
+            forms |= formFeatures(light.params);
+        }
     }
     uint32_t features = 0;
     if (wide) features |= PEL_FEATURE_SHADOW;
@@ -139,6 +163,7 @@ uint32_t deriveFeatures(const ShaderState& state) {
     if (!isBlack(state.ambient)) features |= PEL_FEATURE_AMBIENT;
     if (state.ambientCube) features |= PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE;
     for (const auto& [id, material] : state.materials) features |= materialNeeds(state, material);
+    if (features & (PEL_FEATURE_THICKNESS_TAPS | PEL_FEATURE_FILTER_SHADOW)) features |= forms;
     for (int slot = PEL_SLOT_OUT_DIFFUSE; slot < PEL_SLOT_COUNT; ++slot)
         if (images[slot]) features |= PEL_FEATURE_OUTPUTS;
     // Blurred normals matter to scattered and ambient light; a host's image goes before ours, a map before the blur.

@@ -14,6 +14,8 @@
 #define PEL_BIT_GGX 0x400
 #define PEL_BIT_AMBIENT_SCATTER 0x800
 #define PEL_BIT_AMBIENT_CUBE 0x2000
+#define PEL_BIT_SHADOW_CUBE 0x1000000
+#define PEL_BIT_SHADOW_CASCADES 0x2000000
 // How the kernel goes about it.
 #define PEL_BIT_POSITIONAL 0x10000  // a point or spot light
 #define PEL_BIT_ACCUMULATE 0x20000  // add to the output

@@ -71,6 +71,16 @@ typedef struct PelShadeFrame {
     PelShadeImage images[PEL_IMAGE_SLOTS];
 } PelShadeFrame;
 
+// Projections of a shadow map: PelShadowProjection.
+#define PEL_MAP_PARALLEL 0
+#define PEL_MAP_PERSPECTIVE 1
+#define PEL_MAP_CUBE 2
+#define PEL_MAP_CUBE_RADIAL 3
+// What its texels hold, for all maps of a program (PEL_SHADOW_CONTENT): PelShadowContent.
+#define PEL_CONTENT_DEPTH 0
+#define PEL_CONTENT_MOMENTS 1
+#define PEL_CONTENT_EXPONENTIAL 2
+
 // A look-up table inside the buffer of all tables.
 typedef struct PelShadeLut {
     LutLayout layout;   // width 0: no table
@@ -105,6 +115,17 @@ typedef struct PelShadeMaterial {
     PelUint32 variants; // bit i: variant i of the shading kernel has all of them
 } PelShadeMaterial;
 
+#define PEL_CASCADES 4 // of one light, at most
+
+// One of the parallel maps of a light with cascades.
+typedef struct PelShadeCascade {
+    float worldToShadow[16];
+    float depthRange;    // length per unit of depth
+    float tapScale[2];   // UV of this map per UV of the first, along u and v
+    PelUint32 mapBuffer; // which light buffer
+    PelShadeImage map;
+} PelShadeCascade;
+
 typedef struct PelShadeLight {
     PelUint32 type;    // PelLightType
     float toLight[3];  // directional: unit
@@ -116,13 +137,16 @@ typedef struct PelShadeLight {
     float range2; // length^2, square of the range; FLT_MAX: no limit
     float worldToShadow[16];
     PelUint32 projection; // PelShadowProjection
-    float depthRange;     // parallel: length per unit of depth
-    float depthA;         // perspective: distance = 1 / (A z + B), 1/length
+    float depthRange;     // parallel: length per unit of depth; radial cube: distance from the light per unit
+    float depthA;         // perspective, cube: distance = 1 / (A z + B), 1/length
     float depthB;
     PelUint32 wideBuffer; // which light buffer; >= PEL_LIGHT_BUFFERS: no image
     PelUint32 mapBuffer;
     PelShadeImage wide;
     PelShadeImage map;
+    PelUint32 cascades;   // 0: the map above is no cascade
+    float perExponent;    // depth per log2 of a texel; exponential maps
+    PelShadeCascade cascade[PEL_CASCADES];
 } PelShadeLight;
 
 // Counters of one execution, in a buffer of their own.
@@ -138,6 +162,7 @@ typedef struct PelShadeLight {
 static_assert(sizeof(PelShadeImage) == 32 && sizeof(PelShadeLut) == 40);
 static_assert(sizeof(PelShadeFrame) == 4 * (8 + 8 + 3 + 16 + 27 + 3 + 1) + PEL_IMAGE_SLOTS * 32);
 static_assert(sizeof(PelShadeMaterial) == 4 * 28 + 2 * sizeof(PelShadeLut));
-static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64);
+static_assert(sizeof(PelShadeCascade) == 4 * (16 + 4) + 32);
+static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64 + 8 + PEL_CASCADES * sizeof(PelShadeCascade));
 #endif
 #endif

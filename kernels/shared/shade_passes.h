@@ -10,7 +10,8 @@
 #define PEL_PLANE_GUARD (PEL_BLUR_TAPS * PEL_BLUR_STEP_MAX + 16)
 #define PEL_MAP_LEVELS 16    // of a normal map
 
-// One light's wide shadow, made from its shadow map.
+// One light's wide shadow, made from its shadow map, or from one of its cascades. Of a cube: worldToShadow turns into its
+// space; right, down, forward, extent, centre and zPerLength are not used.
 typedef struct PelWideShadow {
     float worldToShadow[16];
     float right[3];   // unit, world: along +u
@@ -20,12 +21,18 @@ typedef struct PelWideShadow {
     float centre[2];  // u, v that lies straight ahead; perspective
     PelUint32 projection; // PelShadowProjection
     float zPerLength;     // parallel: depth per length along forward, 1/length
-    float depthA;         // perspective: distance = 1 / (A z + B), 1/length
+    float depthA;         // perspective, cube: distance = 1 / (A z + B), 1/length
     float depthB;
+    float depthRange;     // radial cube: distance from the light per unit of depth, length
+    float exponent;       // exponential maps: c / ln 2
+    float perExponent;    // 1 / that
+    float minDeviation;   // moments: length
+    float bleeding;       // moments: share of light that counts as none
     float bias;      // length
     float softness;  // of the filter's width
     float coneSlope; // length per length
     float maxTexels; // across the filter
+    PelUint32 cascades; // how many maps there are, from this on; 0: one that is no cascade
     PelShadeImage map;
     PelShadeImage out; // R32F
 } PelWideShadow;
@@ -40,7 +47,7 @@ typedef struct PelNormalMap {
 } PelNormalMap;
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelWideShadow) == 4 * (16 + 9 + 4 + 8) + 64);
+static_assert(sizeof(PelWideShadow) == 4 * (16 + 9 + 4 + 14) + 64);
 static_assert(sizeof(PelNormalMap) == PEL_MAP_LEVELS * 32 + 16);
 #endif
 #endif

@@ -105,10 +105,12 @@ Vec3 fromTangentSpace(Vec3 texel, Vec3 tangent, Vec3 normal, double side) {
     return normalized(texel.x * tangent + side * texel.y * cross(normal, tangent) + texel.z * normal);
 }
 
-double wideShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal, const WideFilterParams& p) {
+std::vector<FilterSample> filterSamples(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal,
+                                        const WideFilterParams& p) {
+    std::vector<FilterSample> samples;
     const Vec3 from = position - view.origin;
     const double along = dot(from, view.forward), across = view.decoding.perspective ? view.extent * along : view.extent;
-    if (view.decoding.perspective && !(along > 0)) return 1;
+    if (view.decoding.perspective && !(along > 0)) return samples;
     // Depth of a distance, and its derivative.
     const double a = view.decoding.a, b = view.decoding.b;
     const double z = view.decoding.perspective ? (1 / along - b) / a : along / view.decoding.range;
@@ -121,7 +123,6 @@ double wideShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, V
     const double radiusU = std::max(p.width / 2 / texelU, 2.0), radiusV = std::max(p.width / 2 / texelV, 2.0);
     const int step = std::max(1, int(std::ceil(2 * std::max(radiusU, radiusV) / p.maxTexels)));
     const double x = u * map.width - 0.5, y = v * map.height - 0.5;
-    double sum = 0, total = 0;
     for (int j = int(std::floor(y - radiusV)); j <= y + radiusV + 1; ++j)
         for (int i = int(std::floor(x - radiusU)); i <= x + radiusU + 1; ++i) {
             if (i % step || j % step) continue;
@@ -129,16 +130,21 @@ double wideShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, V
             if (r >= 1) continue;
             const double t = 1 - r * r, weight = std::sqrt(t) / (1 + t) + std::atan(std::sqrt(t));
             const bool inside = i >= 0 && j >= 0 && i < map.width && j < map.height;
-            const double depth = inside ? map.depth[size_t(j) * map.width + i] : 0;
-            double shown = 1;
-            if (inside && std::isfinite(depth)) {
-                const double sideways = dot(normal, view.right) * (i - x) * texelU + dot(normal, view.down) * (j - y) * texelV;
-                const double plane = receiver + (sideways - p.coneSlope * p.width / 2 * r) * tilt * zPerLength;
-                shown = saturate(1 + (depth - plane) / (p.softness * p.width * zPerLength));
-            }
-            sum += weight * shown;
-            total += weight;
+            const double sideways = dot(normal, view.right) * (i - x) * texelU + dot(normal, view.down) * (j - y) * texelV;
+            samples.push_back({inside ? j * map.width + i : -1, weight,
+                               receiver + (sideways - p.coneSlope * p.width / 2 * r) * tilt * zPerLength, zPerLength});
         }
+    return samples;
+}
+
+double wideShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal, const WideFilterParams& p) {
+    double sum = 0, total = 0;
+    for (const FilterSample& s : filterSamples(map, view, position, normal, p)) {
+        const double depth = s.texel < 0 ? NAN : map.depth[size_t(s.texel)];
+        sum += s.weight *
+               (std::isfinite(depth) ? saturate(1 + (depth - s.receiver) / (p.softness * p.width * s.zPerLength)) : 1.0);
+        total += s.weight;
+    }
     return total > 0 ? sum / total : 1;
 }
 

@@ -613,13 +613,33 @@ typedef enum PelImageSlot {
 typedef enum PelLightSlot {
     PEL_LIGHT_WIDE_SHADOW = 0, /* w per pixel, 0 shadow to 1 lit, filtered over PelMaterial.shadowFilterWidth. Not set:
                                   PelLight.shadowFilterTexels makes it from the shadow map */
-    PEL_LIGHT_SHADOW_MAP = 1,  /* depth in [0, 1], any size, one component: thickness by taps, wide shadow */
-    PEL_LIGHT_SLOT_COUNT = 2
+    PEL_LIGHT_SHADOW_MAP = 1,  /* depth in [0, 1], any size, one component: thickness by taps, wide shadow. What else it may
+                                  hold: PelLight.shadowProjection, shadowContent, shadowCascades */
+    PEL_LIGHT_CASCADE_1 = 2,   /* the second of PelLight.shadowCascades, and so on. Maps that share one image (an atlas) are
+                                  views of it: the same buffer and rowStride, each with its byteOffset */
+    PEL_LIGHT_CASCADE_2 = 3,
+    PEL_LIGHT_CASCADE_3 = 4,
+    PEL_LIGHT_SLOT_COUNT = 5
 } PelLightSlot;
 
 typedef enum PelLightType { PEL_LIGHT_DIRECTIONAL = 0, PEL_LIGHT_POINT = 1, PEL_LIGHT_SPOT = 2 } PelLightType;
 
-typedef enum PelShadowProjection { PEL_SHADOW_PARALLEL = 0, PEL_SHADOW_PERSPECTIVE = 1 } PelShadowProjection;
+/* The cubes are of point and spot lights: one image of six square faces, one below the other, +x -x +y -y +z -z, each laid
+ * out as OpenGL, Vulkan and Direct3D have it, row 0 first. PelLight.worldToShadow then takes world to the cube's own
+ * space: a rotation and the light in the origin. Taps and filters cross the edges of faces (docs/shading.md). */
+typedef enum PelShadowProjection {
+    PEL_SHADOW_PARALLEL = 0,
+    PEL_SHADOW_PERSPECTIVE = 1,
+    PEL_SHADOW_CUBE = 2,       /* distance along the axis of the face = 1 / (shadowDepthA * z + shadowDepthB) */
+    PEL_SHADOW_CUBE_RADIAL = 3 /* distance from the light = shadowDepthRange * z */
+} PelShadowProjection;
+
+/* What the texels of a shadow map hold: z, or what may be filtered beforehand. All lights need the same. */
+typedef enum PelShadowContent {
+    PEL_SHADOW_CONTENT_DEPTH = 0,      /* z */
+    PEL_SHADOW_CONTENT_MOMENTS = 1,    /* means of z and z^2, two components: variance shadow maps [Donnelly, Lauritzen 2006] */
+    PEL_SHADOW_CONTENT_EXPONENTIAL = 2 /* mean of exp(shadowExponent * z): exponential shadow maps [Annen et al. 2008] */
+} PelShadowContent;
 
 typedef struct PelLight {
     uint32_t structSize;
@@ -645,6 +665,18 @@ typedef struct PelLight {
                                     full, so that round bodies do not shade themselves with a hard edge; 0.25 */
     float shadowConeSlope;       /* the bias grows by this times the sideways distance, so that folds and facets do not
                                     shade themselves; 0.5 */
+    /* Cascades: up to four parallel maps of a directional light, the finest first: PEL_LIGHT_SHADOW_MAP with the matrix and range
+       above, then PEL_LIGHT_CASCADE_1, 2, 3 with those below. A point takes the finest that holds it with its whole filter;
+       outside of all there is neither shadow nor thickness. */
+    uint32_t shadowCascades;       /* 1 to 4 maps; 0: one map that is no cascade */
+    float cascadeToShadow[3][16];  /* worldToShadow of PEL_LIGHT_CASCADE_1, 2, 3 */
+    float cascadeDepthRange[3];    /* shadowDepthRange of those */
+    PelShadowContent shadowContent;
+    float shadowExponent;     /* PEL_SHADOW_CONTENT_EXPONENTIAL: c, of the sign that lets c * z grow away from the light; 80
+                                 for float32, 10 for half */
+    float shadowMinDeviation; /* PEL_SHADOW_CONTENT_MOMENTS: length, least standard deviation of depths; 0.25 mm */
+    float shadowBleeding;     /* PEL_SHADOW_CONTENT_MOMENTS: 0 to below 1, share of light below which it is dark, for lights
+                                 that shine through overlapping shadows; 0.1 */
 } PelLight;
 
 typedef enum PelSpecularModel {
@@ -707,7 +739,11 @@ typedef enum PelFeature {
     PEL_FEATURE_GGX = 1 << 10,          /* specular with PEL_SPECULAR_GGX */
     PEL_FEATURE_AMBIENT_SCATTER = 1 << 11, /* deepScatterAmbient, ambient light and a thickness image */
     PEL_FEATURE_OUTPUTS = 1 << 12,      /* an output beside radiance */
-    PEL_FEATURE_AMBIENT_CUBE = 1 << 13  /* ambient light from a cube map */
+    PEL_FEATURE_AMBIENT_CUBE = 1 << 13, /* ambient light from a cube map */
+    PEL_FEATURE_SHADOW_CUBE = 1 << 24,     /* a shadow map of a cube, for thickness or a wide shadow */
+    PEL_FEATURE_SHADOW_CASCADES = 1 << 25, /* cascades, likewise */
+    PEL_FEATURE_SHADOW_EXPONENTIAL = 1 << 26, /* PEL_SHADOW_CONTENT_EXPONENTIAL, likewise */
+    PEL_FEATURE_SHADOW_MOMENTS = 1 << 27      /* PEL_SHADOW_CONTENT_MOMENTS, likewise */
 } PelFeature;
 
 /* What a shader did: counts of its last execution unless they say total. */

@@ -78,6 +78,8 @@ static inline PelLight pelLightDefaults(void) {
     s.shadowBias = 0.5f;
     s.shadowSoftness = 0.25f;
     s.shadowConeSlope = 0.5f;
+    s.shadowMinDeviation = 0.25f;
+    s.shadowBleeding = 0.1f;
     return s;
 }
 static inline PelMaterial pelMaterialDefaults(void) {

@@ -1,0 +1,220 @@
+// Frames lit through shadow maps of every form, and what the shader makes of them: wide shadow and thickness per pixel.
+#pragma once
+#include <functional>
+
+#include "pass_scene.h"
+#include "reference/shadow_forms.h"
+
+namespace shade_test {
+
+struct MapImage {
+    PelLightSlot slot;
+    uint32_t width, height, components;
+    std::vector<float> values;
+};
+struct FormLight {
+    PelLight params = pelLightDefaults();
+    std::vector<MapImage> maps;
+};
+struct Seen {
+    std::vector<float> wide, thickness;  // of the first light
+    PelShaderStats stats = pelShaderStatsDefaults();
+};
+
+// A relief under the first of the lights: `taps` taps within `radius`, filters as wide as material 1 says.
+inline Frame formFrame(uint32_t seed = 1, uint32_t width = 120, uint32_t height = 50, float radius = 0.03f) {
+    Frame f = reliefFrame(seed, width, height, 0.4f);
+    f.materials[2].shadowFilterWidth = 5;
+    for (auto& [id, m] : f.materials) {
+        for (float& c : m.deepScatterColor) c = 1;
+        m.thicknessTaps = id == 1 ? 16 : 8;
+        m.thicknessFilterRadius = radius;
+    }
+    return f;
+}
+
+inline Vec3 vectorOf(const float (&v)[3]) {
+    return {v[0], v[1], v[2]};
+}
+inline reference::Matrix4 matrixOf(const float (&m)[16]) {
+    reference::Matrix4 out;
+    for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = m[i];
+    return out;
+}
+
+// Lights that make every test run the one program that knows all forms: black ones, over maps of next to nothing.
+inline std::vector<FormLight> withAllForms(std::vector<FormLight> lights) {
+    const PelLight& like = lights[0].params;
+    const float e = like.shadowContent == PEL_SHADOW_CONTENT_EXPONENTIAL ? like.shadowExponent : 0;
+    const uint32_t components = lights[0].maps[0].components;
+    FormLight cube, cascade;
+    cube.params.type = PEL_LIGHT_POINT;
+    cube.params.range = 1e-3f;
+    cube.params.shadowProjection = PEL_SHADOW_CUBE_RADIAL;
+    cube.maps = {{PEL_LIGHT_SHADOW_MAP, 2, 12, components, std::vector<float>(24 * components, 0.5f)}};
+    cascade.params.shadowCascades = 1;
+    cascade.params.shadowDepthRange = 300;
+    cascade.maps = {{PEL_LIGHT_SHADOW_MAP, 2, 2, components, std::vector<float>(4 * components, 0.5f)}};
+    for (FormLight* l : {&cube, &cascade}) {
+        std::fill_n(l->params.color, 3, 0.0f);
+        l->params.shadowFilterTexels = 4;
+        l->params.shadowContent = like.shadowContent;
+        l->params.shadowExponent = std::abs(e);
+        lights.push_back(*l);
+    }
+    return lights;
+}
+
+inline Seen shadeForms(Frame f, std::vector<FormLight> lights, bool atlas = false) {
+    using pellucid::Buffer;
+    using pellucid::imageDesc;
+    lights = withAllForms(std::move(lights));
+    const PelLight& first = lights[0].params;
+    std::vector<double> strength(f.pixels(), 1);
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        Vec3 toLight = vectorOf(first.toLight);
+        if (first.type != PEL_LIGHT_DIRECTIONAL) {
+            const Vec3 away = vectorOf(first.position) - f.slots[PEL_SLOT_POSITION].vec(i);
+            strength[i] = 1 / reference::dot(away, away);
+            toLight = reference::normalized(away);
+        }
+        for (int c = 0; c < 3; ++c) f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + c] = float(toLight[c]);
+    }
+    f.lights.clear();
+    pellucid::Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    std::vector<PelLight> params;
+    for (const FormLight& l : lights) params.push_back(l.params);
+    shader.set(params);
+    std::vector<float> all;  // an atlas: the maps side by side in one buffer
+    uint32_t row = 0;
+    if (atlas)
+        for (const MapImage& m : lights[0].maps) row += m.width * m.components * 4;
+    Buffer shared = atlas ? Buffer(device(), std::vector<float>(row / 4 * lights[0].maps[0].height)) : Buffer();
+    std::vector<Buffer> buffers;
+    for (uint32_t i = 0; i < lights.size(); ++i) {
+        uint32_t offset = 0;
+        for (const MapImage& m : lights[i].maps) {
+            PelImageDesc desc;
+            if (atlas && i == 0) {
+                desc = imageDesc(shared, floatFormats[m.components], m.width, m.height, offset);
+                desc.rowStride = row;
+                float* to;
+                pellucid::check(pelBufferMap(shared.get(), reinterpret_cast<void**>(&to)));
+                for (uint32_t y = 0; y < m.height; ++y)
+                    std::copy_n(&m.values[y * m.width * m.components], m.width * m.components, to + (offset + y * row) / 4);
+                pellucid::check(pelBufferUnmap(shared.get()));
+                offset += m.width * m.components * 4;
+            } else {
+                buffers.emplace_back(device(), m.values);
+                desc = imageDesc(buffers.back(), floatFormats[m.components], m.width, m.height);
+            }
+            shader.set(i, m.slot, desc);
+        }
+    }
+    const Buffer radiance(device(), f.pixels() * 12), diffuse(device(), f.pixels() * 12), thickness(device(), f.pixels() * 4);
+    shader.set(PEL_SLOT_RADIANCE, imageDesc(radiance, PEL_FORMAT_RGB32F, f.width, f.height));
+    shader.set(PEL_SLOT_OUT_DIFFUSE, imageDesc(diffuse, PEL_FORMAT_RGB32F, f.width, f.height));
+    shader.set(PEL_SLOT_OUT_THICKNESS, imageDesc(thickness, PEL_FORMAT_R32F, f.width, f.height));
+    shader.commit().execute();
+    Seen seen;
+    seen.stats = shader.stats();
+    seen.thickness = thickness.readAll<float>();
+    const auto light = diffuse.readAll<float>();
+    for (size_t i = 0; i < f.pixels(); ++i) seen.wide.push_back(float(light[3 * i] / (strength[i] * first.color[0])));
+    return seen;
+}
+
+inline const PelMaterial* materialAt(const Frame& f, size_t i) {
+    const auto found = f.materials.find(uint32_t(f.slots[PEL_SLOT_MATERIAL].at(i)));
+    return found == f.materials.end() ? nullptr : &found->second;
+}
+
+inline std::vector<reference::Vec2> tapsOf(const Frame& f, const PelMaterial& m, size_t i) {
+    const auto taps = diskTaps(m.thicknessTaps);
+    return f.options.rotateTaps ? reference::turnedTaps(taps, uint32_t(i % f.width), uint32_t(i / f.width)) : taps;
+}
+
+struct Worst {
+    double wide = 0, thickness = 0;
+    size_t penumbra = 0, thick = 0;  // pixels: there is something to see
+};
+// truth(pixel, its material, w, thickness) returns false for pixels that hang on a decision.
+inline Worst worstOf(const Frame& f, const Seen& seen,
+                     const std::function<bool(size_t, const PelMaterial&, double&, double&)>& truth) {
+    Worst worst;
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        const PelMaterial* m = materialAt(f, i);
+        double wide = 1, thickness = 0;
+        if (!m || !truth(i, *m, wide, thickness)) continue;
+        worst.wide = std::max(worst.wide, std::abs(wide - seen.wide[i]));
+        worst.thickness = std::max(worst.thickness, std::abs(thickness - seen.thickness[i]));
+        worst.penumbra += wide > 0.1 && wide < 0.9;
+        worst.thick += thickness > 1;
+    }
+    return worst;
+}
+
+// --- cubes ---
+
+struct Turn {
+    Vec3 x, y, z;  // rows: world to the space of the cube
+    Vec3 operator()(Vec3 v) const { return {reference::dot(x, v), reference::dot(y, v), reference::dot(z, v)}; }
+    Vec3 back(Vec3 v) const { return v.x * x + v.y * y + v.z * z; }
+};
+// The direction `to` of the world becomes `axis` of the cube.
+inline Turn turnTo(Vec3 to, Vec3 axis) {
+    const auto frame = [](Vec3 a) {
+        a = reference::normalized(a);
+        const Vec3 b = reference::normalized(reference::cross(a, Vec3{0.31, 0.83, 0.47}));
+        return std::array{a, b, reference::cross(a, b)};
+    };
+    const auto w = frame(to), c = frame(axis);
+    const auto row = [&](int k) { return c[0][k] * w[0] + c[1][k] * w[1] + c[2][k] * w[2]; };
+    return {row(0), row(1), row(2)};
+}
+
+struct CubeLight {
+    FormLight light;
+    reference::CubeShadowMap map;
+    Turn turn;
+    Vec3 position;
+};
+// `reach` gives the multiple of a direction of the world, from the light, that meets something first.
+inline CubeLight cubeLight(uint32_t size, bool radial, Turn turn, Vec3 position, const std::function<double(Vec3, int)>& reach) {
+    CubeLight out;
+    out.turn = turn;
+    out.position = position;
+    out.map.size = int(size);
+    out.map.radial = radial;
+    const double near = 5, far = 1000;
+    out.map.decoding = radial ? reference::DepthDecoding{false, far, 0, 1}
+                              : reference::DepthDecoding{true, 1, -(far - near) / (near * far), 1 / near};
+    PelLight& l = out.light.params;
+    l.type = PEL_LIGHT_POINT;
+    std::fill_n(l.color, 3, 3600.0f);
+    for (int c = 0; c < 3; ++c) l.position[c] = float(position[c]);
+    const Vec3 rows[3] = {turn.x, turn.y, turn.z};
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) l.worldToShadow[4 * r + c] = float(rows[r][c]);
+        l.worldToShadow[4 * r + 3] = float(-reference::dot(rows[r], position));
+    }
+    l.shadowProjection = radial ? PEL_SHADOW_CUBE_RADIAL : PEL_SHADOW_CUBE;
+    l.shadowDepthRange = float(far);
+    l.shadowDepthA = float(out.map.decoding.a);
+    l.shadowDepthB = float(out.map.decoding.b);
+    l.shadowFilterTexels = 24;
+    MapImage image{PEL_LIGHT_SHADOW_MAP, size, 6 * size, 1, {}};
+    for (int face = 0; face < 6; ++face)
+        for (uint32_t i = 0; i < size * size; ++i) {
+            const Vec3 d = reference::shadowCubeDirection(face, i % size, i / size, int(size));
+            const double s = reach(turn.back(d), int(i));
+            const double z = radial ? s * reference::length(d) / far : (1 / s - out.map.decoding.b) / out.map.decoding.a;
+            image.values.push_back(float(std::clamp(z, 0.0, 1.0)));
+            out.map.depth.push_back(image.values.back());
+        }
+    out.light.maps = {image};
+    return out;
+}
+
+}  // namespace shade_test

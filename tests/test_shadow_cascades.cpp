@@ -1,0 +1,193 @@
+// Cascades of directional lights: which map a point takes, thickness and wide shadow from it.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "shadow_form_scene.h"
+#include "tolerances.h"
+
+using namespace shade_test;
+
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+// Maps of these extents about one axis, each with its own size, shifted a little against each other.
+struct CascadeLight {
+    FormLight light;
+    std::vector<MapLight> maps;
+};
+CascadeLight cascadeLight(std::initializer_list<double> extents, bool reversed = false, uint32_t size = 97, bool sameSize = false) {
+    CascadeLight out;
+    uint32_t i = 0;
+    for (const double extent : extents) {
+        const uint32_t texels = sameSize ? size : size + 11 * i;
+        out.maps.push_back(mapLight(i, false, reversed, {0.3, 0.1, 0.9}, Vec3{24 + 1.5 * i, 10 - double(i), 5}, extent, texels));
+        MapLight& map = out.maps.back();
+        if (reversed) {  // from 1 at the light to 0
+            map.light.params.worldToShadow[11] += 1;
+            map.view.origin = map.view.origin + 300.0 * map.view.forward;
+            for (float& z : map.light.map.values) z += 1;
+            map.map.depth.assign(map.light.map.values.begin(), map.light.map.values.end());
+        }
+        const PelLight& l = map.light.params;
+        if (i == 0) {
+            out.light.params = l;
+        } else {
+            std::copy_n(l.worldToShadow, 16, out.light.params.cascadeToShadow[i - 1]);
+            out.light.params.cascadeDepthRange[i - 1] = l.shadowDepthRange;
+        }
+        const auto slot = i ? PEL_LIGHT_CASCADE_1 + int(i) - 1 : int(PEL_LIGHT_SHADOW_MAP);
+        out.light.maps.push_back({PelLightSlot(slot), texels, texels, 1, map.light.map.values});
+        ++i;
+    }
+    out.light.params.shadowCascades = i;
+    return out;
+}
+
+Worst worstCascade(const Frame& f, const CascadeLight& from, const Seen& seen, std::vector<int>* taken = nullptr) {
+    const PelLight& l = from.light.params;
+    std::vector<reference::Matrix4> matrices{matrixOf(l.worldToShadow)};
+    for (uint32_t i = 1; i < l.shadowCascades; ++i) matrices.push_back(matrixOf(l.cascadeToShadow[i - 1]));
+    const double perUv = 1 / reference::uvPerLength(matrices[0], 0);
+    return worstOf(f, seen, [&](size_t i, const PelMaterial& m, double& wide, double& thickness) {
+        const Vec3 p = f.slots[PEL_SLOT_POSITION].vec(i), n = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i);
+        const auto choose = [&](Vec3 at, double radius, bool& sure) {
+            const int chosen = reference::cascadeOf(matrices, at, radius);
+            for (const double k : {-1e-4, 1e-4}) sure &= reference::cascadeOf(matrices, at, radius + k) == chosen;
+            return chosen;
+        };
+        bool sure = true;
+        const int k = choose(p, m.shadowFilterWidth / 2, sure);
+        const Vec3 inside = p - double(m.deepScatterNormalOffset) * n;
+        const double radius = m.thicknessFilterRadius * perUv;
+        const int t = choose(inside, radius, sure);
+        if (!sure) return false;
+        if (k >= 0)
+            wide = reference::wideShadow(from.maps[size_t(k)].map, from.maps[size_t(k)].view, p, n,
+                                         {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope,
+                                          int(l.shadowFilterTexels)});
+        if (t >= 0)
+            thickness = reference::thickness(from.maps[size_t(t)].map,
+                                             reference::shadowCoordinates(matrices[size_t(t)], inside, {0, 0, 0}, 0),
+                                             tapsOf(f, m, i), radius * reference::uvPerLength(matrices[size_t(t)], 0),
+                                             from.maps[size_t(t)].view.decoding, reference::MapFilter::bilinear);
+        if (taken) taken->push_back(k);
+        return true;
+    });
+}
+
+TEST(ShadowCascades, MatchTheOracle) {
+    Frame f = formFrame();
+    for (const bool reversed : {false, true})
+        for (const bool atlas : {false, true}) {
+            const CascadeLight from = cascadeLight({14, 24, 36, 52}, reversed, 97, atlas);
+            f.options.rotateTaps = reversed && atlas;
+            const Seen seen = shadeForms(f, {from.light}, atlas);
+            EXPECT_TRUE(seen.stats.features & PEL_FEATURE_SHADOW_CASCADES);
+            std::vector<int> taken;
+            const Worst worst = worstCascade(f, from, seen, &taken);
+            EXPECT_LE(worst.wide, tolerance::wideShadow) << "reversed " << reversed << ", atlas " << atlas;
+            EXPECT_LE(worst.thickness, tolerance::mapThickness) << "reversed " << reversed << ", atlas " << atlas;
+            for (int k = -1; k < 4; ++k)
+                EXPECT_GT(std::count(taken.begin(), taken.end(), k), 100) << "pixels that take cascade " << k;
+            EXPECT_GT(worst.penumbra, f.pixels() / 50);
+            EXPECT_GT(worst.thick, f.pixels() / 20);
+        }
+}
+
+TEST(ShadowCascades, OneIsTheParallelMapToTheBit) {
+    const Frame f = formFrame();
+    for (const bool reversed : {false, true}) {
+        const CascadeLight one = cascadeLight({70}, reversed);
+        FormLight plain = one.light;
+        plain.params.shadowCascades = 0;
+        const Seen as = shadeForms(f, {one.light}), is = shadeForms(f, {plain});
+        EXPECT_EQ(as.wide, is.wide);
+        EXPECT_EQ(as.thickness, is.thickness);
+        EXPECT_GT(*std::max_element(is.thickness.begin(), is.thickness.end()), 1);
+    }
+}
+
+TEST(ShadowCascades, SkippingAndRunsChangeNoBit) {
+    Frame f = formFrame(2);
+    f.options.countPixels = 1;
+    const CascadeLight from = cascadeLight({14, 24});
+    const Seen with = shadeForms(f, {from.light}), again = shadeForms(f, {from.light});
+    f.options.disableSkipping = 1;
+    const Seen without = shadeForms(f, {from.light});
+    EXPECT_EQ(with.wide, again.wide);
+    EXPECT_EQ(with.wide, without.wide);
+    EXPECT_EQ(with.thickness, without.thickness);
+    size_t skin = 0;
+    for (size_t i = 0; i < f.pixels(); ++i) skin += materialAt(f, i) != nullptr;
+    EXPECT_GT(with.stats.pixelsWideShadow, 0u);
+    EXPECT_LT(with.stats.pixelsWideShadow, skin) << "outside of all cascades nothing is filtered";
+}
+
+TEST(ShadowCascades, BadTexelsAndPixels) {
+    CascadeLight from = cascadeLight({24, 70});
+    for (size_t k = 0; k < 2; ++k)
+        for (size_t i = 0; i < from.maps[k].map.depth.size(); i += 5)
+            from.light.maps[k].values[i] = nan, from.maps[k].map.depth[i] = NAN;
+    Frame f = formFrame();
+    EXPECT_LE(worstCascade(f, from, shadeForms(f, {from.light})).wide, tolerance::wideShadow);
+    const Seen before = shadeForms(f, {from.light});
+    f.slots[PEL_SLOT_POSITION].values[3 * 1700] = nan;
+    for (int c = 0; c < 3; ++c) f.slots[PEL_SLOT_POSITION].values[3 * 1703 + c] = 1e30f;
+    const Seen after = shadeForms(f, {from.light});
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        EXPECT_TRUE(std::isfinite(after.thickness[i])) << i;
+        if (i != 1700 && i != 1703) {
+            EXPECT_EQ(after.wide[i], before.wide[i]) << i;
+            EXPECT_EQ(after.thickness[i], before.thickness[i]) << i;
+        }
+    }
+    EXPECT_EQ(after.wide[1703], 1) << "outside of all: no shadow";
+    EXPECT_EQ(after.thickness[1703], 0) << "and no thickness";
+}
+
+TEST(ShadowCascades, WhatIsRefused) {
+    const auto refused = [&](PelError code, const char* word, auto change) {
+        CascadeLight from = cascadeLight({24, 70});
+        change(from.light);
+        try {
+            shadeForms(formFrame(1, 9, 3), {from.light});
+            ADD_FAILURE() << "no error about " << word;
+        } catch (const pellucid::Error& e) {
+            EXPECT_EQ(e.code(), code) << e.what();
+            EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << "\"" << word << "\" in: " << e.what();
+        }
+    };
+    const auto invalid = PEL_ERROR_INVALID_ARGUMENT;
+    refused(invalid, "shadowCascades is 5", [](FormLight& l) { l.params.shadowCascades = 5; });
+    refused(invalid, "cascade 2 is not set", [](FormLight& l) { l.params.shadowCascades = 3; });
+    refused(invalid, "directional", [](FormLight& l) { l.params.type = PEL_LIGHT_SPOT; });
+    refused(invalid, "directional", [](FormLight& l) { l.params.shadowProjection = PEL_SHADOW_PERSPECTIVE; });
+    refused(invalid, "cascadeToShadow[0] is singular", [](FormLight& l) { std::fill_n(l.params.cascadeToShadow[0], 4, 0.0f); });
+    refused(invalid, "worldToShadow is singular", [](FormLight& l) { std::fill_n(l.params.worldToShadow, 16, 0.0f); });
+    refused(invalid, "cascadeToShadow[0]", [](FormLight& l) { l.params.cascadeToShadow[0][3] = nan; });
+    refused(invalid, "cascadeDepthRange[0] is 0", [](FormLight& l) { l.params.cascadeDepthRange[0] = 0; });
+    refused(invalid, "one sign", [](FormLight& l) { l.params.cascadeDepthRange[0] *= -1; });
+    refused(PEL_ERROR_UNSUPPORTED, "cascade has format", [](FormLight& l) {
+        l.maps[1].components = 2;
+        l.maps[1].values.resize(2 * l.maps[1].values.size());
+    });
+}
+
+// Before cascades a map that began inside its buffer was read from the buffer's start.
+TEST(ShadowCascades, MapsMayBeginInsideTheirBuffer) {
+    const Frame f = formFrame();
+    CascadeLight two = cascadeLight({70, 70}, false, 97, true);
+    const Seen alone = shadeForms(f, {two.light});
+    EXPECT_EQ(alone.thickness, shadeForms(f, {two.light}, true).thickness);
+    FormLight second = two.light;  // the second of the atlas as a plain map
+    second.params.shadowCascades = 0;
+    std::copy_n(two.light.params.cascadeToShadow[0], 16, second.params.worldToShadow);
+    std::swap(second.maps[0].slot, second.maps[1].slot);
+    FormLight plain = second;
+    plain.maps = {second.maps[1]};
+    EXPECT_EQ(shadeForms(f, {plain}).thickness, shadeForms(f, {second}, true).thickness);
+}
+
+}  // namespace

@@ -1,0 +1,207 @@
+// Shadow maps of moments (VSM) and exponentials (ESM): against the oracle, and against plain depth.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "shadow_form_scene.h"
+#include "tolerances.h"
+
+using namespace shade_test;
+
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+
+struct ContentLight {
+    FormLight light;
+    MapLight from;               // its depths
+    reference::ShadowMap first;  // what the texels hold
+    std::vector<double> second;
+};
+
+// Each texel of the map holds the means over 2 x 2 depths of `from`, whose size is twice that.
+ContentLight contentLight(PelShadowContent content, bool perspective, bool reversed, uint32_t size, bool flat = false) {
+    ContentLight out;
+    out.from = mapLight(size, perspective, reversed, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 2 * size);
+    auto& view = out.from.view;
+    auto& depth = out.from.map.depth;
+    FormLight& l = out.light;
+    l.params = out.from.light.params;
+    if (reversed && !perspective) {  // from 1 at the light to 0
+        l.params.worldToShadow[11] += 1;
+        view.origin = view.origin + 300.0 * view.forward;
+        for (double& z : depth) z += 1;
+    }
+    if (flat) {
+        const double distance = 130;
+        for (double& z : depth)
+            z = perspective ? (1 / distance - view.decoding.b) / view.decoding.a
+                            : reversed ? 1 - distance / 300 : distance / 300;
+    }
+    l.params.shadowContent = content;
+    l.params.shadowExponent = reversed ? -80 : 80;
+    const uint32_t components = content == PEL_SHADOW_CONTENT_MOMENTS ? 2 : 1;
+    l.maps = {{PEL_LIGHT_SHADOW_MAP, size, size, components, {}}};
+    out.first.width = out.first.height = int(size);
+    for (uint32_t y = 0; y < size; ++y)
+        for (uint32_t x = 0; x < size; ++x) {
+            double sum[2] = {0, 0};
+            for (uint32_t k = 0; k < 4; ++k) {
+                const double z = depth[(2 * y + k / 2) * 2 * size + 2 * x + k % 2];
+                sum[0] += content == PEL_SHADOW_CONTENT_EXPONENTIAL ? std::exp(l.params.shadowExponent * z) / 4 : z / 4;
+                sum[1] += z * z / 4;
+            }
+            for (uint32_t c = 0; c < components; ++c) l.maps[0].values.push_back(float(sum[c]));
+            out.first.depth.push_back(float(sum[0]));
+            out.second.push_back(float(sum[1]));
+        }
+    return out;
+}
+
+Worst worstContent(const Frame& f, const ContentLight& from, const Seen& seen) {
+    const PelLight& l = from.light.params;
+    const auto matrix = matrixOf(l.worldToShadow);
+    return worstOf(f, seen, [&](size_t i, const PelMaterial& m, double& wide, double& thickness) {
+        const Vec3 p = f.slots[PEL_SLOT_POSITION].vec(i), n = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i);
+        const reference::WideFilterParams filter{m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope,
+                                                 int(l.shadowFilterTexels)};
+        const Vec3 uvz = reference::shadowCoordinates(matrix, p, n, m.deepScatterNormalOffset);
+        const auto taps = diskTaps(m.thicknessTaps);
+        if (l.shadowContent == PEL_SHADOW_CONTENT_MOMENTS) {
+            wide = reference::momentShadow(from.first, from.second, from.from.view, p, n, filter,
+                                           {l.shadowMinDeviation, l.shadowBleeding});
+            thickness = reference::thickness(from.first, uvz, taps, m.thicknessFilterRadius, from.from.view.decoding,
+                                             reference::MapFilter::bilinear);
+        } else {
+            wide = reference::exponentialShadow(from.first, l.shadowExponent, from.from.view, p, n, filter);
+            thickness = reference::exponentialThickness(from.first, l.shadowExponent, uvz, taps, m.thicknessFilterRadius,
+                                                        from.from.view.decoding);
+        }
+        return true;
+    });
+}
+
+TEST(ShadowContent, MatchesTheOracle) {
+    const Frame f = formFrame();
+    for (const auto content : {PEL_SHADOW_CONTENT_MOMENTS, PEL_SHADOW_CONTENT_EXPONENTIAL})
+        for (const bool perspective : {false, true})
+            for (const bool reversed : {false, true}) {
+                const ContentLight from = contentLight(content, perspective, reversed, 131);
+                const Seen seen = shadeForms(f, {from.light});
+                EXPECT_TRUE(seen.stats.features & (content == PEL_SHADOW_CONTENT_MOMENTS ? PEL_FEATURE_SHADOW_MOMENTS
+                                                                                         : PEL_FEATURE_SHADOW_EXPONENTIAL));
+                const Worst worst = worstContent(f, from, seen);
+                const auto what = testing::Message() << "content " << content << ", perspective " << perspective << ", reversed " << reversed;
+                EXPECT_LE(worst.wide, tolerance::contentShadow) << what;
+                EXPECT_LE(worst.thickness, tolerance::contentThickness) << what;
+                EXPECT_GT(worst.penumbra, f.pixels() / 50) << what;
+                EXPECT_GT(worst.thick, f.pixels() / 20) << what;
+            }
+}
+
+TEST(ShadowContent, OfAFlatOccluderEqualsDepth) {
+    const Frame f = formFrame();
+    for (const bool perspective : {false, true})
+        for (const bool reversed : {false, true}) {
+            const auto seen = [&](PelShadowContent content) {
+                return shadeForms(f, {contentLight(content, perspective, reversed, 131, true).light});
+            };
+            const Seen depth = seen(PEL_SHADOW_CONTENT_DEPTH);
+            for (const auto content : {PEL_SHADOW_CONTENT_MOMENTS, PEL_SHADOW_CONTENT_EXPONENTIAL}) {
+                const Seen as = seen(content);
+                size_t dark = 0;
+                for (size_t i = 0; i < f.pixels(); ++i) {
+                    if (!materialAt(f, i)) continue;
+                    EXPECT_NEAR(as.thickness[i], depth.thickness[i], tolerance::contentThickness) << i;
+                    if (depth.wide[i] == 1.0f) {
+                        EXPECT_GE(as.wide[i], 1 - tolerance::contentShadow);
+                    } else if (depth.thickness[i] > 15) {
+                        ++dark;
+                        EXPECT_LE(as.wide[i], 0.02) << "at least 15 mm behind an occluder";
+                    }
+                }
+                EXPECT_GT(dark, 200u);
+            }
+        }
+}
+
+// What lies in front of a cube's face is seen alike in every form.
+TEST(ShadowContent, CubesAndCascadesHoldThemToo) {
+    const Frame f = formFrame();
+    const Vec3 lamp{24, 10, 70};
+    const auto shelf = [&](Vec3 d, int) { return d.z < -1e-3 ? std::min((d.x * 40 < -d.z * 3 ? 30.0 : 78.0) / -d.z, 500.0) : 500; };
+    for (const bool radial : {false, true}) {
+        const CubeLight cube = cubeLight(256, radial, turnTo({0, 0, -1}, {-1, 1, 1}), lamp, shelf);
+        const Seen depth = shadeForms(f, {cube.light});
+        for (const auto content : {PEL_SHADOW_CONTENT_MOMENTS, PEL_SHADOW_CONTENT_EXPONENTIAL}) {
+            FormLight other = cube.light;
+            other.params.shadowContent = content;
+            other.params.shadowExponent = 80;
+            MapImage& map = other.maps[0];
+            map.components = content == PEL_SHADOW_CONTENT_MOMENTS ? 2 : 1;
+            map.values.clear();
+            for (const double z : cube.map.depth) {
+                if (content == PEL_SHADOW_CONTENT_MOMENTS) map.values.insert(map.values.end(), {float(z), float(z * z)});
+                else map.values.push_back(float(std::exp(80 * z)));
+            }
+            const Seen as = shadeForms(f, {other});
+            double wide = 0;
+            for (size_t i = 0; i < f.pixels(); ++i) {
+                if (!materialAt(f, i)) continue;
+                EXPECT_NEAR(as.thickness[i], depth.thickness[i], 0.05 + 0.02 * depth.thickness[i]) << i << " radial " << radial;
+                wide += std::abs(as.wide[i] - depth.wide[i]) / double(f.pixels());
+            }
+            EXPECT_LE(wide, 0.04) << "mean; content " << content << ", radial " << radial;
+        }
+    }
+    ContentLight one = contentLight(PEL_SHADOW_CONTENT_MOMENTS, false, false, 131);
+    const Seen plain = shadeForms(f, {one.light});
+    one.light.params.shadowCascades = 1;
+    EXPECT_EQ(shadeForms(f, {one.light}).wide, plain.wide);
+}
+
+TEST(ShadowContent, BadTexels) {
+    const Frame f = formFrame();
+    for (const auto content : {PEL_SHADOW_CONTENT_MOMENTS, PEL_SHADOW_CONTENT_EXPONENTIAL}) {
+        ContentLight from = contentLight(content, true, false, 131);
+        const uint32_t components = from.light.maps[0].components;
+        const float bad[] = {nan, std::numeric_limits<float>::infinity(), components == 1 ? -1.0f : nan, components == 1 ? 0.0f : nan};
+        for (size_t i = 0; i < from.first.depth.size(); i += 5) {
+            from.light.maps[0].values[components * i] = bad[i % 4];
+            from.first.depth[i] = bad[i % 4];
+        }
+        const Seen seen = shadeForms(f, {from.light});
+        EXPECT_LE(worstContent(f, from, seen).wide, tolerance::contentShadow) << "such texels throw no shadow, content " << content;
+        for (size_t i = 0; i < f.pixels(); ++i) EXPECT_TRUE(std::isfinite(seen.thickness[i])) << i;
+    }
+}
+
+TEST(ShadowContent, WhatIsRefused) {
+    const auto refused = [&](PelError code, PelShadowContent content, const char* word, auto change) {
+        ContentLight from = contentLight(content, false, false, 31);
+        std::vector<FormLight> lights{from.light};
+        change(lights);
+        try {
+            shadeForms(formFrame(1, 9, 3), lights);
+            ADD_FAILURE() << "no error about " << word;
+        } catch (const pellucid::Error& e) {
+            EXPECT_EQ(e.code(), code) << e.what();
+            EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << "\"" << word << "\" in: " << e.what();
+        }
+    };
+    using Lights = std::vector<FormLight>;
+    const auto invalid = PEL_ERROR_INVALID_ARGUMENT;
+    refused(invalid, PEL_SHADOW_CONTENT_EXPONENTIAL, "two components", [](Lights& l) { l[0].params.shadowContent = PEL_SHADOW_CONTENT_MOMENTS, l[0].params.shadowExponent = 1; });
+    for (const float c : {0.0f, -80.0f, nan, 1e5f})
+        refused(invalid, PEL_SHADOW_CONTENT_EXPONENTIAL, "shadowExponent", [c](Lights& l) { l[0].params.shadowExponent = c; });
+    refused(invalid, PEL_SHADOW_CONTENT_EXPONENTIAL, "below 0", [](Lights& l) { l[0].params.shadowDepthRange *= -1; });
+    refused(invalid, PEL_SHADOW_CONTENT_MOMENTS, "shadowMinDeviation", [](Lights& l) { l[0].params.shadowMinDeviation = -1; });
+    refused(invalid, PEL_SHADOW_CONTENT_MOMENTS, "shadowBleeding", [](Lights& l) { l[0].params.shadowBleeding = 1; });
+    refused(invalid, PEL_SHADOW_CONTENT_MOMENTS, "PelShadowContent", [](Lights& l) { l[0].params.shadowContent = PelShadowContent(3); });
+    refused(PEL_ERROR_UNSUPPORTED, PEL_SHADOW_CONTENT_EXPONENTIAL, "shadowContent", [](Lights& l) {
+        l.push_back(l[0]);
+        l[1].params.shadowContent = PEL_SHADOW_CONTENT_DEPTH;
+    });
+}
+
+}  // namespace
