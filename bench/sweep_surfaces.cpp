@@ -1,8 +1,8 @@
 // Error of every curvature estimator on every surface whose curvature is known, as rows of docs/curvature.md:
 // tessellations of about 20,000 vertices, exact normals; "noisy": the irregular one with noise of 2 % of an edge, normals
-// from the mesh, smoothed over three edges. RMS error of mean curvature in percent of the RMS curvedness of the truth
+// from the mesh, smoothed over three edges, by cotangents and by areas. RMS error of mean curvature in percent of the RMS curvedness of the truth
 // (which does not vanish on a saddle), away from borders; of a plane times its side. Behind the slash: the border itself
-// and its ring.
+// and its ring. Then two tables of spheres: of any size, and away from the origin.
 //   sweep_surfaces [CELLS]   of a grid's side, default 140
 #include <pellucid/pellucid.hpp>
 
@@ -56,8 +56,9 @@ struct Sum {
     double percent(bool plane) const { return 100 * std::sqrt(error / (plane ? 1 : truth)); }
 };
 
-void measure(const reference::AnalyticMesh& truth, bool plane, bool noisy, PelCurvatureEstimator estimator) {
-    const fixture::Mesh mesh = fixture::pairOf(truth.mesh).mesh;
+// Signed mean curvature (edge: its own), smoothed to `radius`.
+std::vector<float> meanCurvature(const fixture::Mesh& mesh, PelCurvatureEstimator estimator, float radius,
+                                 PelSmoothingWeights weights) {
     const uint32_t n = mesh.vertices();
     PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
     desc.numVertices = n;
@@ -69,9 +70,21 @@ void measure(const reference::AnalyticMesh& truth, bool plane, bool noisy, PelCu
     params.estimator = estimator;
     params.quantity = estimator == PEL_CURVATURE_EDGE ? PEL_QUANTITY_ABSOLUTE : PEL_QUANTITY_MEAN;
     params.smoothingPasses = 0;
-    params.smoothingRadius = noisy ? float(3 * meanEdge(mesh)) : 0.0f;
+    params.smoothingRadius = radius;
+    params.smoothingWeights = weights;
     topology.curvature(params, vertexView(positions, n), vertexView(normals, n), vertexView(out, n));
-    const std::vector<float> values = out.readAll<float>();
+    return out.readAll<float>();
+}
+
+// How a row of the table is smoothed.
+enum class Noise { none, byCotangents, byAreas };
+
+void measure(const reference::AnalyticMesh& truth, bool plane, Noise noise, PelCurvatureEstimator estimator) {
+    const fixture::Mesh mesh = fixture::pairOf(truth.mesh).mesh;
+    const uint32_t n = mesh.vertices();
+    const std::vector<float> values =
+        meanCurvature(mesh, estimator, noise == Noise::none ? 0.0f : float(3 * meanEdge(mesh)),
+                      noise == Noise::byAreas ? PEL_SMOOTHING_AREA : PEL_SMOOTHING_COTANGENT);
     const std::vector<bool> border = nearBorder(mesh);
     Sum sums[2];
     size_t counts[2] = {0, 0};
@@ -91,6 +104,24 @@ void measure(const reference::AnalyticMesh& truth, bool plane, bool noisy, PelCu
     std::fflush(stdout);
 }
 
+constexpr PelCurvatureEstimator estimators[] = {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC};
+
+// Relative RMS errors of an irregular sphere of that radius, moved by `distance` along all three axes; normals are exact.
+void measureSphere(double radius, double distance, int cells) {
+    reference::AnalyticMesh sphere = tessellate(reference::sphereSurface(radius), cells, cells, Tessellation::irregular);
+    for (reference::Vec3& p : sphere.mesh.positions) p = p + reference::Vec3{distance, distance, distance};
+    const fixture::Mesh mesh = fixture::pairOf(sphere.mesh).mesh;
+    const std::vector<bool> border = nearBorder(mesh);
+    for (auto estimator : estimators) {
+        const std::vector<float> values = meanCurvature(mesh, estimator, 0, PEL_SMOOTHING_COTANGENT);
+        double error = 0, count = 0;
+        for (size_t v = 0; v < values.size(); ++v)
+            if (!border[v]) error += std::pow(values[v] * radius - 1, 2), ++count;
+        std::printf(" %.2g |", 100 * std::sqrt(error / count));
+    }
+    std::printf("\n");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -105,16 +136,26 @@ int main(int argc, char** argv) {
     const std::pair<const char*, Tessellation> kinds[] = {{"regular", Tessellation::regular},
                                                           {"irregular", Tessellation::irregular},
                                                           {"valence-varying", Tessellation::valenceVarying},
-                                                          {"noisy", Tessellation::irregular}};
+                                                          {"noisy", Tessellation::irregular},
+                                                          {"noisy, by areas", Tessellation::irregular}};
     std::printf("| | | `edge` | `tensor` | `quadric` |\n|---|---|---|---|---|\n");
     for (const auto& [name, surface] : surfaces)
         for (const auto& [kind, tessellation] : kinds) {
-            const bool noisy = *kind == 'n';
+            const Noise noise = *kind != 'n' ? Noise::none : kind[5] ? Noise::byAreas : Noise::byCotangents;
             reference::AnalyticMesh mesh = tessellate(surface, cells, cells, tessellation);
-            if (noisy) addNoise(mesh.mesh, 0.02, 11);
+            if (noise != Noise::none) addNoise(mesh.mesh, 0.02, 11);
             std::printf("| %s | %s |", name, kind);
-            for (auto estimator : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC})
-                measure(mesh, *name == 'p', noisy, estimator);
+            for (auto estimator : estimators) measure(mesh, *name == 'p', noise, estimator);
             std::printf("\n");
         }
+    std::printf("\n| radius | `edge` | `tensor` | `quadric` |\n|---|---|---|---|\n");
+    for (double radius : {1e-6, 1e-3, 1.0, 1e3, 1e6}) {
+        std::printf("| %g |", radius);
+        measureSphere(radius, 0, cells);
+    }
+    std::printf("\n| distance of a sphere of radius 1, along each axis | `edge` | `tensor` | `quadric` |\n|---|---|---|---|\n");
+    for (double distance : {0.0, 1.0, 10.0, 100.0, 1000.0}) {
+        std::printf("| %g |", distance);
+        measureSphere(1, distance, cells);
+    }
 }

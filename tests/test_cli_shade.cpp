@@ -94,6 +94,62 @@ TEST_F(Shade, TablesOfMaterialsAndProfileFiles) {
     expectRefused(command("p.toml", "c.exr"), 3, "granite");
 }
 
+TEST_F(Shade, CurvatureFromThePictureItself) {
+    // A ball of radius 4 seen from the front: its picture says 0.25 everywhere, as a channel of 0.25 does.
+    const int side = 24;
+    const float radius = 4, pixel = 0.2f;
+    io::Image ball;
+    ball.width = ball.height = side;
+    std::vector<float> normals, positions, bumpy;
+    for (int i = 0; i < side * side; ++i) {
+        const float x = pixel * (float(i % side) - 11.5f), y = pixel * (11.5f - float(i / side));
+        const float z = std::sqrt(radius * radius - x * x - y * y);
+        positions.insert(positions.end(), {x, y, z});
+        normals.insert(normals.end(), {x / radius, y / radius, z / radius});
+        const float bump = i % 2 ? 0.1f : -0.1f;  // of a normal map: turns without the surface doing so
+        bumpy.insert(bumpy.end(), {x / radius + bump, y / radius, z / radius});
+    }
+    const size_t pixels = size_t(side * side);
+    ball.addInterleaved(std::vector<std::string>{"N.X", "N.Y", "N.Z"}, bumpy);
+    ball.addInterleaved(std::vector<std::string>{"G.X", "G.Y", "G.Z"}, normals);
+    ball.addInterleaved(std::vector<std::string>{"P.X", "P.Y", "P.Z"}, positions);
+    ball.addInterleaved(std::vector<std::string>{"Col.R", "Col.G", "Col.B"}, std::vector<float>(3 * pixels, 0.5f));
+    ball.addInterleaved(std::vector<std::string>{"Id.X"}, std::vector<float>(pixels, 1.0f));
+    ball.addInterleaved(std::vector<std::string>{"Known.X"}, std::vector<float>(pixels, 1 / radius));
+    ball.addInterleaved(std::vector<std::string>{"Twice.X"}, std::vector<float>(pixels, 2 / radius));
+    io::writeExr(path("ball.exr"), ball);
+    scene_.channels[PEL_SLOT_ALBEDO] = {"Col.R", "Col.G", "Col.B"};
+    scene_.channels[PEL_SLOT_NORMAL_GEOMETRIC] = {"G.X", "G.Y", "G.Z"};
+    scene_.channels[PEL_SLOT_POSITION] = {"P.X", "P.Y", "P.Z"};
+    scene_.camera.position[2] = 50;
+    const float sideways[3] = {0.96f, 0, 0.28f};
+    std::copy(sideways, sideways + 3, scene_.lights[0].light.toLight);
+    scene_.materials[0].curvatureLut = "skin";
+    io::SceneLut lut;
+    lut.name = "skin";
+    lut.info.curvature.width = lut.info.curvature.height = 64;
+    scene_.luts = {lut};
+    const auto shaded = [&](const std::string& curvature) {
+        scene_.channels[PEL_SLOT_CURVATURE] = {curvature};
+        io::writeScene(path("ball.toml"), scene_);
+        const Result result = run(command("ball.toml", "ball.exr"));
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return io::readImage(path("o.exr")).interleaved(std::vector<std::string>{"R", "G", "B"});
+    };
+    const std::vector<float> screen = shaded("screen"), known = shaded("Known.X"), twice = shaded("Twice.X");
+    double most = 0;
+    for (size_t i = 0; i < screen.size(); ++i) {
+        EXPECT_NEAR(screen[i], known[i], tolerance::screenShaded);
+        most = std::max<double>(most, std::abs(twice[i] - known[i]));
+    }
+    EXPECT_GT(most, 10 * tolerance::screenShaded) << "curvature must matter to this picture";
+
+    scene_.channels[PEL_SLOT_POSITION].clear();
+    scene_.channels[PEL_SLOT_CURVATURE] = {"screen"};
+    io::writeScene(path("ball.toml"), scene_);
+    expectRefused(command("ball.toml", "ball.exr"), 3, "[channels] curvature");
+}
+
 TEST_F(Shade, PartsOfThePictureAddUpToIt) {
     // A wall 3 thick, given per pixel; light from the front and from behind.
     io::Image thick = gbuffer_;

@@ -89,6 +89,8 @@ inline constexpr Tolerance screenOracle{
     "screenOracle", 2e-5, "relative to 1/(a step): differences of float normals and positions of neighbours"};
 inline constexpr Tolerance screenSphere{
     "screenSphere", 2e-3, "relative: float positions at steps of 1/30 radius; normals are exact"};
+inline constexpr Tolerance screenShaded{
+    "screenShaded", 1e-3, "radiance up to 1: what an error of screenSphere in curvature may do to it"};
 inline constexpr Tolerance screenFromDepth{
     "screenFromDepth", 0.02, "relative: float depth leaves 1e-7 of the distance, a step is 1e-4 of it"};
 inline constexpr Tolerance shuffled{"shuffled", 2e-3,

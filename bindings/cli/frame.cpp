@@ -142,7 +142,7 @@ PelImageDesc Frame::measureCurvature(const Device& device, const io::Image& gbuf
     const PelImageDesc positions = image(PEL_SLOT_POSITION), ids = image(PEL_SLOT_MATERIAL);
     const PelImageDesc depth = positions.buffer ? pelImageDescDefaults() : image(PEL_SLOT_DEPTH);
     if (!positions.buffer && !depth.buffer)
-        throw io::FileError(scene.source, "[gbuffer] curvature = \"screen\" is measured from positions or depth; "
+        throw io::FileError(scene.source, "[channels] curvature = \"screen\" is measured from positions or depth; "
                                           "name their channels");
     PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
     std::copy_n(scene.camera.inverseViewProjection, 16, params.inverseViewProjection);
