@@ -83,6 +83,8 @@ inline constexpr Tolerance replacedNormal{
     "replacedNormal", 0.02, "1/length, curvatures up to 1: another frame of the same fit, 5 degrees off"};
 inline constexpr Tolerance noisySphere{
     "noisySphere", 0.05, "RMS, noise of 2 % of the edges, smoothed to three: what is left where the noise is as long"};
+inline constexpr Tolerance noisySurface{
+    "noisySurface", 0.1, "RMS, the same on surfaces that are flatter for their edges, whose borders spread by the radius"};
 inline constexpr Tolerance noisyBorder{"noisyBorder", 0.15,
                                        "the same in the outermost two rows, whose two-rings lie on one side"};
 inline constexpr Tolerance screenOracle{
