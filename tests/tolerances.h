@@ -79,6 +79,8 @@ inline constexpr Tolerance longCells{
     "longCells", 0.005, "largest relative error of the quadric fit, cells up to 16 times longer than wide"};
 inline constexpr Tolerance tiltedNormals{"tiltedNormals", 0.01,
                                          "RMS, torus of 13,000 vertices whose normals are off by 10 degrees"};
+inline constexpr Tolerance foldedNormals{
+    "foldedNormals", 0.004, "RMS, 10,000 vertices: hardly more than with exact normals"};
 inline constexpr Tolerance replacedNormal{
     "replacedNormal", 0.02, "1/length, curvatures up to 1: another frame of the same fit, 5 degrees off"};
 inline constexpr Tolerance noisySphere{
