@@ -3,9 +3,10 @@
 // oclgrind).
 #include <gtest/gtest.h>
 
+#include "pass_scene.h"
 #include "reference/lut.h"
+#include "reference/screen.h"
 #include "reference/surfaces.h"
-#include "shade_scene.h"
 #include "tolerances.h"
 
 using namespace pellucid;
@@ -157,4 +158,93 @@ TEST(Small, Shading) {
             difference = std::max(difference, std::abs(sum[c] - out[3 * i + size_t(c)]));
     }
     EXPECT_LT(difference, tolerance::shadeSum);
+}
+
+TEST(Small, PassesOverPixels) {
+    const auto tables = shade_test::makeTables(device(), 12, 7);
+    const shade_test::MapLight from =
+        shade_test::mapLight(61, true, false, {0.5, 0.2, 0.9}, {4, 2, 5}, 40, 61);
+    shade_test::Frame f = shade_test::reliefFrame(1, 19, 9, 0.4f);
+    f.lights = {from.light};
+    shade_test::showWideShadow(f);
+    const std::vector<float> shadow = shade_test::shade(device(), f, tables);
+    const PelLight& l = from.light.params;
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        if (f.slots[PEL_SLOT_MATERIAL].at(i) == 0) continue;
+        const reference::WideFilterParams params{f.materials[1].shadowFilterWidth, l.shadowBias,
+                                                 l.shadowSoftness, l.shadowConeSlope,
+                                                 int(l.shadowFilterTexels)};
+        EXPECT_NEAR(shadow[3 * i],
+                    reference::wideShadow(from.map, from.view, f.slots[PEL_SLOT_POSITION].vec(i),
+                                          f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), params),
+                    tolerance::wideShadow);
+    }
+    shade_test::Frame g = shade_test::reliefFrame(1, 19, 9, 0.9f);
+    shade_test::showBlurredNormal(g);
+    g.options.blurNormals = 1;
+    const std::vector<float> blurred = shade_test::shade(device(), g, tables);
+    std::vector<bool> doubtful;
+    const auto normals = reference::blurredNormals(shade_test::surfaceOf(g), &doubtful);
+    for (size_t i = 0; i < g.pixels(); ++i)
+        if (normals[i] && !doubtful[i])
+            EXPECT_LT(reference::magnitude(shade_test::shownNormal(blurred, i) - *normals[i]),
+                      tolerance::shadeTerm);
+}
+
+TEST(Small, ScreenCurvature) {
+    constexpr uint32_t width = 19, height = 5;
+    reference::ScreenImage image{width, height, {}, {}, {}};
+    std::vector<float> normals, positions;
+    std::vector<uint32_t> ids;
+    for (uint32_t i = 0; i < width * height; ++i) {
+        const double x = 0.04 * (i % width) - 0.36, y = 0.04 * (i / width) - 0.08,
+                     z = std::sqrt(1 - x * x - y * y);
+        const float n[3] = {float(x), float(y), float(z)};
+        normals.insert(normals.end(), n, n + 3), positions.insert(positions.end(), n, n + 3);
+        image.normals.push_back({n[0], n[1], n[2]}), image.positions.push_back({n[0], n[1], n[2]});
+        ids.push_back(i % width < 10 ? 70000 : 3);
+    }
+    image.ids = ids;
+    const Buffer n(device(), normals), p(device(), positions), d(device(), ids),
+        out(device(), width * height * 4);
+    const PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
+    const PelImageDesc places = imageDesc(p, PEL_FORMAT_RGB32F, width, height),
+                       objects = imageDesc(d, PEL_FORMAT_R32_UINT, width, height);
+    screenCurvature(device(), params, imageDesc(n, PEL_FORMAT_RGB32F, width, height), &places, nullptr,
+                    &objects, imageDesc(out, PEL_FORMAT_R32F, width, height));
+    EXPECT_LT(worst(out.readAll<float>(), reference::screenCurvature(image, params.edge)),
+              tolerance::screenSphere);
+}
+
+TEST(Small, APartOfALiveMesh) {
+    SmallMesh m;
+    PelCurvatureParams params = pelCurvatureParamsDefaults();
+    params.smoothingPasses = 1;
+    const LiveMesh live(m.topology, params);
+    const Buffer out(device(), m.vertices * sizeof(float));
+    live.update(m.view(m.positionBuffer), nullptr, m.view(out));
+    for (int i = 30; i < 36; ++i) m.positions[size_t(i)] *= 1.01f;
+    m.positionBuffer = Buffer(device(), m.positions);
+    live.update(m.view(m.positionBuffer), nullptr, m.view(out), {{10, 2}});
+    const Buffer whole(device(), m.vertices * sizeof(float));
+    m.topology.curvature(params, m.view(m.positionBuffer), m.view(whole));
+    EXPECT_EQ(out.readAll<float>(), whole.readAll<float>());
+}
+
+TEST(Small, TablesOfOtherProfiles) {
+    const float path[3] = {1, 0.5f, 0.3f}, albedo[3] = {0.8f, 0.6f, 0.5f};
+    const std::vector<float> distances{0.5f, 1, 2}, values{1, 1, 1, 0.5f, 0.4f, 0.3f, 0, 0, 0};
+    for (const Profile& profile : {Profile::burley(path, albedo), Profile::table(distances, values)}) {
+        PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
+        PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+        curvature.width = shadow.width = 5, curvature.height = shadow.height = 3;
+        curvature.profile = shadow.profile = profile.get();
+        curvature.diffusionRadius = shadow.diffusionRadius = 0;
+        curvature.form = PEL_FORM_SPHERE;
+        // Light is neither made nor lost: nothing beyond 1, shadows symmetric.
+        for (const float v : Lut(device(), curvature).read<float>(PEL_LUT_FLOAT))
+            EXPECT_TRUE(v >= 0 && v <= 1);
+        for (const float v : Lut(device(), shadow).read<float>(PEL_LUT_FLOAT))
+            EXPECT_TRUE(v >= -1e-6f && v <= 1 + 1e-6f);
+    }
 }

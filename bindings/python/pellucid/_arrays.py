@@ -6,7 +6,7 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from . import _native
+from . import _flight, _native
 from ._struct import to_enum
 from ._types import Format
 from .device import Buffer, Device, Event, _cl_address
@@ -64,9 +64,10 @@ class Span:
         else:
             self.handle = _native.Buffer.from_host(device._handle, self.address, self.nbytes)
 
-    def upload(self, waits: list[_native.Event]) -> None:
+    def upload(self, waits: list[_native.Event]) -> Optional[_native.Event]:
         if self.moves and self.nbytes:
-            self.handle.write(0, self.nbytes, self.address, waits)
+            return self.handle.write(0, self.nbytes, self.address, waits)
+        return None
 
     def download(self) -> Optional[_native.Event]:
         if self.moves and self.output and self.nbytes:
@@ -93,13 +94,21 @@ def submit(views: list[View], waits: list[_native.Event], enqueue: Any) -> Any:
     None where the work was done inside `enqueue` and nothing moves back.
     """
     spans = {id(v.span): v.span for v in views if isinstance(v.span, Span)}.values()
-    for span in spans:
-        if span.moves:
-            span.upload(waits)
-    event = enqueue(waits)
-    for span in spans:
-        event = span.download() or event
-    return event
+    events = []
+    try:
+        for span in spans:
+            events.append(span.upload(waits))
+        done = enqueue(waits)
+        events.append(done)
+        for span in spans:
+            events.append(span.download())
+            done = events[-1] or done
+    except BaseException:
+        for event in events:  # what is under way already still reads and writes the arrays
+            if event is not None:
+                _flight.hold(event, views)
+        raise
+    return done
 
 
 def _pyopencl_array(device: Device, value: Any) -> Optional[tuple[Buffer, int, tuple[int, ...], tuple[int, ...], Any]]:

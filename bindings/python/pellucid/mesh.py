@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _flight, _native
-from ._arrays import Span, Vertices, output_array, submit, vertex_view
+from ._arrays import Vertices, output_array, submit, vertex_view
 from ._struct import to_enum
 from ._types import CurvatureEstimator, CurvatureParams, CurvatureQuantity, MeshReport, Weld
 from .device import Device, Event, _handles
@@ -184,10 +184,9 @@ class MeshTopology:
         """
         views = [vertex_view(self.device, positions, 3, "positions"), vertex_view(self.device, uvs, 2, "uvs")]
         p, u = (v.native for v in views)
-        for v in views:
-            if isinstance(v.span, Span):
-                v.span.upload([])
-        return self._handle.uv_scale(p, u)
+        scale: list[float] = []
+        submit(views, [], lambda waits: scale.append(self._handle.uv_scale(p, u)))
+        return scale[0]
 
 
 # Floats per vertex of the quantities that have more than one.

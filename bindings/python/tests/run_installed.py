@@ -2,15 +2,18 @@
 
     run_installed.py SOURCE WORK [PYTEST_ARGUMENT ...]
 
-The wheel's build keeps its files in WORK, so that a second run compiles only what changed.
+The wheel's build keeps its files in WORK, so that a second run compiles only what changed. With compiler flags in PELLUCID_SANITIZE
+the wheel is built with them, and the tests run with the sanitizer's library loaded first.
 """
+import os
 import subprocess
 import sys
 import venv
 from pathlib import Path
 
 BUILD_NEEDS = ["scikit-build-core>=0.10", "pybind11>=2.10"]
-TEST_NEEDS = ["pytest>=7", "tqdm", "pyopencl", "trimesh", "scipy", "embreex", "pillow", "distributed", "fsspec"]
+TEST_NEEDS = ["pytest>=7", "tqdm", "pyopencl", "trimesh", "scipy", "embreex", "pillow", "distributed", "fsspec",
+              "dask-jobqueue"]
 
 
 def run(*command, **options):
@@ -28,6 +31,22 @@ def pip(environment, *arguments):
         raise SystemExit("pip failed")
 
 
+def sanitized():
+    """Options of the wheel's build and variables of the tests' environment."""
+    flags = os.environ.get("PELLUCID_SANITIZE")
+    if not flags:
+        return [], None
+    compiler = os.environ.get("CXX", "c++")
+    # The C++ library too, for the sanitizer looks for its __cxa_throw when it is loaded.
+    first = [run(compiler, f"-print-file-name={name}", stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
+             for name in ("libasan.so", "libstdc++.so.6")]
+    # CPython keeps what it allocates until the end, which the leak check would report; and LLVM's signal stacks, which compilers of
+    # kernels set up, collide with the sanitizer's own.
+    options = os.environ.get("ASAN_OPTIONS", "")
+    return (["-C", "cmake.build-type=RelWithDebInfo", "-C", f"cmake.define.CMAKE_CXX_FLAGS={flags}"],
+            {**os.environ, "LD_PRELOAD": " ".join(first), "ASAN_OPTIONS": f"{options}:detect_leaks=0:use_sigaltstack=0"})
+
+
 def main(source, work, *arguments):
     source, work = Path(source).resolve(), Path(work).resolve()
     builder, clean, wheels = work / "build-environment", work / "test-environment", work / "wheels"
@@ -37,7 +56,8 @@ def main(source, work, *arguments):
         (builder / "complete").touch()
     for old in wheels.glob("*.whl"):
         old.unlink()
-    pip(builder, "wheel", "-q", "--no-build-isolation", "--no-deps", "-C", f"build-dir={work / 'build'}", "-w", wheels,
+    build, environment = sanitized()
+    pip(builder, "wheel", "-q", "--no-build-isolation", "--no-deps", "-C", f"build-dir={work / 'build'}", *build, "-w", wheels,
         source)
     # The other way in has the same CMake project behind it: that it resolves is enough.
     pip(builder, "install", "-q", "--dry-run", "--no-build-isolation", "--no-deps", source / "bindings/python")
@@ -47,7 +67,7 @@ def main(source, work, *arguments):
     pip(clean, "install", "-q", wheel, *TEST_NEEDS)
     # Not from the source tree, where the package of the same name has no native module.
     raise SystemExit(run(clean / "bin/python", "-m", "pytest", "-v", "-p", "no:cacheprovider", "--tb=short", "--rootdir",
-                         source, source / "bindings/python/tests", *arguments, cwd=work).returncode)
+                         source, source / "bindings/python/tests", *arguments, cwd=work, env=environment).returncode)
 
 
 if __name__ == "__main__":
