@@ -4,9 +4,11 @@
 // Inputs: positions or depth, geometric normals, ids, the shadow map. Output: R32F, 0 to 1; pixels that the light does not
 // reach get 1. Of a light with cascades the finest that holds a pixel's filter is read; of a cube, all faces under it
 // (lib/cube_filter.clh). One work-group: a run of tiles; one work-item: PEL_WIDTH pixels, whose filters it runs one after another,
-// PEL_WIDTH texels at a time. PEL_NORMAL_SLOT: where the geometric normals are; PEL_SHADOW_CONTENT: what texels hold.
+// PEL_WIDTH texels at a time. PEL_NORMAL_SLOT: where the geometric normals are; PEL_SHADOW_CONTENT: what texels hold;
+// PEL_BOUNDS: the bounds of blocks of the maps are there, and filters that they decide read no texel.
 #include "lib/cube_filter.clh"
 #include "lib/light.clh"
+#include "lib/shadow_bounds.clh"
 #include "lib/tiles.clh"
 #include "lib/wide_filter.clh"
 #include "shared/shade_passes.h"
@@ -82,12 +84,13 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
     __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials, __global const PelShadeLight* lights,
     __global const uint* list, __global uint* counters, __global uchar* material, __global uchar* normal,
     __global uchar* position, __global uchar* depth, __global const PelWideShadow* wideShadow, uint lightIndex,
-    __global uchar* map0, __global uchar* map1, __global uchar* map2, __global uchar* map3, __global uchar* out) {
+    __global uchar* map0, __global uchar* map1, __global uchar* map2, __global uchar* map3,
+    __global const float* bounds, __global uchar* out) {
     const TileRun run = tileRun(frame, list);
     const WideContent content = {wideShadow->perExponent, wideShadow->minDeviation * wideShadow->minDeviation,
                                  wideShadow->bleeding};
     const uint maps = (PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) ? max(wideShadow->cascades, 1u) : 1;
-    uint filtered = 0;
+    uint filtered = 0, texels = 0; // pixels whose shadow was filtered, and whose filter read the map
     for (uint i = run.begin; i < run.end; ++i) {
         const uint2 origin = tileOrigin(frame, list, i);
         for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP * PEL_WIDTH) {
@@ -113,7 +116,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                 __global const uchar* map = firstTexel(map0, &wideShadow->map);
                 __global const float* m = wideShadow->worldToShadow;
                 left &= makeCubeFilters(wideShadow, cubePosition(m, p), cubeTurned(m, n), width, PEL_FLATTEST_COSINE, &f);
-                if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(left);
+                if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(left), texels += countw(left);
 #define PEL_FILTER_(k, s) \
     if (left s) shown[k] = wideShadowInCube(PEL_FORMAT_SHADOW_MAP, map, wideShadow, &f, k, &content);
                 PEL_EACH_LANE(PEL_FILTER_)
@@ -126,11 +129,16 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                     const maskw held = makeFilters(light, p, n, width, &f) & left;
                     if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(held);
                     left &= notw(held);
+                    const bool bounded = PEL_BOUNDS && boundsPay(frame, list, &light->map);
 #define PEL_FILTER_(k, s)                                                                                        \
     if (held s) {                                                                                                \
         const WideFilter one = {f.x[k], f.y[k], f.z[k], f.dzdx[k], f.dzdy[k], f.radiusX[k], f.radiusY[k],        \
                                 f.cone[k], f.scale[k], (int)f.step[k]};                                          \
-        shown[k] = wideShadowOfPixel(PEL_FORMAT_SHADOW_MAP, map, &light->map, &one, &content);                   \
+        shown[k] = bounded ? uniformShadow(bounds + light->bounds, &light->map, &one) : -1.0f;                   \
+        if (shown[k] < 0.0f) {                                                                                   \
+            ++texels;                                                                                            \
+            shown[k] = wideShadowOfPixel(PEL_FORMAT_SHADOW_MAP, map, &light->map, &one, &content);               \
+        }                                                                                                        \
     }
                     PEL_EACH_LANE(PEL_FILTER_)
 #undef PEL_FILTER_
@@ -143,5 +151,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
 #undef PEL_STORE_
         }
     }
-    if ((PEL_FEATURES & PEL_BIT_COUNT) && filtered) atomic_add(&counters[PEL_COUNT_WIDE_SHADOW], filtered);
+    if ((PEL_FEATURES & PEL_BIT_COUNT) && filtered) {
+        atomic_add(&counters[PEL_COUNT_WIDE_SHADOW], filtered);
+        if (texels) atomic_add(&counters[PEL_COUNT_SHADOW_TEXELS], texels);
+    }
 }

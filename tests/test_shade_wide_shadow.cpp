@@ -46,7 +46,7 @@ TEST(WideShadow, MatchesTheOracle) {
                 PelShaderStats stats = pelShaderStatsDefaults();
                 const auto shown = shade(device(), f, tables(), &stats);
                 EXPECT_EQ(stats.features, uint32_t(PEL_FEATURE_SHADOW | PEL_FEATURE_FILTER_SHADOW));
-                EXPECT_EQ(stats.launches, 3u);
+                EXPECT_EQ(stats.launches, 4u);
                 EXPECT_LE(worstShadow(f, from, shown), tolerance::wideShadow)
                     << "perspective " << perspective << ", reversed " << reversed << ", " << size << " texels";
                 size_t penumbra = 0;
@@ -94,7 +94,7 @@ TEST(WideShadow, OffCostsNothingAndAnImageGoesFirst) {
     f.lights[0].params.shadowFilterTexels = 0;
     shade(device(), f, tables(), &off);
     EXPECT_EQ(off.features, 0u);
-    EXPECT_EQ(off.launches + 1, on.launches);
+    EXPECT_EQ(off.launches + 2, on.launches);
     EXPECT_GE(on.scratchBytes, off.scratchBytes + 4 * f.pixels());
     EXPECT_EQ(off.pixelsWideShadow, 0u);
     f.lights[0].params.shadowFilterTexels = 24;
@@ -126,7 +126,36 @@ TEST(WideShadow, SkippingAndRunsChangeNoBit) {
         if (seed % 2) {
             EXPECT_LT(with.pixelsWideShadow, without.pixelsWideShadow) << "pixels outside the cone";
         }
+        EXPECT_EQ(without.pixelsShadowTexels, without.pixelsWideShadow);
     }
+}
+
+// Filters that the bounds of the map's blocks decide read no texel, and come out as if they had.
+TEST(WideShadow, BoundsDecideWithoutTexels) {
+    double decided = 0, all = 0;
+    for (uint32_t seed = 0; seed < 24; ++seed) {
+        MapLight from = mapLight(seed, seed % 2, seed / 2 % 2, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 90 + 37 * seed);
+        if (seed % 3 == 0)
+            for (size_t i = seed; i < from.light.map.values.size(); i += 1001)
+                from.light.map.values[i] = seed % 2 ? nan : -std::numeric_limits<float>::infinity();
+        Frame f = litRelief(from, seed);
+        f.options.countPixels = 1;
+        f.lights[0].params.shadowFilterTexels = seed % 5 ? 24 : 4;
+        if (seed % 4)
+            for (auto& [id, material] : f.materials) material.shadowFilterWidth *= 0.3f;
+        PelShaderStats with = pelShaderStatsDefaults();
+        const auto first = shade(device(), f, tables(), &with);
+        f.options.disableSkipping = 1;
+        EXPECT_EQ(first, shade(device(), f, tables())) << seed;
+        EXPECT_GT(with.pixelsShadowTexels, 0u) << "penumbrae are read";
+        decided += double(with.pixelsWideShadow - with.pixelsShadowTexels);
+        all += double(with.pixelsWideShadow);
+        size_t uniform = 0;
+        for (size_t i = 0; i < f.pixels(); ++i)
+            uniform += f.slots[PEL_SLOT_MATERIAL].values[i] != 0 && (first[3 * i] == 0 || first[3 * i] == 1);
+        EXPECT_LE(with.pixelsWideShadow - with.pixelsShadowTexels, uniform) << seed;
+    }
+    EXPECT_GT(decided / all, 0.2) << decided << " of " << all;
 }
 
 TEST(WideShadow, BadTexelsAndPixels) {

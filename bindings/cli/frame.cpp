@@ -212,6 +212,7 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
             {"pixels_thickness", s.pixelsThickness},
             {"pixels_specular", s.pixelsSpecular},
             {"pixels_wide_shadow", s.pixelsWideShadow},
+            {"pixels_shadow_texels", s.pixelsShadowTexels},
             {"pixels_invalid", s.pixelsInvalid},
             {"shade_ms", s.deviceMilliseconds}};
 }

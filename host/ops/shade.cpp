@@ -401,6 +401,7 @@ PelShaderStats Shader::stats() {
         stats.pixelsSpecular = counts[PEL_COUNT_SPECULAR];
         stats.pixelsInvalid = counts[PEL_COUNT_INVALID];
         stats.pixelsWideShadow = counts[PEL_COUNT_WIDE_SHADOW];
+        stats.pixelsShadowTexels = counts[PEL_COUNT_SHADOW_TEXELS];
     }
     for (const cl::Event& event : events_) stats.deviceMilliseconds += eventMilliseconds(event);
     return stats;

@@ -10,6 +10,8 @@
 namespace pel {
 namespace {
 
+constexpr size_t boundsGroup = 16;
+
 // The geometric normals of a frame: their slot, or the shading normals'.
 PelImageSlot normalSlot(const ShaderState& state) {
     return state.images[PEL_SLOT_NORMAL_GEOMETRIC] ? PEL_SLOT_NORMAL_GEOMETRIC : PEL_SLOT_NORMAL_SHADING;
@@ -59,6 +61,16 @@ size_t send(Device& device, const std::vector<T>& values, cl::Memory& memory, st
     device.write(memory.get(), 0, size, bytes, true);
     sent.assign(bytes, bytes + size);
     return size;
+}
+
+uint32_t cascadesOf(const ShaderLight& light) {
+    return std::max(light.params.shadowCascades, 1u);
+}
+
+// Of the size of PEL_BOUNDS_BLOCK.
+uint32_t blocksOf(const ImageView& map) {
+    const auto blocks = [](uint32_t texels) { return (texels + PEL_BOUNDS_BLOCK - 1) / PEL_BOUNDS_BLOCK; };
+    return blocks(map.width) * blocks(map.height);
 }
 
 PelNormalMap describeNormalMap(const ShaderState& plan, uint32_t id, bool fallback) {
@@ -140,6 +152,19 @@ ShaderState ShadePasses::plan(const Ref<Device>& device, const ShaderState& stat
     for (size_t k = 0; k < filteredLights_.size(); ++k)
         plan.lights[filteredLights_[k]].images[PEL_LIGHT_WIDE_SHADOW] =
             scratchImage(wideShadows_, frame, PEL_FORMAT_R32F, k * lightBytes);
+    boundedMaps_.clear();
+    uint32_t boundsFloats = 0;
+    for (size_t k = 0; k < filteredLights_.size() && !state.options.disableSkipping; ++k) {
+        const ShaderLight& light = plan.lights[filteredLights_[k]];
+        if (light.params.shadowContent != PEL_SHADOW_CONTENT_DEPTH || isCube(light.params)) continue;
+        for (uint32_t i = 0; i < cascadesOf(light); ++i) {
+            const ImageView& map = *shadowCascade(light, i).map;
+            boundedMaps_.push_back({uint32_t(k), i, blocksOf(map), boundsFloats});
+            boundsFloats += 4 * blocksOf(map);
+        }
+    }
+    // One vector more, since the last row's vectors reach beyond its end.
+    resize(bounds_, device, boundsFloats ? (boundsFloats + device->info().mathWidth) * sizeof(float) : 0);
     return plan;
 }
 
@@ -205,7 +230,13 @@ void ShadePasses::build(Device& device, const ShaderState& plan, uint32_t featur
         all["PEL_FEATURES"] = text(bits);
         all["PEL_FORMAT_SHADOW_MAP"] = text(map);
         all["PEL_SHADOW_CONTENT"] = text(content);
-        shadowProgram_ = device.programs().get("wide_shadow.cl", all);
+        all["PEL_BOUNDS"] = text(int(!boundedMaps_.empty()));
+        cl::ProgramKey key{{"wide_shadow.cl"}, all};
+        if (!boundedMaps_.empty()) {
+            key.files.push_back("shadow_bounds.cl");
+            key.defines["PEL_BOUNDS_GROUP"] = text(boundsGroup);
+        }
+        shadowProgram_ = device.programs().get(key);
     }
 }
 
@@ -218,8 +249,9 @@ size_t ShadePasses::upload(Device& device, const ShaderState& plan) {
     for (size_t k = 0; k < filteredLights_.size(); ++k) {
         const ShaderLight& light = plan.lights[filteredLights_[k]];
         std::vector<PelWideShadow> maps;
-        for (uint32_t i = 0; i < std::max(light.params.shadowCascades, 1u); ++i)
-            maps.push_back(describeWideShadow(light, filteredLights_[k], i));
+        for (uint32_t i = 0; i < cascadesOf(light); ++i) maps.push_back(describeWideShadow(light, filteredLights_[k], i));
+        for (const BoundedMap& map : boundedMaps_)
+            if (map.filtered == k) maps[map.cascade].bounds = map.offset;
         bytes += send(device, maps, lightConstants_[k], sent_[k]);
     }
     const bool fallback = !(features_ & PEL_FEATURE_BLUR_NORMALS);
@@ -255,6 +287,12 @@ void ShadePasses::enqueue(Device& device, const ShaderState& plan, const ShadeTa
         launch.arg(normals_->memory()).arg(cl_uint(planeValues_));
         events.push_back(device.launch(launch, range));
     }
+    for (const BoundedMap& map : boundedMaps_) {
+        cl::Launch launch(shadowProgram_, "shadow_bounds");
+        launch.arg(tables.frameMemory()).arg(list).arg(lightConstants_[map.filtered]).arg(cl_uint(map.cascade));
+        launch.arg(memoryOf(*shadowCascade(plan.lights[filteredLights_[map.filtered]], map.cascade).map)).arg(bounds_->memory());
+        events.push_back(device.launch(launch, {{map.blocks, 1, 1}, {boundsGroup, 1, 1}}));
+    }
     for (size_t k = 0; k < filteredLights_.size(); ++k) {
         const ShaderLight& light = plan.lights[filteredLights_[k]];
         cl::Launch launch(shadowProgram_, "wide_shadow");
@@ -263,10 +301,10 @@ void ShadePasses::enqueue(Device& device, const ShaderState& plan, const ShadeTa
             launch.arg(memoryOf(plan.images[slot]));
         launch.arg(lightConstants_[k]).arg(cl_uint(filteredLights_[k]));
         for (uint32_t i = 0; i < PEL_CASCADES; ++i) {
-            const bool read = i < std::max(light.params.shadowCascades, 1u);
+            const bool read = i < cascadesOf(light);
             launch.arg(read ? memoryOf(*shadowCascade(light, i).map) : cl::Memory());
         }
-        launch.arg(wideShadows_->memory());
+        launch.arg(bounds_ ? bounds_->memory() : cl::Memory()).arg(wideShadows_->memory());
         events.push_back(device.launch(launch, range));
     }
 }
@@ -283,7 +321,7 @@ void ShadePasses::enqueueBlur(Device& device, const ShaderState& plan, const Sha
 
 size_t ShadePasses::scratchBytes() const {
     size_t bytes = 0;
-    for (const Ref<Buffer>& buffer : {normals_, wideShadows_, positions_, between_, tags_})
+    for (const Ref<Buffer>& buffer : {normals_, wideShadows_, positions_, between_, tags_, bounds_})
         if (buffer) bytes += buffer->bytes();
     for (const auto& sent : sent_) bytes += sent.size();
     return bytes;

@@ -41,12 +41,21 @@ class ShadePasses {
     void enqueueBlur(Device& device, const ShaderState& plan, const ShadeTables& tables, const cl::Memory& list,
                      uint32_t tiles, bool alongY, std::vector<cl::Event>& events) const;
 
+    // A shadow map whose blocks' bounds are kept: of a light of filteredLights_.
+    struct BoundedMap {
+        uint32_t filtered, cascade;
+        uint32_t blocks;
+        uint32_t offset;  // of its bounds in bounds_, floats
+    };
+
     uint32_t features_ = 0, bandRows_ = 0, haloRows_ = 0;
     uint32_t scratchPixelBytes_ = 0;  // of all images together
     std::optional<uint32_t> scratchRow_;  // in the device's constants; empty: it has to be written
     std::vector<uint32_t> filteredLights_;   // of plan.lights
     std::vector<uint32_t> mappedMaterials_;  // ids
     Ref<Buffer> normals_, wideShadows_;      // what the shading kernel reads
+    std::vector<BoundedMap> boundedMaps_;
+    Ref<Buffer> bounds_;                      // of the wide shadows alone
     Ref<Buffer> positions_, between_, tags_;  // of the blur alone
     uint32_t planeValues_ = 0;                // from one plane of normals or positions to the next
     std::vector<cl::Memory> lightConstants_, mapConstants_;

@@ -156,7 +156,8 @@ typedef struct PelShadeLight {
 #define PEL_COUNT_SPECULAR 3
 #define PEL_COUNT_INVALID 4
 #define PEL_COUNT_WIDE_SHADOW 5
-#define PEL_COUNTERS 6
+#define PEL_COUNT_SHADOW_TEXELS 6
+#define PEL_COUNTERS 7
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelShadeImage) == 32 && sizeof(PelShadeLut) == 40);

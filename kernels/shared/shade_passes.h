@@ -10,6 +10,8 @@
 #define PEL_PLANE_GUARD (PEL_BLUR_TAPS * PEL_BLUR_STEP_MAX + 16)
 #define PEL_MAP_LEVELS 16    // of a normal map
 
+#define PEL_BOUNDS_BLOCK 8   // texels along a side of the blocks whose least and greatest depth are known
+
 // One light's wide shadow, made from its shadow map, or from one of its cascades. Of a cube: worldToShadow turns into its
 // space; right, down, forward, extent, centre and zPerLength are not used.
 typedef struct PelWideShadow {
@@ -33,6 +35,7 @@ typedef struct PelWideShadow {
     float coneSlope; // length per length
     float maxTexels; // across the filter
     PelUint32 cascades; // how many maps there are, from this on; 0: one that is no cascade
+    PelUint32 bounds;   // where the bounds of the map's blocks begin (lib/shadow_bounds.clh)
     PelShadeImage map;
     PelShadeImage out; // R32F
 } PelWideShadow;
@@ -47,7 +50,7 @@ typedef struct PelNormalMap {
 } PelNormalMap;
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelWideShadow) == 4 * (16 + 9 + 4 + 14) + 64);
+static_assert(sizeof(PelWideShadow) == 4 * (16 + 9 + 4 + 15) + 64);
 static_assert(sizeof(PelNormalMap) == PEL_MAP_LEVELS * 32 + 16);
 #endif
 #endif

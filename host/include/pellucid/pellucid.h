@@ -767,6 +767,8 @@ typedef struct PelShaderStats {
     uint64_t bands;            /* rows of tiles are shaded in this many rounds, to keep to PelShaderOptions.scratchBudget */
     uint64_t variants;         /* of the shading kernel, each with a tile list of its own */
     uint64_t tilesPartial;     /* shaded by a variant with fewer features than the shader has */
+    uint64_t pixelsShadowTexels; /* of those, whose filter read texels: of the others the bounds of the map's blocks said that they
+                                    are lit or in shadow */
 } PelShaderStats;
 
 /* How the shading kernel finds its tiles. The same bits come out of each. */
