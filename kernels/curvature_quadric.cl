@@ -17,7 +17,8 @@
 // What the points leave open (fewer than nine, all on a line) a ridge decides, towards a quadric and then a plane; a
 // term whose pivot is lost to rounding is dropped. The result is always finite.
 //
-// Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h). Output: lib/principal.clh.
+// Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h), links and rounds (mesh_links.cl).
+// Output: lib/principal.clh.
 //
 // One work-item: PEL_WIDTH slots.
 //
@@ -246,7 +247,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
     __global const uint* runs, __global const float* positions,
     uint positionOffset, __global const float* normals, uint normalOffset, uint planeStride,
-    __global float* planes) {
+    __global float* planes, __global const uint* links, __global const uint* rounds) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ring_begin(first, slots, slices);
@@ -278,23 +279,11 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
         const uintw near_ = ring_entry(&ring, rings, runs).slots.each;
         const maskw real = (near_ != ring.self.each) & spread;
         add_point(&fit, near_, real, &chart, positions);
-        // Each lane walks the ring of its own neighbour, in that one's slice. Where in it does this slot stand?
-        const uintw begin = gather_uint(slices, near_ / MESH_LANES);
-        const uintw rows = selectw(none, gather_uint(slices, near_ / MESH_LANES + 1) - begin, real);
-        const uint most = largest_lane(rows);
-        uintw length = none, here = none, walks = none;
-        maskw closed = real;
-        for (uint row = 0; row < most; ++row) {
-            const maskw inside = row < rows;
-            const uintw at = selectw(begin, begin + row, inside) * MESH_LANES + near_ % MESH_LANES;
-            const uintw entry = gather_uint(rings, at);
-            const maskw filled = inside & (RING_SLOT(entry) != near_);
-            length += selectw(none, one, filled);
-            walks += selectw(none, one, filled & ((entry & (uintw)(MESH_START)) != 0));
-            here = selectw(here, (uintw)(row), filled & (RING_SLOT(entry) == ring.self.each));
-            closed &= !(filled & ((entry & (uintw)(MESH_SINGLE)) != 0));
-        }
-        closed &= (walks == 1) & (length > 2);
+        // Each lane walks the ring of its own neighbour, in that one's slice, in which this slot stands `here`.
+        const uintw begin = gather_uint(slices, near_ / MESH_LANES), round = gather_uint(rounds, near_);
+        const uintw here = loadw((size_t)ring.row * MESH_LANES + ring.lane, links);
+        const uintw length = selectw(none, round & ~(uintw)(MESH_ROUND), real);
+        const maskw closed = real & ((round & (uintw)(MESH_ROUND)) != 0);
         // Closed: all but this slot, its two neighbours and the last one; with four in the ring just one is left.
         const uintw rest = selectw(selectw(none, one, length == 4), length - 4, length > 4);
         const uintw steps = selectw(length, rest, closed);

@@ -43,6 +43,8 @@ class MeshTopology final : public Object {
         scratchReduce,
         scratchWeights,
         scratchNormals,
+        scratchLinks,
+        scratchRounds,
         scratchCount
     };
     std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
@@ -52,6 +54,8 @@ class MeshTopology final : public Object {
     size_t ringEntries() const { return ringEntries_; }
     // How fast the finest parts of the mesh even out, 1/length^2; 0: not measured yet. Guarded by lock().
     float diffusionRate[2] = {0, 0};
+    // Links and rounds (mesh_links.cl) are in their scratch memory, or queued. Guarded likewise.
+    bool linked = false;
 
     explicit MeshTopology(Ref<Device> device) : Object(kind), device_(std::move(device)) {}
 

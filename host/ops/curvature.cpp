@@ -11,6 +11,19 @@ const char* estimatorKernel(PelCurvatureEstimator estimator) {
                                                : "curvature_quadric";
 }
 
+// What the quadric estimator needs to know about neighbours' neighbours: found out for the first call.
+void linkRings(MeshTopology& topology) {
+    const cl::Memory& links =
+        topology.scratch(MeshTopology::scratchLinks, topology.ringEntries() * sizeof(uint32_t));
+    const cl::Memory& rounds =
+        topology.scratch(MeshTopology::scratchRounds, topology.slots() * sizeof(uint32_t));
+    if (topology.linked) return;
+    cl::Launch launch(topology.device().programs().get("mesh_links.cl", {}), "mesh_links");
+    launch.arg(topology.slots()).arg(topology.slices()).arg(topology.rings()).arg(links).arg(rounds);
+    topology.device().launch(launch, over(topology.slots()));
+    topology.linked = true;
+}
+
 MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, const VertexView& given,
                        const SlotData& data) {
     const VertexView& normals = given.memory ? given : positions;
@@ -111,6 +124,11 @@ void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params,
         .arg(data.normals.layout.offset)
         .arg(planeStrideOf(topology))
         .arg(planes);
+    if (params.estimator == PEL_CURVATURE_QUADRIC) {
+        linkRings(topology);
+        estimate.arg(topology.scratch(MeshTopology::scratchLinks, 0));
+        estimate.arg(topology.scratch(MeshTopology::scratchRounds, 0));
+    }
     launchRows(topology, estimate, rows, width(topology.device()));
 }
 

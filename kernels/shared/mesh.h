@@ -31,6 +31,8 @@
 // flags. runs[row] is the first entry of such a row, or this; meshes with few of them have none.
 #define MESH_NO_RUN 0xffffffffu
 
+#define MESH_ROUND 0x80000000u  // of a slot's neighbours: they are one closed walk (mesh_links.cl)
+
 // Edges shorter than the root of this (a length squared) are too short to measure: their square is no normal
 // float.
 #define MESH_MIN_LENGTH2 1.17549435e-38f
