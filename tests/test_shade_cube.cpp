@@ -112,6 +112,24 @@ TEST(ShadeCube, AddsToHarmonicsAndComesThrough) {
     }
 }
 
+TEST(ShadeCube, KernelsThatDoLessGiveTheSameBits) {
+    // One material lets ambient light through and shines, the others do neither: tiles of those alone get a kernel of their own.
+    Frame f = randomFrame(8, 400, 24, 1);
+    f.cube = randomCube(8, 7);
+    f.slots[PEL_SLOT_THICKNESS] = f.slots[PEL_SLOT_AMBIENT_OCCLUSION];
+    for (auto& [id, m] : f.materials) {
+        m.deepScatterAmbient = id == 1 ? 0.6f : 0.0f;
+        m.specular = id == 1 ? m.specular : 0;
+        if (id != 1) std::fill_n(m.deepScatterColor, 3, 0.0f);
+    }
+    for (size_t i = 0; i < f.pixels(); ++i) f.slots[PEL_SLOT_MATERIAL].values[i] = i % f.width < 128 ? 1 : 2;
+    PelShaderStats stats = pelShaderStatsDefaults();
+    const auto apart = shade(device(), f, tables(), &stats);
+    EXPECT_GT(stats.tilesPartial, 0u);
+    f.options.tileLists = PEL_TILES_ONE_LIST;
+    EXPECT_EQ(shade(device(), f, tables()), apart);
+}
+
 TEST(ShadeCube, AConstantCubeIsTheConstant) {
     Frame f = ambientFrame(randomNormals(1, 5000)), g = f;
     const Rgb light{0.25, 0.5, 0.125};

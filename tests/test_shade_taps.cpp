@@ -81,6 +81,19 @@ TEST(ShadeTaps, TurningDependsOnThePlaceAlone) {
     for (size_t i = 0; i < left.pixels(); ++i) EXPECT_EQ(part[i], turned[i / 33 * f.width + i % 33]) << i;
 }
 
+TEST(ShadeTaps, BandsOfRowsTurnAsTheWholeFrameDoes) {
+    Frame f = tapFrame(26, 64, 24);
+    for (Light& light : f.lights) {  // a pass with scratch memory, so that there are bands
+        light.wide = {};
+        light.params.shadowFilterTexels = 8;
+    }
+    const auto whole = shade(device(), f, tables());
+    f.options.scratchBudget = 64 * 8 * 8;  // eight rows
+    PelShaderStats stats = pelShaderStatsDefaults();
+    EXPECT_EQ(shade(device(), f, tables(), &stats), whole);
+    EXPECT_GT(stats.bands, 1u);
+}
+
 TEST(ShadeTaps, TheAnglesFillTheCircle) {
     // Any 4 x 4 pixels: the largest gap between angles is far below that of random ones (about 76 degrees of 16).
     const reference::Vec2 tap{1, 0};
