@@ -57,22 +57,30 @@ std::vector<uint8_t> discs(double share, uint8_t inside, uint8_t outside) {
     return ids;
 }
 
-Shader prepare(const std::vector<uint8_t>& ids, bool skin, bool plain) {
+// All cases read the same memory: where it lies in pages makes a difference of its own.
+const Buffer& onDevice(const std::vector<float>& image) {
+    static std::map<const float*, Buffer> buffers;
+    Buffer& buffer = buffers[image.data()];
+    if (!buffer) buffer = Buffer(device(), image);
+    return buffer;
+}
+
+// `skin`, `plain`: which materials there are, 1 and 2; `taps`: of skin.
+Shader prepare(const std::vector<uint8_t>& ids, bool skin, bool plain, PelTileLists lists, uint32_t taps = 32) {
     Shader shader(device());
     const Images& all = images();
     const auto set = [&](PelImageSlot slot, const std::vector<float>& image, PelFormat format) {
-        shader.set(slot, imageDesc(Buffer(device(), image), format, width, height));
+        shader.set(slot, imageDesc(onDevice(image), format, width, height));
     };
-    shader.set(PEL_SLOT_RADIANCE, imageDesc(Buffer(device(), size_t(width) * height * 12), PEL_FORMAT_RGB32F, width, height));
+    static const Buffer target(device(), size_t(width) * height * 12);
+    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, width, height));
     shader.set(PEL_SLOT_MATERIAL, imageDesc(Buffer(device(), ids), PEL_FORMAT_R8_UINT, width, height));
     set(PEL_SLOT_POSITION, all.position, PEL_FORMAT_RGB32F);
     set(PEL_SLOT_NORMAL_SHADING, all.shading, PEL_FORMAT_RGB32F);
     set(PEL_SLOT_ALBEDO, all.albedo, PEL_FORMAT_RGB32F);
-    if (skin) {
     set(PEL_SLOT_NORMAL_GEOMETRIC, all.geometric, PEL_FORMAT_RGB32F);
     set(PEL_SLOT_NORMAL_BLURRED, all.blurred, PEL_FORMAT_RGB32F);
     set(PEL_SLOT_CURVATURE, all.curvature, PEL_FORMAT_R32F);
-    }
     PelLight light = pelLightDefaults();
     const float toLight[3] = {0.8f, 0.36f, 0.48f};
     const float rows[16] = {0.004f, 0, 0, 0.5f, 0, 0.004f, 0, 0.5f, 0, 0, -0.004f, 0.5f, 0, 0, 0, 1};
@@ -80,37 +88,69 @@ Shader prepare(const std::vector<uint8_t>& ids, bool skin, bool plain) {
     std::copy_n(rows, 16, light.worldToShadow);
     light.shadowDepthRange = 250;
     shader.set(std::vector{light});
-    shader.set(0, PEL_LIGHT_WIDE_SHADOW, imageDesc(Buffer(device(), all.wide), PEL_FORMAT_R32F, width, height));
-    shader.set(0, PEL_LIGHT_SHADOW_MAP, imageDesc(Buffer(device(), all.map), PEL_FORMAT_R32F, 1024, 1024));
+    shader.set(0, PEL_LIGHT_WIDE_SHADOW, imageDesc(onDevice(all.wide), PEL_FORMAT_R32F, width, height));
+    shader.set(0, PEL_LIGHT_SHADOW_MAP, imageDesc(onDevice(all.map), PEL_FORMAT_R32F, 1024, 1024));
     PelAmbient ambient = pelAmbientDefaults();
     for (int i = 0; i < 9; ++i)
         for (int c = 0; c < 3; ++c) ambient.sh[i][c] = 0.3f / float(1 + i + c);
     PelCamera camera = pelCameraDefaults();
     camera.position[2] = 600;
     shader.set(ambient).set(camera);
+    PelShaderOptions options = pelShaderOptionsDefaults();
+    options.tileLists = lists;
+    shader.set(options);
     static const Lut curvature(device(), pelCurvatureLutDescDefaults()), shadow(device(), pelShadowLutDescDefaults());
     PelMaterial material = pelMaterialDefaults();
     material.specular = 0.8f;
-    const float color[3] = {0.9f, 0.4f, 0.3f};
     if (plain) shader.setMaterial(2, material);
-    std::copy_n(color, 3, material.deepScatterColor);
-    material.thicknessTaps = 32;
+    const float color[3] = {0.9f, 0.4f, 0.3f};
+    if (taps) std::copy_n(color, 3, material.deepScatterColor);
+    material.thicknessTaps = taps;
     if (skin) shader.setMaterial(1, material, curvature, shadow);
     return std::move(shader.commit());
 }
 
-void mixed(benchmark::State& state, double share, bool skin) {
-    const Shader shader = prepare(discs(share, 1, 2), skin, true);
+void report(benchmark::State& state, const Shader& shader) {
+    const PelShaderStats stats = shader.stats();
+    state.counters["tiles"] = double(stats.tilesShaded);
+    state.counters["partial"] = double(stats.tilesPartial);
+    state.counters["launches"] = double(stats.launches);
+}
+
+// Skin on `share` of the area, a plain material on the rest.
+void mixed(benchmark::State& state, double share, PelTileLists lists) {
+    const Shader shader = prepare(discs(share, 1, 2), true, true, lists);
     shader.execute();
     for (auto _ : state) shader.execute();
+    report(state, shader);
 }
-#define CASE(function, name, ...) \
-    BENCHMARK_CAPTURE(function, name, __VA_ARGS__)->Unit(benchmark::kMillisecond)->UseRealTime()
-CASE(mixed, plainAlone, 0.0, false);
-CASE(mixed, plainBesideSkin, 0.0, true);
-CASE(mixed, half, 0.5, true);
-CASE(mixed, skin, 1.0, true);
+
+// Skin on `share` of the area, nothing on the rest.
+void coverage(benchmark::State& state, double share, PelTileLists lists) {
+    const Shader shader = prepare(discs(share, 1, 0), true, false, lists, 0);
+    shader.execute();
+    for (auto _ : state) shader.execute();
+    report(state, shader);
+}
 
 }  // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+    const auto add = [](const std::string& name, auto function, auto... arguments) {
+        benchmark::RegisterBenchmark(name.c_str(), function, arguments...)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+    };
+    for (const int percent : {0, 10, 50, 90, 100}) {
+        const std::string share = "/" + std::to_string(percent) + "_percent_skin";
+        add("mixed/per_variant" + share, mixed, percent / 100.0, PEL_TILES_PER_VARIANT);
+        add("mixed/one_list" + share, mixed, percent / 100.0, PEL_TILES_ONE_LIST);
+    }
+    for (const int percent : {0, 10, 50, 100}) {
+        const std::string share = "/" + std::to_string(percent) + "_percent";
+        add("coverage/compacted_list" + share, coverage, percent / 100.0, PEL_TILES_ONE_LIST);
+        add("coverage/early_out" + share, coverage, percent / 100.0, PEL_TILES_NO_LIST);
+    }
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+}

@@ -51,6 +51,7 @@ struct Scene {
         frame = reliefFrame(1, width, height, 0.4f);
         frame.lights.push_back(mapLight(1, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61).light);
         frame.options.blurNormals = 1;
+        frame.options.tileLists = PEL_TILES_PER_VARIANT;
         frame.curvatureLut = frame.shadowLut = true;
         frame.slots[PEL_SLOT_CURVATURE] = frame.slots[PEL_SLOT_MATERIAL];
         shader = Shader(device);

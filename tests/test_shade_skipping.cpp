@@ -118,7 +118,7 @@ TEST_P(ShadeSkipping, ChangesNoBit) {
         EXPECT_EQ(bool(stats.features & PEL_FEATURE_OUTPUTS), s.choices.parts);
         EXPECT_EQ(bool(stats.features & PEL_FEATURE_THICKNESS_TAPS), !s.choices.thicknessImage);
         EXPECT_EQ(bool(stats.features & PEL_FEATURE_FILTER_SHADOW), s.choices.filter);
-        for (const PelTileLists lists : {PEL_TILES_ONE_LIST, PEL_TILES_NO_LIST}) {
+        for (const PelTileLists lists : {PEL_TILES_PER_VARIANT, PEL_TILES_NO_LIST}) {
             options.tileLists = lists;
             EXPECT_EQ(run(s, options, nullptr), right) << "tile lists " << int(lists);
         }

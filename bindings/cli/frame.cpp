@@ -213,6 +213,7 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
             {"pixels_specular", s.pixelsSpecular},
             {"pixels_wide_shadow", s.pixelsWideShadow},
             {"pixels_shadow_texels", s.pixelsShadowTexels},
+            {"bands", s.bands},
             {"pixels_invalid", s.pixelsInvalid},
             {"shade_ms", s.deviceMilliseconds}};
 }

@@ -15,6 +15,7 @@ struct Arguments {
     std::string gbuffer, scene, output;
     std::vector<std::string> parts;
     bool stats = false;
+    uint64_t scratchMib = 0;
 };
 
 // The files to write beside radiance: those of the scene, and those of --outputs, named after -o.
@@ -70,6 +71,7 @@ void run(const Arguments& a) {
     LutStore luts(run.device());
     PelShaderOptions options = pelShaderOptionsDefaults();
     options.countPixels = a.stats;
+    options.scratchBudget = a.scratchMib << 20;
     try {
         Frame frame(run.device(), gbuffer, scene, luts, {}, options, outputs);
         frame.shade();
@@ -107,6 +109,10 @@ void addShade(CLI::App& app) {
         ->delimiter(',')
         ->check(CLI::IsMember({"diffuse", "deep_scatter", "specular", "thickness", "all"}));
     command->add_flag("--stats", a->stats, "count tiles and pixels per feature");
+    command->add_option("--scratch-mib", a->scratchMib,
+                        "most MiB for blurred normals and filtered shadows; larger frames are shaded in bands. 0: no limit")
+        ->check(CLI::Range(0, 1 << 30))
+        ->capture_default_str();
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });
 }

@@ -62,7 +62,13 @@ constexpr const char* formatDefines[PEL_SLOT_COUNT] = {
     "PEL_FORMAT_OUT_DIFFUSE",      "PEL_FORMAT_OUT_DEEP_SCATTER",
     "PEL_FORMAT_OUT_SPECULAR",     "PEL_FORMAT_OUT_THICKNESS"};
 
-constexpr uint32_t classifyGroup = 16;
+// Tiles that a work-item of the classification takes: runs on a CPU, one each on a GPU, which has thousands of work-items.
+uint32_t classifyRun(const Device& device) {
+    return device.info().mathWidth > 1 ? 64 : 1;
+}
+uint32_t classifyGroup(const Device& device) {
+    return device.info().mathWidth > 1 ? 1 : 64;
+}
 
 // A caller who listens is asked at least this often whether to go on: some tens of milliseconds on two cores.
 constexpr uint64_t pixelsPerPart = 1 << 20;
@@ -115,7 +121,8 @@ cl::ProgramKey shadeKey(const ShaderState& state, uint32_t features, const Devic
     cl::Defines defines{
         {"PEL_FEATURES", std::to_string(features)},
         {"PEL_SHADE_GROUP", std::to_string(shadeGroup(device))},
-        {"PEL_CLASSIFY_GROUP", std::to_string(classifyGroup)},
+        {"PEL_CLASSIFY_GROUP", std::to_string(classifyGroup(device))},
+        {"PEL_CLASSIFY_RUN", std::to_string(classifyRun(device))},
         {"PEL_FORMAT_WIDE_SHADOW", std::to_string(wide)},
         {"PEL_FORMAT_SHADOW_MAP", std::to_string(map)},
         {"PEL_SHADOW_CONTENT", std::to_string(content)}};
@@ -340,7 +347,8 @@ void Shader::enqueueTiles(Rows rows) {
     launch.arg(tables_.frameMemory()).arg(tables_.materials()).arg(state_.images[PEL_SLOT_MATERIAL].buffer->memory());
     launch.arg(tileLists_).arg(cl_uint(variants_.size())).arg(cl_uint(listAll));
     const size_t tiles = size_t(rows.end - rows.begin) * tables_.frame().tilesX;
-    events_.push_back(device_->launch(launch, {{tiles, 1, 1}, {classifyGroup, 1, 1}}));
+    const size_t run = classifyRun(*device_);
+    events_.push_back(device_->launch(launch, {{(tiles + run - 1) / run, 1, 1}, {classifyGroup(*device_), 1, 1}}));
 }
 
 void Shader::enqueueShade(uint32_t variant, Rows rows, uint32_t part, uint32_t parts) {

@@ -773,8 +773,9 @@ typedef struct PelShaderStats {
 
 /* How the shading kernel finds its tiles. The same bits come out of each. */
 typedef enum PelTileLists {
-    PEL_TILES_PER_VARIANT = 0, /* a list per variant: tiles whose materials need less are shaded by a kernel that has less */
-    PEL_TILES_ONE_LIST = 1,    /* one list of all tiles with a material */
+    PEL_TILES_ONE_LIST = 0,    /* one list of all tiles with a material */
+    PEL_TILES_PER_VARIANT = 1, /* a list per variant: tiles whose materials need less are shaded by a kernel that has less.
+                                  Faster where nearly all tiles do (docs/shading.md, "Tiles") */
     PEL_TILES_NO_LIST = 2      /* every tile is visited, and left again where it has no material; for measurements */
 } PelTileLists;
 
