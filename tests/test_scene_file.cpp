@@ -91,6 +91,19 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     scene.materials[0].material.uvScale = 12.5f;
     scene.lights[0].light.shadowFilterTexels = 48;
     scene.lights[0].light.shadowSoftness = 0.125f;
+    PelLight& shadow = scene.lights[0].light;
+    shadow.shadowCascades = 3;
+    shadow.shadowContent = PEL_SHADOW_CONTENT_MOMENTS;
+    shadow.shadowExponent = 40;
+    shadow.shadowMinDeviation = 0.5f;
+    shadow.shadowBleeding = 0.2f;
+    for (int k = 0; k < 2; ++k) {
+        for (float& m : shadow.cascadeToShadow[k]) m = any(random);
+        shadow.cascadeDepthRange[k] = any(random);
+    }
+    scene.lights[0].secondChannel = "Z2";
+    scene.lights[0].cascades[0] = {path("coarse.exr"), "A.Z", "A.Z2"};
+    scene.lights[0].cascades[1].channel = "B.Z";
     scene.luts[1].file.clear();
     scene.luts[1].info.shadow.sharpening = 4.5f;
     writeScene(path("out.toml"), scene);
@@ -110,6 +123,11 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     EXPECT_EQ(again.lights[1].light.type, PEL_LIGHT_SPOT);
     EXPECT_EQ(again.lights[0].shadowMapChannel, scene.lights[0].shadowMapChannel);
     EXPECT_EQ(again.lights[0].wideShadow, scene.lights[0].wideShadow);
+    EXPECT_EQ(again.lights[0].secondChannel, "Z2");
+    EXPECT_EQ(again.lights[0].cascades[0].file, path("coarse.exr"));
+    EXPECT_EQ(again.lights[0].cascades[0].secondChannel, "A.Z2");
+    EXPECT_EQ(again.lights[0].cascades[1].file, "");
+    EXPECT_EQ(again.lights[0].cascades[1].channel, "B.Z");
     ASSERT_EQ(again.materials.size(), 1u);
     EXPECT_TRUE(same(again.materials[0].material, scene.materials[0].material));
     EXPECT_EQ(again.materials[0].curvatureLut, "skin");

@@ -95,13 +95,19 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
         if (!l.wideShadow.empty())
             shader_.set(i, PEL_LIGHT_WIDE_SHADOW, upload(device, gbuffer, {l.wideShadow}));
         if (l.shadowMapFile.empty()) continue;
-        const auto known = shadowMaps.find(l.shadowMapFile);
-        const io::Image read = known == shadowMaps.end() ? io::readImage(l.shadowMapFile) : io::Image();
-        const io::Image& map = known == shadowMaps.end() ? read : known->second;
-        const std::string channel = l.shadowMapChannel.empty() && map.channels.size() == 1
-                                        ? map.channels[0].name
-                                        : l.shadowMapChannel;
-        shader_.set(i, PEL_LIGHT_SHADOW_MAP, upload(device, map, {channel}));
+        const auto setMap = [&](PelLightSlot slot, const std::string& file, const std::string& channel, const std::string& second) {
+            const auto known = shadowMaps.find(file);
+            const io::Image read = known == shadowMaps.end() ? io::readImage(file) : io::Image();
+            const io::Image& map = known == shadowMaps.end() ? read : known->second;
+            std::vector<std::string> channels{channel.empty() && map.channels.size() == 1 ? map.channels[0].name : channel};
+            if (!second.empty()) channels.push_back(second);
+            shader_.set(i, slot, upload(device, map, channels));
+        };
+        setMap(PEL_LIGHT_SHADOW_MAP, l.shadowMapFile, l.shadowMapChannel, l.secondChannel);
+        for (uint32_t k = 0; k + 1 < l.light.shadowCascades; ++k) {
+            const io::SceneCascade& c = l.cascades[k];
+            setMap(PelLightSlot(PEL_LIGHT_CASCADE_1 + k), c.file.empty() ? l.shadowMapFile : c.file, c.channel, c.secondChannel);
+        }
     }
     shader_.set(scene.ambient);
     if (!scene.ambientCube.empty()) setAmbientCube(device, scene.ambientCube);
@@ -195,7 +201,11 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
         {PEL_FEATURE_GGX, "ggx"},
         {PEL_FEATURE_AMBIENT_SCATTER, "ambient_scatter"},
         {PEL_FEATURE_OUTPUTS, "outputs"},
-        {PEL_FEATURE_AMBIENT_CUBE, "ambient_cube"}};
+        {PEL_FEATURE_AMBIENT_CUBE, "ambient_cube"},
+        {PEL_FEATURE_SHADOW_CUBE, "shadow_cube"},
+        {PEL_FEATURE_SHADOW_CASCADES, "shadow_cascades"},
+        {PEL_FEATURE_SHADOW_MOMENTS, "shadow_moments"},
+        {PEL_FEATURE_SHADOW_EXPONENTIAL, "shadow_exponential"}};
     nlohmann::ordered_json features = nlohmann::ordered_json::array();
     for (const auto& [bit, name] : names)
         if (s.features & bit) features.push_back(name);

@@ -15,10 +15,10 @@ struct Arguments {
 };
 
 // A black image of the least size that is read as a frame's is, with these channels.
-io::Image blank(const std::set<std::string>& channels) {
+io::Image blank(const std::set<std::string>& channels, int height = 2) {
     io::Image image;
     image.width = 16;
-    image.height = 2;
+    image.height = height;
     for (const std::string& name : channels)
         if (!name.empty()) image.addInterleaved(std::vector{name}, std::vector<float>(image.pixelCount()));
     return image;
@@ -34,8 +34,16 @@ void prefillScene(const Device& device, const std::string& path) {
     ShadowMaps maps;
     for (const io::SceneLight& light : scene.lights) {
         channels.insert(light.wideShadow);
-        if (!light.shadowMapFile.empty())
-            maps[light.shadowMapFile] = blank({light.shadowMapChannel.empty() ? "Z" : light.shadowMapChannel});
+        if (light.shadowMapFile.empty()) continue;
+        const bool cube = light.light.shadowProjection >= PEL_SHADOW_CUBE;
+        std::map<std::string, std::set<std::string>> files;  // channels of each
+        const auto add = [&](const std::string& file, const std::string& channel, const std::string& second) {
+            files[file.empty() ? light.shadowMapFile : file].insert({channel.empty() ? "Z" : channel, second});
+        };
+        add(light.shadowMapFile, light.shadowMapChannel, light.secondChannel);
+        for (uint32_t k = 0; k + 1 < light.light.shadowCascades; ++k)
+            add(light.cascades[k].file, light.cascades[k].channel, light.cascades[k].secondChannel);
+        for (const auto& [file, names] : files) maps[file] = blank(names, cube ? 6 * 16 : 2);
     }
     LutStore luts(device);
     Frame frame(device, blank(channels), scene, luts, maps);

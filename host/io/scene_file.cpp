@@ -146,6 +146,8 @@ SceneFile readScene(const std::string& path) {
     }
     for (SceneLight& l : scene.lights) {
         if (!l.shadowMapFile.empty()) l.shadowMapFile = (folder / l.shadowMapFile).string();
+        for (SceneCascade& c : l.cascades)
+            if (!c.file.empty()) c.file = (folder / c.file).string();
     }
     return scene;
 }

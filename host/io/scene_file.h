@@ -30,11 +30,20 @@ struct SceneMaterial {
     int line = 0;
 };
 
+// One of a light's cascades beyond the first, whose matrix and range are in PelLight.
+struct SceneCascade {
+    std::string file;           // "": the first's
+    std::string channel;        // "": the only one
+    std::string secondChannel;  // of second moments
+};
+
 struct SceneLight {
     PelLight light = pelLightDefaults();
     std::string wideShadow;        // channel of the G-buffer; "": the light casts no shadow
     std::string shadowMapFile;     // image of depths seen from the light; "": no thickness from this light
     std::string shadowMapChannel;  // its channel; "": the only one
+    std::string secondChannel;     // of second moments; "": none
+    std::array<SceneCascade, 3> cascades;  // PEL_LIGHT_CASCADE_1 to 3, as many as PelLight.shadowCascades needs
     int line = 0;
 };
 

@@ -13,7 +13,9 @@ namespace pellucid::io {
 enum class Range { Any, NotNegative, Positive, AtLeastOne, ZeroToOne };
 
 constexpr std::string_view lightTypes[] = {"directional", "point", "spot"};            // PelLightType
-constexpr std::string_view shadowProjections[] = {"parallel", "perspective"};          // PelShadowProjection
+constexpr std::string_view shadowProjections[] = {"parallel", "perspective", "cube", "cube-radial"};  // PelShadowProjection
+constexpr std::string_view shadowContents[] = {"depth", "moments", "exponential"};     // PelShadowContent
+constexpr std::string_view cascadeKeys[] = {"cascade_1", "cascade_2", "cascade_3"};
 constexpr std::string_view specularModels[] = {"ksk", "ggx"};                          // PelSpecularModel
 constexpr std::string_view curvatureForms[] = {"arc", "ring", "half-ring", "sphere"};  // PelCurvatureForm
 constexpr std::string_view lutAxes[] = {"linear", "root"};                             // PelLutAxis
@@ -88,6 +90,20 @@ void shadowMapKeys(Visitor& v, Light& l) {
     v.number("bias", l.light.shadowBias, Range::NotNegative);
     v.number("softness", l.light.shadowSoftness, Range::Positive);
     v.number("cone_slope", l.light.shadowConeSlope, Range::NotNegative);
+    v.choice("content", l.light.shadowContent, shadowContents);
+    v.text("second_channel", l.secondChannel);
+    v.number("exponent", l.light.shadowExponent, Range::Any);
+    v.number("min_deviation", l.light.shadowMinDeviation, Range::NotNegative);
+    v.number("bleeding", l.light.shadowBleeding, Range::ZeroToOne);
+    v.integer("cascades", l.light.shadowCascades, 0, 4);
+    for (uint32_t i = 0; i < 3; ++i)
+        v.table(cascadeKeys[i], i + 1 < l.light.shadowCascades, [&](auto& inner) {
+            inner.text("file", l.cascades[i].file);
+            inner.text("channel", l.cascades[i].channel);
+            inner.text("second_channel", l.cascades[i].secondChannel);
+            inner.numbers("world_to_shadow", l.light.cascadeToShadow[i], 16, Range::Any);
+            inner.number("depth_range", l.light.cascadeDepthRange[i], Range::Any);
+        });
 }
 
 template <class Visitor, class Light>

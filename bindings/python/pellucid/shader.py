@@ -43,7 +43,11 @@ class Shader:
         return self
 
     def set_light_image(self, light: int, slot: LightSlot | str, image: Any) -> Shader:
-        """Sets the "wide_shadow" (the size of the G-buffer) or the "shadow_map" (any size) of a light, or clears it."""
+        """Sets the "wide_shadow" (the size of the G-buffer) or the "shadow_map" (any size) of a light, or clears it.
+
+        "cascade_1" to "cascade_3" are further maps of a light with `shadow_cascades`. A cube map has six faces below one
+        another, (6 n, n); maps of moments have two components, (height, width, 2).
+        """
         s = to_enum(LightSlot, slot, "slot")
         self._keep((light, s), image, f"{s.name.lower()} of light {light}", False, False,
                    lambda native: self._handle.set_light_image(light, int(s), native))

@@ -237,6 +237,51 @@ def test_wide_shadow_from_a_shadow_map(device, view):
     assert np.abs(out - lambert)[lit].max() < 1e-5
 
 
+@pytest.mark.parametrize("form", ["moments", "exponential", "cascades", "cube_radial"])
+def test_wide_shadow_from_every_form_of_map(device, view, form):
+    """The same wall, in maps of other forms."""
+    depth = np.ones((64, 64), np.float32)
+    depth[:, :32] = 0.1
+    out = np.zeros((HEIGHT, WIDTH, 3), np.float32)
+    shader = shader_for(device, view, out, position=view.position)
+    light = pel.Light(to_light=[0, 0, 1], shadow_filter_texels=32, shadow_depth_range=50,
+                      world_to_shadow=[1 / 30, 0, 0, 0.5, 0, -1 / 30, 0, 0.5, 0, 0, -1 / 50, 0.5, 0, 0, 0, 1])
+    maps = {"shadow_map": depth}
+    feature = pel.Feature["SHADOW_" + form.upper().removesuffix("_RADIAL")]
+    if form == "moments":
+        light.shadow_content = "moments"
+        maps["shadow_map"] = np.stack([depth, depth * depth], -1)
+    elif form == "exponential":
+        light.shadow_content, light.shadow_exponent = "exponential", 80
+        maps["shadow_map"] = np.exp(80 * depth)
+    elif form == "cascades":
+        light.shadow_cascades = 2
+        light.cascade_to_shadow = np.stack([light.world_to_shadow] * 3)  # the second is as the first was
+        light.cascade_depth_range = [50, 50, 50]
+        light.world_to_shadow = [1 / 6, 0, 0, 0.5, 0, -1 / 6, 0, 0.5, 0, 0, -1 / 50, 0.5, 0, 0, 0, 1]
+        maps["cascade_1"] = depth.copy()
+    else:
+        height = 60
+        light = pel.Light(type="point", position=[0, 0, height], color=[1, 1, 1], shadow_filter_texels=32,
+                          shadow_projection="cube_radial", shadow_depth_range=100,
+                          world_to_shadow=[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, -height, 0, 0, 0, 1])
+        maps["shadow_map"] = np.where(cube_directions(64)[..., 0] < 0, 0.2, 1).reshape(6 * 64, 64).astype(np.float32)
+    shader.set_lights([light]).set_material(1, pel.Material(shadow_filter_width=4))
+    for slot, image in maps.items():
+        shader.set_light_image(0, slot, image)
+    shader.commit().execute()
+    assert shader.stats().features == pel.Feature.SHADOW | pel.Feature.FILTER_SHADOW | feature
+    lambert = view.albedo * view.normal[..., 2:]
+    if form == "cube_radial":
+        away = np.float32([0, 0, height]) - view.position
+        square = (away ** 2).sum(-1, keepdims=True)
+        lambert = view.albedo * np.maximum((view.normal * away).sum(-1, keepdims=True), 0) / square ** 1.5
+    x = view.position[..., 0]
+    assert np.abs(out[view.inside & (x < -2.5)]).max() <= 1e-3 * lambert.max()
+    lit = view.inside & (x > 2.5)
+    assert np.abs(out - lambert)[lit].max() < 1e-5
+
+
 def test_outputs_add_up_to_radiance(device, view, tolerance):
     shader, out = show_blurred_normal(device, view)
     shader.set_lights([pel.Light(to_light=view.to_light)]).set_camera(pel.Camera(position=[0, 0, 100]))
