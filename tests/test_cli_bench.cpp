@@ -64,7 +64,8 @@ TEST_F(BenchCommand, MeasuresTimeShareAndError) {
         EXPECT_GT(e.at("bandwidth_share").get<double>(), 0.0) << name;
         EXPECT_LT(e.at("bandwidth_share").get<double>(), 20.0) << name;
         if (e.contains("arithmetic_share")) {
-            EXPECT_LT(e.at("arithmetic_share").get<double>(), 1.0) << name;
+            // Above 1 where something else took the processors while the peak was measured.
+            EXPECT_LT(e.at("arithmetic_share").get<double>(), 20.0) << name;
         }
     }
     EXPECT_EQ(names, (std::vector<std::string>{"copy", "arithmetic", "curvature-edge",
@@ -98,6 +99,7 @@ TEST_F(BenchCommand, VerdictsSurviveNoise) {
         {"a larger error", report(10, 0.01, 1e-6), report(5, 0.01, 2e-6), "less accurate", 1},
         {"an error of rounding", report(10, 0.01, 1e-8), report(10, 0.01, 5e-8), "same", 0},
         {"an error that became NaN", report(10, 0.01, 1e-6), report(10, 0.01, NAN), "less accurate", 1},
+        {"no time", report(10, 0.01, 1e-6), report(NAN, 0.01, 1e-6), "not compared", 0},
         {"another operation", report(10, 0.01, 1e-6), report(10, 0.01, 1e-6, 1e10, "table-ring"), "only new",
          0},
     };
@@ -107,7 +109,18 @@ TEST_F(BenchCommand, VerdictsSurviveNoise) {
             << row.what;
         EXPECT_EQ(result.at("devices")[0].at("operations")[0].at("verdict"), row.verdict) << row.what;
     }
+    Json broken = Json::parse(report(10, 0.01, 1e-6));
+    for (auto& e : broken["devices"][0]["operations"])
+        if (e["group"] != "device") e = {{"name", e["name"]}, {"group", e["group"]}, {"failed", "out of memory"}};
+    write("broken.json", broken.dump());
     write("old.json", report(10, 0.01, 1e-6));
+    const Result failing = run({"bench", "compare", path("old.json"), path("broken.json")});
+    EXPECT_EQ(failing.exitCode, 1);
+    EXPECT_TRUE(contains(failing.out, "1 fail,")) << failing.out;
+    EXPECT_EQ(run({"bench", "compare", path("broken.json"), path("broken.json")}).exitCode, 3) << "it fails as before: nothing to compare";
+    Json elsewhere = Json::parse(report(10, 0.01, 1e-6));
+    elsewhere["devices"][0]["name"] = "another";
+    expectRefused({"bench", "compare", path("old.json"), write("elsewhere.json", elsewhere.dump())}, 3, "nothing to compare");
     write("new.json", report(12, 0.01, 1e-6));
     const Result text = run({"bench", "compare", path("old.json"), path("new.json")});
     EXPECT_EQ(text.exitCode, 1);

@@ -186,9 +186,10 @@ TEST(Small, PassesOverPixels) {
     std::vector<bool> doubtful;
     const auto normals = reference::blurredNormals(shade_test::surfaceOf(g), &doubtful);
     for (size_t i = 0; i < g.pixels(); ++i)
-        if (normals[i] && !doubtful[i])
+        if (normals[i] && !doubtful[i]) {
             EXPECT_LT(reference::magnitude(shade_test::shownNormal(blurred, i) - *normals[i]),
                       tolerance::shadeTerm);
+        }
 }
 
 TEST(Small, ScreenCurvature) {

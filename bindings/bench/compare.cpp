@@ -28,11 +28,10 @@ double value(const Json& e, const char* key) {
 }
 
 std::string compareOne(Json& out, const Json& before, const Json& after, double machine) {
-    if (before.contains("failed") || after.contains("failed"))
-        return before.contains("failed") == after.contains("failed") ? "same"
-               : after.contains("failed")                            ? "only old"
-                                                                     : "only new";
+    if (after.contains("failed")) return before.contains("failed") ? "not compared" : "fails";
     const double ratio = value(after, "median_ms") / value(before, "median_ms");
+    // A failure before, or a report without times.
+    if (before.contains("failed") || !(ratio > 0) || std::isinf(ratio)) return "not compared";
     const double noise =
         std::max({std::log1p(leastChange),
                   standardErrors * std::hypot(relativeError(before), relativeError(after)), machine});
@@ -53,8 +52,13 @@ std::string compareOne(Json& out, const Json& before, const Json& after, double 
 }  // namespace
 
 Json compareReports(const Json& before, const Json& after) {
-    Json result = {
-        {"devices", Json::array()}, {"same", 0}, {"faster", 0}, {"slower", 0}, {"less_accurate", 0}};
+    Json result = {{"devices", Json::array()}, {"same", 0},  {"faster", 0},      {"slower", 0},
+                   {"less_accurate", 0},       {"fails", 0}, {"not_compared", 0}};
+    const auto count = [&result](std::string verdict) {
+        std::replace(verdict.begin(), verdict.end(), ' ', '_');
+        if (!result.contains(verdict)) verdict = "not_compared";
+        result[verdict] = result[verdict].get<int>() + 1;
+    };
     for (const Json& device : after.at("devices")) {
         const Json* old = nullptr;
         for (const Json& d : before.at("devices"))
@@ -81,14 +85,14 @@ Json compareReports(const Json& before, const Json& after) {
             const auto found = byName.find(name);
             one["verdict"] = found == byName.end() ? "only new" : compareOne(one, *found->second, e, machine);
             if (found != byName.end()) byName.erase(found);
-            std::string count = one["verdict"];
-            std::replace(count.begin(), count.end(), ' ', '_');
-            if (result.contains(count)) result[count] = result[count].get<int>() + 1;
+            count(one["verdict"]);
             entry["operations"].push_back(one);
         }
         for (const auto& [name, e] : byName)
-            if (e->at("group") != "device")
+            if (e->at("group") != "device") {
                 entry["operations"].push_back({{"name", name}, {"verdict", "only old"}});
+                count("only old");
+            }
         result["devices"].push_back(entry);
     }
     return result;
@@ -121,9 +125,10 @@ std::string describeComparison(const Json& comparison) {
             text += "  " + e.at("verdict").get<std::string>() + "\n";
         }
     }
-    line("%d same, %d faster, %d slower, %d less accurate\n", comparison.at("same").get<int>(),
-         comparison.at("faster").get<int>(), comparison.at("slower").get<int>(),
-         comparison.at("less_accurate").get<int>());
+    const auto number = [&](const char* key) { return comparison.at(key).get<int>(); };
+    line("%d same, %d faster, %d slower, %d less accurate, %d fail, %d not compared\n", number("same"),
+         number("faster"), number("slower"), number("less_accurate"), number("fails"),
+         number("not_compared"));
     return text;
 }
 

@@ -139,12 +139,15 @@ void compare(const Arguments& a) {
     } catch (const nlohmann::json::exception& e) {
         throw InputError(a.before + " or " + a.after + ": not whole: " + e.what());
     }
+    const auto number = [&](const char* key) { return result.at(key).get<int>(); };
+    if (number("same") + number("faster") + number("slower") + number("less_accurate") + number("fails") == 0)
+        throw InputError("nothing to compare: no operation of one size on one device is in both " + a.before +
+                         " and " + a.after);
     if (a.json)
         std::cout << result.dump(2) << std::endl;
     else
         std::cout << bench::describeComparison(result) << std::flush;
-    if (result.at("slower").get<int>() > 0 || result.at("less_accurate").get<int>() > 0)
-        throw CLI::RuntimeError(exitWorse);
+    if (number("slower") + number("less_accurate") + number("fails") > 0) throw CLI::RuntimeError(exitWorse);
 }
 
 }  // namespace
@@ -163,7 +166,7 @@ void addBench(CLI::App& app) {
     command->add_flag("--first-use", a->firstUse,
                       "time from nothing to the first table and frame, in this process alone");
     CLI::App* two = command->add_subcommand(
-        "compare", "Two reports: what became slower, faster or less accurate (exit code 1)");
+        "compare", "Two reports: what became slower, less accurate or fails (exit code 1), what faster");
     two->add_option("old", a->before, "bench.json")->required();
     two->add_option("new", a->after, "bench.json")->required();
     two->add_flag("--json", a->json, "print one JSON object on standard output");
