@@ -193,7 +193,9 @@ void Shader::commit() {
 void Shader::plan(uint32_t mostRows) {
     const uint32_t features = deriveFeatures(state_);
     Device& device = *device_;
-    ShadePasses passes = passes_;
+    // Old images go before new ones are made: both together would not keep to a budget.
+    committed_ = false;
+    ShadePasses passes = std::exchange(passes_, ShadePasses());
     ShaderState plan = passes.plan(device_, state_, features, mostRows);
     const std::vector<uint32_t> variants = variantFeatures(plan, features);
     const uint32_t before = device.programs().built();
