@@ -427,3 +427,62 @@ TEST_F(Shade, DemoPicturesAreThoseThatShadeMakesOfItsGBuffer) {
     expectRefused({"demo", ball, "-o", ball}, 2, "ball.off");
     expectRefused({"demo", ball, "-o", path("demo"), "--size", "0x0"}, 2, "--size");
 }
+
+// A shelf in the left half of a cube's lowest face shades the left half of a floor; a cube of another shape is named.
+TEST_F(Shade, ACubeShadowMapFromTheSceneFile) {
+    std::vector<float> positions, up;
+    for (int i = 0; i < width * height; ++i) {
+        positions.insert(positions.end(), {4.0f * float(i % width) - 22, 2.0f * float(i / width), 0});
+        up.insert(up.end(), {0, 0, 1});
+    }
+    io::Image g;
+    g.width = width;
+    g.height = height;
+    g.addInterleaved(normalNames, up);
+    g.addInterleaved(std::vector<std::string>{"P.X", "P.Y", "P.Z"}, positions);
+    io::writeExr(path("floor.exr"), g);
+    constexpr int size = 32;
+    io::Image map;
+    map.width = size;
+    map.height = 6 * size;
+    std::vector<float> depth(size_t(6 * size * size), 1.0f);
+    for (int i = 0; i < size * size; ++i)  // of -z, u is -x
+        if (i % size >= size / 2) depth[size_t(5 * size * size + i)] = 0.2f;
+    map.addInterleaved(std::vector<std::string>{"Z"}, depth);
+    io::writeExr(path("cube.exr"), map);
+
+    scene_.channels = {};
+    scene_.channels[PEL_SLOT_NORMAL_SHADING] = {"N.X", "N.Y", "N.Z"};
+    scene_.channels[PEL_SLOT_POSITION] = {"P.X", "P.Y", "P.Z"};
+    io::SceneLight& l = scene_.lights[0];
+    l.light.type = PEL_LIGHT_POINT;
+    l.light.position[2] = 50;
+    l.light.worldToShadow[11] = -50;
+    l.light.shadowProjection = PEL_SHADOW_CUBE_RADIAL;
+    l.light.shadowDepthRange = 100;
+    l.light.shadowFilterTexels = 24;
+    for (float& c : l.light.color) c = 2500;
+    scene_.materials[0].material.shadowFilterWidth = 4;
+    l.shadowMapFile = path("cube.exr");
+    io::writeScene(path("s.toml"), scene_);
+    auto arguments = command("s.toml", "floor.exr");
+    arguments.insert(arguments.end(), {"--json", "--stats"});
+    const Result result = run(arguments);
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_NE(result.out.find("shadow_cube"), std::string::npos) << result.out;
+    const auto out = io::readImage(path("o.exr")).interleaved(std::vector<std::string>{"R"});
+    for (int i = 0; i < width * height; ++i) {
+        const float x = positions[size_t(3 * i)];
+        if (x < -4) {
+            EXPECT_LT(out[size_t(i)], 0.01f) << x;
+        } else if (x > 4) {
+            EXPECT_GT(out[size_t(i)], 0.2f) << x;
+        }
+    }
+    map.height = size;
+    map.channels[0].pixels.resize(size * size);
+    io::writeExr(path("cube.exr"), map);
+    const Result refused = run(arguments);
+    EXPECT_EQ(refused.exitCode, 3);
+    EXPECT_NE(refused.err.find("32 x 192"), std::string::npos) << refused.err;
+}
