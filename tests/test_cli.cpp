@@ -106,6 +106,8 @@ TEST_F(Cli, WrongUseIsRefused) {
     expectRefused({"curvature", mesh, "-o", path("c.npy"), "--weld", "-1"}, 2, "tolerance above 0");
     expectRefused({"curvature", mesh, "-o", path("c.npy"), "--smooth-radius", "-1"}, 2, "--smooth-radius");
     expectRefused({"curvature", mesh, "-o", path("c.npy"), "--smooth-weights", "length"}, 2, "cotangent");
+    expectRefused({"curvature", mesh, "-o", path("c.ply"), "--range", "2", "1"}, 2, "lower one first");
+    expectRefused({"curvature", mesh, "-o", path("c.ply"), "--range", "2"}, 2, "--range");
     expectRefused({"curvature", mesh, "-o", path("c.npy"), "--picture", path("c.jpg")}, 2, ".png");
     expectRefused({"curvature", mesh, "-o", path("c.npy"), "--scale", "nan"}, 2, "scale");
 }
@@ -154,6 +156,20 @@ TEST_F(Cli, CurvatureQuantitiesWeldAndPicture) {
     for (float v : npy::read<float>(path("m.npy")).data)
         EXPECT_NEAR(v, 0.25f, 0.25f * tolerance::tensorCurvature);
     EXPECT_GT(std::filesystem::file_size(path("m.png")), 1000u);
+    // On one range, meshes of different curvature differ in colour; each on its own, they look alike.
+    const auto colored = [&](const char* scale, bool ranged) {
+        std::vector<std::string> arguments = {"curvature", mesh, "-o", path("r.ply"), "--scale", scale};
+        if (ranged) arguments.insert(arguments.end(), {"--range", "0", "2"});
+        EXPECT_EQ(run(arguments).exitCode, 0);
+        std::ifstream file(path("r.ply"), std::ios::binary);
+        const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+        const size_t vertices = bytes.find("end_header\n") + 11, stride = 31;  // position, normal, quality, colour
+        std::string colors;
+        for (size_t v = 0; v < 12; ++v) colors += bytes.substr(vertices + v * stride + 28, 3);
+        return colors;
+    };
+    EXPECT_EQ(colored("1", false), colored("2", false));
+    EXPECT_NE(colored("1", true), colored("2", true));
     const std::string horned = icosahedron("9 9 9\n", "3 0 1 12\n", 13, 21);
     const auto smoothed = [&](const char* weights) {
         EXPECT_EQ(run({"curvature", horned, "-o", path("w.npy"), "--smooth-radius", "0.6", "--smooth-weights", weights})

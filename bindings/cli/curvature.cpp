@@ -20,6 +20,7 @@ struct Arguments {
     std::string mesh, output, picture, weld = "none", up = "z", estimator = "quadric", quantity = "absolute", smoothingWeights = "cotangent";
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     double creaseDegrees = 0;
+    std::vector<float> range;  // of colours: low, high; empty: from the values
 };
 
 const std::map<std::string, PelCurvatureEstimator> estimators = {
@@ -71,6 +72,9 @@ void run(const Arguments& a) {
     if (a.estimator == "edge" && a.quantity != "absolute")
         throw UsageError(
             "--quantity: the edge estimator measures `absolute` only; take --estimator tensor or quadric");
+    if (!a.range.empty() && !(a.range[0] < a.range[1] && std::isfinite(a.range[1] - a.range[0])))
+        throw UsageError("--range " + std::to_string(a.range[0]) + " " + std::to_string(a.range[1]) +
+                         ": two finite numbers are needed, the lower one first");
     const MeshWeldChoice weld = weldChoice(a.weld);
     PelCurvatureParams params = a.params;
     params.estimator = estimators.at(a.estimator);
@@ -85,20 +89,23 @@ void run(const Arguments& a) {
         run.note("no normals in " + a.mesh + ": they were made from its triangles");
     }
     const MeshCurvature result = meshCurvature(run, mesh, params, weld);
-    const float low = isSigned(params.quantity) ? percentile(result.values, 0.02) : 0.0f;
-    const float high = percentile(result.values, 0.98);
+    // `share`: of the values beyond either end of the colours.
+    const auto scale = [&](double share) -> std::pair<float, float> {
+        if (!a.range.empty()) return {a.range[0], a.range[1]};
+        return {isSigned(params.quantity) ? percentile(result.values, share) : 0.0f, percentile(result.values, 1 - share)};
+    };
     if (io::extensionOf(a.output) == "npy") {
         const size_t shape[] = {result.values.size()};
         io::writeNpy(a.output, shape, result.values);
     } else {
+        const auto [low, high] = scale(0.02);
         io::writePly(a.output, mesh, result.values, low, high);
     }
     if (!a.picture.empty()) {
         const bool squared = params.quantity == PEL_QUANTITY_GAUSSIAN;
         // The few sharpest places would leave one colour for all the others.
-        writeCurvaturePicture(a.picture, mesh, result.values,
-                              isSigned(params.quantity) ? percentile(result.values, 0.1) : 0.0f,
-                              percentile(result.values, 0.9), a.up[0], squared ? "1/length^2" : "1/length");
+        const auto [low, high] = scale(0.1);
+        writeCurvaturePicture(a.picture, mesh, result.values, low, high, a.up[0], squared ? "1/length^2" : "1/length");
         run.report["picture"] = a.picture;
     }
     run.report["output"] = a.output;
@@ -142,6 +149,11 @@ void addCurvature(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--picture", a->picture,
                         "PNG to write as well: the mesh coloured by the values, with a colour bar");
+    command
+        ->add_option("--range", a->range,
+                     "LOW HIGH: what the colours of --picture and of a .ply stand for, so that several compare; default: "
+                     "from the values, the sharpest places left out")
+        ->expected(2);
     command
         ->add_option("--up", a->up,
                      "of the picture: the mesh's up axis, z (it looks to -y) or y (it looks to +z)")

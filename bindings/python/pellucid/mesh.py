@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _flight, _native
 from ._arrays import Vertices, output_array, submit, vertex_view
 from ._struct import to_enum
-from ._types import CurvatureEstimator, CurvatureParams, CurvatureQuantity, MeshReport, Weld
+from ._types import CurvatureEstimator, CurvatureParams, CurvatureQuantity, MeshReport, SmoothingWeights, Weld
 from .device import Device, Event, _handles
 
 
@@ -119,6 +119,7 @@ class MeshTopology:
     def curvature(self, positions: Any, normals: Any = None, out: Optional[NDArray[np.float32]] = None, *,
                   params: Optional[CurvatureParams] = None, estimator: CurvatureEstimator | str | None = None,
                   quantity: CurvatureQuantity | str | None = None, smoothing_passes: Optional[int] = None,
+                  smoothing_radius: Optional[float] = None, smoothing_weights: SmoothingWeights | str | None = None,
                   scale: Optional[float] = None, report: bool = False) -> NDArray[np.float32]:
         """Curvature at each vertex, in 1/length, finite; 0 where nothing could be measured.
 
@@ -131,13 +132,13 @@ class MeshTopology:
             Where the result goes, any positive stride; a new array without it. (n, 2) for the quantity "principal", (n, 8)
             for "frame".
         params : CurvatureParams, optional
-        estimator, quantity, smoothing_passes, scale
+        estimator, quantity, smoothing_passes, smoothing_radius, smoothing_weights, scale
             Fields of it by themselves.
-
         report : bool
             Also count in `self.report` what these positions and normals made it skip.
         """
-        settings = _settings(params, estimator, quantity, smoothing_passes, scale)
+        settings = _settings(params, estimator=estimator, quantity=quantity, smoothing_passes=smoothing_passes,
+                             smoothing_radius=smoothing_radius, smoothing_weights=smoothing_weights, scale=scale)
         result = out if isinstance(out, Vertices) else output_array(out, _shape(self.num_vertices, settings), np.float32, "out")
         if report:
             # A call that reports blocks where Ctrl-C is not seen, so it is a short one, without smoothing.
@@ -151,9 +152,12 @@ class MeshTopology:
     def submit_curvature(self, positions: Any, normals: Any, out: Any, *, params: Optional[CurvatureParams] = None,
                          estimator: CurvatureEstimator | str | None = None,
                          quantity: CurvatureQuantity | str | None = None, smoothing_passes: Optional[int] = None,
+                         smoothing_radius: Optional[float] = None, smoothing_weights: SmoothingWeights | str | None = None,
                          scale: Optional[float] = None, waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
-        return self._submit(positions, normals, out, _settings(params, estimator, quantity, smoothing_passes, scale), None, waits)
+        settings = _settings(params, estimator=estimator, quantity=quantity, smoothing_passes=smoothing_passes,
+                             smoothing_radius=smoothing_radius, smoothing_weights=smoothing_weights, scale=scale)
+        return self._submit(positions, normals, out, settings, None, waits)
 
     def _submit(self, positions: Any, normals: Any, out: Any, params: CurvatureParams, report: Optional[MeshReport],
                 waits: Iterable[Event]) -> Event:
@@ -197,10 +201,8 @@ def _shape(vertices: int, params: CurvatureParams) -> tuple[int, ...]:
     return (vertices, _COMPONENTS[params.quantity]) if params.quantity in _COMPONENTS else (vertices,)
 
 
-def _settings(params: Optional[CurvatureParams], estimator: Any, quantity: Any, smoothing_passes: Any,
-              scale: Any) -> CurvatureParams:
+def _settings(params: Optional[CurvatureParams], **given: Any) -> CurvatureParams:
     settings = CurvatureParams() if params is None else params.copy()
-    given = {"estimator": estimator, "quantity": quantity, "smoothing_passes": smoothing_passes, "scale": scale}
     for name, value in given.items():
         if value is not None:
             setattr(settings, name, value)

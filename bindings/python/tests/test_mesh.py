@@ -35,6 +35,8 @@ def test_smoothing_to_a_radius_by_either_weights(device, make_sphere):
         assert params.smoothing_weights == pel.SmoothingWeights[weights.upper()]
         spread[weights] = curvature_of(device, mesh, params=params)
         assert np.ptp(spread[weights]) < np.ptp(rough)
+        by_keywords = curvature_of(device, mesh, smoothing_passes=0, smoothing_radius=1.0, smoothing_weights=weights)
+        assert np.array_equal(by_keywords, spread[weights])
     assert not np.array_equal(spread["cotangent"], spread["area"])
     with pytest.raises(ValueError, match="cotangent, area"):
         pel.CurvatureParams(smoothing_weights="length")
