@@ -117,7 +117,7 @@ TEST(ShadowContent, OfAFlatOccluderEqualsDepth) {
                         EXPECT_GE(as.wide[i], 1 - tolerance::contentShadow);
                     } else if (depth.thickness[i] > 15) {
                         ++dark;
-                        EXPECT_LE(as.wide[i], 0.02) << "at least 15 mm behind an occluder";
+                        EXPECT_LE(as.wide[i], tolerance::contentBehind) << "at least 15 mm behind an occluder";
                     }
                 }
                 EXPECT_GT(dark, 200u);
@@ -148,10 +148,10 @@ TEST(ShadowContent, CubesAndCascadesHoldThemToo) {
             double wide = 0;
             for (size_t i = 0; i < f.pixels(); ++i) {
                 if (!materialAt(f, i)) continue;
-                EXPECT_NEAR(as.thickness[i], depth.thickness[i], 0.05 + 0.02 * depth.thickness[i]) << i << " radial " << radial;
+                EXPECT_NEAR(as.thickness[i], depth.thickness[i], tolerance::contentInCubeThickness + 0.02 * depth.thickness[i]) << i << " radial " << radial;
                 wide += std::abs(as.wide[i] - depth.wide[i]) / double(f.pixels());
             }
-            EXPECT_LE(wide, 0.04) << "mean; content " << content << ", radial " << radial;
+            EXPECT_LE(wide, tolerance::contentInCube) << "mean; content " << content << ", radial " << radial;
         }
     }
     ContentLight one = contentLight(PEL_SHADOW_CONTENT_MOMENTS, false, false, 131);

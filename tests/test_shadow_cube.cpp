@@ -105,7 +105,7 @@ TEST(ShadowCube, TurningItChangesNothingAndFacesMeetWithoutASeam) {
                 thickness += turned.thickness[i] - straight.thickness[i];
             }
             EXPECT_LE(wide / double(f.pixels()), tolerance::cubeTurned / 10);
-            EXPECT_NEAR(thickness / double(f.pixels()), 0, 0.1);
+            EXPECT_NEAR(thickness / double(f.pixels()), 0, tolerance::cubeTurnedThickness);
         }
 }
 

@@ -165,6 +165,14 @@ inline constexpr Tolerance cubeThickness{
     "cubeThickness", 0.01, "mm at 100 mm from the light: float depths with a near plane at 5 mm leave 2e-3 each"};
 inline constexpr Tolerance cubeAsPerspective{
     "cubeAsPerspective", 0.02, "within 4 degrees of the axis, where disks across axis and direction differ by 0.25 %"};
+inline constexpr Tolerance contentBehind{
+    "contentBehind", 0.02, "light that moments and exponentials let through at least 15 mm behind an occluder: exp(-c dz), Chebyshev's bound"};
+inline constexpr Tolerance contentInCube{
+    "contentInCube", 0.04, "mean over pixels: exp(-c dz) where 50 mm are a tenth of a radial map's range; a hundredth at twice the distance"};
+inline constexpr Tolerance contentInCubeThickness{
+    "contentInCubeThickness", 0.05, "mm, and 2 % of the thickness: depths of neighbours are weighed as exponentials, not as they are"};
+inline constexpr Tolerance cubeTurnedThickness{
+    "cubeTurnedThickness", 0.1, "mm, mean over pixels: disks of 32 taps that lie elsewhere on the map"};
 inline constexpr Tolerance cubeTurned{"cubeTurned", 0.03, "filters of 16 texels across that lie elsewhere on the map"};
 inline constexpr Tolerance peerTerm{"peerTerm", 1e-6,
                                     "the peer's float arithmetic and float LUT coordinates"};
