@@ -12,7 +12,9 @@
 //
 // The two-ring is walked as the rings of the ring. Where those are closed, their walks begin behind the slot's own
 // neighbours and leave out the last vertex, which the next walk begins with: each vertex of the two-ring then counts
-// once. At borders some count several times.
+// once. Some count several times: at borders; where triangles are in no consistent order; and the one vertex behind a
+// neighbour of four, which stays in though the next walk begins with it (on meshes of four and eight neighbours that
+// takes up to a sixth off the error).
 //
 // What the points leave open (fewer than nine, all on a line) a ridge decides, towards a quadric and then a plane; a
 // term whose pivot is lost to rounding is dropped. The result is always finite.

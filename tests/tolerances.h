@@ -47,6 +47,11 @@ inline constexpr Tolerance edgeCurvature{"edgeCurvature", 1e-5,
 inline constexpr Tolerance tensorCurvature{
     "tensorCurvature", 1e-4,
     "float least squares per triangle; slivers of irregular meshes lose three digits"};
+inline constexpr Tolerance quadricCurvature{
+    "quadricCurvature", 3e-4,
+    "float normal equations of nine terms; 1e-5 on most meshes, 7e-5 where flipped edges leave slivers"};
+inline constexpr Tolerance quadricDecision{
+    "quadricDecision", 1e-4, "relative: nearer to a threshold float may decide the other way; such vertices are not compared"};
 inline constexpr Tolerance torusExactNormals{"torusExactNormals", 0.005,
                                              "RMS, 20,000 vertices: what the estimators are chosen for"};
 inline constexpr Tolerance torusEstimatedNormals{

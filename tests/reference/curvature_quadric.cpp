@@ -1,0 +1,229 @@
+#include "reference/curvature_quadric.h"
+
+#include <map>
+#include <set>
+
+namespace reference {
+namespace {
+
+struct Neighbourhood {
+    std::set<int> ring;
+    std::map<int, int> across;  // by neighbour b: of triangle (vertex, b, c), in its order, the corner c
+    std::map<int, int> before;  // the same, by c: b
+    bool border = false, closed = false;
+};
+
+// From nothing but the triangles that have the vertex as a corner.
+std::vector<Neighbourhood> neighbourhoods(const Mesh& mesh) {
+    std::vector<Neighbourhood> all(mesh.positions.size());
+    for (const Triangle& t : mesh.triangles)
+        for (int i = 0; i < 3; ++i) {
+            const int b = t[(i + 1) % 3], c = t[(i + 2) % 3];
+            Neighbourhood& n = all[t[i]];
+            n.ring.insert({b, c});
+            n.across[b] = c;
+            n.before[c] = b;
+        }
+    for (Neighbourhood& n : all) {
+        for (int b : n.ring) n.border |= !n.across.contains(b) || !n.before.contains(b);
+        if (n.border || n.ring.size() < 3) continue;
+        size_t steps = 1;  // round the vertex and back
+        for (int b = n.across.at(*n.ring.begin()); b != *n.ring.begin(); b = n.across.at(b)) ++steps;
+        n.closed = steps == n.ring.size();
+    }
+    return all;
+}
+
+// How often each vertex counts in the fit at `vertex`.
+std::map<int, int> twoRing(const std::vector<Neighbourhood>& all, int vertex) {
+    std::map<int, int> counts;
+    for (int b : all[vertex].ring) {
+        ++counts[b];
+        std::set<int> further = all[b].ring;
+        further.erase(vertex);
+        if (all[b].closed) {
+            const int next = all[vertex].across.at(b), before = all[vertex].before.at(b);
+            further.erase(next);
+            further.erase(before);
+            // The corner on the other side of the edge (b, next) is left to the neighbour `next`; not where
+            // there is no other.
+            if (further.size() > 1)
+                further.erase(all[b].before.at(next) == vertex ? all[b].across.at(next)
+                                                               : all[b].before.at(next));
+        }
+        for (int f : further) ++counts[f];
+    }
+    return counts;
+}
+
+struct Frame {
+    Vec3 u, v, n;
+};
+
+// [Duff et al., Building an Orthonormal Basis, Revisited, JCGT 2017]
+Frame frameOf(Vec3 n) {
+    const double s = std::copysign(1.0, n.z), a = -1 / (s + n.z);
+    return {
+        {1 + s * n.x * n.x * a, s * n.x * n.y * a, -s * n.x}, {n.x * n.y * a, s + n.y * n.y * a, -n.y}, n};
+}
+
+// What the one-ring says about the coordinates of the fit.
+struct Chart {
+    Frame frame;
+    double reach = 0;
+    double slopeU = 0, slopeV = 0;  // taken off the heights
+    double bend = 0;
+    double xu = 0, yu = 0, yv = 0;  // coordinates x = xu u, y = yu u + yv v; u, v in units of twice the reach
+    double steepness = 0, slope2 = 0;
+};
+
+Chart chartOf(const Mesh& mesh, const std::set<int>& ring, int vertex, Vec3 normal) {
+    Chart chart;
+    chart.frame = frameOf(normal);
+    for (int b : ring)
+        chart.reach = std::max(chart.reach, length(mesh.positions[b] - mesh.positions[vertex]));
+    if (!(chart.reach > 0)) return chart;
+    double uu = 0, uv = 0, vv = 0, un = 0, vn = 0, nn = 0;  // means over the ring, in units of the reach
+    for (int b : ring) {
+        const Vec3 p = (mesh.positions[b] - mesh.positions[vertex]) / chart.reach;
+        const double u = dot(p, chart.frame.u), v = dot(p, chart.frame.v), n = dot(p, normal);
+        const double part = 1.0 / double(ring.size());
+        uu += part * u * u, uv += part * u * v, vv += part * v * v;
+        un += part * u * n, vn += part * v * n, nn += part * n * n;
+    }
+    // Slope by least squares, held down by a ridge of 0.03; small ones stay in the heights.
+    const double a = uu + 0.03, c = vv + 0.03, determinant = a * c - uv * uv;
+    const double su = (c * un - uv * vn) / determinant, sv = (a * vn - uv * un) / determinant;
+    chart.slope2 = su * su + sv * sv;
+    const double part = chart.slope2 / (chart.slope2 + 0.05 * 0.05);
+    chart.slopeU = part * su;
+    chart.slopeV = part * sv;
+    chart.steepness = nn / (uu + vv);
+    chart.bend = 1 / (1 + std::pow(chart.steepness / 0.04, 2));
+    // L with L L' = moments: (x, y) = sqrt(1/2) L^-1 (u, v).
+    const double least = std::max(1e-6 * (uu + vv), nn);
+    const double l11 = std::sqrt(std::max(uu, least)), l21 = uv / l11;
+    const double l22 = std::sqrt(std::max(vv - l21 * l21, least));
+    chart.xu = std::sqrt(0.5) / l11;
+    chart.yv = std::sqrt(0.5) / l22;
+    chart.yu = -chart.yv * l21 / l11;
+    return chart;
+}
+
+// Gaussian elimination with pivots, in place.
+template <size_t N>
+std::array<double, N> solve(std::array<std::array<double, N>, N> a, std::array<double, N> b) {
+    for (size_t i = 0; i < N; ++i) {
+        size_t pivot = i;
+        for (size_t k = i; k < N; ++k)
+            if (std::abs(a[k][i]) > std::abs(a[pivot][i])) pivot = k;
+        std::swap(a[i], a[pivot]);
+        std::swap(b[i], b[pivot]);
+        for (size_t k = i + 1; k < N; ++k) {
+            const double factor = a[k][i] / a[i][i];
+            for (size_t j = i; j < N; ++j) a[k][j] -= factor * a[i][j];
+            b[k] -= factor * b[i];
+        }
+    }
+    for (size_t i = N; i-- > 0;) {
+        for (size_t j = i + 1; j < N; ++j) b[i] -= a[i][j] * b[j];
+        b[i] /= a[i][i];
+    }
+    return b;
+}
+
+// Principal curvatures and directions of the graph h(u, v) with these derivatives at 0: Gauss and Weingarten.
+void principal(QuadricCurvature& out, const Frame& frame, double hu, double hv, double huu, double huv,
+               double hvv) {
+    const double E = 1 + hu * hu, F = hu * hv, G = 1 + hv * hv, area2 = E * G - F * F;
+    const double part = -1 / std::sqrt(area2);  // bending away from the normal counts positive
+    const double L = part * huu, M = part * huv, N = part * hvv;
+    const double H = (E * N - 2 * F * M + G * L) / (2 * area2), K = (L * N - M * M) / area2;
+    const double radius = std::sqrt(std::max(0.0, H * H - K));
+    out.first = H + radius;
+    out.second = H - radius;
+    const Vec3 tangentU = frame.u + hu * frame.n, tangentV = frame.v + hv * frame.n;
+    out.normal = normalized(cross(tangentU, tangentV));
+    // (II - k I) d = 0: d is at right angles to the longer row.
+    const double r0 = L - out.first * E, r1 = M - out.first * F, r2 = N - out.first * G;
+    const bool upper = std::hypot(r0, r1) > std::hypot(r1, r2);
+    Vec3 d = upper ? -r1 * tangentU + r0 * tangentV : -r2 * tangentU + r1 * tangentV;
+    if (!(length(d) > 0)) d = tangentU;
+    out.firstDirection = normalized(d);
+    out.secondDirection = cross(out.normal, out.firstDirection);
+}
+
+void nearer(double& margin, double value, double threshold) {
+    margin = std::min(margin, std::abs(value / threshold - 1));
+}
+
+}  // namespace
+
+std::vector<QuadricCurvature> quadricCurvature(const Mesh& mesh) {
+    const std::vector<Neighbourhood> all = neighbourhoods(mesh);
+    std::vector<QuadricCurvature> curvatures(mesh.positions.size());
+    for (int vertex = 0; vertex < int(curvatures.size()); ++vertex) {
+        QuadricCurvature& out = curvatures[vertex];
+        const std::set<int>& ring = all[vertex].ring;
+        out.border = all[vertex].border;
+        const Vec3 given = normalized(mesh.normals[vertex]);
+        Chart chart = chartOf(mesh, ring, vertex, given);
+        if (!(chart.reach > 0)) continue;
+        out.measured = true;
+
+        const bool doubtful = chart.steepness > 0.05 || chart.slope2 > 0.01;
+        Vec3 sum;
+        for (int b : ring) sum = sum + normalized(mesh.normals[b]);
+        const double cosine = dot(normalized(sum), given);
+        if (cosine < 0.99) {
+            nearer(out.margin, chart.steepness, 0.05);
+            nearer(out.margin, chart.slope2, 0.01);
+        }
+        if (doubtful) nearer(out.margin, cosine, 0.99);
+        if (doubtful && cosine < 0.99) {
+            out.replaced = true;
+            chart = chartOf(mesh, ring, vertex, normalized(sum));
+        }
+
+        std::array<std::array<double, 9>, 9> matrix{};
+        std::array<double, 9> right{};
+        double total = 0;
+        for (const auto& [point, count] : twoRing(all, vertex)) {
+            const Vec3 p = (mesh.positions[point] - mesh.positions[vertex]) / (2 * chart.reach);
+            const double u = dot(p, chart.frame.u), v = dot(p, chart.frame.v);
+            const double x = chart.xu * u, y = chart.yu * u + chart.yv * v;
+            nearer(out.margin, x * x + y * y, 4);
+            if (!(x * x + y * y <= 4)) continue;
+            const double q = dot(p, chart.frame.n) - chart.slopeU * u - chart.slopeV * v;
+            const double r2 = u * u + v * v, bent = r2 + chart.bend * q * q;
+            const double z = bent > 0 ? q * r2 / bent : 0;
+            const double weight = count / (0.05 + dot(p, p));
+            const double terms[9] = {x,
+                                     y,
+                                     x * x / 2,
+                                     x * y,
+                                     y * y / 2,
+                                     x * x * x / 6,
+                                     x * x * y / 2,
+                                     x * y * y / 2,
+                                     y * y * y / 6};
+            total += weight;
+            ++out.points;
+            for (int i = 0; i < 9; ++i) {
+                right[i] += weight * z * terms[i];
+                for (int j = 0; j < 9; ++j) matrix[i][j] += weight * terms[i] * terms[j];
+            }
+        }
+        for (int i = 0; i < 9; ++i) matrix[i][i] += total * (i < 5 ? 1e-7 : out.border ? 1e-3 : 1e-5);
+        const std::array<double, 9> s = solve(matrix, right);
+
+        // Back to u and v, and to lengths.
+        const double unit = 2 * chart.reach, xu = chart.xu, yu = chart.yu, yv = chart.yv;
+        principal(out, chart.frame, chart.slopeU + xu * s[0] + yu * s[1], chart.slopeV + yv * s[1],
+                  (xu * xu * s[2] + 2 * xu * yu * s[3] + yu * yu * s[4]) / unit,
+                  yv * (xu * s[3] + yu * s[4]) / unit, yv * yv * s[4] / unit);
+    }
+    return curvatures;
+}
+
+}  // namespace reference
