@@ -486,3 +486,33 @@ TEST_F(Shade, ACubeShadowMapFromTheSceneFile) {
     EXPECT_EQ(refused.exitCode, 3);
     EXPECT_NE(refused.err.find("32 x 192"), std::string::npos) << refused.err;
 }
+
+TEST_F(Shade, ProgramsAreBuiltAheadForTheDriversCache) {
+    io::Image wide;
+    wide.width = 24;
+    wide.height = 8;
+    const size_t pixels = wide.pixelCount();
+    wide.addInterleaved(normalNames, std::vector<float>(pixels * 3, 0.577f));
+    wide.addInterleaved(albedoNames, std::vector<float>(pixels * 3, 0.5f));
+    wide.addInterleaved(std::vector<std::string>{"View.Id.X"}, std::vector<float>(pixels, 1.0f));
+    io::writeExr(path("w.exr"), wide);
+    std::filesystem::create_directories(path("cache"));
+    const std::string cache = "POCL_CACHE_DIR=" + path("cache");
+    const auto compiled = [&] {  // kernels, where the device is PoCL's
+        size_t count = 0;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path("cache")))
+            count += entry.path().extension() == ".so";
+        return count;
+    };
+    const Result built = run({"prefill", path("s.toml"), "--json"}, cache);
+    ASSERT_EQ(built.exitCode, 0) << built.err;
+    expectReport(built.json());
+    EXPECT_GE(built.json().at("programs").get<int>(), 1);
+    const size_t before = compiled();
+    ASSERT_EQ(run(command("s.toml", "w.exr"), cache).exitCode, 0);
+    EXPECT_EQ(compiled(), before) << "shading compiled nothing more";
+    if (contains(built.json().at("device").get<std::string>(), "pthread")) {
+        EXPECT_GT(before, 0u) << "PoCL keeps kernels there";
+    }
+    expectRefused({"prefill", path("none.toml")}, 3, "none.toml");
+}

@@ -82,7 +82,7 @@ void run(const Arguments& a) {
 void addPrefill(CLI::App& app) {
     CLI::App* command = app.add_subcommand("prefill", "Build OpenCL programs ahead of their first use, for the driver's cache");
     auto a = std::make_shared<Arguments>();
-    command->add_option("scene", a->scenes, "scene files (TOML) that `pellucid shade` will be given")->check(CLI::ExistingFile);
+    command->add_option("scene", a->scenes, "scene files (TOML) that `pellucid shade` will be given");
     command->add_flag("--luts", a->luts, "look-up tables of sums of Gaussians");
     command->add_flag("--table-luts", a->tableLuts, "look-up tables of measured profiles");
     command->add_flag("--curvature", a->curvature, "curvature of meshes");

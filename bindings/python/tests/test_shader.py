@@ -371,3 +371,39 @@ def test_turned_taps_are_an_option(device, view):
     shader = shader_for(device, view, np.zeros((HEIGHT, WIDTH, 3), np.float32))
     assert not pel.ShaderOptions().rotate_taps
     shader.set_options(rotate_taps=1).commit().execute()  # no taps here: allowed, and nothing to turn
+
+
+def test_programs_are_built_ahead_and_frames_in_bands():
+    device = pel.Device()
+    rows, columns = np.mgrid[0:60, 0:64].astype(np.float32)
+    position = np.dstack([columns, rows, np.zeros_like(rows)])
+    normal = np.zeros_like(position)
+    normal[..., 2] = 1
+    normal[::3, :, 0] = 0.3
+    light = pel.Light(shadow_depth_range=100.0, shadow_filter_texels=8)
+    light.world_to_shadow = np.diag([1 / 64, 1 / 64, 0.01, 1]).astype(np.float32)
+    depth = np.full((32, 32), 0.2, np.float32)
+
+    def shader(out, **options):
+        s = pel.Shader(device).set_options(**options).set_image("radiance", out).set_image("normal_shading", normal)
+        s.set_image("position", position).set_material(1, pel.Material(shadow_filter_width=20.0)).set_lights([light])
+        return s.set_light_image(0, "shadow_map", depth)
+
+    whole, banded = np.zeros_like(position), np.zeros_like(position)
+    ahead = shader(np.zeros_like(position))
+    told = []
+    device.set_progress(lambda fraction, what: told.append((fraction, what)))
+    assert pel.prefill_programs(device, shaders=[ahead]) == 2  # shading, wide shadow
+    assert told[0] == (0, "building programs") and told[-1] == (1, "building programs")
+    device.set_progress(None)
+    built = device.stats().programs_built
+    shader(whole).commit().execute()
+    bands = shader(banded, scratch_budget=64 * 4 * 20).commit()
+    bands.execute()
+    assert device.stats().programs_built == built and pel.prefill_programs(device, shaders=[ahead]) == 0
+    assert bands.stats().bands == 3
+    assert np.array_equal(whole, banded) and whole.any()
+    with pytest.raises(pel.PellucidError, match="at least 512"):
+        shader(banded, scratch_budget=100).commit()
+    with pytest.raises(pel.PellucidError, match="PelProgramGroup"):
+        pel.prefill_programs(device, 64)
