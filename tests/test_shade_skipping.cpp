@@ -31,7 +31,7 @@ Scene randomScene(uint32_t seed, const Choices& choices) {
     Frame& f = s.frame;
     f.curvatureLut = f.shadowLut = true;
     f.options.blurNormals = choices.blur;
-    f.options.accumulate = seed % 2;
+    f.options.accumulate = choices.half;
     f.options.invalidColor[2] = 9;
     const auto fill = [&](Image& image, uint32_t components, float least, float most) {
         image.components = components;
@@ -109,7 +109,7 @@ std::vector<std::vector<unsigned char>> run(const Scene& s, const PelShaderOptio
 class ShadeSkipping : public testing::TestWithParam<std::pair<const char*, Choices>> {};
 
 TEST_P(ShadeSkipping, ChangesNoBit) {
-    for (uint32_t seed : {1u, 2u}) {  // added to the target, and replacing it
+    for (uint32_t seed : {1u, 2u}) {  // of different sizes
         const Scene s = randomScene(seed, GetParam().second);
         PelShaderOptions options = s.frame.options;
         PelShaderStats stats = pelShaderStatsDefaults();
