@@ -147,13 +147,17 @@ inline void assemble(Fit* fit) {
     }
 }
 
+// How often a term's derivative stands among all of its order (uv and vu, ...): the ridge's sum of squares is that of all, which
+// does not change when the chart is turned.
+__constant int ridgeShares[TERMS] = {1, 1, 1, 2, 1, 1, 3, 3, 1};
+
 // Cholesky without roots, in place; the solution replaces the right side. A pivot that is lost to rounding
 // drops its term.
 inline void solve(Fit* fit, floatw ridge) {
     floatw inverse[TERMS];
 #pragma unroll
     for (int i = 0; i < TERMS; ++i) {
-        fit->products[PRODUCT(i, i)] += fit->weight * (i < 5 ? (floatw)(RIDGE_QUADRATIC) : ridge);
+        fit->products[PRODUCT(i, i)] += fit->weight * (float)ridgeShares[i] * (i < 5 ? (floatw)(RIDGE_QUADRATIC) : ridge);
         floatw pivot = fit->products[PRODUCT(i, i)];
         const floatw whole = pivot;
 #pragma unroll

@@ -174,3 +174,36 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
     EXPECT_GT(borders, 100u);
     EXPECT_GT(replaced, 5u);
 }
+
+// Neither does a result depend on where the tangent frame's axes point: the ridge that decides at borders weighs all
+// directions alike.
+TEST(CurvatureQuadricOracle, TurnedMeshesCurveAlike) {
+    const double axis[3] = {1 / std::sqrt(14.0), 2 / std::sqrt(14.0), 3 / std::sqrt(14.0)}, c = std::cos(0.9), s = std::sin(0.9);
+    const auto turn = [&](std::vector<float>& vectors) {
+        for (size_t i = 0; i < vectors.size(); i += 3) {
+            float* v = &vectors[i];
+            const double along = axis[0] * v[0] + axis[1] * v[1] + axis[2] * v[2], old[3] = {v[0], v[1], v[2]};
+            for (int k = 0; k < 3; ++k) {
+                const int l = (k + 1) % 3, m = (k + 2) % 3;
+                v[k] = float(c * old[k] + s * (axis[l] * old[m] - axis[m] * old[l]) + (1 - c) * along * axis[k]);
+            }
+        }
+    };
+    for (const auto& [name, given] : meshes()) {
+        SCOPED_TRACE(name);
+        const Pair pair = pairOf(given);
+        const auto expected = reference::quadricCurvature(pair.exact);
+        const auto means = measured(pair.mesh, PEL_QUANTITY_MEAN, 1);
+        Mesh turned = pair.mesh;
+        turn(turned.positions);
+        turn(turned.normals);
+        const auto turnedMeans = measured(turned, PEL_QUANTITY_MEAN, 1);
+        double largest = 0;
+        for (const auto& k : expected) largest = std::max({largest, std::abs(k.first), std::abs(k.second)});
+        double worst = 0;
+        for (size_t v = 0; v < expected.size(); ++v)
+            if (expected[v].margin >= tolerance::quadricDecision && expected[v].points >= 9)
+                worst = std::max(worst, std::abs(double(means[v]) - turnedMeans[v]) / largest);
+        EXPECT_LE(worst, tolerance::quadricTurned);
+    }
+}

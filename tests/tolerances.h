@@ -50,6 +50,8 @@ inline constexpr Tolerance tensorCurvature{
 inline constexpr Tolerance quadricCurvature{
     "quadricCurvature", 3e-4,
     "float normal equations of nine terms; 1e-5 on most meshes, 7e-5 where flipped edges leave slivers"};
+inline constexpr Tolerance quadricTurned{
+    "quadricTurned", 5e-3, "where flipped edges leave rings so thin that a pivot is held up, which depends on the axes; 3e-4 elsewhere"};
 inline constexpr Tolerance quadricDecision{
     "quadricDecision", 1e-4, "relative: nearer to a threshold float may decide the other way; such vertices are not compared"};
 inline constexpr Tolerance torusExactNormals{"torusExactNormals", 0.005,

@@ -214,7 +214,9 @@ std::vector<QuadricCurvature> quadricCurvature(const Mesh& mesh) {
                 for (int j = 0; j < 9; ++j) matrix[i][j] += weight * terms[i] * terms[j];
             }
         }
-        for (int i = 0; i < 9; ++i) matrix[i][i] += total * (i < 5 ? 1e-7 : out.border ? 1e-3 : 1e-5);
+        // The squares of all derivatives of an order: mixed ones stand there twice, or three times.
+        const double often[9] = {1, 1, 1, 2, 1, 1, 3, 3, 1};
+        for (int i = 0; i < 9; ++i) matrix[i][i] += total * often[i] * (i < 5 ? 1e-7 : out.border ? 1e-3 : 1e-5);
         const std::array<double, 9> s = solve(matrix, right);
 
         // Back to u and v, and to lengths.
