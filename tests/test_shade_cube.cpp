@@ -124,6 +124,7 @@ TEST(ShadeCube, KernelsThatDoLessGiveTheSameBits) {
     }
     for (size_t i = 0; i < f.pixels(); ++i) f.slots[PEL_SLOT_MATERIAL].values[i] = i % f.width < 128 ? 1 : 2;
     PelShaderStats stats = pelShaderStatsDefaults();
+    f.options.tileLists = PEL_TILES_PER_VARIANT;
     const auto apart = shade(device(), f, tables(), &stats);
     EXPECT_GT(stats.tilesPartial, 0u);
     f.options.tileLists = PEL_TILES_ONE_LIST;
