@@ -64,7 +64,9 @@ constexpr const char* formatDefines[PEL_SLOT_COUNT] = {
 
 // Tiles that a work-item of the classification takes: runs on a CPU, one each on a GPU, which has thousands of work-items.
 uint32_t classifyRun(const Device& device) {
-    return device.info().mathWidth > 1 ? 64 : 1;
+    if (device.info().mathWidth == 1) return 1;
+    // Long runs stay in order, which prefetchers follow; a few for each unit keep all of them busy.
+    return std::bit_floor(std::clamp(4096 / std::max(device.info().computeUnits, 1u), 64u, 2048u));
 }
 uint32_t classifyGroup(const Device& device) {
     return device.info().mathWidth > 1 ? 1 : 64;
