@@ -1,6 +1,6 @@
 // Writes docs/stability.md: for each operation the range of inputs tried and the worst error that a directed
 // search found against the double-precision oracle. Run: build/release/bin/stability docs/stability.md
-// [seconds per operation]. Simple (1+1) evolution: a point of the unit cube stands for the
+// [seconds per operation [name: only operations that have it in theirs]]. Simple (1+1) evolution: a point of the unit cube stands for the
 // inputs; steps grow on success and shrink on failure [Rechenberg 1973].
 #include <chrono>
 #include <cmath>
@@ -72,9 +72,8 @@ constexpr const char* after = R"(
   error, 6e-8 D of its size, and edges of 1/n of its size have lost n D of their digits before Pellucid sees them; the oracle above
   gets the same rounded positions, so that the figures are the library's own error, not that loss. Scale by itself costs nothing
   between 1e-6 and 1e6.
-- **The quadric estimator** has no naive version: its figure is what rounding alone moves, found by exchanging the axes. 24 x 14 vertices
-  on a body flattened to a fiftieth leave its fit to chance at the rim, a third of the largest curvature; the other estimators, which
-  look at one ring, keep all their digits there.
+- **The quadric estimator** decides where to believe a normal and which points are too far; a vertex within 1e-4 of such a threshold may be
+  decided otherwise in float, and is not compared.
 - **Curvature from a G-buffer** is a ratio of differences between neighbouring pixels: the finer the pixels and the further the surface from
   the origin, the fewer digits are left. All its worst points lie at the far end of the range.
 - **Wide shadows** divide small depth differences by the filter's width and the bias: the smallest of both are the worst.
@@ -103,7 +102,7 @@ constexpr const char* after = R"(
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc < 2) return std::fprintf(stderr, "usage: stability OUT.md [SECONDS]\n"), 2;
+    if (argc < 2) return std::fprintf(stderr, "usage: stability OUT.md [SECONDS [NAME]]\n"), 2;
     const double budget = argc > 2 ? std::atof(argv[2]) : 20;
     std::vector<Operation> operations;
     for (const auto& some : {tableOperations(), meshOperations(), imageOperations()})
@@ -115,6 +114,7 @@ int main(int argc, char** argv) {
            " seconds an operation.\n\n| operation | inputs tried | evaluations | drawn | found | error is | "
            "where |\n|---|---|---|---|---|---|---|\n";
     for (const Operation& operation : operations) {
+        if (argc > 3 && operation.name.find(argv[3]) == std::string::npos) continue;
         const Found found = search(operation, budget);
         std::fprintf(stderr, "%s: %.2g, drawn %.2g, %d evaluations\n", operation.name.c_str(), found.worst,
                      found.random, found.evaluations);
