@@ -5,7 +5,7 @@
 // the bilinear interpolation itself. Negative values become 0; NaN and Inf stay.
 //
 // One work-item: one node, PEL_WIDTH 1. Variants: PEL_FORMAT_CUBE, PEL_GROUP.
-#include "lib/image.clh"
+#include "lib/cube_map.clh"
 
 typedef struct Faces {
     __global const uchar* first;
@@ -21,28 +21,6 @@ static inline float4 cubeTexel(const Faces* f, uint face, int x, int y) {
     return select(texel, (float4)(0.0f), texel < 0.0f);
 }
 
-// The direction of a point of a face, its component along the face's axis 1 or -1; and the point back.
-static inline float3 cubeDirection(uint face, float s, float t) {
-    switch (face) {
-        case 0: return (float3)(1.0f, -t, -s);
-        case 1: return (float3)(-1.0f, -t, s);
-        case 2: return (float3)(s, 1.0f, t);
-        case 3: return (float3)(s, -1.0f, -t);
-        case 4: return (float3)(s, -t, 1.0f);
-        default: return (float3)(-s, -t, -1.0f);
-    }
-}
-static inline float2 cubePoint(uint face, float3 d) {
-    switch (face) {
-        case 0: return (float2)(-d.z, -d.y);
-        case 1: return (float2)(d.z, -d.y);
-        case 2: return (float2)(d.x, d.z);
-        case 3: return (float2)(d.x, -d.z);
-        case 4: return (float2)(d.x, -d.y);
-        default: return (float2)(-d.x, -d.y);
-    }
-}
-
 // Linear between the two texels round coordinate s in [-1, 1]; a texel of weight 0 is not read, whatever it holds.
 static inline float cubeNeighbours(uint size, float s, int* first, int* second) {
     const float at = clamp(fma(s, 0.5f * (float)size, 0.5f * (float)size - 0.5f), 0.0f, (float)(size - 1));
@@ -52,9 +30,9 @@ static inline float cubeNeighbours(uint size, float s, int* first, int* second) 
     return fraction;
 }
 
-static inline float4 cubeSample(const Faces* f, uint face, float2 at) {
+static inline float4 cubeSample(const Faces* f, uint face, float s, float t) {
     int x0, x1, y0, y1;
-    const float fx = cubeNeighbours(f->size, at.x, &x0, &x1), fy = cubeNeighbours(f->size, at.y, &y0, &y1);
+    const float fx = cubeNeighbours(f->size, s, &x0, &x1), fy = cubeNeighbours(f->size, t, &y0, &y1);
     const float4 upper = mix(cubeTexel(f, face, x0, y0), cubeTexel(f, face, x1, y0), fx);
     const float4 lower = mix(cubeTexel(f, face, x0, y1), cubeTexel(f, face, x1, y1), fx);
     return mix(upper, lower, fy);
@@ -74,14 +52,15 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void ambient_cub
         const float perSize = 1.0f / (float)size, inward = 1.0f - 0.5f * perSize;
         const float s = edgeS ? (i ? 1.0f : -1.0f) : fma((float)(2 * i - 1), perSize, -1.0f) * inward;
         const float t = edgeT ? (j ? 1.0f : -1.0f) : fma((float)(2 * j - 1), perSize, -1.0f) * inward;
-        const float3 d = cubeDirection(face, s, t);
+        const Vec3w d = cubeVector((int)face, s, t, 1.0f);
         float4 sum = (float4)(0.0f);
         float count = 0.0f;
         for (uint axis = 0; axis < 3; ++axis) {
             const float along = axis == 0 ? d.x : axis == 1 ? d.y : d.z;
             if (fabs(along) < 1.0f) continue;
             const uint other = 2 * axis + (along < 0.0f ? 1 : 0);
-            sum += cubeSample(&f, other, cubePoint(other, d));
+            const Vec3w at = cubeComponents((int)other, d);
+            sum += cubeSample(&f, other, at.x, at.y);
             count += 1.0f;
         }
         value = sum / count;

@@ -27,12 +27,8 @@ typedef struct Filters {
 // Returns the lanes whose filter can be run; the others are behind the light, or no numbers.
 static inline maskw makeFilters(__global const PelWideShadow* light, Vec3w p, Vec3w n, floatw width, Filters* f) {
     __global const float* m = light->worldToShadow;
-#define PEL_ROW_(r)                                                                                       \
-    fma(p.z, (floatw)(m[4 * (r) + 2]),                                                                    \
-        fma(p.y, (floatw)(m[4 * (r) + 1]), fma(p.x, (floatw)(m[4 * (r)]), (floatw)(m[4 * (r) + 3]))))
-    const floatw w = PEL_ROW_(3), inverse = 1.0f / w;
-    const floatw u = PEL_ROW_(0) * inverse, v = PEL_ROW_(1) * inverse, z = PEL_ROW_(2) * inverse;
-#undef PEL_ROW_
+    const floatw w = matrixRow(m, 3, p), inverse = 1.0f / w;
+    const floatw u = matrixRow(m, 0, p) * inverse, v = matrixRow(m, 1, p) * inverse, z = matrixRow(m, 2, p) * inverse;
     // Towards the light, of length 1 along the map's axis.
     Vec3w toLight = scale3(loadUniform3(light->forward), (floatw)(-1.0f));
     floatw zPerLength = light->zPerLength, extentU = light->extent[0], extentV = light->extent[1];

@@ -86,12 +86,6 @@ void checkContent(const ImageView& view, Content content, const char* what) {
     if (right) invalidArgument("the ", what, " image has format ", view.info().name, "; it needs ", right);
 }
 
-void finite(const char* structure, const char* field, const float* values, size_t count) {
-    for (size_t i = 0; i < count; ++i)
-        if (!std::isfinite(values[i]))
-            invalidArgument(structure, ".", field, "[", i, "] is ", values[i], "; it must be finite");
-}
-
 struct Bound {
     const char* field;
     float value, least, most;
@@ -112,6 +106,12 @@ bool isUnit(const float (&v)[3]) {
 }
 
 }  // namespace
+
+void checkFinite(const char* structure, const char* field, const float* values, size_t count) {
+    for (size_t i = 0; i < count; ++i)
+        if (!std::isfinite(values[i]))
+            invalidArgument(structure, ".", field, "[", i, "] is ", values[i], "; it must be finite");
+}
 
 const char* slotName(PelImageSlot slot) {
     return slotNames[slot];
@@ -155,8 +155,8 @@ void checkNormalMap(const std::vector<ImageView>& levels) {
 
 void checkMaterial(const PelMaterial& m) {
     const char* name = "PelMaterial";
-    finite(name, "albedo", m.albedo, 3);
-    finite(name, "deepScatterColor", m.deepScatterColor, 3);
+    checkFinite(name, "albedo", m.albedo, 3);
+    checkFinite(name, "deepScatterColor", m.deepScatterColor, 3);
     for (float blend : m.normalBlend) within(name, {{"normalBlend", blend, 0, 1}});
     within(name, {{"diffusionRadius", m.diffusionRadius, tiny, huge},
                   {"shadowFilterWidth", m.shadowFilterWidth, tiny, huge},
@@ -178,7 +178,7 @@ void checkMaterial(const PelMaterial& m) {
 
 void checkLight(const PelLight& l, uint32_t index) {
     const std::string name = text("PelLight ", index);
-    finite(name.c_str(), "color", l.color, 3);
+    checkFinite(name.c_str(), "color", l.color, 3);
     for (float c : l.color) within(name.c_str(), {{"color", c, 0, huge}});
     if (l.shadowFilterTexels != 0 && (l.shadowFilterTexels < 4 || l.shadowFilterTexels > 256))
         invalidArgument(name, ".shadowFilterTexels is ", l.shadowFilterTexels, "; it must be 0, or between 4 and 256");
@@ -196,16 +196,16 @@ void checkLight(const PelLight& l, uint32_t index) {
     if (l.type > PEL_LIGHT_SPOT)
         invalidArgument(name, ".type is ", int(l.type), ", which is none of PelLightType");
     if (l.type == PEL_LIGHT_DIRECTIONAL) {
-        finite(name.c_str(), "toLight", l.toLight, 3);
+        checkFinite(name.c_str(), "toLight", l.toLight, 3);
         if (!isUnit(l.toLight))
             invalidArgument(name, ".toLight is (", l.toLight[0], ", ", l.toLight[1], ", ", l.toLight[2],
                             "); it must be of unit length");
     } else {
-        finite(name.c_str(), "position", l.position, 3);
+        checkFinite(name.c_str(), "position", l.position, 3);
         within(name.c_str(), {{"range", l.range, 0, huge}});
     }
     if (l.type == PEL_LIGHT_SPOT) {
-        finite(name.c_str(), "spotDirection", l.spotDirection, 3);
+        checkFinite(name.c_str(), "spotDirection", l.spotDirection, 3);
         if (!isUnit(l.spotDirection)) invalidArgument(name, ".spotDirection must be of unit length");
         within(name.c_str(), {{"spotCosOuter", l.spotCosOuter, -1, 1}});
         within(name.c_str(), {{"spotCosInner", l.spotCosInner, l.spotCosOuter, 1}});
@@ -213,8 +213,8 @@ void checkLight(const PelLight& l, uint32_t index) {
 }
 
 void checkAmbient(const PelAmbient& ambient) {
-    finite("PelAmbient", "constant", ambient.constant, 3);
-    finite("PelAmbient", "sh", &ambient.sh[0][0], 27);
+    checkFinite("PelAmbient", "constant", ambient.constant, 3);
+    checkFinite("PelAmbient", "sh", &ambient.sh[0][0], 27);
 }
 
 void checkAmbientCube(const ImageView& faces) {
@@ -225,12 +225,12 @@ void checkAmbientCube(const ImageView& faces) {
 }
 
 void checkCamera(const PelCamera& camera) {
-    finite("PelCamera", "position", camera.position, 3);
-    finite("PelCamera", "inverseViewProjection", camera.inverseViewProjection, 16);
+    checkFinite("PelCamera", "position", camera.position, 3);
+    checkFinite("PelCamera", "inverseViewProjection", camera.inverseViewProjection, 16);
 }
 
 void checkOptions(const PelShaderOptions& options) {
-    finite("PelShaderOptions", "invalidColor", options.invalidColor, 3);
+    checkFinite("PelShaderOptions", "invalidColor", options.invalidColor, 3);
     if (options.tileLists > PEL_TILES_NO_LIST)
         invalidArgument("PelShaderOptions.tileLists is ", int(options.tileLists), ", which is none of PelTileLists");
 }

@@ -4,6 +4,8 @@
 
 namespace pel {
 
+// NAME.FIELD[i] of a structure.
+void checkFinite(const char* structure, const char* field, const float* values, size_t count);
 void checkImage(PelImageSlot slot, const ImageView& view);
 void checkLightImage(PelLightSlot slot, const ImageView& view);
 void checkNormalMap(const std::vector<ImageView>& levels);

@@ -6,11 +6,6 @@
 namespace pel {
 namespace {
 
-void finite(const std::string& what, const float* values, size_t count) {
-    for (size_t i = 0; i < count; ++i)
-        if (!std::isfinite(values[i])) invalidArgument(what, "[", i, "] is ", values[i], "; it must be finite");
-}
-
 void checkCube(const ShaderLight& light, const std::string& name) {
     const PelLight& l = light.params;
     if (l.type == PEL_LIGHT_DIRECTIONAL)
@@ -50,13 +45,13 @@ void checkCascades(const ShaderLight& light, const std::string& name) {
                         "; cascades are parallel maps of directional lights, and this is another kind of light or projection");
     for (uint32_t i = 0; i < l.shadowCascades; ++i) {
         const ShadowCascade c = shadowCascade(light, i);
-        const std::string matrix = i ? text(name, ".cascadeToShadow[", i - 1, "]") : name + ".worldToShadow";
+        const std::string matrix = i ? text("cascadeToShadow[", i - 1, "]") : "worldToShadow";
         if (!*c.map)
             invalidArgument(name, ".shadowCascades is ", l.shadowCascades, ", and its image ",
                             lightSlotName(PelLightSlot(PEL_LIGHT_CASCADE_1 + i - 1)), " is not set");
-        finite(matrix, *c.worldToShadow, 16);
+        checkFinite(name.c_str(), matrix.c_str(), *c.worldToShadow, 16);
         const std::string range = i ? text("cascadeDepthRange[", i - 1, "]") : "shadowDepthRange";
-        finite(text(name, ".", range), &c.depthRange, 1);
+        checkFinite(name.c_str(), range.c_str(), &c.depthRange, 1);
         if (c.depthRange == 0 || (c.depthRange < 0) != (l.shadowDepthRange < 0))
             invalidArgument(name, ".", range, " is ", c.depthRange,
                             ": the length that depths 0 to 1 span is needed, of one sign for all cascades");
@@ -67,7 +62,7 @@ void checkCascades(const ShaderLight& light, const std::string& name) {
             volume += m[k] * (double(m[4 + p]) * m[8 + q] - double(m[4 + q]) * m[8 + p]);
         }
         if (!(std::abs(volume) > 0) || m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] == 0)
-            invalidArgument(matrix, " is singular or no parallel projection (row 3 must be 0, 0, 0 and not 0): each cascade needs "
+            invalidArgument(name, ".", matrix, " is singular or no parallel projection (row 3 must be 0, 0, 0 and not 0): each cascade needs "
                             "its own world to (u, v, z)");
     }
 }
@@ -92,10 +87,10 @@ void checkContent(const ShaderLight& light, const std::string& name) {
 void checkLightMap(const ShaderLight& light, uint32_t index) {
     const PelLight& l = light.params;
     const std::string name = text("PelLight ", index);
-    finite(name + ".worldToShadow", l.worldToShadow, 16);
-    finite(name + ".shadowDepthRange", &l.shadowDepthRange, 1);
-    finite(name + ".shadowDepthA", &l.shadowDepthA, 1);
-    finite(name + ".shadowDepthB", &l.shadowDepthB, 1);
+    checkFinite(name.c_str(), "worldToShadow", l.worldToShadow, 16);
+    checkFinite(name.c_str(), "shadowDepthRange", &l.shadowDepthRange, 1);
+    checkFinite(name.c_str(), "shadowDepthA", &l.shadowDepthA, 1);
+    checkFinite(name.c_str(), "shadowDepthB", &l.shadowDepthB, 1);
     if (l.shadowCascades) checkCascades(light, name);
     if (l.shadowProjection == PEL_SHADOW_PARALLEL && l.shadowDepthRange == 0)
         invalidArgument(name, ".shadowDepthRange is 0: the length that depths 0 to 1 span is needed");

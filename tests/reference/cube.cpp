@@ -1,20 +1,12 @@
 #include "reference/cube.h"
 
 namespace reference {
+
+const CubeFace cubeFaces[6] = {{{1, 0, 0}, {0, 0, -1}, {0, -1, 0}}, {{-1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
+                               {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},   {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}},
+                               {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}},  {{0, 0, -1}, {-1, 0, 0}, {0, -1, 0}}};
+
 namespace {
-
-struct Point {
-    int face;
-    double s, t;
-};
-
-// s and t as dot products with the face's axes in space.
-struct Face {
-    Vec3 out, right, down;
-};
-const Face faces[6] = {{{1, 0, 0}, {0, 0, -1}, {0, -1, 0}}, {{-1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
-                       {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},   {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}},
-                       {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}},  {{0, 0, -1}, {-1, 0, 0}, {0, -1, 0}}};
 
 Rgb texel(const CubeMap& cube, int face, int x, int y) {
     const Rgb& c = cube.at(face, x, y);
@@ -41,13 +33,13 @@ Rgb onEdge(const CubeMap& cube, Vec3 point) {
     int meeting = 0;
     for (int c = 0; c < 3; ++c) meeting += std::abs(std::abs(point[c]) - 1) < 1e-12;
     Rgb sum;
-    for (const Face& f : faces) {
+    for (const CubeFace& f : cubeFaces) {
         if (dot(f.out, point) < 1 - 1e-12) continue;
         const double inward = meeting == 2 ? 1 - 0.5 / cube.size : 1;
         double s = dot(f.right, point), t = dot(f.down, point);
         if (std::abs(std::abs(s) - 1) > 1e-12) s *= inward;
         if (std::abs(std::abs(t) - 1) > 1e-12) t *= inward;
-        sum = sum + onFace(cube, int(&f - faces), s, t);
+        sum = sum + onFace(cube, int(&f - cubeFaces), s, t);
     }
     return sum / meeting;
 }
@@ -55,16 +47,16 @@ Rgb onEdge(const CubeMap& cube, Vec3 point) {
 }  // namespace
 
 Vec3 cubeDirection(int face, double s, double t) {
-    return faces[face].out + s * faces[face].right + t * faces[face].down;
+    return cubeFaces[face].out + s * cubeFaces[face].right + t * cubeFaces[face].down;
 }
 
 Rgb sampleCube(const CubeMap& cube, Vec3 d) {
     if (dot(d, d) == 0) return {};
     int face = 0;
     for (int f = 1; f < 6; ++f)
-        if (dot(faces[f].out, d) > dot(faces[face].out, d)) face = f;
-    const Vec3 p = d / dot(faces[face].out, d);
-    const double s = dot(faces[face].right, p), t = dot(faces[face].down, p);
+        if (dot(cubeFaces[f].out, d) > dot(cubeFaces[face].out, d)) face = f;
+    const Vec3 p = d / dot(cubeFaces[face].out, d);
+    const double s = dot(cubeFaces[face].right, p), t = dot(cubeFaces[face].down, p);
     // Knots of the interpolation along each side: -1, the centres, 1.
     std::vector<double> knots{-1};
     for (int i = 0; i < cube.size; ++i) knots.push_back(centre(i, cube.size));

@@ -14,6 +14,12 @@ struct CubeMap {
     const Rgb& at(int face, int x, int y) const { return texels[(size_t(face) * size + y) * size + x]; }
 };
 
+// What points out of each face, along its rows and down them [OpenGL 4.6, table 8.19].
+struct CubeFace {
+    Vec3 out, right, down;
+};
+extern const CubeFace cubeFaces[6];
+
 // The direction of point (s, t) of a face, -1 to 1, s to the right and t down, as OpenGL and Direct3D have it; not unit.
 Vec3 cubeDirection(int face, double s, double t);
 // Light along a direction; texels below 0 count as 0. The zero vector gives 0.

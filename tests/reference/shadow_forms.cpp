@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "reference/cube.h"
+
 namespace reference {
 namespace {
-
-// Axes of the faces: away from the light, along u, along v. [OpenGL 4.6, table 8.19]
-constexpr Vec3 axes[6][3] = {{{1, 0, 0}, {0, 0, -1}, {0, -1, 0}}, {{-1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
-                             {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},   {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}},
-                             {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}},  {{0, 0, -1}, {-1, 0, 0}, {0, -1, 0}}};
 
 struct Tangents {
     Vec3 right, down;
@@ -33,10 +30,10 @@ struct Texel {
 };
 Texel texelAt(const CubeShadowMap& map, Vec3 d) {
     const int face = shadowCubeFace(d);
-    const double along = dot(d, axes[face][0]);
+    const double along = dot(d, cubeFaces[face].out);
     const auto index = [&](double t) { return std::clamp(int(std::floor((t / along + 1) / 2 * map.size)), 0, map.size - 1); };
-    const int column = index(dot(d, axes[face][1])), row = index(dot(d, axes[face][2]));
-    return {map.depth[size_t((face * map.size + row) * map.size + column)], d, axes[face][0]};
+    const int column = index(dot(d, cubeFaces[face].right)), row = index(dot(d, cubeFaces[face].down));
+    return {map.depth[size_t((face * map.size + row) * map.size + column)], d, cubeFaces[face].out};
 }
 
 }  // namespace
@@ -49,7 +46,7 @@ int shadowCubeFace(Vec3 d) {
 }
 
 Vec3 shadowCubeDirection(int face, double column, double row, int size) {
-    return axes[face][0] + ((2 * column + 1) / size - 1) * axes[face][1] + ((2 * row + 1) / size - 1) * axes[face][2];
+    return cubeDirection(face, (2 * column + 1) / size - 1, (2 * row + 1) / size - 1);
 }
 
 double CubeShadowMap::nearestReach(Vec3 direction) const {
@@ -60,9 +57,9 @@ double CubeShadowMap::nearestReach(Vec3 direction) const {
 
 double CubeShadowMap::bilinearReach(Vec3 direction) const {
     const int face = shadowCubeFace(direction);
-    const double along = dot(direction, axes[face][0]);
-    const double x = (dot(direction, axes[face][1]) / along + 1) / 2 * size - 0.5,
-                 y = (dot(direction, axes[face][2]) / along + 1) / 2 * size - 0.5;
+    const double along = dot(direction, cubeFaces[face].out);
+    const double x = (dot(direction, cubeFaces[face].right) / along + 1) / 2 * size - 0.5,
+                 y = (dot(direction, cubeFaces[face].down) / along + 1) / 2 * size - 0.5;
     double sum = 0;
     for (int j = 0; j < 2; ++j)
         for (int i = 0; i < 2; ++i) {
@@ -94,10 +91,10 @@ double cubeWideShadow(const CubeShadowMap& map, Vec3 point, Vec3 normal, const W
     const double cosine = -dot(normal, axis), tilt = 1 / std::max(cosine, 0.2);
     const double receiver = near - (p.bias + 2 * p.width * max0(-cosine)) * perLength;
     // The rectangle round the disk on the face, from the planes that touch its cone.
-    const double w = dot(axis, axes[face][0]), sine2 = reach * reach / (1 + reach * reach);
+    const double w = dot(axis, cubeFaces[face].out), sine2 = reach * reach / (1 + reach * reach);
     double low[2], high[2];
     for (int k = 0; k < 2; ++k) {
-        const double a = dot(axis, axes[face][1 + k]), middle = std::atan2(a, w),
+        const double a = dot(axis, k ? cubeFaces[face].down : cubeFaces[face].right), middle = std::atan2(a, w),
                      half = std::asin(std::sqrt(sine2 / (a * a + w * w)));
         low[k] = std::tan(middle - half), high[k] = std::tan(middle + half);
     }
