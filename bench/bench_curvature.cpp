@@ -12,7 +12,7 @@
 #include <random>
 
 #include "baseline_curvature.h"
-#include "mesh_shapes.h"
+#include "mesh_calls.h"
 
 using namespace pellucid;
 
@@ -57,22 +57,13 @@ struct Case {
     uint32_t vertices;
 };
 
-PelMeshTopologyDesc describe(const fixture::Mesh& mesh) {
-    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
-    desc.numVertices = mesh.vertices();
-    desc.indices = mesh.indices.data();
-    desc.numIndices = mesh.indices.size();
-    desc.positions = mesh.positions.data();
-    return desc;
-}
-
 Case& prepared(const benchmark::State& state) {
     static std::map<std::pair<int64_t, int64_t>, std::unique_ptr<Case>> cases;
     std::unique_ptr<Case>& slot = cases[{state.range(0), state.range(1)}];
     if (!slot) {
         slot = std::make_unique<Case>();
         slot->mesh = makeMesh(state.range(0), Order(state.range(1)));
-        slot->topology = MeshTopology(device(), describe(slot->mesh));
+        slot->topology = MeshTopology(device(), fixture::topologyDesc(slot->mesh));
         slot->positions = Buffer(device(), slot->mesh.positions);
         slot->normals = Buffer(device(), slot->mesh.normals);
         slot->vertices = slot->mesh.vertices();
@@ -91,16 +82,9 @@ void run(const Case& c, const PelCurvatureParams& params) {
                          vertexView(c.curvature, c.vertices));
 }
 
-PelCurvatureParams edgeParams(uint32_t passes) {
-    PelCurvatureParams params = pelCurvatureParamsDefaults();
-    params.estimator = PEL_CURVATURE_EDGE;
-    params.smoothingPasses = passes;
-    return params;
-}
-
 void edgeDevice(benchmark::State& state) {
     const Case& c = prepared(state);
-    const PelCurvatureParams params = edgeParams(uint32_t(state.range(2)));
+    const PelCurvatureParams params = fixture::edgeParams(uint32_t(state.range(2)));
     run(c, params);
     for (auto _ : state) run(c, params);
     perVertex(state, c.vertices);
@@ -145,7 +129,7 @@ void livePart(benchmark::State& state) {
 void smoothedToRadius(benchmark::State& state) {
     const Case& c = prepared(state);
     const double pi = 3.14159265358979;
-    PelCurvatureParams params = edgeParams(0);
+    PelCurvatureParams params = fixture::edgeParams(0);
     params.smoothingRadius = float(3 * std::sqrt(4 * pi * pi * 3 / double(c.vertices)));
     run(c, params);
     for (auto _ : state) run(c, params);
@@ -172,7 +156,7 @@ void edgeBaseline(benchmark::State& state) {
                                 scratch, result);
     perVertex(state, c.vertices);
     // The speed of a wrong answer is worth nothing.
-    run(c, edgeParams(uint32_t(state.range(2))));
+    run(c, fixture::edgeParams(uint32_t(state.range(2))));
     const std::vector<float> ours = c.curvature.readAll<float>();
     double difference = 0, largest = 0;
     for (size_t v = 0; v < ours.size(); ++v) {
@@ -184,7 +168,7 @@ void edgeBaseline(benchmark::State& state) {
 
 void topologyAnalysis(benchmark::State& state) {
     const Case& c = prepared(state);
-    PelMeshTopologyDesc desc = describe(c.mesh);
+    PelMeshTopologyDesc desc = fixture::topologyDesc(c.mesh);
     desc.weld = PelWeld(state.range(2));
     for (auto _ : state) MeshTopology(device(), desc);
     perVertex(state, c.vertices);

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "demo_files.h"
 #include "io/image_file.h"
 #include "io/scene_file.h"
 
@@ -17,11 +18,6 @@ using namespace pellucid;
 namespace {
 
 std::string program, scratch;
-
-std::string demoDirectory() {
-    const char* named = std::getenv("PELLUCID_DEMO_DIR");
-    return named && *named ? named : PELLUCID_SOURCE_DIR "/out/demo";
-}
 
 // Milliseconds of each stage.
 struct Stages {
@@ -73,8 +69,8 @@ void write(const std::string& name, const std::vector<float>& values) {
 
 // The demo's key view and its tables as plain memory.
 void writeFrame() {
-    const io::SceneFile scene = io::readScene(demoDirectory() + "/key.toml");
-    const io::Image g = io::readImage(demoDirectory() + "/key_gbuffer.exr");
+    const io::SceneFile scene = io::readScene(demo::directory() + "/key.toml");
+    const io::Image g = io::readImage(demo::directory() + "/key_gbuffer.exr");
     for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot)
         if (!scene.channels[slot].empty()) write("slot" + std::to_string(slot), g.interleaved(scene.channels[slot]));
     const io::SceneLight& light = scene.lights.at(0);
@@ -95,8 +91,8 @@ void writeFrame() {
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (!std::ifstream(demoDirectory() + "/key.toml")) {
-        std::fprintf(stderr, "no demo views in %s: run ./run demo first\n", demoDirectory().c_str());
+    if (!std::ifstream(demo::directory() + "/key.toml")) {
+        std::fprintf(stderr, "no demo views in %s: run ./run demo first\n", demo::directory().c_str());
         return 0;
     }
     benchmark::Initialize(&argc, argv);

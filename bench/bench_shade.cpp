@@ -17,6 +17,7 @@
 #include <memory>
 
 #include "baseline_shade.h"
+#include "demo_files.h"
 #include "io/image_file.h"
 #include "io/scene_file.h"
 #include "pack_images.h"
@@ -225,11 +226,6 @@ std::unique_ptr<Scene> readDemoView(const std::string& directory, const std::str
 
 enum View { full, head, key, backlit };
 
-std::string demoDirectory() {
-    const char* named = std::getenv("PELLUCID_DEMO_DIR");
-    return named && *named ? named : PELLUCID_SOURCE_DIR "/out/demo";
-}
-
 // view, taps, coverage in percent; taps and coverage of the demo's views are as they are.
 Scene& scene(View view, int taps, int coverage = 100) {
     static std::map<std::tuple<int, int, int>, std::unique_ptr<Scene>> scenes;
@@ -242,7 +238,7 @@ Scene& scene(View view, int taps, int coverage = 100) {
         slot = makeScene(ball(1280, 720), taps);
         describeCamera(*slot, 110 / (0.45f * 720), 110);
     } else
-        slot = readDemoView(demoDirectory(), view == key ? "key" : "backlit");
+        slot = readDemoView(demo::directory(), view == key ? "key" : "backlit");
     return *slot;
 }
 
@@ -396,7 +392,7 @@ CASE(port, head_32taps, head, 32);
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (std::ifstream(demoDirectory() + "/key.toml")) {
+    if (std::ifstream(demo::directory() + "/key.toml")) {
         const auto add = [](const std::string& name, auto function, auto... arguments) {
             benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { function(state, arguments...); })
                 ->Unit(benchmark::kMillisecond)
@@ -418,7 +414,7 @@ int main(int argc, char** argv) {
             add("port/" + name, port, view, 32);
         }
     } else {
-        std::fprintf(stderr, "no demo views in %s: run ./run demo first to have them measured\n", demoDirectory().c_str());
+        std::fprintf(stderr, "no demo views in %s: run ./run demo first to have them measured\n", demo::directory().c_str());
     }
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;

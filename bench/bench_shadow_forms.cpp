@@ -12,8 +12,8 @@
 #include <fstream>
 #include <optional>
 
+#include "demo_files.h"
 #include "io/image_file.h"
-#include "io/mesh_file.h"
 #include "io/picture.h"
 #include "io/scene_file.h"
 #include "io/tone_map.h"
@@ -22,11 +22,6 @@
 using namespace pellucid;
 
 namespace {
-
-std::string named(const char* variable, const char* otherwise) {
-    const char* value = std::getenv(variable);
-    return value && *value ? value : otherwise;
-}
 
 struct Map {
     PelLightSlot slot;
@@ -165,8 +160,7 @@ void addLampForms(View& v, const sample::Scene& scene) {
 }
 
 std::optional<View> readView() {
-    const std::string folder = named("PELLUCID_DEMO_DIR", PELLUCID_SOURCE_DIR "/out/demo");
-    const std::string mesh = named("PELLUCID_DEMO_MESH", PELLUCID_SOURCE_DIR "/build/demo/mannequin-devil.off");
+    const std::string folder = demo::directory(), mesh = demo::meshFile();
     if (!std::ifstream(folder + "/key.toml") || !std::ifstream(mesh)) return {};
     View v;
     v.scene = io::readScene(folder + "/key.toml");
@@ -174,10 +168,7 @@ std::optional<View> readView() {
     v.width = uint32_t(v.gbuffer.width), v.height = uint32_t(v.gbuffer.height);
     const io::Image depth = io::readImage(v.scene.lights.at(0).shadowMapFile);
     addParallelForms(v, depth, v.scene.lights[0].shadowMapChannel);
-    io::MeshData data = io::loadMesh(mesh);  // as pellucid demo places it
-    io::scaleToHeight(data, 240, 2);
-    io::loopSubdivide(data, 1);
-    io::computeNormals(data);
+    const io::MeshData data = demo::head(mesh);
     const std::vector<float> curvature(data.positions.size() / 3);
     addLampForms(v, sample::Scene({data.positions, data.normals, data.uvs, curvature, data.triangles, {}}));
     return v;

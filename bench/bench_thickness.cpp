@@ -12,11 +12,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
-#include <numbers>
 
 #include "io/image_file.h"
 #include "io/scene_file.h"
-#include "reference/shade.h"
+#include "thickness_truth.h"
 
 using namespace pellucid;
 using reference::Vec3;
@@ -62,17 +61,7 @@ int main(int argc, char** argv) try {
         return shader.stats().deviceMilliseconds;
     };
 
-    // The reference: 4,096 points of a sunflower's spiral, in double precision.
-    std::vector<reference::Vec2> many;
-    for (int i = 0; i < 4096; ++i) {
-        const double r = std::sqrt((i + 0.5) / 4096), a = i * std::numbers::pi * (3 - std::sqrt(5.0));
-        many.push_back({r * std::cos(a), r * std::sin(a)});
-    }
-    const auto& depths = map.channels[0].pixels;
-    const reference::ShadowMap truthMap{map.width, map.height, {depths.begin(), depths.end()}};
-    reference::Matrix4 m;
-    for (int r = 0; r < 4; ++r)
-        for (int c = 0; c < 4; ++c) m[r][c] = light.worldToShadow[4 * r + c];
+    const ThicknessTruth manyTaps(map, light, material);
     const auto position = image.interleaved(scene.channels[PEL_SLOT_POSITION]),
                normal = image.interleaved(scene.channels[PEL_SLOT_NORMAL_GEOMETRIC]);
     const auto id = image.interleaved(scene.channels[PEL_SLOT_MATERIAL]);
@@ -87,11 +76,7 @@ int main(int argc, char** argv) try {
             for (uint32_t k = 0; k < 16; ++k)
                 if (const size_t i = size_t(y + k / 4) * width + x + k % 4; behind(i)) block.push_back(i);
             if (block.size() < 16 || seen++ % 23) continue;
-            for (size_t i : block)
-                truth.emplace_back(i, thickness(truthMap,
-                                                shadowCoordinates(m, at(position, i), at(normal, i), material.deepScatterNormalOffset),
-                                                many, material.thicknessFilterRadius, {false, light.shadowDepthRange, 0, 1},
-                                                reference::MapFilter::bilinear));
+            for (size_t i : block) truth.emplace_back(i, manyTaps.at(at(position, i), at(normal, i)));
         }
 
     const std::pair<uint32_t, bool> cases[] = {{0, false}, {8, false}, {8, true}, {16, false}, {16, true}, {32, false}, {32, true}};

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "mesh_calls.h"
 #include "reference/surfaces.h"
 #include "reference_meshes.h"
 
@@ -43,18 +44,11 @@ double errorOf(const std::vector<float>& values, const reference::AnalyticMesh& 
 void measure(const reference::AnalyticMesh& truth, const fixture::Mesh& mesh, const char* kind,
              const char* normals, PelCurvatureEstimator estimator, const Smoothing& smoothing, double edge) {
     const uint32_t n = mesh.vertices();
-    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
-    desc.numVertices = n;
-    desc.indices = mesh.indices.data();
-    desc.numIndices = mesh.indices.size();
-    const MeshTopology topology(device(), desc);
+    const MeshTopology topology(device(), fixture::topologyDesc(mesh));
     const Buffer positions(device(), mesh.positions), given(device(), mesh.normals),
         out(device(), n * sizeof(float));
-    PelCurvatureParams params = pelCurvatureParamsDefaults();
-    params.estimator = estimator;
-    params.quantity = estimator == PEL_CURVATURE_EDGE ? PEL_QUANTITY_ABSOLUTE : PEL_QUANTITY_MEAN;
+    PelCurvatureParams params = fixture::meanParams(estimator, float(smoothing.edges * edge));
     params.smoothingPasses = smoothing.passes;
-    params.smoothingRadius = float(smoothing.edges * edge);
     double best = 1e30;
     for (int run = 0; run < 6; ++run) {
         const auto start = std::chrono::steady_clock::now();

@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "demo_files.h"
 #include "io/image_file.h"
-#include "io/mesh_file.h"
 #include "io/picture.h"
 #include "sample/gbuffer.h"
 
@@ -20,20 +20,6 @@ namespace {
 constexpr int viewWidth = 240, viewHeight = 280, supersampling = 3;
 constexpr float high = 0.25f;  // 1/mm: sharper than a radius of 4 mm are the rims of lids, lips and teeth only
 constexpr io::Srgb8 background{20, 20, 20};
-
-std::vector<float> curvatureBy(const Device& device, const io::MeshData& mesh, PelCurvatureEstimator estimator) {
-    const auto n = uint32_t(mesh.vertexCount());
-    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
-    desc.numVertices = n;
-    desc.indices = mesh.triangles.data();
-    desc.numIndices = mesh.triangles.size();
-    const MeshTopology topology(device, desc);
-    PelCurvatureParams params = pelCurvatureParamsDefaults();
-    params.estimator = estimator;
-    const Buffer positions(device, mesh.positions), normals(device, mesh.normals), out(device, n * sizeof(float));
-    topology.curvature(params, vertexView(positions, n), vertexView(normals, n), vertexView(out, n));
-    return out.readAll<float>();
-}
 
 // Darkened where the surface turns away, so that its shape can be read.
 io::Picture seen(const io::MeshData& mesh, const std::vector<float>& values, float low, float high) {
@@ -61,14 +47,15 @@ io::Picture seen(const io::MeshData& mesh, const std::vector<float>& values, flo
 }
 
 void run(const std::string& figure, const std::string& meshFile) {
-    io::MeshData mesh = io::loadMesh(meshFile);
-    io::scaleToHeight(mesh, 240, 2);  // mm, as in `pellucid demo`
-    io::loopSubdivide(mesh, 1);
-    io::computeNormals(mesh);
+    const io::MeshData mesh = demo::head(meshFile);
     const Device device("");
     const char* names[] = {"edge", "tensor", "quadric"};
     std::vector<float> values[3];
-    for (int e = 0; e < 3; ++e) values[e] = curvatureBy(device, mesh, PelCurvatureEstimator(e));
+    for (int e = 0; e < 3; ++e) {
+        PelCurvatureParams params = pelCurvatureParamsDefaults();
+        params.estimator = PelCurvatureEstimator(e);
+        values[e] = demo::curvature(device, mesh, params);
+    }
     std::vector<io::Tile> above, below;
     for (int e = 0; e < 3; ++e) {
         std::vector<float> difference(values[e]);
@@ -102,7 +89,7 @@ int main(int argc, char** argv) {
         return 2;
     }
     try {
-        run(argv[1], argc > 2 ? argv[2] : PELLUCID_SOURCE_DIR "/build/demo/mannequin-devil.off");
+        run(argv[1], argc > 2 ? argv[2] : demo::meshFile());
     } catch (const std::exception& e) {
         std::fprintf(stderr, "%s\n", e.what());
         return 1;

@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include "color_difference.h"
+#include "demo_files.h"
 #include "io/image_file.h"
-#include "io/mesh_file.h"
 #include "io/picture.h"
 #include "io/tone_map.h"
 #include "sample/gbuffer.h"
@@ -25,31 +25,13 @@ const Device& device() {
     return device;
 }
 
-constexpr float headHeight = 240;  // mm, as in `pellucid demo`
-
-io::MeshData demoMesh(const std::string& path) {
-    io::MeshData mesh = io::loadMesh(path);
-    io::scaleToHeight(mesh, headHeight, 2);
-    io::loopSubdivide(mesh, 1);
-    io::computeNormals(mesh);
-    return mesh;
-}
-
 // A quantity at the vertices, seen through the demo's camera.
 std::vector<float> vertexCurvature(const io::MeshData& mesh, PelCurvatureQuantity quantity, uint32_t passes, int width,
                                    int height) {
-    const auto n = uint32_t(mesh.vertexCount());
-    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
-    desc.numVertices = n;
-    desc.indices = mesh.triangles.data();
-    desc.numIndices = mesh.triangles.size();
-    const MeshTopology topology(device(), desc);
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     params.quantity = quantity;
     params.smoothingPasses = passes;
-    const Buffer positions(device(), mesh.positions), normals(device(), mesh.normals), out(device(), n * sizeof(float));
-    topology.curvature(params, vertexView(positions, n), vertexView(normals, n), vertexView(out, n));
-    const std::vector<float> values = out.readAll<float>();
+    const std::vector<float> values = demo::curvature(device(), mesh, params);
     const sample::Scene scene(sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, values, mesh.triangles, {}});
     sample::Framing framing;
     framing.azimuth = 25;
@@ -135,7 +117,7 @@ void run(const std::string& meshFile, const std::string& folder, const std::stri
     const io::Image g = io::readImage(folder + "/key_gbuffer.exr");
     const std::vector<float>&vertex = g.channel("Curvature.V").pixels, &mask = g.channel("Material.I").pixels;
     const std::vector<float> screen = measuredOnScreen(g, "NormalGeometric");
-    const io::MeshData mesh = demoMesh(meshFile);
+    const io::MeshData mesh = demo::head(meshFile);
     size_t head = 0, unmeasured = 0;
     for (size_t i = 0; i < mask.size(); ++i)
         if (mask[i] > 0) ++head, unmeasured += screen[i] == 0;

@@ -13,13 +13,13 @@
 #include <cstdio>
 #include <deque>
 #include <map>
-#include <numbers>
 
 #include "io/image_file.h"
 #include "io/scene_file.h"
 #include "pack_images.h"
 #include "reference/lut.h"
 #include "reference/shade_pixel.h"
+#include "thickness_truth.h"
 
 using namespace pellucid;
 using reference::Rgb;
@@ -100,16 +100,7 @@ std::map<size_t, Rgb> truth(const View& v) {
     const auto vec = [](const float* p) { return Vec3{p[0], p[1], p[2]}; };
     const auto rgb = [](const float* p) { return Rgb{p[0], p[1], p[2]}; };
 
-    std::vector<reference::Vec2> taps;  // a sunflower's spiral
-    for (int i = 0; i < 4096; ++i) {
-        const double r = std::sqrt((i + 0.5) / 4096), a = i * std::numbers::pi * (3 - std::sqrt(5.0));
-        taps.push_back({r * std::cos(a), r * std::sin(a)});
-    }
-    const auto& depths = v.map.channels[0].pixels;
-    const reference::ShadowMap map{v.map.width, v.map.height, {depths.begin(), depths.end()}};
-    reference::Matrix4 matrix;
-    for (int r = 0; r < 4; ++r)
-        for (int k = 0; k < 4; ++k) matrix[size_t(r)][size_t(k)] = light.worldToShadow[4 * r + k];
+    const ThicknessTruth manyTaps(v.map, light, m);
     reference::Ambient ambient{rgb(v.scene.ambient.constant), {}};
     for (size_t i = 0; i < 9; ++i) ambient.harmonics[i] = rgb(v.scene.ambient.sh[i]);
 
@@ -129,8 +120,7 @@ std::map<size_t, Rgb> truth(const View& v) {
         reference::Pixel pixel{vec(&ng[3 * i]), vec(&n[3 * i]), vec(&nb[3 * i]),
                                reference::normalized(vec(v.scene.camera.position) - vec(&position[3 * i])), c[i]};
         reference::PixelLight l{vec(light.toLight), rgb(light.color), wide[i], true, 0};
-        l.thickness = thickness(map, shadowCoordinates(matrix, vec(&position[3 * i]), pixel.geometric, m.deepScatterNormalOffset), taps,
-                                m.thicknessFilterRadius, {false, light.shadowDepthRange, 0, 1}, reference::MapFilter::bilinear);
+        l.thickness = manyTaps.at(vec(&position[3 * i]), pixel.geometric);
         const double bend = std::clamp(double(c[i]), 1.0 / curvatureDesc.radiusMax, 1.0 / curvatureDesc.radiusMin);
         curvature.table.texels[0] = reference::curvatureD(
             reference::Form::arc, *scaled, std::clamp(dot(pixel.blurred, l.toLight), -1.0, 1.0), 1 / bend);

@@ -1,8 +1,8 @@
 // Error of every curvature estimator on every surface whose curvature is known, as rows of docs/curvature.md:
 // tessellations of about 20,000 vertices, exact normals; "noisy": the irregular one with noise of 2 % of an edge, normals
-// from the mesh, smoothed over three edges, by cotangents and by areas. RMS error of mean curvature in percent of the RMS curvedness of the truth
-// (which does not vanish on a saddle), away from borders; of a plane times its side. Behind the slash: the border itself
-// and its ring. Then two tables of spheres: of any size, and away from the origin.
+// from the mesh, smoothed over three edges, by cotangents and by areas. RMS error of mean curvature in percent of the RMS
+// curvedness of the truth (which does not vanish on a saddle), away from borders; of a plane times its side. Behind the
+// slash: the border itself and its ring. Then two tables of spheres: of any size, and away from the origin.
 //   sweep_surfaces [CELLS]   of a grid's side, default 140
 #include <pellucid/pellucid.hpp>
 
@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "mesh_calls.h"
 #include "reference/surfaces.h"
 #include "reference_meshes.h"
 
@@ -56,23 +57,13 @@ struct Sum {
     double percent(bool plane) const { return 100 * std::sqrt(error / (plane ? 1 : truth)); }
 };
 
-// Signed mean curvature (edge: its own), smoothed to `radius`.
 std::vector<float> meanCurvature(const fixture::Mesh& mesh, PelCurvatureEstimator estimator, float radius,
                                  PelSmoothingWeights weights) {
     const uint32_t n = mesh.vertices();
-    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
-    desc.numVertices = n;
-    desc.indices = mesh.indices.data();
-    desc.numIndices = mesh.indices.size();
-    const MeshTopology topology(device(), desc);
+    const MeshTopology topology(device(), fixture::topologyDesc(mesh));
     const Buffer positions(device(), mesh.positions), normals(device(), mesh.normals), out(device(), n * sizeof(float));
-    PelCurvatureParams params = pelCurvatureParamsDefaults();
-    params.estimator = estimator;
-    params.quantity = estimator == PEL_CURVATURE_EDGE ? PEL_QUANTITY_ABSOLUTE : PEL_QUANTITY_MEAN;
-    params.smoothingPasses = 0;
-    params.smoothingRadius = radius;
-    params.smoothingWeights = weights;
-    topology.curvature(params, vertexView(positions, n), vertexView(normals, n), vertexView(out, n));
+    topology.curvature(fixture::meanParams(estimator, radius, weights), vertexView(positions, n), vertexView(normals, n),
+                       vertexView(out, n));
     return out.readAll<float>();
 }
 

@@ -21,7 +21,7 @@ class CommandTest : public FolderTest {
     Result run(const std::vector<std::string>& arguments, const std::string& environment = "") const {
         const std::string out = scratch_ + "/stdout", err = scratch_ + "/stderr";
         std::string line = environment + " " + quoted(PELLUCID_COMMAND);
-        for (const std::string& argument : arguments) line += " " + quoted(argument);
+        for (const std::string& argument : arguments) line.append(" ").append(quoted(argument));
         line += " >" + quoted(out) + " 2>" + quoted(err) + " </dev/null";
         const int status = std::system(line.c_str());
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(out), read(err)};

@@ -5,9 +5,8 @@
 #include <pellucid/pellucid.hpp>
 
 #include <cmath>
-#include <random>
 
-#include "mesh_shapes.h"
+#include "mesh_calls.h"
 #include "npy.h"
 
 namespace fixture {
@@ -26,30 +25,6 @@ inline Mesh oracleMesh(const std::filesystem::path& directory, const std::string
     const std::vector<int32_t> indices = npy::read<int32_t>(file("idx_i32")).data;
     mesh.indices.assign(indices.begin(), indices.end());
     return mesh;
-}
-
-inline PelMeshTopologyDesc topologyDesc(const Mesh& mesh) {
-    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
-    desc.numVertices = mesh.vertices();
-    desc.indices = mesh.indices.data();
-    desc.numIndices = mesh.indices.size();
-    desc.positions = mesh.positions.data();
-    return desc;
-}
-
-inline PelMeshTopologyDesc weldedDesc(const Mesh& mesh, float tolerance = 0) {
-    PelMeshTopologyDesc desc = topologyDesc(mesh);
-    desc.weld = tolerance > 0 ? PEL_WELD_TOLERANCE : PEL_WELD_EXACT;
-    desc.weldTolerance = tolerance;
-    return desc;
-}
-
-inline PelCurvatureParams edgeParams(uint32_t passes, float scale = 1) {
-    PelCurvatureParams params = pelCurvatureParamsDefaults();
-    params.estimator = PEL_CURVATURE_EDGE;
-    params.smoothingPasses = passes;
-    params.scale = scale;
-    return params;
 }
 
 struct Result {

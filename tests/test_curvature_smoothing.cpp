@@ -13,13 +13,7 @@ constexpr PelSmoothingWeights bothWeights[] = {PEL_SMOOTHING_COTANGENT, PEL_SMOO
 
 PelCurvatureParams smoothed(float radius, PelCurvatureEstimator estimator = PEL_CURVATURE_QUADRIC,
                             PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT) {
-    PelCurvatureParams params = pelCurvatureParamsDefaults();
-    params.estimator = estimator;
-    params.quantity = estimator == PEL_CURVATURE_EDGE ? PEL_QUANTITY_ABSOLUTE : PEL_QUANTITY_MEAN;
-    params.smoothingPasses = 0;
-    params.smoothingRadius = radius;
-    params.smoothingWeights = weights;
-    return params;
+    return meanParams(estimator, radius, weights);
 }
 
 std::vector<float> run(const Mesh& mesh, const PelCurvatureParams& params) {

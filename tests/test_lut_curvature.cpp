@@ -1,15 +1,8 @@
 // The curvature LUT that the device integrates, against the oracle's adaptive quadrature and against data of
 // others.
-#include <gtest/gtest.h>
-
-#include <pellucid/pellucid.hpp>
-
-#include <cmath>
 #include <random>
 
-#include "npy.h"
-#include "reference/lut.h"
-#include "tolerances.h"
+#include "lut_cases.h"
 
 using namespace pellucid;
 
@@ -125,15 +118,7 @@ TEST(CurvatureLut, EncodingsRoundTruth) {
             const reference::Rgb truth = reference::curvatureTexel(spec, *profile, x, y);
             const reference::Rgb steps = reference::faceworksCurvatureSteps(truth, spec.u(x));
             clipped += reference::faceworksCurvatureClips(truth, spec.u(x));
-            const size_t at = (size_t(y) * 256 + x) * 4;
-            EXPECT_EQ(bytes[at + 3], 255);
-            for (int c = 0; c < 3; ++c) {
-                const double fromBoundary = std::abs(steps[c] - std::floor(steps[c]) - 0.5);
-                if (fromBoundary > tolerance::lutRoundingBoundary) {
-                    EXPECT_EQ(bytes[at + c], reference::roundedSteps(steps)[c])
-                        << x << ", " << y << ": " << steps[c];
-                }
-            }
+            fixture::expectRounded(&bytes[(size_t(y) * 256 + x) * 4], steps, x, y);
         }
     EXPECT_GT(clipped, 0) << "the narrowest radii exceed what the peer's residual holds";
     uint64_t all = 0;
@@ -157,13 +142,5 @@ TEST(CurvatureLut, EqualsTheExactTableOfThePeersProfile) {
     for (size_t i = 0; i < texels.size(); ++i)
         worst = std::max(worst, std::abs(double(texels[i]) - truth.data[i]));
     EXPECT_LT(worst, tolerance::lutTexelGaussians);
-
-    // The peer's own table is sampled and clipped: near, but not the same.
-    const auto peer = npy::read<uint8_t>(directory / "fw_lut_curv_A_u8.npy");
-    const auto bytes = lut.read<uint8_t>(PEL_LUT_FACEWORKS8);
-    ASSERT_EQ(bytes.size(), peer.data.size());
-    int furthest = 0;
-    for (size_t i = 0; i < bytes.size(); ++i)
-        furthest = std::max(furthest, std::abs(int(bytes[i]) - peer.data[i]));
-    EXPECT_LE(furthest, int(tolerance::peerBytes.value));
+    fixture::expectNearPeer(lut, directory / "fw_lut_curv_A_u8.npy");
 }

@@ -1,15 +1,10 @@
 // Every form with every profile against the oracle, and profiles against the oracle's.
-#include <gtest/gtest.h>
-
-#include <pellucid/pellucid.hpp>
-
-#include <cmath>
 #include <random>
 
-#include "reference/lut.h"
-#include "tolerances.h"
+#include "lut_cases.h"
 
 using namespace pellucid;
+using fixture::forms;
 
 namespace {
 
@@ -50,22 +45,10 @@ std::vector<Pair> pairs() {
     return all;
 }
 
-const std::pair<PelCurvatureForm, reference::Form> forms[] = {{PEL_FORM_ARC, reference::Form::arc},
-                                                              {PEL_FORM_RING, reference::Form::ring},
-                                                              {PEL_FORM_HALF_RING, reference::Form::halfRing},
-                                                              {PEL_FORM_SPHERE, reference::Form::sphere}};
-
 void compare(const Device& device, const Pair& pair, PelCurvatureForm form, reference::Form trueForm,
              double least, double most, PelLutAxis axis) {
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
-    desc.width = 48;
-    desc.height = 12;
-    desc.form = form;
+    PelCurvatureLutDesc desc = fixture::curvatureTable(pair.ours, form, 48, 12, least, most);
     desc.axis = axis;
-    desc.diffusionRadius = 0;
-    desc.profile = pair.ours.get();
-    desc.radiusMin = float(least * pair.truth->radius());
-    desc.radiusMax = float(most * pair.truth->radius());
     const Lut lut(device, desc);
     const auto texels = lut.read<float>(PEL_LUT_FLOAT);
     std::mt19937 random(3);
@@ -106,17 +89,9 @@ TEST(LutProfiles, ShadowEqualsTheIntegral) {
     const Device device("");
     for (const Pair& pair : pairs())
         for (float sharpening : {1.0f, 10.0f}) {
-            PelShadowLutDesc desc = pelShadowLutDescDefaults();
-            desc.width = 40;
-            desc.height = 8;
-            desc.profile = pair.ours.get();
-            desc.diffusionRadius = 0;
-            const double radius = pair.truth->radius();
-            desc.widthMin = float(2 * radius);
-            desc.widthMax = float(40 * radius);
-            desc.sharpening = sharpening;
+            const PelShadowLutDesc desc = fixture::shadowTable(pair.ours, 40, 8, 2, 40, sharpening);
             const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
-            const reference::ShadowLutSpec spec{40, 8, desc.widthMin, desc.widthMax, radius, sharpening};
+            const reference::ShadowLutSpec spec{40, 8, desc.widthMin, desc.widthMax, pair.truth->radius(), sharpening};
             for (int y = 0; y < 8; y += 2)
                 for (int x = y % 3; x < 40; x += 5) {
                     const auto truth = reference::shadowTexel(spec, *pair.truth, x, y);
@@ -130,29 +105,8 @@ TEST(LutProfiles, ShadowEqualsTheIntegral) {
 TEST(LutProfiles, MeanOverTheSphereIsAQuarter) {
     const Device device("");
     for (const Pair& pair : pairs()) {
-        PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
-        desc.width = 2049;
-        desc.height = 16;
-        desc.form = PEL_FORM_SPHERE;
-        desc.axis = PEL_AXIS_ROOT;
-        desc.diffusionRadius = 0;
-        desc.profile = pair.ours.get();
-        desc.radiusMin = float(0.05 * pair.truth->radius());
-        desc.radiusMax = float(1000 * pair.truth->radius());
-        const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
-        for (uint32_t y = 0; y < desc.height; ++y)
-            for (int k = 0; k < 3; ++k) {
-                double mean =
-                    0;  // over u: du/2 = |s| ds, which vanishes at the middle; trapezoids between texels
-                for (uint32_t x = 0; x < desc.width; ++x) {
-                    const double s = -1 + 2.0 * x / (desc.width - 1),
-                                 end = x == 0 || x + 1 == desc.width ? 0.5 : 1;
-                    mean += texels[(size_t(y) * desc.width + x) * 3 + k] * std::abs(s) * end * 2 /
-                            (desc.width - 1);
-                }
-                EXPECT_NEAR(mean, 0.25, tolerance::sphereMean)
-                    << pair.name << " row " << y << " channel " << k;
-            }
+        const auto desc = fixture::curvatureTable(pair.ours, PEL_FORM_SPHERE, 2049, 16, 0.05, 1000);
+        fixture::expectMeansOfAQuarter(Lut(device, desc).read<float>(PEL_LUT_FLOAT), desc.width, pair.name);
     }
 }
 

@@ -1,23 +1,17 @@
 // What holds for every look-up table: random profiles of each kind, every form, large tables, and numbers at
 // the edges of float.
-#include <gtest/gtest.h>
-
-#include <pellucid/pellucid.hpp>
-
 #include <boost/math/quadrature/gauss_kronrod.hpp>
-#include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>
 
-#include "reference/lut.h"
-#include "tolerances.h"
+#include "lut_cases.h"
 
 using namespace pellucid;
+using fixture::curvatureTable;
+using fixture::forms;
 
 namespace {
-
-constexpr PelCurvatureForm forms[] = {PEL_FORM_ARC, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_SPHERE};
 
 using Random = std::mt19937;
 float logUniform(Random& random, double least, double most) {
@@ -67,20 +61,6 @@ Profile randomProfile(PelProfileKind kind, unsigned seed, float scale) {
 constexpr PelProfileKind kinds[] = {PEL_PROFILE_GAUSSIANS, PEL_PROFILE_BURLEY, PEL_PROFILE_DIPOLE,
                                     PEL_PROFILE_TABLE};
 
-PelCurvatureLutDesc describe(const Profile& profile, PelCurvatureForm form, uint32_t width, uint32_t height,
-                             double least, double most) {
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
-    desc.width = width;
-    desc.height = height;
-    desc.form = form;
-    desc.axis = PEL_AXIS_ROOT;
-    desc.diffusionRadius = 0;
-    desc.profile = profile.get();
-    desc.radiusMin = float(least * profile.info().radius);
-    desc.radiusMax = float(most * profile.info().radius);
-    return desc;
-}
-
 double bound(PelProfileKind kind) {
     return kind == PEL_PROFILE_GAUSSIANS ? tolerance::lutTexelGaussians : tolerance::lutTexelOther;
 }
@@ -96,11 +76,12 @@ TEST(LutProperties, CurvatureRisesIsBoundedAndScales) {
     for (PelProfileKind kind : kinds)
         for (unsigned seed = 0; seed < 4; ++seed) {
             const Profile profile = randomProfile(kind, seed, 1), large = randomProfile(kind, seed, 1000);
-            for (PelCurvatureForm form : forms) {
+            for (const auto& entry : forms) {
+                const PelCurvatureForm form = entry.first;
                 const auto D =
-                    Lut(device, describe(profile, form, width, height, 0.05, 1e4)).read<float>(PEL_LUT_FLOAT);
+                    Lut(device, curvatureTable(profile, form, width, height, 0.05, 1e4)).read<float>(PEL_LUT_FLOAT);
                 const auto scaled =
-                    Lut(device, describe(large, form, width, height, 0.05, 1e4)).read<float>(PEL_LUT_FLOAT);
+                    Lut(device, curvatureTable(large, form, width, height, 0.05, 1e4)).read<float>(PEL_LUT_FLOAT);
                 const auto where = [&](size_t i) {
                     return ::testing::Message()
                            << "kind " << int(kind) << " seed " << seed << " form " << int(form) << " texel "
@@ -128,8 +109,6 @@ TEST(LutProperties, CurvatureRisesIsBoundedAndScales) {
 // Random sums of Gaussians in every form, some texels each, against the integral.
 TEST(LutProperties, RandomGaussiansEqualTheIntegral) {
     const Device device("");
-    const reference::Form trueForms[] = {reference::Form::arc, reference::Form::ring,
-                                         reference::Form::halfRing, reference::Form::sphere};
     for (unsigned seed = 100; seed < 112; ++seed) {
         Random random(seed);
         std::vector<PelGaussian> gaussians(1 + random() % 6);
@@ -141,8 +120,8 @@ TEST(LutProperties, RandomGaussiansEqualTheIntegral) {
         }
         const Profile profile = Profile::gaussians(gaussians);
         const auto truth = reference::gaussiansProfile(same);
-        for (PelCurvatureForm form : forms) {
-            const PelCurvatureLutDesc desc = describe(profile, form, 41, 9, 0.05, 1e4);
+        for (const auto& [form, trueForm] : forms) {
+            const PelCurvatureLutDesc desc = curvatureTable(profile, form, 41, 9, 0.05, 1e4);
             const auto D = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
             for (int i = 0; i < 9; ++i) {
                 const int x = int(random() % 41);
@@ -150,7 +129,7 @@ TEST(LutProperties, RandomGaussiansEqualTheIntegral) {
                              last = std::sqrt(1 / double(desc.radiusMin)),
                              c = first + i / 8.0 * (last - first);
                 const reference::Rgb exact =
-                    reference::curvatureD(trueForms[form], *truth, s * std::abs(s), 1 / (c * c));
+                    reference::curvatureD(trueForm, *truth, s * std::abs(s), 1 / (c * c));
                 for (int k = 0; k < 3; ++k)
                     EXPECT_NEAR(D[size_t(i * 41 + x) * 3 + size_t(k)], exact[k], tolerance::lutTexelGaussians)
                         << "seed " << seed << " form " << int(form) << " texel " << x << ", " << i;
@@ -165,17 +144,9 @@ TEST(LutProperties, SphereKeepsTheEnergy) {
     for (PelProfileKind kind : kinds)
         for (unsigned seed = 0; seed < 4; ++seed) {
             const Profile profile = randomProfile(kind, seed, 1);
-            const auto D = Lut(device, describe(profile, PEL_FORM_SPHERE, width, height, 0.05, 100))
+            const auto D = Lut(device, curvatureTable(profile, PEL_FORM_SPHERE, width, height, 0.05, 100))
                                .read<float>(PEL_LUT_FLOAT);
-            for (uint32_t y = 0; y < height; ++y)
-                for (size_t c = 0; c < 3; ++c) {
-                    double mean = 0;  // over u = s |s|: du/2 = |s| ds
-                    for (uint32_t x = 0; x < width; ++x)
-                        mean += D[(size_t(y) * width + x) * 3 + c] * std::abs(-1 + x / 1024.0) / 1024 *
-                                (x % 2048 ? 1 : 0.5);
-                    EXPECT_NEAR(mean, 0.25, tolerance::sphereMean)
-                        << int(kind) << " seed " << seed << " row " << y;
-                }
+            fixture::expectMeansOfAQuarter(D, width, std::to_string(kind) + " seed " + std::to_string(seed));
         }
 }
 
@@ -186,14 +157,7 @@ TEST(LutProperties, ShadowRisesAndIsOdd) {
     for (PelProfileKind kind : kinds)
         for (unsigned seed = 0; seed < 4; ++seed) {
             const Profile profile = randomProfile(kind, seed, 1);
-            PelShadowLutDesc desc = pelShadowLutDescDefaults();
-            desc.width = width;
-            desc.height = height;
-            desc.profile = profile.get();
-            desc.diffusionRadius = 0;
-            desc.widthMin = 0.3f * profile.info().radius;
-            desc.widthMax = 300 * profile.info().radius;
-            desc.sharpening = seed % 2 ? 1 : 10;
+            const auto desc = fixture::shadowTable(profile, width, height, 0.3, 300, seed % 2 ? 1.0f : 10.0f);
             const auto T = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
             for (size_t i = 0; i < T.size(); ++i) {
                 const size_t x = i / 3 % width;
@@ -243,14 +207,12 @@ TEST(LutProperties, LargestTables) {
     constexpr uint32_t side = 4096;
     const auto skin = reference::skinProfile();
     const Profile profile = Profile::skin();
-    const reference::Form trueForms[] = {reference::Form::arc, reference::Form::ring,
-                                         reference::Form::halfRing, reference::Form::sphere};
     Random random(23);
-    for (PelCurvatureForm form : forms) {
-        PelCurvatureLutDesc desc = describe(profile, form, side, side, 0.05, 1e4);
+    for (const auto& [form, trueForm] : forms) {
+        PelCurvatureLutDesc desc = curvatureTable(profile, form, side, side, 0.05, 1e4);
         desc.axis = PEL_AXIS_LINEAR;
         const auto D = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
-        const reference::CurvatureLutSpec spec{trueForms[form], int(side), int(side), desc.radiusMin,
+        const reference::CurvatureLutSpec spec{trueForm, int(side), int(side), desc.radiusMin,
                                                desc.radiusMax};
         for (int i = 0; i < 160; ++i) {
             const int edges[] = {0, int(side) - 1, int(side) / 2};
@@ -270,15 +232,13 @@ TEST(LutProperties, EndsOfTheAxesAreExact) {
     const Device device("");
     const auto skin = reference::skinProfile();
     const Profile profile = Profile::skin();
-    const reference::Form trueForms[] = {reference::Form::arc, reference::Form::ring,
-                                         reference::Form::halfRing, reference::Form::sphere};
-    for (PelCurvatureForm form : forms)
+    for (const auto& [form, trueForm] : forms)
         for (double r : {0.05, 1.0, 30.0}) {
-            const auto D = Lut(device, describe(profile, form, 3, 1, r, r)).read<float>(PEL_LUT_FLOAT);
-            const auto one = Lut(device, describe(profile, form, 1, 1, r, r)).read<float>(PEL_LUT_FLOAT);
+            const auto D = Lut(device, curvatureTable(profile, form, 3, 1, r, r)).read<float>(PEL_LUT_FLOAT);
+            const auto one = Lut(device, curvatureTable(profile, form, 1, 1, r, r)).read<float>(PEL_LUT_FLOAT);
             for (size_t x = 0; x < 3; ++x) {
                 const reference::Rgb truth =
-                    reference::curvatureD(trueForms[form], *skin, double(x) - 1, r * 2.7);
+                    reference::curvatureD(trueForm, *skin, double(x) - 1, r * 2.7);
                 for (int c = 0; c < 3; ++c) {
                     EXPECT_NEAR(D[3 * x + size_t(c)], truth[c], tolerance::lutTexelGaussians)
                         << int(form) << " r " << r;
@@ -306,7 +266,7 @@ TEST(LutProperties, WeightsAndVariancesAtTheEdgesOfFloat) {
         return Lut(device, desc).read<float>(PEL_LUT_FLOAT);
     };
     const Profile plain = Profile::gaussians({{1, {1, 1, 1}}, {4, {1, 3, 1}}});
-    for (PelCurvatureForm form : forms) {
+    for (const auto& [form, trueForm] : forms) {
         // Weights are shares, whatever their size: their sum leaves the range of float here.
         const auto expected = texels(plain, form, 1, 50, 0);
         for (float unit : {0x1p126f, 0x1p-120f, 0x1p90f})

@@ -1,15 +1,8 @@
 // The shadow LUT that the device integrates, against the oracle's adaptive quadrature and against data of
 // others.
-#include <gtest/gtest.h>
-
-#include <pellucid/pellucid.hpp>
-
-#include <cmath>
 #include <random>
 
-#include "npy.h"
-#include "reference/lut.h"
-#include "tolerances.h"
+#include "lut_cases.h"
 
 using namespace pellucid;
 
@@ -100,15 +93,7 @@ TEST(ShadowLut, EncodingRoundsTruth) {
         for (int x = 0; x < 256; x += 3) {
             const auto steps =
                 reference::faceworksShadowSteps(reference::shadowTexel(specOf(desc), *profile, x, y), x, 256);
-            const size_t at = (size_t(y) * 256 + x) * 4;
-            EXPECT_EQ(bytes[at + 3], 255);
-            for (int c = 0; c < 3; ++c) {
-                const double fromBoundary = std::abs(steps[c] - std::floor(steps[c]) - 0.5);
-                if (fromBoundary > tolerance::lutRoundingBoundary) {
-                    EXPECT_EQ(bytes[at + c], reference::roundedSteps(steps)[c])
-                        << x << ", " << y << ": " << steps[c];
-                }
-            }
+            fixture::expectRounded(&bytes[(size_t(y) * 256 + x) * 4], steps, x, y);
         }
 }
 
@@ -124,12 +109,5 @@ TEST(ShadowLut, EqualsTheExactTableOfThePeersProfile) {
         worst = std::max(worst, std::abs(faded - truth.data[i]));
     }
     EXPECT_LT(worst, tolerance::lutTexelGaussians);
-
-    const auto peer = npy::read<uint8_t>(directory / "fw_lut_shadow_A_u8.npy");
-    const auto bytes = lut.read<uint8_t>(PEL_LUT_FACEWORKS8);
-    ASSERT_EQ(bytes.size(), peer.data.size());
-    int furthest = 0;
-    for (size_t i = 0; i < bytes.size(); ++i)
-        furthest = std::max(furthest, std::abs(int(bytes[i]) - peer.data[i]));
-    EXPECT_LE(furthest, int(tolerance::peerBytes.value));
+    fixture::expectNearPeer(lut, directory / "fw_lut_shadow_A_u8.npy");
 }

@@ -1,15 +1,10 @@
 // Look-up tables of measured profiles, R linear between distances, against the oracle.
-#include <gtest/gtest.h>
-
-#include <pellucid/pellucid.hpp>
-
-#include <cmath>
 #include <random>
 
-#include "reference/lut.h"
-#include "tolerances.h"
+#include "lut_cases.h"
 
 using namespace pellucid;
+using fixture::forms;
 
 namespace {
 
@@ -51,11 +46,6 @@ std::vector<Table> tables() {
     return all;
 }
 
-const std::pair<PelCurvatureForm, reference::Form> forms[] = {{PEL_FORM_ARC, reference::Form::arc},
-                                                              {PEL_FORM_RING, reference::Form::ring},
-                                                              {PEL_FORM_HALF_RING, reference::Form::halfRing},
-                                                              {PEL_FORM_SPHERE, reference::Form::sphere}};
-
 }  // namespace
 
 TEST(LutTables, EveryFormEqualsTheIntegral) {
@@ -65,15 +55,7 @@ TEST(LutTables, EveryFormEqualsTheIntegral) {
         const auto truth = table.truth();
         EXPECT_NEAR(ours.info().radius / truth->radius(), 1, tolerance::profileEvaluation);
         for (const auto& [form, trueForm] : forms) {
-            PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
-            desc.width = 60;
-            desc.height = 16;
-            desc.form = form;
-            desc.axis = PEL_AXIS_ROOT;
-            desc.diffusionRadius = 0;
-            desc.profile = ours.get();
-            desc.radiusMin = float(0.05 * truth->radius());
-            desc.radiusMax = float(1e4 * truth->radius());
+            const PelCurvatureLutDesc desc = fixture::curvatureTable(ours, form, 60, 16, 0.05, 1e4);
             const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
             std::mt19937 random(5);
             for (int i = 0; i < 40; ++i) {
@@ -102,14 +84,7 @@ TEST(LutTables, ShadowEqualsTheIntegral) {
         const double radius = truth->radius();
         for (auto [least, most, sharpening] :
              {std::tuple{2.0, 40.0, 1.0f}, {0.05, 1000.0, 1.0f}, {2.0, 40.0, 10.0f}, {1.0, 10.0, 1e5f}}) {
-            PelShadowLutDesc desc = pelShadowLutDescDefaults();
-            desc.width = 41;
-            desc.height = 9;
-            desc.profile = ours.get();
-            desc.diffusionRadius = 0;
-            desc.widthMin = float(least * radius);
-            desc.widthMax = float(most * radius);
-            desc.sharpening = sharpening;
+            const PelShadowLutDesc desc = fixture::shadowTable(ours, 41, 9, least, most, sharpening);
             const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
             const reference::ShadowLutSpec spec{41, 9, desc.widthMin, desc.widthMax, radius, sharpening};
             for (int y = 0; y < 9; y += 2)
@@ -130,16 +105,7 @@ namespace {
 
 std::vector<float> curvatureTexels(const Device& device, const Profile& profile, PelCurvatureForm form,
                                    uint32_t width, uint32_t height) {
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
-    desc.width = width;
-    desc.height = height;
-    desc.form = form;
-    desc.axis = PEL_AXIS_ROOT;
-    desc.diffusionRadius = 0;
-    desc.profile = profile.get();
-    desc.radiusMin = 0.05f * profile.info().radius;
-    desc.radiusMax = 1000 * profile.info().radius;
-    return Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+    return Lut(device, fixture::curvatureTable(profile, form, width, height, 0.05, 1000)).read<float>(PEL_LUT_FLOAT);
 }
 
 }  // namespace
@@ -171,18 +137,8 @@ TEST(LutTables, MoreDistancesOnTheSameLinesChangeNothing) {
 
 TEST(LutTables, MeanOverTheSphereIsAQuarter) {
     const Device device("");
-    for (const Table& table : tables()) {
-        const uint32_t width = 2049, height = 8;
-        const auto texels = curvatureTexels(device, table.ours(), PEL_FORM_SPHERE, width, height);
-        for (uint32_t y = 0; y < height; ++y)
-            for (size_t c = 0; c < 3; ++c) {
-                double mean = 0;  // over u = s |s|: du/2 = |s| ds
-                for (uint32_t x = 0; x < width; ++x)
-                    mean += texels[(size_t(y) * width + x) * 3 + c] * std::abs(-1 + x / 1024.0) / 1024 *
-                            (x % 2048 ? 1 : 0.5);
-                EXPECT_NEAR(mean, 0.25, tolerance::sphereMean) << table.name << " row " << y;
-            }
-    }
+    for (const Table& table : tables())
+        fixture::expectMeansOfAQuarter(curvatureTexels(device, table.ours(), PEL_FORM_SPHERE, 2049, 8), 2049, table.name);
 }
 
 // A table that holds nothing within reach has no answer but the light itself.

@@ -3,11 +3,11 @@
 // oclgrind).
 #include <gtest/gtest.h>
 
+#include "lut_cases.h"
+#include "mesh_calls.h"
 #include "pass_scene.h"
-#include "reference/lut.h"
 #include "reference/screen.h"
-#include "reference/surfaces.h"
-#include "tolerances.h"
+#include "reference_meshes.h"
 
 using namespace pellucid;
 
@@ -20,33 +20,13 @@ const Device& device() {
 }
 
 struct SmallMesh {
-    reference::AnalyticMesh truth =
-        reference::tessellate(reference::torusSurface(30, 10), 11, 7, reference::Tessellation::irregular);
-    uint32_t vertices = uint32_t(truth.mesh.positions.size());
-    std::vector<float> positions, normals, uvs;
-    std::vector<uint32_t> indices;
-    MeshTopology topology;
-    Buffer positionBuffer, normalBuffer;
+    fixture::Pair both = fixture::pairOf(
+        reference::tessellate(reference::torusSurface(30, 10), 11, 7, reference::Tessellation::irregular).mesh);
+    const reference::Mesh& truth = both.exact;
+    uint32_t vertices = both.mesh.vertices();
+    MeshTopology topology{device(), fixture::topologyDesc(both.mesh)};
+    Buffer positionBuffer{device(), both.mesh.positions}, normalBuffer{device(), both.mesh.normals};
 
-    SmallMesh() {
-        reference::Mesh& mesh = truth.mesh;
-        const auto round = [](reference::Vec3& v, std::vector<float>& to) {
-            for (int i = 0; i < 3; ++i) to.push_back(float(v[i])), v[i] = to.back();
-        };
-        for (auto& p : mesh.positions) round(p, positions);
-        for (auto& n : mesh.normals) round(n, normals);
-        for (auto& t : mesh.uvs)
-            uvs.insert(uvs.end(), {float(t.x), float(t.y)}), t = {uvs.end()[-2], uvs.end()[-1]};
-        for (const auto& t : mesh.triangles)
-            indices.insert(indices.end(), {uint32_t(t[0]), uint32_t(t[1]), uint32_t(t[2])});
-        PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
-        desc.numVertices = vertices;
-        desc.indices = indices.data();
-        desc.numIndices = indices.size();
-        topology = MeshTopology(device(), desc);
-        positionBuffer = Buffer(device(), positions);
-        normalBuffer = Buffer(device(), normals);
-    }
     PelVertexView view(const Buffer& buffer) const { return vertexView(buffer, vertices); }
     std::vector<float> curvature(const PelCurvatureParams& params, uint32_t components = 1) const {
         const Buffer out(device(), vertices * components * sizeof(float));
@@ -68,17 +48,15 @@ double worst(const std::vector<float>& values, const std::vector<double>& truth)
 
 TEST(Small, Curvature) {
     const SmallMesh m;
-    PelCurvatureParams params = pelCurvatureParamsDefaults();
-    params.estimator = PEL_CURVATURE_EDGE;
-    params.smoothingPasses = 2;
+    PelCurvatureParams params = fixture::edgeParams(2);
     EXPECT_LT(worst(m.curvature(params),
-                    reference::smoothed(m.truth.mesh, reference::edgeCurvature(m.truth.mesh), 2)),
+                    reference::smoothed(m.truth, reference::edgeCurvature(m.truth), 2)),
               tolerance::edgeCurvature);
     params.estimator = PEL_CURVATURE_TENSOR;
     params.smoothingPasses = 0;
     params.quantity = PEL_QUANTITY_PRINCIPAL;
     std::vector<double> principal;
-    for (const auto& k : reference::tensorCurvature(m.truth.mesh))
+    for (const auto& k : reference::tensorCurvature(m.truth))
         principal.insert(principal.end(), {k.first, k.second});
     EXPECT_LT(worst(m.curvature(params, 2), principal), 1e-4);
     // A fit to eleven by seven vertices says little: finite, and of the right order.
@@ -95,23 +73,18 @@ TEST(Small, Curvature) {
 
 TEST(Small, NormalsAndUvScale) {
     const SmallMesh m;
-    const Buffer out(device(), m.vertices * 3 * sizeof(float)), uvs(device(), m.uvs);
+    const Buffer out(device(), m.vertices * 3 * sizeof(float)), uvs(device(), m.both.mesh.uvs);
     m.topology.normals(m.view(m.positionBuffer), m.view(out));
     std::vector<double> truth;
-    for (const auto& n : reference::estimatedNormals(m.truth.mesh))
+    for (const auto& n : reference::estimatedNormals(m.truth))
         truth.insert(truth.end(), {n.x, n.y, n.z});
     EXPECT_LT(worst(out.readAll<float>(), truth), 1e-5);
-    const double scale = reference::uvScale(m.truth.mesh);
+    const double scale = reference::uvScale(m.truth);
     EXPECT_NEAR(m.topology.uvScale(m.view(m.positionBuffer), m.view(uvs)) / scale, 1, 1e-5);
 }
 
 TEST(Small, CurvatureTables) {
-    const std::pair<PelCurvatureForm, reference::Form> forms[] = {
-        {PEL_FORM_ARC, reference::Form::arc},
-        {PEL_FORM_RING, reference::Form::ring},
-        {PEL_FORM_HALF_RING, reference::Form::halfRing},
-        {PEL_FORM_SPHERE, reference::Form::sphere}};
-    for (const auto& [form, other] : forms) {
+    for (const auto& [form, other] : fixture::forms) {
         PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
         desc.width = 5, desc.height = 3, desc.form = form;
         const Lut lut(device(), desc);
@@ -224,8 +197,8 @@ TEST(Small, APartOfALiveMesh) {
     const LiveMesh live(m.topology, params);
     const Buffer out(device(), m.vertices * sizeof(float));
     live.update(m.view(m.positionBuffer), nullptr, m.view(out));
-    for (int i = 30; i < 36; ++i) m.positions[size_t(i)] *= 1.01f;
-    m.positionBuffer = Buffer(device(), m.positions);
+    for (int i = 30; i < 36; ++i) m.both.mesh.positions[size_t(i)] *= 1.01f;
+    m.positionBuffer = Buffer(device(), m.both.mesh.positions);
     live.update(m.view(m.positionBuffer), nullptr, m.view(out), {{10, 2}});
     const Buffer whole(device(), m.vertices * sizeof(float));
     m.topology.curvature(params, m.view(m.positionBuffer), m.view(whole));

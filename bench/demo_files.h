@@ -1,0 +1,48 @@
+// What `./run demo` leaves, for benchmarks and figures: where it is, and the head as `pellucid demo` places it.
+#pragma once
+#include <pellucid/pellucid.hpp>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "io/mesh_file.h"
+
+namespace demo {
+
+inline std::string named(const char* variable, const char* otherwise) {
+    const char* value = std::getenv(variable);
+    return value && *value ? value : otherwise;
+}
+
+inline std::string directory() {
+    return named("PELLUCID_DEMO_DIR", PELLUCID_SOURCE_DIR "/out/demo");
+}
+
+inline std::string meshFile() {
+    return named("PELLUCID_DEMO_MESH", PELLUCID_SOURCE_DIR "/build/demo/mannequin-devil.off");
+}
+
+inline pellucid::io::MeshData head(const std::string& file) {
+    pellucid::io::MeshData mesh = pellucid::io::loadMesh(file);
+    pellucid::io::scaleToHeight(mesh, 240, 2);  // mm
+    pellucid::io::loopSubdivide(mesh, 1);
+    pellucid::io::computeNormals(mesh);
+    return mesh;
+}
+
+inline std::vector<float> curvature(const pellucid::Device& device, const pellucid::io::MeshData& mesh,
+                                    const PelCurvatureParams& params) {
+    using namespace pellucid;
+    const auto n = uint32_t(mesh.vertexCount());
+    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
+    desc.numVertices = n;
+    desc.indices = mesh.triangles.data();
+    desc.numIndices = mesh.triangles.size();
+    const MeshTopology topology(device, desc);
+    const Buffer positions(device, mesh.positions), normals(device, mesh.normals), out(device, n * sizeof(float));
+    topology.curvature(params, vertexView(positions, n), vertexView(normals, n), vertexView(out, n));
+    return out.readAll<float>();
+}
+
+}  // namespace demo

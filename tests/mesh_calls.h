@@ -1,0 +1,45 @@
+// Descriptions of meshes and parameters of curvature, for tests and benchmarks.
+#pragma once
+#include <pellucid/pellucid.h>
+
+#include "mesh_shapes.h"
+
+namespace fixture {
+
+inline PelMeshTopologyDesc topologyDesc(const Mesh& mesh) {
+    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
+    desc.numVertices = mesh.vertices();
+    desc.indices = mesh.indices.data();
+    desc.numIndices = mesh.indices.size();
+    desc.positions = mesh.positions.data();
+    return desc;
+}
+
+inline PelMeshTopologyDesc weldedDesc(const Mesh& mesh, float tolerance = 0) {
+    PelMeshTopologyDesc desc = topologyDesc(mesh);
+    desc.weld = tolerance > 0 ? PEL_WELD_TOLERANCE : PEL_WELD_EXACT;
+    desc.weldTolerance = tolerance;
+    return desc;
+}
+
+inline PelCurvatureParams edgeParams(uint32_t passes, float scale = 1) {
+    PelCurvatureParams params = pelCurvatureParamsDefaults();
+    params.estimator = PEL_CURVATURE_EDGE;
+    params.smoothingPasses = passes;
+    params.scale = scale;
+    return params;
+}
+
+// Signed mean curvature (of PEL_CURVATURE_EDGE the one quantity that it knows), smoothed to `radius`.
+inline PelCurvatureParams meanParams(PelCurvatureEstimator estimator, float radius = 0,
+                                     PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT) {
+    PelCurvatureParams params = pelCurvatureParamsDefaults();
+    params.estimator = estimator;
+    params.quantity = estimator == PEL_CURVATURE_EDGE ? PEL_QUANTITY_ABSOLUTE : PEL_QUANTITY_MEAN;
+    params.smoothingPasses = 0;
+    params.smoothingRadius = radius;
+    params.smoothingWeights = weights;
+    return params;
+}
+
+}  // namespace fixture

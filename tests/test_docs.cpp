@@ -1,0 +1,67 @@
+// What the pages say about the tree must be so: the README quotes the minimal example, links lead somewhere, files that are named
+// exist. What they say about the command is in test_cli_docs.cpp.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+
+#include "pages.h"
+
+TEST(Docs, ReadmeQuotesTheMinimalExample) {
+    const std::string example = pages::contents(pages::root / "examples/example_minimal.c");
+    ASSERT_FALSE(example.empty());
+    EXPECT_NE(pages::contents(pages::root / "README.md").find("```c\n" + example + "```"), std::string::npos)
+        << "copy examples/example_minimal.c into README.md";
+}
+
+TEST(Docs, LinksLeadSomewhere) {
+    int links = 0;
+    const std::regex link(R"(\]\(([^)#:]+)(#[^)]*)?\))");
+    for (const auto& page : pages::all()) {
+        const std::string text = pages::contents(page);
+        for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it) {
+            ++links;
+            EXPECT_TRUE(std::filesystem::exists(page.parent_path() / (*it)[1].str()))
+                << page << " links to " << (*it)[1];
+        }
+    }
+    EXPECT_GT(links, 50);
+}
+
+// In code spans: paths whose first folder is one of the tree's, and sources by their name alone. `x.*` stands for any ending.
+TEST(Docs, NamedFilesExist) {
+    std::multimap<std::string, std::filesystem::path> byName;
+    for (const auto& folder : pages::folders)
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(pages::root / folder))
+            byName.emplace(entry.path().filename().string(), entry.path());
+    const auto exists = [&](std::string path) {
+        const bool anyEnding = path.ends_with(".*");
+        if (anyEnding) path.resize(path.size() - 2);
+        const std::filesystem::path name = std::filesystem::path(path).filename();
+        if (!anyEnding && name.empty()) return std::filesystem::is_directory(pages::root / path);
+        for (const auto& [file, whole] : byName) {
+            const std::string known = anyEnding ? (whole.parent_path() / whole.stem()).string() : whole.string();
+            if (known.ends_with("/" + path)) return true;
+        }
+        return std::filesystem::exists(pages::root / path);
+    };
+    const std::regex span("`([^`\n]+)`"), source(R"([\w/-]+\.(cpp|c|h|hpp|cl|clh|py|md)\b)"), path(R"([\w.-]+/[\w./-]*(\.\*)?)");
+    const std::set<std::string> hosts = {"device.cl", "buffer.cl", "event.cl"};  // attributes of Python objects
+    int files = 0;
+    for (const auto& page : pages::all()) {
+        const std::string text = pages::withoutBlocks(pages::contents(page));
+        for (std::sregex_iterator it(text.begin(), text.end(), span), end; it != end; ++it) {
+            const std::string code = (*it)[1];
+            for (const std::string& word : pages::words(code)) {
+                const std::string first = word.substr(0, word.find('/'));
+                const bool inTree = pages::folders.contains(first) && std::regex_match(word, path);
+                if (!inTree && (!std::regex_match(word, source) || hosts.contains(word))) continue;
+                ++files;
+                EXPECT_TRUE(exists(word)) << page << " names " << word;
+            }
+        }
+    }
+    EXPECT_GT(files, 100);
+}
