@@ -1,4 +1,5 @@
-# Install rules: the library, its public headers, the command, find_package(pellucid) and pkg-config.
+# Install rules: the library, its public headers, the command, find_package(pellucid) and pkg-config, and what a user reads
+# and starts from: documentation, licence, examples, the Blender script.
 include(CMakePackageConfigHelpers)
 install(TARGETS pellucid EXPORT pellucidTargets)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/host/include/pellucid DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
@@ -9,15 +10,35 @@ if(TARGET pellucid_cli)
   set_target_properties(pellucid_cli PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS pellucid_cli)
 endif()
-install(EXPORT pellucidTargets NAMESPACE pellucid:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/pellucid)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pellucid)
+install(EXPORT pellucidTargets NAMESPACE pellucid:: DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/pellucidConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-file(WRITE ${PROJECT_BINARY_DIR}/pellucidConfig.cmake "include(\${CMAKE_CURRENT_LIST_DIR}/pellucidTargets.cmake)
-# The folder that a renderer's own OpenCL kernels include \"lib/...\" from.
-get_filename_component(pellucid_KERNELS \"\${CMAKE_CURRENT_LIST_DIR}/../../../${CMAKE_INSTALL_DATADIR}/pellucid/kernels\" ABSOLUTE)\n")
-install(FILES ${PROJECT_BINARY_DIR}/pellucidConfig.cmake ${PROJECT_BINARY_DIR}/pellucidConfigVersion.cmake
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/pellucid)
-configure_file(${PROJECT_SOURCE_DIR}/cmake/pellucid.pc.in ${PROJECT_BINARY_DIR}/pellucid.pc.in @ONLY)
+set(kernels ${CMAKE_INSTALL_DATADIR}/pellucid/kernels)
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/pellucidConfig.cmake.in ${PROJECT_BINARY_DIR}/pellucidConfig.cmake
+                              INSTALL_DESTINATION ${package_dir} PATH_VARS kernels)
+install(FILES ${PROJECT_BINARY_DIR}/pellucidConfig.cmake ${PROJECT_BINARY_DIR}/pellucidConfigVersion.cmake DESTINATION ${package_dir})
+
+foreach(dir includedir libdir datadir)
+  string(TOUPPER ${dir} upper)
+  if(IS_ABSOLUTE ${CMAKE_INSTALL_${upper}})
+    set(${dir}_for_pc ${CMAKE_INSTALL_${upper}})
+  else()
+    set(${dir}_for_pc "\${prefix}/${CMAKE_INSTALL_${upper}}")
+  endif()
+endforeach()
+set(pc ${PROJECT_BINARY_DIR}/pellucid.pc)
+configure_file(${PROJECT_SOURCE_DIR}/cmake/pellucid.pc.in ${pc}.in @ONLY)
 # The prefix is known at install time only.
 install(CODE "
-  set(prefix \"\${CMAKE_INSTALL_PREFIX}\")
-  configure_file(\"${PROJECT_BINARY_DIR}/pellucid.pc.in\" \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/pkgconfig/pellucid.pc\")")
+  file(READ \"${pc}.in\" text)
+  string(REPLACE \"prefix=\\\${prefix}\" \"prefix=\${CMAKE_INSTALL_PREFIX}\" text \"\${text}\")
+  file(WRITE \"${pc}\" \"\${text}\")")
+install(FILES ${pc} DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+# As in the repository, so that the pages' links to each other hold.
+install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/LICENSE
+        DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/bindings/blender DESTINATION ${CMAKE_INSTALL_DATADIR}/pellucid
+        PATTERN "__pycache__" EXCLUDE)

@@ -1,5 +1,5 @@
-# Installs the build into a fresh prefix and uses it from a project that knows nothing else of it, by find_package and by
-# pkg-config. Arguments: BUILD, SOURCE, WORK, C_FLAGS.
+# Installs the build into a fresh prefix, whose name has a space, and uses it from a project that knows nothing else of it, by
+# find_package and by pkg-config; then the examples from there after the tree was moved. Arguments: BUILD, SOURCE, WORK, C_FLAGS.
 cmake_minimum_required(VERSION 3.20)
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result)
@@ -7,15 +7,21 @@ function(run)
     message(FATAL_ERROR "failed: ${ARGN}")
   endif()
 endfunction()
+function(expect file)
+  if(NOT EXISTS "${file}")
+    message(FATAL_ERROR "${file} is not there")
+  endif()
+endfunction()
+set(prefix "${WORK}/a prefix")
 file(REMOVE_RECURSE ${WORK})
-run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
-run(${CMAKE_COMMAND} -G Ninja -S ${SOURCE} -B ${WORK}/build -DCMAKE_PREFIX_PATH=${WORK}/prefix
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
+run(${CMAKE_COMMAND} -G Ninja -S ${SOURCE} -B ${WORK}/build "-DCMAKE_PREFIX_PATH=${prefix}"
     "-DCMAKE_C_FLAGS=${C_FLAGS}" "-DCMAKE_CXX_FLAGS=${C_FLAGS}")
 run(${CMAKE_COMMAND} --build ${WORK}/build)
 run(${WORK}/build/outside_c)
 run(${WORK}/build/outside_cpp)
 
-file(GLOB_RECURSE pc ${WORK}/prefix/*/pellucid.pc)
+file(GLOB_RECURSE pc ${prefix}/*/pellucid.pc)
 get_filename_component(pc_dir ${pc} DIRECTORY)
 set(ENV{PKG_CONFIG_PATH} ${pc_dir})
 execute_process(COMMAND pkg-config --cflags --libs pellucid OUTPUT_VARIABLE flags RESULT_VARIABLE result)
@@ -26,8 +32,43 @@ execute_process(COMMAND pkg-config --variable=kernels pellucid OUTPUT_VARIABLE k
 separate_arguments(flags UNIX_COMMAND "${flags} ${C_FLAGS}")
 list(APPEND flags "-DKERNELS=\"${kernels}\"")
 get_filename_component(lib_dir ${pc_dir} DIRECTORY)
-run(cc -std=c99 ${SOURCE}/main.c -o ${WORK}/outside_pkg_config ${flags} -Wl,-rpath,${lib_dir})
+run(cc -std=c99 -Wall -Wextra -pedantic -Werror ${SOURCE}/main.c -o ${WORK}/outside_pkg_config ${flags} -Wl,-rpath,${lib_dir})
 run(${WORK}/outside_pkg_config)
-if(EXISTS ${WORK}/prefix/bin/pellucid)
-  run(${WORK}/prefix/bin/pellucid devices)
+if(EXISTS ${prefix}/bin/pellucid)
+  run(${prefix}/bin/pellucid devices)
 endif()
+
+# What a user looks for, and pages whose links hold.
+file(GLOB_RECURSE licence ${prefix}/share/doc/pellucid/LICENSE)
+expect("${licence}")
+expect(${prefix}/share/pellucid/blender/render_gbuffer.py)
+file(GLOB_RECURSE pages ${prefix}/share/doc/pellucid/docs/*.md)
+foreach(page ${pages})
+  get_filename_component(folder ${page} DIRECTORY)
+  file(READ ${page} text)
+  string(REGEX MATCHALL "\\]\\([^):#]+" links "${text}")
+  foreach(link ${links})
+    string(SUBSTRING ${link} 2 -1 link)
+    if(NOT link MATCHES "^https?|^\\.\\./\\.\\./|^\\.\\./(bindings|bench|host|kernels|tests)/")  # of the repository alone
+      expect(${folder}/${link})
+    endif()
+  endforeach()
+endforeach()
+
+# A package is staged somewhere else than where it will be.
+set(ENV{DESTDIR} ${WORK}/stage)
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix /nowhere/pellucid)
+unset(ENV{DESTDIR})
+file(GLOB_RECURSE staged ${WORK}/stage/nowhere/pellucid/*/pellucid.pc)
+expect("${staged}")
+file(STRINGS ${staged} line REGEX "^prefix=/nowhere/pellucid$")
+if(NOT line OR EXISTS /nowhere)
+  message(FATAL_ERROR "DESTDIR is not where the files went, or pellucid.pc names it")
+endif()
+
+# OpenCL's build options cannot quote the folder of a kernel's includes: no space in this one.
+file(RENAME ${prefix} ${WORK}/moved)
+run(${CMAKE_COMMAND} -G Ninja -S ${WORK}/moved/share/doc/pellucid/examples -B ${WORK}/examples
+    "-DCMAKE_PREFIX_PATH=${WORK}/moved" "-DCMAKE_C_FLAGS=${C_FLAGS}" "-DCMAKE_CXX_FLAGS=${C_FLAGS}")
+run(${CMAKE_COMMAND} --build ${WORK}/examples --target example_own_kernel example_progress)
+run(${WORK}/examples/example_own_kernel)
