@@ -24,10 +24,11 @@ class BlenderScript : public CommandTest {
     }
 
     // The exit code; what Blender says is in said.txt.
-    int blender(const std::string& before, const std::string& arguments) const {
+    int blender(const std::string& before, const std::string& arguments,
+                const std::string& scene = "blender_scene.py") const {
         const std::string line = "PELLUCID_COMMAND='" PELLUCID_COMMAND "' " + before +
-                                 " blender --factory-startup -b -t 2 --python " PELLUCID_SOURCE_DIR
-                                 "/tests/blender_scene.py" +
+                                 " blender --factory-startup -b -t 2 --python " PELLUCID_SOURCE_DIR "/tests/" +
+                                 scene +
                                  " --python " PELLUCID_SOURCE_DIR "/bindings/blender/render_gbuffer.py -- " +
                                  arguments + " >" + path("said.txt") + " 2>&1 </dev/null";
         return run(line);
@@ -225,9 +226,46 @@ TEST_F(BlenderScript, AMeshFileScatters) {
     EXPECT_GT(red, 0.01f);
 }
 
+// A y-up OBJ added to a .blend file of odd names, whose camera sees none of it.
+TEST_F(BlenderScript, OddThings) {
+    std::string obj;  // a box of 1 x 6 x 2
+    for (int i = 0; i < 8; ++i) {
+        obj += i & 1 ? "v 1 " : "v 0 ";
+        obj += i & 2 ? "6 " : "0 ";
+        obj += i & 4 ? "2\n" : "0\n";
+    }
+    obj += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    const std::string mesh = write("box ü.1.obj", obj), folder = path("out \"ü\" 1.2");
+    ASSERT_EQ(blender("PELLUCID_SCENE='" + path("scene.blend") + "'",
+                      "'" + mesh + "' -o '" + folder + "' --up y --no-curvature --shadow-size 64",
+                      "blender_names.py"),
+              0)
+        << said();
+    EXPECT_TRUE(contains(said(), "the camera sees none of the 2 objects")) << said();
+    const io::SceneFile scene = io::readScene(folder + "/scene.toml");
+    ASSERT_EQ(scene.lights.size(), 2u);
+    ASSERT_EQ(scene.materials.size(), 2u);
+    EXPECT_NE(scene.lights[0].shadowMapFile, scene.lights[1].shadowMapFile);
+    const Result result =
+        run({"shade", folder + "/gbuffer.exr", "--scene", folder + "/scene.toml", "-o", path("p.exr")});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    // The light that is tilted less looks down: from the box's top, 6 up, to the text, 1 below the ground.
+    const float* m = scene.lights[0].light.worldToShadow;
+    const float depths = m[10] * scene.lights[0].light.shadowDepthRange;
+    EXPECT_NEAR(depths, -std::cos(0.2), 1e-4);
+    const io::Image map = io::readImage(scene.lights[0].shadowMapFile);
+    const auto& depth = map.channel("R").pixels;
+    EXPECT_LT(*std::min_element(depth.begin(), depth.end()), 0.1f) << "the box's top is near the light";
+    EXPECT_GT(scene.lights[0].light.shadowDepthRange, 7 * std::cos(0.2));
+}
+
 TEST_F(BlenderScript, SaysWhatIsWrong) {
     EXPECT_EQ(blender("nothing.off -o '" + path("out") + "'"), 3);
     EXPECT_TRUE(contains(said(), "nothing.off: there is no such file")) << said();
+    EXPECT_EQ(blender("'" + write("empty.obj", "") + "' -o '" + path("out") + "'"), 3);
+    EXPECT_TRUE(contains(said(), "empty.obj: there are no faces in it")) << said();
+    EXPECT_EQ(blender("empty.obj -o '" + path("out") + "' --smooth 2000"), 2);
+    EXPECT_TRUE(contains(said(), "--smooth: 0 to 1000 is possible")) << said();
     EXPECT_EQ(blender("-o '" + path("out") + "'"), 2);
     EXPECT_TRUE(contains(said(), "name a .blend file before --python, or a mesh after --")) << said();
     EXPECT_EQ(blender("'" + write("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n") + "' -o '" +

@@ -9,6 +9,7 @@ uses none. The .blend file is never written.
 
 import argparse
 import os
+import shutil
 import sys
 import traceback
 
@@ -39,6 +40,14 @@ def positive(text):
     return value
 
 
+def pellucid_command():
+    if "PELLUCID_COMMAND" in os.environ:
+        return os.environ["PELLUCID_COMMAND"]
+    here = os.path.dirname(os.path.abspath(__file__))
+    beside = [os.path.abspath(os.path.join(here, *way, "bin", "pellucid")) for way in (("..", "..", "build", "release"), ("..", "..", ".."))]
+    return shutil.which("pellucid") or next(filter(os.path.exists, beside), "pellucid")
+
+
 def arguments():
     words = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
     parser = argparse.ArgumentParser(
@@ -56,14 +65,17 @@ def arguments():
     parser.add_argument("--shadow-size", type=int, default=1024, metavar="N", help="texels a side (default 1024)")
     parser.add_argument("--smooth", type=int, default=4, metavar="N", help="smoothing passes of the curvature (default 4)")
     parser.add_argument("--half", action="store_true", help="half floats in gbuffer.exr; positions then carry 11 bits")
-    parser.add_argument("--pellucid", default=os.environ.get("PELLUCID_COMMAND", "pellucid"), metavar="COMMAND",
-                        help="the pellucid command, which measures curvature (default: $PELLUCID_COMMAND, else pellucid)")
+    parser.add_argument("--pellucid", default=pellucid_command(), metavar="COMMAND",
+                        help="the pellucid command, which measures curvature (default: $PELLUCID_COMMAND, else pellucid, else the "
+                             "one that was built or installed with this script)")
     parser.add_argument("--no-curvature", action="store_true", help="no curvature, so no direct scattering")
     options = parser.parse_args(words)
     if not options.mesh and not bpy.data.filepath:
         parser.error("there is nothing to render: name a .blend file before --python, or a mesh after --")
-    if options.shadow_size < 1:
-        parser.error("--shadow-size: 1 or more is needed")
+    if not 1 <= options.shadow_size <= 16384:
+        parser.error("--shadow-size: 1 to 16384 is possible")
+    if not 0 <= options.smooth <= 1000:
+        parser.error("--smooth: 0 to 1000 is possible")
     return options
 
 
@@ -96,9 +108,11 @@ def main():
     camera = passes.add_camera(source, scene, bounds, frame)
     lamps = lights.gather(source, scene, bounds)
     passes.prepare(scene, frame)
+    passes.warn_if_out_of_view(scene, camera, things)
     passes.render_gbuffer(scene, camera, os.path.join(options.output, "gbuffer.exr"), options.half)
+    taken = set()
     for lamp in lamps:
-        lights.render_shadow_map(scene, lamp, bounds, options)
+        lights.render_shadow_map(scene, lamp, bounds, options, taken)
     sky = lights.ambient(source, options.output)
     scene_file.write(os.path.join(options.output, "scene.toml"), unit, camera, lamps, sky, materials, not options.no_curvature)
     print(f"pellucid: {options.output}/gbuffer.exr, {options.output}/scene.toml", flush=True)

@@ -39,9 +39,9 @@ def load(options, unit):
     before = set(bpy.data.objects)
     extension = os.path.splitext(path)[1].lower()
     if extension == ".obj":  # by Blender, for its texture coordinates and materials
-        forward, up = ("Y_FORWARD", "Z_UP") if options.up == "z" else ("NEGATIVE_Z_FORWARD", "Y_UP")
-        if hasattr(bpy.types, "WM_OT_obj_import") and bpy.app.version >= (3, 6):
-            forward, up = forward.replace("_FORWARD", ""), up.replace("_UP", "")
+        forward, up = ("Y", "Z") if options.up == "z" else ("NEGATIVE_Z", "Y")
+        if "Y_FORWARD" in bpy.ops.wm.obj_import.get_rna_type().properties["forward_axis"].enum_items:  # Blender 3.3
+            forward, up = forward + "_FORWARD", up + "_UP"
         bpy.ops.wm.obj_import(filepath=path, forward_axis=forward, up_axis=up)
     elif extension in (".ply", ".stl", ".off"):
         load_ply(path, options.pellucid, options.up)
@@ -115,6 +115,8 @@ def realise(source, scene):
         thing = instance.object
         if not instance.show_self or thing.original.hide_render:
             continue
+        if thing.type != thing.original.type:
+            continue  # the mesh of a text or curve, which comes besides; Blender 3.4 crashes on taking it
         if thing.type in ("VOLUME", "CURVES", "HAIR", "POINTCLOUD"):
             left_out.add(thing.name)
         if thing.type not in RENDERED:

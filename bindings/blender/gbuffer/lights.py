@@ -61,12 +61,23 @@ def add(scene, lamps, name, data, matrix):
     lamps.append(Lamp(name, data, matrix))
 
 
-def render_shadow_map(scene, lamp, bounds, options):
-    """Depths seen from a sun or a spot, 0 near to 1 far and where nothing is."""
+def file_name(name, taken):
+    """Of a light's shadow map: instances of a light share its name, and names may differ in signs alone."""
+    stem = "shadow_" + "".join(c if c.isalnum() else "_" for c in name)
+    number, file = 1, stem + ".exr"
+    while file.lower() in taken:  # some disks know no letter case
+        number += 1
+        file = f"{stem}_{number}.exr"
+    taken.add(file.lower())
+    return file
+
+
+def render_shadow_map(scene, lamp, bounds, options, taken):
+    """Depths seen from a sun or a spot, 0 near to 1 far and where nothing is. `taken`: files of other lights."""
     if lamp.kind == "POINT":
         warn(f"light '{lamp.name}' is a point light: no shadow map is rendered for it")
         return
-    lamp.map_file = "shadow_" + "".join(c if c.isalnum() else "_" for c in lamp.name) + ".exr"
+    lamp.map_file = file_name(lamp.name, taken)
     camera = bpy.data.objects.new("pellucid shadow", bpy.data.cameras.new("pellucid shadow"))
     scene.collection.objects.link(camera)
     rotation = lamp.matrix.to_3x3().normalized()

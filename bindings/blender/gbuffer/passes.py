@@ -3,8 +3,10 @@
 import math
 
 import bpy
+from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Matrix, Vector
 
+from .fault import warn
 from .surface import AOVS
 
 
@@ -46,6 +48,19 @@ def add_camera(source, scene, bounds, size):
     scene.collection.objects.link(camera)
     scene.camera = camera
     return camera
+
+
+def warn_if_out_of_view(scene, camera, things):
+    """An empty picture is seldom what is wanted, and says nothing of why."""
+    for thing in things:
+        corners = [world_to_camera_view(scene, camera, thing.matrix_world @ Vector(c)) for c in thing.bound_box]
+        ahead = [p.z > 0 for p in corners]
+        beside = all(ahead) and (max(p.x for p in corners) < 0 or min(p.x for p in corners) > 1 or
+                                 max(p.y for p in corners) < 0 or min(p.y for p in corners) > 1)
+        if any(ahead) and not beside:
+            return
+    warn(f"the camera sees none of the {len(things)} objects, so the picture will be empty: turn it to them, or remove it, and "
+         "one that frames everything is made")
 
 
 def prepare(scene, size):

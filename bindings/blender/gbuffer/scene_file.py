@@ -22,6 +22,11 @@ def value(v):
         return number(v)
 
 
+def comment(name):
+    """A name as the end of a line, which ends nowhere else."""
+    return "# " + "".join(c if c.isprintable() else " " for c in name)
+
+
 def write(path, unit, camera, lamps, sky, materials, curvature):
     """unit: millimetres per Blender unit. materials: (id, Blender material)."""
     lines = [
@@ -43,7 +48,7 @@ def write(path, unit, camera, lamps, sky, materials, curvature):
     if sky:
         lines += ["", "[ambient]", "sh = [", *("    " + value(row) + "," for row in sky), "]"]
     for lamp in lamps:
-        lines += ["", f"[[light]]  # {lamp.name}"]
+        lines += ["", "[[light]]  " + comment(lamp.name)]
         if lamp.kind == "SUN":
             lines += ['type = "directional"', "to_light = " + value(tuple(-lamp.forward))]
         else:
@@ -73,7 +78,7 @@ def write(path, unit, camera, lamps, sky, materials, curvature):
             if name.startswith(PREFIX):
                 own = material[name]
                 keys[name[len(PREFIX) :]] = own if isinstance(own, (int, float, str)) else tuple(own)
-        lines += ["", f"[[material]]  # {material.name}", f"id = {id_}"]
+        lines += ["", "[[material]]  " + comment(material.name), f"id = {id_}"]
         lines += [f"{key} = {value(v)}" for key, v in keys.items() if v != ""]
     if curvature:
         lines += ["", "[[curvature_lut]]  # in millimetres, as it stands", 'name = "skin"']
