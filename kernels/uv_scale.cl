@@ -29,9 +29,8 @@ inline float2 triangle_longest2(uint triangle, __global const uint* indices, __g
     const float3 total = vertex_load3(positions, positionLayout, v.x) +
                          vertex_load3(positions, positionLayout, v.y) +
                          vertex_load3(positions, positionLayout, v.z);
-    const float check = 0.0f * (total.x + total.y + total.z + a.x + a.y + b.x + b.y + c.x + c.y);
-    return (float2)(length2.x + check,
-                    edge_longest2((float3)(a, 0.0f), (float3)(b, 0.0f), (float3)(c, 0.0f)) + check);
+    if (!isfinite(total.x + total.y + total.z + a.x + a.y + b.x + b.y + c.x + c.y)) return (float2)(mesh_nan3().x);
+    return (float2)(length2.x, edge_longest2((float3)(a, 0.0f), (float3)(b, 0.0f), (float3)(c, 0.0f)));
 }
 
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void uv_scale_largest(

@@ -73,6 +73,8 @@ void run(const Arguments& a) {
     }
     const PelDeviceStats after = stats();
     run.report["programs"] = after.programsBuilt - before.programsBuilt;
+    run.report["loaded"] = after.programsLoaded - before.programsLoaded;
+    run.report["stored"] = after.programsStored - before.programsStored;
     run.report["build_ms"] = after.buildMilliseconds - before.buildMilliseconds;
     run.finish();
 }

@@ -18,8 +18,8 @@ PelError pelPrefillPrograms(PelDevice device, const PelPrefill* work, uint32_t* 
             if (&shader.device() != d.get()) invalidArgument("PelPrefill.shaders[", i, "] belongs to another PelDevice");
             shader.addPrefillJobs(jobs);
         }
-        const uint32_t before = d->programs().built();
+        const uint32_t before = d->programs().counts().built;
         runPrefill(*d, jobs, w.threads);
-        if (built) *built = d->programs().built() - before;
+        if (built) *built = d->programs().counts().built - before;
     });
 }

@@ -16,6 +16,10 @@ PelDeviceInfo describe(cl_device_id device, uint32_t index);
 // The position in allDevices() that a selector means (see pelDeviceCreate).
 uint32_t selectDevice(const char* selector);
 
+// Whether its driver keeps compiled programs on disk, or they are not worth keeping.
+bool keepsPrograms(cl_device_id device);
+
+std::string platformName(cl_device_id device);
 std::string infoString(cl_device_id device, cl_device_info what);
 
 }  // namespace pel::cl

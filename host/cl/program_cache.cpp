@@ -7,7 +7,7 @@
 namespace pel::cl {
 
 ProgramCache::ProgramCache(Context context, cl_device_id device, uint32_t mathWidth)
-    : context_(std::move(context)), device_(device), mathWidth_(mathWidth) {}
+    : context_(std::move(context)), device_(device), mathWidth_(mathWidth), binaries_(context_.get(), device) {}
 
 Program ProgramCache::get(const ProgramKey& wanted) {
     Defines all = wanted.defines;
@@ -26,26 +26,34 @@ Program ProgramCache::get(const ProgramKey& wanted) {
     std::lock_guard building(entry->building);
     if (entry->program) return entry->program;
     const auto start = std::chrono::steady_clock::now();
-    entry->program = build(wanted.files, options);
+    Counts now;
+    entry->program = build(wanted.files, options, now);
     lock.lock();
-    ++built_;
-    buildMilliseconds_ +=
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    ++counts_.built;
+    counts_.loaded += now.loaded;
+    counts_.stored += now.stored;
+    counts_.milliseconds += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return entry->program;
 }
 
-uint32_t ProgramCache::built() const {
+ProgramCache::Counts ProgramCache::counts() const {
     std::lock_guard lock(mutex_);
-    return built_;
+    return counts_;
 }
 
-double ProgramCache::buildMilliseconds() const {
-    std::lock_guard lock(mutex_);
-    return buildMilliseconds_;
-}
-
-Program ProgramCache::build(const std::vector<std::string>& files, const std::string& options) const {
+Program ProgramCache::build(const std::vector<std::string>& files, const std::string& options, Counts& counts) const {
     const std::string source = kernelSource(files);
+    if (Program program = binaries_.load(source, options)) {
+        counts.loaded = 1;
+        return program;
+    }
+    Program program = compile(source, files, options);
+    counts.stored = binaries_.store(program, source, options);
+    return program;
+}
+
+Program ProgramCache::compile(const std::string& source, const std::vector<std::string>& files,
+                              const std::string& options) const {
     const char* text = source.c_str();
     cl_int code = CL_SUCCESS;
     Program program(clCreateProgramWithSource(context_.get(), 1, &text, nullptr, &code));

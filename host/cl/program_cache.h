@@ -1,4 +1,4 @@
-// Programs built for one device, each once, by kernel file and options.
+// Programs built for one device, each once, by kernel file and options; or loaded from disk (cl/binary_cache.h).
 #pragma once
 #include <map>
 #include <memory>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cl/handle.h"
+#include "cl/binary_cache.h"
 
 namespace pel::cl {
 
@@ -31,23 +31,29 @@ class ProgramCache {
     Program get(const ProgramKey& key);
     Program get(const std::string& file, const Defines& defines) { return get(ProgramKey{{file}, defines}); }
 
-    uint32_t built() const;
-    double buildMilliseconds() const;
+    struct Counts {
+        uint32_t built = 0;   // loaded ones included
+        uint32_t loaded = 0;  // from binaries on disk
+        uint32_t stored = 0;  // there
+        double milliseconds = 0;
+    };
+    Counts counts() const;
 
   private:
     struct Entry {
         std::mutex building;
         Program program;
     };
-    Program build(const std::vector<std::string>& files, const std::string& options) const;
+    Program build(const std::vector<std::string>& files, const std::string& options, Counts& counts) const;
+    Program compile(const std::string& source, const std::vector<std::string>& files, const std::string& options) const;
 
     Context context_;
     cl_device_id device_;
     uint32_t mathWidth_;
+    BinaryCache binaries_;
     mutable std::mutex mutex_;  // of the rest
     std::map<std::string, std::shared_ptr<Entry>> programs_;
-    uint32_t built_ = 0;
-    double buildMilliseconds_ = 0;
+    Counts counts_;
 };
 
 }  // namespace pel::cl

@@ -116,8 +116,11 @@ PelDeviceStats Device::stats() {
     std::lock_guard lock(mutex_);
     foldEvents(true);
     PelDeviceStats result = stats_;
-    result.programsBuilt = programs_.built();
-    result.buildMilliseconds = programs_.buildMilliseconds();
+    const cl::ProgramCache::Counts programs = programs_.counts();
+    result.programsBuilt = programs.built;
+    result.buildMilliseconds = programs.milliseconds;
+    result.programsLoaded = programs.loaded;
+    result.programsStored = programs.stored;
     return result;
 }
 

@@ -200,12 +200,12 @@ void Shader::plan(uint32_t mostRows) {
     ShadePasses passes = std::exchange(passes_, ShadePasses());
     ShaderState plan = passes.plan(device_, state_, features, mostRows);
     const std::vector<uint32_t> variants = variantFeatures(plan, features);
-    const uint32_t before = device.programs().built();
+    const uint32_t before = device.programs().counts().built;
     std::vector<cl::Program> programs;
     for (const uint32_t variant : variants) programs.push_back(device.programs().get(shadeKey(plan, variant, device)));
     passes.build(device, plan, features);
     cube_.prepare(device, state_.ambientCube);
-    programsBuilt_ += device.programs().built() - before;
+    programsBuilt_ += device.programs().counts().built - before;
     const ImageView& frame = state_.images[PEL_SLOT_RADIANCE];
     const uint32_t tilesX = (frame.width + PEL_TILE_WIDTH - 1) / PEL_TILE_WIDTH,
                    rows = (frame.height + PEL_TILE_HEIGHT - 1) / PEL_TILE_HEIGHT;

@@ -128,6 +128,8 @@ typedef struct PelDeviceStats {
     uint64_t bytesAllocated;   /* device memory allocated by the library, in total over time */
     double kernelMilliseconds; /* device time of finished kernels, from OpenCL profiling; 0 on a queue without it */
     double buildMilliseconds;  /* host time spent in building programs */
+    uint32_t programsLoaded;   /* of programsBuilt: from binaries that this library keeps on disk (docs/devices.md) */
+    uint32_t programsStored;   /* of programsBuilt: compiled, and their binaries written there */
 } PelDeviceStats;
 /* Waits for submitted work first, so that kernelMilliseconds is whole. */
 PEL_API PelError pelDeviceGetStats(PelDevice device, PelDeviceStats* stats);

@@ -1,0 +1,117 @@
+#include "cl/binary_cache.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <vector>
+
+#include "cl/platform.h"
+
+namespace pel::cl {
+namespace {
+
+constexpr uint64_t defaultLimit = 512;  // MiB: some three hundred shading programs of a CPU
+
+bool wanted(cl_device_id device) {
+    const char* text = std::getenv("PELLUCID_CACHE");
+    const std::string value = text ? text : "";
+    if (value.empty() || value == "auto") return !keepsPrograms(device);
+    if (value == "on" || value == "1") return true;
+    if (value == "off" || value == "0") return false;
+    invalidArgument("PELLUCID_CACHE is \"", value, "\"; it can be on, off or auto");
+}
+
+uint64_t limitBytes() {
+    const char* text = std::getenv("PELLUCID_CACHE_MB");
+    if (!text || !*text) return defaultLimit << 20;
+    char* end = nullptr;
+    const unsigned long long value = std::strtoull(text, &end, 10);
+    if (*end || *text < '0' || *text > '9' || value > (1ull << 40))
+        invalidArgument("PELLUCID_CACHE_MB is \"", text, "\"; it can be a number of MiB, such as ", defaultLimit);
+    return uint64_t(value) << 20;
+}
+
+// A CPU's name does not tell its instructions: virtual machines hide some of them.
+std::string instructionSet() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with("flags") || line.starts_with("Features")) return line;
+    return {};
+}
+
+// Drivers' settings that change what they compile, and none that say where it is kept.
+std::string settings() {
+    static constexpr const char* prefixes[] = {"CL_CONFIG_", "POCL_", "RUSTICL_", "LP_", "GALLIVM_", "IGC_"};
+    std::vector<std::string> found;
+    for (char** entry = environ; entry && *entry; ++entry) {
+        const std::string text = *entry;
+        const std::string name = text.substr(0, text.find('='));
+        const bool theirs = std::any_of(std::begin(prefixes), std::end(prefixes), [&](const char* prefix) { return name.starts_with(prefix); });
+        if (theirs && name.find("CACHE") == std::string::npos) found.push_back(text);
+    }
+    std::sort(found.begin(), found.end());
+    std::string all;
+    for (const std::string& entry : found) all += entry + "\n";
+    return all;
+}
+
+std::string describeBuilder(cl_device_id device) {
+    Digest all;
+    all.addPart(text(pelVersion()));
+    for (const cl_device_info what : {CL_DEVICE_NAME, CL_DEVICE_VENDOR, CL_DEVICE_VERSION, CL_DRIVER_VERSION, CL_DEVICE_EXTENSIONS})
+        all.addPart(infoString(device, what));
+    all.addPart(platformName(device)).addPart(instructionSet()).addPart(settings());
+    return all.text();
+}
+
+}  // namespace
+
+BinaryCache::BinaryCache(cl_context context, cl_device_id device) : context_(context), device_(device) {
+    const uint64_t limit = limitBytes();
+    if (!wanted(device)) return;
+    const std::filesystem::path folder = binaryFolder();
+    if (folder.empty()) return;
+    builtBy_ = describeBuilder(device);
+    files_.emplace(folder, limit);
+}
+
+Digest BinaryCache::name(const std::string& source, const std::string& options) const {
+    return Digest().addPart(builtBy_).addPart(options).addPart(source);
+}
+
+Program BinaryCache::load(const std::string& source, const std::string& options) const {
+    if (!files_) return {};
+    const std::optional<std::string> binary = files_->load(name(source, options));
+    if (!binary) return {};
+    const auto* bytes = reinterpret_cast<const unsigned char*>(binary->data());
+    const size_t size = binary->size();
+    cl_int status = CL_SUCCESS, code = CL_SUCCESS;
+    Program program(clCreateProgramWithBinary(context_, 1, &device_, &size, &bytes, &status, &code));
+    if (code != CL_SUCCESS || status != CL_SUCCESS) return {};
+    if (clBuildProgram(program.get(), 1, &device_, options.c_str(), nullptr, nullptr) != CL_SUCCESS) return {};
+    return program;
+}
+
+bool BinaryCache::store(const Program& program, const std::string& source, const std::string& options) const {
+    if (!files_) return false;
+    // A program of a context of several devices has a place for each.
+    cl_uint count = 0;
+    if (clGetProgramInfo(program.get(), CL_PROGRAM_NUM_DEVICES, sizeof count, &count, nullptr) != CL_SUCCESS || !count) return false;
+    std::vector<cl_device_id> devices(count);
+    std::vector<size_t> sizes(count);
+    if (clGetProgramInfo(program.get(), CL_PROGRAM_DEVICES, count * sizeof devices[0], devices.data(), nullptr) != CL_SUCCESS ||
+        clGetProgramInfo(program.get(), CL_PROGRAM_BINARY_SIZES, count * sizeof sizes[0], sizes.data(), nullptr) != CL_SUCCESS)
+        return false;
+    const size_t mine = size_t(std::find(devices.begin(), devices.end(), device_) - devices.begin());
+    if (mine == count || sizes[mine] == 0) return false;
+    std::string binary(sizes[mine], '\0');
+    std::vector<unsigned char*> places(count);  // NULL: not wanted
+    places[mine] = reinterpret_cast<unsigned char*>(binary.data());
+    if (clGetProgramInfo(program.get(), CL_PROGRAM_BINARIES, count * sizeof places[0], places.data(), nullptr) != CL_SUCCESS)
+        return false;
+    return files_->store(name(source, options), binary);
+}
+
+}  // namespace pel::cl

@@ -1,0 +1,30 @@
+// Programs from binaries that earlier processes left on disk (docs/devices.md, "Compiled programs").
+#pragma once
+#include <optional>
+#include <string>
+
+#include "cl/binary_files.h"
+#include "cl/handle.h"
+
+namespace pel::cl {
+
+class BinaryCache {
+  public:
+    // Off where the driver keeps compiled programs itself, unless PELLUCID_CACHE says otherwise.
+    BinaryCache(cl_context context, cl_device_id device);
+
+    // Empty when there is none, or the driver refuses it.
+    Program load(const std::string& source, const std::string& options) const;
+    // False when it could not be kept.
+    bool store(const Program& program, const std::string& source, const std::string& options) const;
+
+  private:
+    Digest name(const std::string& source, const std::string& options) const;
+
+    cl_context context_;
+    cl_device_id device_;
+    std::string builtBy_;  // whatever else the driver's output depends on
+    std::optional<BinaryFiles> files_;
+};
+
+}  // namespace pel::cl
