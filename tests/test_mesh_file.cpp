@@ -215,6 +215,23 @@ TEST_F(MeshFile, BadPlyFilesSayWhere) {
     EXPECT_TRUE(contains(loadError("c.ply", whole.substr(0, whole.size() - 20)), "ends early"));
 }
 
+// A length of -1 in one byte is 255 to who does not look at its type, and all those values are there.
+TEST_F(MeshFile, LengthsOfPlyListsAreWholeAndNotNegative) {
+    const auto file = [&](const std::string& type, const std::string& length) {
+        const std::string header =
+            "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+            "element face 1\nproperty list " + type + " int vertex_indices\nend_header\n";
+        const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+        return header + std::string(reinterpret_cast<const char*>(positions), sizeof positions) + length;
+    };
+    const int32_t triangle[3] = {0, 1, 2};
+    const std::string corners(reinterpret_cast<const char*>(triangle), sizeof triangle), many(4 * 255, '\0');
+    EXPECT_EQ(loadError("good.ply", file("int", std::string("\3\0\0\0", 4) + corners)), "");
+    EXPECT_TRUE(contains(loadError("negative.ply", file("char", "\xff" + many)), "negative length"));
+    EXPECT_TRUE(contains(loadError("short.ply", file("short", "\xff\xff" + std::string(4 * 65535, '\0'))), "negative length"));
+    EXPECT_TRUE(contains(loadError("float.ply", file("float", std::string(4, '\0'))), "float.ply:8: the lengths of a list are whole"));
+}
+
 TEST_F(MeshFile, NormalsPointOutwardsAlsoAcrossSeams) {
     MeshData mesh = loadMesh(write("a.off", offTetrahedron));
     computeNormals(mesh);

@@ -111,8 +111,12 @@ TEST(Prefill, ACommitAndAnExecutionFindEverythingBuilt) {
 
 TEST(Prefill, TablesAndCurvatureFindEverythingBuilt) {
     const Device own("");
+    Telling telling;
+    pellucid::check(pelDeviceSetProgress(own.get(), Telling::tell, &telling));
     const uint32_t built = pellucid::prefillPrograms(own, PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABLE_LUTS | PEL_PROGRAMS_CURVATURE);
     EXPECT_GE(built, 10u);
+    EXPECT_TRUE(std::is_sorted(telling.fractions.begin(), telling.fractions.end()));
+    pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));
     builds = 0;
     for (const PelCurvatureForm form : {PEL_FORM_ARC, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_SPHERE}) {
         PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();

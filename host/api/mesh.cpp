@@ -14,7 +14,9 @@ PelError pelMeshTopologyCreate(PelDevice device, const PelMeshTopologyDesc* desc
         output(topology, "topology");
         PelMeshReport found = pelMeshReportDefaults();
         const auto full = readStruct(desc, pelMeshTopologyDescDefaults(), "PelMeshTopologyDesc");
-        Ref<MeshTopology> made = MeshTopology::create(Ref(&fromHandle<Device>(device)), full, found);
+        const Ref<Device> d(&fromHandle<Device>(device));
+        Ref<MeshTopology> made = MeshTopology::create(
+            d, full, found, [&](double fraction) { d->progress(fraction, "analysing the mesh"); });
         if (report) writeStruct(report, found, "PelMeshReport");
         *topology = toHandle<PelMeshTopology>(std::move(made));
     });

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
 #include <optional>
 
 namespace pel::cl {
@@ -79,6 +80,10 @@ std::string infoString(cl_device_id device, cl_device_info what) {
 }
 
 std::vector<cl_device_id> allDevices() {
+    // Loaders load their drivers at the first call, and to a second one that comes meanwhile ocl-icd says that there are none, or
+    // crashes. Never destroyed: devices may be made while the process ends.
+    static std::mutex& loading = *new std::mutex;
+    std::lock_guard lock(loading);
     cl_uint count = 0;
     // A loader without platforms answers with an error; that is no failure here.
     if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS || count == 0) return {};

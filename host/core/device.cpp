@@ -63,7 +63,7 @@ cl::Event Device::launch(cl::Launch& launch, const cl::Range& range) {
     ++stats_.launches;
     if (profiling_) {
         pending_.push_back(event);
-        if (pending_.size() > 512) foldEvents(false);
+        if (pending_.size() > 512) foldEvents();
     }
     return event;
 }
@@ -114,7 +114,7 @@ void Device::finish() {
 PelDeviceStats Device::stats() {
     finish();
     std::lock_guard lock(mutex_);
-    foldEvents(true);
+    foldEvents();  // but for what other threads submitted meanwhile
     PelDeviceStats result = stats_;
     const cl::ProgramCache::Counts programs = programs_.counts();
     result.programsBuilt = programs.built;
@@ -124,14 +124,13 @@ PelDeviceStats Device::stats() {
     return result;
 }
 
-// Adds the time of finished launches to the total and forgets them; unfinished ones are kept unless the queue
-// is empty.
-void Device::foldEvents(bool finished) {
+// Adds the time of finished launches to the total and forgets them; unfinished ones are kept.
+void Device::foldEvents() {
     std::vector<cl::Event> kept;
     for (cl::Event& event : pending_) {
         cl_int status = CL_QUEUED;
         clGetEventInfo(event.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr);
-        if (status > CL_COMPLETE && !finished)
+        if (status > CL_COMPLETE)
             kept.push_back(event);
         else
             stats_.kernelMilliseconds += eventMilliseconds(event);

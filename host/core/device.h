@@ -48,7 +48,7 @@ class Device final : public Object {
 
   private:
     ~Device() override;
-    void foldEvents(bool wait);
+    void foldEvents();
 
     cl::Context context_;
     cl_device_id id_;

@@ -34,8 +34,7 @@ cl::Memory MeshTopology::upload(const std::vector<uint32_t>& values) {
 }
 
 Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopologyDesc& desc,
-                                       PelMeshReport& report) {
-    const auto progress = [&](double fraction) { device->progress(fraction, "analysing the mesh"); };
+                                       PelMeshReport& report, const std::function<void(double)>& progress) {
     progress(0.0);
     checkDesc(desc);
     MeshWeld weld = weldVertices(desc);

@@ -1,6 +1,8 @@
 // What a mesh's indices say, analysed once and kept on the device; and the scratch memory of the passes over
 // it.
 #pragma once
+#include <functional>
+
 #include "core/buffer.h"
 #include "shared/mesh.h"
 
@@ -9,8 +11,9 @@ namespace pel {
 class MeshTopology final : public Object {
   public:
     static constexpr Kind kind = Kind::meshTopology;
-    static Ref<MeshTopology> create(Ref<Device> device, const PelMeshTopologyDesc& desc,
-                                    PelMeshReport& report);
+    // `progress` is told a fraction in [0, 1].
+    static Ref<MeshTopology> create(Ref<Device> device, const PelMeshTopologyDesc& desc, PelMeshReport& report,
+                                    const std::function<void(double)>& progress);
 
     // Everything that was analysed, as bytes of this machine's order; load() checks all of it.
     std::vector<char> save() const;

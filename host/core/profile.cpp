@@ -112,12 +112,13 @@ PelProfileInfo Profile::info() const {
     }
     info.gaussians = uint32_t(terms_.size());
     info.singular = shape_->singular();
-    std::strncpy(info.name, name_.c_str(), sizeof info.name - 1);
+    std::strncpy(info.name, name().c_str(), sizeof info.name - 1);
     return info;
 }
 
 void Profile::setName(const char* name) {
     if (!name || !*name || std::strlen(name) > 63) invalidArgument("a profile's name has 1 to 63 bytes");
+    std::lock_guard lock(nameMutex_);
     name_ = name;
 }
 

@@ -47,7 +47,10 @@ class Profile final : public Object {
     double radius() const { return radius_; }
     const std::vector<GaussianTerm>& terms() const { return terms_; }
     PelProfileInfo info() const;
-    const std::string& name() const { return name_; }
+    std::string name() const {
+        std::lock_guard lock(nameMutex_);
+        return name_;
+    }
     void setName(const char* name);
 
     Profile(PelProfileKind profileKind, double radius, std::unique_ptr<ProfileShape> shape);
@@ -58,6 +61,7 @@ class Profile final : public Object {
     double radius_;  // length
     std::unique_ptr<ProfileShape> shape_;
     std::vector<GaussianTerm> terms_;
+    mutable std::mutex nameMutex_;  // of the name alone, which may change
     std::string name_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <system_error>
 
 #include "io/atomic_file.h"
 #include "io/batch_entry.h"
@@ -15,19 +16,24 @@ BatchRun::BatchRun(const BatchManifest& manifest, BatchOptions options)
     const size_t cores = std::max(1u, std::thread::hardware_concurrency());
     size_t jobs = options_.jobs ? options_.jobs : 4 * cores * options_.devices.size();
     jobs = std::min({jobs, std::max<size_t>(1, manifest_.entries.size()), size_t(256)});
-    active_ = jobs;
-    for (size_t i = 0; i < jobs; ++i)
-        workers_.emplace_back([this, device = i % options_.devices.size()] { work(device); });
+    for (size_t i = 0; i < jobs; ++i) {
+        ++active_;
+        try {
+            workers_.emplace_back([this, device = i % options_.devices.size()] { work(device); });
+        } catch (const std::system_error&) {  // fewer threads will do
+            --active_;
+            if (i == 0) throw;
+            break;
+        }
+    }
 }
 
 BatchRun::~BatchRun() {
     stop();
-    for (std::thread& worker : workers_) worker.join();
 }
 
 void BatchRun::finish() {
-    for (std::thread& worker : workers_) worker.join();
-    workers_.clear();
+    workers_.clear();  // waits for them
     if (fatal_) std::rethrow_exception(fatal_);
 }
 

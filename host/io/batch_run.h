@@ -55,7 +55,7 @@ class BatchRun {
     std::atomic<bool> stopped_{false};
     std::mutex mutex_;
     std::exception_ptr fatal_;  // guarded, as are the calls of options_.failed
-    std::vector<std::thread> workers_;
+    std::vector<std::jthread> workers_;  // the last member: they use all others
 };
 
 }  // namespace pellucid::io

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 
 #include "io/bc6h_fit.h"
@@ -45,11 +46,14 @@ std::vector<uint8_t> encodeBc6h(uint32_t width, uint32_t height, std::span<const
         for (uint32_t by; (by = next++) < down;)
             for (uint32_t bx = 0; bx < across; ++bx) encode(bx, by);
     };
-    std::vector<std::thread> helpers;
-    for (unsigned i = 1; i < std::min(down, std::max(1u, std::thread::hardware_concurrency())); ++i)
-        helpers.emplace_back(work);
+    std::vector<std::jthread> helpers;
+    try {
+        for (unsigned i = 1; i < std::min(down, std::max(1u, std::thread::hardware_concurrency())); ++i)
+            helpers.emplace_back(work);
+    } catch (const std::system_error&) {  // fewer threads will do
+    }
     work();
-    for (std::thread& helper : helpers) helper.join();
+    helpers.clear();
     return blocks;
 }
 

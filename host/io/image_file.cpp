@@ -73,10 +73,10 @@ void readPart(Image& image, ImageInput& input, int part, bool severalParts) {
                                                                                  : ChannelType::Float;
         channel.pixels.assign(image.pixelCount(), 0.0f);
         for (int y = 0; y < spec.height; ++y) {
-            const int row = spec.y + y - spec.full_y;
+            const int64_t row = int64_t(spec.y) + y - spec.full_y;
             if (row < 0 || row >= image.height) continue;
             for (int x = 0; x < spec.width; ++x) {
-                const int column = spec.x + x - spec.full_x;
+                const int64_t column = int64_t(spec.x) + x - spec.full_x;
                 if (column < 0 || column >= image.width) continue;
                 const size_t from =
                     (static_cast<size_t>(y) * static_cast<size_t>(spec.width) + static_cast<size_t>(x));

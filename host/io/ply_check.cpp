@@ -17,12 +17,12 @@ enum class Encoding { Ascii, LittleEndian, BigEndian };
 struct Type {
     std::string_view name, otherName;
     size_t bytes;
-    bool isFloat;
+    bool isFloat, isSigned;
 };
-constexpr Type types[] = {{"char", "int8", 1, false},    {"uchar", "uint8", 1, false},
-                          {"short", "int16", 2, false},  {"ushort", "uint16", 2, false},
-                          {"int", "int32", 4, false},    {"uint", "uint32", 4, false},
-                          {"float", "float32", 4, true}, {"double", "float64", 8, true}};
+constexpr Type types[] = {{"char", "int8", 1, false, true},    {"uchar", "uint8", 1, false, false},
+                          {"short", "int16", 2, false, true},  {"ushort", "uint16", 2, false, false},
+                          {"int", "int32", 4, false, true},    {"uint", "uint32", 4, false, false},
+                          {"float", "float32", 4, true, true}, {"double", "float64", 8, true, true}};
 
 struct Property {
     std::string name;
@@ -71,8 +71,11 @@ Encoding encodingOf(const TextScan& scan) {
 
 Property propertyOf(const TextScan& scan) {
     const auto& words = scan.words();
-    if (words.size() == 5 && words[1] == "list")
-        return {std::string(words[4]), typeNamed(scan, words[3]), typeNamed(scan, words[2])};
+    if (words.size() == 5 && words[1] == "list") {
+        const Property list{std::string(words[4]), typeNamed(scan, words[3]), typeNamed(scan, words[2])};
+        if (list.count->isFloat) scan.fail("the lengths of a list are whole numbers, of a type such as uchar");
+        return list;
+    }
     if (words.size() != 3) scan.fail("'property TYPE NAME' or 'property list TYPE TYPE NAME' would be right");
     return {std::string(words[2]), typeNamed(scan, words[1]), nullptr};
 }
@@ -164,6 +167,7 @@ class Body {
             const size_t from = swap_ ? i : type.bytes - 1 - i;
             value = value << 8 | static_cast<unsigned char>(text_[at_ - type.bytes + from]);
         }
+        if (type.isSigned && value >> (8 * type.bytes - 1)) throw FileError(path_, "has a list of negative length");
         return value;
     }
 

@@ -153,16 +153,19 @@ ShaderState ShadePasses::plan(const Ref<Device>& device, const ShaderState& stat
         plan.lights[filteredLights_[k]].images[PEL_LIGHT_WIDE_SHADOW] =
             scratchImage(wideShadows_, frame, PEL_FORMAT_R32F, k * lightBytes);
     boundedMaps_.clear();
-    uint32_t boundsFloats = 0;
+    uint64_t boundsFloats = 0;
     for (size_t k = 0; k < filteredLights_.size() && !state.options.disableSkipping; ++k) {
         const ShaderLight& light = plan.lights[filteredLights_[k]];
         if (light.params.shadowContent != PEL_SHADOW_CONTENT_DEPTH || isCube(light.params)) continue;
         for (uint32_t i = 0; i < cascadesOf(light); ++i) {
             const ImageView& map = *shadowCascade(light, i).map;
-            boundedMaps_.push_back({uint32_t(k), i, blocksOf(map), boundsFloats});
-            boundsFloats += 4 * blocksOf(map);
+            boundedMaps_.push_back({uint32_t(k), i, blocksOf(map), uint32_t(boundsFloats)});
+            boundsFloats += 4 * uint64_t(blocksOf(map));
         }
     }
+    if (boundsFloats > UINT32_MAX)  // kernels count them with 32 bits
+        fail(PEL_ERROR_UNSUPPORTED, "the shadow maps that are filtered are ", filteredLights_.size(), " lights' and too large together: ",
+             boundsFloats, " bounds of their depths; ", UINT32_MAX, " are the most");
     // One vector more, since the last row's vectors reach beyond its end.
     resize(bounds_, device, boundsFloats ? (boundsFloats + device->info().mathWidth) * sizeof(float) : 0);
     return plan;

@@ -69,7 +69,7 @@ void bindBatch(py::module_& module) {
         .def("make", &made);
     module.def("verify_file", [](const py::bytes& file, const std::string& key) {
         const std::string_view bytes = file;
-        py::gil_scoped_release release;
+        WithoutGil free;
         return pellucid::io::verifyLutExr(bytes, key);
     });
 }

@@ -9,7 +9,7 @@ void bindBuffer(py::module_& module) {
         call([&] { return create(&handle); });
         return Buffer(handle);
     };
-    py::class_<Buffer>(module, "Buffer")
+    py::class_<Buffer, Owner<Buffer>>(module, "Buffer")
         .def_static("create", [made](const Device& d, size_t bytes, uintptr_t initial) {
             return made([&](PelBuffer* out) { return pelBufferCreate(d.handle.get(), bytes, pointer(initial), out); });
         })

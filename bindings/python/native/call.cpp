@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -19,6 +20,24 @@ std::mutex abandonedMutex;
 std::condition_variable noneRuns;
 int running = 0;
 
+// Counts one of them for as long as it is there.
+class Running {
+  public:
+    Running() : counts_(true) {
+        std::lock_guard lock(abandonedMutex);
+        ++running;
+    }
+    Running(Running&& other) noexcept : counts_(std::exchange(other.counts_, false)) {}
+    ~Running() {
+        if (!counts_) return;
+        std::lock_guard lock(abandonedMutex);
+        if (--running == 0) noneRuns.notify_all();
+    }
+
+  private:
+    bool counts_;
+};
+
 void raiseSignals() {
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
@@ -27,13 +46,31 @@ void throwOn(PelError error, const std::string& message) {
     raiseProgressException();
     if (error != PEL_SUCCESS) throw CallError{error, message};
 }
+
+// Until version 3.14 CPython ends other threads that ask for the GIL while the interpreter goes, by pthread_exit, which unwinds C++
+// and stops the whole process at the first function that may not be left so. Nobody waits for such threads: they stay here, for the
+// end of the process.
+template <class Take>
+auto takeGil(Take&& take) {
+    try {
+        return take();
+    } catch (...) {  // nothing else comes out of CPython
+        for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+    }
+}
 }  // namespace
+
+WithoutGil::~WithoutGil() {
+    takeGil([&] { PyEval_RestoreThread(state_); });
+}
+
+WithGil::WithGil() : state_(takeGil([] { return PyGILState_Ensure(); })) {}
 
 void call(const std::function<PelError()>& body) {
     PelError error;
     std::string message;
     {
-        py::gil_scoped_release release;
+        WithoutGil free;
         error = body();
         if (error != PEL_SUCCESS) message = pelGetErrorMessage();
     }
@@ -66,39 +103,44 @@ void callInterruptibly(std::function<PelError()> body) {
         bool done = false;
         PelError error = PEL_SUCCESS;
         std::string message;
+        std::exception_ptr thrown;
     };
     const auto state = std::make_shared<State>();
-    {
-        std::lock_guard lock(abandonedMutex);
-        ++running;
-    }
-    std::thread([state, body = std::move(body)]() mutable {
-        const PelError error = body();
-        const std::string message = error == PEL_SUCCESS ? "" : pelGetErrorMessage();
+    std::thread thread([state, body = std::move(body), one = Running()]() mutable {
+        PelError error = PEL_SUCCESS;
+        std::string message;
+        std::exception_ptr thrown;
+        try {
+            error = body();
+            if (error != PEL_SUCCESS) message = pelGetErrorMessage();
+        } catch (...) {
+            thrown = std::current_exception();
+        }
         body = nullptr;  // what it holds goes before the interpreter is told that nothing runs
         {
             std::lock_guard lock(state->mutex);
             state->error = error;
-            state->message = message;
+            state->message = std::move(message);
+            state->thrown = std::move(thrown);
             state->done = true;
             state->changed.notify_one();
         }
-        std::lock_guard lock(abandonedMutex);
-        if (--running == 0) noneRuns.notify_all();
-    }).detach();
+    });
+    thread.detach();
     for (bool done = false; !done;) {
         {
-            py::gil_scoped_release release;
+            WithoutGil free;
             std::unique_lock lock(state->mutex);
             done = state->changed.wait_for(lock, signalPeriod, [&] { return state->done; });
         }
         if (!done) raiseSignals();
     }
+    if (state->thrown) std::rethrow_exception(state->thrown);
     throwOn(state->error, state->message);
 }
 
 void waitForAbandoned() {
-    py::gil_scoped_release release;
+    WithoutGil free;
     std::unique_lock lock(abandonedMutex);
     noneRuns.wait(lock, [] { return running == 0; });
 }

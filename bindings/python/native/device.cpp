@@ -9,7 +9,7 @@ namespace {
 py::object errorCallback = py::none();
 
 void onError(void*, PelError code, const char* message) {
-    py::gil_scoped_acquire gil;
+    WithGil gil;
     try {
         errorCallback(int(code), message);
     } catch (py::error_already_set& error) {
@@ -81,7 +81,7 @@ void bindDevice(py::module_& module) {
         })
         .def_readwrite("progress", &Device::progress);
 
-    py::class_<pellucid::Event>(module, "Event")
+    py::class_<pellucid::Event, Owner<pellucid::Event>>(module, "Event")
         .def_static("from_cl", [](const Device& d, uintptr_t event) {
             PelEvent handle = nullptr;
             call([&] { return pelEventCreateFromCl(d.handle.get(), pointer(event), &handle); });

@@ -39,7 +39,7 @@ py::tuple encodedBc6h(uint32_t width, uint32_t height, uintptr_t texels) {
 void bindLut(py::module_& module) {
     using pellucid::Lut;
     module.def("encode_bc6h", &encodedBc6h);
-    py::class_<Lut>(module, "Lut")
+    py::class_<Lut, Owner<Lut>>(module, "Lut")
         .def_static("curvature", created<PelCurvatureLutDesc, pelCurvatureLutCreate>)
         .def_static("shadow", created<PelShadowLutDesc, pelShadowLutCreate>)
         .def_static("specular", created<PelSpecularLutDesc, pelSpecularLutCreate>)

@@ -9,7 +9,7 @@ namespace {
 
 void bindLiveMesh(py::module_& module) {
     using pellucid::LiveMesh;
-    py::class_<LiveMesh>(module, "LiveMesh")
+    py::class_<LiveMesh, Owner<LiveMesh>>(module, "LiveMesh")
         .def_static("create", [](const pellucid::MeshTopology& t, const py::object& params) {
             PelLiveMesh handle = nullptr;
             call([&, p = structOf<PelCurvatureParams>(params)] { return pelLiveMeshCreate(t.get(), p, &handle); });
@@ -63,7 +63,7 @@ void bindMesh(py::module_& module) {
     bindLiveMesh(module);
     bindScreen(module);
     using pellucid::MeshTopology;
-    py::class_<MeshTopology>(module, "MeshTopology")
+    py::class_<MeshTopology, Owner<MeshTopology>>(module, "MeshTopology")
         .def_static(
             "create",
             [](const Device& d, uint32_t numVertices, uintptr_t indices, uint64_t numIndices, uint32_t weld,

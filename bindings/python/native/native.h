@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstring>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <pellucid/pellucid.hpp>
 #include <string>
@@ -24,6 +25,30 @@ namespace py = pybind11;
 struct CallError {
     PelError code;
     std::string message;
+};
+
+// Lets go of the GIL, and takes it again at the end.
+class WithoutGil {
+  public:
+    WithoutGil() : state_(PyEval_SaveThread()) {}
+    ~WithoutGil();
+    WithoutGil(const WithoutGil&) = delete;
+    WithoutGil& operator=(const WithoutGil&) = delete;
+
+  private:
+    PyThreadState* state_;
+};
+
+// Holds the GIL, on a thread that Python may not know, as in callbacks.
+class WithGil {
+  public:
+    WithGil();
+    ~WithGil() { PyGILState_Release(state_); }
+    WithGil(const WithGil&) = delete;
+    WithGil& operator=(const WithGil&) = delete;
+
+  private:
+    PyGILState_STATE state_;
 };
 
 // Runs `body` without the GIL and throws its error. An exception that a progress callback raised comes first.
@@ -59,6 +84,18 @@ inline void* pointer(uintptr_t address) {
 inline uintptr_t address(void* p) {
     return reinterpret_cast<uintptr_t>(p);
 }
+
+// Owner of what a Python object holds of the library. The last reference to a device waits for its queue, where a host's own
+// callbacks and events may need the GIL to get on; so nothing of the library is let go with the GIL held.
+template <class T>
+struct DeletedWithoutGil {
+    void operator()(T* object) const {
+        WithoutGil free;
+        delete object;
+    }
+};
+template <class T>
+using Owner = std::unique_ptr<T, DeletedWithoutGil<T>>;
 
 using Waits = std::vector<pellucid::Event>;
 

@@ -9,7 +9,7 @@ namespace {
 thread_local std::unique_ptr<py::error_already_set> raised;
 
 int onProgress(void* user, double fraction, const char* what) {
-    py::gil_scoped_acquire gil;
+    WithGil gil;
     try {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         const py::object callback = static_cast<Device*>(user)->progress;
@@ -38,6 +38,8 @@ Device::Device(pellucid::Device device) : handle(std::move(device)) {
 }
 Device::~Device() {
     pelDeviceSetProgress(handle.get(), nullptr, nullptr);
+    WithoutGil free;  // as Owner does; `progress` goes after this, with the GIL
+    handle = {};
 }
 
 }  // namespace pel::python

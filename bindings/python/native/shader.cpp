@@ -1,5 +1,6 @@
 #include <memory>
 #include <mutex>
+#include <set>
 #include <vector>
 
 #include "progress.h"
@@ -27,7 +28,7 @@ void locked(const Shader& shader, Body&& body) {
 
 void bindShader(py::module_& module) {
     using pellucid::Lut;
-    py::class_<Shader>(module, "Shader")
+    py::class_<Shader, Owner<Shader>>(module, "Shader")
         .def_static("create", [](const Device& d) {
             PelShader handle = nullptr;
             call([&] { return pelShaderCreate(d.handle.get(), &handle); });
@@ -67,7 +68,7 @@ void bindShader(py::module_& module) {
         })
         .def("set_ambient_cube", [](const Shader& s, const std::optional<ImageView>& faces) {
             const PelImageDesc desc = faces ? imageDesc(*faces) : pelImageDescDefaults();
-            call([&] { return pelShaderSetAmbientCube(s.get(), faces ? &desc : nullptr); });
+            locked(s, [&] { return pelShaderSetAmbientCube(s.get(), faces ? &desc : nullptr); });
         })
         .def("set_camera", [](const Shader& s, const py::object& camera) {
             locked(s, [&, c = structOf<PelCamera>(camera)] { return pelShaderSetCamera(s.get(), c); });
@@ -101,8 +102,11 @@ void bindShader(py::module_& module) {
         work.threads = threads;
         uint32_t built = 0;
         call([&] {
+            // In one order for all threads, whatever the order of their lists: two would wait for each other otherwise.
+            std::set<std::recursive_mutex*, std::less<>> mutexes;
+            for (const Shader& s : shaders) mutexes.insert(s.busy.get());
             std::vector<std::unique_lock<std::recursive_mutex>> locks;
-            for (const Shader& s : shaders) locks.emplace_back(*s.busy);
+            for (std::recursive_mutex* mutex : mutexes) locks.emplace_back(*mutex);
             return pelPrefillPrograms(d.handle.get(), &work, &built);
         });
         return built;

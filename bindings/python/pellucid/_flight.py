@@ -2,28 +2,28 @@
 from __future__ import annotations
 
 import atexit
-import threading
+import itertools
 from typing import Any
 
 from . import _native
 
-_lock = threading.Lock()
-_flying: list[tuple[_native.Event, tuple[Any, ...]]] = []
+# By the order of submission. No lock: finalizers and signal handlers submit work, too, and may come in the middle of any line here;
+# each operation on the dictionary is one step.
+_flying: dict[int, tuple[_native.Event, tuple[Any, ...]]] = {}
+_numbers = itertools.count()
 
 
 def hold(event: _native.Event, *used: Any) -> None:
     """Keeps `used` alive until `event` is done."""
     sweep()
-    with _lock:
-        _flying.append((event, used))
+    _flying[next(_numbers)] = (event, used)
 
 
 def sweep() -> None:
     """Lets go of what finished work used."""
-    with _lock:
-        running = [entry for entry in _flying if not _finished(entry[0])]
-        finished, _flying[:] = _flying[:], running
-    del finished  # outside the lock: dropping an object may run any code
+    for number, entry in _flying.copy().items():
+        if _finished(entry[0]):
+            _flying.pop(number, None)
 
 
 def in_flight() -> int:
@@ -41,7 +41,7 @@ def _finished(event: _native.Event) -> bool:
 
 @atexit.register
 def _land() -> None:
-    for event, _ in list(_flying):
+    for event, _ in _flying.copy().values():
         try:
             event.wait()
         except Exception:

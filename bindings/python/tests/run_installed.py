@@ -43,7 +43,8 @@ def sanitized():
     # CPython keeps what it allocates until the end, which the leak check would report; and LLVM's signal stacks, which compilers of
     # kernels set up, collide with the sanitizer's own.
     options = os.environ.get("ASAN_OPTIONS", "")
-    return (["-C", "cmake.build-type=RelWithDebInfo", "-C", f"cmake.define.CMAKE_CXX_FLAGS={flags}"],
+    # A build type of no flags of its own, for those of an optimised one would win over these.
+    return (["--config-settings=cmake.build-type=Sanitized", f"--config-settings=cmake.define.CMAKE_CXX_FLAGS={flags}"],
             {**os.environ, "LD_PRELOAD": " ".join(first), "ASAN_OPTIONS": f"{options}:detect_leaks=0:use_sigaltstack=0"})
 
 
@@ -57,8 +58,8 @@ def main(source, work, *arguments):
     for old in wheels.glob("*.whl"):
         old.unlink()
     build, environment = sanitized()
-    pip(builder, "wheel", "-q", "--no-build-isolation", "--no-deps", "-C", f"build-dir={work / 'build'}", *build, "-w", wheels,
-        source)
+    pip(builder, "wheel", "-q", "--no-build-isolation", "--no-deps", f"--config-settings=build-dir={work / 'build'}",
+        *build, "-w", wheels, source)
     # The other way in has the same CMake project behind it: that it resolves is enough.
     pip(builder, "install", "-q", "--dry-run", "--no-build-isolation", "--no-deps", source / "bindings/python")
     (wheel,) = wheels.glob("*.whl")

@@ -118,6 +118,9 @@ def test_progress_bar(large, capsys, monkeypatch):
     assert "%" in capsys.readouterr().err
 
 
+# Seconds until Ctrl-C is noticed; code under sanitizers is several times as slow.
+AT_ONCE = 10 if os.environ.get("PELLUCID_SANITIZE") else 1
+
 CTRL_C = textwrap.dedent("""
     import sys, time
     import numpy as np
@@ -154,7 +157,7 @@ def test_ctrl_c_within_a_second(what):
         sent = time.time()
         child.send_signal(signal.SIGINT)
         word, when = child.stdout.readline().split()
-        assert word == "interrupted" and float(when) - sent < 1
+        assert word == "interrupted" and float(when) - sent < AT_ONCE
     finally:
         child.kill()
         child.wait()
@@ -190,7 +193,7 @@ def test_ctrl_c_while_a_compiler_works(tmp_path):
         time.sleep(0.1)
         sent = time.time()
         child.send_signal(signal.SIGINT)
-        assert float(child.stdout.readline()) - sent < 1
+        assert float(child.stdout.readline()) - sent < AT_ONCE
         assert float(child.stdout.readline()) > 0.01, "the compiler had finished before Ctrl-C was noticed"
         assert child.wait(60) == 0
     finally:

@@ -1,4 +1,6 @@
 """Contexts, queues, buffers and events that PyOpenCL made."""
+import gc
+
 import numpy as np
 import pytest
 
@@ -64,3 +66,29 @@ def test_a_buffer_of_another_context_is_refused(queue):
     other = cl.Context([queue.device])
     with pytest.raises(pel.PellucidError, match="another cl_context"):
         pel.Buffer.from_cl(pel.Device.from_cl(queue), cl.Buffer(other, cl.mem_flags.READ_WRITE, 64))
+
+
+def test_nothing_of_the_hosts_is_kept(queue, sphere):
+    """Whatever is made on the host's queue lets go of it again."""
+    def work():
+        device = pel.Device.from_cl(queue)
+        topology = pel.MeshTopology(device, sphere.triangles, positions=sphere.positions, weld="exact")
+        topology.submit_curvature(sphere.positions, sphere.normals, np.empty(len(sphere.positions), np.float32))
+        pel.LiveMesh(topology).update(sphere.positions, sphere.normals, np.empty(len(sphere.positions), np.float32))
+        lut = pel.Lut.curvature(device, width=8, height=8)
+        image = np.ones((4, 16, 3), np.float32)
+        shader = pel.Shader(device).set_image("radiance", image).set_image("normal_shading", image)
+        shader.set_image("curvature", image[..., 0]).set_material(1, pel.Material(), lut).set_ambient(pel.Ambient(constant=(1, 1, 1)))
+        shader.commit().submit()
+        shader.execute()
+        with pytest.raises(pel.PellucidError):
+            pel.Buffer.from_cl(device, cl.Buffer(cl.Context([queue.device]), cl.mem_flags.READ_WRITE, 64))
+        device.finish()
+
+    counts = []
+    for _ in range(3):  # the first time the device may keep something for later times
+        work()
+        gc.collect()
+        queue.finish()
+        counts.append((queue.reference_count, queue.context.reference_count))
+    assert counts[1] == counts[2]

@@ -1,0 +1,164 @@
+"""Letting go of objects whose device still has work: others must get on meanwhile, for that work may wait for them."""
+import subprocess
+import sys
+import textwrap
+import threading
+
+import numpy as np
+import pytest
+
+import pellucid as pel
+from pellucid import _flight
+
+# The last reference to a device waits for its queue. Here the queue waits for an event that another Python thread sets, which it can
+# only with the GIL.
+GATED = textwrap.dedent("""
+    import gc, sys, threading, time
+    import numpy as np
+    import pyopencl as cl
+    import pellucid as pel
+
+    wanted = pel.Device().info.name
+    context = cl.Context([d for p in cl.get_platforms() for d in p.get_devices() if d.name == wanted][:1])
+    triangle, corners = np.arange(3, dtype=np.uint32), np.eye(3, dtype=np.float32)
+
+    def last_of(kind, device):
+        if kind == "Device":
+            return device._handle
+        if kind == "Buffer":
+            return pel.Buffer(device, 16)._handle
+        if kind == "Event":
+            return pel.Buffer(device, 16).submit_read(np.empty(16, np.uint8))._handle
+        if kind == "MeshTopology":
+            return pel.MeshTopology(device, triangle, 3)._handle
+        if kind == "LiveMesh":
+            return pel.LiveMesh(pel.MeshTopology(device, triangle, 3))._handle
+        if kind == "Lut":
+            return pel.Lut.specular(device, width=8, height=8)._handle
+        return pel.Shader(device)._handle
+
+    for kind in sys.argv[1:]:
+        queue = cl.CommandQueue(context)
+        device = pel.Device.from_cl(queue)
+        last = last_of(kind, device)
+        device.finish()  # forgets what was in flight
+        gate = cl.UserEvent(context)
+        cl.enqueue_barrier(queue, wait_for=[gate])
+        del device
+        gc.collect()
+        def open_gate():
+            time.sleep(0.05)
+            gate.set_status(cl.command_execution_status.COMPLETE)
+        thread = threading.Thread(target=open_gate)
+        thread.start()
+        del last
+        thread.join()
+        print(kind, flush=True)
+""")
+
+
+def test_the_gil_is_free_while_a_device_goes(tmp_path):
+    pytest.importorskip("pyopencl")
+    kinds = ["Device", "Buffer", "Event", "MeshTopology", "LiveMesh", "Lut", "Shader"]
+    try:
+        done = subprocess.run([sys.executable, "-c", GATED, *kinds], stdout=subprocess.PIPE, text=True, timeout=100)
+    except subprocess.TimeoutExpired as stuck:
+        pytest.fail(f"stuck after {(stuck.stdout or b'').decode().split()} of {kinds}")
+    assert done.returncode == 0 and done.stdout.split() == kinds
+
+
+def test_everything_dropped_while_work_is_in_flight(make_sphere):
+    """From several threads, each with devices of its own, and waiting for nothing."""
+    mesh = make_sphere(1.0, 40, 80)
+    failed = []
+
+    def submit_and_forget():
+        try:
+            for _ in range(6):
+                device = pel.Device()
+                topology = pel.MeshTopology(device, mesh.triangles, len(mesh.positions))
+                for _ in range(3):
+                    out = np.empty(len(mesh.positions), np.float32)
+                    topology.submit_curvature(mesh.positions.copy(), mesh.normals, out, estimator="edge", smoothing_passes=50)
+                pel.Buffer(device, 1 << 16).submit_read(np.empty(1 << 16, np.uint8))
+        except Exception as error:
+            failed.append(error)
+
+    threads = [threading.Thread(target=submit_and_forget) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(120)
+        assert not thread.is_alive()
+    assert not failed
+    while _flight.in_flight():
+        pass
+
+
+def test_work_may_be_submitted_from_finalizers(device):
+    """They run anywhere, in the middle of looking which work is done too."""
+    class Ends:
+        looked = False
+
+        def is_done(self):
+            if not self.looked:
+                self.looked = True
+                pel.Buffer(device, 16).submit_read(np.empty(16, np.uint8)).wait()
+            return True
+
+    ends = Ends()
+    thread = threading.Thread(target=_flight.hold, args=(ends, np.empty(1)), daemon=True)
+    thread.start()
+    thread.join(60)
+    if thread.is_alive():
+        _flight._flying.clear()
+        pytest.fail("stuck")
+    _flight.sweep()
+    assert ends.looked and _flight.in_flight() == 0
+
+
+def test_two_threads_prefill_the_same_shaders(device):
+    """In opposite order; each keeps both from other threads meanwhile."""
+    image = np.zeros((2, 16, 3), np.float32)
+    shaders = [pel.Shader(device).set_image("radiance", image).set_image("normal_shading", image) for _ in range(2)]
+    for shader in shaders:
+        shader.set_material(1, pel.Material()).set_ambient(pel.Ambient(constant=(1, 1, 1)))
+    pel.prefill_programs(device, shaders=shaders)
+
+    def prefill(order):
+        for _ in range(100):
+            pel.prefill_programs(device, shaders=order)
+
+    threads = [threading.Thread(target=prefill, args=(order,), daemon=True) for order in (shaders, shaders[::-1])]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(100)
+    assert not any(thread.is_alive() for thread in threads), "each waits for the other"
+
+
+AT_WORK = textwrap.dedent("""
+    import sys, threading, time
+    import numpy as np
+    import pellucid as pel
+    device = pel.Device()
+    if sys.argv[1] == "told":
+        device.set_progress(lambda fraction, what: True)
+    grid = np.arange(1 << 14, dtype=np.uint32).reshape(128, 128)
+    triangles = np.stack([grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:]], -1).ravel()
+    positions = np.random.default_rng(1).normal(size=(grid.size, 3)).astype(np.float32)
+
+    def work():
+        while True:
+            pel.MeshTopology(device, triangles, positions=positions, weld="exact")
+
+    for _ in range(3):
+        threading.Thread(target=work, daemon=True).start()
+    time.sleep(0.2)
+""")
+
+
+@pytest.mark.parametrize("progress", ["told", "untold"])
+def test_the_process_ends_while_daemon_threads_are_at_work(progress):
+    done = subprocess.run([sys.executable, "-c", AT_WORK, progress], stderr=subprocess.PIPE, text=True, timeout=100)
+    assert (done.returncode, done.stderr) == (0, "")
