@@ -168,3 +168,39 @@ TEST(Errors, CallbackGetsTheMessage) {
     EXPECT_FALSE(heard.empty());
     EXPECT_STREQ(pelErrorName(PEL_ERROR_NO_DEVICE), "PEL_ERROR_NO_DEVICE");
 }
+
+TEST(Errors, CallbacksMayFailAndThrow) {
+    static int heard;
+    heard = 0;
+    pelSetErrorCallback(
+        [](void*, PelError, const char* message) {
+            ++heard;
+            EXPECT_EQ(pelDeviceFinish(nullptr), PEL_ERROR_INVALID_ARGUMENT);  // tells nobody
+            EXPECT_NE(std::string(message).find("no such device"), std::string::npos) << "still the outer one";
+            throw std::runtime_error("from the callback");
+        },
+        nullptr);
+    PelDevice device = nullptr;
+    EXPECT_EQ(pelDeviceCreate("no such device", &device), PEL_ERROR_NO_DEVICE);
+    pelSetErrorCallback(nullptr, nullptr);
+    EXPECT_EQ(heard, 1);
+    EXPECT_NE(std::string(pelGetErrorMessage()).find("no such device"), std::string::npos);
+}
+
+TEST(Errors, ProgressCallbacksMayThrow) {
+    const Device device("");
+    const uint32_t triangle[3] = {0, 1, 2};
+    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
+    desc.numVertices = desc.numIndices = 3;
+    desc.indices = triangle;
+    device.setProgress([](void*, double, const char*) -> int { throw std::runtime_error("enough of it"); }, nullptr);
+    try {
+        pellucid::MeshTopology(device, desc);
+        ADD_FAILURE() << "the exception was lost";
+    } catch (const pellucid::Error& e) {
+        EXPECT_EQ(e.code(), PEL_ERROR_UNKNOWN);
+        EXPECT_STREQ(e.what(), "enough of it");
+    }
+    device.setProgress(nullptr, nullptr);
+    pellucid::MeshTopology(device, desc);
+}

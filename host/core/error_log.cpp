@@ -10,6 +10,14 @@ PelErrorCallback callback = nullptr;
 void* callbackUser = nullptr;
 thread_local std::string message;
 
+void keep(const char* what) noexcept {
+    try {
+        message = what;
+    } catch (...) {
+        message.clear();  // out of memory while saying so: the code still tells
+    }
+}
+
 }  // namespace
 
 void setErrorCallback(PelErrorCallback newCallback, void* user) {
@@ -23,11 +31,10 @@ const char* lastErrorMessage() {
 }
 
 PelError report(PelError code, const char* what) noexcept {
-    try {
-        message = what;
-    } catch (...) {
-        message.clear();  // out of memory while saying so: the code still tells
-    }
+    keep(what);
+    // What fails inside the callback is told to nobody: it might fail again and again.
+    thread_local bool telling = false;
+    if (telling) return code;
     PelErrorCallback call;
     void* user;
     {
@@ -35,7 +42,14 @@ PelError report(PelError code, const char* what) noexcept {
         call = callback;
         user = callbackUser;
     }
-    if (call) call(user, code, message.c_str());
+    if (!call) return code;
+    telling = true;
+    try {
+        call(user, code, what);
+    } catch (...) {  // no exception leaves through C
+    }
+    telling = false;
+    keep(what);
     return code;
 }
 
