@@ -115,7 +115,7 @@ def test_slurm(run_recipe, tmp_path, device):
     run_recipe(recipe("Slurm", {
         "/shared/manifest.toml": str(tmp_path / "m.toml"), "/shared/tables": str(tmp_path / "tables"),
         "/shared/venv/bin/python": sys.executable, "DEVICE=gpu": "DEVICE=" + os.environ.get("PELLUCID_DEVICE", ""),
-        "maximum_jobs=100": "maximum_jobs=2"}), device)
+        "workers=100": "workers=2"}), device)
     script = (tmp_path / "job1.sh").read_text()
     subprocess.run(["bash", "-n"], input=script, text=True, check=True)
     asked = re.findall(r"^#SBATCH (.*)$", script, re.M)

@@ -4,8 +4,8 @@
 resumability are those of the command, so that either can finish what the other began.
 """
 from .manifest import Entry, Manifest
-from .report import BatchError, Summary
+from .report import BatchError, NoWorker, Summary
 from .run import run
 from .store import Store
 
-__all__ = ["BatchError", "Entry", "Manifest", "Store", "Summary", "run"]
+__all__ = ["BatchError", "Entry", "Manifest", "NoWorker", "Store", "Summary", "run"]

@@ -35,7 +35,7 @@ def main() -> int:
         return code
 
     try:
-        from . import BatchError, run
+        from . import BatchError, NoWorker, run
     except ImportError as e:
         return fail(4, e)
     error = None
@@ -45,8 +45,8 @@ def main() -> int:
     except ValueError as e:
         return fail(3, e)
     except BatchError as e:
-        if not hasattr(e, "summary"):
-            return fail(4, e)
+        if not hasattr(e, "summary"):  # it came to nothing
+            return fail(4 if isinstance(e, NoWorker) else 3, e)
         error, summary = e, e.summary
     except KeyboardInterrupt:
         return fail(4, "interrupted; the same command goes on from here")
@@ -56,7 +56,7 @@ def main() -> int:
         print(f"{summary.entries} tables: {summary.made} made ({summary.redone} of them anew), {summary.kept} were there, "
               f"{summary.failed} failed")
     if error is not None:
-        return fail(4 if "no worker" in str(error) else 3, error)
+        return fail(4 if isinstance(error, NoWorker) else 3, error)
     return fail(3, f"{a.manifest}: {summary.failed} of its entries failed; they are listed above") if summary.failed else 0
 
 

@@ -5,13 +5,17 @@ import sys
 import time
 from collections import deque
 from dataclasses import asdict, dataclass, field
-from typing import Any, TextIO
+from typing import Any, Optional, TextIO
 
 
 class BatchError(Exception):
     """The batch stopped: the output is full or gone, or no worker is left. `summary` says how far it came."""
 
     summary: Summary
+
+
+class NoWorker(BatchError):
+    """There is no scheduler, or no worker for too long."""
 
 
 @dataclass
@@ -40,9 +44,9 @@ class Summary:
 class Display:
     """A bar with rate and time left on a terminal, a line every ten seconds elsewhere."""
 
-    def __init__(self, total: int, stream: TextIO = sys.stderr, quiet: bool = False) -> None:
-        self._total, self._stream, self._quiet = total, stream, quiet
-        self._terminal = stream.isatty()
+    def __init__(self, total: int, stream: Optional[TextIO] = None, quiet: bool = False) -> None:
+        self._total, self._stream, self._quiet = total, stream or sys.stderr, quiet
+        self._terminal = self._stream.isatty()
         self._start = self._spoken = time.monotonic()
         self._past = deque([(self._start, 0)])
         self._shown = False

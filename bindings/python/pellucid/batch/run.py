@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import logging
 import os
 from collections.abc import Iterator, Sequence
@@ -9,7 +10,7 @@ from typing import Any, Optional
 
 from ..device import devices
 from .manifest import Manifest
-from .report import BatchError, Display, Summary
+from .report import BatchError, Display, NoWorker, Summary
 from .store import Store, StoreError
 
 try:
@@ -24,7 +25,7 @@ def _local_client(count: Optional[int], selectors: Sequence[str]) -> Iterator[An
     """Processes of this machine, each with a device of its own by turns, restarted when they die."""
     chosen = list(selectors) or [str(i) for i in range(len(devices()))]
     if not chosen:
-        raise BatchError("no OpenCL device; Debian's pocl-opencl-icd brings one for any CPU")
+        raise NoWorker("no OpenCL device; Debian's pocl-opencl-icd brings one for any CPU")
     if not selectors and os.environ.get("PELLUCID_DEVICE"):
         chosen = [os.environ["PELLUCID_DEVICE"]]
     with dask.config.set({"distributed.admin.system-monitor.interval": "10s"}):
@@ -32,10 +33,22 @@ def _local_client(count: Optional[int], selectors: Sequence[str]) -> Iterator[An
                        "options": {"nthreads": 1, "memory_limit": 0, "silence_logs": logging.CRITICAL,
                                    "env": {"PELLUCID_DEVICE": chosen[i % len(chosen)]}}}
                    for i in range(count or len(chosen))}
-        scheduler = {"cls": distributed.Scheduler, "options": {"host": "127.0.0.1", "port": 0, "dashboard": False}}
+        scheduler = {"cls": distributed.Scheduler, "options": {"host": "127.0.0.1", "port": 0, "dashboard": False,
+                                                               "dashboard_address": "127.0.0.1:0"}}
         with distributed.SpecCluster(workers=workers, scheduler=scheduler, silence_logs=logging.CRITICAL) as cluster:
             with distributed.Client(cluster) as client:
                 yield client
+
+
+def _connect(scheduler: Any) -> Any:
+    """A client of an address or of a cluster object."""
+    name = getattr(scheduler, "scheduler_address", scheduler)
+    try:
+        return distributed.Client(scheduler)
+    except Exception as e:  # of a wrong address, a host that is none, another protocol, ...
+        reason = str(e) or type(e).__name__
+        raise NoWorker(f"no Dask scheduler at {name}: {reason} (an address looks like tcp://host:8786; `dask scheduler` prints its "
+                       "own when it starts)") from e
 
 
 @contextlib.contextmanager
@@ -46,11 +59,7 @@ def _client(scheduler: Any, count: Optional[int], selectors: Sequence[str]) -> I
     elif isinstance(scheduler, distributed.Client):
         yield scheduler
     else:
-        try:
-            client = distributed.Client(scheduler)
-        except (OSError, ValueError) as e:
-            raise BatchError(f"no scheduler at {scheduler}: {e}") from e
-        with client:
+        with _connect(scheduler) as client:
             yield client
 
 
@@ -64,10 +73,12 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
     manifest : path or Manifest
     out : path or URL
         A folder that all workers see under this name, or what fsspec knows (s3://...).
-    scheduler : address, Client or None
-        A Dask cluster whose workers have this package. None: processes of this machine.
+    scheduler : address, Client, cluster or None
+        A Dask cluster whose workers have this package: the address of its scheduler, a distributed.Client, or a cluster
+        object as those of dask-jobqueue and dask-kubernetes. None: processes of this machine.
     workers : int, optional
-        Without a scheduler: how many processes; one per device without it.
+        Without a scheduler: how many processes; one per device without it. With a cluster object: how many it is asked for,
+        again when some were lost (their job's time was up, or their machine died). They may come late or never.
     device : selectors
         Without a scheduler: devices that the processes take by turns; all without it. On a cluster every worker takes
         its own, by its PELLUCID_DEVICE.
@@ -78,7 +89,7 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
     patience : seconds
         How long to wait when there is no worker.
     read_back : bool
-        False: believe the workers' check sums instead of reading every file once.
+        False: believe the workers' check sums instead of having another worker, or this process, read every file once.
     progress : bool
         On standard error.
 
@@ -89,11 +100,17 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
     Raises
     ------
     ValueError
-        It is no manifest.
+        It is no manifest, or workers are asked of a scheduler that cannot start any.
     BatchError
-        The output is full or gone, there is no scheduler, or no worker for too long. What is made is kept: the same call
-        goes on from there.
+        The output is full or gone; NoWorker, which is one: there is no scheduler, or no worker for too long. What is made is
+        kept: the same call goes on from there.
     """
+    ask = None
+    if scheduler is not None and workers is not None:
+        if not callable(getattr(scheduler, "scale", None)):
+            raise ValueError("workers: an address or a Client cannot start any; give a cluster object (SLURMCluster, KubeCluster) or "
+                             "leave it out")
+        ask = functools.partial(scheduler.scale, workers)
     if not isinstance(manifest, Manifest):
         manifest = Manifest(manifest)
     try:
@@ -104,5 +121,7 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
     from .dispatch import Dispatcher
 
     with _client(scheduler, workers, device) as client:
+        if ask:
+            ask()
         return Dispatcher(client, manifest, store, timeout=timeout, jobs=jobs, patience=patience, read_back=read_back,
-                          device="", display=Display(len(manifest), quiet=not progress)).run()
+                          device="", display=Display(len(manifest), quiet=not progress), ask=ask).run()

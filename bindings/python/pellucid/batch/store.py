@@ -51,8 +51,8 @@ class Store:
                 Path(self.out).mkdir(parents=True, exist_ok=True)
             else:
                 self._files.makedirs(self._root, exist_ok=True)
-        except OSError as e:
-            raise StoreError(f"{self.out}: {e.strerror or e}") from e
+        except Exception as e:  # of an object store: whatever its library raises
+            raise StoreError(f"{self.out}: is no folder and cannot be made one: {getattr(e, 'strerror', None) or e}") from e
 
     def read(self, name: str) -> Optional[bytes]:
         """The file's bytes, None if there is none."""
