@@ -44,7 +44,7 @@ inline reference::Matrix4 matrixOf(const float (&m)[16]) {
 
 // Lights that make every test run the one program that knows all forms: black ones, over maps of next to nothing.
 inline std::vector<FormLight> withAllForms(std::vector<FormLight> lights) {
-    const PelLight& like = lights[0].params;
+    const PelLight like = lights[0].params;  // whose place changes as others join
     const float e = like.shadowContent == PEL_SHADOW_CONTENT_EXPONENTIAL ? like.shadowExponent : 0;
     const uint32_t components = lights[0].maps[0].components;
     FormLight cube, cascade;
