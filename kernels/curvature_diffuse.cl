@@ -47,7 +47,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
         current = sub3(current, origin);
         // Each triangle gives the cotangent at either neighbour to the edge to the other one.
         const Vec3w other = select3(current, start, step.ends);
-        const Vec3w between = sub3(previous, other), across = cross3(previous, other);
+        const Vec3w between = sub3(previous, other), across = crossExact3(previous, other);
         const floatw doubled2 = dot3(across, across);
         const maskw triangle = step.triangle & finitew(doubled2) &
                                (doubled2 > TRIANGLE_FLAT * dot3(previous, previous) * dot3(other, other));

@@ -33,16 +33,16 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_norma
         Vec3w current;
         gather3(positions, ring.last, step.entry.slots, &current.x, &current.y, &current.z);
         current = sub3(current, origin);
-        // At unit length, so that no product leaves the range of float; an edge without length stays 0.
+        // 1 to 2 long, so that no product leaves the range of float; an edge without length stays 0.
         const floatw length2 = dot3(current, current);
         const maskw long_ = (length2 >= MESH_MIN_LENGTH2) & finitew(length2);
-        current = select3(none, scale3(current, inverseRootw(length2)), long_);
+        current = select3(none, scale3(current, exactScalew(length2)), long_);
         const Vec3w other = select3(current, start, step.ends);
-        const Vec3w across = cross3(previous, other);
-        const floatw sine2 = dot3(across, across);
-        const maskw plane = step.triangle & (sine2 > TRIANGLE_FLAT);
-        const floatw sine = sqrt(selectw((floatw)(1.0f), sine2, plane));
-        floatw weight = atan2(sine, dot3(previous, other)) / sine;
+        const Vec3w across = crossExact3(previous, other);
+        const floatw doubled2 = dot3(across, across);
+        const maskw plane = step.triangle & (doubled2 > TRIANGLE_FLAT * dot3(previous, previous) * dot3(other, other));
+        const floatw doubled = sqrt(selectw((floatw)(1.0f), doubled2, plane));
+        floatw weight = atan2(doubled, dot3(previous, other)) / doubled;
         weight = selectw(weight, -weight, flipped);
         sum = select3(sum, add3(sum, scale3(across, weight)), plane);
         start = select3(start, current, step.starts);

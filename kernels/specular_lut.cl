@@ -10,9 +10,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void specularTex
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x > lut.width) return;
     const float cosine = ((float)min(x, lut.width - 1) + 0.5f) / (float)lut.width;
+    // 1 - cosine by itself: taken from 1 it would lose what a narrow lobe divides by m^2.
+    const float beside = ((float)(lut.width - 1 - min(x, lut.width - 1)) + 0.5f) / (float)lut.width;
     const float m = ((float)min(y, lut.height - 1) + 0.5f) / (float)lut.height;
     // In logarithms: near grazing angles and for small m both factors leave the range of float.
-    const float slope2 = (1.0f - cosine) * (1.0f + cosine) / (cosine * cosine * m * m);
+    const float slope2 = beside * (1.0f + cosine) / (cosine * cosine * m * m);
     const float value = 0.5f * exp(-0.1f * slope2 - 0.2f * log(m) - 0.4f * log(cosine));
     texels[(size_t)y * lut.rowTexels + x] = (float4)(value, value, value, 0.0f);
 }

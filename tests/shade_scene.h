@@ -360,11 +360,11 @@ inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
     const bool wide = !f.lights.empty() && !f.lights[0].wide.values.empty();
     material.shadowLut = f.shadowLut && wide ? &tables.shadowTruth : nullptr;
     reference::Pixel pixel;
-    pixel.shading = s[PEL_SLOT_NORMAL_SHADING].vec(i);
-    pixel.geometric =
-        s[PEL_SLOT_NORMAL_GEOMETRIC].values.empty() ? pixel.shading : s[PEL_SLOT_NORMAL_GEOMETRIC].vec(i);
-    pixel.blurred =
-        s[PEL_SLOT_NORMAL_BLURRED].values.empty() ? pixel.geometric : s[PEL_SLOT_NORMAL_BLURRED].vec(i);
+    // Unit to double precision: 6e-8 of length would be seen as an angle by sharp lobes.
+    const auto unit = [&](PelImageSlot slot) { return reference::normalized(s[slot].vec(i)); };
+    pixel.shading = unit(PEL_SLOT_NORMAL_SHADING);
+    pixel.geometric = s[PEL_SLOT_NORMAL_GEOMETRIC].values.empty() ? pixel.shading : unit(PEL_SLOT_NORMAL_GEOMETRIC);
+    pixel.blurred = s[PEL_SLOT_NORMAL_BLURRED].values.empty() ? pixel.geometric : unit(PEL_SLOT_NORMAL_BLURRED);
     if (material.specular > 0) {
         const Vec3 eye{f.camera.position[0], f.camera.position[1], f.camera.position[2]};
         pixel.toViewer = reference::normalized(eye - s[PEL_SLOT_POSITION].vec(i));

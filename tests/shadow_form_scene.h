@@ -217,4 +217,87 @@ inline CubeLight cubeLight(uint32_t size, bool radial, Turn turn, Vec3 position,
     return out;
 }
 
+// --- cascades ---
+
+// Maps of these extents about one axis, each with its own size, shifted a little against each other.
+struct CascadeLight {
+    FormLight light;
+    std::vector<MapLight> maps;
+};
+inline CascadeLight cascadeLight(const std::vector<double>& extents, bool reversed = false, uint32_t size = 97, bool sameSize = false) {
+    CascadeLight out;
+    uint32_t i = 0;
+    for (const double extent : extents) {
+        const uint32_t texels = sameSize ? size : size + 11 * i;
+        out.maps.push_back(mapLight(i, false, reversed, {0.3, 0.1, 0.9}, Vec3{24 + 1.5 * i, 10 - double(i), 5}, extent, texels));
+        MapLight& map = out.maps.back();
+        if (reversed) {  // from 1 at the light to 0
+            map.light.params.worldToShadow[11] += 1;
+            map.view.origin = map.view.origin + 300.0 * map.view.forward;
+            for (float& z : map.light.map.values) z += 1;
+            map.map.depth.assign(map.light.map.values.begin(), map.light.map.values.end());
+        }
+        const PelLight& l = map.light.params;
+        if (i == 0) {
+            out.light.params = l;
+        } else {
+            std::copy_n(l.worldToShadow, 16, out.light.params.cascadeToShadow[i - 1]);
+            out.light.params.cascadeDepthRange[i - 1] = l.shadowDepthRange;
+        }
+        const auto slot = i ? PEL_LIGHT_CASCADE_1 + int(i) - 1 : int(PEL_LIGHT_SHADOW_MAP);
+        out.light.maps.push_back({PelLightSlot(slot), texels, texels, 1, map.light.map.values});
+        ++i;
+    }
+    out.light.params.shadowCascades = i;
+    return out;
+}
+
+// --- moments and exponentials ---
+
+struct ContentLight {
+    FormLight light;
+    MapLight from;               // its depths
+    reference::ShadowMap first;  // what the texels hold
+    std::vector<double> second;
+};
+
+// Each texel of the map holds the means over 2 x 2 depths of `from`, whose size is twice that.
+inline ContentLight contentLight(PelShadowContent content, bool perspective, bool reversed, uint32_t size, bool flat = false) {
+    ContentLight out;
+    out.from = mapLight(size, perspective, reversed, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 2 * size);
+    auto& view = out.from.view;
+    auto& depth = out.from.map.depth;
+    FormLight& l = out.light;
+    l.params = out.from.light.params;
+    if (reversed && !perspective) {  // from 1 at the light to 0
+        l.params.worldToShadow[11] += 1;
+        view.origin = view.origin + 300.0 * view.forward;
+        for (double& z : depth) z += 1;
+    }
+    if (flat) {
+        const double distance = 130;
+        for (double& z : depth)
+            z = perspective ? (1 / distance - view.decoding.b) / view.decoding.a
+                            : reversed ? 1 - distance / 300 : distance / 300;
+    }
+    l.params.shadowContent = content;
+    l.params.shadowExponent = reversed ? -80 : 80;
+    const uint32_t components = content == PEL_SHADOW_CONTENT_MOMENTS ? 2 : 1;
+    l.maps = {{PEL_LIGHT_SHADOW_MAP, size, size, components, {}}};
+    out.first.width = out.first.height = int(size);
+    for (uint32_t y = 0; y < size; ++y)
+        for (uint32_t x = 0; x < size; ++x) {
+            double sum[2] = {0, 0};
+            for (uint32_t k = 0; k < 4; ++k) {
+                const double z = depth[(2 * y + k / 2) * 2 * size + 2 * x + k % 2];
+                sum[0] += content == PEL_SHADOW_CONTENT_EXPONENTIAL ? std::exp(l.params.shadowExponent * z) / 4 : z / 4;
+                sum[1] += z * z / 4;
+            }
+            for (uint32_t c = 0; c < components; ++c) l.maps[0].values.push_back(float(sum[c]));
+            out.first.depth.push_back(float(sum[0]));
+            out.second.push_back(float(sum[1]));
+        }
+    return out;
+}
+
 }  // namespace shade_test

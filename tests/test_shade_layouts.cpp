@@ -305,7 +305,19 @@ TEST(ShadeLayouts, PositionsFromDepth) {
         setFrame(device(), shader, f, tables());
         shader.clear(PEL_SLOT_POSITION);
         shader.set(PEL_SLOT_DEPTH, imageDesc(upload(device(), depth), PEL_FORMAT_R32F, f.width, f.height));
-        EXPECT_LE(worstError(f, shadeInto(shader, f)), tolerance::shadeFromDepth) << "reversed " << reversed;
+        const auto result = shadeInto(shader, f);
+        EXPECT_LE(worstError(f, result), tolerance::shadeFromDepth) << "reversed " << reversed;
+        // Depth that is no number leaves its pixel alone bad.
+        size_t at = 0;
+        while (f.slots[PEL_SLOT_MATERIAL].values[at] == 0) ++at;
+        for (const float bad : {NAN, INFINITY}) {
+            depth.values[at] = bad;
+            f.options.invalidColor[2] = -7;
+            shader.set(f.options);
+            shader.set(PEL_SLOT_DEPTH, imageDesc(upload(device(), depth), PEL_FORMAT_R32F, f.width, f.height));
+            const auto spoiled = shadeInto(shader, f);
+            for (size_t i = 0; i < result.size(); ++i) EXPECT_EQ(spoiled[i], i / 3 != at ? result[i] : i % 3 == 2 ? -7 : 0) << i;
+        }
     }
 }
 

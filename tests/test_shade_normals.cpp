@@ -355,6 +355,27 @@ TEST(NormalMap, BadInput) {
             [](Mapped& b, Levels&, uint32_t&) { b.frame.materials[1].uvScale = 0; });
 }
 
+TEST(NormalMap, ATexelThatIsNoNumberStaysWithThePixelsThatReadIt) {
+    Mapped m = mappedFrame(8, 16);
+    m.frame.options.invalidColor[1] = -7;
+    const auto before = shadeMapped(m, {1, 2});
+    m.texels[3 * (16 * 5 + 9)] = m.texels[3 * (16 * 16 + 8 * 3 + 2) + 1] = nan;  // of the two finest levels
+    for (size_t k = 0, at = 0; k < 2; at += 3 * m.levels[k].texels.size(), ++k)
+        for (size_t i = 0; i < m.levels[k].texels.size(); ++i)
+            for (size_t c = 0; c < 3; ++c) m.levels[k].texels[i][int(c)] = m.texels[at + 3 * i + c];
+    const auto after = shadeMapped(m, {1, 2});
+    size_t invalid = 0;
+    for (size_t i = 0; i < m.frame.pixels(); ++i) {
+        if (m.frame.slots[PEL_SLOT_MATERIAL].values[i] == 0) continue;
+        // The oracle reads with a weight of 0 too.
+        const bool mayRead = !std::isfinite(reference::length(mappedTruth(m, i))), bad = after[3 * i + 1] == -7;
+        invalid += bad;
+        EXPECT_TRUE(mayRead || !bad) << i;
+        for (size_t c = 0; c < 3; ++c) EXPECT_EQ(after[3 * i + c], !bad ? before[3 * i + c] : c == 1 ? -7 : 0) << i;
+    }
+    EXPECT_GT(invalid, 20u);
+}
+
 TEST(NormalMap, BytesDecodeToTheSame) {
     Mapped m = mappedFrame(7, 16);
     std::vector<uint8_t> bytes;

@@ -12,39 +12,6 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-// Maps of these extents about one axis, each with its own size, shifted a little against each other.
-struct CascadeLight {
-    FormLight light;
-    std::vector<MapLight> maps;
-};
-CascadeLight cascadeLight(std::initializer_list<double> extents, bool reversed = false, uint32_t size = 97, bool sameSize = false) {
-    CascadeLight out;
-    uint32_t i = 0;
-    for (const double extent : extents) {
-        const uint32_t texels = sameSize ? size : size + 11 * i;
-        out.maps.push_back(mapLight(i, false, reversed, {0.3, 0.1, 0.9}, Vec3{24 + 1.5 * i, 10 - double(i), 5}, extent, texels));
-        MapLight& map = out.maps.back();
-        if (reversed) {  // from 1 at the light to 0
-            map.light.params.worldToShadow[11] += 1;
-            map.view.origin = map.view.origin + 300.0 * map.view.forward;
-            for (float& z : map.light.map.values) z += 1;
-            map.map.depth.assign(map.light.map.values.begin(), map.light.map.values.end());
-        }
-        const PelLight& l = map.light.params;
-        if (i == 0) {
-            out.light.params = l;
-        } else {
-            std::copy_n(l.worldToShadow, 16, out.light.params.cascadeToShadow[i - 1]);
-            out.light.params.cascadeDepthRange[i - 1] = l.shadowDepthRange;
-        }
-        const auto slot = i ? PEL_LIGHT_CASCADE_1 + int(i) - 1 : int(PEL_LIGHT_SHADOW_MAP);
-        out.light.maps.push_back({PelLightSlot(slot), texels, texels, 1, map.light.map.values});
-        ++i;
-    }
-    out.light.params.shadowCascades = i;
-    return out;
-}
-
 Worst worstCascade(const Frame& f, const CascadeLight& from, const Seen& seen, std::vector<int>* taken = nullptr) {
     const PelLight& l = from.light.params;
     std::vector<reference::Matrix4> matrices{matrixOf(l.worldToShadow)};

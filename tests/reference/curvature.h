@@ -25,6 +25,19 @@ std::vector<double> edgeCurvature(const Mesh& mesh);
 // values, so that an interior edge counts twice and a border edge once. A vertex in no triangle becomes 0.
 std::vector<double> smoothed(const Mesh& mesh, std::vector<double> values, int passes);
 
+// The heat equation on the surface until a point has spread over a standard deviation of `radius` (docs/curvature.md,
+// "Smoothing"; kernels/curvature_diffuse.cl): cotangents over Voronoi areas or, by area, the triangles of an edge over the
+// square of its length; four super steps of Runge-Kutta-Legendre, `stages` in all.
+// A triangle has no plane at a corner of which the squared sine is at most this.
+constexpr double flatTriangle = 1e-10;
+struct RadiusSmoothing {
+    double radius = 0;  // length
+    double crease = 0;  // radians; 0: none stays
+    int stages = 1;
+    bool byArea = false;
+};
+std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> values, const RadiusSmoothing& how);
+
 // Principal curvatures, first >= second, 1/length; positive where the surface bends away from the normal (a
 // sphere with outward normals has two positive ones).
 struct PrincipalCurvatures {
