@@ -1,5 +1,6 @@
-// Searches the inputs of every operation for the worst error against the double-precision oracle of the tests, on one device, and writes
-// what it found as JSON; bench/stability_page makes docs/stability.md of such records. Ends with 1 where an error is beyond its limit.
+// Searches the inputs of every operation for the worst error against the double-precision oracle of the
+// tests, on one device, and writes what it found as JSON; bench/stability_page makes docs/stability.md of
+// such records. Ends with 1 where an error is beyond its limit.
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
@@ -20,7 +21,8 @@ constexpr const char* usage =
     "  --list        names only\n";
 
 const char* unitName(Unit unit) {
-    constexpr const char* names[] = {"absolute, relative above 1", "of the largest", "mm", "beyond rounding", "of a step, beyond rounding"};
+    constexpr const char* names[] = {"absolute, relative above 1", "of the largest", "mm", "beyond rounding",
+                                     "of a step, beyond rounding"};
     return names[int(unit)];
 }
 
@@ -38,13 +40,18 @@ std::string number(double v) {
 }
 
 std::string record(const Operation& o, const Found& f) {
-    std::string json = "    {\"name\": " + quoted(o.header.name) + ", \"range\": " + quoted(o.header.range) + ", \"unit\": " + quoted(unitName(o.header.unit)) +
-                       ",\n     \"limit\": " + number(o.header.limit) + ", \"limitName\": " + quoted(o.header.limit.name) +
-                       ", \"limitReason\": " + quoted(o.header.limit.reason) + ", \"points\": " + std::to_string(f.points) +
-                       ", \"stopped\": " + (f.stopped ? "true" : "false") + ",\n     \"drawn\": " + number(f.drawn) + ", \"worst\": " + number(f.worst) +
-                       ", \"inherent\": " + number(f.inherent) + ", \"where\": " + quoted(f.where);
+    std::string json =
+        "    {\"name\": " + quoted(o.header.name) + ", \"range\": " + quoted(o.header.range) +
+        ", \"unit\": " + quoted(unitName(o.header.unit)) + ",\n     \"limit\": " + number(o.header.limit) +
+        ", \"limitName\": " + quoted(o.header.limit.name) +
+        ", \"limitReason\": " + quoted(o.header.limit.reason) + ", \"points\": " + std::to_string(f.points) +
+        ", \"stopped\": " + (f.stopped ? "true" : "false") + ",\n     \"drawn\": " + number(f.drawn) +
+        ", \"worst\": " + number(f.worst) + ", \"inherent\": " + number(f.inherent) +
+        ", \"where\": " + quoted(f.where);
     if (o.axis) {
-        json += ",\n     \"axis\": {\"label\": " + quoted(o.axis->label) + ", \"low\": " + number(o.axis->low) + ", \"high\": " + number(o.axis->high) + ", \"worst\": [";
+        json += ",\n     \"axis\": {\"label\": " + quoted(o.axis->label) +
+                ", \"low\": " + number(o.axis->low) + ", \"high\": " + number(o.axis->high) +
+                ", \"worst\": [";
         for (size_t i = 0; i < f.alongAxis.size(); ++i) json += (i ? ", " : "") + number(f.alongAxis[i]);
         json += "]}";
     }
@@ -59,17 +66,24 @@ int main(int argc, char** argv) try {
     bool list = false;
     for (int i = 1; i < argc; ++i) {
         const bool more = i + 1 < argc;
-        if (!std::strcmp(argv[i], "--list")) list = true;
-        else if (!std::strcmp(argv[i], "--json") && more) json = argv[++i];
-        else if (!std::strcmp(argv[i], "--share") && more) share = std::atof(argv[++i]);
-        else if (!std::strcmp(argv[i], "--seconds") && more) seconds = std::atof(argv[++i]);
-        else if (!std::strcmp(argv[i], "--only") && more) only = argv[++i];
-        else return std::fputs(usage, stderr), 2;
+        if (!std::strcmp(argv[i], "--list"))
+            list = true;
+        else if (!std::strcmp(argv[i], "--json") && more)
+            json = argv[++i];
+        else if (!std::strcmp(argv[i], "--share") && more)
+            share = std::atof(argv[++i]);
+        else if (!std::strcmp(argv[i], "--seconds") && more)
+            seconds = std::atof(argv[++i]);
+        else if (!std::strcmp(argv[i], "--only") && more)
+            only = argv[++i];
+        else
+            return std::fputs(usage, stderr), 2;
     }
     std::string records;
     bool within = true;
-    for (const auto& some : {tableOperations(), profileOperations(), encodingOperations(), meshOperations(), smoothingOperations(), screenOperations(),
-                             normalOperations(), shadingOperations(), formOperations(), formatOperations()})
+    for (const auto& some : {tableOperations(), profileOperations(), encodingOperations(), meshOperations(),
+                             smoothingOperations(), screenOperations(), normalOperations(),
+                             shadingOperations(), formOperations(), formatOperations()})
         for (const Operation& o : some) {
             if (o.header.name.find(only) == std::string::npos) continue;
             if (list) {
@@ -78,21 +92,26 @@ int main(int argc, char** argv) try {
             }
             const auto start = std::chrono::steady_clock::now();
             const Found f = search(o, share, seconds);
-            const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            const double took =
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
             const bool fine = f.worst <= o.header.limit;
             within &= fine;
-            std::printf("%-55s %9.2g  drawn %9.2g  inherent %9.2g  limit %9.2g  %zu points in %.1f s%s%s\n    %s\n", o.header.name.c_str(), f.worst, f.drawn, f.inherent,
-                        o.header.limit.value, f.points, took, f.stopped ? ", stopped" : "", fine ? "" : "  BEYOND THE LIMIT", f.where.c_str());
+            std::printf(
+                "%-55s %9.2g  drawn %9.2g  inherent %9.2g  limit %9.2g  %zu points in %.1f s%s%s\n    %s\n",
+                o.header.name.c_str(), f.worst, f.drawn, f.inherent, o.header.limit.value, f.points, took,
+                f.stopped ? ", stopped" : "", fine ? "" : "  BEYOND THE LIMIT", f.where.c_str());
             std::fflush(stdout);
             records += (records.empty() ? "" : ",\n") + record(o, f);
         }
     if (json && !list) {
         const PelDeviceInfo info = device().info();
-        const std::string whole = "{\"device\": " + quoted(info.name) + ", \"platform\": " + quoted(info.platform) + ", \"driver\": " + quoted(info.driver) +
-                                  ", \"width\": " + std::to_string(info.mathWidth) + ", \"share\": " + number(share) + ",\n  \"operations\": [\n" + records +
-                                  "\n]}\n";
+        const std::string whole =
+            "{\"device\": " + quoted(info.name) + ", \"platform\": " + quoted(info.platform) +
+            ", \"driver\": " + quoted(info.driver) + ", \"width\": " + std::to_string(info.mathWidth) +
+            ", \"share\": " + number(share) + ",\n  \"operations\": [\n" + records + "\n]}\n";
         FILE* file = std::fopen(json, "w");
-        if (!file || std::fputs(whole.c_str(), file) < 0 || std::fclose(file) != 0) return std::perror(json), 2;
+        if (!file || std::fputs(whole.c_str(), file) < 0 || std::fclose(file) != 0)
+            return std::perror(json), 2;
     }
     return within ? 0 : 1;
 } catch (const std::exception& e) {

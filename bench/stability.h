@@ -1,4 +1,5 @@
-// The operations of docs/stability.md: from points of the unit cube, which stand for inputs, the errors there.
+// The operations of docs/stability.md: from points of the unit cube, which stand for inputs, the errors
+// there.
 #pragma once
 #include <cmath>
 #include <cstdio>
@@ -30,7 +31,8 @@ class Dice {
     std::mt19937 engine_;
 };
 
-// Moves inputs by at most one unit in the last place of float, to see what their rounding alone does to the answer.
+// Moves inputs by at most one unit in the last place of float, to see what their rounding alone does to the
+// answer.
 class Jitter {
   public:
     explicit Jitter(uint32_t seed) : dice_(seed) {}
@@ -71,7 +73,8 @@ struct Axis {
 struct Operation {
     Header header;
     size_t batch = 1;  // points that one evaluation takes
-    // Seed 0: of the device against the oracle; else of the oracle against itself, its inputs moved by Jitter(seed).
+    // Seed 0: of the device against the oracle; else of the oracle against itself, its inputs moved by
+    // Jitter(seed).
     std::function<std::vector<double>(const std::vector<Point>&, uint32_t seed)> errors;
     std::function<std::string(const Point&)> where;
     std::optional<Axis> axis;
@@ -93,7 +96,7 @@ class Pixels {
   public:
     virtual ~Pixels() = default;
     virtual void move(Jitter& jitter) = 0;
-    virtual std::vector<float> measured() = 0;             // as many values for each point
+    virtual std::vector<float> measured() = 0;            // as many values for each point
     virtual std::vector<double> truth(size_t pixel) = 0;  // called from several threads
 };
 // The last dimension of a point chooses one of `scenes`: what is not per pixel.
@@ -108,7 +111,8 @@ inline double between(double t, double low, double high) {
     return low + t * (high - low);
 }
 
-inline std::string text(const char* format, double a, double b = 0, double c = 0, double d = 0, double e = 0) {
+inline std::string text(const char* format, double a, double b = 0, double c = 0, double d = 0,
+                        double e = 0) {
     char buffer[256];
     std::snprintf(buffer, sizeof buffer, format, a, b, c, d, e);
     return buffer;
@@ -134,7 +138,8 @@ void inParallel(size_t count, const std::function<void(size_t)>& body);
 
 struct Found {
     double drawn = 0, worst = 0;  // of the points drawn blindly; of all
-    double inherent = 0;          // change of the oracle at the worst point when its inputs move by a unit in the last place
+    double inherent =
+        0;  // change of the oracle at the worst point when its inputs move by a unit in the last place
     size_t points = 0;
     bool stopped = false;  // by the cap on time
     std::string where;

@@ -9,18 +9,22 @@ class Encoded : public Case {
     Encoded(const Point& p, PelLutEncoding encoding, int kind) : encoding_(encoding), kind_(kind) {
         c_.form = PelCurvatureForm(p[2] * 3.999);
         c_.width = s_.width = uint32_t(between(p[3], 5, 40)), c_.height = s_.height = 4;
-        c_.radiusMin = float(logBetween(p[0], 0.05, 100)), c_.radiusMax = c_.radiusMin * float(logBetween(p[1], 1.1, 100));
-        s_.widthMin = float(logBetween(p[0], 0.5, 100)), s_.widthMax = s_.widthMin * float(logBetween(p[1], 1.1, 10));
+        c_.radiusMin = float(logBetween(p[0], 0.05, 100)),
+        c_.radiusMax = c_.radiusMin * float(logBetween(p[1], 1.1, 100));
+        s_.widthMin = float(logBetween(p[0], 0.5, 100)),
+        s_.widthMax = s_.widthMin * float(logBetween(p[1], 1.1, 10));
         s_.sharpening = float(logBetween(p[2], 1, 20));
     }
     void move(Jitter& j) override {
         c_.radiusMin = j(c_.radiusMin), c_.radiusMax = j(c_.radiusMax);
-        s_.widthMin = j(s_.widthMin), s_.widthMax = j(s_.widthMax), s_.sharpening = std::max(1.0f, j(s_.sharpening));
+        s_.widthMin = j(s_.widthMin), s_.widthMax = j(s_.widthMax),
+        s_.sharpening = std::max(1.0f, j(s_.sharpening));
     }
     // Differences are made here; the truth is 0.
     std::vector<float> measured() override {
         const Lut lut = kind_ ? Lut(device(), s_) : Lut(device(), c_);
-        const auto halves = encoding_ == PEL_LUT_HALF ? lut.read<uint16_t>(encoding_) : std::vector<uint16_t>();
+        const auto halves =
+            encoding_ == PEL_LUT_HALF ? lut.read<uint16_t>(encoding_) : std::vector<uint16_t>();
         const auto bytes = encoding_ == PEL_LUT_HALF ? std::vector<uint8_t>() : lut.read<uint8_t>(encoding_);
         std::vector<float> beyond(3 * texels());
         inParallel(texels(), [&](size_t i) {
@@ -29,7 +33,8 @@ class Encoded : public Case {
                 if (encoding_ == PEL_LUT_HALF) {
                     beyond[3 * i + c] = float(beyondHalf(halves[3 * i + c], truth[int(c)]));
                 } else {
-                    beyond[3 * i + c] = float(std::max(0.0, std::abs(bytes[4 * i + c] - steps[int(c)]) - 0.5));
+                    beyond[3 * i + c] =
+                        float(std::max(0.0, std::abs(bytes[4 * i + c] - steps[int(c)]) - 0.5));
                 }
             }
         });
@@ -37,8 +42,10 @@ class Encoded : public Case {
     }
     std::vector<double> truth() override { return std::vector<double>(3 * texels(), 0.0); }
     std::string where() override {
-        return kind_ ? text("widths %.3g to %.3g mm, sharpening %.3g, %.0f texels", s_.widthMin, s_.widthMax, s_.sharpening, s_.width)
-                     : text("radii %.3g to %.3g mm, %.0f texels", c_.radiusMin, c_.radiusMax, c_.width) + ", " + formNames[c_.form];
+        return kind_ ? text("widths %.3g to %.3g mm, sharpening %.3g, %.0f texels", s_.widthMin, s_.widthMax,
+                            s_.sharpening, s_.width)
+                     : text("radii %.3g to %.3g mm, %.0f texels", c_.radiusMin, c_.radiusMax, c_.width) +
+                           ", " + formNames[c_.form];
     }
 
   private:
@@ -47,8 +54,10 @@ class Encoded : public Case {
         const int x = int(i % c_.width), y = int(i / c_.width);
         static const auto skin = reference::skinProfile();
         if (kind_)
-            return reference::shadowTexel({int(s_.width), 4, s_.widthMin, s_.widthMax, s_.diffusionRadius, s_.sharpening}, *skin, x, y);
-        const reference::CurvatureLutSpec spec{trueForms[c_.form], int(c_.width), 4, c_.radiusMin, c_.radiusMax};
+            return reference::shadowTexel(
+                {int(s_.width), 4, s_.widthMin, s_.widthMax, s_.diffusionRadius, s_.sharpening}, *skin, x, y);
+        const reference::CurvatureLutSpec spec{trueForms[c_.form], int(c_.width), 4, c_.radiusMin,
+                                               c_.radiusMax};
         return reference::curvatureTexel(spec, *reference::profileForRadius(skin, c_.diffusionRadius), x, y);
     }
     reference::Rgb eightBits(const reference::Rgb& truth, size_t i) const {
@@ -64,9 +73,10 @@ class Encoded : public Case {
 };
 
 Operation encoded(const char* name, PelLutEncoding encoding, int kind, const tolerance::Tolerance& limit) {
-    return operation({name, kind ? "widths 0.5 to 1,000 mm, sharpening 1 to 20" : "all forms, radii 0.05 to 10,000 mm",
-                      encoding == PEL_LUT_HALF ? Unit::rounding : Unit::steps, limit, 4, 200},
-                     [=](const Point& p) { return std::make_unique<Encoded>(p, encoding, kind); });
+    return operation(
+        {name, kind ? "widths 0.5 to 1,000 mm, sharpening 1 to 20" : "all forms, radii 0.05 to 10,000 mm",
+         encoding == PEL_LUT_HALF ? Unit::rounding : Unit::steps, limit, 4, 200},
+        [=](const Point& p) { return std::make_unique<Encoded>(p, encoding, kind); });
 }
 
 }  // namespace

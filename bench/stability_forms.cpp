@@ -1,4 +1,5 @@
-// Wide shadow and thickness from shadow maps of every form: each pixel is a place on open ground, with a normal of its own.
+// Wide shadow and thickness from shadow maps of every form: each pixel is a place on open ground, with a
+// normal of its own.
 #include "shadow_form_scene.h"
 
 #include "stability_vectors.h"
@@ -37,7 +38,8 @@ struct Scene {
 };
 
 reference::WideFilterParams filterOf(const PelLight& l, const PelMaterial& m) {
-    return {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope, int(l.shadowFilterTexels)};
+    return {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope,
+            int(l.shadowFilterTexels)};
 }
 
 void setLight(PelLight& l, size_t number) {
@@ -48,18 +50,23 @@ void setLight(PelLight& l, size_t number) {
 }
 
 Scene planeScene(bool perspective, size_t number) {
-    auto from = std::make_shared<MapLight>(mapLight(uint32_t(number), perspective, number % 2, {0.6, 0.3, 0.3 + 0.5 * double(number)},
-                                                    {16, 8, 5}, 50, 60 + 40 * uint32_t(number)));
+    auto from = std::make_shared<MapLight>(mapLight(uint32_t(number), perspective, number % 2,
+                                                    {0.6, 0.3, 0.3 + 0.5 * double(number)}, {16, 8, 5}, 50,
+                                                    60 + 40 * uint32_t(number)));
     setLight(from->light.params, number);
     Scene s;
     s.light.params = from->light.params;
-    s.light.maps = {{PEL_LIGHT_SHADOW_MAP, from->light.mapSize, from->light.mapSize, 1, from->light.map.values}};
+    s.light.maps = {
+        {PEL_LIGHT_SHADOW_MAP, from->light.mapSize, from->light.mapSize, 1, from->light.map.values}};
     s.wide = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
         return reference::wideShadow(from->map, from->view, p, n, filterOf(from->light.params, m));
     };
     s.thickness = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
-        return reference::thickness(from->map, reference::shadowCoordinates(matrixOf(from->light.params.worldToShadow), p, n, m.deepScatterNormalOffset),
-                                    diskTaps(m.thicknessTaps), m.thicknessFilterRadius, from->view.decoding, reference::MapFilter::bilinear);
+        return reference::thickness(from->map,
+                                    reference::shadowCoordinates(matrixOf(from->light.params.worldToShadow),
+                                                                 p, n, m.deepScatterNormalOffset),
+                                    diskTaps(m.thicknessTaps), m.thicknessFilterRadius, from->view.decoding,
+                                    reference::MapFilter::bilinear);
     };
     return s;
 }
@@ -71,22 +78,26 @@ Scene cubeScene(bool radial, size_t number) {
         const int cell = texel / 7 * 31;
         return std::min(ground, 500.0) - (cell % 3 ? 9 + cell % 23 : 0) / reference::length(d);
     };
-    auto from = std::make_shared<CubeLight>(cubeLight(32u << number, radial, turnTo({0, 0, -1}, aims[number]), lamp, bumps));
+    auto from = std::make_shared<CubeLight>(
+        cubeLight(32u << number, radial, turnTo({0, 0, -1}, aims[number]), lamp, bumps));
     setLight(from->light.params, number);
     Scene s;
     s.light = from->light;
     s.wide = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
-        return reference::cubeWideShadow(from->map, from->turn(p - from->position), from->turn(n), filterOf(from->light.params, m));
+        return reference::cubeWideShadow(from->map, from->turn(p - from->position), from->turn(n),
+                                         filterOf(from->light.params, m));
     };
     s.thickness = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
-        return reference::cubeThickness(from->map, from->turn(p - double(m.deepScatterNormalOffset) * n - from->position),
-                                        diskTaps(m.thicknessTaps), m.thicknessFilterRadius);
+        return reference::cubeThickness(
+            from->map, from->turn(p - double(m.deepScatterNormalOffset) * n - from->position),
+            diskTaps(m.thicknessTaps), m.thicknessFilterRadius);
     };
     return s;
 }
 
 Scene cascadeScene(size_t number) {
-    auto from = std::make_shared<CascadeLight>(cascadeLight({14, 24, 36, 52}, number % 2, 60 + 30 * uint32_t(number)));
+    auto from = std::make_shared<CascadeLight>(
+        cascadeLight({14, 24, 36, 52}, number % 2, 60 + 30 * uint32_t(number)));
     setLight(from->light.params, number);
     Scene s;
     s.light = from->light;
@@ -94,43 +105,53 @@ Scene cascadeScene(size_t number) {
     for (int i = 0; i < 3; ++i) matrices.push_back(matrixOf(s.light.params.cascadeToShadow[i]));
     s.wide = [from, matrices](const PelMaterial& m, Vec3 p, Vec3 n) {
         const int k = reference::cascadeOf(matrices, p, m.shadowFilterWidth / 2);
-        return k < 0 ? 1 : reference::wideShadow(from->maps[size_t(k)].map, from->maps[size_t(k)].view, p, n, filterOf(from->light.params, m));
+        return k < 0 ? 1
+                     : reference::wideShadow(from->maps[size_t(k)].map, from->maps[size_t(k)].view, p, n,
+                                             filterOf(from->light.params, m));
     };
     s.thickness = [from, matrices](const PelMaterial& m, Vec3 p, Vec3 n) {
         const Vec3 inside = p - double(m.deepScatterNormalOffset) * n;
         const double radius = m.thicknessFilterRadius / reference::uvPerLength(matrices[0], 0);
         const int k = reference::cascadeOf(matrices, inside, radius);
         if (k < 0) return 0.0;
-        return reference::thickness(from->maps[size_t(k)].map, reference::shadowCoordinates(matrices[size_t(k)], inside, {0, 0, 0}, 0),
-                                    diskTaps(m.thicknessTaps), radius * reference::uvPerLength(matrices[size_t(k)], 0),
+        return reference::thickness(from->maps[size_t(k)].map,
+                                    reference::shadowCoordinates(matrices[size_t(k)], inside, {0, 0, 0}, 0),
+                                    diskTaps(m.thicknessTaps),
+                                    radius * reference::uvPerLength(matrices[size_t(k)], 0),
                                     from->maps[size_t(k)].view.decoding, reference::MapFilter::bilinear);
     };
     return s;
 }
 
 Scene contentScene(PelShadowContent content, size_t number) {
-    auto from = std::make_shared<ContentLight>(contentLight(content, number & 1, number & 2, 60 + 20 * uint32_t(number)));
+    auto from = std::make_shared<ContentLight>(
+        contentLight(content, number & 1, number & 2, 60 + 20 * uint32_t(number)));
     setLight(from->light.params, number);
     Scene s;
     s.light = from->light;
     const auto uvz = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
-        return reference::shadowCoordinates(matrixOf(from->light.params.worldToShadow), p, n, m.deepScatterNormalOffset);
+        return reference::shadowCoordinates(matrixOf(from->light.params.worldToShadow), p, n,
+                                            m.deepScatterNormalOffset);
     };
     if (content == PEL_SHADOW_CONTENT_MOMENTS) {
         s.wide = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
             const PelLight& l = from->light.params;
-            return reference::momentShadow(from->first, from->second, from->from.view, p, n, filterOf(l, m), {l.shadowMinDeviation, l.shadowBleeding});
+            return reference::momentShadow(from->first, from->second, from->from.view, p, n, filterOf(l, m),
+                                           {l.shadowMinDeviation, l.shadowBleeding});
         };
         s.thickness = [from, uvz](const PelMaterial& m, Vec3 p, Vec3 n) {
-            return reference::thickness(from->first, uvz(m, p, n), diskTaps(m.thicknessTaps), m.thicknessFilterRadius,
-                                        from->from.view.decoding, reference::MapFilter::bilinear);
+            return reference::thickness(from->first, uvz(m, p, n), diskTaps(m.thicknessTaps),
+                                        m.thicknessFilterRadius, from->from.view.decoding,
+                                        reference::MapFilter::bilinear);
         };
     } else {
         s.wide = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
-            return reference::exponentialShadow(from->first, from->light.params.shadowExponent, from->from.view, p, n, filterOf(from->light.params, m));
+            return reference::exponentialShadow(from->first, from->light.params.shadowExponent,
+                                                from->from.view, p, n, filterOf(from->light.params, m));
         };
         s.thickness = [from, uvz](const PelMaterial& m, Vec3 p, Vec3 n) {
-            return reference::exponentialThickness(from->first, from->light.params.shadowExponent, uvz(m, p, n), diskTaps(m.thicknessTaps),
+            return reference::exponentialThickness(from->first, from->light.params.shadowExponent,
+                                                   uvz(m, p, n), diskTaps(m.thicknessTaps),
                                                    m.thicknessFilterRadius, from->from.view.decoding);
         };
     }
@@ -140,12 +161,17 @@ Scene contentScene(PelShadowContent content, size_t number) {
 Scene makeScene(Form form, size_t number) {
     switch (form) {
         case Form::parallel:
-        case Form::perspective: return planeScene(form == Form::perspective, number);
+        case Form::perspective:
+            return planeScene(form == Form::perspective, number);
         case Form::cube:
-        case Form::radialCube: return cubeScene(form == Form::radialCube, number);
-        case Form::cascades: return cascadeScene(number);
-        case Form::moments: return contentScene(PEL_SHADOW_CONTENT_MOMENTS, number);
-        default: return contentScene(PEL_SHADOW_CONTENT_EXPONENTIAL, number);
+        case Form::radialCube:
+            return cubeScene(form == Form::radialCube, number);
+        case Form::cascades:
+            return cascadeScene(number);
+        case Form::moments:
+            return contentScene(PEL_SHADOW_CONTENT_MOMENTS, number);
+        default:
+            return contentScene(PEL_SHADOW_CONTENT_EXPONENTIAL, number);
     }
 }
 const Scene& sceneOf(Form form, size_t number) {
@@ -162,8 +188,11 @@ class Mapped : public Pixels {
         frame_ = formFrame(1, 64, uint32_t((points.size() + 63) / 64));
         frame_.materials.clear();
         for (uint32_t id = 1; id <= materials; ++id) frame_.materials[id] = materialOf(id);
-        std::fill(frame_.slots[PEL_SLOT_MATERIAL].values.begin(), frame_.slots[PEL_SLOT_MATERIAL].values.end(), 0.0f);
-        const Vec3 up = scene_.light.params.type == PEL_LIGHT_DIRECTIONAL ? vector(scene_.light.params.toLight) : Vec3{0, 0, 1};
+        std::fill(frame_.slots[PEL_SLOT_MATERIAL].values.begin(),
+                  frame_.slots[PEL_SLOT_MATERIAL].values.end(), 0.0f);
+        const Vec3 up = scene_.light.params.type == PEL_LIGHT_DIRECTIONAL
+                            ? vector(scene_.light.params.toLight)
+                            : Vec3{0, 0, 1};
         for (size_t i = 0; i < points.size(); ++i) {
             const Point& p = points[i];
             const Vec3 at{between(p[placeX], -2, 50), between(p[placeY], -2, 22), between(p[placeZ], -5, 35)},
@@ -176,7 +205,8 @@ class Mapped : public Pixels {
         }
         count_ = points.size();
     }
-    // The last column of a light's matrix is of the order of the distance to it, 150 mm: its rounding moves all places.
+    // The last column of a light's matrix is of the order of the distance to it, 150 mm: its rounding moves
+    // all places.
     void move(Jitter& j) override {
         j(frame_.slots[PEL_SLOT_POSITION].values), j(frame_.slots[PEL_SLOT_NORMAL_GEOMETRIC].values);
         for (int c = 0; c < 3; ++c) column_[c] = double(j(150)) - 150;
@@ -189,7 +219,8 @@ class Mapped : public Pixels {
     }
     std::vector<double> truth(size_t i) override {
         const PelMaterial& m = materialOf(uint32_t(frame_.slots[PEL_SLOT_MATERIAL].at(i)));
-        const Vec3 p = frame_.slots[PEL_SLOT_POSITION].vec(i) + column_, n = reference::normalized(frame_.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i));
+        const Vec3 p = frame_.slots[PEL_SLOT_POSITION].vec(i) + column_,
+                   n = reference::normalized(frame_.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i));
         const auto& of = thickness_ ? scene_.thickness : scene_.wide;
         const double value = of(m, p, n);
         // Which face or cascade is taken, and every how manieth texel is read, are decisions.
@@ -211,21 +242,25 @@ class Mapped : public Pixels {
     size_t count_ = 0;
 };
 
-Operation form(const char* name, Form kind, bool thickness, const tolerance::Tolerance& limit, size_t points) {
-    return operation({std::string(thickness ? "thickness, " : "wide shadow, ") + name,
-                      thickness ? "8 to 32 taps within 0.005 to 0.05 of the map; 32 to 180 texels a side; depth either way; places and normals at random"
-                                : "filters of 1 to 30 mm, bias 0.1 to 2 mm, softness 0.1 to 1; 32 to 180 texels a side, "
-                                  "at most 8 to 256 read; depth either way; places and normals at random",
-                      thickness ? Unit::length : Unit::absolute, limit, dimensions, points},
-                     4,
-                     [=](size_t number, const std::vector<Point>& points) {
-                         return std::make_unique<Mapped>(kind, thickness, limit.value, number, points);
-                     },
-                     [](size_t number, const Point& p) {
-                         const PelMaterial& m = materialOf(1 + uint32_t(p[material] * (materials - 1e-6)));
-                         return text("map %.0f, filter %.3g mm, disk %.3g of the map, normal %.3g degrees from the light", double(number + 1),
-                                     m.shadowFilterWidth, m.thicknessFilterRadius, p[lean] * 2 * 57.29578);
-                     });
+Operation form(const char* name, Form kind, bool thickness, const tolerance::Tolerance& limit,
+               size_t points) {
+    return operation(
+        {std::string(thickness ? "thickness, " : "wide shadow, ") + name,
+         thickness ? "8 to 32 taps within 0.005 to 0.05 of the map; 32 to 180 texels a side; depth either "
+                     "way; places and normals at random"
+                   : "filters of 1 to 30 mm, bias 0.1 to 2 mm, softness 0.1 to 1; 32 to 180 texels a side, "
+                     "at most 8 to 256 read; depth either way; places and normals at random",
+         thickness ? Unit::length : Unit::absolute, limit, dimensions, points},
+        4,
+        [=](size_t number, const std::vector<Point>& points) {
+            return std::make_unique<Mapped>(kind, thickness, limit.value, number, points);
+        },
+        [](size_t number, const Point& p) {
+            const PelMaterial& m = materialOf(1 + uint32_t(p[material] * (materials - 1e-6)));
+            return text("map %.0f, filter %.3g mm, disk %.3g of the map, normal %.3g degrees from the light",
+                        double(number + 1), m.shadowFilterWidth, m.thicknessFilterRadius,
+                        p[lean] * 2 * 57.29578);
+        });
 }
 
 }  // namespace

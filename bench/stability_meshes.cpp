@@ -6,7 +6,8 @@
 namespace stability {
 namespace {
 
-PelCurvatureParams estimated(PelCurvatureEstimator estimator, PelCurvatureQuantity quantity = PEL_QUANTITY_ABSOLUTE) {
+PelCurvatureParams estimated(PelCurvatureEstimator estimator,
+                             PelCurvatureQuantity quantity = PEL_QUANTITY_ABSOLUTE) {
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     params.estimator = estimator;
     params.quantity = quantity;
@@ -22,14 +23,22 @@ class EdgeCurvature : public MovedMesh {
 
 std::vector<double> quantityOf(const reference::PrincipalCurvatures& k, PelCurvatureQuantity quantity) {
     switch (quantity) {
-        case PEL_QUANTITY_ABSOLUTE: return {std::abs(k.mean())};
-        case PEL_QUANTITY_ABSOLUTE_MAX: return {std::max(std::abs(k.first), std::abs(k.second))};
-        case PEL_QUANTITY_CURVEDNESS: return {std::sqrt((k.first * k.first + k.second * k.second) / 2)};
-        case PEL_QUANTITY_MEAN: return {k.mean()};
-        case PEL_QUANTITY_GAUSSIAN: return {k.gaussian()};
-        case PEL_QUANTITY_FIRST: return {k.first};
-        case PEL_QUANTITY_SECOND: return {k.second};
-        default: return {k.first, k.second};
+        case PEL_QUANTITY_ABSOLUTE:
+            return {std::abs(k.mean())};
+        case PEL_QUANTITY_ABSOLUTE_MAX:
+            return {std::max(std::abs(k.first), std::abs(k.second))};
+        case PEL_QUANTITY_CURVEDNESS:
+            return {std::sqrt((k.first * k.first + k.second * k.second) / 2)};
+        case PEL_QUANTITY_MEAN:
+            return {k.mean()};
+        case PEL_QUANTITY_GAUSSIAN:
+            return {k.gaussian()};
+        case PEL_QUANTITY_FIRST:
+            return {k.first};
+        case PEL_QUANTITY_SECOND:
+            return {k.second};
+        default:
+            return {k.first, k.second};
     }
 }
 
@@ -37,7 +46,8 @@ class TensorCurvature : public MovedMesh {
   public:
     TensorCurvature(const Point& p, PelCurvatureQuantity quantity) : MovedMesh(p), quantity_(quantity) {}
     std::vector<float> measured() override {
-        return curvature(estimated(PEL_CURVATURE_TENSOR, quantity_), quantity_ == PEL_QUANTITY_PRINCIPAL ? 2 : 1);
+        return curvature(estimated(PEL_CURVATURE_TENSOR, quantity_),
+                         quantity_ == PEL_QUANTITY_PRINCIPAL ? 2 : 1);
     }
     std::vector<double> truth() override {
         std::vector<double> t;
@@ -69,8 +79,8 @@ class QuadricCurvature : public MovedMesh {
     }
 };
 
-// How far the first direction lies off the true one, times the difference of the curvatures over the larger: where they are
-// alike, any direction is right.
+// How far the first direction lies off the true one, times the difference of the curvatures over the larger:
+// where they are alike, any direction is right.
 class PrincipalDirections : public MovedMesh {
   public:
     explicit PrincipalDirections(const Point& p) : MovedMesh(p, reference::Tessellation::regular) {
@@ -80,7 +90,8 @@ class PrincipalDirections : public MovedMesh {
         const auto values = curvature(estimated(PEL_CURVATURE_QUADRIC, PEL_QUANTITY_FRAME), 8);
         std::vector<float> off;
         for (size_t i = 0; i < before_.size(); ++i)
-            off.push_back(float(between(before_[i], {values[8 * i + 2], values[8 * i + 3], values[8 * i + 4]})));
+            off.push_back(
+                float(between(before_[i], {values[8 * i + 2], values[8 * i + 3], values[8 * i + 4]})));
         return off;
     }
     // Of the moved inputs against those before.
@@ -88,14 +99,18 @@ class PrincipalDirections : public MovedMesh {
         std::vector<double> off;
         const auto now = decided(mesh);
         for (size_t i = 0; i < now.size(); ++i)
-            off.push_back(std::isnan(now[i].first) || std::isnan(before_[i].first) ? NAN : between(before_[i], now[i].firstDirection));
+            off.push_back(std::isnan(now[i].first) || std::isnan(before_[i].first)
+                              ? NAN
+                              : between(before_[i], now[i].firstDirection));
         return off;
     }
 
   private:
     static double between(const reference::QuadricCurvature& k, reference::Vec3 direction) {
         const double largest = std::max(std::abs(k.first), std::abs(k.second));
-        return largest > 0 ? reference::length(cross(k.firstDirection, direction)) * (k.first - k.second) / largest : 0;
+        return largest > 0
+                   ? reference::length(cross(k.firstDirection, direction)) * (k.first - k.second) / largest
+                   : 0;
     }
     std::vector<reference::QuadricCurvature> before_;
 };
@@ -119,7 +134,8 @@ class UvScale : public MovedMesh {
     explicit UvScale(const Point& p) : MovedMesh(p) {
         const double across = logBetween(p[4], 1e-6, 1e6);
         for (const auto& v : mesh.positions)
-            uvs_.insert(uvs_.end(), {float(across * std::sin(v.x / scale)), float(across * std::cos(v.y / scale))});
+            uvs_.insert(uvs_.end(),
+                        {float(across * std::sin(v.x / scale)), float(across * std::cos(v.y / scale))});
         place += text(", UVs %.2g across", across);
     }
     void move(Jitter& j) override {
@@ -141,8 +157,8 @@ class UvScale : public MovedMesh {
 };
 
 template <class Of>
-Operation mesh(const char* name, const tolerance::Tolerance& limit, Unit unit = Unit::largest, size_t dimensions = 4,
-               const char* more = "", size_t points = 1000) {
+Operation mesh(const char* name, const tolerance::Tolerance& limit, Unit unit = Unit::largest,
+               size_t dimensions = 4, const char* more = "", size_t points = 1000) {
     return operation({name, std::string(meshRange) + more, unit, limit, dimensions, points},
                      [](const Point& p) { return std::make_unique<Of>(p); });
 }
@@ -150,23 +166,28 @@ Operation mesh(const char* name, const tolerance::Tolerance& limit, Unit unit = 
 }  // namespace
 
 std::vector<Operation> meshOperations() {
-    std::vector<Operation> all{mesh<EdgeCurvature>("curvature, edge", tolerance::edgeCurvature),
-                               mesh<QuadricCurvature>("curvature, quadric", tolerance::quadricCurvature, Unit::largest, 4,
-                                                      "; regular triangles", 300),
-                               mesh<PrincipalDirections>("principal directions, quadric", tolerance::quadricCurvature, Unit::absolute,
-                                                         4, "; regular triangles", 300),
-                               mesh<Normals>("normals", tolerance::stretchedNormals, Unit::absolute),
-                               mesh<UvScale>("UV scale", tolerance::uvScale, Unit::largest, 5, "; UVs of 1e-6 to 1e6 across")};
+    std::vector<Operation> all{
+        mesh<EdgeCurvature>("curvature, edge", tolerance::edgeCurvature),
+        mesh<QuadricCurvature>("curvature, quadric", tolerance::quadricCurvature, Unit::largest, 4,
+                               "; regular triangles", 300),
+        mesh<PrincipalDirections>("principal directions, quadric", tolerance::quadricCurvature,
+                                  Unit::absolute, 4, "; regular triangles", 300),
+        mesh<Normals>("normals", tolerance::stretchedNormals, Unit::absolute),
+        mesh<UvScale>("UV scale", tolerance::uvScale, Unit::largest, 5, "; UVs of 1e-6 to 1e6 across")};
     const std::pair<const char*, PelCurvatureQuantity> quantities[] = {
         {"absolute mean", PEL_QUANTITY_ABSOLUTE}, {"absolute largest", PEL_QUANTITY_ABSOLUTE_MAX},
         {"curvedness", PEL_QUANTITY_CURVEDNESS},  {"mean", PEL_QUANTITY_MEAN},
         {"Gaussian", PEL_QUANTITY_GAUSSIAN},      {"first", PEL_QUANTITY_FIRST},
         {"second", PEL_QUANTITY_SECOND},          {"both principal", PEL_QUANTITY_PRINCIPAL}};
     for (const auto& [name, quantity] : quantities)
-        all.push_back(operation({std::string("curvature, tensor: ") + name, meshRange, Unit::largest, tolerance::tensorCurvature, 4, 250},
-                                [quantity = quantity](const Point& p) { return std::make_unique<TensorCurvature>(p, quantity); }));
+        all.push_back(operation({std::string("curvature, tensor: ") + name, meshRange, Unit::largest,
+                                 tolerance::tensorCurvature, 4, 250},
+                                [quantity = quantity](const Point& p) {
+                                    return std::make_unique<TensorCurvature>(p, quantity);
+                                }));
     for (Operation& o : all)
-        if (o.header.name == "normals" || o.header.name.ends_with("Gaussian")) o.axis = Axis{2, 0.02, 1, "height over width"};
+        if (o.header.name == "normals" || o.header.name.ends_with("Gaussian"))
+            o.axis = Axis{2, 0.02, 1, "height over width"};
     return all;
 }
 

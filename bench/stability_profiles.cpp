@@ -28,7 +28,8 @@ Source gaussians(const Point& p) {
         ours.push_back(g);
         truth.push_back({g.variance, rgb(g.weight)});
     }
-    return {Profile::gaussians(ours), reference::gaussiansProfile(truth), text("%.0f Gaussians, widest %.3g mm", count, widest)};
+    return {Profile::gaussians(ours), reference::gaussiansProfile(truth),
+            text("%.0f Gaussians, widest %.3g mm", count, widest)};
 }
 
 Source burley(const Point& p) {
@@ -48,7 +49,8 @@ Source dipole(const Point& p) {
         absorption[c] = float(scattering[c] * logBetween(p[0], 1e-3, 3) * (1 + c));
     }
     const float eta = float(between(p[1], 1.05, 2));
-    return {Profile::dipole(absorption, scattering, eta), reference::dipoleProfile(rgb(absorption), rgb(scattering), eta),
+    return {Profile::dipole(absorption, scattering, eta),
+            reference::dipoleProfile(rgb(absorption), rgb(scattering), eta),
             text("absorption %.3g /mm, scattering %.3g /mm, eta %.3g", absorption[0], scattering[0], eta)};
 }
 
@@ -64,7 +66,8 @@ Source measuredTable(const Point& p) {
     std::vector<double> d(distances.begin(), distances.end());
     std::vector<Rgb> R;
     for (size_t i = 0; i < d.size(); ++i) R.push_back({values[3 * i], values[3 * i + 1], values[3 * i + 2]});
-    return {Profile::table(distances, values), reference::tableProfile(d, R), text("%.0f distances up to %.3g mm", count, d.back())};
+    return {Profile::table(distances, values), reference::tableProfile(d, R),
+            text("%.0f distances up to %.3g mm", count, d.back())};
 }
 
 // The name of the profile before what the table says of itself.
@@ -79,37 +82,42 @@ class OfSource : public Table {
     std::string source_;
 };
 
-Operation tables(const char* name, const char* range, Source (*source)(const Point&), const tolerance::Tolerance& limit, size_t points) {
-    return operation(
-        {std::string("tables of ") + name, std::string(range) + "; radii 0.05 to 10,000 of the profile's; four forms, and shadow",
-         Unit::absolute, limit, 7, points},
-        [source](const Point& p) -> std::unique_ptr<Case> {
-            const Source s = source(p);
-            const double radius = s.truth->radius();
-            if (p[3] > 0.8) {
-                PelShadowLutDesc desc = pelShadowLutDescDefaults();
-                desc.width = 15, desc.height = 5, desc.diffusionRadius = float(radius);
-                desc.widthMin = float(radius * logBetween(p[4], 0.5, 10));
-                desc.widthMax = float(desc.widthMin * logBetween(p[5], 1.1, 20));
-                desc.sharpening = float(logBetween(p[6], 1, 100));
-                return std::make_unique<OfSource<ShadowTable>>(desc, s);
-            }
-            PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
-            desc.form = PelCurvatureForm(p[3] * 4.999), desc.axis = PEL_AXIS_ROOT;
-            desc.width = 15, desc.height = 5, desc.diffusionRadius = float(radius);
-            desc.radiusMin = float(radius * logBetween(p[4], 0.05, 10));
-            desc.radiusMax = float(desc.radiusMin * logBetween(p[5], 1.1, 1000));
-            return std::make_unique<OfSource<CurvatureTable>>(desc, s);
-        });
+Operation tables(const char* name, const char* range, Source (*source)(const Point&),
+                 const tolerance::Tolerance& limit, size_t points) {
+    return operation({std::string("tables of ") + name,
+                      std::string(range) + "; radii 0.05 to 10,000 of the profile's; four forms, and shadow",
+                      Unit::absolute, limit, 7, points},
+                     [source](const Point& p) -> std::unique_ptr<Case> {
+                         const Source s = source(p);
+                         const double radius = s.truth->radius();
+                         if (p[3] > 0.8) {
+                             PelShadowLutDesc desc = pelShadowLutDescDefaults();
+                             desc.width = 15, desc.height = 5, desc.diffusionRadius = float(radius);
+                             desc.widthMin = float(radius * logBetween(p[4], 0.5, 10));
+                             desc.widthMax = float(desc.widthMin * logBetween(p[5], 1.1, 20));
+                             desc.sharpening = float(logBetween(p[6], 1, 100));
+                             return std::make_unique<OfSource<ShadowTable>>(desc, s);
+                         }
+                         PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+                         desc.form = PelCurvatureForm(p[3] * 4.999), desc.axis = PEL_AXIS_ROOT;
+                         desc.width = 15, desc.height = 5, desc.diffusionRadius = float(radius);
+                         desc.radiusMin = float(radius * logBetween(p[4], 0.05, 10));
+                         desc.radiusMax = float(desc.radiusMin * logBetween(p[5], 1.1, 1000));
+                         return std::make_unique<OfSource<CurvatureTable>>(desc, s);
+                     });
 }
 
 }  // namespace
 
 std::vector<Operation> profileOperations() {
-    return {tables("Gaussians", "1 to 8 Gaussians, the widest 0.05 to 50 mm", gaussians, tolerance::lutTexelGaussians, 400),
-            tables("Burley's profile", "mean free path 0.01 to 20 mm, albedo 0 to 1", burley, tolerance::lutTexelOther, 60),
-            tables("the dipole", "scattering 0.05 to 32 /mm, absorption 0.001 to 9 of it, eta 1.05 to 2", dipole, tolerance::lutTexelOther, 80),
-            tables("measurements", "2 to 32 distances, values at random", measuredTable, tolerance::lutTexelOther, 80)};
+    return {tables("Gaussians", "1 to 8 Gaussians, the widest 0.05 to 50 mm", gaussians,
+                   tolerance::lutTexelGaussians, 400),
+            tables("Burley's profile", "mean free path 0.01 to 20 mm, albedo 0 to 1", burley,
+                   tolerance::lutTexelOther, 60),
+            tables("the dipole", "scattering 0.05 to 32 /mm, absorption 0.001 to 9 of it, eta 1.05 to 2",
+                   dipole, tolerance::lutTexelOther, 80),
+            tables("measurements", "2 to 32 distances, values at random", measuredTable,
+                   tolerance::lutTexelOther, 80)};
 }
 
 }  // namespace stability

@@ -1,5 +1,6 @@
-// The search: points of the unit cube drawn blindly, then an evolution strategy whose individuals carry their own step
-// [Schwefel 1981], both in a fixed order from a fixed seed, so that the result depends on the device alone.
+// The search: points of the unit cube drawn blindly, then an evolution strategy whose individuals carry their
+// own step [Schwefel 1981], both in a fixed order from a fixed seed, so that the result depends on the device
+// alone.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -37,7 +38,8 @@ Individual child(const Individual& of, Dice& dice) {
     const double moved = dice.uniform() < 0.5 ? 1.0 : 2.0 / double(of.at.size());
     const size_t surely = dice.bits() % of.at.size();
     for (size_t i = 0; i < c.at.size(); ++i)
-        if (dice.uniform() < moved || i == surely) c.at[i] = std::clamp(c.at[i] + c.step * dice.normal(), 0.0, 1.0);
+        if (dice.uniform() < moved || i == surely)
+            c.at[i] = std::clamp(c.at[i] + c.step * dice.normal(), 0.0, 1.0);
     return c;
 }
 
@@ -63,7 +65,8 @@ void inParallel(size_t count, const std::function<void(size_t)>& body) {
         for (size_t i; (i = next++) < count;) body(i);
     };
     std::vector<std::thread> others;
-    for (unsigned k = 1; k < std::min<size_t>(std::thread::hardware_concurrency(), count); ++k) others.emplace_back(work);
+    for (unsigned k = 1; k < std::min<size_t>(std::thread::hardware_concurrency(), count); ++k)
+        others.emplace_back(work);
     work();
     for (std::thread& t : others) t.join();
 }
@@ -92,7 +95,9 @@ Operation operation(Header header, std::function<std::unique_ptr<Case>(const Poi
 Operation operation(Header header, size_t scenes,
                     std::function<std::unique_ptr<Pixels>(size_t, const std::vector<Point>&)> make,
                     std::function<std::string(size_t, const Point&)> where) {
-    const auto sceneOf = [scenes](const Point& p) { return std::min(scenes - 1, size_t(p.back() * double(scenes))); };
+    const auto sceneOf = [scenes](const Point& p) {
+        return std::min(scenes - 1, size_t(p.back() * double(scenes)));
+    };
     Operation o{header, 512 * scenes, {}, [=](const Point& p) { return where(sceneOf(p), p); }, {}};
     o.errors = [=, unit = header.unit](const std::vector<Point>& points, uint32_t seed) {
         std::vector<double> errors(points.size());
@@ -113,7 +118,8 @@ Operation operation(Header header, size_t scenes,
             }
             const size_t values = left.size() / of.size();
             inParallel(of.size(), [&](size_t k) {
-                const std::vector<float> mine(left.begin() + std::ptrdiff_t(k * values), left.begin() + std::ptrdiff_t((k + 1) * values));
+                const std::vector<float> mine(left.begin() + std::ptrdiff_t(k * values),
+                                              left.begin() + std::ptrdiff_t((k + 1) * values));
                 errors[of[k]] = difference(mine, pixels->truth(k), unit);
             });
         }
@@ -124,7 +130,9 @@ Operation operation(Header header, size_t scenes,
 
 Found search(const Operation& o, double share, double seconds) {
     const auto start = std::chrono::steady_clock::now();
-    const auto passed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+    const auto passed = [&] {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
     const size_t total = std::max<size_t>(size_t(share * double(o.header.points)), 4),
                  drawn = std::max<size_t>(size_t(blindShare * double(total)), 2);
     Dice dice(1);
@@ -147,7 +155,10 @@ Found search(const Operation& o, double share, double seconds) {
             next[i].error = errors[i];
             keepWorst(found.worst, errors[i]);
             if (o.axis)
-                keepWorst(found.alongAxis[std::min(axisParts - 1, size_t(points[i][o.axis->dimension] * axisParts))], errors[i]);
+                keepWorst(
+                    found
+                        .alongAxis[std::min(axisParts - 1, size_t(points[i][o.axis->dimension] * axisParts))],
+                    errors[i]);
         }
         found.points += next.size();
         if (blindly) found.drawn = found.worst;

@@ -1,5 +1,5 @@
-// The shading kernel, one program for all: each pixel of a frame has normals, place, curvature, shadow, roughness and material of
-// its own. The outputs show the terms one by one.
+// The shading kernel, one program for all: each pixel of a frame has normals, place, curvature, shadow,
+// roughness and material of its own. The outputs show the terms one by one.
 #include "stability_vectors.h"
 
 namespace stability {
@@ -8,11 +8,28 @@ namespace {
 using namespace shade_test;
 
 constexpr size_t materials = 120;  // of either specular model
-constexpr double leastHalf = 0.5;  // of |L + V|: beyond 151 degrees between the two the half vector is made of rounding
+constexpr double leastHalf =
+    0.5;  // of |L + V|: beyond 151 degrees between the two the half vector is made of rounding
 constexpr double degree = 3.14159265358979 / 180;
 enum Dimension {
-    placeX, placeY, placeZ, turn, around, geometric, geometricAround, blurred, blurredAround, curvature, wide, occlusion, roughness,
-    specular, albedo, material, scene, dimensions
+    placeX,
+    placeY,
+    placeZ,
+    turn,
+    around,
+    geometric,
+    geometricAround,
+    blurred,
+    blurredAround,
+    curvature,
+    wide,
+    occlusion,
+    roughness,
+    specular,
+    albedo,
+    material,
+    scene,
+    dimensions
 };
 
 enum class Lit { directional, point, spot, all, constant, harmonics, cube };
@@ -32,7 +49,8 @@ double roughnessOf(const Point& p) {
     return logBetween(p[roughness], 0.03, 1);
 }
 
-// Three lights of three kinds with maps, ambient light of every sort, and materials for all pixels to choose from.
+// Three lights of three kinds with maps, ambient light of every sort, and materials for all pixels to choose
+// from.
 const Frame& base() {
     static const Frame frame = [] {
         Frame f = randomFrame(7, 16, 1, 3);
@@ -60,7 +78,8 @@ const Frame& base() {
             f.materials[id] = m;
         }
         f.cube.size = 9;
-        for (int i = 0; i < 6 * 9 * 9; ++i) f.cube.texels.push_back({dice.uniform(), dice.uniform(), dice.uniform()});
+        for (int i = 0; i < 6 * 9 * 9; ++i)
+            f.cube.texels.push_back({dice.uniform(), dice.uniform(), dice.uniform()});
         diskTaps(8), diskTaps(16), diskTaps(32);  // read once, before threads ask
         return f;
     }();
@@ -72,7 +91,8 @@ Frame litBy(Lit lit) {
     Frame f = base();
     const bool ambient = lit >= Lit::constant;
     for (int i = 0; i < 3; ++i)
-        if (ambient || (lit != Lit::all && int(lit) != i)) std::fill_n(f.lights[size_t(i)].params.color, 3, 0.0f);
+        if (ambient || (lit != Lit::all && int(lit) != i))
+            std::fill_n(f.lights[size_t(i)].params.color, 3, 0.0f);
     if (lit == Lit::point) std::swap(f.lights[0], f.lights[1]);  // thickness is that of the first
     if (lit == Lit::spot) std::swap(f.lights[0], f.lights[2]);
     if (lit != Lit::all && lit != Lit::constant) std::fill_n(f.ambient.constant, 3, 0.0f);
@@ -84,7 +104,8 @@ Frame litBy(Lit lit) {
 
 class Shading : public Pixels {
   public:
-    Shading(const Kind& kind, const std::vector<Point>& points) : kind_(kind), frame_(litBy(kind.lit)), count_(points.size()) {
+    Shading(const Kind& kind, const std::vector<Point>& points)
+        : kind_(kind), frame_(litBy(kind.lit)), count_(points.size()) {
         frame_.width = 64;
         frame_.height = uint32_t((count_ + 63) / 64);
         for (int slot = 1; slot < PEL_SLOT_OUT_DIFFUSE; ++slot) {
@@ -107,13 +128,16 @@ class Shading : public Pixels {
     std::vector<float> measured() override {
         Shader shader(device());
         setFrame(device(), shader, frame_, tables());
-        const Buffer radiance(device(), frame_.pixels() * 12), diffuse(device(), frame_.pixels() * 12), deep(device(), frame_.pixels() * 12),
-            shine(device(), frame_.pixels() * 12), thickness(device(), frame_.pixels() * 4);
+        const Buffer radiance(device(), frame_.pixels() * 12), diffuse(device(), frame_.pixels() * 12),
+            deep(device(), frame_.pixels() * 12), shine(device(), frame_.pixels() * 12),
+            thickness(device(), frame_.pixels() * 4);
         const auto put = [&](PelImageSlot slot, const Buffer& to, PelFormat format) {
             shader.set(slot, imageDesc(to, format, frame_.width, frame_.height));
         };
-        put(PEL_SLOT_RADIANCE, radiance, PEL_FORMAT_RGB32F), put(PEL_SLOT_OUT_DIFFUSE, diffuse, PEL_FORMAT_RGB32F);
-        put(PEL_SLOT_OUT_DEEP_SCATTER, deep, PEL_FORMAT_RGB32F), put(PEL_SLOT_OUT_SPECULAR, shine, PEL_FORMAT_RGB32F);
+        put(PEL_SLOT_RADIANCE, radiance, PEL_FORMAT_RGB32F),
+            put(PEL_SLOT_OUT_DIFFUSE, diffuse, PEL_FORMAT_RGB32F);
+        put(PEL_SLOT_OUT_DEEP_SCATTER, deep, PEL_FORMAT_RGB32F),
+            put(PEL_SLOT_OUT_SPECULAR, shine, PEL_FORMAT_RGB32F);
         put(PEL_SLOT_OUT_THICKNESS, thickness, PEL_FORMAT_R32F);
         shader.commit().execute();
         const Buffer& shown = kind_.output == PEL_SLOT_OUT_DIFFUSE        ? diffuse
@@ -128,10 +152,14 @@ class Shading : public Pixels {
     std::vector<double> truth(size_t i) override {
         const PelLight& lamp = frame_.lights[0].params;
         const PelMaterial& m = frame_.materials.at(uint32_t(frame_.slots[PEL_SLOT_MATERIAL].at(i)));
-        if (kind_.output == PEL_SLOT_OUT_THICKNESS) return {truthLight(frame_, m, frame_.lights[0], i).thickness};
+        if (kind_.output == PEL_SLOT_OUT_THICKNESS)
+            return {truthLight(frame_, m, frame_.lights[0], i).thickness};
         for (const Light& l : frame_.lights)  // nothing beyond the range
-            if (l.params.range > 0 && std::abs(length(vector(lamp.position) - place(i)) / lamp.range - 1) < 1e-5) return {NAN, NAN, NAN};
-        if (kind_.focus == Focus::half && length(toLight(i) + normalized(vector(frame_.camera.position) - place(i))) < leastHalf)
+            if (l.params.range > 0 &&
+                std::abs(length(vector(lamp.position) - place(i)) / lamp.range - 1) < 1e-5)
+                return {NAN, NAN, NAN};
+        if (kind_.focus == Focus::half &&
+            length(toLight(i) + normalized(vector(frame_.camera.position) - place(i))) < leastHalf)
             return {NAN, NAN, NAN};
         const reference::Shaded s = shade_test::truth(frame_, tables(), i);
         const Rgb rgb = kind_.output == PEL_SLOT_OUT_DIFFUSE        ? s.scattered + s.ambient
@@ -145,13 +173,15 @@ class Shading : public Pixels {
     Vec3 place(size_t i) const { return frame_.slots[PEL_SLOT_POSITION].vec(i); }
     Vec3 toLight(size_t i) const {
         const PelLight& l = frame_.lights[0].params;
-        return l.type == PEL_LIGHT_DIRECTIONAL ? vector(l.toLight) : normalized(vector(l.position) - place(i));
+        return l.type == PEL_LIGHT_DIRECTIONAL ? vector(l.toLight)
+                                               : normalized(vector(l.position) - place(i));
     }
     void put(PelImageSlot slot, size_t i, Vec3 v) {
         for (int c = 0; c < 3; ++c) frame_.slots[slot].values[3 * i + size_t(c)] = float(v[c]);
     }
     void set(size_t i, const Point& p) {
-        put(PEL_SLOT_POSITION, i, {between(p[placeX], -100, 100), between(p[placeY], -100, 100), between(p[placeZ], -100, 100)});
+        put(PEL_SLOT_POSITION, i,
+            {between(p[placeX], -100, 100), between(p[placeY], -100, 100), between(p[placeZ], -100, 100)});
         const Vec3 toViewer = normalized(vector(frame_.camera.position) - place(i)),
                    axis = kind_.focus == Focus::half ? normalized(toLight(i) + toViewer) : toLight(i);
         const Vec3 n = turned(axis, turnOf(kind_, p), p[around]);
@@ -165,7 +195,8 @@ class Shading : public Pixels {
         one(PEL_SLOT_SPECULAR, p[specular]);
         one(PEL_SLOT_MATERIAL, 1 + double(kind_.ggx) + 2 * std::floor(p[material] * (materials - 1e-6)));
         put(PEL_SLOT_ALBEDO, i, {p[albedo], p[albedo], p[albedo]});
-        for (Light& light : frame_.lights) light.wide.values[i] = float(std::clamp(between(p[wide], -0.2, 1.2), 0.0, 1.0));
+        for (Light& light : frame_.lights)
+            light.wide.values[i] = float(std::clamp(between(p[wide], -0.2, 1.2), 0.0, 1.0));
     }
 
     Kind kind_;
@@ -173,46 +204,73 @@ class Shading : public Pixels {
     size_t count_;
 };
 
-Operation shading(const char* name, const char* range, Kind kind, const tolerance::Tolerance& limit, size_t points) {
-    return operation({name, range, kind.output == PEL_SLOT_OUT_THICKNESS ? Unit::length : Unit::absolute, limit, dimensions, points}, 1,
-                     [kind](size_t, const std::vector<Point>& points) { return std::make_unique<Shading>(kind, points); },
-                     [kind](size_t, const Point& p) {
-                         const PelMaterial& m = base().materials.at(1 + uint32_t(p[material] * (materials - 1e-6)) * 2);
-                         std::string s = text("normal %.3g degrees from the ", turnOf(kind, p) / degree) +
-                                         (kind.focus == Focus::half ? "half vector" : "light");
-                         if (kind.output == PEL_SLOT_OUT_SPECULAR || kind.output == PEL_SLOT_RADIANCE) s += text(", roughness %.3g", roughnessOf(p));
-                         if (kind.output == PEL_SLOT_OUT_DEEP_SCATTER) s += text(", deep scatter radius %.3g mm", m.deepScatterRadius);
-                         if (kind.output == PEL_SLOT_OUT_DIFFUSE && kind.lit < Lit::constant)
-                             s += text(", curvature %.3g /mm, diffusion radius %.3g mm, shadow %.3g", between(p[curvature], -0.1, 1.2),
-                                       m.diffusionRadius, std::clamp(between(p[wide], -0.2, 1.2), 0.0, 1.0));
-                         return s;
-                     });
+Operation shading(const char* name, const char* range, Kind kind, const tolerance::Tolerance& limit,
+                  size_t points) {
+    return operation(
+        {name, range, kind.output == PEL_SLOT_OUT_THICKNESS ? Unit::length : Unit::absolute, limit,
+         dimensions, points},
+        1,
+        [kind](size_t, const std::vector<Point>& points) { return std::make_unique<Shading>(kind, points); },
+        [kind](size_t, const Point& p) {
+            const PelMaterial& m = base().materials.at(1 + uint32_t(p[material] * (materials - 1e-6)) * 2);
+            std::string s = text("normal %.3g degrees from the ", turnOf(kind, p) / degree) +
+                            (kind.focus == Focus::half ? "half vector" : "light");
+            if (kind.output == PEL_SLOT_OUT_SPECULAR || kind.output == PEL_SLOT_RADIANCE)
+                s += text(", roughness %.3g", roughnessOf(p));
+            if (kind.output == PEL_SLOT_OUT_DEEP_SCATTER)
+                s += text(", deep scatter radius %.3g mm", m.deepScatterRadius);
+            if (kind.output == PEL_SLOT_OUT_DIFFUSE && kind.lit < Lit::constant)
+                s += text(", curvature %.3g /mm, diffusion radius %.3g mm, shadow %.3g",
+                          between(p[curvature], -0.1, 1.2), m.diffusionRadius,
+                          std::clamp(between(p[wide], -0.2, 1.2), 0.0, 1.0));
+            return s;
+        });
 }
 
 }  // namespace
 
 std::vector<Operation> shadingOperations() {
-    constexpr const char* diffuse = "curvature -0.1 to 1.2 /mm, diffusion radius 0.5 to 20 mm, shadow filters of 1 to 30 mm, any shadow, normals at all "
-                                    "angles and up to 25 degrees apart";
-    constexpr const char* through = "maps of noise, 24 to 35 mm deep; 8 to 32 taps; deep scatter radius 1 to 40 mm; normals at all angles";
-    constexpr const char* shine = "roughness 0.03 to 1, normals 0.006 to 90 degrees from the half vector, light and viewer up to 151 degrees apart, f0 0.01 to 1";
+    constexpr const char* diffuse =
+        "curvature -0.1 to 1.2 /mm, diffusion radius 0.5 to 20 mm, shadow filters of 1 to 30 mm, any shadow, "
+        "normals at all "
+        "angles and up to 25 degrees apart";
+    constexpr const char* through =
+        "maps of noise, 24 to 35 mm deep; 8 to 32 taps; deep scatter radius 1 to 40 mm; normals at all "
+        "angles";
+    constexpr const char* shine =
+        "roughness 0.03 to 1, normals 0.006 to 90 degrees from the half vector, light and viewer up to 151 "
+        "degrees apart, f0 0.01 to 1";
     constexpr const char* white = "normals at all angles, blended from two up to 25 degrees apart";
-    const auto kind = [](Lit lit, PelImageSlot output, Focus focus = Focus::light, bool ggx = false) { return Kind{lit, focus, ggx, output}; };
+    const auto kind = [](Lit lit, PelImageSlot output, Focus focus = Focus::light, bool ggx = false) {
+        return Kind{lit, focus, ggx, output};
+    };
     using enum Lit;
     std::vector<Operation> operations{
-        shading("scattered light, directional", diffuse, kind(directional, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm, 100000),
-        shading("scattered light, point light", diffuse, kind(point, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm, 100000),
-        shading("scattered light, spot light", diffuse, kind(spot, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm, 100000),
-        shading("deep scatter, parallel map", through, kind(directional, PEL_SLOT_OUT_DEEP_SCATTER), tolerance::shadeTerm, 100000),
-        shading("deep scatter, perspective map", through, kind(point, PEL_SLOT_OUT_DEEP_SCATTER), tolerance::shadeTerm, 100000),
-        shading("thickness of noise, parallel map", through, kind(directional, PEL_SLOT_OUT_THICKNESS), tolerance::shadeThickness, 100000),
-        shading("thickness of noise, perspective map", through, kind(point, PEL_SLOT_OUT_THICKNESS), tolerance::shadeThickness, 100000),
-        shading("specular, Beckmann", shine, kind(directional, PEL_SLOT_OUT_SPECULAR, Focus::half), tolerance::shadeSum, 200000),
-        shading("specular, GGX", shine, kind(directional, PEL_SLOT_OUT_SPECULAR, Focus::half, true), tolerance::shadeSum, 200000),
-        shading("ambient, constant", white, kind(constant, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm, 50000),
-        shading("ambient, harmonics", white, kind(harmonics, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm, 50000),
+        shading("scattered light, directional", diffuse, kind(directional, PEL_SLOT_OUT_DIFFUSE),
+                tolerance::shadeTerm, 100000),
+        shading("scattered light, point light", diffuse, kind(point, PEL_SLOT_OUT_DIFFUSE),
+                tolerance::shadeTerm, 100000),
+        shading("scattered light, spot light", diffuse, kind(spot, PEL_SLOT_OUT_DIFFUSE),
+                tolerance::shadeTerm, 100000),
+        shading("deep scatter, parallel map", through, kind(directional, PEL_SLOT_OUT_DEEP_SCATTER),
+                tolerance::shadeTerm, 100000),
+        shading("deep scatter, perspective map", through, kind(point, PEL_SLOT_OUT_DEEP_SCATTER),
+                tolerance::shadeTerm, 100000),
+        shading("thickness of noise, parallel map", through, kind(directional, PEL_SLOT_OUT_THICKNESS),
+                tolerance::shadeThickness, 100000),
+        shading("thickness of noise, perspective map", through, kind(point, PEL_SLOT_OUT_THICKNESS),
+                tolerance::shadeThickness, 100000),
+        shading("specular, Beckmann", shine, kind(directional, PEL_SLOT_OUT_SPECULAR, Focus::half),
+                tolerance::shadeSum, 200000),
+        shading("specular, GGX", shine, kind(directional, PEL_SLOT_OUT_SPECULAR, Focus::half, true),
+                tolerance::shadeSum, 200000),
+        shading("ambient, constant", white, kind(constant, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm,
+                50000),
+        shading("ambient, harmonics", white, kind(harmonics, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm,
+                50000),
         shading("ambient, cube map", white, kind(cube, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm, 50000),
-        shading("radiance, all terms", shine, kind(Lit::all, PEL_SLOT_RADIANCE, Focus::half), tolerance::shadeSum, 200000)};
+        shading("radiance, all terms", shine, kind(Lit::all, PEL_SLOT_RADIANCE, Focus::half),
+                tolerance::shadeSum, 200000)};
     for (Operation& o : operations)
         if (o.header.name.starts_with("specular")) o.axis = Axis{roughness, 0.03, 1, "roughness"};
     return operations;

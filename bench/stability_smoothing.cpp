@@ -20,7 +20,8 @@ class Smoothed : public MovedMesh {
         params_.smoothingRadius = float(8 * scale * sizes);
         params_.smoothingStages = stages;
         params_.smoothingCrease = float(crease);
-        place += text(", radius %.2g sizes in %.0f stages", sizes, stages) + (crease > 0 ? text(", creases of %.2g", crease) : "");
+        place += text(", radius %.2g sizes in %.0f stages", sizes, stages) +
+                 (crease > 0 ? text(", creases of %.2g", crease) : "");
     }
     void move(Jitter& j) override {
         MovedMesh::move(j);
@@ -32,16 +33,20 @@ class Smoothed : public MovedMesh {
         // Whether a triangle has a plane is a decision.
         for (const auto& t : mesh.triangles)
             for (int i = 0; i < 3; ++i) {
-                const reference::Vec3 p = mesh.positions[size_t(t[i])], a = mesh.positions[size_t(t[(i + 1) % 3])] - p,
+                const reference::Vec3 p = mesh.positions[size_t(t[i])],
+                                      a = mesh.positions[size_t(t[(i + 1) % 3])] - p,
                                       b = mesh.positions[size_t(t[(i + 2) % 3])] - p;
                 const double sine2 = dot(cross(a, b), cross(a, b)) / (dot(a, a) * dot(b, b));
-                if (std::abs(sine2 / reference::flatTriangle - 1) < 0.1) return std::vector<double>(count(), NAN);
+                if (std::abs(sine2 / reference::flatTriangle - 1) < 0.1)
+                    return std::vector<double>(count(), NAN);
             }
-        const auto values = reference::smoothed(mesh, reference::edgeCurvature(mesh), int(params_.smoothingPasses));
+        const auto values =
+            reference::smoothed(mesh, reference::edgeCurvature(mesh), int(params_.smoothingPasses));
         if (params_.smoothingRadius == 0) return values;
-        auto smooth = reference::smoothedToRadius(mesh, values,
-                                                  {params_.smoothingRadius, params_.smoothingCrease, int(params_.smoothingStages),
-                                                   params_.smoothingWeights == PEL_SMOOTHING_AREA});
+        auto smooth = reference::smoothedToRadius(
+            mesh, values,
+            {params_.smoothingRadius, params_.smoothingCrease, int(params_.smoothingStages),
+             params_.smoothingWeights == PEL_SMOOTHING_AREA});
         for (double& v : smooth) v = std::abs(v);  // slivers carry values below 0
         return smooth;
     }
@@ -51,7 +56,8 @@ class Smoothed : public MovedMesh {
 };
 
 Operation passes() {
-    return operation({"smoothing passes", std::string(meshRange) + "; 1 to 32 passes", Unit::largest, tolerance::edgeCurvature, 5, 400},
+    return operation({"smoothing passes", std::string(meshRange) + "; 1 to 32 passes", Unit::largest,
+                      tolerance::edgeCurvature, 5, 400},
                      [](const Point& p) {
                          auto smooth = std::make_unique<Smoothed>(p, PEL_SMOOTHING_COTANGENT);
                          smooth->passes(uint32_t(logBetween(p[4], 1, 32.99)));
@@ -61,7 +67,8 @@ Operation passes() {
 
 Operation toRadius(const char* name, PelSmoothingWeights weights, bool crease) {
     return operation({name,
-                      std::string(meshRange) + "; radius 0.001 to 1 sizes, 4 to 64 stages" + (crease ? ", creases of 0.1 to 2 radians" : ""),
+                      std::string(meshRange) + "; radius 0.001 to 1 sizes, 4 to 64 stages" +
+                          (crease ? ", creases of 0.1 to 2 radians" : ""),
                       Unit::largest, tolerance::radiusSmoothing, 7, 300},
                      [=](const Point& p) {
                          auto smooth = std::make_unique<Smoothed>(p, weights);

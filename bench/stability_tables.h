@@ -6,8 +6,8 @@
 
 namespace stability {
 
-constexpr reference::Form trueForms[] = {reference::Form::arc, reference::Form::ring, reference::Form::halfRing,
-                                         reference::Form::sphere};
+constexpr reference::Form trueForms[] = {reference::Form::arc, reference::Form::ring,
+                                         reference::Form::halfRing, reference::Form::sphere};
 constexpr const char* formNames[] = {"arc", "ring", "half-ring", "sphere"};
 
 // Every texel, or a few of them (`all` false) where the oracle is slow.
@@ -34,8 +34,12 @@ std::vector<double> truthOf(const std::vector<size_t>& chosen, Texel texel) {
 
 class CurvatureTable : public Case {
   public:
-    CurvatureTable(const PelCurvatureLutDesc& desc, reference::ProfilePtr profile, bool all, Profile ours = {})
-        : desc_(desc), profile_(std::move(profile)), ours_(std::move(ours)), texels_(chosenTexels(desc.width * desc.height, all)) {
+    CurvatureTable(const PelCurvatureLutDesc& desc, reference::ProfilePtr profile, bool all,
+                   Profile ours = {})
+        : desc_(desc),
+          profile_(std::move(profile)),
+          ours_(std::move(ours)),
+          texels_(chosenTexels(desc.width * desc.height, all)) {
         desc_.profile = ours_.get();
     }
     void move(Jitter& j) override {
@@ -45,18 +49,20 @@ class CurvatureTable : public Case {
     std::vector<float> measured() override { return texelsOf(Lut(device(), desc_), texels_); }
     std::vector<double> truth() override {
         const auto scaled = reference::profileForRadius(profile_, desc_.diffusionRadius);
-        const reference::CurvatureLutSpec spec{trueForms[desc_.form], int(desc_.width), int(desc_.height), desc_.radiusMin,
-                                               desc_.radiusMax};
+        const reference::CurvatureLutSpec spec{trueForms[desc_.form], int(desc_.width), int(desc_.height),
+                                               desc_.radiusMin, desc_.radiusMax};
         return truthOf(texels_, [&](size_t i) {
             const int x = int(i % desc_.width), y = int(i / desc_.width);
             if (desc_.axis == PEL_AXIS_LINEAR) return reference::curvatureTexel(spec, *scaled, x, y);
             const double s = -1 + 2.0 * x / (desc_.width - 1), least = std::sqrt(1 / double(desc_.radiusMax)),
-                         most = std::sqrt(1 / double(desc_.radiusMin)), root = least + y / (desc_.height - 1.0) * (most - least);
+                         most = std::sqrt(1 / double(desc_.radiusMin)),
+                         root = least + y / (desc_.height - 1.0) * (most - least);
             return reference::curvatureD(spec.form, *scaled, s * std::abs(s), 1 / (root * root));
         });
     }
     std::string where() override {
-        return text("radii %.3g to %.3g mm, diffusion radius %.3g mm", desc_.radiusMin, desc_.radiusMax, desc_.diffusionRadius) +
+        return text("radii %.3g to %.3g mm, diffusion radius %.3g mm", desc_.radiusMin, desc_.radiusMax,
+                    desc_.diffusionRadius) +
                ", " + formNames[desc_.form];
     }
 
@@ -70,25 +76,30 @@ class CurvatureTable : public Case {
 class ShadowTable : public Case {
   public:
     // Widths and sharpening refer to the diffusion radius of desc, lengths of the profile to its own.
-    ShadowTable(const PelShadowLutDesc& desc, reference::ProfilePtr profile, bool all = true, Profile ours = {})
-        : desc_(desc), profile_(std::move(profile)), ours_(std::move(ours)), texels_(chosenTexels(desc.width * desc.height, all)) {
+    ShadowTable(const PelShadowLutDesc& desc, reference::ProfilePtr profile, bool all = true,
+                Profile ours = {})
+        : desc_(desc),
+          profile_(std::move(profile)),
+          ours_(std::move(ours)),
+          texels_(chosenTexels(desc.width * desc.height, all)) {
         desc_.profile = ours_.get();
     }
     void move(Jitter& j) override {
         desc_.widthMin = j(desc_.widthMin), desc_.widthMax = j(desc_.widthMax);
-        desc_.diffusionRadius = j(desc_.diffusionRadius), desc_.sharpening = std::max(1.0f, j(desc_.sharpening));
+        desc_.diffusionRadius = j(desc_.diffusionRadius),
+        desc_.sharpening = std::max(1.0f, j(desc_.sharpening));
     }
     std::vector<float> measured() override { return texelsOf(Lut(device(), desc_), texels_); }
     std::vector<double> truth() override {
-        const reference::ShadowLutSpec spec{int(desc_.width),  int(desc_.height),     desc_.widthMin,
-                                            desc_.widthMax,    desc_.diffusionRadius, desc_.sharpening};
+        const reference::ShadowLutSpec spec{int(desc_.width), int(desc_.height),     desc_.widthMin,
+                                            desc_.widthMax,   desc_.diffusionRadius, desc_.sharpening};
         return truthOf(texels_, [&](size_t i) {
             return reference::shadowTexel(spec, *profile_, int(i % desc_.width), int(i / desc_.width));
         });
     }
     std::string where() override {
-        return text("widths %.3g to %.3g mm, diffusion radius %.3g mm, sharpening %.3g", desc_.widthMin, desc_.widthMax,
-                    desc_.diffusionRadius, desc_.sharpening);
+        return text("widths %.3g to %.3g mm, diffusion radius %.3g mm, sharpening %.3g", desc_.widthMin,
+                    desc_.widthMax, desc_.diffusionRadius, desc_.sharpening);
     }
 
   private:

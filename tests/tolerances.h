@@ -253,11 +253,11 @@ inline constexpr Tolerance sampleSky{"sampleSky", 0.02,
 // --- what the search of bench/stability may find beyond the ranges of the tests ---
 inline constexpr Tolerance byteBoundary{"byteBoundary", 0.01, "of an 8-bit step: 255 times 13 (the slope of sRGB at 0) times 2e-6"};
 inline constexpr Tolerance stretchedNormals{"stretchedNormals", 5e-5, "as normalComponent, triangles 50 times longer than wide"};
-inline constexpr Tolerance finePixels{"finePixels", 5e-4, "of the largest: normals of neighbours differ by 1/300, float leaves 1e-7 of each"};
+inline constexpr Tolerance finePixels{"finePixels", 1e-4, "of the largest: normals of neighbours differ by 1/300, float leaves 1e-7 of each"};
 inline constexpr Tolerance radiusSmoothing{"radiusSmoothing", 2e-5, "of the largest: 64 stages of float sums, weights of slivers"};
 inline constexpr Tolerance wideShadowAnywhere{
-    "wideShadowAnywhere", 1e-3, "as wideShadow, bias 0.1 mm and softness 0.1 of filters of 1 mm: float depth of 1e-7 is 4e-5 mm of that 0.1 mm"};
-inline constexpr Tolerance placeFromDepth{"placeFromDepth", 1, "mm at 900 mm with a near plane at 0.1 mm: 6e-8 of depth is 0.5 mm there"};
+    "wideShadowAnywhere", 5e-4, "as wideShadow, bias 0.1 mm and softness 0.1 of filters of 1 mm: float depth of 1e-7 is 4e-5 mm of that 0.1 mm"};
+inline constexpr Tolerance placeFromDepth{"placeFromDepth", 2e-3, "mm, up to 900 away: an inverse projection in float; what float depth lost is not in it"};
 inline constexpr Tolerance decodedImage{"decodedImage", 2e-6, "radiance up to 1 from decoded values: a few float roundings"};
 
 // --- a real host's pictures ---

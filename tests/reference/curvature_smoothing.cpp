@@ -5,7 +5,8 @@
 
 namespace reference {
 
-std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> values, const RadiusSmoothing& how) {
+std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> values,
+                                     const RadiusSmoothing& how) {
     const size_t count = values.size();
     struct Edge {
         int to;
@@ -19,7 +20,8 @@ std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> value
         edges[size_t(from)].push_back({to, weight});
     };
     for (const Triangle& t : mesh.triangles) {
-        const Vec3 p[3] = {mesh.positions[size_t(t[0])], mesh.positions[size_t(t[1])], mesh.positions[size_t(t[2])]};
+        const Vec3 p[3] = {mesh.positions[size_t(t[0])], mesh.positions[size_t(t[1])],
+                           mesh.positions[size_t(t[2])]};
         const double doubled = length(cross(p[1] - p[0], p[2] - p[0]));
         const auto nearest = voronoiAreas(p[0], p[1], p[2]);
         for (int i = 0; i < 3; ++i) {
@@ -32,9 +34,11 @@ std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> value
             add(t[i], t[k], how.byArea ? 4 * doubled / dot(toK, toK) : -dot(toJ, between) / doubled);
         }
     }
-    // Runge-Kutta-Legendre of first order, four super steps of `each` stages; slots that would be unstable are slowed down.
+    // Runge-Kutta-Legendre of first order, four super steps of `each` stages; slots that would be unstable
+    // are slowed down.
     const int each = std::max(1, (how.stages + 3) / 4);
-    const double span = double(each) * each + each, time = how.radius * how.radius / 2 / 4, turn = 2 * std::sin(how.crease / 2);
+    const double span = double(each) * each + each, time = how.radius * how.radius / 2 / 4,
+                 turn = 2 * std::sin(how.crease / 2);
     for (size_t i = 0; i < count; ++i) {
         double rate = 0;
         for (Edge& e : edges[i]) {
@@ -59,7 +63,8 @@ std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> value
             const double mu = j == 1 ? 1 : (2.0 * j - 1) / j, nu = j == 1 ? 0 : (1.0 - j) / j;
             std::vector<double> next(count);
             for (size_t i = 0; i < count; ++i)
-                next[i] = mu * current[i] + (j == 1 ? 0 : nu * before[i]) + mu * 2 / span * laplacian(current, i);
+                next[i] =
+                    mu * current[i] + (j == 1 ? 0 : nu * before[i]) + mu * 2 / span * laplacian(current, i);
             before = std::exchange(current, std::move(next));
         }
         values = std::move(current);
