@@ -1,9 +1,11 @@
 // Searches the inputs of every operation for the worst error against the double-precision oracle of the
 // tests, on one device, and writes what it found as JSON; bench/stability_page makes docs/stability.md of
 // such records. Ends with 1 where an error is beyond its limit.
+#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <stdexcept>
 
 #include "stability.h"
 
@@ -43,8 +45,7 @@ std::string record(const Operation& o, const Found& f) {
     std::string json =
         "    {\"name\": " + quoted(o.header.name) + ", \"range\": " + quoted(o.header.range) +
         ", \"unit\": " + quoted(unitName(o.header.unit)) + ",\n     \"limit\": " + number(o.header.limit) +
-        ", \"limitName\": " + quoted(o.header.limit.name) +
-        ", \"limitReason\": " + quoted(o.header.limit.reason) + ", \"points\": " + std::to_string(f.points) +
+        ", \"limitName\": " + quoted(o.header.limit.name) + ", \"points\": " + std::to_string(f.points) +
         ", \"stopped\": " + (f.stopped ? "true" : "false") + ",\n     \"drawn\": " + number(f.drawn) +
         ", \"worst\": " + number(f.worst) + ", \"inherent\": " + number(f.inherent) +
         ", \"where\": " + quoted(f.where);
@@ -56,6 +57,17 @@ std::string record(const Operation& o, const Found& f) {
         json += "]}";
     }
     return json + "}";
+}
+
+void write(const char* path, double share, const std::string& records) {
+    const PelDeviceInfo info = device().info();
+    const std::string whole =
+        "{\"device\": " + quoted(info.name) + ", \"platform\": " + quoted(info.platform) +
+        ", \"driver\": " + quoted(info.driver) + ", \"width\": " + std::to_string(info.mathWidth) +
+        ", \"share\": " + number(share) + ",\n  \"operations\": [\n" + records + "\n]}\n";
+    FILE* file = std::fopen(path, "w");
+    if (!file || std::fputs(whole.c_str(), file) < 0 || std::fclose(file) != 0)
+        throw std::runtime_error(std::string(path) + ": " + std::strerror(errno));
 }
 
 }  // namespace
@@ -102,17 +114,8 @@ int main(int argc, char** argv) try {
                 f.stopped ? ", stopped" : "", fine ? "" : "  BEYOND THE LIMIT", f.where.c_str());
             std::fflush(stdout);
             records += (records.empty() ? "" : ",\n") + record(o, f);
+            if (json) write(json, share, records);  // as far as it is: searches are long
         }
-    if (json && !list) {
-        const PelDeviceInfo info = device().info();
-        const std::string whole =
-            "{\"device\": " + quoted(info.name) + ", \"platform\": " + quoted(info.platform) +
-            ", \"driver\": " + quoted(info.driver) + ", \"width\": " + std::to_string(info.mathWidth) +
-            ", \"share\": " + number(share) + ",\n  \"operations\": [\n" + records + "\n]}\n";
-        FILE* file = std::fopen(json, "w");
-        if (!file || std::fputs(whole.c_str(), file) < 0 || std::fclose(file) != 0)
-            return std::perror(json), 2;
-    }
     return within ? 0 : 1;
 } catch (const std::exception& e) {
     return std::fprintf(stderr, "stability: %s\n", e.what()), 2;
