@@ -10,10 +10,7 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <map>
-#include <numbers>
 #include <random>
 
 #include "color_difference.h"

@@ -3,10 +3,8 @@
 //   sweep_head_estimators FIGURE.png [MESH]    MESH: default build/demo/mannequin-devil.off, which ./run demo unpacks
 #include <pellucid/pellucid.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <stdexcept>
 
 #include "demo_files.h"
 #include "io/image_file.h"

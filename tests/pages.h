@@ -2,7 +2,6 @@
 #pragma once
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <string>

@@ -1,6 +1,5 @@
 // Meshes that are broken: a clear error, or finite values and a count. Never a crash, never a NaN that
 // spreads.
-#include <cstring>
 
 #include "mesh_fixture.h"
 #include "tolerances.h"

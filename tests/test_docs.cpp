@@ -65,3 +65,12 @@ TEST(Docs, NamedFilesExist) {
     }
     EXPECT_GT(files, 100);
 }
+
+TEST(Docs, FiguresAreShownAndSmall) {
+    std::string text;
+    for (const auto& page : pages::all()) text += pages::contents(page);
+    for (const auto& entry : std::filesystem::directory_iterator(pages::root / "docs/figures")) {
+        EXPECT_LT(entry.file_size(), 300u << 10) << entry.path();
+        EXPECT_NE(text.find("figures/" + entry.path().filename().string()), std::string::npos) << entry.path();
+    }
+}

@@ -4,7 +4,6 @@
 #include <pellucid/pellucid.hpp>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "tolerances.h"

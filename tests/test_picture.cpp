@@ -1,6 +1,5 @@
 // host/io: tone mapping, the colour map, and contact sheets.
 #include <cmath>
-#include <limits>
 
 #include "io/color_map.h"
 #include "io/font.h"

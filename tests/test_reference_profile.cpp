@@ -5,7 +5,6 @@
 #include <boost/math/quadrature/tanh_sinh.hpp>
 #include <boost/math/special_functions/bessel.hpp>
 #include <numbers>
-#include <random>
 
 #include "reference/profile.h"
 #include "reference/quadrature.h"

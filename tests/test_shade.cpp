@@ -2,9 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <fstream>
 #include <functional>
-#include <map>
 
 #include "shade_scene.h"
 #include "tolerances.h"

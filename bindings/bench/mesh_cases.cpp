@@ -1,6 +1,4 @@
 // Mesh data on a torus with moved vertices, whose curvature is known in closed form.
-#include <random>
-
 #include "case.h"
 #include "reference/surfaces.h"
 

@@ -1,6 +1,5 @@
 // The pass over a screen of folded skin, by what is switched on, against the sum of section 6 in double
 // precision.
-#include <numbers>
 #include <random>
 
 #include "case.h"

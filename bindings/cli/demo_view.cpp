@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "sample/gbuffer.h"
 #include "sample/shadow_map.h"

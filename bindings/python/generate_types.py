@@ -17,7 +17,6 @@ SCALARS = {
     "int": ("np.intc", "int"), "float": ("np.float32", "float"), "double": ("np.float64", "float"),
 }
 OPAQUE = {"PelProfile"}
-COMMENT = re.compile(r"/\*(.*?)\*/", re.S)
 
 
 def tidy(comment):

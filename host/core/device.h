@@ -1,6 +1,5 @@
 // One OpenCL device with its context, queue, programs and counters.
 #pragma once
-#include <atomic>
 #include <mutex>
 #include <vector>
 

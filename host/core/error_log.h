@@ -1,6 +1,5 @@
 // The last error of each thread and the process's error callback.
 #pragma once
-#include <string>
 
 #include "cl/error.h"
 

@@ -1,6 +1,5 @@
 // 64-bit FNV-1a [Fowler, Noll, Vo]: names of files by what is in them.
 #pragma once
-#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <string>

@@ -3,7 +3,6 @@
 #include <OpenImageIO/half.h>
 #include <OpenImageIO/imageio.h>
 
-#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 

@@ -1,7 +1,6 @@
 #include "io/mesh_import.h"
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
-#include <algorithm>
 
 #include "io/file_error.h"
 #include "io/quiet_open_mesh.h"

@@ -1,10 +1,7 @@
 // A walk through a PLY file [Turk 1994] before OpenMesh sees it: the header word by word, then every value
 // that the header announces.
 #include <bit>
-#include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <limits>
 
 #include "io/mesh_text.h"
 #include "io/text_scan.h"

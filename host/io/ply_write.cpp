@@ -1,5 +1,4 @@
 #include <bit>
-#include <cstring>
 #include <stdexcept>
 
 #include "io/atomic_file.h"

@@ -1,7 +1,5 @@
 #include "io/profile_file.h"
 
-#include <algorithm>
-
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/toml_reader.h"

@@ -3,7 +3,6 @@
 //   integer(key, uint32_t&, low, high)   text(key, string&)   texts(key, vector<string>&, allowed counts)
 //   choice(key, enum&, names)   table(key, isPresent, function)
 #pragma once
-#include <initializer_list>
 #include <string_view>
 
 #include "io/scene_file.h"

@@ -1,7 +1,6 @@
 // Beside kernels/lut_encode.cl: texels from and to the packed layouts of PelLutEncoding.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "ops/lut_check.h"
 #include "ops/luts.h"

@@ -41,6 +41,8 @@ uint32_t formatCode(const ImageView& view, uint32_t mathWidth);
 uint32_t mapFormatCode(const ShaderLight& light);
 // CPUs run one vector of pixels after another in each work-item; GPUs want a full work-group in a tile.
 uint32_t shadeGroup(const Device& device);
+// For classify_tiles: work-items that each take a run of the tiles.
+cl::Range classifyRange(const Device& device, size_t tiles);
 // Work-items that keep every unit busy to the end; each group takes a run of the frame's tiles.
 cl::Range tileRange(const Device& device, uint32_t tiles);
 

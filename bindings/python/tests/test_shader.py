@@ -219,14 +219,18 @@ def test_normal_map(device, view, tolerance):
         shader.set_normal_map(1, [texels, texels])
 
 
-def test_wide_shadow_from_a_shadow_map(device, view):
-    """A wall at x < 0 between the light straight above and the sphere."""
+def wall_light():
+    """A light straight above and its shadow map: a wall at x < 0 between it and the sphere."""
     depth = np.ones((64, 64), np.float32)
     depth[:, :32] = 0.1
+    return pel.Light(to_light=[0, 0, 1], shadow_filter_texels=32, shadow_depth_range=50,
+                     world_to_shadow=[1 / 30, 0, 0, 0.5, 0, -1 / 30, 0, 0.5, 0, 0, -1 / 50, 0.5, 0, 0, 0, 1]), depth
+
+
+def test_wide_shadow_from_a_shadow_map(device, view):
     out = np.zeros((HEIGHT, WIDTH, 3), np.float32)
     shader = shader_for(device, view, out, position=view.position)
-    light = pel.Light(to_light=[0, 0, 1], shadow_filter_texels=32, shadow_depth_range=50,
-                      world_to_shadow=[1 / 30, 0, 0, 0.5, 0, -1 / 30, 0, 0.5, 0, 0, -1 / 50, 0.5, 0, 0, 0, 1])
+    light, depth = wall_light()
     shader.set_lights([light]).set_light_image(0, "shadow_map", depth)
     shader.set_material(1, pel.Material(shadow_filter_width=4)).commit().execute()
     assert shader.stats().features == pel.Feature.SHADOW | pel.Feature.FILTER_SHADOW
@@ -240,12 +244,9 @@ def test_wide_shadow_from_a_shadow_map(device, view):
 @pytest.mark.parametrize("form", ["moments", "exponential", "cascades", "cube_radial"])
 def test_wide_shadow_from_every_form_of_map(device, view, form):
     """The same wall, in maps of other forms."""
-    depth = np.ones((64, 64), np.float32)
-    depth[:, :32] = 0.1
     out = np.zeros((HEIGHT, WIDTH, 3), np.float32)
     shader = shader_for(device, view, out, position=view.position)
-    light = pel.Light(to_light=[0, 0, 1], shadow_filter_texels=32, shadow_depth_range=50,
-                      world_to_shadow=[1 / 30, 0, 0, 0.5, 0, -1 / 30, 0, 0.5, 0, 0, -1 / 50, 0.5, 0, 0, 0, 1])
+    light, depth = wall_light()
     maps = {"shadow_map": depth}
     feature = pel.Feature["SHADOW_" + form.upper().removesuffix("_RADIAL")]
     if form == "moments":

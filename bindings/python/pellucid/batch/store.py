@@ -39,11 +39,6 @@ class Store:
     def __reduce__(self) -> tuple[Any, ...]:
         return Store, (self.out,)
 
-    @property
-    def local(self) -> bool:
-        """Whether it is a folder."""
-        return self._files is None
-
     def prepare(self) -> None:
         """Makes the folder if need be."""
         try:
