@@ -108,6 +108,8 @@ def misbehave(kind):
         module.read_entries = lambda *arguments: [True] * len(arguments[3])
     elif kind == "sees nothing":
         module.read_entry = lambda manifest, index, store: None
+    elif kind == "without":
+        sys.modules["pellucid.batch.worker"] = None  # as if it were not installed there
     elif kind == "older":
         module.__version__ = "0.0.9"
     else:
@@ -169,12 +171,14 @@ def test_a_reader_is_not_believed_either(client, manifest, device, tmp_path, rea
     check_complete(summary, manifest, device, tmp_path / "out")
 
 
-def test_an_unfit_worker_gets_no_work_and_costs_none(client, manifest, device, tmp_path, capsys):
+@pytest.mark.parametrize("kind, message", [("older", f"it has pellucid 0.0.9 where the batch was started with {pel.__version__}"),
+                                           ("without", "install pellucid[batch] in the environment of the workers")])
+def test_an_unfit_worker_gets_no_work_and_costs_none(client, manifest, device, tmp_path, capsys, kind, message):
     unfit = min(client.nthreads())
-    client.run(misbehave, "older", workers=[unfit])
+    client.run(misbehave, kind, workers=[unfit])
     summary = batch.run(manifest, tmp_path / "out", scheduler=client, progress=True)
     assert (summary.workers_dismissed, summary.retried, list(summary.made_by)) == (1, 0, [max(client.nthreads())])
-    assert f"it has pellucid 0.0.9 where the batch was started with {pel.__version__}" in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert unfit in client.nthreads(), "a restart would not help"
     check_complete(summary, manifest, device, tmp_path / "out")
 
@@ -238,6 +242,21 @@ def kill_at_third_entry(pid):
     module.make_entry = make_entry
 
 
+def test_ctrl_c_ends_it_quietly(tmp_path):
+    radii = [round(1 + 0.001 * i, 3) for i in range(4000)]  # more than there is time for
+    (tmp_path / "m.toml").write_text(f'[[grid]]\nsize = [8, 12]\nencoding = ["half", "float"]\ndiffusion_radius = {radii}\n')
+    process = subprocess.Popen([sys.executable, "-m", "pellucid.batch", "m.toml", "--out", "out", "--workers", "2"], cwd=tmp_path,
+                               stderr=subprocess.PIPE, text=True, start_new_session=True,
+                               preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+    while not (tmp_path / "out").exists() or not any((tmp_path / "out").iterdir()):
+        assert process.poll() is None
+        time.sleep(0.02)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the workers as well
+    error = process.communicate(timeout=120)[1]
+    assert process.returncode == 4 and "interrupted; the same command goes on from here" in error, error
+    assert "Traceback" not in error
+
+
 def test_bad_entries_are_reported_and_the_others_made(tmp_path):
     (tmp_path / "m.toml").write_text('[[lut]]\nsize = 8\n\n[[lut]]\nsize = -3\n\n[[lut]]\nsize = 16384\n[[lut]]\nsize = 9\n')
     result = subprocess.run([sys.executable, "-m", "pellucid.batch", tmp_path / "m.toml", "--out", tmp_path / "out", "--json"],
@@ -252,6 +271,8 @@ def test_bad_entries_are_reported_and_the_others_made(tmp_path):
 
 @pytest.mark.parametrize("arguments, code, message", [
     (["m.toml"], 2, "--out"), (["m.toml", "--out", "o", "--timeout", "0"], 2, "--timeout"),
+    (["m.toml", "--out", "o", "--device", "none"], 4, '"none" matches no OpenCL device'),
+    (["m.toml", "--out", "o", "--scheduler", "here"], 4, "no Dask scheduler at here: missing port number"),
     (["none.toml", "--out", "o"], 3, "none.toml: cannot be read"), (["m.toml", "--out", "m.toml"], 3, "m.toml: is no folder"),
 ])
 def test_wrong_use(tmp_path, arguments, code, message):

@@ -32,6 +32,8 @@ from .store import Store, StoreError
 PIECE_SECONDS = 0.5  # what a piece should take: long against Dask's milliseconds, short against a lost one
 LARGEST_PIECE = 256  # entries
 ATTEMPTS = 3  # of an entry by itself, before it is to blame for the workers that it costs
+# A scheduler needs no package of ours to pass this on, and a worker without it says what it lacks instead of dying of what it reads.
+CALL = "getattr(__import__('pellucid.batch.worker', fromlist=['worker']), task)(*arguments)"
 ASK_AGAIN_SECONDS = 20  # a cluster that was asked for workers is asked for those that it lost; above Dask's 15 to notice
 
 
@@ -64,6 +66,7 @@ class Dispatcher:
         self._client, self._manifest, self._store, self._display = client, manifest, store, display
         self._timeout, self._jobs, self._patience, self._device = timeout, jobs, patience, device
         self._read_back, self._ask = read_back, ask
+        self._address = client.scheduler.address
         self._packed = pickle.dumps(manifest)
         self._digest = hashlib.sha256(self._packed).hexdigest()
         self._pending: deque[list[int]] = deque([list(range(len(manifest)))])
@@ -129,7 +132,7 @@ class Dispatcher:
         try:
             present = self._client.nthreads()
         except (OSError, TimeoutError, asyncio.TimeoutError) as e:
-            raise NoWorker(f"the scheduler does not answer any more ({e}); what is made is kept, and the same call goes on from "
+            raise NoWorker(f"the scheduler {self._address} does not answer any more ({e}); what is made is kept, and the same call goes on from "
                            "there when a scheduler is back") from e
         for address, threads in present.items():
             if address not in self._workers:
@@ -194,14 +197,15 @@ class Dispatcher:
                 indices = self._next_piece(worker, len(self._usable))
                 if not indices:
                     break
-                self._submit(worker, _Piece(indices), work.make_entries, self._device, self._jobs)
+                self._submit(worker, _Piece(indices), work.make_entries.__name__, self._device, self._jobs)
 
-    def _submit(self, worker: _Worker, piece: _Piece, task: Callable[..., Any], *arguments: Any) -> None:
+    def _submit(self, worker: _Worker, piece: _Piece, task: str, *arguments: Any) -> None:
         packed = None if worker.has_manifest else self._packed
         worker.has_manifest = True
-        future = self._client.submit(task, self._digest, packed, __version__, piece.indices, self._store.out, *arguments,
-                                     key=next(self._names), workers=[worker.address], allow_other_workers=False, pure=False,
-                                     retries=0, priority=1 if piece.writer else 0)
+        arguments = (self._digest, packed, __version__, piece.indices, self._store.out, *arguments)
+        future = self._client.submit(eval, CALL, {"task": task, "arguments": arguments}, key=next(self._names),
+                                     workers=[worker.address], allow_other_workers=False, pure=False, retries=0,
+                                     priority=1 if piece.writer else 0)
         sent = time.monotonic()
         if not worker.pieces:
             worker.since = sent
@@ -226,7 +230,7 @@ class Dispatcher:
             return
         machine = piece.writer.rpartition(":")[0]
         reader = min(others, key=lambda w: (w.address.rpartition(":")[0] == machine, len(w.pieces)))
-        self._submit(reader, piece, work.read_entries, self._jobs)
+        self._submit(reader, piece, work.read_entries.__name__, self._jobs)
 
     def _next_piece(self, worker: _Worker, workers: int) -> list[int]:
         size = 4 if worker.entry_seconds is None else int(PIECE_SECONDS / max(worker.entry_seconds, 1e-6))

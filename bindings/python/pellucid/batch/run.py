@@ -8,7 +8,8 @@ import os
 from collections.abc import Iterator, Sequence
 from typing import Any, Optional
 
-from ..device import devices
+from .._errors import PellucidError
+from ..device import Device, devices
 from .manifest import Manifest
 from .report import BatchError, Display, NoWorker, Summary
 from .store import Store, StoreError
@@ -26,11 +27,17 @@ def _local_client(count: Optional[int], selectors: Sequence[str]) -> Iterator[An
     chosen = list(selectors) or [str(i) for i in range(len(devices()))]
     if not chosen:
         raise NoWorker("no OpenCL device; Debian's pocl-opencl-icd brings one for any CPU")
+    for selector in selectors:
+        try:
+            Device(selector)
+        except PellucidError as e:
+            raise NoWorker(str(e)) from None
     if not selectors and os.environ.get("PELLUCID_DEVICE"):
         chosen = [os.environ["PELLUCID_DEVICE"]]
     with dask.config.set({"distributed.admin.system-monitor.interval": "10s"}):
         workers = {i: {"cls": distributed.Nanny,
                        "options": {"nthreads": 1, "memory_limit": 0, "silence_logs": logging.CRITICAL,
+                                   "preload": ["pellucid.batch.interrupt"],
                                    "env": {"PELLUCID_DEVICE": chosen[i % len(chosen)]}}}
                    for i in range(count or len(chosen))}
         scheduler = {"cls": distributed.Scheduler, "options": {"host": "127.0.0.1", "port": 0, "dashboard": False,
@@ -47,8 +54,8 @@ def _connect(scheduler: Any) -> Any:
         return distributed.Client(scheduler)
     except Exception as e:  # of a wrong address, a host that is none, another protocol, ...
         reason = str(e) or type(e).__name__
-        raise NoWorker(f"no Dask scheduler at {name}: {reason} (an address looks like tcp://host:8786; `dask scheduler` prints its "
-                       "own when it starts)") from e
+        raise NoWorker(f"no Dask scheduler at {name}: {reason} (an address looks like tcp://host:8786, and `dask scheduler` prints "
+                       f"its own when it starts; the scheduler's Dask must be this one's, {distributed.__version__})") from e
 
 
 @contextlib.contextmanager
