@@ -53,6 +53,26 @@ Difference compare(const std::vector<float>& a, const std::vector<float>& b, con
     return e;
 }
 
+// The same of the means over pixels of equal N.L: a sphere lit by a sun has one value there, and its mean has little noise.
+Difference compareCurves(const std::vector<float>& a, const std::vector<float>& b, const std::vector<float>& mask,
+                         const std::vector<double>& cosines) {
+    constexpr size_t bins = 100;
+    std::vector<double> sums(3 * bins), counts(bins);
+    for (size_t i = 0; i < mask.size(); ++i) {
+        if (mask[i] != 1) continue;
+        const size_t bin = std::min(size_t((cosines[i] + 1) / 2 * bins), bins - 1);
+        ++counts[bin];
+        for (size_t c = 0; c < 3; ++c) sums[3 * bin + c] += double(a[3 * i + c]) - b[3 * i + c];
+    }
+    Difference e;
+    for (size_t bin = 0; bin < bins; ++bin) {
+        e.pixels += size_t(counts[bin]);
+        for (size_t c = 0; c < 3 && counts[bin] > 0; ++c) e.rms[c] += sums[3 * bin + c] * sums[3 * bin + c] / counts[bin];
+    }
+    for (double& r : e.rms) r = std::sqrt(r / double(e.pixels));
+    return e;
+}
+
 class BlenderGBuffer : public CommandTest {
   protected:
     std::vector<float> shade(const std::string& gbuffer, const std::string& scene) const {
@@ -135,8 +155,11 @@ TEST_F(BlenderReference, ScatteringComesCloserToThePathTracedSphere) {
     const std::vector<std::string> normals{"NShading.R", "NShading.G", "NShading.B"};
     const std::vector<float> n = gbuffer.interleaved(normals);
     std::vector<float> band = mask;  // about the terminator, the one place where scattering shows on a sphere
-    for (size_t i = 0; i < band.size(); ++i)
-        if (std::abs(n[3 * i] * toLight[0] + n[3 * i + 1] * toLight[1] + n[3 * i + 2] * toLight[2]) > 0.2) band[i] = 0;
+    std::vector<double> cosines(mask.size());
+    for (size_t i = 0; i < band.size(); ++i) {
+        for (size_t c = 0; c < 3; ++c) cosines[i] += n[3 * i + c] * toLight[c];
+        if (std::abs(cosines[i]) > 0.2) band[i] = 0;
+    }
 
     const std::vector<float> burley = rgb(io::readImage(root_ + "sphere10_side_BURLEY.exr"));
     const std::vector<float> walk = rgb(io::readImage(root_ + "sphere10_side_RW.exr"));
@@ -154,6 +177,52 @@ TEST_F(BlenderReference, ScatteringComesCloserToThePathTracedSphere) {
     }
     // Where it matters most: red light near the terminator.
     EXPECT_LT(nearBurley.rms[0], tolerance::blenderTerminator * nearBurleyLambert.rms[0]);
+
+    // Blender's random walk reflects more than the albedo it was given, by one factor per channel wherever the light is. With the
+    // albedo as it is measured, in the light and in every other pixel, the others come closer over the whole sphere too.
+    std::vector<float> measured = mask, others = mask;
+    for (size_t i = 0; i < mask.size(); ++i) {
+        if (i % 2 || cosines[i] < 0.5) measured[i] = 0;
+        if (i % 2 == 0) others[i] = 0;
+    }
+    const auto factor = [&](const std::vector<float>& picture, size_t c) {  // by which the walk is brighter, least squares
+        double both = 0, square = 0;
+        for (size_t i = 0; i < mask.size(); ++i) {
+            const double p = picture[3 * i + c];
+            if (measured[i] == 1) both += walk[3 * i + c] * p, square += p * p;
+        }
+        return both / square;
+    };
+    std::vector<float> brightLambert = lambert;  // which the same is done for
+    for (size_t c = 0; c < 3; ++c) {
+        const double brighter = factor(out, c), lambertBrighter = factor(lambert, c);
+        for (size_t i = 0; i < mask.size(); ++i) brightLambert[3 * i + c] *= float(lambertBrighter);
+        const std::string name = std::string("ViewLayer.DiffCol.") + "RGB"[c];
+        for (io::Channel& channel : gbuffer.channels)
+            if (channel.name == name)
+                for (float& value : channel.pixels) value *= float(brighter);
+        std::printf("albedo of %c as measured: %.4f times what it was given\n", "RGB"[c], brighter);
+    }
+    io::writeExr(path("gbuffer.exr"), gbuffer);
+    const std::vector<float> bright =
+        shade(path("gbuffer.exr"), std::string(names) + "curvature = \"Curvature.X\"\n" + light + material);
+    ASSERT_EQ(bright.size(), out.size());
+    const Difference closer = compare(bright, walk, others), closerLambert = compare(lambert, walk, others);
+    report("sphere, random walk, albedo as measured, the other pixels", closer, closerLambert);
+    const Difference curve = compareCurves(bright, walk, mask, cosines),
+                     curveLambert = compareCurves(lambert, walk, mask, cosines);
+    report("the same, means over equal N.L", curve, curveLambert);
+    const Difference curveBright = compareCurves(brightLambert, walk, mask, cosines);
+    report("the same, against Lambert with its albedo as measured", curve, curveBright);
+    const Difference curveBurley = compareCurves(out, burley, mask, cosines),
+                     curveBurleyLambert = compareCurves(lambert, burley, mask, cosines);
+    report("sphere, Burley, means over equal N.L", curveBurley, curveBurleyLambert);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_LT(closer.rms[c], closerLambert.rms[c]);
+        EXPECT_LT(curve.rms[c], tolerance::blenderCurve * curveLambert.rms[c]);
+        EXPECT_LT(curve.rms[c], curveBright.rms[c]);
+        EXPECT_LT(curveBurley.rms[c], curveBurleyLambert.rms[c]);
+    }
 }
 
 // The same names and habits in a file made here: layers, half and float mixed, depth of 1e10 and zeros behind, z up.

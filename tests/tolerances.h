@@ -276,6 +276,9 @@ inline constexpr Tolerance blenderCurvature{
 inline constexpr Tolerance blenderTerminator{
     "blenderTerminator", 0.5, "times Lambert's error in red: what the path tracer's noise leaves room for"};
 
+inline constexpr Tolerance blenderCurve{
+    "blenderCurve", 0.25, "times Lambert's error, of means over equal N.L: the path tracer's noise left in means of 1,000 pixels"};
+
 // --- tables as BC6H ---
 inline constexpr Tolerance bc6hMax{
     "bc6hMax", 0.016, "64x64: one byte per texel cannot follow three channels that part at the terminator"};

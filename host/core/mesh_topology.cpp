@@ -37,7 +37,7 @@ Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopology
                                        PelMeshReport& report, const std::function<void(double)>& progress) {
     progress(0.0);
     checkDesc(desc);
-    MeshWeld weld = weldVertices(desc);
+    MeshWeld weld = weldVertices(desc, [&](double fraction) { progress(0.2 * fraction); });
     progress(0.2);
 
     report = pelMeshReportDefaults();

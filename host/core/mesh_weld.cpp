@@ -120,7 +120,7 @@ void renumberSlots(MeshWeld& weld, const std::vector<uint32_t>& numbers) {
     listMembers(weld);
 }
 
-MeshWeld weldVertices(const PelMeshTopologyDesc& desc) {
+MeshWeld weldVertices(const PelMeshTopologyDesc& desc, const std::function<void(double)>& progress) {
     MeshWeld weld;
     weld.slots = desc.numVertices;
     if (desc.weld == PEL_WELD_NONE || desc.numVertices == 0) return weld;
@@ -138,6 +138,7 @@ MeshWeld weldVertices(const PelMeshTopologyDesc& desc) {
     weld.slotOf.resize(desc.numVertices);
     uint32_t slots = 0;
     for (uint32_t v = 0; v < desc.numVertices; ++v) {
+        if (v % (1u << 16) == 0) progress(double(v) / desc.numVertices);
         const Point p = positions[v];
         uint32_t first = CellTable::none;
         if (finite(p)) {

@@ -3,6 +3,7 @@
 #include <pellucid/pellucid.h>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace pel {
@@ -20,6 +21,7 @@ void renumberSlots(MeshWeld& weld, const std::vector<uint32_t>& numbers);
 
 // Exact: equal coordinates (-0 equals 0). Tolerance: a vertex joins the first one before it that stands no
 // farther than the tolerance and did not itself join another; chains do not grow. NaN and Inf join nothing.
-MeshWeld weldVertices(const PelMeshTopologyDesc& desc);
+// `progress` is told a fraction in [0, 1] and may throw.
+MeshWeld weldVertices(const PelMeshTopologyDesc& desc, const std::function<void(double)>& progress);
 
 }  // namespace pel

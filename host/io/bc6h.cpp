@@ -22,7 +22,8 @@ uint16_t storable(uint16_t half) {
 
 }  // namespace
 
-std::vector<uint8_t> encodeBc6h(uint32_t width, uint32_t height, std::span<const uint16_t> texels) {
+std::vector<uint8_t> encodeBc6h(uint32_t width, uint32_t height, std::span<const uint16_t> texels,
+                                const std::function<bool()>& stop) {
     if (texels.size() != size_t(width) * height * 3)
         throw std::invalid_argument("three halves per texel are needed");
     const uint32_t across = (width + 3) / 4, down = (height + 3) / 4;
@@ -42,18 +43,22 @@ std::vector<uint8_t> encodeBc6h(uint32_t width, uint32_t height, std::span<const
     };
     // Blocks do not know of one another: the order in which threads take rows changes nothing.
     std::atomic<uint32_t> next{0};
-    const auto work = [&] {
-        for (uint32_t by; (by = next++) < down;)
+    std::atomic<bool> stopped{false};
+    const auto work = [&](bool asks) {
+        for (uint32_t by; !stopped && (by = next++) < down;) {
             for (uint32_t bx = 0; bx < across; ++bx) encode(bx, by);
+            if (asks && stop && stop()) stopped = true;
+        }
     };
     std::vector<std::jthread> helpers;
     try {
         for (unsigned i = 1; i < std::min(down, std::max(1u, std::thread::hardware_concurrency())); ++i)
-            helpers.emplace_back(work);
+            helpers.emplace_back(work, false);
     } catch (const std::system_error&) {  // fewer threads will do
     }
-    work();
+    work(true);
     helpers.clear();
+    if (stopped) blocks.clear();
     return blocks;
 }
 

@@ -1,6 +1,7 @@
 // BC6H, unsigned: RGB halves at one byte per texel, as graphics hardware samples them.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -14,8 +15,9 @@ struct TexelError {
 // Blocks of 4x4 texels, row by row, 16 bytes each, from three halves per texel. Texels beyond the right and
 // the bottom edge cost nothing and count for nothing. Negative and NaN become 0, infinity 65504. Chooses
 // among all 14 modes and 32 partitions by the squared error of the decoded values; the same input gives the
-// same bytes.
-std::vector<uint8_t> encodeBc6h(uint32_t width, uint32_t height, std::span<const uint16_t> texels);
+// same bytes. `stop`, asked on the calling thread after each of its rows of blocks, ends it: no blocks come back.
+std::vector<uint8_t> encodeBc6h(uint32_t width, uint32_t height, std::span<const uint16_t> texels,
+                                const std::function<bool()>& stop = {});
 
 // Three halves per texel; a block of a reserved mode is black.
 std::vector<uint16_t> decodeBc6h(uint32_t width, uint32_t height, std::span<const uint8_t> blocks);

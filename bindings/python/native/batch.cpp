@@ -33,17 +33,16 @@ const pellucid::io::BatchEntry& entryOf(const BatchManifest& m, size_t index) {
 }
 
 py::bytes made(const BatchManifest& m, const Device& device, size_t index) {
-    const pellucid::io::BatchEntry& entry = entryOf(m, index);
-    std::string bytes;
-    call([&] {
+    const auto bytes = std::make_shared<std::string>();
+    callInterruptibly([bytes, entry = entryOf(m, index), d = device.handle] {
         try {
-            bytes = pellucid::io::makeEntryFile(device.handle, entry);
+            *bytes = pellucid::io::makeEntryFile(d, entry);
             return PEL_SUCCESS;
         } catch (const pellucid::Error& e) {
             return e.code();
         }
     });
-    return py::bytes(bytes);
+    return py::bytes(*bytes);
 }
 }  // namespace
 

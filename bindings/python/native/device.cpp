@@ -17,17 +17,18 @@ void onError(void*, PelError code, const char* message) {
     }
 }
 
-std::unique_ptr<Device> created(const std::function<pellucid::Device()>& create) {
-    pellucid::Device device;
-    call([&] {
+std::unique_ptr<Device> created(std::function<pellucid::Device()> create) {
+    opensDevices();
+    const auto device = std::make_shared<pellucid::Device>();
+    callInterruptibly([device, create = std::move(create)] {
         try {
-            device = create();
+            *device = create();
             return PEL_SUCCESS;
         } catch (const pellucid::Error& e) {
             return e.code();
         }
     });
-    return std::make_unique<Device>(std::move(device));
+    return std::make_unique<Device>(*device);
 }
 }  // namespace
 
@@ -43,6 +44,7 @@ void bindDevice(py::module_& module) {
         waitForAbandoned();
     }));
     module.def("devices", [] {
+        opensDevices();
         uint32_t count = 0;
         call([&] { return pelDeviceCount(&count); });
         py::list infos;
@@ -55,10 +57,10 @@ void bindDevice(py::module_& module) {
     });
     py::class_<Device>(module, "Device")
         .def_static("create", [](const std::string& selector) {
-            return created([&] { return pellucid::Device(selector); });
+            return created([selector] { return pellucid::Device(selector); });
         })
         .def_static("from_cl", [](uintptr_t context, uintptr_t device, uintptr_t queue) {
-            return created([&] { return pellucid::Device::fromCl(pointer(context), pointer(device), pointer(queue)); });
+            return created([=] { return pellucid::Device::fromCl(pointer(context), pointer(device), pointer(queue)); });
         })
         .def("info", [](const Device& d) {
             PelDeviceInfo info = pelDeviceInfoDefaults();
@@ -79,7 +81,10 @@ void bindDevice(py::module_& module) {
         .def("finish", [](const Device& d) {
             callInterruptibly([device = d.handle] { return pelDeviceFinish(device.get()); });
         })
+        .def("settle", [](const Device& d) { return Settling(d.handle); })
         .def_readwrite("progress", &Device::progress);
+
+    py::class_<Settling>(module, "Settling").def("is_done", &Settling::done).def("wait", &Settling::wait);
 
     py::class_<pellucid::Event, Owner<pellucid::Event>>(module, "Event")
         .def_static("from_cl", [](const Device& d, uintptr_t event) {

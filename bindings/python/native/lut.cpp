@@ -9,10 +9,14 @@ namespace {
 // The table, and the event of its integration.
 template <class Desc, PelError (*Create)(PelDevice, const Desc*, PelLut*, const PelSubmit*)>
 std::pair<pellucid::Lut, pellucid::Event> created(const Device& d, const py::object& desc, const Waits& waits) {
-    PelLut handle = nullptr;
-    Submit submit(waits);
-    call([&, what = structOf<Desc>(desc)] { return Create(d.handle.get(), what, &handle, submit.get()); });
-    return {pellucid::Lut(handle), submit.done()};
+    const auto lut = std::make_shared<pellucid::Lut>();
+    const pellucid::Event done = submitInterruptibly(waits, [lut, device = d.handle, what = *structOf<Desc>(desc)](const PelSubmit* submit) {
+        PelLut handle = nullptr;
+        const PelError error = Create(device.get(), &what, &handle, submit);
+        *lut = pellucid::Lut(handle);
+        return error;
+    });
+    return {*lut, done};
 }
 
 // Blocks of three halves per texel, and what they cost. On a copy of the texels, for Ctrl-C may abandon it.
@@ -26,7 +30,8 @@ py::tuple encodedBc6h(uint32_t width, uint32_t height, uintptr_t texels) {
     const auto* first = static_cast<const uint16_t*>(pointer(texels));
     work->texels.assign(first, first + size_t(width) * height * 3);
     callInterruptibly([work, width, height] {
-        work->blocks = pellucid::io::encodeBc6h(width, height, work->texels);
+        work->blocks = pellucid::io::encodeBc6h(width, height, work->texels, &abandoned);
+        if (work->blocks.empty()) return PEL_ERROR_CANCELLED;
         work->error =
             pellucid::io::differenceOf(work->texels, pellucid::io::decodeBc6h(width, height, work->blocks));
         return PEL_SUCCESS;
@@ -44,13 +49,15 @@ void bindLut(py::module_& module) {
         .def_static("shadow", created<PelShadowLutDesc, pelShadowLutCreate>)
         .def_static("specular", created<PelSpecularLutDesc, pelSpecularLutCreate>)
         .def_static("from_texels", [](const Device& d, const py::object& info, uintptr_t texels, size_t bytes) {
-            PelLut handle = nullptr;
-            const auto* what = structOf<PelLutInfo>(info);
-            call([&] {
-                return pelLutCreateFromTexels(d.handle.get(), what, static_cast<const float*>(pointer(texels)), bytes,
-                                              &handle);
+            const auto lut = std::make_shared<Lut>();
+            callInterruptibly([=, device = d.handle, what = *structOf<PelLutInfo>(info)] {
+                PelLut handle = nullptr;
+                const PelError error =
+                    pelLutCreateFromTexels(device.get(), &what, static_cast<const float*>(pointer(texels)), bytes, &handle);
+                *lut = Lut(handle);
+                return error;
             });
-            return Lut(handle);
+            return *lut;
         })
         .def("info", [](const Lut& l) {
             PelLutInfo info = pelLutInfoDefaults();
@@ -58,14 +65,14 @@ void bindLut(py::module_& module) {
             return bytesOf(info);
         })
         .def("clipped", [](const Lut& l) {
-            uint64_t clipped = 0;
-            call([&] { return pelLutCountClipped(l.get(), &clipped); });
-            return clipped;
+            const auto clipped = std::make_shared<uint64_t>();
+            callInterruptibly([l, clipped] { return pelLutCountClipped(l.get(), clipped.get()); });
+            return *clipped;
         })
         .def("read", [](const Lut& l, uint32_t encoding, uintptr_t to, size_t bytes, const Waits& waits) {
-            Submit submit(waits);
-            call([&] { return pelLutRead(l.get(), PelLutEncoding(encoding), pointer(to), bytes, submit.get()); });
-            return submit.done();
+            return submitInterruptibly(waits, [=](const PelSubmit* submit) {
+                return pelLutRead(l.get(), PelLutEncoding(encoding), pointer(to), bytes, submit);
+            });
         });
 }
 

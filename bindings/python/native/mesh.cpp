@@ -11,9 +11,9 @@ void bindLiveMesh(py::module_& module) {
     using pellucid::LiveMesh;
     py::class_<LiveMesh, Owner<LiveMesh>>(module, "LiveMesh")
         .def_static("create", [](const pellucid::MeshTopology& t, const py::object& params) {
-            PelLiveMesh handle = nullptr;
-            call([&, p = structOf<PelCurvatureParams>(params)] { return pelLiveMeshCreate(t.get(), p, &handle); });
-            return LiveMesh(handle);
+            const auto made = std::make_shared<PelLiveMesh>();
+            callInterruptibly([made, t, p = *structOf<PelCurvatureParams>(params)] { return pelLiveMeshCreate(t.get(), &p, made.get()); });
+            return LiveMesh(*made);
         })
         .def("update", [](const LiveMesh& live, const VertexView& positions, const std::optional<VertexView>& normals,
                           const VertexView& curvature,
@@ -26,12 +26,10 @@ void bindLiveMesh(py::module_& module) {
                 for (const auto& [first, count] : *changed) ranges.push_back({first, count});
                 ranges.push_back({0, 0});  // so that there is a pointer to no ranges
             }
-            Submit submit(waits);
-            call([&] {
-                return pelLiveMeshUpdate(live.get(), &p, normals ? &n : nullptr, &c, changed ? ranges.data() : nullptr,
-                                         changed ? uint32_t(changed->size()) : 0, submit.get());
+            return submitInterruptibly(waits, [=, given = bool(normals), listed = bool(changed)](const PelSubmit* submit) {
+                return pelLiveMeshUpdate(live.get(), &p, given ? &n : nullptr, &c, listed ? ranges.data() : nullptr,
+                                         listed ? uint32_t(ranges.size() - 1) : 0, submit);
             });
-            return submit.done();
         })
         .def("stats", [](const LiveMesh& live) {
             PelLiveMeshStats stats = pelLiveMeshStatsDefaults();
@@ -47,14 +45,33 @@ void bindScreen(py::module_& module) {
         const auto desc = [](const std::optional<ImageView>& v) { return v ? imageDesc(*v) : pelImageDescDefaults(); };
         const PelImageDesc n = imageDesc(normals), p = desc(positions), z = desc(depth), i = desc(ids);
         const PelImageDesc c = imageDesc(curvature);
-        const auto* settings = structOf<PelScreenCurvatureParams>(params);
-        Submit submit(waits);
-        call([&] {
-            return pelScreenCurvature(d.handle.get(), settings, &n, positions ? &p : nullptr, depth ? &z : nullptr,
-                                      ids ? &i : nullptr, &c, submit.get());
+        const auto settings = *structOf<PelScreenCurvatureParams>(params);
+        // Buffers of images that the call's arguments hold.
+        const auto held = std::make_tuple(normals, positions, depth, ids, curvature);
+        const bool hasP = bool(positions), hasZ = bool(depth), hasI = bool(ids);
+        return submitInterruptibly(waits, [=, device = d.handle](const PelSubmit* submit) {
+            (void)held;
+            return pelScreenCurvature(device.get(), &settings, &n, hasP ? &p : nullptr, hasZ ? &z : nullptr, hasI ? &i : nullptr, &c,
+                                      submit);
         });
-        return submit.done();
     });
+}
+
+// A topology, and the report in Python's memory once it is made.
+pellucid::MeshTopology topologyFrom(const py::object& report,
+                                    std::function<PelError(PelMeshTopology*, PelMeshReport*)> create) {
+    struct Made {
+        PelMeshTopology handle = nullptr;
+        PelMeshReport report;
+        ~Made() {
+            if (handle) pelMeshTopologyRelease(handle);
+        }
+    };
+    const auto made = std::make_shared<Made>();
+    made->report = *structOf<PelMeshReport>(report);
+    callInterruptibly([made, create = std::move(create)] { return create(&made->handle, &made->report); });
+    *structOf<PelMeshReport>(report) = made->report;
+    return pellucid::MeshTopology(std::exchange(made->handle, nullptr));
 }
 
 }  // namespace
@@ -76,58 +93,60 @@ void bindMesh(py::module_& module) {
                 desc.weldTolerance = tolerance;
                 desc.positions = static_cast<const float*>(pointer(positions));
                 desc.positionStride = positionStride;
-                PelMeshReport* found = structOf<PelMeshReport>(report);
-                PelMeshTopology handle = nullptr;
-                call([&] { return pelMeshTopologyCreate(d.handle.get(), &desc, &handle, found); });
-                return MeshTopology(handle);
+                return topologyFrom(report, [desc, device = d.handle](PelMeshTopology* made, PelMeshReport* found) {
+                    return pelMeshTopologyCreate(device.get(), &desc, made, found);
+                });
             })
         .def_static("load",
                     [](const Device& d, const py::bytes& bytes, const py::object& report) {
                         const std::string_view data = bytes;
-                        PelMeshReport* found = structOf<PelMeshReport>(report);
-                        PelMeshTopology handle = nullptr;
-                        call([&] {
-                            return pelMeshTopologyLoad(d.handle.get(), data.data(), data.size(), &handle,
-                                                       found);
+                        return topologyFrom(report, [data, device = d.handle](PelMeshTopology* made, PelMeshReport* found) {
+                            return pelMeshTopologyLoad(device.get(), data.data(), data.size(), made, found);
                         });
-                        return MeshTopology(handle);
                     })
         .def("save",
              [](const MeshTopology& t) {
-                 size_t size = 0;
-                 call([&] { return pelMeshTopologySave(t.get(), nullptr, &size); });
-                 std::string bytes(size, '\0');
-                 call([&] { return pelMeshTopologySave(t.get(), bytes.data(), &size); });
-                 return py::bytes(bytes);
+                 const auto bytes = std::make_shared<std::string>();
+                 callInterruptibly([t, bytes] {
+                     size_t size = 0;
+                     const PelError error = pelMeshTopologySave(t.get(), nullptr, &size);
+                     bytes->resize(size);
+                     return error ? error : pelMeshTopologySave(t.get(), bytes->data(), &size);
+                 });
+                 return py::bytes(*bytes);
              })
         .def("normals",
              [](const MeshTopology& t, const VertexView& positions, const VertexView& normals,
                 const Waits& waits) {
-                 const PelVertexView p = vertexView(positions), n = vertexView(normals);
-                 Submit submit(waits);
-                 call([&] { return pelMeshNormals(t.get(), &p, &n, submit.get()); });
-                 return submit.done();
+                 return submitInterruptibly(waits, [=](const PelSubmit* submit) {
+                     const PelVertexView p = vertexView(positions), n = vertexView(normals);
+                     return pelMeshNormals(t.get(), &p, &n, submit);
+                 });
              })
         .def("curvature",
              [](const MeshTopology& t, const py::object& params, const VertexView& positions,
                 const std::optional<VertexView>& normals, const VertexView& curvature,
                 const py::object& report, const Waits& waits) {
-                 const PelVertexView p = vertexView(positions), c = vertexView(curvature);
-                 const PelVertexView n = normals ? vertexView(*normals) : PelVertexView{};
-                 const auto* settings = structOf<PelCurvatureParams>(params);
-                 PelMeshReport* found = report.is_none() ? nullptr : structOf<PelMeshReport>(report);
-                 Submit submit(waits);
-                 call([&] {
-                     return pelMeshCurvature(t.get(), settings, &p, normals ? &n : nullptr, &c, found,
-                                             submit.get());
+                 const auto settings = *structOf<PelCurvatureParams>(params);
+                 const auto found = std::make_shared<PelMeshReport>();
+                 const bool reports = !report.is_none();
+                 if (reports) *found = *structOf<PelMeshReport>(report);
+                 const pellucid::Event done = submitInterruptibly(waits, [=](const PelSubmit* submit) {
+                     const PelVertexView p = vertexView(positions), c = vertexView(curvature);
+                     const PelVertexView n = normals ? vertexView(*normals) : PelVertexView{};
+                     return pelMeshCurvature(t.get(), &settings, &p, normals ? &n : nullptr, &c,
+                                             reports ? found.get() : nullptr, submit);
                  });
-                 return submit.done();
+                 if (reports) *structOf<PelMeshReport>(report) = *found;
+                 return done;
              })
         .def("uv_scale", [](const MeshTopology& t, const VertexView& positions, const VertexView& uvs) {
-            const PelVertexView p = vertexView(positions), u = vertexView(uvs);
-            float scale = 0;
-            call([&] { return pelMeshUvScale(t.get(), &p, &u, &scale); });
-            return scale;
+            const auto scale = std::make_shared<float>();
+            callInterruptibly([=] {
+                const PelVertexView p = vertexView(positions), u = vertexView(uvs);
+                return pelMeshUvScale(t.get(), &p, &u, scale.get());
+            });
+            return *scale;
         });
 }
 

@@ -51,14 +51,27 @@ class WithGil {
     PyGILState_STATE state_;
 };
 
+// To be called before OpenCL is first used: its threads do not come along into a process that is forked later, so that calls there
+// would wait for ever; they throw instead.
+void opensDevices();
+void refuseForked();
+
 // Runs `body` without the GIL and throws its error. An exception that a progress callback raised comes first.
 void call(const std::function<PelError()>& body);
 
 // Waits without the GIL, looking for Ctrl-C meanwhile; the work itself goes on when that comes.
 void waitInterruptibly(const pellucid::Event& event);
 
-// Runs a blocking call that is safe to abandon on a thread of its own, likewise.
+// Runs a call that may take long on a thread of its own, likewise: Ctrl-C leaves it behind, and it is cancelled where it next tells
+// its progress. What `body` uses must therefore be its own, not this call's arguments, but for memory of Python's, which the caller
+// keeps alive by Settling. On other threads than Python's main one, which no signal reaches, the same as `call`.
 void callInterruptibly(std::function<PelError()> body);
+
+// Whether the call that this thread runs was left behind.
+bool abandoned();
+
+// Whether this thread calls a progress callback for a call that waits for the answer elsewhere.
+bool answersProgress();
 
 // For the end of the process: until none of those threads is left.
 void waitForAbandoned();
@@ -102,18 +115,32 @@ using Waits = std::vector<pellucid::Event>;
 // PelSubmit over a list of events, with room for the event of the submitted work.
 class Submit {
   public:
-    explicit Submit(const Waits& waits) {
-        for (const pellucid::Event& e : waits) handles_.push_back(e.get());
+    explicit Submit(const Waits& waits) : waits_(waits) {
+        for (const pellucid::Event& e : waits_) handles_.push_back(e.get());
         submit_ = {handles_.data(), uint32_t(handles_.size()), &done_};
     }
+    Submit(const Submit&) = delete;
+    Submit& operator=(const Submit&) = delete;
+    ~Submit() {
+        if (done_) pelEventRelease(done_);  // nobody took it: the call was left behind
+    }
     const PelSubmit* get() const { return &submit_; }
-    pellucid::Event done() const { return pellucid::Event(done_); }
+    pellucid::Event done() { return pellucid::Event(std::exchange(done_, nullptr)); }
 
   private:
+    Waits waits_;
     std::vector<PelEvent> handles_;
     PelEvent done_ = nullptr;
     PelSubmit submit_;
 };
+
+// Calls `body` with a PelSubmit over copies of `waits`, interruptibly; returns the event.
+template <class Body>
+pellucid::Event submitInterruptibly(const Waits& waits, Body body) {
+    const auto submit = std::make_shared<Submit>(waits);
+    callInterruptibly([submit, body = std::move(body)] { return body(submit->get()); });
+    return submit->done();
+}
 
 // Vertex data as Python passes it: buffer, byte offset, byte stride, count.
 using VertexView = std::tuple<pellucid::Buffer, uint64_t, uint32_t, uint32_t>;

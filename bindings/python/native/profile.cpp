@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "progress.h"
 
 namespace pel::python {
@@ -47,10 +49,25 @@ void bindProfile(py::module_& module) {
             return bytesOf(info);
         })
         .def("evaluate", [](const Profile& p, uintptr_t distances, uint32_t count, uintptr_t radial, uintptr_t spread) {
-            call([&] {
-                return pelProfileEvaluate(p.get(), static_cast<const double*>(pointer(distances)), count,
-                                          static_cast<double*>(pointer(radial)), static_cast<double*>(pointer(spread)));
+            struct Work {
+                std::vector<double> distances, radial, spread;
+            };
+            const auto work = std::make_shared<Work>();
+            const auto* first = static_cast<const double*>(pointer(distances));
+            work->distances.assign(first, first + count);
+            work->radial.resize(3 * size_t(count)), work->spread.resize(3 * size_t(count));
+            callInterruptibly([p, work, count] {
+                // In pieces, so that one that was left behind ends soon.
+                PelError error = PEL_SUCCESS;
+                for (uint32_t from = 0, n; from < count && !error && !abandoned(); from += n) {
+                    n = std::min(count - from, 4096u);
+                    error = pelProfileEvaluate(p.get(), &work->distances[from], n, &work->radial[3 * size_t(from)],
+                                               &work->spread[3 * size_t(from)]);
+                }
+                return error;
             });
+            std::copy(work->radial.begin(), work->radial.end(), static_cast<double*>(pointer(radial)));
+            std::copy(work->spread.begin(), work->spread.end(), static_cast<double*>(pointer(spread)));
         })
         .def("address", [](const Profile& p) { return address(p.get()); });
 }

@@ -9,10 +9,17 @@ namespace {
 thread_local std::unique_ptr<py::error_already_set> raised;
 
 int onProgress(void* user, double fraction, const char* what) {
+    const Device& device = *static_cast<Device*>(user);
+    if (const std::optional<int> answer = relayProgress(device, fraction, what)) return *answer;
     WithGil gil;
+    return tellProgress(device, fraction, what);
+}
+}  // namespace
+
+int tellProgress(const Device& device, double fraction, const char* what) {
     try {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        const py::object callback = static_cast<Device*>(user)->progress;
+        const py::object callback = device.progress;
         if (callback.is_none()) return 1;
         const py::object answer = callback(fraction, what);
         return answer.is_none() || answer.cast<bool>();
@@ -24,7 +31,6 @@ int onProgress(void* user, double fraction, const char* what) {
     }
     return 0;
 }
-}  // namespace
 
 void raiseProgressException() {
     if (!raised) return;

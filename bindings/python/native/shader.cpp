@@ -1,6 +1,6 @@
 #include <memory>
 #include <mutex>
-#include <set>
+#include <map>
 #include <vector>
 
 #include "progress.h"
@@ -8,7 +8,7 @@
 namespace pel::python {
 
 namespace {
-// A shader, and a lock that lets later calls wait for one that Ctrl-C abandoned; a progress callback may ask for counters meanwhile.
+// A shader, and a lock that lets later calls wait for one that Ctrl-C left behind.
 struct Shader {
     std::shared_ptr<std::recursive_mutex> busy = std::make_shared<std::recursive_mutex>();
     pellucid::Shader handle;
@@ -17,10 +17,15 @@ struct Shader {
     PelShader get() const { return handle.get(); }
 };
 
+// Free inside a progress callback, which may ask for counters: the call that tells of its progress has the lock and waits.
+std::unique_lock<std::recursive_mutex> locking(const Shader& shader) {
+    return answersProgress() ? std::unique_lock<std::recursive_mutex>() : std::unique_lock(*shader.busy);
+}
+
 template <class Body>
 void locked(const Shader& shader, Body&& body) {
     call([&] {
-        std::lock_guard lock(*shader.busy);
+        const auto lock = locking(shader);
         return body();
     });
 }
@@ -76,40 +81,46 @@ void bindShader(py::module_& module) {
         // Compilers take seconds, on some devices minutes.
         .def("commit", [](const Shader& s) {
             callInterruptibly([s] {
-                std::lock_guard lock(*s.busy);
+                const auto lock = locking(s);
                 return pelShaderCommit(s.get());
             });
         })
         .def("execute", [](const Shader& s, const Waits& waits) {
-            Submit submit(waits);
-            locked(s, [&] { return pelShaderExecute(s.get(), submit.get()); });
-            return submit.done();
+            return submitInterruptibly(waits, [s](const PelSubmit* submit) {
+                const auto lock = locking(s);
+                return pelShaderExecute(s.get(), submit);
+            });
         })
-        // Blocking, so that the device's progress callback is told; Ctrl-C is noticed there.
-        .def("execute_told", [](const Shader& s) { locked(s, [&] { return pelShaderExecute(s.get(), nullptr); }); })
+        // Blocking, so that the device's progress callback is told.
+        .def("execute_told", [](const Shader& s) {
+            callInterruptibly([s] {
+                const auto lock = locking(s);
+                return pelShaderExecute(s.get(), nullptr);
+            });
+        })
         .def("stats", [](const Shader& s) {
             PelShaderStats stats = pelShaderStatsDefaults();
             locked(s, [&] { return pelShaderGetStats(s.get(), &stats); });
             return bytesOf(stats);
         });
     module.def("prefill_programs", [](const Device& d, uint32_t groups, const std::vector<Shader>& shaders, uint32_t threads) {
-        std::vector<PelShader> handles;
-        for (const Shader& s : shaders) handles.push_back(s.get());
-        PelPrefill work = pelPrefillDefaults();
-        work.groups = groups;
-        work.shaders = handles.data();
-        work.numShaders = uint32_t(handles.size());
-        work.threads = threads;
-        uint32_t built = 0;
-        call([&] {
+        const auto built = std::make_shared<uint32_t>();
+        callInterruptibly([=, device = d.handle] {
+            std::vector<PelShader> handles;
+            for (const Shader& s : shaders) handles.push_back(s.get());
             // In one order for all threads, whatever the order of their lists: two would wait for each other otherwise.
-            std::set<std::recursive_mutex*, std::less<>> mutexes;
-            for (const Shader& s : shaders) mutexes.insert(s.busy.get());
+            std::map<std::recursive_mutex*, const Shader*, std::less<>> order;
+            for (const Shader& s : shaders) order.emplace(s.busy.get(), &s);
             std::vector<std::unique_lock<std::recursive_mutex>> locks;
-            for (std::recursive_mutex* mutex : mutexes) locks.emplace_back(*mutex);
-            return pelPrefillPrograms(d.handle.get(), &work, &built);
+            for (const auto& [mutex, shader] : order) locks.push_back(locking(*shader));
+            PelPrefill work = pelPrefillDefaults();
+            work.groups = groups;
+            work.shaders = handles.data();
+            work.numShaders = uint32_t(handles.size());
+            work.threads = threads;
+            return pelPrefillPrograms(device.get(), &work, built.get());
         });
-        return built;
+        return *built;
     });
 }
 

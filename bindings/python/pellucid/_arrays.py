@@ -88,26 +88,21 @@ class View:
         return (handle, *self._tail)
 
 
-def submit(views: list[View], waits: list[_native.Event], enqueue: Any) -> Any:
+def submit(device: Device, views: list[View], waits: list[_native.Event], enqueue: Any, *used: Any) -> Any:
     """Moves inputs, enqueues with `enqueue(waits)`, moves results; returns the event of the last step.
 
-    None where the work was done inside `enqueue` and nothing moves back.
+    None where the work was done inside `enqueue` and nothing moves back. The views and `used` live until the work is done.
     """
     spans = {id(v.span): v.span for v in views if isinstance(v.span, Span)}.values()
-    events = []
-    try:
+    # What is under way when something goes wrong, or Ctrl-C comes, still reads and writes the arrays.
+    with _flight.kept(device._handle, views, used):
         for span in spans:
-            events.append(span.upload(waits))
+            span.upload(waits)
         done = enqueue(waits)
-        events.append(done)
         for span in spans:
-            events.append(span.download())
-            done = events[-1] or done
-    except BaseException:
-        for event in events:  # what is under way already still reads and writes the arrays
-            if event is not None:
-                _flight.hold(event, views)
-        raise
+            done = span.download() or done
+        if done is not None:
+            _flight.hold(done, views, used)
     return done
 
 

@@ -2,18 +2,31 @@
 from __future__ import annotations
 
 import atexit
+import contextlib
 import itertools
-from typing import Any
+import os
+from collections.abc import Iterator
+from typing import Any, Union
 
 from . import _native
 
 # By the order of submission. No lock: finalizers and signal handlers submit work, too, and may come in the middle of any line here;
 # each operation on the dictionary is one step.
-_flying: dict[int, tuple[_native.Event, tuple[Any, ...]]] = {}
+_flying: dict[int, tuple[Union[_native.Event, _native.Settling], tuple[Any, ...]]] = {}
 _numbers = itertools.count()
 
 
-def hold(event: _native.Event, *used: Any) -> None:
+@contextlib.contextmanager
+def kept(device: _native.Device, *used: Any) -> Iterator[None]:
+    """Keeps `used` alive where Ctrl-C, or another exception, leaves a call behind that still works on it."""
+    try:
+        yield
+    except BaseException:
+        hold(device.settle(), *used)
+        raise
+
+
+def hold(event: Union[_native.Event, _native.Settling], *used: Any) -> None:
     """Keeps `used` alive until `event` is done."""
     sweep()
     _flying[next(_numbers)] = (event, used)
@@ -32,7 +45,7 @@ def in_flight() -> int:
     return len(_flying)
 
 
-def _finished(event: _native.Event) -> bool:
+def _finished(event: Union[_native.Event, _native.Settling]) -> bool:
     try:
         return event.is_done()
     except Exception:  # failed work uses nothing any more; whoever waits for it gets the error
@@ -44,6 +57,8 @@ def _land() -> None:
     for event, _ in _flying.copy().values():
         try:
             event.wait()
+        except KeyboardInterrupt:  # asked twice: no more waiting, nor an end that frees what kernels still write to
+            os._exit(130)
         except Exception:
             pass
     sweep()

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Any, ClassVar, Generic, TypeVar, overload
+from typing import Any, ClassVar, Generic, NoReturn, TypeVar, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,6 +25,15 @@ def to_enum(kind: type[E], value: Any, what: str) -> E:
             pass
     names = ", ".join(name.lower() for name in kind.__members__)
     raise ValueError(f"{what} is {value!r}; it must be one of {names}")
+
+
+class OfThisProcess:
+    """What a device holds cannot be pickled; `_instead` says what another process does."""
+
+    _instead: ClassVar[str]
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(f"a {type(self).__name__} belongs to this process and cannot be pickled: {self._instead}")
 
 
 class Struct:

@@ -1,16 +1,17 @@
 """Devices, events and buffers."""
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from typing import Any, Optional
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _flight, _native
-from ._struct import S
+from ._struct import OfThisProcess, S
 from ._types import DeviceInfo, DeviceStats, DeviceType
 
 Progress = Callable[[float, str], Optional[bool]]
@@ -40,7 +41,7 @@ def set_error_callback(callback: Optional[Callable[[int, str], object]]) -> None
     _native.set_error_callback(callback)
 
 
-class Device:
+class Device(OfThisProcess):
     """An OpenCL device with a queue of its own.
 
     Parameters
@@ -54,6 +55,8 @@ class Device:
     PellucidError
         NO_DEVICE, with the devices found, or the package that brings one.
     """
+
+    _instead = "make one there, pellucid.Device(selector)"
 
     def __init__(self, selector: str | int = "") -> None:
         self._open(_native.Device.create(str(selector)))
@@ -142,8 +145,10 @@ def progress_bar() -> Progress:
     return show
 
 
-class Event:
+class Event(OfThisProcess):
     """Submitted work. Waiting for it also makes its NumPy results valid."""
+
+    _instead = "wait for it here"
 
     def __init__(self, handle: _native.Event) -> None:
         self._handle = handle
@@ -164,6 +169,10 @@ class Event:
         self._handle.wait()
         _flight.sweep()
 
+    def __await__(self) -> Generator[Any, None, None]:
+        """`await event` waits on a thread of the event loop's, which runs on meanwhile."""
+        return asyncio.get_running_loop().run_in_executor(None, self.wait).__await__()
+
     @property
     def done(self) -> bool:
         """Whether the work has finished."""
@@ -179,7 +188,7 @@ def _handles(waits: Iterable[Event]) -> list[_native.Event]:
     return [e._handle for e in waits]
 
 
-class Buffer:
+class Buffer(OfThisProcess):
     """Device memory of the library's own.
 
     Parameters
@@ -189,12 +198,15 @@ class Buffer:
         A size in bytes, zeroed; or an array whose bytes are copied (C order).
     """
 
+    _instead = "pass an array, Buffer.read gives one"
+
     def __init__(self, device: Device, initial: int | NDArray[Any]) -> None:
         if isinstance(initial, (int, np.integer)):
             self._setup(device, _native.Buffer.create(device._handle, int(initial), 0))
         else:
             values = np.ascontiguousarray(initial)
-            self._setup(device, _native.Buffer.create(device._handle, values.nbytes, values.ctypes.data))
+            with _flight.kept(device._handle, values):
+                self._setup(device, _native.Buffer.create(device._handle, values.nbytes, values.ctypes.data))
 
     def _setup(self, device: Device, handle: _native.Buffer, owner: Any = None) -> None:
         self.device = device
@@ -242,8 +254,9 @@ class Buffer:
         """The same after `waits`, without waiting; `out` is valid once the event is done."""
         if not out.flags.c_contiguous or not out.flags.writeable:
             raise ValueError("out must be C-contiguous and writable")
-        event = self._handle.read(offset, out.nbytes, out.ctypes.data, _handles(waits))
-        _flight.hold(event, self, out)
+        with _flight.kept(self.device._handle, self, out):
+            event = self._handle.read(offset, out.nbytes, out.ctypes.data, _handles(waits))
+            _flight.hold(event, self, out)
         return Event(event)
 
     def write(self, values: NDArray[Any], offset: int = 0) -> None:
@@ -254,8 +267,9 @@ class Buffer:
         """The same after `waits`, without waiting; leave `values` as it is until the event is done."""
         if not values.flags.c_contiguous:
             raise ValueError("values must be C-contiguous")
-        event = self._handle.write(offset, values.nbytes, values.ctypes.data, _handles(waits))
-        _flight.hold(event, self, values)
+        with _flight.kept(self.device._handle, self, values):
+            event = self._handle.write(offset, values.nbytes, values.ctypes.data, _handles(waits))
+            _flight.hold(event, self, values)
         return Event(event)
 
     @contextlib.contextmanager

@@ -7,14 +7,15 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _flight, _native
+from . import _native
 from ._arrays import Image, View, submit, vertex_view
+from ._struct import OfThisProcess
 from ._types import CurvatureParams, LiveMeshStats, ScreenCurvatureParams
 from .device import Device, Event, _filled, _handles
 from .mesh import _COMPONENTS, MeshTopology
 
 
-class LiveMesh:
+class LiveMesh(OfThisProcess):
     """Curvature of a mesh of which a part moves from update to update; see pelLiveMeshUpdate.
 
     Parameters
@@ -23,6 +24,8 @@ class LiveMesh:
     params : CurvatureParams, optional
         How curvature is measured and smoothed, for all updates.
     """
+
+    _instead = "make one there from a topology"
 
     def __init__(self, topology: MeshTopology, params: Optional[CurvatureParams] = None) -> None:
         self.topology = topology
@@ -61,10 +64,8 @@ class LiveMesh:
         c = self._target(out)
         ranges = None if changed is None else [(int(first), int(count)) for first, count in changed]
         views = [v for v in (p, n, c) if v is not None]
-        event = submit(views, _handles(waits), lambda w: self._handle.update(
-            p.native, None if n is None else n.native, c.native, ranges, w))
-        _flight.hold(event, self, views)
-        return Event(event)
+        return Event(submit(device, views, _handles(waits), lambda w: self._handle.update(
+            p.native, None if n is None else n.native, c.native, ranges, w), self))
 
     def _target(self, out: Any) -> View:
         """The view of `out`, the same buffer again for the same array: another one would be written whole."""
@@ -105,15 +106,16 @@ def screen_curvature(device: Device, normals: Any, positions: Any = None, *, dep
 def submit_screen_curvature(device: Device, normals: Any, positions: Any, out: Any, *, depth: Any = None, ids: Any = None,
                             params: Optional[ScreenCurvatureParams] = None, waits: Iterable[Event] = ()) -> Event:
     """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
-    def image(value: Any, what: str, **kind: bool) -> Optional[Image]:
-        return value if value is None or isinstance(value, Image) else Image(device, value, _slot=what, **kind)
+    def image(value: Any, what: str, output: bool = False, ids: bool = False) -> Optional[Image]:
+        if value is None or isinstance(value, Image):
+            return value
+        return Image(device, value, _slot=what, _output=output, _ids=ids)
 
     settings = ScreenCurvatureParams() if params is None else params
-    images = [image(normals, "normals"), image(positions, "positions"), image(depth, "depth"), image(ids, "ids", _ids=True),
-              image(out, "out", _output=True)]
-    n, p, d, i, c = (None if x is None else x._view.native for x in images)
+    images = [image(normals, "normals"), image(positions, "positions"), image(depth, "depth"), image(ids, "ids", ids=True),
+              image(out, "out", output=True)]
+    natives: list[Any] = [None if x is None else x._view.native for x in images]
+    n, p, d, i, c = natives
     views = [x._view for x in images if x is not None]
-    event = submit(views, _handles(waits),
-                   lambda w: _native.screen_curvature(device._handle, settings._data, n, p, d, i, c, w))
-    _flight.hold(event, views)
-    return Event(event)
+    return Event(submit(device, views, _handles(waits),
+                        lambda w: _native.screen_curvature(device._handle, settings._data, n, p, d, i, c, w)))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from . import _flight, _native
 from ._arrays import output_array
-from ._struct import to_enum
+from ._struct import OfThisProcess, to_enum
 from ._types import CurvatureLutDesc, LutEncoding, LutInfo, ShadowLutDesc, SpecularLutDesc
 from .device import Device, Event, _filled, _handles
 from .profile import Profile
@@ -17,7 +17,7 @@ from .profile import Profile
 _TEXELS = {LutEncoding.FLOAT: (np.float32, 3), LutEncoding.HALF: (np.float16, 3), LutEncoding.FACEWORKS8: (np.uint8, 4)}
 
 
-class Lut:
+class Lut(OfThisProcess):
     """A table on the device; made by `curvature`, `shadow`, `specular` or `from_texels`.
 
     Attributes
@@ -26,6 +26,8 @@ class Lut:
     ready : Event or None
         When a submitted table is integrated; reading and shading on the same device wait by themselves.
     """
+
+    _instead = "pass its info and texels, Lut.read, to Lut.from_texels there"
 
     device: Device
     ready: Optional[Event]
@@ -82,7 +84,9 @@ class Lut:
             setattr(settings, name, value)
         if profile is not None:
             settings._data["profile"] = profile._handle.address()  # the library's table keeps it alive
-        return cls._made(device, *create(device._handle, settings._data, _handles(waits)))._waited(wait)
+        with _flight.kept(device._handle, profile):
+            made = cls._made(device, *create(device._handle, settings._data, _handles(waits)))
+        return made._waited(wait)
 
     @classmethod
     def from_texels(cls, device: Device, info: LutInfo, texels: NDArray[np.float32]) -> Lut:
@@ -90,8 +94,9 @@ class Lut:
         if texels.dtype != np.float32:
             raise ValueError(f"texels are {texels.dtype}; float32 is needed")
         packed = np.ascontiguousarray(texels)
-        return cls._made(device, _native.Lut.from_texels(device._handle, info._data, packed.ctypes.data, packed.nbytes),
-                         None)
+        with _flight.kept(device._handle, packed):
+            handle = _native.Lut.from_texels(device._handle, info._data, packed.ctypes.data, packed.nbytes)
+        return cls._made(device, handle, None)
 
     def _waited(self, wait: bool) -> Lut:
         if wait and self.ready is not None:
@@ -155,7 +160,8 @@ class Lut:
         result = output_array(out, (size.height, size.width, components), dtype, "out")
         if not result.flags.c_contiguous or not result.flags.writeable:
             raise ValueError("out must be C-contiguous and writable")
-        event = self._handle.read(int(e), result.ctypes.data, result.nbytes, _handles(waits))
-        _flight.hold(event, self, result)
+        with _flight.kept(self.device._handle, self, result):
+            event = self._handle.read(int(e), result.ctypes.data, result.nbytes, _handles(waits))
+            _flight.hold(event, self, result)
         return result, Event(event)
 

@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _flight, _native
 from ._arrays import Vertices, output_array, submit, vertex_view
-from ._struct import to_enum
+from ._struct import OfThisProcess, to_enum
 from ._types import CurvatureEstimator, CurvatureParams, CurvatureQuantity, MeshReport, SmoothingWeights, Weld
 from .device import Device, Event, _handles
 
 
-class MeshTopology:
+class MeshTopology(OfThisProcess):
     """The connectivity of a mesh, analysed once; curvature for any positions then reuses it.
 
     Parameters
@@ -41,6 +41,8 @@ class MeshTopology:
     PellucidError
         An index count that is no multiple of 3, or an index out of range (the message names the triangle).
     """
+
+    _instead = "pass what save() gives to MeshTopology.load there"
 
     def __init__(self, device: Device, indices: ArrayLike, num_vertices: Optional[int] = None, *,
                  weld: Weld | str = Weld.NONE, positions: Optional[NDArray[np.float32]] = None,
@@ -69,9 +71,10 @@ class MeshTopology:
         self.device = device
         self.num_vertices = int(num_vertices)
         self.report = MeshReport()
-        self._handle = _native.MeshTopology.create(device._handle, self.num_vertices, packed.ctypes.data, packed.size,
-                                                   int(to_enum(Weld, weld, "weld")), weld_tolerance, address, stride,
-                                                   self.report._data)
+        with _flight.kept(device._handle, packed, positions):
+            self._handle = _native.MeshTopology.create(device._handle, self.num_vertices, packed.ctypes.data, packed.size,
+                                                       int(to_enum(Weld, weld, "weld")), weld_tolerance, address, stride,
+                                                       self.report._data)
 
     @classmethod
     def load(cls, device: Device, data: bytes | bytearray | memoryview) -> MeshTopology:
@@ -84,7 +87,9 @@ class MeshTopology:
         """
         self = cls.__new__(cls)
         self.device, self.report = device, MeshReport()
-        self._handle = _native.MeshTopology.load(device._handle, bytes(data), self.report._data)
+        packed = bytes(data)
+        with _flight.kept(device._handle, packed):
+            self._handle = _native.MeshTopology.load(device._handle, packed, self.report._data)
         self.num_vertices = int(self.report.vertices)
         return self
 
@@ -112,9 +117,7 @@ class MeshTopology:
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
         views = [vertex_view(self.device, positions, 3, "positions"), vertex_view(self.device, out, 3, "out", output=True)]
         p, n = (v.native for v in views)
-        event = submit(views, _handles(waits), lambda w: self._handle.normals(p, n, w))
-        _flight.hold(event, self, views)
-        return Event(event)
+        return Event(submit(self.device, views, _handles(waits), lambda w: self._handle.normals(p, n, w), self))
 
     def curvature(self, positions: Any, normals: Any = None, out: Optional[NDArray[np.float32]] = None, *,
                   params: Optional[CurvatureParams] = None, estimator: CurvatureEstimator | str | None = None,
@@ -140,13 +143,10 @@ class MeshTopology:
         settings = _settings(params, estimator=estimator, quantity=quantity, smoothing_passes=smoothing_passes,
                              smoothing_radius=smoothing_radius, smoothing_weights=smoothing_weights, scale=scale)
         result = out if isinstance(out, Vertices) else output_array(out, _shape(self.num_vertices, settings), np.float32, "out")
-        if report:
-            # A call that reports blocks where Ctrl-C is not seen, so it is a short one, without smoothing.
-            found, unsmoothed = MeshReport(), settings.copy()
-            unsmoothed.smoothing_passes, unsmoothed.smoothing_radius = 0, 0.0
-            self._submit(positions, normals, result, unsmoothed, found, ()).wait()
+        found = MeshReport() if report else None
+        self._submit(positions, normals, result, settings, found, ()).wait()
+        if found is not None:
             self.report = found
-        self._submit(positions, normals, result, settings, None, ()).wait()
         return result
 
     def submit_curvature(self, positions: Any, normals: Any, out: Any, *, params: Optional[CurvatureParams] = None,
@@ -168,10 +168,8 @@ class MeshTopology:
         if normals is not None:
             views.append(vertex_view(self.device, normals, 3, "normals"))
             n = views[-1].native
-        event = submit(views, _handles(waits), lambda w: self._handle.curvature(
-            params._data, p, n, c, None if report is None else report._data, w))
-        _flight.hold(event, self, views)
-        return Event(event)
+        return Event(submit(self.device, views, _handles(waits), lambda w: self._handle.curvature(
+            params._data, p, n, c, None if report is None else report._data, w), self))
 
     def uv_scale(self, positions: Any, uvs: Any) -> float:
         """Geometric mean over triangles of longest edge / longest UV edge, in length per UV unit.
@@ -189,7 +187,7 @@ class MeshTopology:
         views = [vertex_view(self.device, positions, 3, "positions"), vertex_view(self.device, uvs, 2, "uvs")]
         p, u = (v.native for v in views)
         scale: list[float] = []
-        submit(views, [], lambda waits: scale.append(self._handle.uv_scale(p, u)))
+        submit(self.device, views, [], lambda waits: scale.append(self._handle.uv_scale(p, u)))
         return scale[0]
 
 

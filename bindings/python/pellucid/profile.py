@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
-from ._struct import to_enum
+from ._struct import OfThisProcess, to_enum
 from ._types import BurleyFit, ProfileInfo
 from .device import _filled
 
@@ -19,12 +19,14 @@ def _triple(value: ArrayLike, what: str) -> list[float]:
     return [float(x) for x in np.broadcast_to(numbers, 3)]
 
 
-class Profile:
+class Profile(OfThisProcess):
     """How much of the light that enters at one point leaves at a distance, per RGB channel.
 
     Made by `skin`, `gaussians`, `burley`, `dipole` or `table`; belongs to no device and never changes. Lengths are in any one
     unit. Each channel is normalised. `name` is what tables and their files carry, up to 63 bytes.
     """
+
+    _instead = "make one there"
 
     _handle: _native.Profile
 

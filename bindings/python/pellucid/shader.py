@@ -7,20 +7,22 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _flight, _native
+from . import _native
 from ._arrays import Image, submit
-from ._struct import to_enum
+from ._struct import OfThisProcess, to_enum
 from ._types import Ambient, Camera, Format, ImageSlot, Light, LightSlot, Material, ProgramGroup, ShaderOptions, ShaderStats
 from .device import Buffer, Device, Event, _filled, _handles
 from .lut import Lut
 
 
-class Shader:
+class Shader(OfThisProcess):
     """Set images, materials and lights, commit, execute. A slot that is not set is a feature that is off.
 
     Images stay the caller's: the shader reads and writes them where they are at each execution, so changing an array
     in place and executing again shades the new values. One thread at a time uses a shader.
     """
+
+    _instead = "make one there"
 
     def __init__(self, device: Device) -> None:
         self.device = device
@@ -176,17 +178,14 @@ class Shader:
             self.submit().wait()
             return
         images = list(self._images.values())
-        event = submit([i._view for i in images], [], lambda waits: self._handle.execute_told())
+        event = submit(self.device, [i._view for i in images], [], lambda waits: self._handle.execute_told(), self, images)
         if event is not None:  # results are on their way back to the arrays
-            _flight.hold(event, self, images)
             Event(event).wait()
 
     def submit(self, waits: Iterable[Event] = ()) -> Event:
         """Shades after `waits`, without waiting: leave the images alone until the event is done."""
         images = list(self._images.values())
-        event = submit([i._view for i in images], _handles(waits), self._handle.execute)
-        _flight.hold(event, self, images)
-        return Event(event)
+        return Event(submit(self.device, [i._view for i in images], _handles(waits), self._handle.execute, self, images))
 
     def stats(self) -> ShaderStats:
         """What the last execution did."""

@@ -58,5 +58,5 @@ def test_arrays_outlive_what_a_later_error_left_under_way(moving_device, sphere,
     monkeypatch.setattr(_flight, "hold", lambda event, *used: (event.wait(), held.append(used)))
     with pytest.raises(pel.PellucidError, match="range 0"):
         live.update(sphere.positions, None, np.empty(len(sphere.positions), np.float32), [(len(sphere.positions), 1)])
-    arrays = [view.span.array for (views,) in held for view in views]
+    arrays = [view.span.array for views, _ in held for view in views]
     assert any(np.shares_memory(a, sphere.positions) for a in arrays), "its copy to the device may still be read"

@@ -1,4 +1,5 @@
 """Structures and enumerations: the same memory as in C, the same defaults, and wrong values named."""
+import enum
 import pickle
 
 import numpy as np
@@ -70,6 +71,32 @@ def test_documentation_has_units_and_python_names():
         _types.__file__).decode()
     for name in pel.__all__:
         assert getattr(pel, name).__doc__, name
+
+
+def public_members():
+    for name in pel.__all__:
+        value = getattr(pel, name)
+        yield name, value
+        if isinstance(value, type) and not issubclass(value, (Struct, enum.Enum)):
+            members = {k: v for base in value.__mro__ if base.__module__.startswith("pellucid") for k, v in vars(base).items()}
+            for member, part in members.items():
+                if not member.startswith("_") and (callable(part) or isinstance(part, (property, classmethod, staticmethod))):
+                    yield f"{name}.{member}", part
+
+
+def test_every_public_name_is_documented():
+    found = dict(public_members())
+    assert len(found) > 100
+    assert not [name for name, part in found.items() if not (part.__doc__ or "").strip()]
+
+
+@pytest.mark.parametrize("made, instead", [
+    (lambda d: d, "pellucid.Device"), (lambda d: pel.Buffer(d, 8), "Buffer.read"), (lambda d: pel.Profile.skin(), "make one there"),
+    (lambda d: pel.Lut.specular(d, width=4, height=4), "Lut.from_texels"), (lambda d: pel.Shader(d), "make one"),
+    (lambda d: pel.MeshTopology(d, [[0, 1, 2]], 3), "MeshTopology.load")])
+def test_what_a_device_holds_is_not_pickled(device, made, instead):
+    with pytest.raises(TypeError, match=f"belongs to this process.*{instead}"):
+        pickle.dumps(made(device))
 
 
 def test_errors_travel_between_processes():

@@ -28,7 +28,7 @@ class Store:
         self._files: Any = None
         if "://" in self.out:
             try:
-                import fsspec
+                import fsspec  # type: ignore[import-untyped,unused-ignore]
             except ImportError as e:
                 raise StoreError(f"{self.out} needs fsspec: pip install pellucid[batch]") from e
             try:
@@ -54,7 +54,7 @@ class Store:
         try:
             if self._files is None:
                 return (Path(self.out) / name).read_bytes()
-            return self._files.cat_file(f"{self._root}/{name}")
+            return bytes(self._files.cat_file(f"{self._root}/{name}"))
         except FileNotFoundError:
             return None
         except OSError as e:
