@@ -146,7 +146,8 @@ def vertex_view(device: Device, value: Any, components: int, what: str, output: 
     if len(shape) != (2 if components > 1 else 1) or (components > 1 and shape[1] != components):
         raise ValueError(f"{what} has the shape {tuple(shape)}; {wanted} is needed")
     if components > 1 and strides[1] != 4:
-        raise ValueError(f"{what} has components {strides[1]} bytes apart; they must follow each other")
+        raise ValueError(f"{what} has components {strides[1]} bytes apart; they must follow each other "
+                         "(numpy.ascontiguousarray makes a copy where they do)")
     # One vertex or none has no stride to speak of, whatever NumPy says.
     stride = strides[0] if shape[0] > 1 else 4 * components
     if stride % 4:
