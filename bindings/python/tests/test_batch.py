@@ -10,6 +10,8 @@ import time
 
 import pytest
 
+import pellucid as pel
+
 distributed = pytest.importorskip("distributed", reason="distributed is not installed: pip install pellucid[batch]")
 cloudpickle = pytest.importorskip("cloudpickle")
 batch = pytest.importorskip("pellucid.batch", reason="the package was built without toml++")

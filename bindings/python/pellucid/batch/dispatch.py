@@ -30,7 +30,7 @@ from .report import BatchError, Display, NoWorker, Summary
 from .store import Store, StoreError
 
 PIECE_SECONDS = 0.5  # what a piece should take: long against Dask's milliseconds, short against a lost one
-LARGEST_PIECE = 256  # entries
+LARGEST_PIECE = 1024  # entries
 ATTEMPTS = 3  # of an entry by itself, before it is to blame for the workers that it costs
 # A scheduler needs no package of ours to pass this on, and a worker without it says what it lacks instead of dying of what it reads.
 CALL = "getattr(__import__('pellucid.batch.worker', fromlist=['worker']), task)(*arguments)"
