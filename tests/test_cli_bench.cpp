@@ -81,6 +81,39 @@ TEST_F(BenchCommand, MeasuresTimeShareAndError) {
     EXPECT_EQ(same.json().at("same"), 4);
 }
 
+// A sanitizer's library has to be the first of all.
+#ifndef __SANITIZE_ADDRESS__
+TEST_F(BenchCommand, ADriverThatHangsOrCrashesCostsOneOperation) {
+    struct Row {
+        const char *ending, *limit, *why;
+    };
+    for (const Row& row : {Row{"hang", "15", "no result within 15"}, {"crash", "100", "ended by signal 6"}}) {
+        const Result result = run({"bench", "--quick", "--limit", row.limit, "--only", "table-shadow", "--only", "table-specular",
+                                   "-o", path("out")},
+                                  std::string("LD_PRELOAD='" BAD_DRIVER "' BAD_KERNEL=shadowTexels BAD_ENDING=") + row.ending);
+        ASSERT_EQ(result.exitCode, 0) << result.err;
+        const auto report = nlohmann::json::parse(read(path("out/bench.json")));
+        EXPECT_EQ(report.at("limit_s").get<double>(), std::stod(row.limit));
+        std::string names;
+        for (const auto& e : report.at("devices")[0].at("operations")) {
+            const std::string name = e.at("name");
+            names += name + " ";
+            if (name == "table-shadow") {
+                ASSERT_TRUE(e.contains("failed")) << row.ending;
+                EXPECT_TRUE(contains(e["failed"], row.why));
+                EXPECT_EQ(e.at("group"), "tables");
+            } else {
+                ASSERT_FALSE(e.contains("failed")) << e;
+                EXPECT_GE(e.at("samples").get<int>(), 1) << name;
+            }
+        }
+        EXPECT_EQ(names, "copy arithmetic table-specular table-shadow ") << row.ending;
+        EXPECT_TRUE(contains(result.out, row.why));
+        EXPECT_TRUE(contains(read(path("out/bench.html")), row.why));
+    }
+}
+#endif
+
 TEST_F(BenchCommand, VerdictsSurviveNoise) {
     struct Row {
         const char* what;

@@ -1,16 +1,14 @@
 #include "measure.h"
 
 #include <sys/utsname.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <ctime>
-#include <filesystem>
 #include <fstream>
 #include <random>
 #include <thread>
+
+#include "supervise.h"
 
 namespace pellucid::bench {
 namespace {
@@ -26,6 +24,7 @@ struct Running {
     Json entry;
     Case work;
     int repeats = 1;  // runs per sample, so that a sample is long against the clock
+    int rounds = 0;   // that it takes part in: fewer than others where it is slow
     std::vector<double> wall, device;
 };
 
@@ -40,31 +39,6 @@ void sample(const Device& device, Running& r) {
 // A number, or null where there is none: JSON has no NaN.
 Json number(double value) {
     return std::isfinite(value) ? Json(value) : Json();
-}
-
-// The pellucid command again in an empty cache of every driver known here, then in the cache that this left.
-void measureFirstUse(const Request& request, Json& report) {
-    if (request.command.empty()) return;
-    const std::filesystem::path cache =
-        std::filesystem::temp_directory_path() / ("pellucid-bench-" + std::to_string(::getpid()));
-    std::string line;
-    for (const char* variable :
-         {"POCL_CACHE_DIR", "CUDA_CACHE_PATH", "MESA_SHADER_CACHE_DIR", "NEO_CACHE_DIR", "cl_cache_dir",
-          "AMD_COMGR_CACHE_DIR", "PELLUCID_CACHE_DIR"})
-        line += std::string(variable) + "='" + cache.string() + "' ";
-    line += "'" + request.command + "' bench --first-use --device '" + request.device + "' 2>/dev/null";
-    for (const char* key : {"first_use", "warm_start"}) {
-        std::filesystem::create_directories(cache);
-        FILE* pipe = ::popen(line.c_str(), "r");
-        std::string text;
-        char part[256];
-        while (pipe && std::fgets(part, sizeof part, pipe)) text += part;
-        const bool good = pipe && ::pclose(pipe) == 0;
-        const Json parsed = Json::parse(text, nullptr, false);
-        report[key] = good && !parsed.is_discarded() ? parsed : Json();
-    }
-    std::error_code ignored;
-    std::filesystem::remove_all(cache, ignored);
 }
 
 Json summary(const Running& r) {
@@ -98,11 +72,7 @@ double medianDeviation(const std::vector<double>& values) {
 }
 
 Json measureDevice(const Request& request) {
-    const auto say = [&](const std::string& text) {
-        if (request.progress) request.progress(text);
-    };
-    const Device device(request.device);
-    const PelDeviceInfo info = device.info();
+    const PelDeviceInfo info = Device(request.device).info();
     Json report = {{"name", info.name},
                    {"platform", info.platform},
                    {"version", info.version},
@@ -113,12 +83,25 @@ Json measureDevice(const Request& request) {
                    {"compute_units", info.computeUnits},
                    {"clock_mhz", info.clockMhz},
                    {"math_width", info.mathWidth}};
-    say("first use and warm start");
+    if (request.progress) request.progress("first use and warm start");
     measureFirstUse(request, report);
+    report.update(measureCasesApart(request));
+    return report;
+}
 
+Json measureCases(const Request& request) {
+    const auto tell = [&](const Json& event) {
+        if (request.event) request.event(event);
+    };
+    const auto begin = [&](const Json& entry, bool preparing) {
+        tell({{"begin", entry["name"]}, {"group", entry["group"]}, {"preparing", preparing}});
+    };
+    const Device device(request.device);
     std::vector<Factory> factories;
     for (const auto& from : {deviceCases, meshCases, tableCases, shadingCases})
         for (Factory& f : from(device, Size{request.quick})) factories.push_back(std::move(f));
+    // Every round runs each case once, in an order of its own: machines drift, and all cases drift with them.
+    const int rounds = request.quick ? 5 : 15;
     std::vector<Running> running;
     Json failed = Json::array();
     for (const Factory& f : factories) {
@@ -126,9 +109,11 @@ Json measureDevice(const Request& request) {
         if (f.group != "device" && !request.only.empty() &&
             std::none_of(request.only.begin(), request.only.end(), named))
             continue;
-        say(f.name + ": prepared, compared with the truth");
+        if (std::find(request.without.begin(), request.without.end(), f.name) != request.without.end()) continue;
         Running r;
         r.entry = {{"name", f.name}, {"group", f.group}};
+        tell({{"say", f.name + ": prepared, compared with the truth"}});
+        begin(r.entry, true);
         try {
             r.work = f.make();
             r.entry["what"] = r.work.what;
@@ -145,26 +130,25 @@ Json measureDevice(const Request& request) {
             r.work.run();
             const double once = std::max(milliseconds() - start, 1e-3);
             r.repeats = int(std::clamp((request.quick ? 2.0 : 10.0) / once, 1.0, 100.0));
-            running.push_back(std::move(r));
+            r.rounds = int(std::clamp(request.limitSeconds * 1e3 / (once * r.repeats), 1.0, double(rounds)));
+            tell({{"tried", f.name}});
+            if (!request.trying) running.push_back(std::move(r));
         } catch (const std::exception& e) {
             r.entry["failed"] = e.what();
             failed.push_back(r.entry);
+            tell({{"failed", r.entry}});
         }
-        if (request.cancelled && request.cancelled())
-            throw pellucid::Error(PEL_ERROR_CANCELLED, "the benchmark was cancelled");
     }
-    // Every round runs each case once, in an order of its own: machines drift, and all cases drift with them.
-    const int rounds = request.quick ? 5 : 15;
     std::mt19937 random(1);
     std::vector<size_t> order(running.size());
     for (size_t i = 0; i < order.size(); ++i) order[i] = i;
     for (int round = 0; round < rounds; ++round) {
-        say("round " + std::to_string(round + 1) + " of " + std::to_string(rounds));
+        tell({{"say", "round " + std::to_string(round + 1) + " of " + std::to_string(rounds)}});
         std::shuffle(order.begin(), order.end(), random);
         for (const size_t i : order) {
+            if (round >= running[i].rounds) continue;
+            begin(running[i].entry, false);
             sample(device, running[i]);
-            if (request.cancelled && request.cancelled())
-                throw pellucid::Error(PEL_ERROR_CANCELLED, "the benchmark was cancelled");
         }
     }
     double bandwidth = 0, peak = 0;
@@ -172,8 +156,8 @@ Json measureDevice(const Request& request) {
         if (r.entry["name"] == copyName) bandwidth = r.work.bytes / median(r.wall) * 1e3;
         if (r.entry["name"] == arithmeticName) peak = r.work.operations / median(r.wall) * 1e3;
     }
-    report["copy_bytes_per_second"] = bandwidth;
-    report["operations_per_second"] = peak;
+    Json report = {{"copy_bytes_per_second", bandwidth > 0 ? Json(bandwidth) : Json()},
+                   {"operations_per_second", peak > 0 ? Json(peak) : Json()}};
     Json list = Json::array();
     for (const Running& r : running) {
         Json e = summary(r);

@@ -1,5 +1,7 @@
 // pellucid bench: every operation on every device, its time and its error; bench compare: two reports against
 // each other.
+#include <unistd.h>
+
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -20,9 +22,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct Arguments {
-    std::vector<std::string> devices, only;
+    std::vector<std::string> devices, only, without;
     std::string output, before, after;
+    double limitSeconds = 0;  // 0: depends on `quick`
     bool quick = false, json = false, firstUse = false;
+    bool events = false, trying = false;  // a process of this command's own: tells what it does, line by line
 };
 
 std::atomic<bool> stopped{false};
@@ -47,7 +51,35 @@ std::vector<std::string> chosenDevices(const Arguments& a) {
     return chosen;
 }
 
+bench::Request requestOf(const Arguments& a, const std::string& device) {
+    bench::Request request;
+    request.device = device;
+    request.quick = a.quick;
+    request.only = a.only;
+    request.without = a.without;
+    request.trying = a.trying;
+    request.limitSeconds = a.limitSeconds > 0 ? a.limitSeconds : a.quick ? 60 : 120;
+    return request;
+}
+
+// What the process that waits for this one reads.
+void measureWithEvents(const Arguments& a) {
+    // Drivers may print; not among the events.
+    std::FILE* out = ::fdopen(::dup(STDOUT_FILENO), "w");
+    ::dup2(STDERR_FILENO, STDOUT_FILENO);
+    const auto tell = [out](const Json& event) {
+        std::fprintf(out, "%s\n", event.dump().c_str());
+        std::fflush(out);
+    };
+    bench::Request request = requestOf(a, a.devices.empty() ? "" : a.devices[0]);
+    request.event = tell;
+    const Json report = bench::measureCases(request);
+    tell({{"report", report}});
+    std::fclose(out);
+}
+
 void measure(const Arguments& a) {
+    if (a.events) return measureWithEvents(a);
     if (a.firstUse) {
         std::cout << bench::firstUse(a.devices.empty() ? "" : a.devices[0]).dump() << std::endl;
         return;
@@ -66,14 +98,11 @@ void measure(const Arguments& a) {
         std::signal(signal, SIG_DFL);
     });
     const auto start = std::chrono::steady_clock::now();
-    Json report = {{"host", bench::describeHost()}, {"quick", a.quick}, {"devices", Json::array()}};
+    Json report = {{"host", bench::describeHost()}, {"quick", a.quick}, {"limit_s", requestOf(a, "").limitSeconds}, {"devices", Json::array()}};
     std::string names;
     double deviceMilliseconds = 0;
     for (const std::string& selector : chosen) {
-        bench::Request request;
-        request.device = selector;
-        request.quick = a.quick;
-        request.only = a.only;
+        bench::Request request = requestOf(a, selector);
         request.command = std::filesystem::read_symlink("/proc/self/exe").string();
         request.progress = [&](const std::string& text) {
             std::fprintf(stderr, "device %s: %s\n", selector.c_str(), text.c_str());
@@ -162,6 +191,14 @@ void addBench(CLI::App& app) {
     command->add_option("--only", a->only,
                         "part of an operation's name; may be given several times (default: all)");
     command->add_flag("--quick", a->quick, "small sizes and few repetitions: some seconds");
+    command
+        ->add_option("--limit", a->limitSeconds,
+                     "seconds that an operation may take to be prepared, and again to be measured, before it is given up (120; "
+                     "with --quick 60)")
+        ->check(CLI::PositiveNumber);
+    command->add_flag("--events", a->events)->group("");
+    command->add_flag("--try", a->trying)->group("");
+    command->add_option("--without", a->without)->group("");
     command->add_flag("--json", a->json, "print one JSON object on standard output");
     command->add_flag("--first-use", a->firstUse,
                       "time from nothing to the first table and frame, in this process alone");
