@@ -82,6 +82,7 @@ TEST_F(Cli, DevicesAreChosenOrNamedMissing) {
 
 TEST_F(Cli, WrongUseIsRefused) {
     expectRefused({}, 2, "subcommand");
+    expectRefused({"lut", "curvatur"}, 2, "no subcommand 'lut curvatur'; there are curvature, shadow, specular");
     expectRefused({"curvatur"}, 2, "curvatur");
     expectRefused({"lut", "curvature"}, 2, "--output");
     expectRefused({"lut", "curvature", "-o", path("l.npy"), "--sise", "8x8"}, 2, "--sise");

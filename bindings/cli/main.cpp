@@ -14,15 +14,15 @@ int fail(ExitCode code, const char* message) {
     return code;
 }
 
-// CLI11 would only say that a subcommand is required.
-void checkSubcommand(const CLI::App& app, int argc, char** argv) {
-    if (argc < 2 || argv[1][0] == '-') return;
+// CLI11 would only say that a subcommand is required. Also of those that have some and need one, such as `lut`.
+void checkSubcommand(const CLI::App& app, int argc, char** argv, const std::string& path = "") {
+    if (argc < 2 || argv[1][0] == '-' || app.get_require_subcommand_min() == 0) return;
     std::string names;
     for (const CLI::App* known : app.get_subcommands({})) {
-        if (known->get_name() == argv[1]) return;
+        if (known->get_name() == argv[1]) return checkSubcommand(*known, argc - 1, argv + 1, path + argv[1] + " ");
         names += (names.empty() ? "" : ", ") + known->get_name();
     }
-    throw UsageError(std::string("there is no subcommand '") + argv[1] + "'; there are " + names);
+    throw UsageError("there is no subcommand '" + path + argv[1] + "'; there are " + names);
 }
 
 }  // namespace
