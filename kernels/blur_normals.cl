@@ -158,7 +158,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void blur_n
             Vec3w n = blurAlong(&field, (int)first, (int)y, convert_floatw(id), radius, valid);
             if (alongY) {
                 const floatw length2 = dot3(n, n);
-                n = select3(loadPlanes(to, plane, at), scale3(n, 1.0f / sqrt(length2)), length2 > 1e-12f);
+                const maskw vanished = valid & notw(length2 > 1e-12f);
+                n = scale3(n, 1.0f / sqrt(length2));
+                if (anyw(vanished)) n = select3(n, loadPlanesOf(to, plane, at, vanished), vanished);
                 const floatw none = NAN; // the shading pass makes it the invalid colour
                 n = select3(vec3(none, none, none), n, valid);
             }

@@ -8,6 +8,7 @@
 
 #include "mesh_calls.h"
 #include "npy.h"
+#include "test_size.h"
 
 namespace fixture {
 

@@ -11,7 +11,7 @@ inline Frame reliefFrame(uint32_t seed, uint32_t width, uint32_t height, float p
     Random random(seed);
     Frame f;
     f.width = width;
-    f.height = height;
+    f.height = height = sizedRows(width, height);
     for (int slot : {PEL_SLOT_POSITION, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_GEOMETRIC}) {
         f.slots[slot].components = 3;
         f.slots[slot].values.resize(f.pixels() * 3);

@@ -12,6 +12,7 @@
 #include <random>
 
 #include "reference/shade_pixel.h"
+#include "test_size.h"
 
 namespace shade_test {
 
@@ -99,7 +100,7 @@ inline Frame randomFrame(uint32_t seed, uint32_t width, uint32_t height, uint32_
     Random random(seed);
     Frame f;
     f.width = width;
-    f.height = height;
+    f.height = height = sizedRows(width, height);
     const auto fill = [&](Image& image, uint32_t components, auto value) {
         image.components = components;
         image.values.resize(f.pixels() * components);

@@ -74,7 +74,7 @@ TEST(CurvatureTensor, EqualsTheOracle) {
     for (const auto& [name, surface] : surfaces)
         for (auto kind : {Tessellation::regular, Tessellation::irregular, Tessellation::valenceVarying})
             for (bool noisy : {false, true}) {
-                reference::Mesh mesh = tessellate(surface, 24, 17, kind).mesh;
+                reference::Mesh mesh = tessellate(surface, sized(24, 8), sized(17, 6), kind).mesh;
                 if (noisy) addNoise(mesh, 0.02, 3);
                 const Pair pair = pairOf(mesh);
                 std::vector<double> expected;
@@ -247,7 +247,7 @@ TEST(CurvatureAccuracy, EverySurfaceUnderNoise) {
 
 TEST(CurvatureAccuracy, DoesNotDependOnTheUnitOfLength) {
     // Powers of two, so that positions round alike: every bit but the exponent must stay.
-    const AnalyticMesh sphere = tessellate(reference::sphereSurface(1), 48, 32, Tessellation::irregular);
+    const AnalyticMesh sphere = tessellate(reference::sphereSurface(1), sized(48, 9), sized(32, 7), Tessellation::irregular);
     const Mesh base = pairOf(sphere.mesh).mesh;
     for (auto estimator : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
         const auto params = paramsOf(estimator, PEL_QUANTITY_ABSOLUTE, 2);
@@ -264,7 +264,7 @@ TEST(CurvatureAccuracy, DoesNotDependOnTheUnitOfLength) {
 
 TEST(CurvatureAccuracy, FarFromTheOriginOnlyTheRoundingOfPositionsShows) {
     // Positions that float holds exactly both near and far: moving them must change nothing at all.
-    Mesh mesh = pairOf(tessellate(reference::torusSurface(3, 1), 48, 24, Tessellation::irregular).mesh).mesh;
+    Mesh mesh = pairOf(tessellate(reference::torusSurface(3, 1), sized(48, 9), sized(24, 7), Tessellation::irregular).mesh).mesh;
     for (float& x : mesh.positions) x = std::round(x * 4096) / 4096;
     Mesh far = mesh;
     for (size_t i = 0; i < far.positions.size(); i += 3) {
@@ -281,7 +281,7 @@ TEST(CurvatureAccuracy, FarFromTheOriginOnlyTheRoundingOfPositionsShows) {
 
 TEST(CurvatureQuantities, AreWhatTheyAreOfThePrincipalOnes) {
     const Mesh mesh =
-        pairOf(tessellate(reference::torusSurface(3, 1), 40, 30, Tessellation::irregular).mesh).mesh;
+        pairOf(tessellate(reference::torusSurface(3, 1), sized(40, 9), sized(30, 7), Tessellation::irregular).mesh).mesh;
     for (auto estimator : estimators)
         for (uint32_t passes : {0u, 2u}) {
             const std::vector<float> k = principal(mesh, estimator, passes);
@@ -346,7 +346,7 @@ TEST(CurvatureQuantities, DirectionsOfACylinder) {
 
 TEST(CurvatureEstimators, ComeOutTheSameBitForBit) {
     const Mesh mesh =
-        pairOf(tessellate(reference::torusSurface(3, 1), 60, 40, Tessellation::irregular).mesh).mesh;
+        pairOf(tessellate(reference::torusSurface(3, 1), sized(60, 9), sized(40, 7), Tessellation::irregular).mesh).mesh;
     for (auto estimator : estimators) {
         const std::vector<float> base = principal(mesh, estimator, 1);
         for (int run = 0; run < 3; ++run) EXPECT_EQ(principal(mesh, estimator, 1), base);
@@ -354,8 +354,8 @@ TEST(CurvatureEstimators, ComeOutTheSameBitForBit) {
 }
 
 TEST(CurvatureEstimators, BrokenDataStaysFiniteAndLocal) {
-    const Mesh mesh = torus(32, 24);
-    const uint32_t faulty = 300;
+    const Mesh mesh = torus(sized(32, 14), sized(24, 12));
+    const uint32_t faulty = sized(300u, 90u);
     for (auto estimator : estimators) {
         const std::vector<float> sound = principal(mesh, estimator, 1);
         for (int fault = 0; fault < 5; ++fault) {

@@ -22,11 +22,11 @@ std::vector<std::pair<std::string, Pair>> someMeshes() {
     for (const auto& [surfaceName, surface] : surfaces)
         for (const auto& [kindName, kind] : kinds)
             all.emplace_back(std::string(surfaceName) + ", " + kindName,
-                             pairOf(tessellate(surface, 24, 17, kind).mesh));
-    AnalyticMesh noisy = tessellate(torusSurface(3, 1), 40, 20, Tessellation::irregular);
+                             pairOf(tessellate(surface, sized(24, 9), sized(17, 7), kind).mesh));
+    AnalyticMesh noisy = tessellate(torusSurface(3, 1), sized(40, 11), sized(20, 8), Tessellation::irregular);
     addNoise(noisy.mesh, 0.02, 5);
     all.emplace_back("noisy torus", pairOf(noisy.mesh));
-    all.emplace_back("icosphere", pairOf(icosphere(1, 1, 1, 3).mesh));
+    all.emplace_back("icosphere", pairOf(icosphere(1, 1, 1, sized(3, 1)).mesh));
     return all;
 }
 

@@ -90,9 +90,9 @@ std::vector<std::pair<std::string, reference::Mesh>> meshes() {
     using enum Tessellation;
     std::vector<std::pair<std::string, reference::Mesh>> all;
     const auto add = [&](const char* name, const Surface& surface, Tessellation kind, int flips = 0) {
-        all.emplace_back(name, tessellate(surface, 24, 17, kind).mesh);
+        all.emplace_back(name, tessellate(surface, sized(24, 10), sized(17, 8), kind).mesh);
         orient(all.back().second);
-        if (flips > 0) flipEdges(all.back().second, flips, 7);
+        if (flips > 0) flipEdges(all.back().second, sized(flips, flips / 10), 7);
     };
     add("torus", torusSurface(3, 1), irregular);
     add("torus of 4 and 8 neighbours", torusSurface(3, 1), valenceVarying);
@@ -102,11 +102,11 @@ std::vector<std::pair<std::string, reference::Mesh>> meshes() {
     add("saddle, open", monkeySaddle(2), irregular);
     add("cone, open", coneSurface(0.5, 1, 4), irregular, 200);
     add("cylinder, open", cylinderSurface(2, 6), valenceVarying);
-    all.emplace_back("ball", icosphere(1, 1.5, 2, 3).mesh);
-    all.emplace_back("noisy torus", tessellate(torusSurface(3, 1), 40, 20, irregular).mesh);
+    all.emplace_back("ball", icosphere(1, 1.5, 2, sized(3, 1)).mesh);
+    all.emplace_back("noisy torus", tessellate(torusSurface(3, 1), sized(40, 12), sized(20, 8), irregular).mesh);
     orient(all.back().second);
     addNoise(all.back().second, 0.05, 5);
-    all.emplace_back("noisy saddle, open", tessellate(monkeySaddle(2), 24, 17, irregular).mesh);
+    all.emplace_back("noisy saddle, open", tessellate(monkeySaddle(2), sized(24, 10), sized(17, 8), irregular).mesh);
     orient(all.back().second);
     addNoise(all.back().second, 0.05, 6);
     return all;
@@ -168,8 +168,9 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
                 worst[i] = errors[i] <= worst[i] ? worst[i] : errors[i];
             }
         }
-        EXPECT_LE(left, expected.size() / 50);
+        EXPECT_LE(left, expected.size() / sized<size_t>(50, 8));
     }
+    if (testsAreSmall()) return;  // too few vertices for all of these
     for (size_t n = 3; n <= 12; ++n) EXPECT_TRUE(valences.contains(n)) << n;
     EXPECT_GT(borders, 100u);
     EXPECT_GT(replaced, 5u);

@@ -114,7 +114,7 @@ TEST(CurvatureDiffusion, TakesNoiseOut) {
 }
 
 TEST(CurvatureDiffusion, StaysWithinTheRangeOfItsValues) {
-    AnalyticMesh torus = tessellate(reference::torusSurface(3, 1), 60, 30, Tessellation::irregular);
+    AnalyticMesh torus = tessellate(reference::torusSurface(3, 1), sized(60, 9), sized(30, 7), Tessellation::irregular);
     addNoise(torus.mesh, 0.1, 2);
     const Mesh mesh = pairOf(torus.mesh).mesh;
     const std::vector<float> before = run(mesh, smoothed(0));
@@ -132,7 +132,7 @@ TEST(CurvatureDiffusion, StaysWithinTheRangeOfItsValues) {
 
 TEST(CurvatureDiffusion, AreaWeightsKeepEveryValueBetweenItsNeighbours) {
     // Slivers have negative cotangents, which carry a spike beyond the range of all values; areas have none.
-    const AnalyticMesh sliced = tessellate(reference::cylinderSurface(1, 0.3), 40, 60, Tessellation::irregular);
+    const AnalyticMesh sliced = tessellate(reference::cylinderSurface(1, 0.3), sized(40, 14), sized(60, 20), Tessellation::irregular);
     Mesh mesh = pairOf(sliced.mesh).mesh;
     PelCurvatureParams params = smoothed(0.05f, PEL_CURVATURE_EDGE, PEL_SMOOTHING_AREA);
     const std::vector<float> before = run(mesh, smoothed(0, PEL_CURVATURE_EDGE));
@@ -152,7 +152,7 @@ TEST(CurvatureDiffusion, KeepsWhatLiesBeyondACrease) {
     // Two planes at a right angle, welded along the fold, curvature of the fold itself: edge-preserving
     // smoothing leaves it where it is, plain smoothing carries it into the planes.
     Mesh mesh;
-    const int n = 20;
+    const int n = sized(20, 8);
     const double degrees90[2][3] = {{1, 0, 0}, {0, 0, -1}};
     for (int y = 0; y <= n; ++y)
         for (int x = -n; x <= n; ++x) {
@@ -187,7 +187,7 @@ TEST(CurvatureDiffusion, KeepsWhatLiesBeyondACrease) {
 }
 
 TEST(CurvatureDiffusion, SpreadsNoNaNAndNamesWrongParameters) {
-    Mesh mesh = pairOf(tessellate(reference::torusSurface(3, 1), 40, 20, Tessellation::irregular).mesh).mesh;
+    Mesh mesh = pairOf(tessellate(reference::torusSurface(3, 1), sized(40, 20), sized(20, 16), Tessellation::irregular).mesh).mesh;
     mesh.positions[300] = NAN;
     mesh.normals[900] = INFINITY;
     const std::vector<float> values = run(mesh, smoothed(0.5f));

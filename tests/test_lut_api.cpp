@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "test_size.h"
 #include "tolerances.h"
 
 using namespace pellucid;
@@ -149,7 +150,7 @@ TEST(LutApi, TexelsFromOutsideComeBackBitForBit) {
 
 TEST(LutApi, SubmittedWorkFinishesWithItsEvent) {
     const Device device("");
-    const PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    const PelCurvatureLutDesc desc = sizedTable(pelCurvatureLutDescDefaults());
     const auto expected = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
     PelEvent made = nullptr, read = nullptr;
     const PelSubmit make{nullptr, 0, &made};

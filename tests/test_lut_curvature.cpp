@@ -3,6 +3,7 @@
 #include <random>
 
 #include "lut_cases.h"
+#include "test_size.h"
 
 using namespace pellucid;
 
@@ -29,7 +30,8 @@ reference::CurvatureLutSpec specOf(const PelCurvatureLutDesc& desc) {
 }
 
 // Compares up to `samples` texels, the corners always among them.
-void compareTexels(const Device& device, const PelCurvatureLutDesc& desc, int samples) {
+void compareTexels(const Device& device, const PelCurvatureLutDesc& usual, int samples) {
+    const PelCurvatureLutDesc desc = sizedTable(usual);
     const std::vector<float> texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
     const auto profile = reference::profileForRadius(reference::skinProfile(), desc.diffusionRadius);
     const auto spec = specOf(desc);
@@ -88,7 +90,8 @@ TEST(CurvatureLut, LimitsOfRadius) {
 
 TEST(CurvatureLut, RisesWithTheLightAndHasNoKinks) {
     const Device device("");
-    const auto desc = pelCurvatureLutDescDefaults();
+    auto desc = pelCurvatureLutDescDefaults();
+    desc.height = sized(desc.height, 2u);
     const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
     double roughest = 0;
     for (uint32_t y = 0; y < desc.height; ++y)
@@ -105,29 +108,30 @@ TEST(CurvatureLut, RisesWithTheLightAndHasNoKinks) {
 
 TEST(CurvatureLut, EncodingsRoundTruth) {
     const Device device("");
-    const auto desc = describe(256, 64, 1, 100, 2.7f);
+    const int height = sized(64, 4);
+    const auto desc = describe(256, uint32_t(height), 1, 100, 2.7f);
     const Lut lut(device, desc);
     const auto texels = lut.read<float>(PEL_LUT_FLOAT);
     const auto bytes = lut.read<uint8_t>(PEL_LUT_FACEWORKS8);
     const auto profile = reference::skinProfile();
     const auto spec = specOf(desc);
-    ASSERT_EQ(bytes.size(), 256u * 64 * 4);
+    ASSERT_EQ(bytes.size(), 256u * size_t(height) * 4);
     int clipped = 0;
-    for (int y = 0; y < 64; y += 3)
+    for (int y = 0; y < height; y += 3)
         for (int x = 0; x < 256; x += 3) {
             const reference::Rgb truth = reference::curvatureTexel(spec, *profile, x, y);
             const reference::Rgb steps = reference::faceworksCurvatureSteps(truth, spec.u(x));
             clipped += reference::faceworksCurvatureClips(truth, spec.u(x));
             fixture::expectRounded(&bytes[(size_t(y) * 256 + x) * 4], steps, x, y);
         }
-    EXPECT_GT(clipped, 0) << "the narrowest radii exceed what the peer's residual holds";
+    EXPECT_TRUE(clipped > 0 || testsAreSmall()) << "the narrowest radii exceed what the peer's residual holds";
     uint64_t all = 0;
     for (size_t i = 0; i < texels.size(); i += 3) {
         const double u = spec.u(int(i / 3 % 256));
         all += reference::faceworksCurvatureClips({texels[i], texels[i + 1], texels[i + 2]}, u);
     }
     EXPECT_EQ(lut.clippedTexels(), all);
-    EXPECT_EQ(Lut(Device(""), pelShadowLutDescDefaults()).clippedTexels(), 0u);
+    EXPECT_EQ(Lut(Device(""), sizedTable(pelShadowLutDescDefaults())).clippedTexels(), 0u);
     EXPECT_EQ(pelLutCountClipped(lut.get(), nullptr), PEL_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(lut.read<uint16_t>(PEL_LUT_HALF).size(), texels.size());
 }

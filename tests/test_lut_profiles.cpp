@@ -2,6 +2,7 @@
 #include <random>
 
 #include "lut_cases.h"
+#include "test_size.h"
 
 using namespace pellucid;
 using fixture::forms;
@@ -47,13 +48,13 @@ std::vector<Pair> pairs() {
 
 void compare(const Device& device, const Pair& pair, PelCurvatureForm form, reference::Form trueForm,
              double least, double most, PelLutAxis axis) {
-    PelCurvatureLutDesc desc = fixture::curvatureTable(pair.ours, form, 48, 12, least, most);
+    PelCurvatureLutDesc desc = fixture::curvatureTable(pair.ours, form, sized(48u, 7u), sized(12u, 3u), least, most);
     desc.axis = axis;
     const Lut lut(device, desc);
     const auto texels = lut.read<float>(PEL_LUT_FLOAT);
     std::mt19937 random(3);
     for (int i = 0; i < 24; ++i) {
-        const int x = int(random() % desc.width), y = i < 12 ? i : int(random() % desc.height);
+        const int x = int(random() % desc.width), y = i < int(desc.height) ? i : int(random() % desc.height);
         double u = -1 + (x + 0.5) * 2 / desc.width, c;
         const double c0 = 1 / double(desc.radiusMax), c1 = 1 / double(desc.radiusMin),
                      t = (y + 0.5) / desc.height;
@@ -105,7 +106,7 @@ TEST(LutProfiles, ShadowEqualsTheIntegral) {
 TEST(LutProfiles, MeanOverTheSphereIsAQuarter) {
     const Device device("");
     for (const Pair& pair : pairs()) {
-        const auto desc = fixture::curvatureTable(pair.ours, PEL_FORM_SPHERE, 2049, 16, 0.05, 1000);
+        const auto desc = fixture::curvatureTable(pair.ours, PEL_FORM_SPHERE, 2049, sized(16u, 2u), 0.05, 1000);
         fixture::expectMeansOfAQuarter(Lut(device, desc).read<float>(PEL_LUT_FLOAT), desc.width, pair.name);
     }
 }

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "lut_cases.h"
+#include "test_size.h"
 
 using namespace pellucid;
 using fixture::curvatureTable;
@@ -72,9 +73,9 @@ double bound(PelProfileKind kind) {
 // number.
 TEST(LutProperties, CurvatureRisesIsBoundedAndScales) {
     const Device device("");
-    constexpr uint32_t width = 65, height = 24;
+    const uint32_t width = sized(65u, 9u), height = sized(24u, 3u);
     for (PelProfileKind kind : kinds)
-        for (unsigned seed = 0; seed < 4; ++seed) {
+        for (unsigned seed = 0; seed < sized(4u, 1u); ++seed) {
             const Profile profile = randomProfile(kind, seed, 1), large = randomProfile(kind, seed, 1000);
             for (const auto& entry : forms) {
                 const PelCurvatureForm form = entry.first;
@@ -109,7 +110,7 @@ TEST(LutProperties, CurvatureRisesIsBoundedAndScales) {
 // Random sums of Gaussians in every form, some texels each, against the integral.
 TEST(LutProperties, RandomGaussiansEqualTheIntegral) {
     const Device device("");
-    for (unsigned seed = 100; seed < 112; ++seed) {
+    for (unsigned seed = 100; seed < sized(112u, 102u); ++seed) {
         Random random(seed);
         std::vector<PelGaussian> gaussians(1 + random() % 6);
         std::vector<reference::Gaussian> same;
@@ -140,9 +141,9 @@ TEST(LutProperties, RandomGaussiansEqualTheIntegral) {
 
 TEST(LutProperties, SphereKeepsTheEnergy) {
     const Device device("");
-    constexpr uint32_t width = 2049, height = 5;
+    const uint32_t width = 2049, height = sized(5u, 1u);
     for (PelProfileKind kind : kinds)
-        for (unsigned seed = 0; seed < 4; ++seed) {
+        for (unsigned seed = 0; seed < sized(4u, 1u); ++seed) {
             const Profile profile = randomProfile(kind, seed, 1);
             const auto D = Lut(device, curvatureTable(profile, PEL_FORM_SPHERE, width, height, 0.05, 100))
                                .read<float>(PEL_LUT_FLOAT);
@@ -153,9 +154,9 @@ TEST(LutProperties, SphereKeepsTheEnergy) {
 // T + T mirrored is the whole, T rises with the shadow value.
 TEST(LutProperties, ShadowRisesAndIsOdd) {
     const Device device("");
-    constexpr uint32_t width = 64, height = 12;
+    const uint32_t width = sized(64u, 9u), height = sized(12u, 3u);
     for (PelProfileKind kind : kinds)
-        for (unsigned seed = 0; seed < 4; ++seed) {
+        for (unsigned seed = 0; seed < sized(4u, 1u); ++seed) {
             const Profile profile = randomProfile(kind, seed, 1);
             const auto desc = fixture::shadowTable(profile, width, height, 0.3, 300, seed % 2 ? 1.0f : 10.0f);
             const auto T = Lut(device, desc).read<float>(PEL_LUT_FLOAT);

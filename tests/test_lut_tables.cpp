@@ -2,6 +2,7 @@
 #include <random>
 
 #include "lut_cases.h"
+#include "test_size.h"
 
 using namespace pellucid;
 using fixture::forms;
@@ -55,7 +56,7 @@ TEST(LutTables, EveryFormEqualsTheIntegral) {
         const auto truth = table.truth();
         EXPECT_NEAR(ours.info().radius / truth->radius(), 1, tolerance::profileEvaluation);
         for (const auto& [form, trueForm] : forms) {
-            const PelCurvatureLutDesc desc = fixture::curvatureTable(ours, form, 60, 16, 0.05, 1e4);
+            const PelCurvatureLutDesc desc = fixture::curvatureTable(ours, form, sized(60u, 9u), sized(16u, 3u), 0.05, 1e4);
             const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
             std::mt19937 random(5);
             for (int i = 0; i < 40; ++i) {
@@ -84,14 +85,15 @@ TEST(LutTables, ShadowEqualsTheIntegral) {
         const double radius = truth->radius();
         for (auto [least, most, sharpening] :
              {std::tuple{2.0, 40.0, 1.0f}, {0.05, 1000.0, 1.0f}, {2.0, 40.0, 10.0f}, {1.0, 10.0, 1e5f}}) {
-            const PelShadowLutDesc desc = fixture::shadowTable(ours, 41, 9, least, most, sharpening);
+            const int width = sized(41, 9), height = sized(9, 3);
+            const PelShadowLutDesc desc = fixture::shadowTable(ours, uint32_t(width), uint32_t(height), least, most, sharpening);
             const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
-            const reference::ShadowLutSpec spec{41, 9, desc.widthMin, desc.widthMax, radius, sharpening};
-            for (int y = 0; y < 9; y += 2)
-                for (int x = y % 3; x < 41; x += 4) {
+            const reference::ShadowLutSpec spec{width, height, desc.widthMin, desc.widthMax, radius, sharpening};
+            for (int y = 0; y < height; y += 2)
+                for (int x = y % 3; x < width; x += 4) {
                     const auto T = reference::shadowTexel(spec, *truth, x, y);
                     for (int k = 0; k < 3; ++k) {
-                        const double error = std::abs(texels[(size_t(y) * 41 + x) * 3 + k] - T[k]);
+                        const double error = std::abs(texels[(size_t(y) * size_t(width) + size_t(x)) * 3 + k] - T[k]);
                         EXPECT_LT(error, tolerance::lutTexelOther)
                             << table.name << " (" << x << ", " << y << ") sharpening " << sharpening
                             << " widths " << least << " to " << most << " truth " << T[k];
@@ -127,8 +129,8 @@ TEST(LutTables, MoreDistancesOnTheSameLinesChangeNothing) {
     many.distances.push_back(few.distances.back());
     many.values.insert(many.values.end(), {0, 0, 0});
     for (const auto& [form, name] : forms) {
-        const auto one = curvatureTexels(device, few.ours(), form, 33, 560),
-                   other = curvatureTexels(device, many.ours(), form, 33, 560);
+        const auto one = curvatureTexels(device, few.ours(), form, 33, sized(560u, 1u)),
+                   other = curvatureTexels(device, many.ours(), form, 33, sized(560u, 1u));
         for (size_t i = 0; i < one.size(); ++i)
             ASSERT_NEAR(one[i], other[i], tolerance::lutTexelOther)
                 << "form " << int(form) << " texel " << i / 3;
@@ -138,7 +140,7 @@ TEST(LutTables, MoreDistancesOnTheSameLinesChangeNothing) {
 TEST(LutTables, MeanOverTheSphereIsAQuarter) {
     const Device device("");
     for (const Table& table : tables())
-        fixture::expectMeansOfAQuarter(curvatureTexels(device, table.ours(), PEL_FORM_SPHERE, 2049, 8), 2049, table.name);
+        fixture::expectMeansOfAQuarter(curvatureTexels(device, table.ours(), PEL_FORM_SPHERE, 2049, sized(8u, 1u)), 2049, table.name);
 }
 
 // A table that holds nothing within reach has no answer but the light itself.

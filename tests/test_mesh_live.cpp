@@ -158,7 +158,7 @@ TEST(MeshTopologyFile, DamageIsRefused) {
 }
 
 TEST(MeshLive, ANewPoseIsOneSubmitWithoutCopiesOrBuilds) {
-    const Mesh mesh = torus(64, 48);
+    const Mesh mesh = torus(sized(64, 32), sized(48, 24));
     const uint32_t n = mesh.vertices();
     const MeshTopology topology(device(), topologyDesc(mesh));
     const Buffer positions(device(), mesh.positions), out(device(), n * 4);

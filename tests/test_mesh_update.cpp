@@ -138,7 +138,7 @@ TEST(LiveMesh, WorksOnNoMoreRowsThanTheChangeReaches) {
 }
 
 TEST(LiveMesh, NothingChangedCostsNothing) {
-    Pose pose(torus(64, 48), false, 1);
+    Pose pose(torus(sized(64, 32), sized(48, 24)), false, 1);
     const MeshTopology topology(device(), topologyDesc(pose.mesh));
     const LiveMesh live(topology, pelCurvatureParamsDefaults());
     const std::vector<PelVertexRange> none, empty{{5, 0}};
@@ -157,7 +157,7 @@ TEST(LiveMesh, NothingChangedCostsNothing) {
 }
 
 TEST(LiveMesh, AnotherTargetIsWrittenWholeAndNormalsThatAppearCount) {
-    Pose pose(torus(64, 48), true, 1);
+    Pose pose(torus(sized(64, 32), sized(48, 24)), true, 1);
     const MeshTopology topology(device(), topologyDesc(pose.mesh));
     const PelCurvatureParams params = paramsOf(PEL_CURVATURE_TENSOR, PEL_QUANTITY_ABSOLUTE);
     const LiveMesh live(topology, params);
@@ -175,7 +175,7 @@ TEST(LiveMesh, AnotherTargetIsWrittenWholeAndNormalsThatAppearCount) {
 }
 
 TEST(LiveMesh, IsOneAsynchronousSubmission) {
-    Pose pose(torus(64, 48), false, 1);
+    Pose pose(torus(sized(64, 32), sized(48, 24)), false, 1);
     const MeshTopology topology(device(), topologyDesc(pose.mesh));
     const LiveMesh live(topology, pelCurvatureParamsDefaults());
     const std::vector<PelVertexRange> some{{100, 9}};

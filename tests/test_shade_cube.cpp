@@ -53,6 +53,7 @@ Frame ambientFrame(const std::vector<Vec3>& normals) {
 std::vector<Vec3> randomNormals(uint32_t seed, size_t count) {
     Random random(seed);
     std::vector<Vec3> normals;
+    if (count > 1000) count = sized<size_t>(count, 600);
     for (float v[3]; normals.size() < count;) random.unit(v), normals.push_back({v[0], v[1], v[2]});
     return normals;
 }
@@ -261,7 +262,7 @@ TEST(ShadeCube, ABadTexelStaysWhereItIsRead) {
             EXPECT_TRUE(lost || dot(normals[i], place) < std::cos(0.04)) << i;
         }
         EXPECT_EQ(stats.pixelsInvalid, invalid);
-        EXPECT_GT(invalid, 20u);
+        EXPECT_GT(invalid, sized(20u, 3u));
     }
 }
 

@@ -135,7 +135,7 @@ TEST(BlurNormals, BadPixelsStayAlone) {
     f.options.invalidColor[0] = -7;
     const auto before = shade(device(), f, tables());
     Frame bad = f;
-    const size_t normal = 20 * 120 + 30, position = 40 * 120 + 90;
+    const size_t normal = sized(20, 2) * 120 + 30, position = sized(40, 9) * 120 + 90;
     bad.slots[PEL_SLOT_NORMAL_SHADING].values[3 * normal] = nan;
     bad.slots[PEL_SLOT_POSITION].values[3 * position + 1] = std::numeric_limits<float>::infinity();
     PelShaderStats stats = pelShaderStatsDefaults();

@@ -112,7 +112,7 @@ TEST(ShadeOutputs, OneAloneInHalf) {
 TEST(ShadeOutputs, BadPixelsAndBadInput) {
     Frame f = partsFrame(1);
     f.options.invalidColor[2] = -7;
-    const size_t bad = 30 * f.width + 50;
+    const size_t bad = f.height / 2 * f.width + 50;
     f.slots[PEL_SLOT_MATERIAL].values[bad] = 1;
     f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * bad] = std::numeric_limits<float>::quiet_NaN();
     const Shaded shaded = shadeParts(f);

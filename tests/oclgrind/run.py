@@ -1,0 +1,191 @@
+#!/usr/bin/env python3
+"""Every test case of the device by itself in Oclgrind: accesses out of bounds, races, values that nothing has set.
+
+    run.py BUILD_DIR PROGRAM... [--widths 16] [--only REGEX] [--jobs N] [--seconds S]
+
+Fails when a case fails, when Oclgrind or its plugin (defined.cpp) reports anything, when a case takes more than S seconds
+of processor time, when a line of left_out.txt matches no case, and when a kernel of kernels/*.cl was never launched.
+test_small runs with 16, 8 and 1 lanes in any case.
+"""
+import argparse
+import concurrent.futures
+import os
+import pathlib
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+# Unoptimised and not inlined: version 21.10 lacks some intrinsics of optimised code.
+OPTIONS = "-cl-opt-disable -Dalways_inline= -DPEL_NO_PREFETCH"
+
+
+def fail(message):
+    print(message, file=sys.stderr)
+    sys.exit(2)
+
+
+def plugin(build):
+    """Compiles defined.cpp where it is newer than what was compiled."""
+    source, target = HERE / "defined.cpp", build / "oclgrind" / "defined.so"
+    if target.exists() and target.stat().st_mtime > source.stat().st_mtime:
+        return target
+    libraries = subprocess.run(["ldd", "/usr/lib/oclgrind/liboclgrind-rt.so"], capture_output=True, text=True).stdout
+    version = re.search(r"libLLVM-(\d+)", libraries)
+    llvm = pathlib.Path(f"/usr/lib/llvm-{version[1] if version else 14}")
+    if not pathlib.Path("/usr/include/oclgrind/Plugin.h").exists() or not (llvm / "include/llvm/IR").exists():
+        fail(f"the plugin needs headers: apt-get install liboclgrind-dev {llvm.name}-dev")
+    target.parent.mkdir(parents=True, exist_ok=True)
+    subprocess.run([os.environ.get("CXX", "c++"), "-std=c++17", "-O2", "-fno-rtti", "-fPIC", "-shared", "-w", "-Wl,-z,nodelete",
+                    "-I/usr/include/oclgrind", f"-I{llvm}/include", source, "-o", target], check=True)
+    return target
+
+
+def cases_of(program):
+    """(suite.case, arguments) of a GoogleTest program; an example is one case."""
+    if program.name.startswith("example_"):
+        yield "whole", []
+        return
+    listing = subprocess.run([program, "--gtest_list_tests"], capture_output=True, text=True, check=True).stdout
+    suite = ""
+    for line in listing.splitlines():
+        name = line.split("#")[0].strip()
+        if line.startswith("  "):
+            if not name.startswith("DISABLED_"):
+                yield suite + name, [f"--gtest_filter={suite}{name}"]
+        elif name.endswith("."):
+            suite = name
+
+
+def left_out():
+    """(expression, pattern, reason) of each line."""
+    for line in (HERE / "left_out.txt").read_text().splitlines():
+        if line.strip() and not line.startswith("#"):
+            pattern, _, reason = line.partition("  ")
+            yield re.compile(f"({pattern})(@[0-9]+)?$"), pattern, reason.strip()
+
+
+class Result:
+    """What became of one case."""
+
+    def __init__(self, name, status, seconds, folder, limit):
+        def text(pattern):
+            return "".join(p.read_text(errors="replace") for p in sorted(folder.glob(pattern)))
+
+        self.name, self.seconds, self.status = name, seconds, status
+        self.reports, self.output, self.kernels = text("reports"), text("output"), set(text("kernels").split())
+        late = status in (-signal.SIGXCPU, -signal.SIGKILL) or seconds > limit
+        self.verdict = ("reports" if self.reports else "too slow" if late else "failed" if status else
+                        "skipped" if "[  SKIPPED ]" in self.output else "clean")
+
+
+def run_case(name, command, environment, limit, scratch):
+    """One process, and those that it starts, in Oclgrind."""
+    folder = pathlib.Path(tempfile.mkdtemp(dir=scratch))
+    with open(folder / "output", "w") as output:
+        process = subprocess.Popen(
+            ["oclgrind", "--num-threads", "1", "--log", "/dev/null", *command], cwd=folder, stdin=subprocess.DEVNULL,
+            stdout=output, stderr=subprocess.STDOUT, env=dict(environment, PELLUCID_OCLGRIND_DIR=str(folder)),
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 2)))
+        status, used = os.wait4(process.pid, 0)[1:]
+    process.returncode = os.waitstatus_to_exitcode(status)
+    result = Result(name, process.returncode, used.ru_utime + used.ru_stime, folder, limit)
+    shutil.rmtree(folder, ignore_errors=True)
+    return result
+
+
+def check_planted(defined, scratch):
+    """The mistakes of planted.cl are reported, and nothing where there is none."""
+    wrong = []
+    source = HERE / "planted.cl"
+    planted = re.findall(r"(?://\sexpect:\s(.*)\n)?__kernel void (\w+)", source.read_text())
+    for expected, kernel in planted:
+        folder = pathlib.Path(scratch) / kernel
+        folder.mkdir()
+        (folder / "launch.sim").write_text(f"{source}\n{kernel}\n16 1 1\n4 1 1\n<size=64 fill=0>\n<size=16>\n")
+        subprocess.run(["oclgrind-kernel", "--num-threads", "1", "--data-races", "--build-options", "-cl-opt-disable",
+                        "--log", "/dev/null", "--plugins", str(defined), "launch.sim"], cwd=folder, check=True,
+                       stdout=subprocess.DEVNULL, env=dict(os.environ, PELLUCID_OCLGRIND_DIR=str(folder)))
+        reports = (folder / "reports").read_text() if (folder / "reports").exists() else ""
+        if expected not in reports or (not expected and reports):
+            wrong.append(f"planted.cl: {kernel} must report '{expected or 'nothing'}', not '{reports.strip()[:300]}'")
+    print(f"{len(planted) - len(wrong)} of {len(planted)} planted kernels are judged as they should be", flush=True)
+    return wrong
+
+
+def kernels_of_the_tree():
+    """Every __kernel of kernels/, by name."""
+    found = {}
+    for path in sorted((ROOT / "kernels").rglob("*.cl*")):
+        for name in re.findall(r"__kernel\b[^{;]*?\bvoid\s+(\w+)\s*\(", path.read_text()):
+            found[name] = path.name
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("programs", nargs="+", help="test programs in BUILD_DIR/bin")
+    parser.add_argument("--widths", default="16", help="lanes of the explicit vectors: 16 and 8 as on CPUs, 1 as on GPUs")
+    parser.add_argument("--only", default="", help="cases whose name matches this regular expression")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count())
+    parser.add_argument("--seconds", type=int, default=60, help="processor time of a case (60)")
+    parser.add_argument("--times", type=pathlib.Path, help="writes verdict, seconds and name of each case here")
+    o = parser.parse_args()
+    if not shutil.which("oclgrind"):
+        fail("oclgrind is not installed: apt-get install oclgrind liboclgrind-dev llvm-14-dev")
+    environment = dict(os.environ, PELLUCID_TEST_SMALL="1", OCLGRIND_BUILD_OPTIONS=OPTIONS, OCLGRIND_DATA_RACES="1",
+                       OCLGRIND_PLUGINS=str(plugin(o.build.resolve())))
+
+    rules, skipped, work = list(left_out()), [], []
+    stale = set(range(len(rules)))
+    for program in o.programs:
+        path = o.build.resolve() / "bin" / program
+        for case, arguments in cases_of(path):
+            widths = o.widths.split(",")
+            for width in sorted({*widths, "16", "8", "1"}) if program == "test_small" else widths:
+                name = f"{program}/{case}@{width}"
+                hits = [i for i, (expression, *_) in enumerate(rules) if expression.match(name)]
+                stale -= set(hits)
+                if hits:
+                    skipped.append(name)
+                elif re.search(o.only, name):
+                    work.append((name, [str(path), *arguments], dict(environment, PELLUCID_MATH_WIDTH=width)))
+
+    done, started = [], time.monotonic()
+    with tempfile.TemporaryDirectory() as scratch:
+        bad = check_planted(environment["OCLGRIND_PLUGINS"], scratch)
+    with tempfile.TemporaryDirectory() as scratch, concurrent.futures.ThreadPoolExecutor(o.jobs) as pool:
+        running = [pool.submit(run_case, *w, o.seconds, scratch) for w in work]
+        for future in concurrent.futures.as_completed(running):
+            r = future.result()
+            done.append(r)
+            print(f"[{len(done)}/{len(work)}] {r.verdict:8} {r.seconds:6.1f} s  {r.name}", flush=True)
+            if r.verdict not in ("clean", "skipped"):
+                print(r.reports[:6000] or f"{r.output[-3000:]}\nended with {r.status}", flush=True)
+    if o.times:
+        o.times.write_text("".join(f"{r.verdict}\t{r.seconds:.1f}\t{r.name}\n" for r in sorted(done, key=lambda r: -r.seconds)))
+
+    bad += [f"{r.verdict}: {r.name}" for r in done if r.verdict not in ("clean", "skipped")]
+    every = kernels_of_the_tree()
+    if not o.only:
+        bad += [f"left_out.txt: {rules[i][1]} matches no case" for i in sorted(stale)]
+        for width in o.widths.split(","):
+            launched = set().union(*(r.kernels for r in done if r.name.endswith("@" + width)))
+            bad += [f"never launched with {width} lanes: {k} ({every[k]})" for k in every if k not in launched]
+            print(f"{len(launched & set(every))} of {len(every)} kernels launched with {width} lanes")
+    print(", ".join(f"{sum(r.verdict == v for r in done)} {v}" for v in ("clean", "skipped", "reports", "failed", "too slow"))
+          + f", {len(skipped)} left out (tests/oclgrind/left_out.txt)")
+    print(f"{sum(r.seconds for r in done):.0f} s of processor time in {time.monotonic() - started:.0f} s")
+    print("\n".join(bad))
+    sys.exit(1 if bad else 0)
+
+
+if __name__ == "__main__":
+    main()
