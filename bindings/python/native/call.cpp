@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -73,15 +74,32 @@ void throwOn(PelError error, const std::string& message) {
     if (error != PEL_SUCCESS) throw CallError{error, message};
 }
 
+// The one that ends the interpreter, which releases objects meanwhile.
+std::atomic<std::thread::id> endingThread{};
+
+bool interpreterGoes() {
+#if PY_VERSION_HEX >= 0x030D0000
+    return Py_IsFinalizing();
+#else
+    return _Py_IsFinalizing();
+#endif
+}
+
 // Until version 3.14 CPython ends other threads that ask for the GIL while the interpreter goes, by pthread_exit, which unwinds C++
 // and stops the whole process at the first function that may not be left so. Nobody waits for such threads: they stay here, for the
 // end of the process.
+[[noreturn]] void stayHere() {
+    for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+}
+
 template <class Take>
 auto takeGil(Take&& take) {
+    const bool gone = !Py_IsInitialized() || interpreterGoes();
+    if (gone && std::this_thread::get_id() != endingThread.load()) stayHere();
     try {
         return take();
-    } catch (...) {  // nothing else comes out of CPython
-        for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+    } catch (...) {  // nothing else comes out of CPython; and who leaves this block without throwing on stops the process, too
+        stayHere();
     }
 }
 }  // namespace
@@ -248,7 +266,8 @@ void Settling::wait() const {
     }
 }
 
-void waitForAbandoned() {
+void interpreterEnds() {
+    endingThread = std::this_thread::get_id();
     if (opener && opener != getpid()) return;  // they did not come along
     WithoutGil free;
     std::unique_lock lock(countMutex);

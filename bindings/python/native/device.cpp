@@ -41,7 +41,7 @@ void bindDevice(py::module_& module) {
     py::module_::import("atexit").attr("register")(py::cpp_function([] {
         pelSetErrorCallback(nullptr, nullptr);
         errorCallback = py::none();
-        waitForAbandoned();
+        interpreterEnds();
     }));
     module.def("devices", [] {
         opensDevices();

@@ -73,8 +73,8 @@ bool abandoned();
 // Whether this thread calls a progress callback for a call that waits for the answer elsewhere.
 bool answersProgress();
 
-// For the end of the process: until none of those threads is left.
-void waitForAbandoned();
+// At the end of the process, on the thread that ends it: waits until none of those threads is left.
+void interpreterEnds();
 
 // The bytes of a C structure that a Python object holds; throws unless they are one T.
 template <class T>

@@ -126,7 +126,7 @@ def test_two_threads_prefill_the_same_shaders(device):
     pel.prefill_programs(device, shaders=shaders)
 
     def prefill(order):
-        for _ in range(100):
+        for _ in range(25):
             pel.prefill_programs(device, shaders=order)
 
     threads = [threading.Thread(target=prefill, args=(order,), daemon=True) for order in (shaders, shaders[::-1])]
