@@ -108,7 +108,9 @@ TEST(Small, ShadowAndSpecularTables) {
     const auto skin = reference::skinProfile();
     PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
     specular.width = 5, specular.height = 3;
-    const std::vector<float> lobes = Lut(device(), specular).read<float>(PEL_LUT_FLOAT);
+    const Lut beckmann(device(), specular);
+    const std::vector<float> lobes = beckmann.read<float>(PEL_LUT_FLOAT);
+    EXPECT_EQ(beckmann.read<uint8_t>(PEL_LUT_FACEWORKS8).size(), 60u);
     for (int i = 0; i < 15; ++i) {
         const reference::Rgb truth = reference::shadowTexel(spec, *skin, i % 5, i / 5);
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(texels[size_t(3 * i + c)], truth[c], 1e-5);
