@@ -142,7 +142,7 @@ Json measureCases(const Request& request) {
     std::mt19937 random(1);
     std::vector<size_t> order(running.size());
     for (size_t i = 0; i < order.size(); ++i) order[i] = i;
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < rounds && !running.empty(); ++round) {
         tell({{"say", "round " + std::to_string(round + 1) + " of " + std::to_string(rounds)}});
         std::shuffle(order.begin(), order.end(), random);
         for (const size_t i : order) {
