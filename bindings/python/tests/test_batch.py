@@ -213,7 +213,7 @@ def test_a_scheduler_that_dies(client, manifest, device, tmp_path):
         while not (tmp_path / "scheduler.json").exists():
             assert scheduler.poll() is None
             time.sleep(0.02)
-        with distributed.Client(scheduler_file=str(tmp_path / "scheduler.json")) as doomed:
+        with distributed.Client(scheduler_file=str(tmp_path / "scheduler.json"), timeout=10) as doomed:
             doomed.wait_for_workers(1, timeout=120)
             doomed.run(kill_at_third_entry, scheduler.pid)
             with pytest.raises(batch.NoWorker, match="the same call goes on") as caught:
