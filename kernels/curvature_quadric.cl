@@ -183,8 +183,9 @@ inline void solve(Fit* fit, floatw ridge) {
 }
 
 // The chart's scales from the ring's second moments in the tangent plane; false for a ring without extent.
-inline maskw scale_chart(Chart* chart, RingCursor ring, __global const uint* rings, __global const uint* runs,
+inline maskw scale_chart(Chart* chart, const RingCursor start, __global const uint* rings, __global const uint* runs,
                          __global const float* positions) {
+    RingCursor ring = start;
     const floatw zero = 0.0f, one = 1.0f;
     floatw reach2 = zero, suu = zero, suv = zero, svv = zero, sun = zero, svn = zero, snn = zero, count = zero;
     maskw border = count > zero;
@@ -236,8 +237,9 @@ inline void orient_chart(Chart* chart, Vec3w normal) {
 }
 
 // Mean direction of the normals of the ring; NaN where they cancel out.
-inline Vec3w ring_normal(RingCursor ring, __global const uint* rings, __global const uint* runs,
+inline Vec3w ring_normal(const RingCursor start, __global const uint* rings, __global const uint* runs,
                          __global const float* normals) {
+    RingCursor ring = start;
     Vec3w sum = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
     for (; ring.row < ring.end; ++ring.row) {
         const Slots slots = ring_entry(&ring, rings, runs).slots;

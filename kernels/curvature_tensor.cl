@@ -30,11 +30,12 @@ __attribute__((always_inline)) inline Corner corner_load(Slots slots, uint last,
     return c;
 }
 
-inline Corner corner_select(Corner f, Corner t, maskw mask) {
-    f.offset = select3(f.offset, t.offset, mask);
-    f.normal = select3(f.normal, t.normal, mask);
-    f.usable = selectw(f.usable, t.usable, mask);
-    return f;
+inline Corner corner_select(const Corner f, const Corner t, maskw mask) {
+    Corner c;
+    c.offset = select3(f.offset, t.offset, mask);
+    c.normal = select3(f.normal, t.normal, mask);
+    c.usable = selectw(f.usable, t.usable, mask);
+    return c;
 }
 
 typedef struct Form {

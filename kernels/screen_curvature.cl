@@ -87,9 +87,10 @@ inline Pixel load_pixel(const Inputs* in, uint x, uint y) {
         vec3(MOVE(pixel.point.position.x), MOVE(pixel.point.position.y), MOVE(pixel.point.position.z)),       \
     pixel.point.usable = MOVE(pixel.point.usable), pixel.id = MOVE(pixel.id)
 
-inline ScreenPoint neighbour(Pixel there, Pixel here, maskw inside) {
-    there.point.usable &= inside & (there.id == here.id);
-    return there.point;
+inline ScreenPoint neighbour(const Pixel there, const Pixel here, maskw inside) {
+    ScreenPoint point = there.point;
+    point.usable &= inside & (there.id == here.id);
+    return point;
 }
 
 __kernel __attribute__((reqd_work_group_size(SCREEN_GROUP, 1, 1))) void screen_curvature(
