@@ -355,7 +355,7 @@ static inline void shadePixels(const Scene* scene, __global uchar* radiance, con
     const Vec3w invalid = loadUniform3(frame->invalidColor);
     result = select3(invalid, result, valid);
     if (HAS(PEL_BIT_ACCUMULATE)) {
-        result = add3(result, loadColor(PEL_FORMAT_RADIANCE, target));
+        result = add3(result, loadColorOf(PEL_FORMAT_RADIANCE, target, active));
         result = select3(invalid, result, finite3(result)); // what stood there was no number
     }
     storeColor(PEL_FORMAT_RADIANCE, target, result, active);
