@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "io/atomic_file.h"
-#include "io/batch_entry.h"
-#include "io/batch_run.h"
+#include "io/lut/batch_entry.h"
+#include "io/lut/batch_run.h"
 
 using namespace pellucid;
 namespace fs = std::filesystem;

@@ -11,7 +11,7 @@
 #include <random>
 
 #include "baseline_curvature.h"
-#include "mesh_calls.h"
+#include "mesh/mesh_calls.h"
 
 using namespace pellucid;
 

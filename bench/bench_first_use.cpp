@@ -10,8 +10,8 @@
 #include <fstream>
 
 #include "demo_files.h"
-#include "io/image_file.h"
-#include "io/scene_file.h"
+#include "io/image/image_file.h"
+#include "io/scene/scene_file.h"
 
 using namespace pellucid;
 

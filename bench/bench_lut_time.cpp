@@ -85,8 +85,8 @@ void ours(benchmark::State& state) {
     const std::string defines =
         "-DPEL_FORM=0 -DPEL_GROUP=1 -DPEL_COLUMNS=256 -DPEL_NODES=" + std::to_string(nodes) +
         " -DPEL_POINTS=" + std::to_string(points);
-    cl_kernel rows = runner().kernel(kernels + "curvature_lut.cl", "curvatureRows", defines);
-    cl_kernel fill = runner().kernel(kernels + "curvature_lut.cl", "curvatureTexels", defines);
+    cl_kernel rows = runner().kernel(kernels + "lut/curvature_lut.cl", "curvatureRows", defines);
+    cl_kernel fill = runner().kernel(kernels + "lut/curvature_lut.cl", "curvatureTexels", defines);
     const cl_mem gaussians = runner().upload(table.gaussians),
                  mesh = runner().upload(bench::meshOfNodes(nodes)),
                  columns = runner().upload(bench::columnsOf(nodes)),

@@ -13,10 +13,10 @@
 #include <optional>
 
 #include "demo_files.h"
-#include "io/image_file.h"
-#include "io/picture.h"
-#include "io/scene_file.h"
-#include "io/tone_map.h"
+#include "io/image/image_file.h"
+#include "io/image/picture.h"
+#include "io/scene/scene_file.h"
+#include "io/image/tone_map.h"
 #include "sample/shadow_forms.h"
 
 using namespace pellucid;

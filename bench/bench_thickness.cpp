@@ -13,8 +13,8 @@
 #include <filesystem>
 #include <map>
 
-#include "io/image_file.h"
-#include "io/scene_file.h"
+#include "io/image/image_file.h"
+#include "io/scene/scene_file.h"
 #include "thickness_truth.h"
 
 using namespace pellucid;

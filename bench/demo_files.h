@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh_file.h"
+#include "io/mesh/mesh_file.h"
 
 namespace demo {
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes kernels/lib/poisson_disk.clh: disks of 8, 16 and 32 taps for the thickness term.
+"""Writes kernels/lib/shading/poisson_disk.clh: disks of 8, 16 and 32 taps for the thickness term.
 
 Best-candidate points [Mitchell 1991] relaxed towards the centroids of their cells [Lloyd 1982], stopped early so that
 no rings form, then moved so that their mean is the centre. Taps are ordered farthest first, so that the

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "baseline_shade.h"
-#include "io/image_file.h"
-#include "io/scene_file.h"
+#include "io/image/image_file.h"
+#include "io/scene/scene_file.h"
 
 namespace frames {
 
@@ -96,7 +96,7 @@ struct Scene {
 };
 
 inline std::vector<float> readDisk(int taps) {
-    std::ifstream file(PELLUCID_SOURCE_DIR "/kernels/lib/poisson_disk.clh");
+    std::ifstream file(PELLUCID_SOURCE_DIR "/kernels/lib/shading/poisson_disk.clh");
     const std::string start = "pelDisk" + std::to_string(taps) + "[";
     std::vector<float> disk;
     for (std::string line; std::getline(file, line);)

@@ -1,7 +1,7 @@
 // One specular term over and over on pixels that stay in the cache (bench_specular.cpp).
 // PEL_TERM: 0 nothing but reading the pixels, 1 evaluated directly, 2 from the table.
-#include "lib/specular.clh"
-#include "lib/specular_table.clh"
+#include "lib/shading/specular.clh"
+#include "lib/shading/specular_table.clh"
 
 static inline Vec3w loadVec(__global const float* p, uint pixels, uint at) {
     return vec3(loadw(at, p), loadw(at, p + pixels), loadw(at, p + 2 * pixels));

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "half_bits.h"
-#include "pass_scene.h"
+#include "shading/pass_scene.h"
 #include "tolerances.h"
 
 namespace stability {

@@ -1,6 +1,6 @@
 // Wide shadow and thickness from shadow maps of every form: each pixel is a place on open ground, with a
 // normal of its own.
-#include "shadow_form_scene.h"
+#include "shading/shadow_form_scene.h"
 
 #include "stability_vectors.h"
 

@@ -7,8 +7,8 @@
 #include <cstdio>
 
 #include "demo_files.h"
-#include "io/image_file.h"
-#include "io/picture.h"
+#include "io/image/image_file.h"
+#include "io/image/picture.h"
 #include "sample/gbuffer.h"
 
 using namespace pellucid;

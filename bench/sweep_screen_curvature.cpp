@@ -10,9 +10,9 @@
 
 #include "color_difference.h"
 #include "demo_files.h"
-#include "io/image_file.h"
-#include "io/picture.h"
-#include "io/tone_map.h"
+#include "io/image/image_file.h"
+#include "io/image/picture.h"
+#include "io/image/tone_map.h"
 #include "sample/gbuffer.h"
 
 using namespace pellucid;

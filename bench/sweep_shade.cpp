@@ -14,8 +14,8 @@
 #include <deque>
 #include <map>
 
-#include "io/image_file.h"
-#include "io/scene_file.h"
+#include "io/image/image_file.h"
+#include "io/scene/scene_file.h"
 #include "pack_images.h"
 #include "reference/lut.h"
 #include "reference/shade_pixel.h"

@@ -11,9 +11,9 @@
 #include <cstdlib>
 #include <map>
 
-#include "mesh_calls.h"
+#include "mesh/mesh_calls.h"
 #include "reference/surfaces.h"
-#include "reference_meshes.h"
+#include "mesh/reference_meshes.h"
 
 using namespace pellucid;
 using reference::Tessellation;

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "io/image_file.h"
+#include "io/image/image_file.h"
 #include "reference/shade.h"
 
 class ThicknessTruth {

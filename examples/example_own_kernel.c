@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 static const char* source =
-    "#include \"lib/specular.clh\"\n" /* without PEL_WIDTH its functions take one value each */
+    "#include \"lib/shading/specular.clh\"\n" /* without PEL_WIDTH its functions take one value each */
     "__kernel void highlights(__global const float* cosines, __global float* result) {\n"
     "    const size_t i = get_global_id(0);\n"
     "    const float c = cosines[i], s = sqrt(1.0f - c * c);\n"

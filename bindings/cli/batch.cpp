@@ -11,7 +11,7 @@
 #include <mutex>
 
 #include "command.h"
-#include "io/batch_run.h"
+#include "io/lut/batch_run.h"
 #include "io/file_error.h"
 
 namespace pellucid::cli {

@@ -7,8 +7,8 @@
 #include "curvature_picture.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
-#include "io/image_file.h"
-#include "io/mesh_file.h"
+#include "io/image/image_file.h"
+#include "io/mesh/mesh_file.h"
 #include "mesh_curvature.h"
 
 namespace pellucid::cli {

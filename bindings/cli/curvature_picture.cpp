@@ -1,7 +1,7 @@
 #include "curvature_picture.h"
 
-#include "io/image_file.h"
-#include "io/picture.h"
+#include "io/image/image_file.h"
+#include "io/image/picture.h"
 #include "sample/gbuffer.h"
 
 namespace pellucid::cli {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "io/picture.h"
-#include "io/tone_map.h"
+#include "io/image/picture.h"
+#include "io/image/tone_map.h"
 #include "mesh_curvature.h"
 
 namespace pellucid::cli {

@@ -4,9 +4,9 @@
 #include <cstring>
 
 #include "io/file_error.h"
-#include "io/lut_file.h"
-#include "io/mip_chain.h"
-#include "io/profile_file.h"
+#include "io/lut/lut_file.h"
+#include "io/image/mip_chain.h"
+#include "io/lut/profile_file.h"
 
 namespace pellucid::cli {
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "command.h"
-#include "io/image_file.h"
-#include "io/scene_file.h"
+#include "io/image/image_file.h"
+#include "io/scene/scene_file.h"
 
 namespace pellucid::cli {
 

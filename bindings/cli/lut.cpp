@@ -1,6 +1,6 @@
 // pellucid lut curvature|shadow: integrates a look-up table and writes it.
-#include "io/lut_file.h"
-#include "io/profile_file.h"
+#include "io/lut/lut_file.h"
+#include "io/lut/profile_file.h"
 
 #include "command.h"
 

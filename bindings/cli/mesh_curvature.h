@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "command.h"
-#include "io/mesh_file.h"
+#include "io/mesh/mesh_file.h"
 
 namespace pellucid::cli {
 

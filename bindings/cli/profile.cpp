@@ -4,10 +4,10 @@
 
 #include "command.h"
 #include "io/atomic_file.h"
-#include "io/image_file.h"
-#include "io/picture.h"
-#include "io/profile_file.h"
-#include "io/profile_fit.h"
+#include "io/image/image_file.h"
+#include "io/image/picture.h"
+#include "io/lut/profile_file.h"
+#include "io/lut/profile_fit.h"
 
 namespace pellucid::cli {
 namespace {

@@ -1,12 +1,12 @@
 #include "api/entry.h"
 #include "core/submission.h"
-#include "ops/luts.h"
+#include "lut/luts.h"
 
 using namespace pel;
 
 namespace {
 
-// What every call that makes a table from a description does; `make` is the operation of ops/luts.h.
+// What every call that makes a table from a description does; `make` is the operation of lut/luts.h.
 template <class Desc>
 PelError createLut(PelDevice device, const Desc* desc, const Desc& defaults, const char* name, PelLut* lut,
                    const PelSubmit* submit, Ref<Lut> (*make)(Ref<Device>, const Desc&)) {

@@ -1,10 +1,10 @@
 #include "api/entry.h"
-#include "core/mesh_topology.h"
+#include "mesh/mesh_topology.h"
 #include "core/submission.h"
-#include "ops/curvature.h"
-#include "ops/live_mesh.h"
-#include "ops/mesh_normals.h"
-#include "ops/uv_scale.h"
+#include "mesh/curvature.h"
+#include "mesh/live_mesh.h"
+#include "mesh/mesh_normals.h"
+#include "mesh/uv_scale.h"
 
 using namespace pel;
 

@@ -1,4 +1,4 @@
-#include "ops/prefill.h"
+#include "api/prefill_programs.h"
 
 #include "api/entry.h"
 

@@ -1,4 +1,4 @@
-#include "core/profile.h"
+#include "lut/profile.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #include "api/entry.h"
 #include "core/submission.h"
-#include "ops/screen_curvature.h"
+#include "shading/screen_curvature.h"
 
 using namespace pel;
 

@@ -1,4 +1,4 @@
-#include "ops/shader.h"
+#include "shading/shader.h"
 
 #include "api/entry.h"
 #include "core/submission.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "io/file_error.h"
-#include "io/scene_keys.h"
+#include "io/scene/scene_keys.h"
 
 namespace pellucid::io {
 

@@ -11,7 +11,7 @@
 // widest penumbra first. Behind the last column stands a copy of it, behind the last row likewise: a bilinear
 // look-up at texel coordinates within [0, width - 1] x [0, height - 1] reads texel (i, j) and its three
 // neighbours at +1, +rowTexels and +rowTexels + 1 without any clamping, also where width or height is 1.
-// lib/lut_lookup.clh turns values into texel coordinates.
+// lib/lut/lut_lookup.clh turns values into texel coordinates.
 typedef struct LutLayout {
     unsigned int width;      // texels, without the copied column
     unsigned int height;     // texels, without the copied row

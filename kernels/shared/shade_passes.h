@@ -35,7 +35,7 @@ typedef struct PelWideShadow {
     float coneSlope; // length per length
     float maxTexels; // across the filter
     PelUint32 cascades; // how many maps there are, from this on; 0: one that is no cascade
-    PelUint32 bounds;   // where the bounds of the map's blocks begin (lib/shadow_bounds.clh)
+    PelUint32 bounds;   // where the bounds of the map's blocks begin (lib/shading/shadow_bounds.clh)
     PelShadeImage map;
     PelShadeImage out; // R32F
 } PelWideShadow;

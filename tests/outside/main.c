@@ -12,7 +12,7 @@ static int readable(const char* name) {
 }
 
 int main(void) {
-    if (!readable("lib/specular.clh") || !readable("shared/lut.h")) return 1;
+    if (!readable("lib/shading/specular.clh") || !readable("shared/lut.h")) return 1;
     PelDevice device;
     if (pelDeviceCreate(NULL, &device)) return fprintf(stderr, "%s\n", pelGetErrorMessage()), 1;
     PelDeviceInfo info = pelDeviceInfoDefaults();

@@ -26,7 +26,7 @@ std::vector<double> edgeCurvature(const Mesh& mesh);
 std::vector<double> smoothed(const Mesh& mesh, std::vector<double> values, int passes);
 
 // The heat equation on the surface until a point has spread over a standard deviation of `radius` (docs/curvature.md,
-// "Smoothing"; kernels/curvature_diffuse.cl): cotangents over Voronoi areas or, by area, the triangles of an edge over the
+// "Smoothing"; kernels/mesh/curvature_diffuse.cl): cotangents over Voronoi areas or, by area, the triangles of an edge over the
 // square of its length; four super steps of Runge-Kutta-Legendre, `stages` in all.
 // A triangle has no plane at a corner of which the squared sine is at most this.
 constexpr double flatTriangle = 1e-10;

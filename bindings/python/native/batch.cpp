@@ -2,8 +2,8 @@
 #include "progress.h"
 
 #ifdef PELLUCID_BATCH
-#include "io/batch_entry.h"
-#include "io/lut_exr.h"
+#include "io/lut/batch_entry.h"
+#include "io/lut/lut_exr.h"
 
 namespace pel::python {
 

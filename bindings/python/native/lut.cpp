@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "io/bc6h.h"
+#include "io/lut/bc6h.h"
 #include "progress.h"
 
 namespace pel::python {

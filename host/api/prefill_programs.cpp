@@ -1,0 +1,180 @@
+#include "api/prefill_programs.h"
+
+#include <condition_variable>
+#include <exception>
+#include <thread>
+
+#include "mesh/curvature.h"
+#include "lut/luts.h"
+#include "mesh/uv_scale.h"
+
+namespace pel {
+namespace {
+
+constexpr uint32_t texels = 16;  // a side of the least table
+
+PelCurvatureLutDesc smallCurvatureLut(PelCurvatureForm form) {
+    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    desc.width = desc.height = texels;
+    desc.form = form;
+    return desc;
+}
+
+PelShadowLutDesc smallShadowLut() {
+    PelShadowLutDesc desc = pelShadowLutDescDefaults();
+    desc.width = desc.height = texels;
+    return desc;
+}
+
+void lutJobs(const Ref<Device>& device, PrefillJobs& jobs) {
+    for (const PelCurvatureForm form : {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_ARC})
+        jobs.push_back([device, form] { integrateCurvatureLut(device, smallCurvatureLut(form)); });
+    jobs.push_back([device] { integrateShadowLut(device, smallShadowLut()); });
+    jobs.push_back([device] {
+        PelSpecularLutDesc desc = pelSpecularLutDescDefaults();
+        desc.width = desc.height = texels;
+        const Ref<Lut> lut = tabulateSpecularLut(device, desc);
+        std::vector<char> packed(packedBytes(*lut, PEL_LUT_FLOAT));
+        for (const PelLutEncoding encoding : {PEL_LUT_FLOAT, PEL_LUT_HALF, PEL_LUT_FACEWORKS8})
+            readLut(*lut, encoding, packed.data(), true);
+    });
+}
+
+// A profile that no sum of Gaussians describes.
+void tableLutJobs(const Ref<Device>& device, PrefillJobs& jobs) {
+    const std::vector<float> radii{0, 1, 3}, values{1, 1, 1, 0.5, 0.4, 0.3, 0, 0, 0};
+    const Ref<Profile> profile = Profile::table(radii.data(), values.data(), uint32_t(radii.size()));
+    for (const PelCurvatureForm form : {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_ARC})
+        jobs.push_back([device, profile, form] {
+            PelCurvatureLutDesc desc = smallCurvatureLut(form);
+            desc.profile = reinterpret_cast<PelProfile>(static_cast<Object*>(profile.get()));
+            integrateCurvatureLut(device, desc);
+        });
+    jobs.push_back([device, profile] {
+        PelShadowLutDesc desc = smallShadowLut();
+        desc.profile = reinterpret_cast<PelProfile>(static_cast<Object*>(profile.get()));
+        integrateShadowLut(device, desc);
+    });
+}
+
+// A tetrahedron.
+struct SmallMesh {
+    Ref<MeshTopology> topology;
+    cl::Memory memory;
+
+    SmallMesh(const Ref<Device>& device, bool welded) {
+        const float positions[12] = {1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1};
+        const uint32_t indices[12] = {0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
+        PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
+        desc.numVertices = 4;
+        desc.indices = indices;
+        desc.numIndices = 12;
+        desc.positions = positions;
+        desc.weld = welded ? PEL_WELD_EXACT : PEL_WELD_NONE;
+        PelMeshReport report = pelMeshReportDefaults();
+        // On a thread of its own, where the caller's callback is not to be called.
+        topology = MeshTopology::create(device, desc, report, [](double) {});
+        memory = device->allocate(sizeof positions, positions);
+    }
+    VertexView view(uint32_t words) const { return {memory, {4, 0, words, 0}}; }
+};
+
+void curvatureJobs(const Ref<Device>& device, PrefillJobs& jobs) {
+    for (const bool welded : {false, true})
+        for (const PelCurvatureEstimator estimator : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC})
+            jobs.push_back([device, welded, estimator] {
+                const SmallMesh mesh(device, welded);
+                PelCurvatureParams params = pelCurvatureParamsDefaults();
+                params.estimator = estimator;
+                params.smoothingRadius = 0.1f;
+                const VertexView out{device->allocate(4 * sizeof(float)), {4, 0, 1, 0}};
+                MeshCounts counts;
+                for (const bool given : {true, false})
+                    meshCurvature(*mesh.topology, params, mesh.view(3), given ? mesh.view(3) : VertexView{}, out, &counts);
+            });
+    jobs.push_back([device] {
+        const SmallMesh mesh(device, false);
+        meshUvScale(*mesh.topology, mesh.view(3), mesh.view(2));
+    });
+}
+
+}  // namespace
+
+PrefillJobs prefillGroups(const Ref<Device>& device, uint32_t groups) {
+    PrefillJobs jobs;
+    if (groups & PEL_PROGRAMS_LUTS) lutJobs(device, jobs);
+    if (groups & PEL_PROGRAMS_TABLE_LUTS) tableLutJobs(device, jobs);
+    if (groups & PEL_PROGRAMS_CURVATURE) curvatureJobs(device, jobs);
+    return jobs;
+}
+
+void runPrefill(Device& device, const PrefillJobs& jobs, uint32_t threads) {
+    std::mutex mutex;
+    std::condition_variable changed;
+    size_t next = 0, done = 0, running = 0;
+    std::exception_ptr failure;
+    const auto work = [&] {
+        std::unique_lock lock(mutex);
+        while (!failure && next < jobs.size()) {
+            const auto& job = jobs[next++];
+            lock.unlock();
+            std::exception_ptr thrown;
+            try {
+                job();
+            } catch (...) {
+                thrown = std::current_exception();
+            }
+            lock.lock();
+            ++done;
+            if (thrown && !failure) failure = thrown;
+            changed.notify_one();
+        }
+        --running;
+        changed.notify_one();
+    };
+    if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
+    std::vector<std::jthread> workers;
+    const auto tell = [&](double fraction) { device.progress(fraction, "building programs"); };
+    tell(0);
+    try {
+        for (size_t i = 0; i < std::min<size_t>(threads, jobs.size()); ++i) {
+            {
+                std::lock_guard lock(mutex);
+                ++running;
+            }
+            try {
+                workers.emplace_back(work);
+            } catch (...) {  // fewer threads will do
+                std::lock_guard lock(mutex);
+                --running;
+                if (workers.empty()) throw;
+                break;
+            }
+        }
+    } catch (...) {
+        std::lock_guard lock(mutex);
+        if (!failure) failure = std::current_exception();
+    }
+    // The callback is called on this thread alone, and not while the lock is held.
+    std::unique_lock lock(mutex);
+    for (size_t told = 0; running > 0;) {
+        changed.wait(lock, [&] { return running == 0 || (done > told && !failure); });
+        if (failure || done == told) continue;
+        told = done;
+        lock.unlock();
+        std::exception_ptr cancelled;
+        try {
+            tell(double(told) / double(jobs.size()));
+        } catch (...) {
+            cancelled = std::current_exception();
+        }
+        lock.lock();
+        if (cancelled && !failure) failure = cancelled;
+    }
+    lock.unlock();
+    workers.clear();
+    device.finish();
+    if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace pel

@@ -1,0 +1,249 @@
+#include "io/image/image_file.h"
+
+#include <OpenImageIO/half.h>
+#include <OpenImageIO/imageio.h>
+
+#include <cstring>
+#include <stdexcept>
+
+#include "io/atomic_file.h"
+#include "io/file_error.h"
+
+namespace pellucid::io {
+namespace {
+
+using namespace OIIO;
+
+std::string listOf(const std::vector<std::string>& names) {
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    return list;
+}
+
+bool endsWith(const std::string& text, const std::string& end) {
+    return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+// A channel with its part's name, unless the file has one part only or the name says it already.
+std::string fullName(const ImageSpec& spec, const std::string& channel, bool severalParts) {
+    const std::string part =
+        spec.get_string_attribute("oiio:subimagename", spec.get_string_attribute("name"));
+    if (!severalParts || part.empty() || channel.rfind(part + ".", 0) == 0) return channel;
+    return part + "." + channel;
+}
+
+void copyAttributes(Image& image, const ImageSpec& spec) {
+    for (const ParamValue& p : spec.extra_attribs) {
+        const std::string name = p.name().string();
+        const TypeDesc type = p.type();
+        if (type == TypeDesc::STRING) {
+            image.attributes.emplace_back(name, *static_cast<const char* const*>(p.data()));
+        } else if (type == TypeDesc::INT) {
+            image.attributes.emplace_back(name, *static_cast<const int*>(p.data()));
+        } else if (type == TypeDesc::FLOAT) {
+            image.attributes.emplace_back(name, *static_cast<const float*>(p.data()));
+        } else if (type.basetype == TypeDesc::FLOAT) {
+            const float* values = static_cast<const float*>(p.data());
+            image.attributes.emplace_back(name, std::vector<float>(values, values + type.basevalues()));
+        }
+    }
+}
+
+// Reads one part and places it by its data window.
+void readPart(Image& image, ImageInput& input, int part, bool severalParts) {
+    const ImageSpec spec = input.spec(part);
+    if (spec.deep) throw FileError(image.source, "holds deep pixels; flatten it first");
+    if (spec.full_width != image.width || spec.full_height != image.height) {
+        throw FileError(image.source, "part " + std::to_string(part) + " is " +
+                                          std::to_string(spec.full_width) + " x " +
+                                          std::to_string(spec.full_height) + " pixels, part 0 is " +
+                                          std::to_string(image.width) + " x " + std::to_string(image.height) +
+                                          "; all parts must have one display window");
+    }
+    const auto channels = static_cast<size_t>(spec.nchannels);
+    std::vector<float> pixels(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height) * channels);
+    if (!input.read_image(part, 0, 0, spec.nchannels, TypeDesc::FLOAT, pixels.data())) {
+        throw FileError(image.source, "is damaged or cut off: " + input.geterror());
+    }
+    for (size_t c = 0; c < channels; ++c) {
+        Channel channel;
+        channel.name = fullName(spec, spec.channelnames[c], severalParts);
+        channel.type = spec.channelformat(static_cast<int>(c)) == TypeDesc::HALF ? ChannelType::Half
+                                                                                 : ChannelType::Float;
+        channel.pixels.assign(image.pixelCount(), 0.0f);
+        for (int y = 0; y < spec.height; ++y) {
+            const int64_t row = int64_t(spec.y) + y - spec.full_y;
+            if (row < 0 || row >= image.height) continue;
+            for (int x = 0; x < spec.width; ++x) {
+                const int64_t column = int64_t(spec.x) + x - spec.full_x;
+                if (column < 0 || column >= image.width) continue;
+                const size_t from =
+                    (static_cast<size_t>(y) * static_cast<size_t>(spec.width) + static_cast<size_t>(x));
+                const size_t to =
+                    static_cast<size_t>(row) * static_cast<size_t>(image.width) + static_cast<size_t>(column);
+                channel.pixels[to] = pixels[from * channels + c];
+            }
+        }
+        image.channels.push_back(std::move(channel));
+    }
+}
+
+void setAttribute(ImageSpec& spec, const std::string& name, const Attribute& value) {
+    if (const int* i = std::get_if<int>(&value)) {
+        spec.attribute(name, *i);
+    } else if (const float* f = std::get_if<float>(&value)) {
+        spec.attribute(name, *f);
+    } else if (const std::string* s = std::get_if<std::string>(&value)) {
+        spec.attribute(name, *s);
+    } else {
+        const auto& v = std::get<std::vector<float>>(value);
+        if (v.size() == 16) {  // the one array of floats that EXR keeps beside vectors of 2 to 4
+            spec.attribute(name, TypeMatrix44, v.data());
+        } else if (v.size() >= 2 && v.size() <= 4) {
+            const auto aggregate = static_cast<TypeDesc::AGGREGATE>(v.size());
+            spec.attribute(name, TypeDesc(TypeDesc::FLOAT, aggregate), v.data());
+        } else {
+            spec.attribute(name, TypeDesc(TypeDesc::FLOAT, static_cast<int>(v.size())), v.data());
+        }
+    }
+}
+
+// Opens, writes and closes `file` under its temporary name, then commits it.
+void writeWithOiio(const std::string& path, const ImageSpec& spec, TypeDesc type, const void* pixels) {
+    AtomicFile file(path);
+    auto output = ImageOutput::create(file.temporaryPath());
+    if (!output) throw FileError(path, "cannot be written: " + OIIO::geterror());
+    if (!output->open(file.temporaryPath(), spec))
+        throw FileError(path, "cannot be written: " + output->geterror());
+    const bool ok = output->write_image(type, pixels);
+    if (!ok || !output->close()) throw FileError(path, "cannot be written: " + output->geterror());
+    file.commit();
+}
+
+}  // namespace
+
+const Channel& Image::channel(const std::string& name) const {
+    std::vector<std::string> all, fitting;
+    const Channel* found = nullptr;
+    for (const Channel& c : channels) {
+        if (c.name == name) return c;
+        all.push_back(c.name);
+        if (endsWith(c.name, "." + name)) {
+            fitting.push_back(c.name);
+            found = &c;
+        }
+    }
+    if (fitting.size() == 1) return *found;
+    if (fitting.empty()) throw FileError(source, "has no channel '" + name + "'; it has: " + listOf(all));
+    throw FileError(source, "has several channels that '" + name + "' could mean: " + listOf(fitting) +
+                                "; give one of these full names");
+}
+
+bool Image::has(const std::string& name) const {
+    size_t fitting = 0;
+    for (const Channel& c : channels) {
+        if (c.name == name) return true;
+        fitting += endsWith(c.name, "." + name);
+    }
+    return fitting == 1;
+}
+
+std::vector<float> Image::interleaved(std::span<const std::string> names) const {
+    std::vector<float> values(names.size() * pixelCount());
+    for (size_t k = 0; k < names.size(); ++k) {
+        const std::vector<float>& pixels = channel(names[k]).pixels;
+        for (size_t i = 0; i < pixels.size(); ++i) values[i * names.size() + k] = pixels[i];
+    }
+    return values;
+}
+
+void Image::addInterleaved(std::span<const std::string> names, std::span<const float> values,
+                           ChannelType type) {
+    if (values.size() != names.size() * pixelCount()) {
+        throw std::invalid_argument("addInterleaved: " + std::to_string(values.size()) + " values for " +
+                                    std::to_string(names.size()) + " channels of " + std::to_string(width) +
+                                    " x " + std::to_string(height));
+    }
+    for (size_t k = 0; k < names.size(); ++k) {
+        Channel c{names[k], type, std::vector<float>(pixelCount())};
+        for (size_t i = 0; i < c.pixels.size(); ++i) c.pixels[i] = values[i * names.size() + k];
+        channels.push_back(std::move(c));
+    }
+}
+
+const Attribute* Image::attribute(const std::string& name) const {
+    for (const auto& [key, value] : attributes) {
+        if (key == name) return &value;
+    }
+    return nullptr;
+}
+
+Image readImage(const std::string& path) {
+    checkReadable(path);
+    auto input = ImageInput::open(path);
+    if (!input) throw FileError(path, "is no image that can be read: " + OIIO::geterror());
+    int parts = 0;
+    while (input->seek_subimage(parts, 0)) ++parts;
+    Image image;
+    image.source = path;
+    const ImageSpec first = input->spec(0);
+    image.width = first.full_width;
+    image.height = first.full_height;
+    copyAttributes(image, first);
+    for (int part = 0; part < parts; ++part) readPart(image, *input, part, parts > 1);
+    return image;
+}
+
+void writeExr(const std::string& path, const Image& image) {
+    requireExtension(path, {"exr"});
+    const size_t count = image.channels.size();
+    if (count == 0 || image.pixelCount() == 0) throw std::invalid_argument("writeExr: the image is empty");
+    ImageSpec spec(image.width, image.height, static_cast<int>(count), TypeDesc::FLOAT);
+    // Same input, same bytes: OpenImageIO would put the time of writing here.
+    spec.attribute("DateTime", "");
+    spec.attribute("compression", "zip");
+    spec.attribute("oiio:ColorSpace", "Linear");
+    for (const auto& [name, value] : image.attributes) setAttribute(spec, name, value);
+    spec.channelnames.clear();
+    size_t pixelBytes = 0;
+    for (const Channel& c : image.channels) {
+        if (c.pixels.size() != image.pixelCount()) {
+            throw std::invalid_argument("writeExr: channel " + c.name + " does not have the image's size");
+        }
+        spec.channelnames.push_back(c.name);
+        spec.channelformats.push_back(c.type == ChannelType::Half ? TypeDesc::HALF : TypeDesc::FLOAT);
+        pixelBytes += c.type == ChannelType::Half ? 2 : 4;
+    }
+    // Each pixel in the types of its channels, so that nothing is converted on the way.
+    std::vector<char> native(pixelBytes * image.pixelCount());
+    size_t offset = 0;
+    for (const Channel& c : image.channels) {
+        char* to = native.data() + offset;
+        for (float value : c.pixels) {
+            if (c.type == ChannelType::Half) {
+                const half h(value);
+                std::memcpy(to, &h, 2);
+            } else {
+                std::memcpy(to, &value, 4);
+            }
+            to += pixelBytes;
+        }
+        offset += c.type == ChannelType::Half ? 2 : 4;
+    }
+    writeWithOiio(path, spec, TypeDesc::UNKNOWN, native.data());
+}
+
+void writeImage8(const std::string& path, int width, int height, int channels,
+                 std::span<const uint8_t> pixels, bool srgb) {
+    requireExtension(path, {"png", "bmp", "tga"});
+    if (pixels.size() !=
+        static_cast<size_t>(width) * static_cast<size_t>(height) * static_cast<size_t>(channels)) {
+        throw std::invalid_argument("writeImage8: the number of bytes does not fit the size");
+    }
+    ImageSpec spec(width, height, channels, TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", srgb ? "sRGB" : "Linear");
+    spec.attribute("oiio:UnassociatedAlpha", 1);  // else some writers divide the colours by alpha
+    writeWithOiio(path, spec, TypeDesc::UINT8, pixels.data());
+}
+
+}  // namespace pellucid::io

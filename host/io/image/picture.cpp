@@ -1,0 +1,162 @@
+#include "io/image/picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "io/image/font.h"
+
+namespace pellucid::io {
+namespace {
+
+constexpr Srgb8 paper = {28, 28, 30}, ink = {225, 225, 225};
+
+std::string shownNumber(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+}
+
+}  // namespace
+
+Picture::Picture(int w, int h, Srgb8 background) : width(w), height(h) {
+    rgb.reserve(static_cast<size_t>(w) * static_cast<size_t>(h) * 3);
+    for (size_t i = 0; i < static_cast<size_t>(w) * static_cast<size_t>(h); ++i) {
+        rgb.insert(rgb.end(), background.begin(), background.end());
+    }
+}
+
+Picture::Picture(int w, int h, std::vector<uint8_t> pixels) : width(w), height(h), rgb(std::move(pixels)) {
+    if (rgb.size() != static_cast<size_t>(w) * static_cast<size_t>(h) * 3) {
+        throw std::invalid_argument("Picture: the number of bytes does not fit the size");
+    }
+}
+
+void Picture::paint(int x, int y, Srgb8 color) {
+    if (x < 0 || y < 0 || x >= width || y >= height) return;
+    std::copy(color.begin(), color.end(),
+              &rgb[3 * (static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x))]);
+}
+
+void Picture::paste(int x, int y, const Picture& other) {
+    for (int row = 0; row < other.height; ++row) {
+        for (int column = 0; column < other.width; ++column) {
+            const uint8_t* from =
+                &other.rgb[3 * (static_cast<size_t>(row) * static_cast<size_t>(other.width) +
+                                static_cast<size_t>(column))];
+            paint(x + column, y + row, {from[0], from[1], from[2]});
+        }
+    }
+}
+
+int Picture::write(int x, int y, std::string_view text, Srgb8 color, int scale) {
+    for (char character : text) {
+        const auto rows = glyph(character);
+        for (int row = 0; row < glyphHeight * scale; ++row) {
+            for (int column = 0; column < glyphWidth * scale; ++column) {
+                const bool dot =
+                    rows[static_cast<size_t>(row / scale)] >> (glyphWidth - 1 - column / scale) & 1;
+                if (dot) paint(x + column, y + row, color);
+            }
+        }
+        x += glyphAdvance * scale;
+    }
+    return x;
+}
+
+int textWidth(std::string_view text, int scale) {
+    return text.empty()
+               ? 0
+               : (static_cast<int>(text.size()) * glyphAdvance - (glyphAdvance - glyphWidth)) * scale;
+}
+
+Picture shrunk(const Picture& picture, int factor) {
+    if (factor <= 1) return picture;
+    Picture small(std::max(1, picture.width / factor), std::max(1, picture.height / factor));
+    for (int y = 0; y < small.height; ++y) {
+        for (int x = 0; x < small.width; ++x) {
+            float sum[3] = {0, 0, 0};
+            int count = 0;
+            for (int dy = 0; dy < factor && y * factor + dy < picture.height; ++dy) {
+                for (int dx = 0; dx < factor && x * factor + dx < picture.width; ++dx, ++count) {
+                    const size_t at =
+                        static_cast<size_t>(y * factor + dy) * static_cast<size_t>(picture.width) +
+                        static_cast<size_t>(x * factor + dx);
+                    for (size_t c = 0; c < 3; ++c)
+                        sum[c] += decodeSrgb(static_cast<float>(picture.rgb[3 * at + c]) / 255.0f);
+                }
+            }
+            Srgb8 mean;
+            for (size_t c = 0; c < 3; ++c) {
+                mean[c] = static_cast<uint8_t>(
+                    std::lround(255.0f * encodeSrgb(sum[c] / static_cast<float>(count))));
+            }
+            small.paint(x, y, mean);
+        }
+    }
+    return small;
+}
+
+Picture contactSheet(std::span<const Tile> tiles, int columns, int textScale) {
+    const int gap = 6 * textScale, labelHeight = glyphHeight * textScale + gap;
+    columns = std::max(1, std::min<int>(columns, static_cast<int>(tiles.size())));
+    const int rows = (static_cast<int>(tiles.size()) + columns - 1) / columns;
+    std::vector<int> widths(static_cast<size_t>(columns), 0), heights(static_cast<size_t>(rows), 0);
+    for (size_t i = 0; i < tiles.size(); ++i) {
+        const size_t column = i % widths.size(), row = i / widths.size();
+        widths[column] =
+            std::max({widths[column], tiles[i].picture.width, textWidth(tiles[i].label, textScale)});
+        heights[row] = std::max(heights[row], tiles[i].picture.height + labelHeight);
+    }
+    int width = gap, height = gap;
+    for (int w : widths) width += w + gap;
+    for (int h : heights) height += h + gap;
+    Picture sheet(width, height, paper);
+    int y = gap;
+    for (size_t row = 0; row < heights.size(); ++row) {
+        int x = gap;
+        for (size_t column = 0; column < widths.size() && row * widths.size() + column < tiles.size();
+             ++column) {
+            const Tile& tile = tiles[row * widths.size() + column];
+            sheet.paste(x, y, tile.picture);
+            sheet.write(x, y + tile.picture.height + gap / 2, tile.label, ink, textScale);
+            x += widths[column] + gap;
+        }
+        y += heights[row] + gap;
+    }
+    return sheet;
+}
+
+Picture colorBar(int width, double low, double high, std::string_view unit, int textScale) {
+    const int barHeight = 3 * glyphHeight * textScale, textTop = barHeight + 2 * textScale;
+    Picture bar(width, textTop + 2 * (glyphHeight + 2) * textScale, paper);
+    for (int x = 0; x < width; ++x) {
+        const double value = low + (high - low) * (x + 0.5) / width;
+        const Srgb8 color =
+            scaleColor(static_cast<float>(value), static_cast<float>(low), static_cast<float>(high));
+        for (int y = 0; y < barHeight; ++y) bar.paint(x, y, color);
+    }
+    const std::string middle = shownNumber((low + high) / 2), right = shownNumber(high);
+    bar.write(0, textTop, shownNumber(low), ink, textScale);
+    bar.write((width - textWidth(middle, textScale)) / 2, textTop, middle, ink, textScale);
+    bar.write(width - textWidth(right, textScale), textTop, right, ink, textScale);
+    bar.write((width - textWidth(unit, textScale)) / 2, textTop + (glyphHeight + 2) * textScale, unit, ink,
+              textScale);
+    return bar;
+}
+
+Picture colored(int width, int height, std::span<const float> values, float low, float high,
+                std::span<const float> mask, Srgb8 outside) {
+    Picture picture(width, height, outside);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+            if (!mask.empty() && mask[i] == 0.0f) continue;
+            picture.paint(x, y, scaleColor(values[i], low, high));
+        }
+    }
+    return picture;
+}
+
+}  // namespace pellucid::io

@@ -1,0 +1,32 @@
+// Containers that graphics engines load as they are: DDS and KTX2, one image of RGBA float16 texels or of
+// BC6H blocks.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+
+namespace pellucid::io {
+
+// One image, row-major, top row first.
+struct Texture {
+    enum class Format {
+        Rgba16Float,  // four halves per texel
+        Bc6hUnsigned  // 16 bytes per 4x4 texels (io/lut/bc6h.h); hardware takes sizes that are no multiple of 4
+                      // from KTX2 (Vulkan), and not from DDS (Direct3D)
+    };
+    Format format;
+    uint32_t width, height;  // texels
+    std::span<const uint8_t> bytes;
+};
+
+// Both: complete or not at all; throw FileError when the file cannot be written, std::invalid_argument when
+// the number of bytes does not fit the size. DDS: the DX10 header, DXGI_FORMAT_R16G16B16A16_FLOAT or
+// _BC6H_UF16 [Microsoft, Programming Guide for DDS].
+void writeDds(const std::string& path, const Texture& texture);
+// KTX2: VK_FORMAT_R16G16B16A16_SFLOAT or _BC6H_UFLOAT_BLOCK, linear, with key/value data [Khronos, KTX File
+// Format 2.0].
+void writeKtx2(const std::string& path, const Texture& texture,
+               const std::map<std::string, std::string>& keyValues);
+
+}  // namespace pellucid::io

@@ -1,0 +1,224 @@
+#include "io/lut/batch_manifest.h"
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "io/atomic_file.h"
+#include "io/content_hash.h"
+#include "io/file_error.h"
+#include "io/lut/lut_describe.h"
+#include "io/lut/profile_file.h"
+#include "io/toml_reader.h"
+
+namespace pellucid::io {
+namespace {
+
+constexpr std::string_view encodingNames[] = {"float", "half"};  // PelLutEncoding
+
+// What a [[lut]] or [[grid]] says; a grid has several of the lists.
+struct Request {
+    PelLutKind kind = PEL_LUT_CURVATURE;
+    std::vector<std::string> profiles{"skin"}, forms{"arc"}, axes{"linear"}, encodings{"half"};
+    std::vector<float> radii{0};       // diffusion radii, mm; 0: the profile's own
+    std::vector<uint32_t> sizes{512};  // texels a side
+    PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
+    PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+};
+
+template <size_t N>
+uint32_t indexOf(const TomlReader& reader, const char* key, const std::string& value,
+                 const std::string_view (&names)[N]) {
+    std::string known;
+    for (size_t i = 0; i < N; ++i) {
+        if (names[i] == value) return uint32_t(i);
+        known.append(i ? ", " : "").append(names[i]);
+    }
+    reader.fail(key, "holds '" + value + "'; one of " + known + " would be right");
+}
+
+Request readRequest(TomlReader& reader) {
+    Request r;
+    reader.choice("kind", r.kind, lutKindNames);
+    reader.list("profile", r.profiles);
+    reader.list("form", r.forms);
+    reader.list("axis", r.axes);
+    reader.list("encoding", r.encodings);
+    reader.list("diffusion_radius", r.radii, Range::Positive);
+    std::vector<float> sides(r.sizes.begin(), r.sizes.end());
+    reader.list("size", sides, Range::AtLeastOne);
+    r.sizes.clear();
+    for (float side : sides) {
+        if (side > 16384 || side != float(uint32_t(side)))
+            reader.fail("size", "holds a side that is no whole number from 1 to 16384");
+        r.sizes.push_back(uint32_t(side));
+    }
+    reader.number("radius_min", r.curvature.radiusMin, Range::Positive);
+    reader.number("radius_max", r.curvature.radiusMax, Range::Positive);
+    reader.number("width_min", r.shadow.widthMin, Range::Positive);
+    reader.number("width_max", r.shadow.widthMax, Range::Positive);
+    reader.number("sharpening", r.shadow.sharpening, Range::AtLeastOne);
+    if (r.curvature.radiusMin > r.curvature.radiusMax)
+        reader.fail("radius_min", "is greater than radius_max");
+    if (r.shadow.widthMin > r.shadow.widthMax) reader.fail("width_min", "is greater than width_max");
+    return r;
+}
+
+// Floats to the bit, so that equal keys mean equal requests.
+struct Key {
+    std::ostringstream out;
+    Key() {
+        out.imbue(std::locale::classic());
+        out << std::hexfloat;
+    }
+    template <class T>
+    Key& operator()(const char* name, const T& value) {
+        out << name << '=' << value << ';';
+        return *this;
+    }
+};
+
+class Expansion {
+  public:
+    // `folder`: where profile files are; without it, they are in the manifest already.
+    Expansion(BatchManifest& manifest, std::optional<std::filesystem::path> folder)
+        : manifest_(manifest), folder_(std::move(folder)) {}
+
+    void add(TomlReader& reader) {
+        const Request r = readRequest(reader);
+        reader.finish();  // an unknown key spoils the entry before any table is taken from it
+        for (const std::string& encoding : r.encodings)
+            for (uint32_t side : r.sizes) {
+                if (r.kind == PEL_LUT_SPECULAR) {
+                    addOne(reader, r, encoding, side, "", "", "", 0);
+                    continue;
+                }
+                for (const std::string& profile : r.profiles)
+                    for (float radius : r.radii) {
+                        if (r.kind == PEL_LUT_SHADOW) {
+                            addOne(reader, r, encoding, side, profile, "", "", radius);
+                            continue;
+                        }
+                        for (const std::string& form : r.forms)
+                            for (const std::string& axis : r.axes)
+                                addOne(reader, r, encoding, side, profile, form, axis, radius);
+                    }
+            }
+    }
+
+  private:
+    // A profile and the part of the key that it gives: its numbers, not its name alone, since a changed file
+    // is another request.
+    struct Known {
+        Profile profile;
+        std::string key;
+    };
+
+    const Known& profile(const TomlReader& reader, const std::string& name) {
+        auto [at, fresh] = known_.try_emplace(name);
+        if (fresh) try {
+                Profile& p = at->second.profile = load(name);
+                const PelProfileInfo info = p.info();
+                Key key;
+                key("profile", info.name)("radius", info.radius);
+                std::vector<double> distances;
+                for (double f : {0.01, 0.03, 0.1, 0.3, 0.7, 1.0, 1.5, 2.0, 3.0})
+                    distances.push_back(f * info.radius);
+                for (double value : p.radial(distances)) key("R", float(value));
+                at->second.key = key.out.str();
+            } catch (const FileError& e) {
+                known_.erase(at);
+                reader.fail("profile", std::string("is refused: ") + e.what());
+            }
+        return at->second;
+    }
+
+    Profile load(const std::string& name) {
+        if (extensionOf(name) != "toml") return findProfile(name).profile;
+        if (folder_) manifest_.profiles[name] = readWholeFile((*folder_ / name).string());
+        const auto at = manifest_.profiles.find(name);
+        if (at == manifest_.profiles.end()) throw FileError(name, "was not sent along with the manifest");
+        return parseProfile(name, at->second).profile;
+    }
+
+    void addOne(const TomlReader& reader, const Request& r, const std::string& encoding, uint32_t side,
+                const std::string& profileName, const std::string& form, const std::string& axis,
+                float radius) {
+        BatchEntry entry{pelLutInfoDefaults(), {}, {}, {}, {}, reader.line()};
+        entry.info.kind = r.kind;
+        entry.encoding = PelLutEncoding(indexOf(reader, "encoding", encoding, encodingNames));
+        Key key;
+        key("kind", lutKindNames[r.kind])("version", pelVersion())("encoding", encoding)("size", side);
+        if (r.kind != PEL_LUT_SPECULAR) {
+            const Known& known = profile(reader, profileName);
+            entry.profile = known.profile;
+            key.out << known.key;
+            key("diffusion_radius", radius);
+        }
+        if (r.kind == PEL_LUT_CURVATURE) {
+            PelCurvatureLutDesc& desc = entry.info.curvature = r.curvature;
+            desc.width = desc.height = side;
+            desc.form = PelCurvatureForm(indexOf(reader, "form", form, curvatureForms));
+            desc.axis = PelLutAxis(indexOf(reader, "axis", axis, lutAxes));
+            desc.diffusionRadius = radius;
+            desc.profile = entry.profile.get();
+            key("form", form)("axis", axis)("radius_min", desc.radiusMin)("radius_max", desc.radiusMax);
+        } else if (r.kind == PEL_LUT_SHADOW) {
+            PelShadowLutDesc& desc = entry.info.shadow = r.shadow;
+            desc.width = desc.height = side;
+            desc.diffusionRadius = radius;
+            desc.profile = entry.profile.get();
+            key("width_min", desc.widthMin)("width_max", desc.widthMax)("sharpening", desc.sharpening);
+        } else {
+            entry.info.specular.width = entry.info.specular.height = side;
+        }
+        entry.key = key.out.str();
+        entry.file = std::string(lutKindNames[r.kind]) + "-" + ContentHash().add(entry.key).text() + ".exr";
+        if (files_.insert(entry.file).second)
+            manifest_.entries.push_back(std::move(entry));
+        else
+            ++manifest_.duplicates;
+    }
+
+    BatchManifest& manifest_;
+    std::optional<std::filesystem::path> folder_;
+    std::map<std::string, Known> known_;
+    std::set<std::string> files_;
+};
+
+BatchManifest expanded(const std::string& path, BatchManifest manifest,
+                       std::optional<std::filesystem::path> folder) {
+    const toml::table root = parseToml(path, manifest.text);
+    Expansion expansion(manifest, std::move(folder));
+    TomlReader reader(path, root, "the manifest");
+    for (const char* name : {"lut", "grid"})
+        reader.tablesApart(
+            name, [&](TomlReader& entry) { expansion.add(entry); },
+            [&](const FileError& e) {
+                manifest.errors.push_back({e.line(), e.what()});
+            });
+    reader.finish();
+    if (manifest.entries.empty() && manifest.errors.empty())
+        throw FileError(path, "lists no tables; [[lut]] and [[grid]] would be right");
+    return manifest;
+}
+
+}  // namespace
+
+BatchManifest readManifest(const std::string& path) {
+    BatchManifest manifest;
+    manifest.text = readWholeFile(path);
+    return expanded(path, std::move(manifest), std::filesystem::path(path).parent_path());
+}
+
+BatchManifest parseManifest(const std::string& path, const std::string& text,
+                            const std::map<std::string, std::string>& profiles) {
+    BatchManifest manifest;
+    manifest.text = text;
+    manifest.profiles = profiles;
+    return expanded(path, std::move(manifest), {});
+}
+
+}  // namespace pellucid::io

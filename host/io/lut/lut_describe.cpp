@@ -1,0 +1,32 @@
+#include "io/lut/lut_describe.h"
+
+namespace pellucid::io {
+
+std::pair<uint32_t, uint32_t> lutSize(const PelLutInfo& info) {
+    switch (info.kind) {
+        case PEL_LUT_CURVATURE:
+            return {info.curvature.width, info.curvature.height};
+        case PEL_LUT_SHADOW:
+            return {info.shadow.width, info.shadow.height};
+        case PEL_LUT_SPECULAR:
+            break;
+    }
+    return {info.specular.width, info.specular.height};
+}
+
+std::vector<std::pair<std::string, Attribute>> describeLut(const PelLutInfo& info) {
+    std::vector<std::pair<std::string, Attribute>> all;
+    all.emplace_back("pellucid:kind", std::string(lutKindNames[info.kind]));
+    all.emplace_back("pellucid:version", int(pelVersion()));
+    all.emplace_back("pellucid:format", lutFormatVersion);
+    all.emplace_back("pellucid:colorSpace", std::string("linear"));
+    if (info.kind != PEL_LUT_SPECULAR) all.emplace_back("pellucid:profile", std::string(info.profile));
+    if (info.kind == PEL_LUT_CURVATURE) {
+        all.emplace_back("pellucid:form", std::string(lutFormNames[info.curvature.form]));
+        all.emplace_back("pellucid:axis", std::string(lutAxisNames[info.curvature.axis]));
+    }
+    visitLutNumbers(info, [&](const char* name, float value) { all.emplace_back(name, value); });
+    return all;
+}
+
+}  // namespace pellucid::io

@@ -1,0 +1,164 @@
+#include "io/lut/lut_exr.h"
+
+#include <bit>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+
+#include "io/content_hash.h"
+#include "io/lut/lut_describe.h"
+#include "io/xx_hash.h"
+
+namespace pellucid::io {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "EXR is little-endian");
+
+constexpr uint32_t magic = 20000630, version = 2;
+constexpr std::string_view noSum = "0000000000000000";  // stands in while the sum is taken
+constexpr const char *keyName = "pellucid:key", *sumName = "pellucid:checksum";
+
+struct Bytes {
+    std::string data;
+    template <class T>
+    Bytes& add(T value) {
+        data.append(reinterpret_cast<const char*>(&value), sizeof value);
+        return *this;
+    }
+    Bytes& text(std::string_view text) {  // with the zero at its end
+        data.append(text).push_back('\0');
+        return *this;
+    }
+    // Name, type, size and value of an attribute.
+    Bytes& attribute(std::string_view name, std::string_view type, std::string_view value) {
+        text(name).text(type).add(uint32_t(value.size()));
+        data.append(value);
+        return *this;
+    }
+    template <class... T>
+    Bytes& attributeOf(std::string_view name, std::string_view type, T... values) {
+        Bytes value;
+        (value.add(values), ...);
+        return attribute(name, type, value.data);
+    }
+};
+
+Bytes header(const PelLutInfo& info, PelLutEncoding encoding, const std::string& key, size_t& sumAt) {
+    const auto [width, height] = lutSize(info);
+    Bytes channels;
+    for (const char* name : {"B", "G", "R"})  // alphabetical, as the format has it
+        channels.text(name)
+            .add(uint32_t(encoding == PEL_LUT_HALF ? 1 : 2))  // HALF or FLOAT
+            .add(uint32_t(0))                                 // not perceptually linear; reserved
+            .add(uint32_t(1))
+            .add(uint32_t(1));  // sampling
+    channels.add(uint8_t(0));
+    Bytes b;
+    b.add(magic).add(version);
+    b.attribute("channels", "chlist", channels.data);
+    b.attributeOf("compression", "compression", uint8_t(0));
+    for (const char* window : {"dataWindow", "displayWindow"})
+        b.attributeOf(window, "box2i", 0, 0, int(width) - 1, int(height) - 1);
+    b.attributeOf("lineOrder", "lineOrder", uint8_t(0));
+    b.attributeOf("pixelAspectRatio", "float", 1.0f);
+    b.attributeOf("screenWindowCenter", "v2f", 0.0f, 0.0f);
+    b.attributeOf("screenWindowWidth", "float", 1.0f);
+    for (const auto& [name, value] : describeLut(info)) {
+        if (const auto* s = std::get_if<std::string>(&value)) b.attribute(name, "string", *s);
+        if (const auto* i = std::get_if<int>(&value)) b.attributeOf(name, "int", *i);
+        if (const auto* f = std::get_if<float>(&value)) b.attributeOf(name, "float", *f);
+    }
+    b.attribute(keyName, "string", key);
+    b.attribute(sumName, "string", noSum);
+    sumAt = b.data.size() - noSum.size();
+    b.add(uint8_t(0));
+    return b;
+}
+
+template <class Texel>
+void scanLines(Bytes& b, uint32_t width, uint32_t height, std::string_view texels) {
+    const size_t rowBytes = size_t(width) * 3 * sizeof(Texel), chunk = 8 + rowBytes;
+    if (texels.size() != rowBytes * height)
+        throw std::invalid_argument("encodeLutExr: the number of bytes does not fit the size");
+    uint64_t at = b.data.size() + size_t(height) * 8;
+    for (uint32_t y = 0; y < height; ++y, at += chunk) b.add(at);
+    const size_t start = b.data.size();
+    b.data.resize(start + chunk * height);
+    for (uint32_t y = 0; y < height; ++y) {
+        char* to = b.data.data() + start + chunk * y;
+        const auto size = uint32_t(rowBytes);
+        std::memcpy(to, &y, 4);
+        std::memcpy(to + 4, &size, 4);
+        const char* from = texels.data() + rowBytes * y;
+        for (size_t c = 0; c < 3; ++c)
+            for (size_t x = 0; x < width; ++x)
+                std::memcpy(to + 8 + (c * width + x) * sizeof(Texel), from + (3 * x + 2 - c) * sizeof(Texel),
+                            sizeof(Texel));
+    }
+}
+
+// Reads attributes one after the other; everything is checked against the end.
+class Header {
+  public:
+    explicit Header(std::string_view file) : file_(file) {}
+
+    struct Attribute {
+        std::string_view name, value;
+        size_t valueAt;
+    };
+    std::optional<Attribute> next() {
+        const auto name = text(), type = name && !name->empty() ? text() : std::nullopt;
+        if (!type || file_.size() - at_ < 4) return {};
+        uint32_t size;
+        std::memcpy(&size, file_.data() + at_, 4);
+        at_ += 4;
+        if (file_.size() - at_ < size) return {};
+        const Attribute found{*name, file_.substr(at_, size), at_};
+        at_ += size;
+        return found;
+    }
+
+  private:
+    std::optional<std::string_view> text() {
+        const size_t end = file_.find('\0', at_);
+        if (end == std::string_view::npos) return {};
+        const std::string_view found = file_.substr(at_, end - at_);
+        at_ = end + 1;
+        return found;
+    }
+    std::string_view file_;
+    size_t at_ = 8;  // behind magic and version
+};
+
+}  // namespace
+
+std::string encodeLutExr(const PelLutInfo& info, PelLutEncoding encoding, std::string_view texels,
+                         const std::string& key) {
+    if (encoding != PEL_LUT_HALF && encoding != PEL_LUT_FLOAT)
+        throw std::invalid_argument("encodeLutExr: the encoding must be half or float");
+    const auto [width, height] = lutSize(info);
+    size_t sumAt = 0;
+    Bytes b = header(info, encoding, key, sumAt);
+    b.data.reserve(b.data.size() + texels.size() + 16 * size_t(height));
+    if (encoding == PEL_LUT_HALF)
+        scanLines<uint16_t>(b, width, height, texels);
+    else
+        scanLines<float>(b, width, height, texels);
+    b.data.replace(sumAt, noSum.size(), hexDigits(xxHash64(b.data)));
+    return std::move(b.data);
+}
+
+bool verifyLutExr(std::string_view file, std::string_view key) {
+    if (file.size() < 8) return false;
+    Header header(file);
+    bool keyFits = false;
+    while (const auto attribute = header.next()) {
+        if (attribute->name == keyName) keyFits = attribute->value == key;
+        if (attribute->name == sumName && attribute->value.size() == noSum.size())
+            return keyFits && attribute->value == hexDigits(xxHash64(std::string(file).replace(
+                                                      attribute->valueAt, noSum.size(), noSum)));
+    }
+    return false;
+}
+
+}  // namespace pellucid::io

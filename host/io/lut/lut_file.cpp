@@ -1,0 +1,217 @@
+#include "io/lut/lut_file.h"
+
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+
+#include "io/atomic_file.h"
+#include "io/file_error.h"
+#include "io/image/image_file.h"
+#include "io/lut/lut_describe.h"
+#include "io/image/texture_file.h"
+
+namespace pellucid::io {
+namespace {
+
+const std::vector<std::string> rgb{"R", "G", "B"};
+
+template <size_t N>
+int indexOf(const std::string& path, const char* attribute, const std::string& value,
+            const std::string_view (&names)[N]) {
+    std::string known;
+    for (size_t i = 0; i < N; ++i) {
+        if (names[i] == value) return int(i);
+        known.append(i ? ", " : "").append(names[i]);
+    }
+    throw FileError(path, std::string("attribute \"") + attribute + "\" is \"" + value + "\"; one of " +
+                              known + " is needed");
+}
+
+// An EXR's worth: channels in the storage type of the encoding, and what the table is.
+Image describedImage(const Lut& lut, PelLutEncoding encoding) {
+    const PelLutInfo info = lut.info();
+    const auto [width, height] = lutSize(info);
+    Image image;
+    image.width = int(width);
+    image.height = int(height);
+    image.addInterleaved(rgb, lut.read<float>(PEL_LUT_FLOAT),
+                         encoding == PEL_LUT_HALF ? ChannelType::Half : ChannelType::Float);
+    image.attributes = describeLut(info);
+    return image;
+}
+
+std::vector<uint8_t> withAlpha(const std::vector<uint16_t>& rgbHalves) {
+    constexpr uint16_t one = 0x3C00;
+    std::vector<uint8_t> rgba(rgbHalves.size() / 3 * 8);
+    for (size_t i = 0; i < rgbHalves.size() / 3; ++i) {
+        std::memcpy(&rgba[8 * i], &rgbHalves[3 * i], 6);
+        std::memcpy(&rgba[8 * i + 6], &one, 2);
+    }
+    return rgba;
+}
+
+std::map<std::string, std::string> keyValues(const Image& image) {
+    std::map<std::string, std::string> pairs{{"KTXwriter", "pellucid " + std::to_string(pelVersion())}};
+    for (const auto& [name, value] : image.attributes) {
+        std::ostringstream text;
+        text.imbue(std::locale::classic());
+        text.precision(9);
+        if (const auto* s = std::get_if<std::string>(&value)) text << *s;
+        if (const auto* i = std::get_if<int>(&value)) text << *i;
+        if (const auto* f = std::get_if<float>(&value)) text << *f;
+        pairs[name] = text.str();
+    }
+    return pairs;
+}
+
+void writeTexture(const std::string& path, const Lut& lut, Texture::Format format,
+                  std::span<const uint8_t> bytes) {
+    const auto [width, height] = lutSize(lut.info());
+    const Texture texture{format, width, height, bytes};
+    if (extensionOf(path) == "dds")
+        writeDds(path, texture);
+    else
+        writeKtx2(path, texture, keyValues(describedImage(lut, PEL_LUT_HALF)));
+}
+
+}  // namespace
+
+void checkLutPathBc6h(const std::string& path) {
+    const std::string extension = extensionOf(path);
+    if (extension != "dds" && extension != "ktx2")
+        throw std::invalid_argument("bc6h goes into .dds and .ktx2, not into '" + path + "'");
+    checkWritable(path);
+}
+
+TexelError writeLutBc6h(const std::string& path, const Lut& lut) {
+    checkLutPathBc6h(path);
+    const auto [width, height] = lutSize(lut.info());
+    const std::vector<uint16_t> texels = lut.read<uint16_t>(PEL_LUT_HALF);
+    const std::vector<uint8_t> blocks = encodeBc6h(width, height, texels);
+    writeTexture(path, lut, Texture::Format::Bc6hUnsigned, blocks);
+    return differenceOf(texels, decodeBc6h(width, height, blocks));
+}
+
+PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncoding> encoding) {
+    const std::string extension = requireExtension(path, {"exr", "npy", "png", "bmp", "tga", "dds", "ktx2"});
+    const bool eightBit = extension == "png" || extension == "bmp" || extension == "tga";
+    const bool texture = extension == "dds" || extension == "ktx2";
+    const PelLutEncoding chosen = encoding.value_or(eightBit  ? PEL_LUT_FACEWORKS8
+                                                    : texture ? PEL_LUT_HALF
+                                                              : PEL_LUT_FLOAT);
+    if (texture && chosen != PEL_LUT_HALF)
+        throw std::invalid_argument("." + extension +
+                                    " holds half texels: use --encoding half or bc6h, or write .exr or .npy");
+    if (eightBit && chosen != PEL_LUT_FACEWORKS8)
+        throw std::invalid_argument("." + extension +
+                                    " holds 8-bit texels: use --encoding faceworks8, or write .exr or .npy");
+    if (extension == "exr" && chosen == PEL_LUT_FACEWORKS8)
+        throw std::invalid_argument(
+            ".exr holds float or half texels: write faceworks8 as .png, .bmp, .tga or .npy");
+    checkWritable(path);
+    return chosen;
+}
+
+void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncoding> requested) {
+    const PelLutEncoding encoding = checkLutPath(path, requested);
+    const PelLutInfo info = lut.info();
+    const auto [width, height] = lutSize(info);
+    const std::string extension = extensionOf(path);
+    if (encoding == PEL_LUT_FACEWORKS8) {
+        const std::vector<uint8_t> texels = lut.read<uint8_t>(encoding);
+        const size_t shape[] = {height, width, 4};
+        if (extension == "npy")
+            writeNpy(path, shape, texels);
+        else
+            writeImage8(path, int(width), int(height), 4, texels, info.kind == PEL_LUT_SHADOW);
+        return;
+    }
+    if (extension == "dds" || extension == "ktx2") {
+        writeTexture(path, lut, Texture::Format::Rgba16Float, withAlpha(lut.read<uint16_t>(PEL_LUT_HALF)));
+        return;
+    }
+    if (extension == "npy") {
+        // Halves are rounded where they are stored; in memory they are floats.
+        const ChannelType type = encoding == PEL_LUT_HALF ? ChannelType::Half : ChannelType::Float;
+        const size_t shape[] = {height, width, 3};
+        writeNpy(path, shape, lut.read<float>(PEL_LUT_FLOAT), type);
+        return;
+    }
+    writeExr(path, describedImage(lut, encoding));
+}
+
+void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLutInfo& wanted,
+                  const std::vector<std::string>& keys) {
+    const auto refuse = [&](const std::string& what, const auto& is, const auto& asked) {
+        std::ostringstream text;
+        text.imbue(std::locale::classic());
+        text << "is a table whose " << what << " is " << is << "; " << asked << " is asked for";
+        throw FileError(path, text.str());
+    };
+    if (found.kind != wanted.kind) refuse("kind", lutKindNames[found.kind], lutKindNames[wanted.kind]);
+    const auto [width, height] = lutSize(found);
+    const auto [askedWidth, askedHeight] = lutSize(wanted);
+    const PelCurvatureLutDesc &c = found.curvature, &askedC = wanted.curvature;
+    const PelShadowLutDesc &s = found.shadow, &askedS = wanted.shadow;
+    const bool curvature = found.kind == PEL_LUT_CURVATURE;
+    for (const std::string& key : keys) {
+        const auto same = [&](const char* name, const auto& is, const auto& asked) {
+            if (key == name && is != asked) refuse(name, is, asked);
+        };
+        same("width", width, askedWidth);
+        same("height", height, askedHeight);
+        same("diffusion_radius", curvature ? c.diffusionRadius : s.diffusionRadius,
+             curvature ? askedC.diffusionRadius : askedS.diffusionRadius);
+        same("form", lutFormNames[c.form], lutFormNames[askedC.form]);
+        same("axis", lutAxisNames[c.axis], lutAxisNames[askedC.axis]);
+        same("radius_min", c.radiusMin, askedC.radiusMin);
+        same("radius_max", c.radiusMax, askedC.radiusMax);
+        same("width_min", s.widthMin, askedS.widthMin);
+        same("width_max", s.widthMax, askedS.widthMax);
+        same("sharpening", s.sharpening, askedS.sharpening);
+    }
+}
+
+Lut readLut(const Device& device, const std::string& path) {
+    const Image image = readImage(path);
+    auto need = [&]<class T>(const char* name, T*) -> const T& {
+        const Attribute* attribute = image.attribute(name);
+        if (!attribute || !std::holds_alternative<T>(*attribute))
+            throw FileError(path,
+                            std::string("no attribute \"") + name +
+                                "\": a look-up table written by `pellucid lut ... -o FILE.exr` is needed");
+        return std::get<T>(*attribute);
+    };
+    PelLutInfo info = pelLutInfoDefaults();
+    const auto needText = [&](const char* name) { return need(name, static_cast<std::string*>(nullptr)); };
+    const int format = need("pellucid:format", static_cast<int*>(nullptr));
+    if (format != lutFormatVersion)
+        throw FileError(path, "is written in format " + std::to_string(format) +
+                                  "; this program reads format " + std::to_string(lutFormatVersion));
+    info.kind = PelLutKind(indexOf(path, "pellucid:kind", needText("pellucid:kind"), lutKindNames));
+    if (info.kind != PEL_LUT_SPECULAR) {
+        const std::string profile = needText("pellucid:profile");
+        if (profile.empty() || profile.size() >= sizeof info.profile)
+            throw FileError(path, "attribute \"pellucid:profile\" has no name of 1 to 63 bytes");
+        info.profile[profile.copy(info.profile, sizeof info.profile - 1)] = '\0';
+    }
+    if (info.kind == PEL_LUT_CURVATURE) {
+        info.curvature.form =
+            PelCurvatureForm(indexOf(path, "pellucid:form", needText("pellucid:form"), lutFormNames));
+        info.curvature.axis =
+            PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), lutAxisNames));
+    }
+    info.curvature.width = info.shadow.width = info.specular.width = uint32_t(image.width);
+    info.curvature.height = info.shadow.height = info.specular.height = uint32_t(image.height);
+    visitLutNumbers(
+        info, [&](const char* name, float& value) { value = need(name, static_cast<float*>(nullptr)); });
+    try {
+        return Lut(device, info, image.interleaved(rgb));
+    } catch (const Error& e) {
+        throw FileError(path, e.what());
+    }
+}
+
+}  // namespace pellucid::io

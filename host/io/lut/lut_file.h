@@ -1,0 +1,38 @@
+// Look-up tables as files: EXR carries what the table is, so that it can be read back and checked; the others
+// are pixels.
+#pragma once
+#include <optional>
+#include <pellucid/pellucid.hpp>
+#include <string>
+#include <vector>
+
+#include "io/lut/bc6h.h"
+
+namespace pellucid::io {
+
+// Writes texels with the top row first. The extension chooses the container: .exr (float or half; with the
+// description in attributes named "pellucid:..."), .npy (any encoding; height x width x 3 or 4), .png, .bmp
+// and .tga (faceworks8), .dds and .ktx2 (half, alpha 1). Without an encoding: float for .exr and .npy, half
+// for .dds and .ktx2, faceworks8 for the others. Complete or not at all. Throws FileError when it cannot be
+// written, std::invalid_argument when container and encoding do not go together.
+void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncoding> encoding = {});
+
+// What writeLut will choose; throws like it, and when the file cannot be written. For checks before long
+// work.
+PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncoding> encoding);
+
+// The same as BC6H in .dds or .ktx2, an eighth of the bytes of half texels with alpha; returns what that
+// costs.
+TexelError writeLutBc6h(const std::string& path, const Lut& lut);
+void checkLutPathBc6h(const std::string& path);
+
+// Reads what writeLut wrote as .exr. Throws FileError: no such file, no or incomplete description, wrong
+// size.
+Lut readLut(const Device& device, const std::string& path);
+
+// Checks what a table read from `path` is against what was asked for: its kind, and the keys of a scene file
+// that are in `keys` ("form", "radius_min", ...). Throws FileError that names both values.
+void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLutInfo& wanted,
+                  const std::vector<std::string>& keys);
+
+}  // namespace pellucid::io

@@ -1,0 +1,133 @@
+#include "io/lut/profile_file.h"
+
+#include "io/atomic_file.h"
+#include "io/file_error.h"
+#include "io/toml_reader.h"
+
+namespace pellucid::io {
+namespace {
+
+constexpr std::string_view kinds[] = {"skin", "gaussians", "burley", "dipole", "table"};  // PelProfileKind
+constexpr std::string_view units[] = {"mm", "cm", "m", "um"};
+constexpr float millimetres[] = {1, 10, 1000, 0.001f};
+constexpr std::string_view fits[] = {"searchlight", "diffuse-transmission",
+                                     "diffuse-mean-free-path"};  // PelBurleyFit
+
+void need(const TomlReader& reader, const char* key, std::string_view kind) {
+    if (!reader.has(key))
+        reader.fail(key, "is missing; a profile of kind " + std::string(kind) + " needs it");
+}
+
+void threeNumbers(TomlReader& reader, const char* key, float (&values)[3], Range range, std::string_view kind,
+                  float unit) {
+    need(reader, key, kind);
+    reader.numbers(key, values, 3, range);
+    for (float& value : values) value *= unit;
+}
+
+Profile gaussians(TomlReader& reader, float unit) {
+    std::vector<PelGaussian> all;
+    need(reader, "gaussian", "gaussians");
+    reader.tables("gaussian", [&](TomlReader& r) {
+        PelGaussian g{};
+        need(r, "variance", "gaussians");
+        need(r, "weight", "gaussians");
+        r.number("variance", g.variance, Range::Positive);
+        r.numbers("weight", g.weight, 3, Range::NotNegative);
+        g.variance *= unit * unit;
+        all.push_back(g);
+    });
+    return Profile::gaussians(all);
+}
+
+Profile burley(TomlReader& reader, float unit) {
+    float path[3], albedo[3];
+    threeNumbers(reader, "mean_free_path", path, Range::Positive, "burley", unit);
+    threeNumbers(reader, "albedo", albedo, Range::ZeroToOne, "burley", 1);
+    PelBurleyFit fit = PEL_BURLEY_DIFFUSE_TRANSMISSION;
+    reader.choice("fit", fit, fits);
+    return Profile::burley(path, albedo, fit);
+}
+
+Profile dipole(TomlReader& reader, float unit) {
+    float absorption[3], scattering[3], eta = 1.3f;
+    threeNumbers(reader, "absorption", absorption, Range::Positive, "dipole", 1 / unit);
+    threeNumbers(reader, "reduced_scattering", scattering, Range::Positive, "dipole", 1 / unit);
+    need(reader, "eta", "dipole");
+    reader.number("eta", eta, Range::AtLeastOne);
+    return Profile::dipole(absorption, scattering, eta);
+}
+
+Profile table(TomlReader& reader, float unit) {
+    std::vector<float> distances, values;
+    need(reader, "sample", "table");
+    reader.tables("sample", [&](TomlReader& r) {
+        float distance = 0, value[3];
+        need(r, "distance", "table");
+        need(r, "value", "table");
+        r.number("distance", distance, Range::NotNegative);
+        r.numbers("value", value, 3, Range::NotNegative);
+        distances.push_back(distance * unit);
+        values.insert(values.end(), value, value + 3);
+    });
+    return Profile::table(distances, values);
+}
+
+Profile shapeOf(TomlReader& reader, PelProfileKind kind, float unit) {
+    switch (kind) {
+        case PEL_PROFILE_SKIN:
+            return Profile::skin();
+        case PEL_PROFILE_GAUSSIANS:
+            return gaussians(reader, unit);
+        case PEL_PROFILE_BURLEY:
+            return burley(reader, unit);
+        case PEL_PROFILE_DIPOLE:
+            return dipole(reader, unit);
+        case PEL_PROFILE_TABLE:
+            return table(reader, unit);
+    }
+    reader.fail("kind", "is not known");
+}
+
+}  // namespace
+
+ProfileFile parseProfile(const std::string& file, const std::string& text) {
+    const toml::table root = parseToml(file, text);
+    TomlReader reader(file, root, "the profile");
+    ProfileFile result;
+    for (const char* key : {"name", "kind", "source"})
+        if (!reader.has(key)) reader.fail(key, "is missing; every profile has a name, a kind and a source");
+    reader.text("name", result.name);
+    reader.text("source", result.source);
+    PelProfileKind kind = PEL_PROFILE_SKIN;
+    reader.choice("kind", kind, kinds);
+    result.kind = kinds[kind];
+    uint32_t unit = 0;
+    if (kind != PEL_PROFILE_SKIN) need(reader, "unit", result.kind);
+    reader.choice("unit", unit, units);
+    try {
+        result.profile = shapeOf(reader, kind, millimetres[unit]);
+        result.profile.setName(result.name);
+    } catch (const Error& e) {
+        throw FileError(file, e.what(), reader.line());
+    }
+    reader.finish();
+    return result;
+}
+
+std::optional<std::string_view> libraryProfile(std::string_view name) {
+    for (const LibraryProfile& entry : profileLibrary())
+        if (entry.name == name) return entry.text;
+    return {};
+}
+
+ProfileFile findProfile(const std::string& nameOrPath) {
+    if (extensionOf(nameOrPath) == "toml") return parseProfile(nameOrPath, readWholeFile(nameOrPath));
+    if (const auto text = libraryProfile(nameOrPath)) return parseProfile(nameOrPath, std::string(*text));
+    std::string known;
+    for (const LibraryProfile& entry : profileLibrary())
+        known.append(known.empty() ? "" : ", ").append(entry.name);
+    throw FileError(nameOrPath, "is no material of the library (" + known + ") and no .toml file");
+}
+
+}  // namespace pellucid::io

@@ -1,0 +1,183 @@
+#include "io/mesh/mesh_file.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <map>
+
+#include "io/atomic_file.h"
+#include "io/image/color_map.h"
+#include "io/file_error.h"
+#include "io/mesh/mesh_import.h"
+#include "io/mesh/mesh_text.h"
+
+namespace pellucid::io {
+namespace {
+
+// A text that OpenMesh can read, on the disk as its readers want it; removed again.
+class TemporaryText {
+  public:
+    TemporaryText(const std::string& text, const std::string& extension)
+        : path_((std::filesystem::temp_directory_path() / "pellucid-mesh-XXXXXX").string() + "." +
+                extension) {
+        const int fd = ::mkstemps(path_.data(), static_cast<int>(extension.size()) + 1);
+        const bool ok = fd >= 0 && ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+        if (fd >= 0) ::close(fd);
+        if (!ok) throw FileError(path_, "cannot be written, but a temporary file is needed here");
+    }
+    ~TemporaryText() { ::unlink(path_.c_str()); }
+    const std::string& path() const { return path_; }
+
+  private:
+    std::string path_;
+};
+
+std::string counted(size_t count, const std::string& one, const std::string& several) {
+    return std::to_string(count) + " " + (count == 1 ? one : several);
+}
+
+void checkVertices(const std::string& path, const RawMesh& raw) {
+    for (size_t i = 0; i < raw.positions.size(); ++i) {
+        if (!std::isfinite(raw.positions[i])) {
+            throw FileError(
+                path,
+                "vertex " + std::to_string(i / 3) +
+                    " (counted from 0) has a position that is NaN or infinite; positions must be finite");
+        }
+    }
+}
+
+void checkCorners(const std::string& path, const RawMesh& raw) {
+    const auto vertices = static_cast<int64_t>(raw.positions.size() / 3);
+    for (size_t f = 0; f + 1 < raw.faceStart.size(); ++f) {
+        for (size_t c = raw.faceStart[f]; c < raw.faceStart[f + 1]; ++c) {
+            if (raw.corners[c] >= 0 && raw.corners[c] < vertices) continue;
+            throw FileError(path, "face " + std::to_string(f) + " (counted from 0) refers to vertex " +
+                                      std::to_string(raw.corners[c]) + ", but the file has " +
+                                      counted(static_cast<size_t>(vertices), "vertex", "vertices") +
+                                      "; 0 to " + std::to_string(vertices - 1) + " would be right");
+        }
+    }
+}
+
+// Corner UVs become vertex UVs; a vertex whose corners differ is copied, or (no splitting) the UVs are left
+// out.
+void assignCornerUvs(MeshData& mesh, RawMesh& raw, bool split) {
+    const size_t fileVertices = mesh.vertexCount();
+    std::vector<uint32_t> corners(raw.corners.begin(), raw.corners.end());
+    std::vector<float> uvs(2 * fileVertices, 0.0f);
+    std::vector<bool> seen(fileVertices, false);
+    std::map<std::pair<uint32_t, std::pair<float, float>>, uint32_t> copies;
+    for (size_t c = 0; c < corners.size(); ++c) {
+        const uint32_t v = corners[c];
+        const float* uv = &raw.cornerUvs[2 * c];
+        if (!seen[v]) {
+            seen[v] = true;
+            std::copy_n(uv, 2, &uvs[2 * v]);
+        } else if (std::memcmp(&uvs[2 * v], uv, 2 * sizeof(float)) != 0) {
+            if (!split) {
+                mesh.warnings.push_back(
+                    "texture coordinates left out: they differ between faces at a vertex");
+                return;
+            }
+            const auto next = static_cast<uint32_t>(uvs.size() / 2);
+            const auto [entry, isNew] = copies.try_emplace({v, {uv[0], uv[1]}}, next);
+            corners[c] = entry->second;
+            if (isNew) {
+                mesh.splitFrom.push_back(v);
+                uvs.insert(uvs.end(), {uv[0], uv[1]});
+            }
+        }
+    }
+    for (uint32_t v : mesh.splitFrom) {
+        for (std::vector<float>* array : {&mesh.positions, &mesh.normals}) {
+            if (array->empty()) continue;
+            for (size_t a = 0; a < 3; ++a) array->push_back((*array)[3 * v + a]);
+        }
+    }
+    raw.corners.assign(corners.begin(), corners.end());
+    mesh.uvs = std::move(uvs);
+}
+
+void triangulate(MeshData& mesh, const RawMesh& raw) {
+    size_t tooSmall = 0;
+    for (size_t f = 0; f + 1 < raw.faceStart.size(); ++f) {
+        const size_t first = raw.faceStart[f], last = raw.faceStart[f + 1];
+        tooSmall += last - first < 3;
+        for (size_t c = first + 1; c + 1 < last; ++c) {
+            for (size_t corner : {first, c, c + 1})
+                mesh.triangles.push_back(static_cast<uint32_t>(raw.corners[corner]));
+        }
+    }
+    if (tooSmall)
+        mesh.warnings.push_back(counted(tooSmall, "face", "faces") +
+                                " with fewer than three corners left out");
+}
+
+// Normals as loaded are used only if every one can be.
+void checkNormals(MeshData& mesh) {
+    size_t bad = 0;
+    for (size_t v = 0; v + 2 < mesh.normals.size(); v += 3) {
+        float* n = &mesh.normals[v];
+        const float length = std::hypot(n[0], n[1], n[2]);
+        if (!(std::isfinite(length) && length > 1e-6f)) {
+            ++bad;
+            continue;
+        }
+        for (size_t a = 0; a < 3; ++a) n[a] /= length;
+    }
+    if (!bad) return;
+    mesh.normals.clear();
+    mesh.warnings.push_back("normals left out: " + counted(bad, "vertex normal", "vertex normals") +
+                            " missing, zero or not finite");
+}
+
+}  // namespace
+
+MeshData loadMesh(const std::string& path, const MeshLoadOptions& options) {
+    const std::string text = readWholeFile(path);
+    const std::string extension = requireExtension(path, {"off", "obj", "ply", "stl"});
+    if (text.empty()) throw FileError(path, "is empty; a mesh was expected");
+    MeshText checked;
+    if (extension == "off") checked = checkOff(path, text);
+    if (extension == "obj") checked = checkObj(path, text);
+    if (extension == "stl") checked = checkStl(path, text);
+    if (extension == "ply") checked = checkPly(path, text);
+
+    RawMesh raw;
+    if (checked.canonical) {
+        const TemporaryText readable(*checked.canonical, extension);
+        raw = importWithOpenMesh(readable.path(), extension);
+    } else {
+        raw = importWithOpenMesh(path, extension);
+    }
+    checkVertices(path, raw);
+    checkCorners(path, raw);
+
+    MeshData mesh;
+    mesh.source = path;
+    mesh.positions = std::move(raw.positions);
+    mesh.normals = std::move(raw.normals);
+    checkNormals(mesh);
+    const size_t faces = raw.faceStart.size() - 1;
+    if (faces < checked.faces) {
+        mesh.warnings.push_back(counted(checked.faces - faces, "face", "faces") +
+                                " with coinciding corners left out");
+    }
+    if (!raw.cornerUvs.empty()) {
+        assignCornerUvs(mesh, raw, options.splitUvSeams);
+    } else {
+        mesh.uvs = std::move(raw.uvs);
+    }
+    triangulate(mesh, raw);
+    if (mesh.triangles.empty()) {
+        throw FileError(path, "has " + counted(mesh.vertexCount(), "vertex", "vertices") +
+                                  " but no face with three corners; a surface was expected");
+    }
+    return mesh;
+}
+
+}  // namespace pellucid::io

@@ -1,0 +1,107 @@
+#include "io/mesh/mesh_import.h"
+
+#include <OpenMesh/Core/IO/MeshIO.hh>
+
+#include "io/file_error.h"
+#include "io/mesh/quiet_open_mesh.h"
+
+namespace pellucid::io {
+namespace {
+
+using namespace OpenMesh;
+
+class RawImporter final : public OpenMesh::IO::BaseImporter {
+  public:
+    explicit RawImporter(RawMesh& mesh) : mesh_(mesh) { mesh_.faceStart.push_back(0); }
+
+    VertexHandle add_vertex(const Vec3f& p) override {
+        mesh_.positions.insert(mesh_.positions.end(), {p[0], p[1], p[2]});
+        return VertexHandle(static_cast<int>(n_vertices()) - 1);
+    }
+    VertexHandle add_vertex() override { return add_vertex(Vec3f(0, 0, 0)); }
+    void set_point(VertexHandle v, const Vec3f& p) override { set(mesh_.positions, v, p, 3); }
+    void set_normal(VertexHandle v, const Vec3f& n) override { set(mesh_.normals, v, n, 3); }
+    void set_normal(VertexHandle v, const Vec3d& n) override { set_normal(v, Vec3f(n)); }
+    void set_texcoord(VertexHandle v, const Vec2f& t) override { set(mesh_.uvs, v, t, 2); }
+
+    FaceHandle add_face(const VHandles& vertices) override {
+        for (VertexHandle v : vertices) mesh_.corners.push_back(v.idx());
+        mesh_.faceStart.push_back(static_cast<uint32_t>(mesh_.corners.size()));
+        return FaceHandle(static_cast<int>(n_faces()) - 1);
+    }
+    void add_face_texcoords(FaceHandle f, VertexHandle, const std::vector<Vec2f>& uvs) override {
+        const size_t first = mesh_.faceStart[static_cast<size_t>(f.idx())];
+        const size_t last = mesh_.faceStart[static_cast<size_t>(f.idx()) + 1];
+        if (uvs.size() != last - first) return;
+        mesh_.cornerUvs.resize(2 * first, 0.0f);  // faces without UVs before this one
+        for (const Vec2f& uv : uvs) mesh_.cornerUvs.insert(mesh_.cornerUvs.end(), {uv[0], uv[1]});
+    }
+
+    size_t n_vertices() const override { return mesh_.positions.size() / 3; }
+    size_t n_faces() const override { return mesh_.faceStart.size() - 1; }
+    size_t n_edges() const override { return 0; }
+
+    // Nothing of the rest is asked for: half-edges (OM files), colours, status, textures.
+    HalfedgeHandle add_edge(VertexHandle, VertexHandle) override { return HalfedgeHandle(); }
+    FaceHandle add_face(HalfedgeHandle) override { return FaceHandle(); }
+    void add_face_texcoords(FaceHandle, VertexHandle, const std::vector<Vec3f>&) override {}
+    void set_face_texindex(FaceHandle, int) override {}
+    void set_halfedge(VertexHandle, HalfedgeHandle) override {}
+    void set_color(VertexHandle, const Vec3uc&) override {}
+    void set_color(VertexHandle, const Vec4uc&) override {}
+    void set_color(VertexHandle, const Vec3f&) override {}
+    void set_color(VertexHandle, const Vec4f&) override {}
+    void set_status(VertexHandle, const Attributes::StatusInfo&) override {}
+    void set_next(HalfedgeHandle, HalfedgeHandle) override {}
+    void set_face(HalfedgeHandle, FaceHandle) override {}
+    void request_face_texcoords2D() override {}
+    void set_texcoord(HalfedgeHandle, const Vec2f&) override {}
+    void set_texcoord(VertexHandle, const Vec3f&) override {}
+    void set_texcoord(HalfedgeHandle, const Vec3f&) override {}
+    void set_status(HalfedgeHandle, const Attributes::StatusInfo&) override {}
+    void set_color(EdgeHandle, const Vec3uc&) override {}
+    void set_color(EdgeHandle, const Vec4uc&) override {}
+    void set_color(EdgeHandle, const Vec3f&) override {}
+    void set_color(EdgeHandle, const Vec4f&) override {}
+    void set_status(EdgeHandle, const Attributes::StatusInfo&) override {}
+    void set_normal(FaceHandle, const Vec3f&) override {}
+    void set_normal(FaceHandle, const Vec3d&) override {}
+    void set_color(FaceHandle, const Vec3uc&) override {}
+    void set_color(FaceHandle, const Vec4uc&) override {}
+    void set_color(FaceHandle, const Vec3f&) override {}
+    void set_color(FaceHandle, const Vec4f&) override {}
+    void set_status(FaceHandle, const Attributes::StatusInfo&) override {}
+    void add_texture_information(int, std::string) override {}
+
+  private:
+    // Vertices that never get a value keep 0; a file that sets none leaves the array empty.
+    template <class Vector>
+    void set(std::vector<float>& array, VertexHandle v, const Vector& value, size_t size) {
+        if (v.idx() < 0 || static_cast<size_t>(v.idx()) >= n_vertices()) return;
+        const size_t needed = (static_cast<size_t>(v.idx()) + 1) * size;
+        if (array.size() < needed) array.resize(needed, 0.0f);
+        for (size_t i = 0; i < size; ++i) array[needed - size + i] = value[i];
+    }
+
+    RawMesh& mesh_;
+};
+
+}  // namespace
+
+RawMesh importWithOpenMesh(const std::string& path, const std::string& extension) {
+    QuietOpenMesh quiet;
+    RawMesh mesh;
+    RawImporter importer(mesh);
+    OpenMesh::IO::Options options = OpenMesh::IO::Options::VertexNormal;
+    options += OpenMesh::IO::Options::VertexTexCoord;
+    options += OpenMesh::IO::Options::FaceTexCoord;
+    const bool read = OpenMesh::IO::IOManager().read(path, importer, options);
+    if (!read) throw FileError(path, "is no ." + extension + " file that OpenMesh can read");
+    const size_t vertices = importer.n_vertices();
+    if (!mesh.normals.empty()) mesh.normals.resize(3 * vertices, 0.0f);
+    if (!mesh.uvs.empty()) mesh.uvs.resize(2 * vertices, 0.0f);
+    if (!mesh.cornerUvs.empty()) mesh.cornerUvs.resize(2 * mesh.corners.size(), 0.0f);
+    return mesh;
+}
+
+}  // namespace pellucid::io

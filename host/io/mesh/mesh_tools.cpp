@@ -1,0 +1,154 @@
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <OpenMesh/Tools/Subdivider/Uniform/LoopT.hh>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "io/file_error.h"
+#include "io/mesh/mesh_file.h"
+#include "io/mesh/quiet_open_mesh.h"
+
+namespace pellucid::io {
+namespace {
+
+using Vec = std::array<double, 3>;
+
+Vec subtract(const float* a, const float* b) {
+    return {double(a[0]) - b[0], double(a[1]) - b[1], double(a[2]) - b[2]};
+}
+double dot(const Vec& a, const Vec& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Vec cross(const Vec& a, const Vec& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double length(const Vec& a) {
+    return std::sqrt(dot(a, a));
+}
+
+// For each vertex the first one, in order of index, at exactly its position.
+std::vector<uint32_t> firstAtPosition(const std::vector<float>& positions) {
+    const size_t count = positions.size() / 3;
+    std::vector<uint32_t> order(count), first(count);
+    std::iota(order.begin(), order.end(), 0u);
+    const auto key = [&](uint32_t v) {
+        return std::array<float, 3>{positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]};
+    };
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        const auto ka = key(a), kb = key(b);
+        return ka != kb ? ka < kb : a < b;
+    });
+    for (size_t i = 0; i < count; ++i) {
+        first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
+    }
+    return first;
+}
+
+}  // namespace
+
+void computeNormals(MeshData& mesh) {
+    const std::vector<uint32_t> first = firstAtPosition(mesh.positions);
+    std::vector<Vec> sums(mesh.vertexCount(), Vec{0, 0, 0});
+    for (size_t t = 0; t < mesh.triangles.size(); t += 3) {
+        const uint32_t* corner = &mesh.triangles[t];
+        const auto edge = [&](int from, int to) {
+            return subtract(&mesh.positions[3 * corner[to]], &mesh.positions[3 * corner[from]]);
+        };
+        const Vec normal = cross(edge(0, 1), edge(0, 2));
+        const double size = length(normal);
+        if (!(size > 0)) continue;
+        for (int c = 0; c < 3; ++c) {
+            const Vec a = edge(c, (c + 1) % 3), b = edge(c, (c + 2) % 3);
+            const double angle = std::atan2(length(cross(a, b)), dot(a, b));
+            Vec& sum = sums[first[corner[c]]];
+            for (size_t k = 0; k < 3; ++k) sum[k] += normal[k] / size * angle;
+        }
+    }
+    mesh.normals.resize(mesh.positions.size());
+    for (size_t v = 0; v < sums.size(); ++v) {
+        const Vec& sum = sums[first[v]];
+        const double size = length(sum);
+        const bool usable = size > 1e-12;  // else unreferenced, or two faces back to back
+        for (size_t k = 0; k < 3; ++k) {
+            mesh.normals[3 * v + k] = usable ? static_cast<float>(sum[k] / size) : (k == 2 ? 1.0f : 0.0f);
+        }
+    }
+}
+
+void loopSubdivide(MeshData& mesh, int levels) {
+    if (levels <= 0) return;
+    using Mesh = OpenMesh::TriMesh_ArrayKernelT<>;
+    Mesh topology;
+    for (size_t v = 0; v < mesh.vertexCount(); ++v) {
+        topology.add_vertex({mesh.positions[3 * v], mesh.positions[3 * v + 1], mesh.positions[3 * v + 2]});
+    }
+    const QuietOpenMesh quiet;
+    for (size_t t = 0; t < mesh.triangleCount(); ++t) {
+        const uint32_t* corner = &mesh.triangles[3 * t];
+        const bool repeated = corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0];
+        OpenMesh::FaceHandle face;
+        if (!repeated) {
+            face = topology.add_face(OpenMesh::VertexHandle(static_cast<int>(corner[0])),
+                                     OpenMesh::VertexHandle(static_cast<int>(corner[1])),
+                                     OpenMesh::VertexHandle(static_cast<int>(corner[2])));
+        }
+        if (face.is_valid()) continue;
+        throw FileError(
+            mesh.source,
+            "cannot be subdivided: triangle " + std::to_string(t) + " (counted from 0) " +
+                (repeated ? "has a vertex twice"
+                          : "makes an edge of more than two triangles, or of two that face opposite ways") +
+                "; mend the mesh, or do without subdivision");
+    }
+
+    for (int level = 0; level < levels; ++level) {
+        if (!mesh.uvs.empty()) {
+            // LoopT adds one vertex per edge, in the order of the edges.
+            for (auto edge : topology.edges()) {
+                const auto a = static_cast<size_t>(edge.v0().idx()), b = static_cast<size_t>(edge.v1().idx());
+                for (size_t k = 0; k < 2; ++k)
+                    mesh.uvs.push_back((mesh.uvs[2 * a + k] + mesh.uvs[2 * b + k]) / 2);
+            }
+        }
+        size_t valence = 6;
+        for (auto v : topology.vertices()) valence = std::max<size_t>(valence, v.valence());
+        OpenMesh::Subdivider::Uniform::LoopT<Mesh> loop;
+        loop.init_weights(valence + 1);  // its table covers 49 neighbours, and is not checked
+        loop.attach(topology);
+        loop(1);
+        loop.detach();
+    }
+
+    mesh.positions.clear();
+    for (auto v : topology.vertices()) {
+        const Mesh::Point& p = topology.point(v);
+        mesh.positions.insert(mesh.positions.end(), {p[0], p[1], p[2]});
+    }
+    mesh.triangles.clear();
+    for (auto f : topology.faces()) {
+        for (auto v : f.vertices()) mesh.triangles.push_back(static_cast<uint32_t>(v.idx()));
+    }
+    mesh.normals.clear();
+    mesh.splitFrom.clear();
+}
+
+float scaleToHeight(MeshData& mesh, float height, int axis) {
+    float low[3], high[3];
+    for (size_t a = 0; a < 3; ++a) {
+        low[a] = high[a] = mesh.positions.at(a);
+        for (size_t i = a; i < mesh.positions.size(); i += 3) {
+            low[a] = std::min(low[a], mesh.positions[i]);
+            high[a] = std::max(high[a], mesh.positions[i]);
+        }
+    }
+    const float extent = high[axis] - low[axis];
+    if (!(extent > 0)) throw FileError(mesh.source, "is flat along the axis it should be scaled to");
+    const float factor = height / extent;
+    for (size_t i = 0; i < mesh.positions.size(); ++i) {
+        mesh.positions[i] = (mesh.positions[i] - (low[i % 3] + high[i % 3]) / 2) * factor;
+    }
+    return factor;
+}
+
+}  // namespace pellucid::io

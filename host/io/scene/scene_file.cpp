@@ -1,0 +1,155 @@
+#include "io/scene/scene_file.h"
+
+#include <filesystem>
+#include <set>
+
+#include "io/atomic_file.h"
+#include "io/file_error.h"
+#include "io/scene/scene_keys.h"
+#include "io/toml_reader.h"
+
+namespace pellucid::io {
+namespace {
+
+constexpr uint32_t sceneVersion = 1;
+
+void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind) {
+    SceneLut lut;
+    lut.line = reader.line();
+    lut.info.kind = kind;
+    if (kind == PEL_LUT_CURVATURE) {
+        curvatureLutKeys(reader, lut);
+    } else {
+        shadowLutKeys(reader, lut);
+    }
+    if (lut.name.empty()) reader.fail("name", "is missing; materials need it to refer to this table");
+    if (scene.lut(lut.name, kind)) reader.fail("name", "is used twice; give each table a name of its own");
+    if (!lut.file.empty() && reader.has("profile"))
+        reader.fail("profile", "cannot stand beside 'file', which was made with its own; leave one out");
+    if (!lut.file.empty())
+        for (const char* key : {"form", "axis", "width", "height", "diffusion_radius", "radius_min",
+                                "radius_max", "width_min", "width_max", "sharpening"})
+            if (reader.has(key)) lut.expected.push_back(key);
+    if (!lut.profile.empty() && !reader.has("diffusion_radius"))
+        lut.info.curvature.diffusionRadius = lut.info.shadow.diffusionRadius = 0;
+    if (lut.file.empty() && kind == PEL_LUT_CURVATURE &&
+        lut.info.curvature.radiusMin >= lut.info.curvature.radiusMax)
+        reader.fail("radius_min", "is not below radius_max");
+    if (lut.file.empty() && kind == PEL_LUT_SHADOW && lut.info.shadow.widthMin >= lut.info.shadow.widthMax)
+        reader.fail("width_min", "is not below width_max");
+    scene.luts.push_back(std::move(lut));
+}
+
+void readLight(TomlReader& reader, SceneFile& scene) {
+    SceneLight light;
+    light.line = reader.line();
+    lightKeys(reader, light);
+    const auto needs = [&](const char* key, const char* type) {
+        if (!reader.has(key)) reader.fail(key, std::string("is missing; a ") + type + " light needs it");
+    };
+    if (light.light.type == PEL_LIGHT_DIRECTIONAL) needs("to_light", "directional");
+    if (light.light.type != PEL_LIGHT_DIRECTIONAL) needs("position", "point or spot");
+    if (light.light.type == PEL_LIGHT_SPOT) needs("spot_direction", "spot");
+    if (reader.has("shadow_map") && light.shadowMapFile.empty())
+        reader.fail("shadow_map", "has no 'file'; name the image of depths seen from the light");
+    scene.lights.push_back(std::move(light));
+}
+
+// Names that must exist, numbers that must differ: what no single key can tell.
+void checkReferences(const SceneFile& scene, const TomlReader& channels) {
+    if (scene.channels[PEL_SLOT_NORMAL_SHADING].empty())
+        channels.fail("normal_shading", "is missing; nothing can be shaded without normals");
+    std::set<uint32_t> ids;
+    for (const SceneMaterial& m : scene.materials) {
+        if (!ids.insert(m.id).second) {
+            throw FileError(scene.source, "material id " + std::to_string(m.id) + " is used twice", m.line);
+        }
+        if (m.material.thicknessTaps != 0 && m.material.thicknessTaps != 8 &&
+            m.material.thicknessTaps != 16 && m.material.thicknessTaps != 32) {
+            throw FileError(scene.source,
+                            "'thickness_taps' is " + std::to_string(m.material.thicknessTaps) +
+                                "; 0, 8, 16 or 32 would be right",
+                            m.line);
+        }
+        if (!m.normalMap.empty())
+            for (const auto& [slot, key] : {std::pair{PEL_SLOT_UV, "uv"}, {PEL_SLOT_TANGENT, "tangent"}})
+                if (scene.channels[slot].empty())
+                    channels.fail(key, "is missing; the normal map of material " + std::to_string(m.id) + " needs it");
+        for (PelLutKind kind : {PEL_LUT_CURVATURE, PEL_LUT_SHADOW}) {
+            const std::string& name = kind == PEL_LUT_CURVATURE ? m.curvatureLut : m.shadowLut;
+            if (name.empty() || scene.lut(name, kind)) continue;
+            std::string list;
+            for (const SceneLut& l : scene.luts) {
+                if (l.info.kind == kind) list += (list.empty() ? "" : ", ") + l.name;
+            }
+            const std::string table = kind == PEL_LUT_CURVATURE ? "curvature_lut" : "shadow_lut";
+            throw FileError(scene.source,
+                            "material " + std::to_string(m.id) + " asks for the " + table + " '" + name +
+                                "'; there is " +
+                                (list.empty() ? "no [[" + table + "]] table" : "only: " + list),
+                            m.line);
+        }
+    }
+}
+
+}  // namespace
+
+const SceneLut* SceneFile::lut(const std::string& name, PelLutKind kind) const {
+    for (const SceneLut& l : luts) {
+        if (l.name == name && l.info.kind == kind) return &l;
+    }
+    return nullptr;
+}
+
+SceneFile readScene(const std::string& path) {
+    const toml::table root = parseToml(path, readWholeFile(path));
+    SceneFile scene;
+    scene.source = path;
+    TomlReader reader(path, root, "the scene");
+    uint32_t version = 0;
+    reader.integer("version", version, sceneVersion, sceneVersion);
+    if (version == 0) reader.fail("version", "is missing; this program writes and reads version 1");
+    reader.integer("blur_normals", scene.blurNormals, 0, 1);
+    reader.integer("rotate_taps", scene.rotateTaps, 0, 1);
+    reader.table("camera", true, [&](TomlReader& r) { cameraKeys(r, scene.camera); });
+    reader.table("ambient", true, [&](TomlReader& r) { ambientKeys(r, scene); });
+    reader.table("outputs", true, [&](TomlReader& r) { outputFileKeys(r, scene); });
+    reader.tables("curvature_lut", [&](TomlReader& r) { readLut(r, scene, PEL_LUT_CURVATURE); });
+    reader.tables("shadow_lut", [&](TomlReader& r) { readLut(r, scene, PEL_LUT_SHADOW); });
+    reader.tables("material", [&](TomlReader& r) {
+        SceneMaterial material;
+        material.line = r.line();
+        materialKeys(r, material);
+        scene.materials.push_back(std::move(material));
+    });
+    reader.tables("light", [&](TomlReader& r) { readLight(r, scene); });
+    if (!reader.has("channels"))
+        reader.fail("channels", "is missing; it says which channels of the G-buffer are what");
+    reader.table("channels", true, [&](TomlReader& r) {
+        channelKeys(r, scene);
+        r.finish();
+        checkReferences(scene, r);
+    });
+    reader.finish();
+
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    for (SceneLut& l : scene.luts) {
+        if (!l.file.empty()) l.file = (folder / l.file).string();
+        if (l.profile.ends_with(".toml")) l.profile = (folder / l.profile).string();
+    }
+    for (SceneMaterial& m : scene.materials) {
+        if (!m.normalMap.empty()) m.normalMap = (folder / m.normalMap).string();
+    }
+    if (!scene.ambientCube.empty()) scene.ambientCube = (folder / scene.ambientCube).string();
+    for (std::string& output : scene.outputs) {
+        if (!output.empty()) output = (folder / output).string();
+    }
+    for (SceneLight& l : scene.lights) {
+        if (!l.shadowMapFile.empty()) l.shadowMapFile = (folder / l.shadowMapFile).string();
+        for (SceneCascade& c : l.cascades)
+            if (!c.file.empty()) c.file = (folder / c.file).string();
+    }
+    return scene;
+}
+
+}  // namespace pellucid::io

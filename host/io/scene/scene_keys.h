@@ -1,0 +1,174 @@
+// The keys of a scene file, once: reader and writer both walk these lists. A visitor has
+//   number(key, float&, Range)   numbers(key, float*, count, Range)   rows(key, float*, rows, columns)
+//   integer(key, uint32_t&, low, high)   text(key, string&)   texts(key, vector<string>&, allowed counts)
+//   choice(key, enum&, names)   table(key, isPresent, function)
+#pragma once
+#include <string_view>
+
+#include "io/scene/scene_file.h"
+
+namespace pellucid::io {
+
+enum class Range { Any, NotNegative, Positive, AtLeastOne, ZeroToOne };
+
+constexpr std::string_view lightTypes[] = {"directional", "point", "spot"};            // PelLightType
+constexpr std::string_view shadowProjections[] = {"parallel", "perspective", "cube", "cube-radial"};  // PelShadowProjection
+constexpr std::string_view shadowContents[] = {"depth", "moments", "exponential"};     // PelShadowContent
+constexpr std::string_view cascadeKeys[] = {"cascade_1", "cascade_2", "cascade_3"};
+constexpr std::string_view specularModels[] = {"ksk", "ggx"};                          // PelSpecularModel
+constexpr std::string_view curvatureForms[] = {"arc", "ring", "half-ring", "sphere"};  // PelCurvatureForm
+constexpr std::string_view lutAxes[] = {"linear", "root"};                             // PelLutAxis
+
+struct SlotKey {
+    PelImageSlot slot;
+    std::string_view key;
+    size_t components;
+};
+constexpr SlotKey slotKeys[] = {
+    {PEL_SLOT_MATERIAL, "material", 1},
+    {PEL_SLOT_POSITION, "position", 3},
+    {PEL_SLOT_DEPTH, "depth", 1},
+    {PEL_SLOT_NORMAL_GEOMETRIC, "normal_geometric", 3},
+    {PEL_SLOT_NORMAL_SHADING, "normal_shading", 3},
+    {PEL_SLOT_NORMAL_BLURRED, "normal_blurred", 3},
+    {PEL_SLOT_CURVATURE, "curvature", 1},
+    {PEL_SLOT_ALBEDO, "albedo", 3},
+    {PEL_SLOT_AMBIENT_OCCLUSION, "ambient_occlusion", 1},
+    {PEL_SLOT_THICKNESS, "thickness", 1},
+    {PEL_SLOT_ROUGHNESS, "roughness", 1},
+    {PEL_SLOT_SPECULAR, "specular", 1},
+    {PEL_SLOT_UV, "uv", 2},
+    {PEL_SLOT_UV_GRADIENT, "uv_gradient", 4},
+    {PEL_SLOT_TANGENT, "tangent", 4},
+};
+
+struct OutputKey {
+    PelImageSlot slot;
+    std::string_view key;
+};
+constexpr OutputKey outputKeys[] = {
+    {PEL_SLOT_OUT_DIFFUSE, "diffuse"},
+    {PEL_SLOT_OUT_DEEP_SCATTER, "deep_scatter"},
+    {PEL_SLOT_OUT_SPECULAR, "specular"},
+    {PEL_SLOT_OUT_THICKNESS, "thickness"},
+};
+
+template <class Visitor, class Scene>
+void outputFileKeys(Visitor& v, Scene& scene) {
+    for (const OutputKey& k : outputKeys) v.text(k.key, scene.outputs[k.slot]);
+}
+
+template <class Visitor, class Scene>
+void channelKeys(Visitor& v, Scene& scene) {
+    for (const SlotKey& k : slotKeys) v.texts(k.key, scene.channels[k.slot], k.components);
+}
+
+template <class Visitor, class Camera>
+void cameraKeys(Visitor& v, Camera& camera) {
+    v.numbers("position", camera.position, 3, Range::Any);
+    v.numbers("inverse_view_projection", camera.inverseViewProjection, 16, Range::Any);
+}
+
+template <class Visitor, class Scene>
+void ambientKeys(Visitor& v, Scene& scene) {
+    v.numbers("constant", scene.ambient.constant, 3, Range::NotNegative);
+    v.rows("sh", scene.ambient.sh[0], 9, 3);
+    v.text("cube", scene.ambientCube);
+}
+
+template <class Visitor, class Light>
+void shadowMapKeys(Visitor& v, Light& l) {
+    v.text("file", l.shadowMapFile);
+    v.text("channel", l.shadowMapChannel);
+    v.choice("projection", l.light.shadowProjection, shadowProjections);
+    v.numbers("world_to_shadow", l.light.worldToShadow, 16, Range::Any);
+    v.number("depth_range", l.light.shadowDepthRange, Range::Any);
+    v.number("depth_a", l.light.shadowDepthA, Range::Any);
+    v.number("depth_b", l.light.shadowDepthB, Range::Any);
+    v.integer("filter_texels", l.light.shadowFilterTexels, 0, 256);
+    v.number("bias", l.light.shadowBias, Range::NotNegative);
+    v.number("softness", l.light.shadowSoftness, Range::Positive);
+    v.number("cone_slope", l.light.shadowConeSlope, Range::NotNegative);
+    v.choice("content", l.light.shadowContent, shadowContents);
+    v.text("second_channel", l.secondChannel);
+    v.number("exponent", l.light.shadowExponent, Range::Any);
+    v.number("min_deviation", l.light.shadowMinDeviation, Range::NotNegative);
+    v.number("bleeding", l.light.shadowBleeding, Range::ZeroToOne);
+    v.integer("cascades", l.light.shadowCascades, 0, 4);
+    for (uint32_t i = 0; i < 3; ++i)
+        v.table(cascadeKeys[i], i + 1 < l.light.shadowCascades, [&](auto& inner) {
+            inner.text("file", l.cascades[i].file);
+            inner.text("channel", l.cascades[i].channel);
+            inner.text("second_channel", l.cascades[i].secondChannel);
+            inner.numbers("world_to_shadow", l.light.cascadeToShadow[i], 16, Range::Any);
+            inner.number("depth_range", l.light.cascadeDepthRange[i], Range::Any);
+        });
+}
+
+template <class Visitor, class Light>
+void lightKeys(Visitor& v, Light& l) {
+    v.choice("type", l.light.type, lightTypes);
+    v.numbers("to_light", l.light.toLight, 3, Range::Any);
+    v.numbers("position", l.light.position, 3, Range::Any);
+    v.numbers("spot_direction", l.light.spotDirection, 3, Range::Any);
+    v.number("spot_cos_inner", l.light.spotCosInner, Range::Any);
+    v.number("spot_cos_outer", l.light.spotCosOuter, Range::Any);
+    v.numbers("color", l.light.color, 3, Range::NotNegative);
+    v.number("range", l.light.range, Range::NotNegative);
+    v.text("wide_shadow", l.wideShadow);
+    v.table("shadow_map", !l.shadowMapFile.empty(), [&](auto& inner) { shadowMapKeys(inner, l); });
+}
+
+template <class Visitor, class Material>
+void materialKeys(Visitor& v, Material& m) {
+    v.integer("id", m.id, 1, 255);
+    v.text("curvature_lut", m.curvatureLut);
+    v.text("shadow_lut", m.shadowLut);
+    v.numbers("albedo", m.material.albedo, 3, Range::NotNegative);
+    v.number("diffusion_radius", m.material.diffusionRadius, Range::Positive);
+    v.numbers("normal_blend", m.material.normalBlend, 3, Range::ZeroToOne);
+    v.number("shadow_filter_width", m.material.shadowFilterWidth, Range::Positive);
+    v.numbers("deep_scatter_color", m.material.deepScatterColor, 3, Range::NotNegative);
+    v.number("deep_scatter_radius", m.material.deepScatterRadius, Range::Positive);
+    v.number("deep_scatter_normal_offset", m.material.deepScatterNormalOffset, Range::NotNegative);
+    v.number("thickness_filter_radius", m.material.thicknessFilterRadius, Range::NotNegative);
+    v.integer("thickness_taps", m.material.thicknessTaps, 0, 32);
+    v.number("specular", m.material.specular, Range::NotNegative);
+    v.number("roughness", m.material.roughness, Range::Positive);
+    v.number("f0", m.material.f0, Range::ZeroToOne);
+    v.text("normal_map", m.normalMap);
+    v.number("uv_scale", m.material.uvScale, Range::Positive);
+    v.choice("specular_model", m.material.specularModel, specularModels);
+    v.number("roughness2", m.material.roughness2, Range::Positive);
+    v.number("lobe_mix", m.material.lobeMix, Range::ZeroToOne);
+    v.number("deep_scatter_ambient", m.material.deepScatterAmbient, Range::NotNegative);
+}
+
+template <class Visitor, class Lut>
+void curvatureLutKeys(Visitor& v, Lut& l) {
+    v.text("name", l.name);
+    v.text("file", l.file);
+    v.choice("form", l.info.curvature.form, curvatureForms);
+    v.choice("axis", l.info.curvature.axis, lutAxes);
+    v.text("profile", l.profile);
+    v.integer("width", l.info.curvature.width, 1, 16384);
+    v.integer("height", l.info.curvature.height, 1, 16384);
+    v.number("diffusion_radius", l.info.curvature.diffusionRadius, Range::NotNegative);
+    v.number("radius_min", l.info.curvature.radiusMin, Range::Positive);
+    v.number("radius_max", l.info.curvature.radiusMax, Range::Positive);
+}
+
+template <class Visitor, class Lut>
+void shadowLutKeys(Visitor& v, Lut& l) {
+    v.text("name", l.name);
+    v.text("file", l.file);
+    v.text("profile", l.profile);
+    v.integer("width", l.info.shadow.width, 1, 16384);
+    v.integer("height", l.info.shadow.height, 1, 16384);
+    v.number("diffusion_radius", l.info.shadow.diffusionRadius, Range::NotNegative);
+    v.number("width_min", l.info.shadow.widthMin, Range::Positive);
+    v.number("width_max", l.info.shadow.widthMax, Range::Positive);
+    v.number("sharpening", l.info.shadow.sharpening, Range::AtLeastOne);
+}
+
+}  // namespace pellucid::io

@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <charconv>
+#include <span>
+
+#include "io/atomic_file.h"
+#include "io/scene/scene_file.h"
+#include "io/scene/scene_keys.h"
+
+namespace pellucid::io {
+namespace {
+
+// A visitor of scene_keys.h that writes what it is shown.
+class TomlWriter {
+  public:
+    explicit TomlWriter(std::string& out, std::string name = "") : out_(out), name_(std::move(name)) {}
+
+    void number(std::string_view key, float value, Range) { line(key, shown(value)); }
+    void numbers(std::string_view key, const float* values, size_t count, Range) {
+        line(key, shown(values, count));
+    }
+    void rows(std::string_view key, const float* values, size_t rows, size_t columns) {
+        std::string text = "[\n";
+        for (size_t r = 0; r < rows; ++r) text += "    " + shown(values + r * columns, columns) + ",\n";
+        line(key, text + "]");
+    }
+    void integer(std::string_view key, uint32_t value, uint32_t, uint32_t) {
+        line(key, std::to_string(value));
+    }
+    void text(std::string_view key, const std::string& value) {
+        if (!value.empty()) line(key, quoted(value));
+    }
+    void texts(std::string_view key, const std::vector<std::string>& values, size_t count) {
+        if (values.empty()) return;
+        std::string list;
+        for (const std::string& value : values) list += (list.empty() ? "" : ", ") + quoted(value);
+        line(key, count == 1 ? list : "[" + list + "]");
+    }
+    template <class Enum>
+    void choice(std::string_view key, Enum value, std::span<const std::string_view> names) {
+        line(key, quoted(names[static_cast<size_t>(value)]));
+    }
+    template <class Function>
+    void table(std::string_view key, bool isPresent, Function&& function) {
+        if (!isPresent) return;
+        TomlWriter inner(out_, name_ + "." + std::string(key));
+        out_ += "\n[" + inner.name_ + "]\n";
+        function(inner);
+    }
+
+  private:
+    void line(std::string_view key, const std::string& value) {
+        out_.append(key).append(" = ").append(value) += '\n';
+    }
+
+    // The shortest digits that read back to the same float, in any locale.
+    static std::string shown(float value) {
+        char digits[32];
+        const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+        return std::string(digits, end);
+    }
+    static std::string shown(const float* values, size_t count) {
+        std::string list;
+        for (size_t i = 0; i < count; ++i) list += (i ? ", " : "") + shown(values[i]);
+        return "[" + list + "]";
+    }
+    static std::string quoted(std::string_view text) {
+        std::string out = "\"";
+        for (char c : text) {
+            if (c == '"' || c == '\\') out += '\\';
+            out += c;
+        }
+        return out + "\"";
+    }
+
+    std::string& out_;
+    std::string name_;
+};
+
+}  // namespace
+
+void writeScene(const std::string& path, const SceneFile& scene) {
+    std::string out =
+        "# A scene of `pellucid shade`. Lengths are in the unit of the G-buffer's positions.\nversion = 1\n";
+    if (scene.blurNormals) TomlWriter(out).integer("blur_normals", scene.blurNormals, 0, 1);
+    if (scene.rotateTaps) TomlWriter(out).integer("rotate_taps", scene.rotateTaps, 0, 1);
+    const auto table = [&](const std::string& header, const std::string& name, auto&& function) {
+        out += "\n" + header + "\n";
+        TomlWriter writer(out, name);
+        function(writer);
+    };
+    table("[channels]", "channels", [&](TomlWriter& w) { channelKeys(w, scene); });
+    table("[camera]", "camera", [&](TomlWriter& w) { cameraKeys(w, scene.camera); });
+    table("[ambient]", "ambient", [&](TomlWriter& w) { ambientKeys(w, scene); });
+    if (std::any_of(scene.outputs.begin(), scene.outputs.end(), [](auto& o) { return !o.empty(); }))
+        table("[outputs]", "outputs", [&](TomlWriter& w) { outputFileKeys(w, scene); });
+    for (const SceneLight& light : scene.lights) {
+        table("[[light]]", "light", [&](TomlWriter& w) { lightKeys(w, light); });
+    }
+    for (const SceneMaterial& material : scene.materials) {
+        table("[[material]]", "material", [&](TomlWriter& w) { materialKeys(w, material); });
+    }
+    for (const SceneLut& lut : scene.luts) {
+        const bool curvature = lut.info.kind == PEL_LUT_CURVATURE;
+        const std::string name = curvature ? "curvature_lut" : "shadow_lut";
+        table("[[" + name + "]]", name, [&](TomlWriter& w) {
+            if (!lut.file.empty()) {
+                w.text("name", lut.name);
+                w.text("file", lut.file);
+            } else if (curvature) {
+                curvatureLutKeys(w, lut);
+            } else {
+                shadowLutKeys(w, lut);
+            }
+        });
+    }
+    AtomicFile file(path);
+    file.write(out.data(), out.size());
+    file.commit();
+}
+
+}  // namespace pellucid::io

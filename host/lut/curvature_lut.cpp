@@ -1,0 +1,94 @@
+// Beside kernels/lut/curvature_lut.cl.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lut/lut_check.h"
+#include "lut/lut_terms.h"
+#include "lut/luts.h"
+#include "lut/table_luts.h"
+
+namespace pel {
+namespace {
+
+// Cubic Hermite interpolation between nodes, for each column of the unlit half.
+std::vector<LutColumn> columnsOf(uint32_t width, PelLutAxis axis, int nodes) {
+    std::vector<LutColumn> columns;
+    for (uint32_t x = 0; x < (width + 1) / 2; ++x) {
+        const double elevation = columnElevation(x, width, axis);
+        const double angle = std::asin(elevation);
+        int j = std::min(nodes - 1, int(nodes * std::pow(angle / (std::numbers::pi / 2), 0.25)));
+        while (j > 0 && nodeAngle(j, nodes) > angle) --j;
+        const double low = nodeAngle(j, nodes), step = nodeAngle(j + 1, nodes) - low,
+                     t = (angle - low) / step;
+        columns.push_back({float((1 + 2 * t) * (1 - t) * (1 - t)), float(-step * t * (1 - t) * (1 - t)),
+                           float(t * t * (3 - 2 * t)), float(step * t * t * (1 - t)), float(elevation), j});
+    }
+    return columns;
+}
+
+CurvatureParams paramsOf(const PelCurvatureLutDesc& desc, double curvatureMin, double curvatureMax,
+                         size_t terms) {
+    CurvatureParams params{};
+    params.width = desc.width;
+    params.height = desc.height;
+    params.gaussians = uint32_t(terms);
+    params.axis = uint32_t(desc.axis);
+    const RowAxis axis = rowAxis(desc, curvatureMin, curvatureMax);
+    params.rowMin = float(axis.min);
+    params.rowStep = float(axis.step);
+    params.cut = float(profileCut);
+    return params;
+}
+
+}  // namespace
+
+Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& desc,
+                               const CurvatureQuality& quality) {
+    checkCurvatureDesc(desc);
+    PelLutInfo info = pelLutInfoDefaults();
+    info.kind = PEL_LUT_CURVATURE;
+    info.curvature = desc;
+    Ref<Lut> lut = make<Lut>(device, info);
+
+    const double radius = lut->diffusionRadius();
+    const double curvatureMin = rowLimit(desc.radiusMax, radius),
+                 curvatureMax = rowLimit(desc.radiusMin, radius);
+    const Profile& profile = *lut->profile();
+    if (profile.terms().empty()) {
+        integrateTableCurvature(*lut, curvatureMin, curvatureMax);
+        return lut;
+    }
+    std::vector<LutGaussian> terms = deviceTerms(profile, curvatureMax);
+    // 1/d has no finite integral along a ring: what is left of the ratio is its limit, a point.
+    if (profile.shape().singular() && (desc.form == PEL_FORM_RING || desc.form == PEL_FORM_HALF_RING))
+        terms = {{float(1e-8 / std::max(1.0, curvatureMax)), 1, 1, 1}};
+
+    const uint32_t lanes = device->info().mathWidth;
+    const bool wide = lanes > 1;  // a CPU: long work-items; otherwise many
+    const size_t group = wide ? 1 : 64, columnsPerItem = wide ? 256 : 1;
+    const cl::Program program =
+        device->programs().get("lut/curvature_lut.cl", {{"PEL_FORM", std::to_string(int(desc.form))},
+                                                    {"PEL_GROUP", std::to_string(group)},
+                                                    {"PEL_NODES", std::to_string(quality.nodes)},
+                                                    {"PEL_POINTS", std::to_string(quality.points)},
+                                                    {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
+    const std::vector<LutColumn> columnWeights = columnsOf(desc.width, desc.axis, quality.nodes);
+    const cl::Memory gaussians = upload(*device, terms), nodes = upload(*device, meshOfNodes(quality.nodes)),
+                     columns = upload(*device, columnWeights);
+    const size_t record = 2 * quality.nodes + 5;
+    const cl::Memory rows = device->allocate(record * desc.height * sizeof(cl_float4));
+    const CurvatureParams params = paramsOf(desc, curvatureMin, curvatureMax, terms.size());
+
+    cl::Launch rowLaunch(program, "curvatureRows");
+    rowLaunch.arg(params).arg(gaussians).arg(nodes).arg(rows);
+    device->launch(rowLaunch, {{(desc.height + lanes - 1) / lanes, 1, 1}, {group, 1, 1}});
+
+    cl::Launch texelLaunch(program, "curvatureTexels");
+    texelLaunch.arg(params).arg(rows).arg(columns).arg(lut->texels());
+    const size_t items = (columnWeights.size() + columnsPerItem - 1) / columnsPerItem;
+    device->launch(texelLaunch, {{items, desc.height + 1, 1}, {group, 1, 1}});
+    return lut;
+}
+
+}  // namespace pel

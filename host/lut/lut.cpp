@@ -1,0 +1,80 @@
+#include "lut/lut.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace pel {
+namespace {
+
+static_assert(int(PEL_AXIS_LINEAR) == LUT_AXIS_LINEAR && int(PEL_AXIS_ROOT) == LUT_AXIS_ROOT);
+
+PelProfile profileHandle(const PelLutInfo& info) {
+    return info.kind == PEL_LUT_CURVATURE ? info.curvature.profile
+           : info.kind == PEL_LUT_SHADOW  ? info.shadow.profile
+                                          : nullptr;
+}
+
+// Fills in what a description may leave to defaults: the profile, its name and the diffusion radius.
+PelLutInfo resolved(PelLutInfo info, const Profile& profile) {
+    if (profileHandle(info)) {
+        std::memset(info.profile, 0, sizeof info.profile);
+        std::strncpy(info.profile, profile.name().c_str(), sizeof info.profile - 1);
+    }
+    for (float* radius : {&info.curvature.diffusionRadius, &info.shadow.diffusionRadius})
+        if (*radius == 0) *radius = float(profile.radius());
+    return info;
+}
+
+LutLayout layoutOf(const PelLutInfo& info) {
+    LutLayout layout{};
+    double longest = 1, shortest = 1;
+    switch (info.kind) {
+        case PEL_LUT_CURVATURE:
+            layout.width = info.curvature.width;
+            layout.height = info.curvature.height;
+            layout.axis = uint32_t(info.curvature.axis);
+            layout.radius = info.curvature.diffusionRadius;
+            longest = info.curvature.radiusMax;
+            shortest = info.curvature.radiusMin;
+            break;
+        case PEL_LUT_SHADOW:
+            layout.width = info.shadow.width;
+            layout.height = info.shadow.height;
+            layout.radius = info.shadow.diffusionRadius;
+            longest = info.shadow.widthMax;
+            shortest = info.shadow.widthMin;
+            break;
+        case PEL_LUT_SPECULAR:
+            layout.width = info.specular.width;
+            layout.height = info.specular.height;
+            break;
+    }
+    layout.rowTexels = layout.width + 1;
+    const bool root = layout.axis == LUT_AXIS_ROOT;
+    const double first = root ? std::sqrt(1 / longest) : 1 / longest;
+    const double last = root ? std::sqrt(1 / shortest) : 1 / shortest;
+    // Linear rows have their values in the middle of texels, as FaceWorks has it; root rows reach the ends of
+    // the axis, so that no look-up within the range is clamped.
+    const double rows = root ? layout.height - 1.0 : layout.height;
+    const double scale = last > first ? rows / (last - first) : 0.0;
+    layout.rowMin = float(root && scale > 0 ? first - 0.5 / scale : first);
+    layout.rowScale = float(scale);
+    return layout;
+}
+
+Ref<Profile> profileOf(const PelLutInfo& info) {
+    const PelProfile handle = profileHandle(info);
+    return handle ? Ref<Profile>(&fromHandle<Profile>(handle)) : Profile::skin();
+}
+
+}  // namespace
+
+Lut::Lut(Ref<Device> device, const PelLutInfo& info)
+    : Object(kind),
+      device_(std::move(device)),
+      profile_(profileOf(info)),
+      info_(resolved(info, *profile_)),
+      layout_(layoutOf(info_)),
+      texels_(device_->allocate(size_t(layout_.rowTexels) * (layout_.height + 1) * sizeof(cl_float4))) {}
+
+}  // namespace pel

@@ -1,0 +1,38 @@
+// PelLut: texels in device memory and the request that they answer.
+#pragma once
+#include "core/device.h"
+#include "lut/profile.h"
+#include "shared/lut.h"
+
+namespace pel {
+
+class Lut final : public Object {
+  public:
+    static constexpr Kind kind = Kind::lut;
+
+    // Allocates the texels, uninitialised. `info` must be valid (lut/lut_check.h); its profile is retained,
+    // and defaults in it (no profile, radius 0) are resolved.
+    Lut(Ref<Device> device, const PelLutInfo& info);
+
+    Device& device() const { return *device_; }
+    const PelLutInfo& info() const { return info_; }
+    // Never null; for specular tables without meaning.
+    const Ref<Profile>& profile() const { return profile_; }
+    // Sizes, row axis and radius as kernels take them, by value.
+    const LutLayout& layout() const { return layout_; }
+    // float4 texels in the arrangement that shared/lut.h describes.
+    const cl::Memory& texels() const { return texels_; }
+    uint32_t width() const { return layout_.width; }
+    uint32_t height() const { return layout_.height; }
+    float diffusionRadius() const { return layout_.radius; }
+
+  private:
+    ~Lut() override = default;
+    Ref<Device> device_;
+    Ref<Profile> profile_;
+    PelLutInfo info_;
+    LutLayout layout_;
+    cl::Memory texels_;
+};
+
+}  // namespace pel

@@ -1,0 +1,13 @@
+// Whether a LUT description makes sense; throws PEL_ERROR_INVALID_ARGUMENT with the field, its value and what
+// would be right.
+#pragma once
+#include "lut/lut.h"
+
+namespace pel {
+
+void checkCurvatureDesc(const PelCurvatureLutDesc& desc);
+void checkShadowDesc(const PelShadowLutDesc& desc);
+void checkSpecularDesc(const PelSpecularLutDesc& desc);
+void checkInfo(const PelLutInfo& info);
+
+}  // namespace pel

@@ -1,0 +1,57 @@
+#include "lut/lut_terms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace pel {
+
+double rowLimit(double length, double diffusionRadius) {
+    return std::clamp(diffusionRadius / length, 1e-9, 1e9);
+}
+
+// A Gaussian narrower than 1e-8 of the profile and of the table's smallest radius changes no texel by more:
+// it is kept from 0, where its density has no value. Terms that weigh nothing in any channel are left out.
+std::vector<LutGaussian> deviceTerms(const Profile& profile, double steepestRow) {
+    std::vector<LutGaussian> terms;
+    for (const GaussianTerm& term : profile.terms()) {
+        if (std::max({term.weight[0], term.weight[1], term.weight[2]}) < 1e-9) continue;
+        const double sigma =
+            std::max(std::sqrt(term.variance) / profile.radius(), 1e-8 / std::max(1.0, steepestRow));
+        terms.push_back({float(sigma), float(term.weight[0]), float(term.weight[1]), float(term.weight[2])});
+    }
+    return terms;
+}
+
+double nodeAngle(int j, int nodes) {
+    const double q = double(j) / nodes;
+    return std::numbers::pi / 2 * q * q * q * q;
+}
+
+std::vector<LutNode> meshOfNodes(int nodes) {
+    std::vector<LutNode> mesh;
+    for (int j = 0; j <= nodes; ++j) {
+        const double angle = nodeAngle(j, nodes), s = std::sin(angle / 2);
+        mesh.push_back({float(angle), float(std::sin(angle)), float(std::cos(angle)), float(2 * s * s)});
+    }
+    return mesh;
+}
+
+// From u = -1 on: linear columns in the middle of texels, root columns from end to end (lut/lut.cpp).
+double columnElevation(uint32_t x, uint32_t width, PelLutAxis axis) {
+    const double s = width > 1 ? 1 - 2.0 * x / (width - 1) : 0;
+    return axis == PEL_AXIS_ROOT ? s * s : 1 - (x + 0.5) * 2 / width;
+}
+
+RowAxis rowAxis(const PelCurvatureLutDesc& desc, double curvatureMin, double curvatureMax) {
+    const bool root = desc.axis == PEL_AXIS_ROOT;
+    const double first = root ? std::sqrt(curvatureMin) : curvatureMin;
+    const double last = root ? std::sqrt(curvatureMax) : curvatureMax;
+    if (root && desc.height > 1) {
+        const double step = (last - first) / (desc.height - 1);
+        return {first - 0.5 * step, step};
+    }
+    return {first, (last - first) / desc.height};
+}
+
+}  // namespace pel

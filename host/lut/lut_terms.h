@@ -1,0 +1,39 @@
+// Profiles and row axes in the units of the integrating kernels: lengths in diffusion radii.
+#pragma once
+#include <vector>
+
+#include "lut/lut.h"
+#include "lut/profile.h"
+#include "shared/lut_integral.h"
+
+namespace pel {
+
+// 1/length times the diffusion radius, kept inside of what float arithmetic on squares bears; beyond, tables
+// are at their limits anyway.
+double rowLimit(double length, double diffusionRadius);
+
+// FaceWorks ends its integrals at 10 mm of a profile of radius 2.7 mm.
+constexpr double profileCut = 10 / 2.7;  // diffusion radii
+
+// Narrow Gaussians first; empty for a table.
+std::vector<LutGaussian> deviceTerms(const Profile& profile, double steepestRow);
+
+// Angles (pi/2) (j/nodes)^4, j = 0 ... nodes.
+std::vector<LutNode> meshOfNodes(int nodes);
+double nodeAngle(int j, int nodes);
+
+// N.L from 0 to 1 of a column of the unlit half: |u|.
+double columnElevation(uint32_t x, uint32_t width, PelLutAxis axis);
+
+// First row's upper edge and step, of curvature in 1/diffusion radii or its root.
+struct RowAxis {
+    double min, step;
+};
+RowAxis rowAxis(const PelCurvatureLutDesc& desc, double curvatureMin, double curvatureMax);
+
+template <class T>
+cl::Memory upload(Device& device, const std::vector<T>& values) {
+    return device.allocate(values.size() * sizeof(T), values.data());
+}
+
+}  // namespace pel

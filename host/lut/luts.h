@@ -1,0 +1,29 @@
+// Makes look-up tables on the device, and packs them for the host.
+#pragma once
+#include "lut/lut.h"
+
+namespace pel {
+
+// Nodes of a curvature row and Gauss points between two of them (1 to 3). 64 and 2 leave about 1e-7.
+struct CurvatureQuality {
+    int nodes = 64;
+    int points = 2;
+};
+
+// Each throws PEL_ERROR_INVALID_ARGUMENT, naming the field, for a description outside of what pellucid.h
+// documents; work is enqueued, not waited for.
+Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& desc,
+                               const CurvatureQuality& quality = {});
+Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc);
+Ref<Lut> tabulateSpecularLut(Ref<Device> device, const PelSpecularLutDesc& desc);
+// From texels that were packed as PEL_LUT_FLOAT; `bytes` is checked against the size in `info`.
+Ref<Lut> uploadLut(Ref<Device> device, const PelLutInfo& info, const float* texels, size_t bytes);
+
+size_t packedBytes(const Lut& lut, PelLutEncoding encoding);
+// Encodes on the device and reads packedBytes() bytes.
+void readLut(const Lut& lut, PelLutEncoding encoding, void* destination, bool blocking);
+
+// Texels that PEL_LUT_FACEWORKS8 clips; 0 for other kinds than curvature. Waits.
+uint64_t countClipped(const Lut& lut);
+
+}  // namespace pel

@@ -1,0 +1,177 @@
+// Profiles that follow from a medium's optical properties: Christensen-Burley and the classical dipole. Both
+// are exact mixtures of Gaussians, exp(-b d)/d = 2/sqrt(pi) int_0^inf exp(-d^2 t^2 - b^2/4t^2) dt, which the
+// trapezoid rule in log t turns into sums that converge faster than any power of the step: that is how they
+// reach the device.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lut/profile.h"
+
+namespace pel {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+// Step of the trapezoid rule in log t: leaves errors of the order of exp(-pi^2 / 2 step) = 3e-9.
+constexpr double mixtureStep = 0.25;
+constexpr const char* channelNames[] = {"red", "green", "blue"};
+
+void checkPositive(const float* values, const char* what) {
+    if (!values) invalidArgument("three values are needed for ", what, ", not NULL");
+    for (int c = 0; c < 3; ++c)
+        if (!std::isfinite(values[c]) || values[c] <= 0)
+            invalidArgument("the ", channelNames[c], " ", what, " is ", values[c],
+                            "; a finite value above 0 is needed");
+}
+
+// weight(channel, t) dt/t over t from `first` to `last`, as terms of variance 1/2t^2.
+template <class Weight>
+std::vector<GaussianTerm> mixture(double first, double last, Weight&& weight) {
+    std::vector<GaussianTerm> terms;
+    for (double y = std::log(first); y < std::log(last) + mixtureStep; y += mixtureStep) {
+        const double t = std::exp(y);
+        terms.push_back({1 / (2 * t * t), {weight(0, t), weight(1, t), weight(2, t)}});
+    }
+    return terms;
+}
+
+class BurleyShape final : public ProfileShape {
+  public:
+    explicit BurleyShape(const Rgb& decay)
+        : decay_(decay), terms_(GaussianShape(mixtureOf(decay)).gaussians()) {}
+    Rgb radial(double d) const override {
+        Rgb value;
+        for (int c = 0; c < 3; ++c)
+            value[c] = (std::exp(-d / decay_[c]) + std::exp(-d / (3 * decay_[c]))) / (8 * pi * decay_[c] * d);
+        return value;
+    }
+    Rgb lineSpread(double s) const override {  // the line integral of exp(-b d)/d is 2 K0(b s)
+        Rgb value;
+        for (int c = 0; c < 3; ++c)
+            value[c] = (bessel(s / decay_[c]) + bessel(s / (3 * decay_[c]))) / (4 * pi * decay_[c]);
+        return value;
+    }
+    Rgb width() const override {
+        return {std::sqrt(7.0) * decay_[0], std::sqrt(7.0) * decay_[1], std::sqrt(7.0) * decay_[2]};
+    }
+    std::vector<GaussianTerm> gaussians() const override { return terms_; }
+    bool singular() const override { return true; }
+
+  private:
+    static double bessel(double x) { return x > 700 ? 0 : std::cyl_bessel_k(0.0, x); }
+    static std::vector<GaussianTerm> mixtureOf(const Rgb& decay) {
+        const double widest = std::max({decay[0], decay[1], decay[2]});
+        const double narrowest = std::min({decay[0], decay[1], decay[2]});
+        // exp(-b^2/4t^2) vanishes below the first; above the last 1e-6 of the energy is left out, and scaled
+        // back in.
+        return mixture(1 / (3 * widest) / 12, 1.5e5 / narrowest, [&](int c, double t) {
+            const double b = 1 / decay[c], x = b / (2 * t);
+            return (std::exp(-x * x) + std::exp(-x * x / 9)) * b / t;
+        });
+    }
+    Rgb decay_;  // length, the shorter of the two decay lengths
+    std::vector<GaussianTerm> terms_;
+};
+
+struct Dipole {
+    double depth[2];   // length, of the source below and of its mirror image above the surface
+    double transport;  // effective transport coefficient sigma_tr, 1/length
+    double energy;     // integral over the plane for reduced albedo 1
+};
+
+class DipoleShape final : public ProfileShape {
+  public:
+    explicit DipoleShape(const std::array<Dipole, 3>& dipoles)
+        : dipoles_(dipoles), sum_(mixtureOf(dipoles)) {}
+    Rgb radial(double d) const override {
+        Rgb value{};
+        for (int c = 0; c < 3; ++c)
+            for (double depth : dipoles_[c].depth) {
+                const double s = std::hypot(depth, d), x = dipoles_[c].transport * s;
+                value[c] += depth * (1 + x) * std::exp(-x) / (4 * pi * s * s * s) / dipoles_[c].energy;
+            }
+        return value;
+    }
+    Rgb lineSpread(double s) const override { return sum_.lineSpread(s); }
+    Rgb width() const override { return sum_.width(); }
+    std::vector<GaussianTerm> gaussians() const override { return sum_.gaussians(); }
+
+  private:
+    static std::vector<GaussianTerm> mixtureOf(const std::array<Dipole, 3>& dipoles) {
+        double first = 1e300, last = 0;
+        for (const Dipole& p : dipoles) {
+            first = std::min(first, p.transport / 12);
+            last = std::max(last, 6 / p.depth[0]);
+        }
+        return mixture(first, last, [&](int c, double t) {
+            const Dipole& p = dipoles[c];
+            const double x = p.transport / (2 * t);
+            double sum = 0;
+            for (double depth : p.depth) sum += depth * t * std::exp(-depth * depth * t * t - x * x);
+            return sum;
+        });
+    }
+    std::array<Dipole, 3> dipoles_;
+    GaussianShape sum_;
+};
+
+double burleyScale(PelBurleyFit fit, double albedo) {
+    switch (fit) {
+        case PEL_BURLEY_SEARCHLIGHT:
+            return 1.85 - albedo + 7 * std::pow(std::abs(albedo - 0.8), 3);
+        case PEL_BURLEY_DIFFUSE_TRANSMISSION:
+            return 1.9 - albedo + 3.5 * (albedo - 0.8) * (albedo - 0.8);
+        case PEL_BURLEY_DIFFUSE_MEAN_FREE_PATH:
+            return 3.5 + 100 * std::pow(albedo - 0.33, 4);
+    }
+    invalidArgument("fit ", int(fit), " of the Burley profile is unknown; 0 to 2 are");
+}
+
+double largest(const Rgb& width) {
+    return std::max({width[0], width[1], width[2]});
+}
+
+}  // namespace
+
+Ref<Profile> Profile::burley(const float* meanFreePath, const float* albedo, PelBurleyFit fit) {
+    checkPositive(meanFreePath, "mean free path");
+    if (!albedo) invalidArgument("three albedos are needed, not NULL");
+    Rgb decay;
+    for (int c = 0; c < 3; ++c) {
+        if (!(albedo[c] >= 0 && albedo[c] <= 1))
+            invalidArgument("the ", channelNames[c], " albedo is ", albedo[c], "; 0 to 1 is needed");
+        decay[c] = meanFreePath[c] / burleyScale(fit, albedo[c]);
+    }
+    auto shape = std::make_unique<BurleyShape>(decay);
+    const double radius = largest(shape->width());
+    return make<Profile>(PEL_PROFILE_BURLEY, radius, std::move(shape));
+}
+
+Ref<Profile> Profile::dipole(const float* absorption, const float* reducedScattering, float eta) {
+    checkPositive(absorption, "absorption");
+    checkPositive(reducedScattering, "reduced scattering");
+    if (!(eta > 1) || !std::isfinite(eta))
+        invalidArgument("eta is ", eta,
+                        "; the index of a medium against air, above 1, is needed (1.3 for most)");
+    // Average Fresnel reflectance from inside, fitted for eta > 1 (Jensen et al. 2001, section 2).
+    const double n = eta;
+    const double fresnel = -1.440 / (n * n) + 0.710 / n + 0.668 + 0.0636 * n;
+    if (!(fresnel < 1))
+        invalidArgument("eta is ", eta,
+                        ", beyond what the fit of the Fresnel reflectance covers; below about 3 is right");
+    const double mismatch = (1 + fresnel) / (1 - fresnel);
+    std::array<Dipole, 3> dipoles;
+    for (int c = 0; c < 3; ++c) {
+        const double extinction = double(absorption[c]) + reducedScattering[c];
+        Dipole& p = dipoles[c];
+        p.transport = std::sqrt(3 * absorption[c] * extinction);
+        p.depth[0] = 1 / extinction;
+        p.depth[1] = p.depth[0] + 4 * mismatch / (3 * extinction);
+        p.energy = 0.5 * (std::exp(-p.transport * p.depth[0]) + std::exp(-p.transport * p.depth[1]));
+    }
+    auto shape = std::make_unique<DipoleShape>(dipoles);
+    const double radius = largest(shape->width());
+    return make<Profile>(PEL_PROFILE_DIPOLE, radius, std::move(shape));
+}
+
+}  // namespace pel

@@ -1,0 +1,57 @@
+// Beside kernels/lut/shadow_lut.cl.
+#include <cmath>
+
+#include "lut/lut_check.h"
+#include "lut/lut_terms.h"
+#include "lut/luts.h"
+#include "lut/table_luts.h"
+
+namespace pel {
+
+Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
+    checkShadowDesc(desc);
+    PelLutInfo info = pelLutInfoDefaults();
+    info.kind = PEL_LUT_SHADOW;
+    info.shadow = desc;
+    Ref<Lut> lut = make<Lut>(device, info);
+
+    const Profile& profile = *lut->profile();
+    const double radius = lut->diffusionRadius();
+    const double reciprocalMin = rowLimit(desc.widthMax, radius),
+                 reciprocalMax = rowLimit(desc.widthMin, radius);
+    if (profile.terms().empty()) {
+        integrateTableShadow(*lut, reciprocalMin, reciprocalMax);
+        return lut;
+    }
+    const std::vector<LutGaussian> terms = deviceTerms(profile, reciprocalMax);
+    ShadowParams params{desc.width,
+                        desc.height,
+                        uint32_t(terms.size()),
+                        float(reciprocalMin),
+                        float((reciprocalMax - reciprocalMin) / desc.height),
+                        desc.sharpening,
+                        float(profileCut),
+                        {}};
+    for (int channel = 0; channel < 3; ++channel) {
+        double mass = 0;
+        for (const GaussianTerm& term : profile.terms())
+            mass +=
+                term.weight[channel] * std::erf(profileCut * profile.radius() / std::sqrt(2 * term.variance));
+        params.mass[channel] = float(mass);
+    }
+
+    const uint32_t lanes = device->info().mathWidth;
+    const size_t group = lanes > 1 ? 1 : 64, columnsPerItem = lanes > 1 ? 256 : 1;
+    const cl::Program program = device->programs().get(
+        "lut/shadow_lut.cl",
+        {{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
+    const cl::Memory gaussians = upload(*device, terms);
+    cl::Launch launch(program, "shadowTexels");
+    launch.arg(params).arg(gaussians).arg(lut->texels());
+    const size_t lit = desc.width - desc.width / 2;
+    device->launch(launch,
+                   {{(lit + columnsPerItem - 1) / columnsPerItem, desc.height + 1, 1}, {group, 1, 1}});
+    return lut;
+}
+
+}  // namespace pel

@@ -1,0 +1,25 @@
+// What the kernels for measured profiles (kernels/table_*.cl) read, prepared in double precision. Lengths in
+// diffusion radii.
+#pragma once
+#include <vector>
+
+#include "lut/profile.h"
+#include "lut/lut_terms.h"
+
+namespace pel {
+
+// R at 0 and at each distance where it bends: (R, G, B, distance). Linear between, 0 beyond the last.
+std::vector<cl_float4> tableKnots(const Profile& profile);
+
+// Where the line spread ends: with the table, or at the cut.
+double tableEnd(const Profile& profile);
+// TAIL_VALUES float4 at each of TAIL_CELLS + 1 distances, as shared/lut_integral.h describes.
+std::vector<cl_float4> tableTails(const Profile& profile);
+
+// Points (weight R, G, B; distance) that stand for the table of those knots on a sphere of that diameter, or
+// on any larger one where the profile ends before a quarter of the way round: the integral of R f 2 pi d over
+// it, normalised, is the sum of weight f, for f with at most a corner at a quarter of the way round.
+// Distances rise.
+std::vector<cl_float4> tablePoints(const std::vector<cl_float4>& knots, double diameter);
+
+}  // namespace pel

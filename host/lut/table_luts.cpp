@@ -1,0 +1,142 @@
+// Beside kernels/lut/table_curvature_lut.cl and kernels/lut/table_shadow_lut.cl.
+#include "lut/table_luts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lut/table_integrals.h"
+
+namespace pel {
+namespace {
+
+// Corners of measured profiles want a finer mesh than Gaussians do.
+constexpr int meshIntervals = 256;
+// Rows are integrated in parts, so that the records of a part stay below this many bytes.
+constexpr size_t recordBytes = size_t(64) << 20;
+
+std::vector<TableColumn> columnsOf(const PelCurvatureLutDesc& desc) {
+    std::vector<TableColumn> columns;
+    for (uint32_t x = 0; x < (desc.width + 1) / 2; ++x) {
+        const double elevation = columnElevation(x, desc.width, desc.axis);
+        columns.push_back({float(std::asin(elevation)), float(elevation)});
+    }
+    return columns;
+}
+
+// Rows on spheres so large that the table ends before a quarter of the way round share their points.
+struct SpherePoints {
+    std::vector<cl_float4> points;
+    std::vector<TablePoints> ofRow;
+};
+
+SpherePoints spherePoints(const Profile& profile, const PelCurvatureLutDesc& desc, const RowAxis& axis) {
+    const std::vector<cl_float4> knots = tableKnots(profile);
+    const double end = knots.back().s[3];
+    SpherePoints all;
+    bool shared = false;  // rows go from large spheres to small ones
+    for (uint32_t row = 0; row < desc.height; ++row) {
+        const double value = axis.min + (row + 0.5) * axis.step;
+        const double diameter = 2 / (desc.axis == PEL_AXIS_ROOT ? value * value : value);
+        const bool large = diameter / std::numbers::sqrt2 >= end;
+        if (shared && large) {
+            all.ofRow.push_back(all.ofRow.back());
+            continue;
+        }
+        const std::vector<cl_float4> points = tablePoints(knots, diameter);
+        all.ofRow.push_back({uint32_t(all.points.size()), uint32_t(points.size())});
+        all.points.insert(all.points.end(), points.begin(), points.end());
+        shared = large;
+    }
+    return all;
+}
+
+}  // namespace
+
+void integrateTableCurvature(Lut& lut, double curvatureMin, double curvatureMax) {
+    Device& device = lut.device();
+    const Profile& profile = *lut.profile();
+    const PelCurvatureLutDesc& desc = lut.info().curvature;
+    const bool ring = desc.form == PEL_FORM_RING || desc.form == PEL_FORM_HALF_RING;
+    const RowAxis axis = rowAxis(desc, curvatureMin, curvatureMax);
+
+    TableCurvatureParams params{};
+    params.width = desc.width;
+    params.height = desc.height;
+    params.axis = uint32_t(desc.axis);
+    params.nodes = meshIntervals + 1;
+    params.rowMin = float(axis.min);
+    params.rowStep = float(axis.step);
+    params.end = float(tableEnd(profile));
+
+    // What the rows of each form read.
+    cl::Memory source, ofRow;
+    if (ring) {
+        const std::vector<cl_float4> knots = tableKnots(profile);
+        params.knots = uint32_t(knots.size() - 1);
+        source = upload(device, knots);
+    } else if (desc.form == PEL_FORM_SPHERE) {
+        const SpherePoints sphere = spherePoints(profile, desc, axis);
+        source = upload(device, sphere.points);
+        ofRow = upload(device, sphere.ofRow);
+    } else {
+        source = upload(device, tableTails(profile));
+    }
+    params.slots = params.nodes + params.knots + 1;
+    if (!ring) params.slots = params.nodes;
+
+    const uint32_t lanes = device.info().mathWidth;
+    const size_t group = lanes > 1 ? 1 : 64, columnsPerItem = lanes > 1 ? 256 : 1;
+    cl::Defines options{{"PEL_GROUP", std::to_string(group)},
+                        {"PEL_COLUMNS", std::to_string(columnsPerItem)}};
+    if (desc.form == PEL_FORM_HALF_RING) options.emplace("PEL_HALF", "1");
+    const cl::Program program = device.programs().get("lut/table_curvature_lut.cl", options);
+    const std::vector<TableColumn> columnList = columnsOf(desc);
+    const cl::Memory nodes = upload(device, meshOfNodes(meshIntervals)), columns = upload(device, columnList);
+
+    const size_t record = (2 * size_t(params.slots) + 3) * sizeof(cl_float4);
+    const uint32_t part = uint32_t(std::clamp<size_t>(recordBytes / record, 1, desc.height));
+    const cl::Memory rows = device.allocate(record * part);
+    for (params.firstRow = 0; params.firstRow < desc.height; params.firstRow += part) {
+        params.rows = std::min(part, desc.height - params.firstRow);
+        const char* name = ring                           ? "tableRingRows"
+                           : desc.form == PEL_FORM_SPHERE ? "tableSphereRows"
+                                                          : "tableArcRows";
+        cl::Launch rowLaunch(program, name);
+        rowLaunch.arg(params).arg(nodes);
+        if (desc.form == PEL_FORM_SPHERE) rowLaunch.arg(ofRow);
+        rowLaunch.arg(source).arg(rows);
+        if (desc.form == PEL_FORM_SPHERE)
+            device.launch(rowLaunch, {{(params.nodes + lanes - 1) / lanes, params.rows, 1}, {group, 1, 1}});
+        else
+            device.launch(rowLaunch, {{params.rows, 1, 1}, {group, 1, 1}});
+
+        cl::Launch texelLaunch(program, "tableTexels");
+        texelLaunch.arg(params).arg(rows).arg(columns).arg(lut.texels());
+        const bool last = params.firstRow + params.rows == desc.height;  // with the copied row
+        device.launch(texelLaunch, {{(columnList.size() + columnsPerItem - 1) / columnsPerItem,
+                                     params.rows + (last ? 1 : 0), 1},
+                                    {group, 1, 1}});
+    }
+}
+
+void integrateTableShadow(Lut& lut, double reciprocalMin, double reciprocalMax) {
+    Device& device = lut.device();
+    const PelShadowLutDesc& desc = lut.info().shadow;
+    const TableShadowParams params{desc.width,           desc.height,
+                                   float(reciprocalMin), float((reciprocalMax - reciprocalMin) / desc.height),
+                                   desc.sharpening,      float(tableEnd(*lut.profile()))};
+    const bool wide = device.info().mathWidth > 1;
+    const size_t group = wide ? 1 : 64, columnsPerItem = wide ? 64 : 1;
+    const cl::Program program = device.programs().get(
+        "lut/table_shadow_lut.cl",
+        {{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
+    const cl::Memory tails = upload(device, tableTails(*lut.profile()));
+    cl::Launch launch(program, "tableShadowTexels");
+    launch.arg(params).arg(tails).arg(lut.texels());
+    const size_t lit = desc.width - desc.width / 2;
+    device.launch(launch,
+                  {{(lit + columnsPerItem - 1) / columnsPerItem, desc.height + size_t(1), 1}, {group, 1, 1}});
+}
+
+}  // namespace pel

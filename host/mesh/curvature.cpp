@@ -1,0 +1,169 @@
+#include "mesh/curvature.h"
+
+#include <cmath>
+
+namespace pel {
+namespace {
+
+const char* estimatorKernel(PelCurvatureEstimator estimator) {
+    return estimator == PEL_CURVATURE_EDGE     ? "curvature_edge"
+           : estimator == PEL_CURVATURE_TENSOR ? "curvature_tensor"
+                                               : "curvature_quadric";
+}
+
+// What the quadric estimator needs to know about neighbours' neighbours: found out for the first call.
+void linkRings(MeshTopology& topology) {
+    const cl::Memory& links =
+        topology.scratch(MeshTopology::scratchLinks, topology.ringEntries() * sizeof(uint32_t));
+    const cl::Memory& rounds =
+        topology.scratch(MeshTopology::scratchRounds, topology.slots() * sizeof(uint32_t));
+    if (topology.linked) return;
+    cl::Launch launch(topology.device().programs().get("mesh/mesh_links.cl", {}), "mesh_links");
+    launch.arg(topology.slots()).arg(topology.slices()).arg(topology.rings()).arg(links).arg(rounds);
+    topology.device().launch(launch, over(topology.slots()));
+    topology.linked = true;
+}
+
+MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, const VertexView& given,
+                       const SlotData& data) {
+    const VertexView& normals = given.memory ? given : positions;
+    Device& device = topology.device();
+    const MeshCounts none{};
+    const cl::Memory memory = device.allocate(sizeof none, &none);
+    cl::Launch count(device.programs().get("mesh/mesh_rows.cl", mapping(topology)), "mesh_count");
+    count.arg(topology.vertices());
+    count.arg(positions.memory).arg(positions.layout).arg(normals.memory).arg(normals.layout);
+    count.arg(topology.slots()).arg(topology.slices()).arg(topology.rings());
+    count.arg(data.positions.memory).arg(data.positions.layout).arg(memory);
+    device.launch(count, over(topology.vertices()));
+    MeshCounts counts;
+    device.read(memory.get(), 0, sizeof counts, &counts, true);
+    if (!given.memory) counts.nonFiniteNormals = 0;  // they are made, and what they lack is in the positions
+    return counts;
+}
+
+}  // namespace
+
+uint32_t quantityFloats(PelCurvatureQuantity quantity) {
+    return quantity == PEL_QUANTITY_PRINCIPAL ? 2 : quantity == PEL_QUANTITY_FRAME ? 8 : 1;
+}
+
+void checkCurvatureParams(const PelCurvatureParams& params) {
+    if (params.estimator < PEL_CURVATURE_EDGE || params.estimator > PEL_CURVATURE_QUADRIC)
+        invalidArgument("PelCurvatureParams.estimator is ", int(params.estimator),
+                        ", which is no PelCurvatureEstimator");
+    if (params.quantity < PEL_QUANTITY_ABSOLUTE || params.quantity > PEL_QUANTITY_FRAME)
+        invalidArgument("PelCurvatureParams.quantity is ", int(params.quantity),
+                        ", which is no PelCurvatureQuantity");
+    if (params.estimator == PEL_CURVATURE_EDGE && params.quantity != PEL_QUANTITY_ABSOLUTE)
+        invalidArgument("the edge estimator measures PEL_QUANTITY_ABSOLUTE only, not quantity ",
+                        int(params.quantity), ": take the tensor or the quadric estimator");
+    if (params.smoothingPasses > 1000)
+        invalidArgument("PelCurvatureParams.smoothingPasses is ", params.smoothingPasses,
+                        "; 0 to 1000 are allowed, typical is 2");
+    if (!std::isfinite(params.smoothingRadius) || params.smoothingRadius < 0)
+        invalidArgument("PelCurvatureParams.smoothingRadius is ", params.smoothingRadius,
+                        "; a finite length of at least 0 is needed");
+    if (!(params.smoothingCrease >= 0 && params.smoothingCrease <= 3.14159265f))
+        invalidArgument("PelCurvatureParams.smoothingCrease is ", params.smoothingCrease,
+                        "; an angle from 0 to pi is needed");
+    if (params.smoothingWeights < PEL_SMOOTHING_COTANGENT || params.smoothingWeights > PEL_SMOOTHING_AREA)
+        invalidArgument("PelCurvatureParams.smoothingWeights is ", int(params.smoothingWeights),
+                        ", which is no PelSmoothingWeights");
+    if (params.smoothingStages > 4000)
+        invalidArgument("PelCurvatureParams.smoothingStages is ", params.smoothingStages,
+                        "; 0 (chosen from the mesh) to 4000 are allowed");
+    if (!std::isfinite(params.scale) || params.scale < 0)
+        invalidArgument("PelCurvatureParams.scale is ", params.scale,
+                        "; a finite number of at least 0 is needed");
+}
+
+uint32_t planesOf(PelCurvatureQuantity quantity) {
+    switch (quantity) {
+        case PEL_QUANTITY_ABSOLUTE:
+        case PEL_QUANTITY_MEAN:
+            return 1;
+        case PEL_QUANTITY_FRAME:
+            return 8;
+        default:
+            return 2;
+    }
+}
+
+uint32_t planeStrideOf(const MeshTopology& topology) {
+    return (topology.slots() + MESH_LANES - 1) / MESH_LANES * MESH_LANES;  // whole slices are written
+}
+
+cl::Defines passDefines(const MeshTopology& topology, const PelCurvatureParams& params, uint32_t stride) {
+    return {{"MESH_MAPPED", topology.mapped() ? "1" : "0"},
+            {"MESH_STRIDE", std::to_string(stride)},
+            {"MESH_PLANES", std::to_string(planesOf(params.quantity))},
+            {"MESH_QUANTITY", std::to_string(params.quantity)},
+            {"MESH_LISTED", "0"},
+            {"MESH_RUNS", haveRuns(topology)},
+            {"PEL_WIDTH", std::to_string(width(topology.device()))}};
+}
+
+void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params, const SlotData& data,
+                       const cl::Memory& planes, const Rows& rows) {
+    cl::Defines defines = passDefines(topology, params, data.stride);
+    defines["MESH_LISTED"] = listed(rows);
+    const char* kernel = estimatorKernel(params.estimator);
+    const bool edge = params.estimator == PEL_CURVATURE_EDGE;
+    if (!edge) {  // neither what is stored nor the mapping makes another program of these
+        defines.erase("MESH_MAPPED");
+        defines["MESH_RUNS"] = "0";  // they compute far more than they read
+        defines.erase("MESH_QUANTITY");
+    }
+    cl::Launch estimate(
+        topology.device().programs().get(edge ? "mesh/curvature.cl" : std::string(kernel) + ".cl", defines),
+        kernel);
+    ringArguments(topology, estimate, rows);
+    estimate.arg(data.positions.memory).arg(data.positions.layout.offset);
+    estimate.arg(data.normals.memory)
+        .arg(data.normals.layout.offset)
+        .arg(planeStrideOf(topology))
+        .arg(planes);
+    if (params.estimator == PEL_CURVATURE_QUADRIC) {
+        linkRings(topology);
+        estimate.arg(topology.scratch(MeshTopology::scratchLinks, 0));
+        estimate.arg(topology.scratch(MeshTopology::scratchRounds, 0));
+    }
+    launchRows(topology, estimate, rows, width(topology.device()));
+}
+
+void storeQuantity(MeshTopology& topology, const PelCurvatureParams& params, uint32_t stride,
+                   const cl::Memory& smoothed, const cl::Memory& estimated, const VertexView& curvature,
+                   Rows::Work* work) {
+    cl::Launch store(topology.device().programs().get("mesh/curvature.cl", passDefines(topology, params, stride)),
+                     "curvature_store");
+    store.arg(topology.slotOf()).arg(planeStrideOf(topology)).arg(smoothed).arg(estimated);
+    store.arg(params.scale).arg(curvature.memory).arg(curvature.layout);
+    topology.device().launch(store, over(topology.vertices()));
+    if (work) ++work->launches, work->rows += topology.slots();
+}
+
+void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, const VertexView& positions,
+                   const VertexView& normals, const VertexView& curvature, MeshCounts* counts) {
+    if (counts) *counts = {};
+    if (topology.vertices() == 0) return;
+    const uint32_t planes = planesOf(params.quantity), planeStride = planeStrideOf(topology);
+    const size_t planeBytes = planeStride * sizeof(float);
+    const auto lock = topology.lock();
+    const Scratch scratch = scratchOf(topology);
+    const SlotData data = gatherBySlot(topology, positions, normals, scratch);
+    const cl::Memory estimated = scratch(MeshTopology::scratchFrom, planeBytes * planes);
+    estimateCurvature(topology, params, data, estimated, {});
+
+    SlotPlanes values{std::min(planes, 2u), planeStride, estimated, {}, {}, {}};
+    if (params.smoothingPasses > 0 || params.smoothingRadius > 0)
+        values.to = scratch(MeshTopology::scratchTo, planeBytes * values.planes);
+    // Before the uniform passes, whose result is not lost when this throws.
+    const Diffusion diffusion = planDiffusion(topology, data, params, scratch, values.to);
+    smoothUniform(topology, passDefines(topology, params, data.stride), params.smoothingPasses, values);
+    if (diffusion.passes() > 0) smoothToRadius(topology, data, diffusion, values, scratch);
+    storeQuantity(topology, params, data.stride, values.from, estimated, curvature, nullptr);
+    if (counts) *counts = countFaults(topology, positions, normals, data);
+}
+
+}  // namespace pel

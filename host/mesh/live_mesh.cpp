@@ -1,0 +1,146 @@
+// Which rows an update works on. A changed vertex reaches, in edges: its own gathered row (0), normals that
+// are made and smoothing weights (1, weights at creases one more), estimates (`estimateReach_`), and each
+// smoothing pass one further. The estimates of all other rows are still there; the values between passes are
+// not kept, so that pass p of P works on P - p rows more than it must, from which the last pass draws. Rows
+// are dealt out in whole slices.
+#include "mesh/live_mesh.h"
+
+namespace pel {
+namespace {
+
+bool sameRanges(const std::vector<PelVertexRange>& a, const std::vector<PelVertexRange>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const auto& x, const auto& y) { return x.first == y.first && x.count == y.count; });
+}
+
+bool sameView(const VertexView& a, const VertexView& b) {
+    return a.memory.get() == b.memory.get() && a.layout.offset == b.layout.offset &&
+           a.layout.stride == b.layout.stride;
+}
+
+}  // namespace
+
+void checkRanges(const PelVertexRange* changed, uint32_t numChanged, uint32_t vertices) {
+    for (uint32_t i = 0; changed && i < numChanged; ++i)
+        if (changed[i].first > vertices || changed[i].count > vertices - changed[i].first)
+            invalidArgument("range ", i, " of `changed` is ", changed[i].count, " vertices from ",
+                            changed[i].first, " on; the mesh has ", vertices);
+}
+
+LiveMesh::LiveMesh(Ref<MeshTopology> topology, const PelCurvatureParams& params)
+    : Object(kind), topology_(std::move(topology)), params_(params) {}
+
+const cl::Memory& LiveMesh::keep(Memory& memory, size_t bytes) {
+    if (memory.bytes < bytes) {
+        memory.memory = topology_->device().allocate(bytes);
+        memory.bytes = bytes;
+    }
+    return memory.memory;
+}
+
+void LiveMesh::find(const std::vector<PelVertexRange>& changed) {
+    if (listed_ && sameRanges(changed, changed_)) return;
+    if (!reacher_) reacher_ = std::make_unique<MeshReacher>(*topology_);
+    const uint32_t stored = estimateReach_ + passes_;
+    listed_ = false;
+    reach_ = reacher_->reach(changed, stored + (passes_ > 0 ? passes_ - 1 : 0), stored);
+    changed_ = changed;
+    // Copied here and now: the queue, which may be busy, has no part in it.
+    const auto upload = [&](const std::vector<uint32_t>& values) {
+        stats_.bytesUploaded += values.size() * sizeof(uint32_t);
+        return values.empty() ? cl::Memory()
+                              : topology_->device().allocate(values.size() * sizeof(uint32_t), values.data());
+    };
+    list_ = upload(reach_.slices);
+    lanes_ = upload(reach_.lanes);
+    listed_ = true;
+}
+
+Rows LiveMesh::rowsUpTo(uint32_t distance, Rows::Work& work) const {
+    if (!listed_ || distance >= reach_.upTo.size()) return {{}, 0, &work};
+    return {list_, reach_.upTo[distance], &work};
+}
+
+void LiveMesh::update(const VertexView& positions, const VertexView& normals, const VertexView& curvature,
+                      const PelVertexRange* changed, uint32_t numChanged) {
+    MeshTopology& topology = *topology_;
+    const std::unique_lock guard(mutex_);
+    stats_.launches = stats_.rowsEstimated = stats_.rowsSmoothed = stats_.rowsStored = stats_.bytesUploaded =
+        0;
+    if (topology.vertices() == 0) return;
+    std::vector<PelVertexRange> ranges;
+    for (uint32_t i = 0; changed && i < numChanged; ++i)
+        if (changed[i].count > 0) ranges.push_back(changed[i]);
+    const bool all = !changed || fresh_ || madeNormals_ != !normals.memory;
+    const bool elsewhere = !sameView(curvature, target_);
+    if (!all && !elsewhere && ranges.empty()) return;
+
+    const auto lock = topology.lock();
+    const uint32_t planes = planesOf(params_.quantity), planeStride = planeStrideOf(topology);
+    const size_t planeBytes = planeStride * sizeof(float);
+    fresh_ = true;  // until everything is enqueued
+    madeNormals_ = !normals.memory;
+    target_ = curvature;
+    const uint32_t ownReach = params_.estimator == PEL_CURVATURE_QUADRIC ? 2 : 1;
+    estimateReach_ = madeNormals_ ? 2 : ownReach;  // the neighbours' normals, which are made of their rings
+
+    const Scratch scratch = [&](MeshTopology::Scratch which, size_t bytes) -> const cl::Memory& {
+        return keep(scratch_[which], bytes);
+    };
+    const cl::Memory estimated = keep(estimated_, planeBytes * planes);
+    SlotPlanes values{std::min(planes, 2u), planeStride, estimated, {}, {}, {}};
+    if (params_.smoothingPasses > 0 || params_.smoothingRadius > 0) {
+        values.to = scratch(MeshTopology::scratchFrom, planeBytes * values.planes);
+        values.spare = scratch(MeshTopology::scratchTo, planeBytes * values.planes);
+    }
+    Rows::Work other, estimates, smoothing, storing;
+    if (all)
+        listed_ = false;
+    else
+        find(ranges);  // passes_ is known from the first update
+    const SlotData data =
+        gatherBySlot(topology, positions, normals, scratch, rowsUpTo(0, other), rowsUpTo(1, other));
+    const Diffusion diffusion = planDiffusion(topology, data, params_, scratch, values.to);
+    passes_ = params_.smoothingPasses + diffusion.passes();
+    estimateCurvature(topology, params_, data, estimated, rowsUpTo(estimateReach_, estimates));
+    // Another target has nothing yet: smoothing and storing begin anew from the estimates.
+    const uint32_t farthest = elsewhere ? UINT32_MAX / 2 : estimateReach_ + passes_;
+    const auto rowsOfPass = [&](uint32_t pass) { return rowsUpTo(farthest + passes_ - 1 - pass, smoothing); };
+    smoothUniform(topology, passDefines(topology, params_, data.stride), params_.smoothingPasses, values,
+                  rowsOfPass);
+    if (diffusion.passes() > 0)
+        smoothToRadius(topology, data, diffusion, values, scratch,
+                       rowsUpTo(madeNormals_ && params_.smoothingCrease > 0 ? 2 : 1, other),
+                       [&](uint32_t stage) { return rowsOfPass(params_.smoothingPasses + stage); });
+    const Rows stored = rowsUpTo(farthest, storing);
+    if (stored.list) {
+        cl::Defines defines = passDefines(topology, params_, data.stride);
+        defines["MESH_LISTED"] = "1";
+        cl::Launch store(topology.device().programs().get("mesh/curvature.cl", defines), "curvature_store_listed");
+        rowArguments(topology, store, stored);
+        store.arg(lanes_).arg(topology.memberOffsets()).arg(topology.members());
+        store.arg(planeStride).arg(values.from).arg(estimated);
+        store.arg(params_.scale).arg(curvature.memory).arg(curvature.layout);
+        launchRows(topology, store, stored, 1);
+        storing.rows = reach_.storedSlots;
+    } else {
+        storeQuantity(topology, params_, data.stride, values.from, estimated, curvature, &storing);
+    }
+    stats_.launches = other.launches + estimates.launches + smoothing.launches + storing.launches;
+    stats_.rowsEstimated = estimates.rows;
+    stats_.rowsSmoothed = smoothing.rows;
+    stats_.rowsStored = storing.rows;
+    fresh_ = false;
+}
+
+PelLiveMeshStats LiveMesh::stats() {
+    const std::unique_lock guard(mutex_);
+    PelLiveMeshStats stats = stats_;
+    stats.rowsTotal = topology_->slots();
+    for (const Memory& memory : scratch_) stats.deviceBytes += memory.bytes;
+    stats.deviceBytes += estimated_.bytes + (reach_.slices.size() + reach_.lanes.size()) * sizeof(uint32_t);
+    stats.hostBytes = reacher_ ? reacher_->bytes() : 0;
+    return stats;
+}
+
+}  // namespace pel

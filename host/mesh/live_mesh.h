@@ -1,0 +1,52 @@
+// PelLiveMesh: curvature of a mesh of which a part moves.
+#pragma once
+#include <memory>
+
+#include "mesh/mesh_reach.h"
+#include "mesh/curvature.h"
+
+namespace pel {
+
+class LiveMesh final : public Object {
+  public:
+    static constexpr Kind kind = Kind::liveMesh;
+    LiveMesh(Ref<MeshTopology> topology, const PelCurvatureParams& params);
+
+    const Ref<MeshTopology>& topology() const { return topology_; }
+    const PelCurvatureParams& params() const { return params_; }
+    // `changed` NULL: all vertices. Enqueues everything.
+    void update(const VertexView& positions, const VertexView& normals, const VertexView& curvature,
+                const PelVertexRange* changed, uint32_t numChanged);
+    PelLiveMeshStats stats();
+
+  private:
+    ~LiveMesh() override = default;
+    struct Memory {
+        cl::Memory memory;
+        size_t bytes = 0;
+    };
+    const cl::Memory& keep(Memory& memory, size_t bytes);
+    void find(const std::vector<PelVertexRange>& changed);
+    Rows rowsUpTo(uint32_t distance, Rows::Work& work) const;
+
+    Ref<MeshTopology> topology_;
+    PelCurvatureParams params_;
+    std::mutex mutex_;  // guards the rest
+    std::unique_ptr<MeshReacher> reacher_;
+    // What the update before left: values of the estimator, gathered rows, normals, weights.
+    Memory scratch_[MeshTopology::scratchCount], estimated_, spare_;
+    bool fresh_ = true, madeNormals_ = false;
+    VertexView target_;
+    // The list of the last change, for the next one of the same vertices.
+    std::vector<PelVertexRange> changed_;
+    MeshReach reach_;
+    bool listed_ = false;
+    uint32_t estimateReach_ = 0, passes_ = 0;
+    cl::Memory list_, lanes_;
+    PelLiveMeshStats stats_ = pelLiveMeshStatsDefaults();
+};
+
+// Checks that the ranges lie within `vertices`.
+void checkRanges(const PelVertexRange* changed, uint32_t numChanged, uint32_t vertices);
+
+}  // namespace pel

@@ -1,0 +1,65 @@
+#include "mesh/mesh_normals.h"
+
+namespace pel {
+namespace {
+
+// Rows of 8 floats per slot, position and normal, from the caller's vertices.
+SlotData gatherRows(MeshTopology& topology, const VertexView& positions, const VertexView& normals,
+                    const cl::Memory& memory, const Rows& rows) {
+    cl::Defines defines = mapping(topology);
+    defines["MESH_LISTED"] = listed(rows);
+    defines["PEL_WIDTH"] = std::to_string(width(topology.device()));  // whether to fetch ahead
+    cl::Launch gather(topology.device().programs().get("mesh/mesh_rows.cl", defines), "mesh_rows");
+    rowArguments(topology, gather, rows);
+    gather.arg(topology.memberOffsets()).arg(topology.members());
+    gather.arg(positions.memory).arg(positions.layout).arg(normals.memory).arg(normals.layout).arg(memory);
+    launchRows(topology, gather, rows, 1);
+    const uint32_t slots = topology.slots();
+    return {{memory, {slots, 0, 8, 0}}, {memory, {slots, 4, 8, 0}}, 8};
+}
+
+cl::Program program(const MeshTopology& topology, uint32_t stride, const Rows& rows) {
+    cl::Defines defines = mapping(topology);
+    defines["MESH_STRIDE"] = std::to_string(stride);
+    defines["MESH_LISTED"] = listed(rows);
+    defines["MESH_RUNS"] = haveRuns(topology);
+    defines["PEL_WIDTH"] = std::to_string(width(topology.device()));
+    return topology.device().programs().get("mesh/mesh_normals.cl", defines);
+}
+
+void makeNormals(MeshTopology& topology, const SlotData& data, const Rows& rows) {
+    cl::Launch make(program(topology, data.stride, rows), "mesh_normals");
+    ringArguments(topology, make, rows);
+    make.arg(data.positions.memory).arg(data.positions.layout.offset);
+    make.arg(data.normals.memory).arg(data.normals.layout.offset);
+    launchRows(topology, make, rows, width(topology.device()));
+}
+
+}  // namespace
+
+SlotData gatherBySlot(MeshTopology& topology, const VertexView& positions, const VertexView& normals,
+                      const Scratch& scratch, const Rows& moved, const Rows& turned) {
+    const bool direct = !topology.mapped() && positions.layout.stride == 3;
+    const uint32_t slots = topology.slots();
+    if (normals.memory && direct && normals.layout.stride == 3) return {positions, normals, 3};
+    SlotData data;
+    if (direct && !normals.memory)
+        data = {positions, {scratch(MeshTopology::scratchNormals, slots * 12ull), {slots, 0, 3, 0}}, 3};
+    else  // without normals the second half of each row is overwritten
+        data = gatherRows(topology, positions, normals.memory ? normals : positions,
+                          scratch(MeshTopology::scratchRows, slots * 32ull), moved);
+    if (!normals.memory) makeNormals(topology, data, turned);
+    return data;
+}
+
+void meshNormals(MeshTopology& topology, const VertexView& positions, const VertexView& normals) {
+    if (topology.vertices() == 0) return;
+    const auto lock = topology.lock();
+    const SlotData data = gatherBySlot(topology, positions, {}, scratchOf(topology));
+    cl::Launch store(program(topology, data.stride, {}), "mesh_normals_store");
+    store.arg(topology.slotOf()).arg(data.normals.memory).arg(data.normals.layout.offset);
+    store.arg(normals.memory).arg(normals.layout);
+    topology.device().launch(store, over(topology.vertices()));
+}
+
+}  // namespace pel

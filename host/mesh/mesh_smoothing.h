@@ -1,0 +1,41 @@
+// Smoothing of values on a mesh: kernels/mesh/curvature.cl (uniform passes) and kernels/mesh/curvature_diffuse.cl (to a
+// radius).
+#pragma once
+#include "mesh/mesh_passes.h"
+
+namespace pel {
+
+// Planes of one value per slot, planeStride apart, in two memories that take turns; `from` holds the values.
+// With a `spare` the first values stay where they are, and the spare takes their memory's turn.
+struct SlotPlanes {
+    uint32_t planes, planeStride;
+    cl::Memory from, to, spare, before;
+    void advance() {
+        before = from;
+        std::swap(from, to);
+        if (spare) to = std::exchange(spare, {});
+    }
+};
+
+// Which rows pass i of a smoothing works on; none given: all.
+using RowsOfPass = std::function<Rows(uint32_t pass)>;
+
+void smoothUniform(MeshTopology& topology, const cl::Defines& defines, uint32_t count, SlotPlanes& values,
+                   const RowsOfPass& rows = {});
+
+// Passes of a smoothing to a radius, and how they go. Waits the first time if params say nothing of stages.
+struct Diffusion {
+    float time = 0, turn2 = 0;  // of a super step, length^2; square of the normal's change at a crease
+    uint32_t stages = 0;        // of each super step
+    PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT;
+    uint32_t passes() const { return stages * MESH_SUPER_STEPS; }
+};
+Diffusion planDiffusion(MeshTopology& topology, const SlotData& data, const PelCurvatureParams& params,
+                        const Scratch& scratch, const cl::Memory& rates);
+
+// `weighed`: rows whose weights are to be made.
+void smoothToRadius(MeshTopology& topology, const SlotData& data, const Diffusion& diffusion,
+                    SlotPlanes& values, const Scratch& scratch, const Rows& weighed = {},
+                    const RowsOfPass& rows = {});
+
+}  // namespace pel

@@ -1,0 +1,102 @@
+#include "mesh/mesh_topology.h"
+
+#include "mesh/mesh_adjacency.h"
+#include "mesh/mesh_weld.h"
+
+namespace pel {
+namespace {
+
+void checkDesc(const PelMeshTopologyDesc& desc) {
+    if (desc.weld != PEL_WELD_NONE && desc.weld != PEL_WELD_EXACT && desc.weld != PEL_WELD_TOLERANCE)
+        invalidArgument("PelMeshTopologyDesc.weld is ", int(desc.weld), ", which is no PelWeld");
+    if (desc.numVertices > MESH_SLOT)
+        fail(PEL_ERROR_UNSUPPORTED, desc.numVertices, " vertices are more than a topology holds (", MESH_SLOT,
+             "): split the mesh");
+    if (desc.numIndices % 3 != 0)
+        invalidArgument("PelMeshTopologyDesc.numIndices is ", desc.numIndices,
+                        "; three indices make a triangle, ", desc.numIndices % 3, " are left over");
+    if (desc.numIndices / 3 > UINT32_MAX)
+        fail(PEL_ERROR_UNSUPPORTED, desc.numIndices / 3,
+             " triangles are more than a topology holds: split the mesh");
+    if (desc.numIndices > 0 && !desc.indices)
+        invalidArgument("PelMeshTopologyDesc.indices is NULL, but numIndices is ", desc.numIndices);
+    for (uint64_t i = 0; i < desc.numIndices; ++i)
+        if (desc.indices[i] >= desc.numVertices)
+            invalidArgument("triangle ", i / 3, ", corner ", i % 3, " has vertex ", desc.indices[i],
+                            "; the mesh has ", desc.numVertices, " vertices, numbered from 0");
+}
+
+}  // namespace
+
+cl::Memory MeshTopology::upload(const std::vector<uint32_t>& values) {
+    if (values.empty()) return {};
+    return device_->allocate(values.size() * sizeof(uint32_t), values.data());
+}
+
+Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopologyDesc& desc,
+                                       PelMeshReport& report, const std::function<void(double)>& progress) {
+    progress(0.0);
+    checkDesc(desc);
+    MeshWeld weld = weldVertices(desc, [&](double fraction) { progress(0.2 * fraction); });
+    progress(0.2);
+
+    report = pelMeshReportDefaults();
+    report.vertices = desc.numVertices;
+    report.triangles = uint32_t(desc.numIndices / 3);
+    report.uniquePositions = weld.slots;
+    std::vector<uint32_t> triangles;
+    triangles.reserve(desc.numIndices);
+    std::vector<bool> used(desc.numVertices);
+    for (uint64_t i = 0; i < desc.numIndices; i += 3) {
+        uint32_t v[3];
+        for (int c = 0; c < 3; ++c) {
+            const uint32_t vertex = desc.indices[i + c];
+            used[vertex] = true;
+            v[c] = weld.slotOf.empty() ? vertex : weld.slotOf[vertex];
+        }
+        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0])
+            ++report.degenerateTriangles;
+        else
+            triangles.insert(triangles.end(), v, v + 3);
+    }
+    report.unreferencedVertices = uint32_t(std::count(used.begin(), used.end(), false));
+    MeshAdjacency adjacency =
+        buildAdjacency(triangles, weld.slots, [&](double fraction) { progress(0.3 + 0.4 * fraction); });
+    if (isScattered(triangles, weld.slots)) {
+        // Passes then work in an order of their own; only the first and the last one know the caller's.
+        const std::vector<uint32_t> numbers = breadthFirstNumbers(adjacency);
+        renumberSlots(weld, numbers);
+        for (uint32_t& slot : triangles) slot = numbers[slot];
+        adjacency =
+            buildAdjacency(triangles, weld.slots, [&](double fraction) { progress(0.7 + 0.2 * fraction); });
+    }
+    report.edges = adjacency.edges;
+    report.borderEdges = adjacency.borderEdges;
+    report.nonManifoldEdges = adjacency.nonManifoldEdges;
+
+    Ref<MeshTopology> topology = make<MeshTopology>(device);
+    topology->report_ = report;
+    if (desc.numIndices > 0)
+        topology->indices_ = device->allocate(desc.numIndices * sizeof(uint32_t), desc.indices);
+    topology->slotOf_ = topology->upload(weld.slotOf);
+    topology->memberOffsets_ = topology->upload(weld.memberOffsets);
+    topology->members_ = topology->upload(weld.members);
+    const MeshSlices rings = sliceAdjacency(adjacency);
+    topology->slices_ = topology->upload(rings.slices);
+    topology->rings_ = topology->upload(rings.rows);
+    topology->runs_ = topology->upload(findRuns(rings.rows));
+    topology->ringEntries_ = rings.rows.size();
+    progress(1.0);
+    return topology;
+}
+
+const cl::Memory& MeshTopology::scratch(Scratch which, size_t bytes) {
+    auto& s = scratch_[which];
+    if (s.bytes < bytes) {
+        s.memory = device_->allocate(bytes);
+        s.bytes = bytes;
+    }
+    return s.memory;
+}
+
+}  // namespace pel

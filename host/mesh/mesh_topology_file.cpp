@@ -1,0 +1,133 @@
+// A topology as bytes: a header, then its arrays one after the other. Loading trusts nothing: kernels follow
+// these numbers without a test of their own.
+#include <algorithm>
+#include <cstring>
+
+#include "mesh/mesh_adjacency.h"
+#include "mesh/mesh_topology.h"
+
+namespace pel {
+namespace {
+
+struct Header {
+    char magic[8];
+    uint32_t version;   // of this layout; also tells byte orders apart
+    uint32_t words[6];  // of the arrays, in the order that save() writes them
+    uint32_t checksum;  // of everything behind the header
+    PelMeshReport report;
+};
+constexpr char magic[8] = {'P', 'E', 'L', 'M', 'E', 'S', 'H', '\n'};
+constexpr uint32_t version = 1;
+
+// FNV-1a over words [Fowler, Noll & Vo]: finds damage, not malice; the checks below are for that.
+uint32_t checksumOf(const uint32_t* words, size_t count) {
+    uint32_t hash = 2166136261u;
+    for (size_t i = 0; i < count; ++i) hash = (hash ^ words[i]) * 16777619u;
+    return hash;
+}
+
+[[noreturn]] void damaged(const char* what) {
+    invalidArgument("these bytes are no analysis of a mesh by this version of the library: ", what,
+                    "; analyse the mesh again");
+}
+
+void check(bool sound, const char* what) {
+    if (!sound) damaged(what);
+}
+
+bool below(const std::vector<uint32_t>& values, uint32_t limit) {
+    return std::all_of(values.begin(), values.end(), [&](uint32_t v) { return v < limit; });
+}
+
+bool rising(const std::vector<uint32_t>& values, size_t last) {
+    return !values.empty() && values.front() == 0 && values.back() == last &&
+           std::is_sorted(values.begin(), values.end());
+}
+
+}  // namespace
+
+std::vector<char> MeshTopology::save() const {
+    const cl::Memory* arrays[6] = {&indices_, &slotOf_, &memberOffsets_, &members_, &slices_, &rings_};
+    Header header{};
+    std::memcpy(header.magic, magic, sizeof magic);
+    header.version = version;
+    header.report = report_;
+    size_t total = 0;
+    for (int a = 0; a < 6; ++a) {
+        size_t bytes = 0;
+        if (*arrays[a])
+            cl::check(clGetMemObjectInfo(arrays[a]->get(), CL_MEM_SIZE, sizeof bytes, &bytes, nullptr),
+                      "clGetMemObjectInfo");
+        header.words[a] = uint32_t(bytes / sizeof(uint32_t));
+        total += header.words[a];
+    }
+    std::vector<uint32_t> words(total);
+    size_t at = 0;
+    for (int a = 0; a < 6; ++a) {
+        if (header.words[a] > 0)
+            device_->read(arrays[a]->get(), 0, header.words[a] * sizeof(uint32_t), words.data() + at, true);
+        at += header.words[a];
+    }
+    header.checksum = checksumOf(words.data(), words.size());
+    std::vector<char> bytes(sizeof header + words.size() * sizeof(uint32_t));
+    std::memcpy(bytes.data(), &header, sizeof header);
+    if (!words.empty())
+        std::memcpy(bytes.data() + sizeof header, words.data(), words.size() * sizeof(uint32_t));
+    return bytes;
+}
+
+Ref<MeshTopology> MeshTopology::load(Ref<Device> device, const void* bytes, size_t size) {
+    if (!bytes) invalidArgument("`bytes` is NULL");
+    Header header;
+    check(size >= sizeof header, "too short");
+    std::memcpy(&header, bytes, sizeof header);
+    check(std::memcmp(header.magic, magic, sizeof magic) == 0, "another beginning");
+    check(header.version == version && header.report.structSize == sizeof(PelMeshReport), "another version");
+    uint64_t total = 0;
+    for (uint32_t words : header.words) total += words;
+    check(size == sizeof header + total * sizeof(uint32_t), "another size than their header says");
+    std::vector<uint32_t> arrays[6];
+    const char* at = static_cast<const char*>(bytes) + sizeof header;
+    std::vector<uint32_t> all(total);
+    if (total > 0) std::memcpy(all.data(), at, total * sizeof(uint32_t));
+    check(checksumOf(all.data(), all.size()) == header.checksum, "a wrong checksum");
+    auto next = all.begin();
+    for (int a = 0; a < 6; ++a) {
+        arrays[a].assign(next, next + header.words[a]);
+        next += header.words[a];
+    }
+    const auto& [indices, slotOf, memberOffsets, members, slices, rings] = arrays;
+    const PelMeshReport& r = header.report;
+    const uint32_t slots = r.uniquePositions;
+    check(slots <= r.vertices && r.vertices <= MESH_SLOT, "impossible counts");
+    check(indices.size() == size_t(r.triangles) * 3 && below(indices, r.vertices), "wrong indices");
+    if (slotOf.empty()) {
+        check(slots == r.vertices && memberOffsets.empty() && members.empty(), "a wrong mapping");
+    } else {
+        check(slotOf.size() == r.vertices && below(slotOf, slots), "a wrong mapping");
+        check(members.size() == r.vertices && below(members, r.vertices), "a wrong mapping");
+        check(memberOffsets.size() == size_t(slots) + 1 && rising(memberOffsets, members.size()),
+              "a wrong mapping");
+        // Every slot has a member.
+        check(std::adjacent_find(memberOffsets.begin(), memberOffsets.end()) == memberOffsets.end(),
+              "a wrong mapping");
+    }
+    check(slices.size() == (size_t(slots) + MESH_LANES - 1) / MESH_LANES + 1 &&
+              rings.size() % MESH_LANES == 0 && rising(slices, rings.size() / MESH_LANES),
+          "wrong neighbour lists");
+    for (uint32_t entry : rings) check((entry & MESH_SLOT) < slots, "wrong neighbours");
+
+    Ref<MeshTopology> topology = make<MeshTopology>(device);
+    topology->report_ = r;
+    topology->indices_ = topology->upload(indices);
+    topology->slotOf_ = topology->upload(slotOf);
+    topology->memberOffsets_ = topology->upload(memberOffsets);
+    topology->members_ = topology->upload(members);
+    topology->slices_ = topology->upload(slices);
+    topology->rings_ = topology->upload(rings);
+    topology->runs_ = topology->upload(findRuns(rings));
+    topology->ringEntries_ = rings.size();
+    return topology;
+}
+
+}  // namespace pel

@@ -1,0 +1,77 @@
+#include "shading/screen_curvature.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shading/shade_tables.h"
+#include "shading/shader.h"
+#include "shading/shader_check.h"
+#include "shared/screen.h"
+
+namespace pel {
+void checkScreenCurvature(const PelScreenCurvatureParams& params, const ScreenCurvatureImages& images) {
+    if (!std::isfinite(params.scale) || params.scale < 0)
+        invalidArgument("PelScreenCurvatureParams.scale is ", params.scale,
+                        "; a finite number of at least 0 is needed");
+    if (!(params.edge > 0 && params.edge <= 1))
+        invalidArgument("PelScreenCurvatureParams.edge is ", params.edge,
+                        "; the sine of an angle above 0 and up to 1 is needed, typical is 0.5");
+    if (bool(images.positions) == bool(images.depth))
+        invalidArgument("either `positions` or `depth` is needed, ",
+                        images.depth ? "not both" : "and both are NULL");
+    for (float m : params.inverseViewProjection)
+        if (images.depth && !std::isfinite(m))
+            invalidArgument("PelScreenCurvatureParams.inverseViewProjection holds ", m,
+                            "; it must be finite");
+    if (images.curvature.format != PEL_FORMAT_R32F)
+        invalidArgument("the curvature image has format ", images.curvature.info().name, "; it needs R32F");
+    const std::pair<PelImageSlot, const ImageView*> inputs[] = {{PEL_SLOT_NORMAL_SHADING, &images.normals},
+                                                                {PEL_SLOT_POSITION, &images.positions},
+                                                                {PEL_SLOT_DEPTH, &images.depth},
+                                                                {PEL_SLOT_MATERIAL, &images.ids}};
+    for (const auto& [slot, view] : inputs) {
+        if (!*view) continue;
+        checkImage(slot, *view);
+        if (view->width != images.curvature.width || view->height != images.curvature.height)
+            invalidArgument("the ", slotName(slot), " image is ", view->width, " x ", view->height,
+                            ", the curvature image ", images.curvature.width, " x ", images.curvature.height,
+                            "; all must have one size");
+        // A pixel reads its neighbours: not even the same pixel may be written over.
+        if (view->buffer->memory().get() == images.curvature.buffer->memory().get() &&
+            view->byteOffset < images.curvature.byteEnd() && images.curvature.byteOffset < view->byteEnd() &&
+            (overlapsElsewhere(images.curvature, *view) || view->byteOffset == images.curvature.byteOffset))
+            invalidArgument("the curvature image overlaps the ", slotName(slot), " image, which is read");
+    }
+}
+
+void screenCurvature(Device& device, const PelScreenCurvatureParams& params,
+                     const ScreenCurvatureImages& images) {
+    const uint32_t lanes = device.info().mathWidth;
+    const ImageView& where = images.positions ? images.positions : images.depth;
+    ScreenCurvatureFrame frame{};
+    frame.width = images.curvature.width;
+    frame.height = images.curvature.height;
+    frame.scale = params.scale;
+    frame.edge = params.edge;
+    std::copy_n(params.inverseViewProjection, 16, frame.inverseViewProjection);
+    frame.normal = describeImage(images.normals);
+    frame.position = describeImage(where);
+    if (images.ids) frame.ids = describeImage(images.ids);
+    frame.curvature = describeImage(images.curvature);
+    cl::Launch launch(device.programs().get("shading/screen_curvature.cl",
+                                            {{"PEL_FORMAT_NORMAL", text(formatCode(images.normals, lanes))},
+                                             {"PEL_FORMAT_POSITION", text(formatCode(images.positions, lanes))},
+                                             {"PEL_FORMAT_DEPTH", text(formatCode(images.depth, lanes))},
+                                             {"PEL_FORMAT_IDS", text(formatCode(images.ids, lanes))},
+                                             {"PEL_FORMAT_CURVATURE", text(formatCode(images.curvature, lanes))}}),
+                      "screen_curvature");
+    // Copied here and now: the queue, which may be busy, has no part in it.
+    const cl::Memory memory = device.allocate(sizeof frame, &frame);
+    launch.arg(memory).arg(images.normals.buffer->memory()).arg(where.buffer->memory());
+    launch.arg(images.ids ? images.ids.buffer->memory() : cl::Memory())
+        .arg(images.curvature.buffer->memory());
+    const size_t across = (frame.width + lanes - 1) / lanes;
+    device.launch(launch, {{across * frame.height, 1, 1}, {SCREEN_GROUP, 1, 1}});
+}
+
+}  // namespace pel

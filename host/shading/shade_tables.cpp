@@ -1,0 +1,245 @@
+#include "shading/shade_tables.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <cstddef>
+#include <cmath>
+
+#include "shading/shader.h"
+
+namespace pel {
+namespace {
+
+template <size_t N>
+void copy(float (&to)[N], const float (&from)[N]) {
+    std::copy_n(from, N, to);
+}
+
+// How far u (row 0) or v (row 1) of a parallel map goes per length.
+double uvPerLength(const float (&m)[16], int row) {
+    const float* r = m + 4 * row;
+    return std::sqrt(double(r[0]) * r[0] + double(r[1]) * r[1] + double(r[2]) * r[2]) / std::abs(double(m[15]));
+}
+
+// Texels of a table with its copied last column and row (shared/lut.h).
+size_t texelCount(const Lut& lut) {
+    return size_t(lut.layout().rowTexels) * (lut.height() + 1);
+}
+
+}  // namespace
+
+size_t CachedUpload::update(Device& device, const void* bytes, size_t count) {
+    const auto* from = static_cast<const unsigned char*>(bytes);
+    if (memory_ && bytes_.size() == count && std::equal(from, from + count, bytes_.begin())) return 0;
+    // A new buffer: an execution that is still queued keeps reading the old one.
+    memory_ = device.allocate(std::max<size_t>(count, 16), nullptr);
+    bytes_.clear();
+    if (count) device.write(memory_.get(), 0, count, bytes, true);
+    bytes_.assign(from, from + count);
+    return count;
+}
+
+PelShadeImage describeImage(const ImageView& view) {
+    PelShadeImage image{};
+    if (!view) return image;
+    image.offset[0] = uint32_t(view.byteOffset);
+    image.offset[1] = uint32_t(view.byteOffset >> 32);
+    image.plane[0] = uint32_t(view.planeStride);
+    image.plane[1] = uint32_t(view.planeStride >> 32);
+    image.pixelStride = uint32_t(view.pixelStride);
+    image.rowStride = uint32_t(view.rowStride);
+    image.width = view.width;
+    image.height = view.height;
+    return image;
+}
+
+size_t ShadeTables::update(Device& device, const ShaderState& state, const std::vector<uint32_t>& variants,
+                           uint32_t listTiles) {
+    gatherLuts(device, state);
+    fillFrame(state);
+    frame_.listTiles = listTiles;
+    const auto materials = describeMaterials(state, variants);
+    const auto lights = describeLights(state);
+    const size_t frameBytes = frameUpload_.update(device, &frame_, sizeof frame_);
+    if (frameBytes) band_ = {frame_.tiles, frame_.firstTile, frame_.scratchRow};
+    return frameBytes +
+           materialUpload_.update(device, materials.data(), materials.size() * sizeof materials[0]) +
+           lightUpload_.update(device, lights.data(), lights.size() * sizeof(PelShadeLight));
+}
+
+void ShadeTables::setBand(Device& device, uint32_t firstTile, uint32_t tiles, uint32_t scratchRow) {
+    const std::array<uint32_t, 3> band{tiles, firstTile, scratchRow};
+    static_assert(offsetof(PelShadeFrame, firstTile) == offsetof(PelShadeFrame, tiles) + 4 &&
+                  offsetof(PelShadeFrame, scratchRow) == offsetof(PelShadeFrame, tiles) + 8);
+    for (size_t i = 0; i < band.size(); ++i) {
+        if (band_[i] == band[i]) continue;
+        device.fill(frameMemory().get(), offsetof(PelShadeFrame, tiles) + 4 * i, 4, band[i]);
+        band_[i] = band[i];
+    }
+}
+
+size_t ShadeTables::scratchBytes() const {
+    return frameUpload_.bytes() + materialUpload_.bytes() + lightUpload_.bytes() + lutBytes_;
+}
+
+void ShadeTables::gatherLuts(Device& device, const ShaderState& state) {
+    std::vector<Ref<Lut>> wanted;
+    for (const auto& [id, material] : state.materials)
+        for (const Ref<Lut>& lut : {material.curvatureLut, material.shadowLut})
+            if (lut &&
+                std::none_of(wanted.begin(), wanted.end(), [&](auto& w) { return w.get() == lut.get(); }))
+                wanted.push_back(lut);
+    const bool same = std::equal(wanted.begin(), wanted.end(), gathered_.begin(), gathered_.end(),
+                                 [](auto& a, auto& b) { return a.get() == b.get(); });
+    if (same) return;
+    std::vector<uint32_t> offsets;
+    uint64_t texels = 0;
+    for (const auto& lut : wanted) {
+        offsets.push_back(uint32_t(texels));
+        texels += texelCount(*lut);
+    }
+    if (texels > UINT32_MAX)
+        fail(PEL_ERROR_UNSUPPORTED, "the look-up tables of all materials hold ", texels,
+             " texels; 2^32 is the most");
+    cl::Memory memory;
+    size_t bytes = 0;
+    if (wanted.size() == 1) {
+        memory = wanted[0]->texels();
+    } else if (!wanted.empty()) {
+        bytes = texels * sizeof(cl_float4);
+        memory = device.allocate(bytes);
+        for (size_t i = 0; i < wanted.size(); ++i)
+            cl::check(clEnqueueCopyBuffer(device.queue(), wanted[i]->texels().get(), memory.get(), 0,
+                                          offsets[i] * sizeof(cl_float4),
+                                          texelCount(*wanted[i]) * sizeof(cl_float4), 0, nullptr, nullptr),
+                      "clEnqueueCopyBuffer");
+    }
+    luts_ = memory;
+    lutBytes_ = bytes;
+    gathered_ = std::move(wanted);
+    offsets_ = std::move(offsets);
+}
+
+PelShadeLut ShadeTables::describe(const Lut* lut, float materialRadius) const {
+    PelShadeLut result{};
+    if (!lut) return result;
+    const auto found =
+        std::find_if(gathered_.begin(), gathered_.end(), [&](const auto& g) { return g.get() == lut; });
+    result.layout = lut->layout();
+    result.offset = offsets_[size_t(found - gathered_.begin())];
+    result.radiusRatio = float(double(materialRadius) / lut->diffusionRadius());
+    return result;
+}
+
+void ShadeTables::fillFrame(const ShaderState& state) {
+    const ImageView& target = state.images[PEL_SLOT_RADIANCE];
+    frame_ = {};
+    frame_.width = target.width;
+    frame_.height = target.height;
+    frame_.tilesX = (target.width + PEL_TILE_WIDTH - 1) / PEL_TILE_WIDTH;
+    frame_.tiles = frame_.tilesX * ((target.height + PEL_TILE_HEIGHT - 1) / PEL_TILE_HEIGHT);
+    frame_.lights = uint32_t(state.lights.size());
+    for (const auto& [id, material] : state.materials) frame_.materialMask[id / 32] |= 1u << id % 32;
+    copy(frame_.cameraPosition, state.camera.position);
+    copy(frame_.inverseViewProjection, state.camera.inverseViewProjection);
+    copy(frame_.invalidColor, state.options.invalidColor);
+    frame_.cubeSize = std::min(state.ambientCube.width, state.ambientCube.height);
+    // Factors of the orthonormal real spherical harmonics.
+    const double pi = 3.14159265358979323846, one = std::sqrt(3 / (4 * pi)), two = std::sqrt(15 / (4 * pi));
+    const double factors[9] = {std::sqrt(1 / (4 * pi)),  one, one,      one, two, two,
+                               std::sqrt(5 / (16 * pi)), two, 0.5 * two};
+    for (int i = 0; i < 9; ++i)
+        for (int c = 0; c < 3; ++c)
+            frame_.ambient[i][c] = float(factors[i] * state.ambient.sh[i][c] +
+                                         (i == 0 ? double(state.ambient.constant[c]) : 0.0));
+    for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) frame_.images[slot] = describeImage(state.images[slot]);
+}
+
+std::vector<PelShadeMaterial> ShadeTables::describeMaterials(const ShaderState& state,
+                                                             const std::vector<uint32_t>& variants) const {
+    std::vector<PelShadeMaterial> table(state.materials.empty() ? 1 : state.materials.rbegin()->first + 1);
+    for (const auto& [id, from] : state.materials) {
+        const PelMaterial& m = from.params;
+        PelShadeMaterial& to = table[id];
+        copy(to.albedo, m.albedo);
+        copy(to.normalBlend, m.normalBlend);
+        to.curvature = describe(from.curvatureLut.get(), m.diffusionRadius);
+        to.shadow = describe(from.shadowLut.get(), m.diffusionRadius);
+        to.penumbraPerCosine = 1 / m.shadowFilterWidth;
+        to.specularSharpening = from.shadowLut ? 0.9f * from.shadowLut->info().shadow.sharpening : 0.0f;
+        copy(to.deepScatterColor, m.deepScatterColor);
+        const double radius = m.deepScatterRadius, log2e = 1.4426950408889634;
+        to.deepScatterFalloff = float(-log2e / (2 * radius * radius));
+        to.thicknessCutoff = float(radius * std::sqrt(2 * PEL_LEAST_TRANSMITTANCE_LOG2 / log2e));
+        to.deepScatterNormalOffset = m.deepScatterNormalOffset;
+        to.thicknessFilterRadius = m.thicknessFilterRadius;
+        to.thicknessTaps = m.thicknessTaps;
+        to.specular = m.specular;
+        to.roughness = m.roughness;
+        to.f0 = m.f0;
+        to.diffusionRadius = m.diffusionRadius;
+        to.shadowFilterWidth = m.shadowFilterWidth;
+        to.specularModel = m.specularModel;
+        to.roughness2 = m.roughness2;
+        to.lobeMix = m.lobeMix;
+        to.deepScatterAmbient = m.deepScatterAmbient;
+        to.hasNormalMap = !from.normalMap.empty();
+        to.needs = materialNeeds(state, from);
+        for (size_t i = 0; i < variants.size(); ++i)
+            if (!(to.needs & ~variants[i])) to.variants |= 1u << i;
+    }
+    return table;
+}
+
+uint32_t ShadeTables::lightBuffer(const cl::Memory& memory) {
+    for (size_t i = 0; i < lightBuffers_.size(); ++i)
+        if (lightBuffers_[i].get() == memory.get()) return uint32_t(i);
+    if (lightBuffers_.size() == PEL_LIGHT_BUFFERS)
+        fail(PEL_ERROR_UNSUPPORTED, "the images of the lights lie in more than ", PEL_LIGHT_BUFFERS,
+             " buffers: put several of them into one, with byteOffset");
+    lightBuffers_.push_back(memory);
+    return uint32_t(lightBuffers_.size() - 1);
+}
+
+std::vector<PelShadeLight> ShadeTables::describeLights(const ShaderState& state) {
+    lightBuffers_.clear();
+    std::vector<PelShadeLight> table;
+    for (const ShaderLight& from : state.lights) {
+        const PelLight& l = from.params;
+        PelShadeLight to{};
+        to.type = l.type;
+        copy(to.toLight, l.toLight);
+        copy(to.position, l.position);
+        copy(to.spotDirection, l.spotDirection);
+        to.spotCosOuter = l.spotCosOuter;
+        to.spotScale = 1 / std::max(l.spotCosInner - l.spotCosOuter, 1e-6f);
+        copy(to.color, l.color);
+        to.range2 = l.range > 0 ? std::min(l.range * l.range, FLT_MAX) : FLT_MAX;
+        copy(to.worldToShadow, l.worldToShadow);
+        to.projection = l.shadowProjection;
+        to.depthRange = l.shadowDepthRange;
+        to.depthA = l.shadowDepthA;
+        to.depthB = l.shadowDepthB;
+        const ImageView &wide = from.images[PEL_LIGHT_WIDE_SHADOW], &map = from.images[PEL_LIGHT_SHADOW_MAP];
+        to.wideBuffer = wide ? lightBuffer(wide.buffer->memory()) : PEL_LIGHT_BUFFERS;
+        to.mapBuffer = map ? lightBuffer(map.buffer->memory()) : PEL_LIGHT_BUFFERS;
+        to.wide = describeImage(wide);
+        to.map = describeImage(map);
+        if (l.shadowExponent != 0) to.perExponent = float(std::log(2.0) / l.shadowExponent);
+        to.cascades = map ? l.shadowCascades : 0;
+        for (uint32_t i = 0; i < to.cascades; ++i) {
+            const ShadowCascade c = shadowCascade(from, i);
+            PelShadeCascade& cascade = to.cascade[i];
+            copy(cascade.worldToShadow, *c.worldToShadow);
+            cascade.depthRange = c.depthRange;
+            cascade.mapBuffer = lightBuffer(c.map->buffer->memory());
+            cascade.map = describeImage(*c.map);
+            for (int r = 0; r < 2; ++r)
+                cascade.tapScale[r] = i == 0 ? 1.0f : float(uvPerLength(cascade.worldToShadow, r) / uvPerLength(l.worldToShadow, r));
+        }
+        table.push_back(to);
+    }
+    return table;
+}
+
+}  // namespace pel

@@ -1,0 +1,65 @@
+// The device side of a shader's state: frame, materials, lights and look-up tables, sent when they changed.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "core/device.h"
+#include "lut/lut.h"
+#include "shared/shade.h"
+
+namespace pel {
+
+struct ShaderState;
+
+// A buffer that is written anew only when its bytes differ from those it holds.
+class CachedUpload {
+  public:
+    // Returns the bytes sent.
+    size_t update(Device& device, const void* bytes, size_t count);
+    const cl::Memory& memory() const { return memory_; }
+    size_t bytes() const { return bytes_.size(); }
+
+  private:
+    std::vector<unsigned char> bytes_;
+    cl::Memory memory_;
+};
+
+class ShadeTables {
+  public:
+    // Returns the bytes sent. The tables of all materials are copied into one buffer when there are several
+    // of them. `variants`: features of each variant of the shading kernel; `listTiles`: PelShadeFrame.listTiles.
+    size_t update(Device& device, const ShaderState& state, const std::vector<uint32_t>& variants, uint32_t listTiles);
+    // What launches from now on take: `tiles` from `firstTile` on, with scratch images that begin at a row of pixels.
+    void setBand(Device& device, uint32_t firstTile, uint32_t tiles, uint32_t scratchRow);
+
+    const PelShadeFrame& frame() const { return frame_; }
+    const cl::Memory& frameMemory() const { return frameUpload_.memory(); }
+    const cl::Memory& materials() const { return materialUpload_.memory(); }
+    const cl::Memory& lights() const { return lightUpload_.memory(); }
+    const cl::Memory& luts() const { return luts_; }
+    // Distinct buffers of the lights' images, as the kernel's arguments light0...
+    const std::vector<cl::Memory>& lightBuffers() const { return lightBuffers_; }
+    size_t scratchBytes() const;
+
+  private:
+    void gatherLuts(Device& device, const ShaderState& state);
+    PelShadeLut describe(const Lut* lut, float materialRadius) const;
+    uint32_t lightBuffer(const cl::Memory& memory);
+    void fillFrame(const ShaderState& state);
+    std::vector<PelShadeMaterial> describeMaterials(const ShaderState& state, const std::vector<uint32_t>& variants) const;
+    std::vector<PelShadeLight> describeLights(const ShaderState& state);
+
+    PelShadeFrame frame_{};
+    std::array<uint32_t, 3> band_{};  // tiles, firstTile and scratchRow as the device has them
+    CachedUpload frameUpload_, materialUpload_, lightUpload_;
+    std::vector<Ref<Lut>> gathered_;
+    std::vector<uint32_t> offsets_;  // texels, of gathered_
+    cl::Memory luts_;
+    size_t lutBytes_ = 0;
+    std::vector<cl::Memory> lightBuffers_;
+};
+
+// Where the kernel finds an image; all zero for none.
+PelShadeImage describeImage(const struct ImageView& view);
+
+}  // namespace pel

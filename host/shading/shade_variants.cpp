@@ -1,0 +1,189 @@
+// Which programs a shader needs: the kernel variants of its features and formats, and how they are launched.
+#include "shading/shader.h"
+
+#include <algorithm>
+#include <bit>
+#include <set>
+
+#include "shared/features.h"
+
+namespace pel {
+namespace {
+
+static_assert(PEL_BIT_DIRECT_SCATTER == PEL_FEATURE_DIRECT_SCATTER && PEL_BIT_SHADOW == PEL_FEATURE_SHADOW &&
+              PEL_BIT_SHADOW_LUT == PEL_FEATURE_SHADOW_LUT && PEL_BIT_AMBIENT == PEL_FEATURE_AMBIENT &&
+              PEL_BIT_DEEP_SCATTER == PEL_FEATURE_DEEP_SCATTER &&
+              PEL_BIT_THICKNESS_TAPS == PEL_FEATURE_THICKNESS_TAPS &&
+              PEL_BIT_SPECULAR == PEL_FEATURE_SPECULAR);
+// What the passes before it do does not make another variant of the shading kernel.
+constexpr uint32_t shadeFeatures = (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER |
+                                   PEL_FEATURE_AMBIENT_CUBE | PEL_FEATURE_SHADOW_CUBE | PEL_FEATURE_SHADOW_CASCADES;
+// Those that a material asks for (materialNeeds); the others hold for all of a frame.
+constexpr uint32_t materialFeatures = PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SHADOW_LUT | PEL_FEATURE_DEEP_SCATTER |
+                                      PEL_FEATURE_THICKNESS_TAPS | PEL_FEATURE_SPECULAR | PEL_FEATURE_GGX |
+                                      PEL_FEATURE_AMBIENT_SCATTER;
+static_assert(PEL_BIT_GGX == PEL_FEATURE_GGX && PEL_BIT_AMBIENT_SCATTER == PEL_FEATURE_AMBIENT_SCATTER &&
+              PEL_BIT_AMBIENT_CUBE == PEL_FEATURE_AMBIENT_CUBE && PEL_BIT_SHADOW_CUBE == PEL_FEATURE_SHADOW_CUBE &&
+              PEL_BIT_SHADOW_CASCADES == PEL_FEATURE_SHADOW_CASCADES);
+static_assert(PEL_MAP_CUBE == PEL_SHADOW_CUBE && PEL_MAP_CUBE_RADIAL == PEL_SHADOW_CUBE_RADIAL &&
+              PEL_CONTENT_MOMENTS == PEL_SHADOW_CONTENT_MOMENTS && PEL_CONTENT_EXPONENTIAL == PEL_SHADOW_CONTENT_EXPONENTIAL);
+static_assert(PEL_IMAGE_OUT_DIFFUSE == PEL_SLOT_OUT_DIFFUSE && PEL_IMAGE_OUT_DEEP_SCATTER == PEL_SLOT_OUT_DEEP_SCATTER &&
+              PEL_IMAGE_OUT_SPECULAR == PEL_SLOT_OUT_SPECULAR && PEL_IMAGE_OUT_THICKNESS == PEL_SLOT_OUT_THICKNESS);
+
+// Whether the shading kernel itself reads or writes a slot.
+bool isShadeSlot(int slot) {
+    return slot < PEL_SHADE_SLOTS || slot >= PEL_SLOT_OUT_DIFFUSE;
+}
+static_assert(PEL_FMT_R32F == PEL_FORMAT_R32F && PEL_FMT_RGBA16F == PEL_FORMAT_RGBA16F &&
+              PEL_FMT_R8_UNORM == PEL_FORMAT_R8_UNORM && PEL_FMT_RGBA8_SRGB == PEL_FORMAT_RGBA8_SRGB &&
+              PEL_FMT_OCT16X2_SNORM == PEL_FORMAT_OCT16X2_SNORM && PEL_FMT_R8_UINT == PEL_FORMAT_R8_UINT &&
+              PEL_FMT_PLANAR_RGB32F == PEL_FORMAT_PLANAR_RGB32F);
+static_assert(PEL_IMAGE_RADIANCE == PEL_SLOT_RADIANCE && PEL_IMAGE_MATERIAL == PEL_SLOT_MATERIAL &&
+              PEL_IMAGE_POSITION == PEL_SLOT_POSITION && PEL_IMAGE_DEPTH == PEL_SLOT_DEPTH &&
+              PEL_IMAGE_NORMAL_GEOMETRIC == PEL_SLOT_NORMAL_GEOMETRIC &&
+              PEL_IMAGE_NORMAL_SHADING == PEL_SLOT_NORMAL_SHADING &&
+              PEL_IMAGE_NORMAL_BLURRED == PEL_SLOT_NORMAL_BLURRED &&
+              PEL_IMAGE_CURVATURE == PEL_SLOT_CURVATURE && PEL_IMAGE_ALBEDO == PEL_SLOT_ALBEDO &&
+              PEL_IMAGE_AMBIENT_OCCLUSION == PEL_SLOT_AMBIENT_OCCLUSION &&
+              PEL_IMAGE_THICKNESS == PEL_SLOT_THICKNESS && PEL_IMAGE_ROUGHNESS == PEL_SLOT_ROUGHNESS &&
+              PEL_IMAGE_SPECULAR == PEL_SLOT_SPECULAR && PEL_IMAGE_UV == PEL_SLOT_UV &&
+              PEL_IMAGE_UV_GRADIENT == PEL_SLOT_UV_GRADIENT && PEL_IMAGE_TANGENT == PEL_SLOT_TANGENT &&
+              PEL_IMAGE_SLOTS == PEL_SLOT_COUNT);
+
+constexpr const char* formatDefines[PEL_SLOT_COUNT] = {
+    "PEL_FORMAT_RADIANCE",         "PEL_FORMAT_MATERIAL",
+    "PEL_FORMAT_POSITION",         "PEL_FORMAT_DEPTH",
+    "PEL_FORMAT_NORMAL_GEOMETRIC", "PEL_FORMAT_NORMAL_SHADING",
+    "PEL_FORMAT_NORMAL_BLURRED",   "PEL_FORMAT_CURVATURE",
+    "PEL_FORMAT_ALBEDO",           "PEL_FORMAT_AMBIENT_OCCLUSION",
+    "PEL_FORMAT_THICKNESS",        "PEL_FORMAT_ROUGHNESS",
+    "PEL_FORMAT_SPECULAR",         "PEL_FORMAT_UV",
+    "PEL_FORMAT_UV_GRADIENT",      "PEL_FORMAT_TANGENT",
+    "PEL_FORMAT_OUT_DIFFUSE",      "PEL_FORMAT_OUT_DEEP_SCATTER",
+    "PEL_FORMAT_OUT_SPECULAR",     "PEL_FORMAT_OUT_THICKNESS"};
+
+// Tiles that a work-item of the classification takes: runs on a CPU, one each on a GPU, which has thousands of work-items.
+uint32_t classifyRun(const Device& device) {
+    if (device.info().mathWidth == 1) return 1;
+    // Long runs stay in order, which prefetchers follow; a few for each unit keep all of them busy.
+    return std::bit_floor(std::clamp(4096 / std::max(device.info().computeUnits, 1u), 64u, 2048u));
+}
+uint32_t classifyGroup(const Device& device) {
+    return device.info().mathWidth > 1 ? 1 : 64;
+}
+
+// Slots that no feature reads are left out: fewer variants, and no input that cannot matter.
+bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
+    switch (slot) {
+        case PEL_SLOT_POSITION:
+            return features & (PEL_BIT_SPECULAR | PEL_BIT_THICKNESS_TAPS | PEL_BIT_POSITIONAL);
+        case PEL_SLOT_DEPTH:
+            return !state.images[PEL_SLOT_POSITION] && slotIsRead(state, PEL_SLOT_POSITION, features);
+        case PEL_SLOT_NORMAL_BLURRED:
+            return features & (PEL_BIT_DIRECT_SCATTER | PEL_BIT_AMBIENT | PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER);
+        case PEL_SLOT_NORMAL_GEOMETRIC:
+            return (!state.images[PEL_SLOT_NORMAL_BLURRED] && slotIsRead(state, PEL_SLOT_NORMAL_BLURRED, features)) ||
+                   features & (PEL_BIT_SHADOW_LUT | PEL_BIT_THICKNESS_TAPS);
+        case PEL_SLOT_CURVATURE:
+            return features & PEL_BIT_DIRECT_SCATTER;
+        case PEL_SLOT_AMBIENT_OCCLUSION:
+            return features & PEL_BIT_AMBIENT;
+        case PEL_SLOT_THICKNESS:
+            return features & (PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER);
+        case PEL_SLOT_ROUGHNESS:
+        case PEL_SLOT_SPECULAR:
+            return features & PEL_BIT_SPECULAR;
+        default:
+            return true;
+    }
+}
+
+}  // namespace
+
+cl::ProgramKey shadeKey(const ShaderState& state, uint32_t features, const Device& device) {
+    features &= shadeFeatures;
+    if (!(features & PEL_BIT_THICKNESS_TAPS)) features &= ~uint32_t(PEL_BIT_SHADOW_CUBE | PEL_BIT_SHADOW_CASCADES);
+    if (state.options.accumulate) features |= PEL_BIT_ACCUMULATE;
+    if (state.options.disableSkipping) features |= PEL_BIT_NO_SKIPPING;
+    if (state.options.countPixels) features |= PEL_BIT_COUNT;
+    if (state.options.rotateTaps && features & PEL_BIT_THICKNESS_TAPS) features |= PEL_BIT_ROTATE_TAPS;
+    if (features & PEL_BIT_AMBIENT_CUBE && isBlack(state.ambient)) features |= PEL_BIT_CUBE_ALONE;
+    uint32_t wide = 0, map = 0, content = 0;
+    for (const ShaderLight& light : state.lights) {
+        if (light.params.type != PEL_LIGHT_DIRECTIONAL) features |= PEL_BIT_POSITIONAL;
+        wide |= formatCode(light.images[PEL_LIGHT_WIDE_SHADOW], device.info().mathWidth);
+        if (!light.images[PEL_LIGHT_SHADOW_MAP]) continue;
+        map |= mapFormatCode(light);
+        content = light.params.shadowContent;
+    }
+    if (!(features & PEL_BIT_THICKNESS_TAPS)) map = content = 0;
+    cl::Defines defines{
+        {"PEL_FEATURES", std::to_string(features)},
+        {"PEL_SHADE_GROUP", std::to_string(shadeGroup(device))},
+        {"PEL_CLASSIFY_GROUP", std::to_string(classifyGroup(device))},
+        {"PEL_CLASSIFY_RUN", std::to_string(classifyRun(device))},
+        {"PEL_FORMAT_WIDE_SHADOW", std::to_string(wide)},
+        {"PEL_FORMAT_SHADOW_MAP", std::to_string(map)},
+        {"PEL_SHADOW_CONTENT", std::to_string(content)}};
+    for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) {
+        if (!isShadeSlot(slot)) continue;
+        const uint32_t code =
+            slotIsRead(state, slot, features) ? formatCode(state.images[slot], device.info().mathWidth) : 0;
+        defines[formatDefines[slot]] = std::to_string(code);
+    }
+    cl::ProgramKey key{{"shading/shade.cl"}, defines};
+    // In one program: a driver's cost per program is what a first frame waits for.
+    if (state.images[PEL_SLOT_MATERIAL]) key.files.push_back("shading/classify_tiles.cl");
+    return key;
+}
+
+uint32_t shadeGroup(const Device& device) {
+    return device.info().mathWidth > 1 ? 1 : 64;
+}
+
+uint32_t formatCode(const ImageView& view, uint32_t mathWidth) {
+    if (!view) return 0;
+    const bool vectors = view.tightlyPacked() && view.width >= mathWidth;
+    return uint32_t(view.format) | (vectors ? 0 : PEL_FMT_STRIDED);
+}
+
+uint32_t mapFormatCode(const ShaderLight& light) {
+    uint32_t code = formatCode(light.images[PEL_LIGHT_SHADOW_MAP], 1);
+    for (uint32_t i = 1; i < light.params.shadowCascades; ++i) code |= formatCode(*shadowCascade(light, i).map, 1);
+    return code;
+}
+
+cl::Range classifyRange(const Device& device, size_t tiles) {
+    const size_t run = classifyRun(device);
+    return {{(tiles + run - 1) / run, 1, 1}, {classifyGroup(device), 1, 1}};
+}
+
+cl::Range tileRange(const Device& device, uint32_t tiles) {
+    const size_t group = shadeGroup(device);
+    const size_t groups = std::min<size_t>(tiles, 64 * size_t(device.info().computeUnits));
+    return {{groups * group, 1, 1}, {group, 1, 1}};
+}
+
+std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t features) {
+    std::vector<uint32_t> variants{features};
+    // What else is written must not depend on the variant; and tests want every term everywhere.
+    if (!state.images[PEL_SLOT_MATERIAL] || state.options.tileLists != PEL_TILES_PER_VARIANT || state.options.disableSkipping ||
+        features & PEL_FEATURE_OUTPUTS)
+        return variants;
+    std::set<uint32_t> needed;
+    for (const auto& [id, material] : state.materials) needed.insert(materialNeeds(state, material));
+    std::vector<uint32_t> partial;
+    for (const uint32_t needs : needed) {
+        const uint32_t left = (features & ~materialFeatures) | needs;
+        // Another variant pays where it spares a term of its own (docs/shading.md, "Tiles").
+        if ((features & ~left) & (PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SPECULAR | PEL_FEATURE_DEEP_SCATTER)) partial.push_back(left);
+    }
+    std::ranges::stable_sort(partial, std::greater{}, [](uint32_t f) { return std::popcount(f); });
+    // The cheapest ones.
+    const size_t most = PEL_TILE_VARIANTS - 1;
+    if (partial.size() > most) partial.erase(partial.begin(), partial.end() - ptrdiff_t(most));
+    variants.insert(variants.end(), partial.begin(), partial.end());
+    return variants;
+}
+
+}  // namespace pel

@@ -1,0 +1,21 @@
+// What a shader accepts. Each throws PEL_ERROR_INVALID_ARGUMENT with the value and what would be right.
+#pragma once
+#include "shading/shader.h"
+
+namespace pel {
+
+// NAME.FIELD[i] of a structure.
+void checkFinite(const char* structure, const char* field, const float* values, size_t count);
+void checkImage(PelImageSlot slot, const ImageView& view);
+void checkLightImage(PelLightSlot slot, const ImageView& view);
+void checkNormalMap(const std::vector<ImageView>& levels);
+void checkMaterial(const PelMaterial& material);
+void checkLight(const PelLight& light, uint32_t index);
+// A light's shadow map as it is at commit: its form, its images and the fields that they need (shadow_map_check.cpp).
+void checkLightMap(const ShaderLight& light, uint32_t index);
+void checkAmbient(const PelAmbient& ambient);
+void checkAmbientCube(const ImageView& faces);
+void checkCamera(const PelCamera& camera);
+void checkOptions(const PelShaderOptions& options);
+
+}  // namespace pel

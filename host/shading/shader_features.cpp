@@ -1,0 +1,193 @@
+// Which features a shader's state asks for, and whether it has what they need.
+#include <algorithm>
+
+#include "shading/shader_check.h"
+
+namespace pel {
+namespace {
+
+bool black(const float (&c)[3]) {
+    return c[0] == 0 && c[1] == 0 && c[2] == 0;
+}
+
+void need(bool present, const char* what, const char* why) {
+    if (!present) invalidArgument("the ", what, " is needed ", why, ", and not set");
+}
+
+void checkSizes(const ShaderState& state) {
+    const ImageView& target = state.images[PEL_SLOT_RADIANCE];
+    // Outputs beside radiance: none may lie over any other image.
+    const auto checkOutputs = [&](const ImageView& view, const std::string& what, int itself) {
+        for (int slot = PEL_SLOT_OUT_DIFFUSE; slot < PEL_SLOT_COUNT; ++slot)
+            if (slot != itself && state.images[slot] && overlapsElsewhere(state.images[slot], view))
+                invalidArgument("the ", slotName(PelImageSlot(slot)), " image overlaps the ", what,
+                                " image in memory, and not pixel on pixel");
+    };
+    auto check = [&](const ImageView& view, const std::string& what, int itself = -1) {
+        if (!view) return;
+        checkOutputs(view, what, itself);
+        if (view.width != target.width || view.height != target.height)
+            invalidArgument("the ", what, " image is ", view.width, " x ", view.height,
+                            ", the radiance image ", target.width, " x ", target.height,
+                            "; all images of a frame need one size");
+        if (overlapsElsewhere(target, view))
+            invalidArgument(
+                "the radiance image overlaps the ", what,
+                " image in memory, and not pixel on pixel: pixels would be overwritten before they are "
+                "read");
+    };
+    for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot) check(state.images[slot], slotName(PelImageSlot(slot)), slot);
+    if (const ImageView& cube = state.ambientCube) {
+        checkOutputs(cube, "ambient cube", -1);
+        if (overlapsElsewhere(target, cube)) invalidArgument("the radiance image overlaps the ambient cube in memory");
+    }
+    for (size_t i = 0; i < state.lights.size(); ++i) {
+        check(state.lights[i].images[PEL_LIGHT_WIDE_SHADOW], text("wide shadow ", i));
+        for (int slot = PEL_LIGHT_SHADOW_MAP; slot < PEL_LIGHT_SLOT_COUNT; ++slot) {
+            const ImageView& map = state.lights[i].images[slot];
+            if (!map) continue;
+            const std::string what = text(lightSlotName(PelLightSlot(slot)), " ", i);
+            checkOutputs(map, what, -1);
+            if (overlapsElsewhere(target, map)) invalidArgument("the radiance image overlaps ", what, " in memory");
+        }
+    }
+}
+
+// One kernel reads all wide shadows, and all shadow maps: each with one format.
+void checkLightFormats(const ShaderState& state, PelLightSlot slot) {
+    const ImageView* first = nullptr;
+    for (const ShaderLight& light : state.lights) {
+        const ImageView& view = light.images[slot];
+        if (!view) continue;
+        if (slot == PEL_LIGHT_WIDE_SHADOW && view.format != PEL_FORMAT_R32F &&
+            std::any_of(state.lights.begin(), state.lights.end(), filtersShadow))
+            fail(PEL_ERROR_UNSUPPORTED, "a wide shadow image has format ", view.info().name,
+                 "; beside a light whose wide shadow is made from its shadow map it needs R32F");
+        if (!first) first = &view;
+        if (view.format != first->format)
+            fail(PEL_ERROR_UNSUPPORTED, "one ", lightSlotName(slot), " image has format ", first->info().name,
+                 ", another ", view.info().name, "; those of all lights need the same");
+    }
+}
+
+// One kernel reads all maps, cascades too.
+void checkMapForms(const ShaderState& state) {
+    const ShaderLight* first = nullptr;
+    for (const ShaderLight& light : state.lights) {
+        const ImageView& map = light.images[PEL_LIGHT_SHADOW_MAP];
+        if (!map) continue;
+        if (!first) first = &light;
+        if (light.params.shadowContent != first->params.shadowContent)
+            fail(PEL_ERROR_UNSUPPORTED, "one light has shadowContent ", int(first->params.shadowContent), ", another ",
+                 int(light.params.shadowContent), "; the shadow maps of all lights need the same");
+        for (uint32_t i = 1; i < light.params.shadowCascades; ++i)
+            if (const ImageView& cascade = *shadowCascade(light, i).map; cascade && cascade.format != map.format)
+                fail(PEL_ERROR_UNSUPPORTED, "the first cascade has format ", map.info().name, ", another ", cascade.info().name,
+                     "; all shadow maps need the same");
+    }
+}
+
+// One program reads the normal maps of all materials.
+void checkMapFormats(const ShaderState& state) {
+    const ImageView* first = nullptr;
+    for (const auto& [id, material] : state.materials) {
+        if (material.normalMap.empty()) continue;
+        const ImageView& view = material.normalMap[0];
+        if (!first) first = &view;
+        if (formatCode(view, 1) != formatCode(*first, 1))
+            fail(PEL_ERROR_UNSUPPORTED, "the normal map of material ", id, " has format ", view.info().name,
+                 ", another ", first->info().name, ", or another packing; those of all materials need the same");
+    }
+}
+
+}  // namespace
+
+bool isBlack(const PelAmbient& a) {
+    return black(a.constant) &&
+           std::all_of(std::begin(a.sh), std::end(a.sh), [](auto& c) { return black(c); });
+}
+
+uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material) {
+    const auto& images = state.images;
+    const PelMaterial& m = material.params;
+    const auto some = [&](auto has) { return std::any_of(state.lights.begin(), state.lights.end(), has); };
+    const bool wide = some([](const ShaderLight& l) { return l.images[PEL_LIGHT_WIDE_SHADOW] || filtersShadow(l); });
+    const bool map = some([](const ShaderLight& l) { return bool(l.images[PEL_LIGHT_SHADOW_MAP]); });
+    uint32_t needs = 0;
+    if (!state.lights.empty()) {
+        if (material.curvatureLut && images[PEL_SLOT_CURVATURE]) needs |= PEL_FEATURE_DIRECT_SCATTER;
+        if (material.shadowLut && wide) needs |= PEL_FEATURE_SHADOW_LUT;
+        if (!black(m.deepScatterColor)) {
+            if (images[PEL_SLOT_THICKNESS])
+                needs |= PEL_FEATURE_DEEP_SCATTER;
+            else if (map && m.thicknessTaps)
+                needs |= PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS;
+        }
+        if (m.specular > 0) needs |= PEL_FEATURE_SPECULAR;
+        if (m.specular > 0 && m.specularModel == PEL_SPECULAR_GGX) needs |= PEL_FEATURE_GGX;
+    }
+    const bool ambient = !isBlack(state.ambient) || state.ambientCube;
+    if (ambient && images[PEL_SLOT_THICKNESS] && m.deepScatterAmbient > 0 && !black(m.deepScatterColor))
+        needs |= PEL_FEATURE_AMBIENT_SCATTER;
+    return needs;
+}
+
+uint32_t deriveFeatures(const ShaderState& state) {
+    const auto& images = state.images;
+    need(bool(images[PEL_SLOT_RADIANCE]), "radiance image", "as the output");
+    need(bool(images[PEL_SLOT_NORMAL_SHADING]), "shading normal image", "by every term");
+    checkSizes(state);
+    if (state.materials.empty())
+        invalidArgument("no material is set: pelShaderSetMaterial gives an id its material");
+    if (!images[PEL_SLOT_MATERIAL] && !state.materials.contains(1))
+        invalidArgument("without a material image all pixels are of material 1, which is not set");
+    checkLightFormats(state, PEL_LIGHT_WIDE_SHADOW);
+    checkLightFormats(state, PEL_LIGHT_SHADOW_MAP);
+    checkMapForms(state);
+
+    bool wide = false, filtered = false, positional = false;
+    uint32_t forms = 0;
+    for (size_t i = 0; i < state.lights.size(); ++i) {
+        const ShaderLight& light = state.lights[i];
+        filtered |= filtersShadow(light);
+        wide |= light.images[PEL_LIGHT_WIDE_SHADOW] || filtersShadow(light);
+        positional |= light.params.type != PEL_LIGHT_DIRECTIONAL;
+        if (light.images[PEL_LIGHT_SHADOW_MAP]) {
+            checkLightMap(light, uint32_t(i));
+            forms |= formFeatures(light.params);
+        }
+    }
+    uint32_t features = 0;
+    if (wide) features |= PEL_FEATURE_SHADOW;
+    if (filtered) features |= PEL_FEATURE_FILTER_SHADOW;
+    if (!isBlack(state.ambient)) features |= PEL_FEATURE_AMBIENT;
+    if (state.ambientCube) features |= PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE;
+    for (const auto& [id, material] : state.materials) features |= materialNeeds(state, material);
+    if (features & (PEL_FEATURE_THICKNESS_TAPS | PEL_FEATURE_FILTER_SHADOW)) features |= forms;
+    for (int slot = PEL_SLOT_OUT_DIFFUSE; slot < PEL_SLOT_COUNT; ++slot)
+        if (images[slot]) features |= PEL_FEATURE_OUTPUTS;
+    // Blurred normals matter to scattered and ambient light; a host's image goes before ours, a map before the blur.
+    const bool read = !state.lights.empty() || features & PEL_FEATURE_AMBIENT;
+    if (read && !images[PEL_SLOT_NORMAL_BLURRED])
+        for (const auto& [id, material] : state.materials) {
+            if (!material.normalMap.empty())
+                features |= PEL_FEATURE_NORMAL_MAP;
+            else if (state.options.blurNormals)
+                features |= PEL_FEATURE_BLUR_NORMALS;
+        }
+    if (features & PEL_FEATURE_NORMAL_MAP) {
+        need(bool(images[PEL_SLOT_UV]), "UV image", "by normal maps");
+        need(bool(images[PEL_SLOT_TANGENT]), "tangent image", "by normal maps");
+        checkMapFormats(state);
+    }
+    const bool position = images[PEL_SLOT_POSITION] || images[PEL_SLOT_DEPTH];
+    constexpr const char* what = "position image (or the depth image)";
+    if (features & PEL_FEATURE_THICKNESS_TAPS) need(position, what, "to measure thickness in the shadow map");
+    if (features & PEL_FEATURE_SPECULAR) need(position, what, "by the specular term");
+    if (features & PEL_FEATURE_BLUR_NORMALS) need(position, what, "to blur normals over a length");
+    if (filtered) need(position, what, "to filter a wide shadow from a shadow map");
+    if (positional) need(position, what, "by point and spot lights");
+    return features;
+}
+
+}  // namespace pel

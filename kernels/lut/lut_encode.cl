@@ -1,0 +1,68 @@
+// LUT texels (float4, with a copied column and row, shared/lut.h) packed for the host: row-major, without the
+// copies. Section 2 and 3 of the mathematics define the 8-bit encodings, which are those of FaceWorks.
+//
+// One work-item: one texel, but for countClipped. Variants: PEL_GROUP, work-items in a group.
+#include "lib/lut/lut_lookup.clh"
+
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeFloat(
+    const LutLayout lut, __global const float4* texels, __global float* packed) {
+    const uint x = get_global_id(0), y = get_global_id(1);
+    if (x >= lut.width) return;
+    vstore3(texels[(size_t)y * lut.rowTexels + x].xyz, (size_t)y * lut.width + x, packed);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeHalf(const LutLayout lut,
+                                                                                __global const float4* texels,
+                                                                                __global half* packed) {
+    const uint x = get_global_id(0), y = get_global_id(1);
+    if (x >= lut.width) return;
+    vstore_half3_rte(texels[(size_t)y * lut.rowTexels + x].xyz, (size_t)y * lut.width + x, packed);
+}
+
+// sat(2 (D - max0(u)) + 1/2): what scattering changes, doubled, about the middle grey. Linear.
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeCurvatureBytes(
+    const LutLayout lut, __global const float4* texels, __global uchar* packed) {
+    const uint x = get_global_id(0), y = get_global_id(1);
+    if (x >= lut.width) return;
+    float4 residual = texels[(size_t)y * lut.rowTexels + x] - fmax(lutColumnCentre(lut, x), 0.0f);
+    residual = fma(residual, (float4)(2.0f), (float4)(0.5f));
+    residual.w = 1.0f;
+    vstore4(convert_uchar4_sat_rte(residual * 255.0f), (size_t)y * lut.width + x, packed);
+}
+
+// One work-item: one row. Texels that the above clips in some channel.
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void countClipped(
+    const LutLayout lut, __global const float4* texels, __global uint* clipped) {
+    const uint y = get_global_id(0);
+    if (y >= lut.height) return;
+    uint found = 0;
+    for (uint x = 0; x < lut.width; ++x) {
+        const float4 residual =
+            fabs(texels[(size_t)y * lut.rowTexels + x] - fmax(lutColumnCentre(lut, x), 0.0f));
+        found += fmax(fmax(residual.x, residual.y), residual.z) > 0.25f;
+    }
+    if (found) atomic_add(clipped, found);
+}
+
+// The peer fades the first twenty-fifth of the columns to black, then stores sRGB.
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeShadowBytes(
+    const LutLayout lut, __global const float4* texels, __global uchar* packed) {
+    const uint x = get_global_id(0), y = get_global_id(1);
+    if (x >= lut.width) return;
+    const float fade = 25 * x < lut.width ? (float)(25 * x) / (float)lut.width : 1.0f;
+    const float4 linear = clamp(fade * texels[(size_t)y * lut.rowTexels + x], 0.0f, 1.0f);
+    float4 encoded = select(fma(pow(linear, (float4)(1.0f / 2.4f)), (float4)(1.055f), (float4)(-0.055f)),
+                            12.92f * linear, linear <= 0.0031308f);
+    encoded.w = 1.0f;
+    vstore4(convert_uchar4_sat_rte(encoded * 255.0f), (size_t)y * lut.width + x, packed);
+}
+
+// Specular tables are kept as they are, like those of d'Eon and Luebke.
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeBytes(
+    const LutLayout lut, __global const float4* texels, __global uchar* packed) {
+    const uint x = get_global_id(0), y = get_global_id(1);
+    if (x >= lut.width) return;
+    float4 value = texels[(size_t)y * lut.rowTexels + x];
+    value.w = 1.0f;
+    vstore4(convert_uchar4_sat_rte(value * 255.0f), (size_t)y * lut.width + x, packed);
+}

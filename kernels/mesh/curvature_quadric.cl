@@ -1,0 +1,332 @@
+// Curvature by a local polynomial through the two-ring of each slot (mathematics, section 5): heights over the tangent
+// plane of the given normal, fitted by least squares with slope, quadratic and cubic terms. The slope re-estimates the
+// normal; the cubic terms take what would otherwise lean the quadratic ones on irregular meshes, and are not used
+// further. Positions alone decide: a normal only says which way the height is; one that is far off its ring's, as where
+// a sliver was folded over by noise, is replaced by the mean of its neighbours'.
+//
+// Heights are bent first: q becomes q r^2 / (r^2 + q^2), r being the distance along the plane. A circle through the slot
+// that touches the plane, q = k (r^2 + q^2) / 2, then is exactly the parabola k r^2 / 2, so that spheres and cylinders
+// leave no terms of fourth order, which a fit of third order would mistake for quadratic ones: the more, the longer its
+// cells. The plane must touch the surface for that. The ring's own slope, where it is no small one, is taken off before,
+// and the bending fades out where the ring is steep in spite of it.
+//
+// The two-ring is walked as the rings of the ring. Where those are closed, their walks begin behind the slot's own
+// neighbours and leave out the last vertex, which the next walk begins with: each vertex of the two-ring then counts
+// once. Some count several times: at borders; where triangles are in no consistent order; and the one vertex behind a
+// neighbour of four, which stays in though the next walk begins with it (on meshes of four and eight neighbours that
+// takes up to a sixth off the error).
+//
+// What the points leave open (fewer than nine, all on a line) a ridge decides, towards a quadric and then a plane; a
+// term whose pivot is lost to rounding is dropped. The result is always finite.
+//
+// Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h), links and rounds (mesh_links.cl).
+// Output: lib/mesh/principal.clh.
+//
+// One work-item: PEL_WIDTH slots.
+//
+// Variants: MESH_STRIDE, MESH_RUNS (lib/mesh/mesh_slots.clh), MESH_PLANES (lib/mesh/principal.clh).
+
+#include "lib/mesh/mesh_frame.clh"
+
+#define TERMS 9  // u, v, u^2/2, u v, v^2/2, u^3/6, u^2 v/2, u v^2/2, v^3/6
+#define PRODUCTS (TERMS * (TERMS + 1) / 2)
+#define PRODUCT(row, column) ((row) * ((row) + 1) / 2 + (column))  // column <= row
+
+// A point at distance r, in units of twice the ring's reach, weighs 1 / (this + r^2): near points tell about
+// the slot, far ones about its surroundings. Measured on tori against equal weights: 10 to 25 % less error.
+#define WEIGHT_SOFTENING 0.05f
+
+// Added to the diagonal, in parts of the total weight: decides where too few points do, towards a plane
+// and then towards a quadric, and stays below the noise of float positions elsewhere.
+#define RIDGE_QUADRATIC 1e-7f
+#define RIDGE_CUBIC 1e-5f
+
+// The same on a border, where a two-ring has three rows of vertices only, which leave a cubic across it open. On smooth
+// surfaces ten times more or less gain on some meshes what they lose on others; with RIDGE_CUBIC, noise of 2 % of an
+// edge is two to four times as large.
+#define RIDGE_CUBIC_BORDER 1e-3f
+
+// Root mean square of a coordinate over a round ring, in units of its reach: such a ring keeps its shape.
+#define CHART_SIZE 0.70710678f
+
+// Square of the chart's radius beyond which a point is no neighbour: a round two-ring has radius 1. Next to a vertex of
+// many neighbours (the pole of a sphere) the two-ring is a wide circle, of which only the near part tells.
+#define FARTHEST2 4.0f
+
+// The ring's slope is fitted with this much of the squared reach on the diagonal, so that across slivers the curvature
+// along them does not count as slope; slopes well below MIN_SLOPE are the surface's own and stay.
+#define SLOPE_RIDGE 0.03f
+#define MIN_SLOPE 0.05f
+
+// Squared height over squared width of a ring at which bending is down to a half: 16 degrees of tilt, or a
+// cap of edge / radius 0.4.
+#define STEEP 0.04f
+
+// A ring steeper than this, or with a slope whose square is above that, lets the normal be compared with its neighbours';
+// a cosine below WRONG_NORMAL (8 degrees) replaces it. Measured with normals from meshes whose jitter folds triangles: half
+// the error on tori, a tenth on cones.
+#define STEEP_DOUBTFUL 0.05f
+#define SLOPE2_DOUBTFUL 0.01f
+#define WRONG_NORMAL 0.99f
+
+// Squared width over squared length below which a ring counts as a line: slivers of 1 : 1000.
+#define MOST_UNEVEN 1e-6f
+
+// The products of two terms are the monomials of degree 2 to 6: 25 sums instead of 45.
+#define DEGREES 7
+#define MONOMIAL(a, b) (((a) + (b)) * ((a) + (b) + 1) / 2 - 3 + (b))  // of x^a y^b, a + b >= 2
+#define MONOMIALS 25
+
+// From offsets to the coordinates of the fit: x = xx X, y = xy X + yy Y, z = scale * bent height, with X and Y along the
+// tangent vectors. They are as long along the ring as across it, so that slivers fit as well as other triangles: in
+// coordinates of one unit the sixth powers of a short direction would drown in the rounding of a long one's.
+typedef struct Chart {
+    Vec3w origin, u, v, n;
+    Vec3w height;         // n without the ring's slope: dot3 with it gives q
+    floatw su, sv, bend;  // that slope; how much of the bending is done, 0 to 1
+    maskw doubtful;       // the normal may be wrong
+    floatw ridge;         // of the cubic terms
+    floatw scale, xx, xy, yy;
+    uint last;  // slot of the mesh
+} Chart;
+
+typedef struct Fit {
+    floatw moments[MONOMIALS];  // sum of weight x^a y^b
+    floatw right[TERMS];        // sum of weight z term; in the end the solution
+    floatw products[PRODUCTS];  // lower triangle of the normal equations, row by row
+    floatw weight;
+} Fit;
+
+inline void add_point(Fit* fit, uintw slot, maskw counts, const Chart* chart, __global const float* positions) {
+    Vec3w p;
+    gather3(positions, chart->last, slots_anywhere(slot), &p.x, &p.y, &p.z);
+    p = scale3(sub3(p, chart->origin), chart->scale);
+    const floatw zero = 0.0f;
+    const floatw along = dot3(p, chart->u), across = dot3(p, chart->v), q = dot3(p, chart->height);
+    const floatw flat2 = fma(along, along, across * across), softened = WEIGHT_SOFTENING + dot3(p, p);
+    const floatw bent = fma(chart->bend * q, q, flat2) + 1e-30f;
+    counts &= finitew(softened * bent);
+    const floatw inverse = 1.0f / (softened * bent);  // of both in one division
+    floatw x = chart->xx * along, y = fma(chart->xy, along, chart->yy * across);
+    counts &= fma(x, x, y * y) <= FARTHEST2;
+    x = selectw(zero, x, counts), y = selectw(zero, y, counts);
+    const floatw z = selectw(zero, q * flat2 * (softened * inverse), counts);
+    const floatw weight = selectw(zero, bent * inverse, counts);
+    fit->weight += weight;
+    // weight x^a, then times y as often as the degree allows.
+    floatw column = weight;
+#pragma unroll
+    for (int a = 0; a < DEGREES; ++a) {
+        floatw monomial = column;
+#pragma unroll
+        for (int b = 0; a + b < DEGREES; ++b) {
+            if (a + b >= 2) fit->moments[MONOMIAL(a, b)] += monomial;
+            if (a + b >= 1 && a + b <= 3) {
+                const int term = a + b == 1 ? b : a + b == 2 ? 2 + b : 5 + b;
+                fit->right[term] = fma(monomial, z, fit->right[term]);
+            }
+            monomial *= y;
+        }
+        column *= x;
+    }
+}
+
+// Powers of x and y in a term, and what it divides them by.
+#define TERM_X(i) ((i) < 2 ? 1 - (i) : (i) < 5 ? 4 - (i) : 8 - (i))
+#define TERM_Y(i) ((i) < 2 ? (i) : (i) < 5 ? (i)-2 : (i)-5)
+__constant float factor[TERMS] = {1.0f, 1.0f, 0.5f, 1.0f, 0.5f, 1.0f / 6.0f, 0.5f, 0.5f, 1.0f / 6.0f};
+
+inline void assemble(Fit* fit) {
+#pragma unroll
+    for (int i = 0; i < TERMS; ++i) {
+#pragma unroll
+        for (int j = 0; j <= i; ++j)
+            fit->products[PRODUCT(i, j)] =
+                factor[i] * factor[j] * fit->moments[MONOMIAL(TERM_X(i) + TERM_X(j), TERM_Y(i) + TERM_Y(j))];
+        fit->right[i] *= factor[i];
+    }
+}
+
+// How often a term's derivative stands among all of its order (uv and vu, ...): the ridge's sum of squares is that of all, which
+// does not change when the chart is turned.
+__constant int ridgeShares[TERMS] = {1, 1, 1, 2, 1, 1, 3, 3, 1};
+
+// Cholesky without roots, in place; the solution replaces the right side. A pivot that is lost to rounding
+// drops its term.
+inline void solve(Fit* fit, floatw ridge) {
+    floatw inverse[TERMS];
+#pragma unroll
+    for (int i = 0; i < TERMS; ++i) {
+        fit->products[PRODUCT(i, i)] += fit->weight * (float)ridgeShares[i] * (i < 5 ? (floatw)(RIDGE_QUADRATIC) : ridge);
+        floatw pivot = fit->products[PRODUCT(i, i)];
+        const floatw whole = pivot;
+#pragma unroll
+        for (int j = 0; j < i; ++j) {
+            // products[i][j] holds L_ij D_j until here.
+            floatw sum = fit->products[PRODUCT(i, j)];
+#pragma unroll
+            for (int k = 0; k < j; ++k)
+                sum = fma(-fit->products[PRODUCT(i, k)] * inverse[k], fit->products[PRODUCT(j, k)], sum);
+            fit->products[PRODUCT(i, j)] = sum;
+            pivot = fma(-sum * inverse[j], sum, pivot);
+            fit->right[i] = fma(-sum * inverse[j], fit->right[j], fit->right[i]);
+        }
+        inverse[i] = selectw((floatw)(0.0f), 1.0f / pivot, pivot > 1e-7f * whole);
+    }
+#pragma unroll
+    for (int i = TERMS - 1; i >= 0; --i) {
+        floatw sum = fit->right[i];
+#pragma unroll
+        for (int k = i + 1; k < TERMS; ++k) sum = fma(-fit->products[PRODUCT(k, i)], fit->right[k], sum);
+        fit->right[i] = sum * inverse[i];
+    }
+}
+
+// The chart's scales from the ring's second moments in the tangent plane; false for a ring without extent.
+inline maskw scale_chart(Chart* chart, const RingCursor start, __global const uint* rings, __global const uint* runs,
+                         __global const float* positions) {
+    RingCursor ring = start;
+    const floatw zero = 0.0f, one = 1.0f;
+    floatw reach2 = zero, suu = zero, suv = zero, svv = zero, sun = zero, svn = zero, snn = zero, count = zero;
+    maskw border = count > zero;
+    for (; ring.row < ring.end; ++ring.row) {
+        const RingEntry entry = ring_entry(&ring, rings, runs);
+        border |= (entry.bits & (uintw)(MESH_SINGLE)) != 0;
+        Vec3w p;
+        gather3(positions, ring.last, entry.slots, &p.x, &p.y, &p.z);
+        p = sub3(p, chart->origin);
+        const floatw length2 = dot3(p, p);
+        const maskw counts = finitew(length2);
+        reach2 = selectw(reach2, fmax(reach2, length2), counts);
+        const floatw along = selectw(zero, dot3(p, chart->u), counts), across = selectw(zero, dot3(p, chart->v), counts);
+        const floatw height = selectw(zero, dot3(p, chart->n), counts);
+        suu = fma(along, along, suu), suv = fma(along, across, suv), svv = fma(across, across, svv);
+        sun = fma(along, height, sun), svn = fma(across, height, svn), snn = fma(height, height, snn);
+        count += selectw(zero, one, entry.slots.each != ring.self.each);
+    }
+    const maskw spread = reach2 >= MESH_MIN_LENGTH2;
+    // In units of the ring's reach: powers up to the sixth must neither overflow nor vanish.
+    reach2 = selectw(one, reach2, spread);
+    chart->scale = 0.5f / sqrt(reach2);
+    // The moments' inverse square root (Cholesky): with it the ring is as wide as long.
+    const floatw inverse = 1.0f / (reach2 * fmax(count, one));
+    suu *= inverse, suv *= inverse, svv *= inverse, sun *= inverse, svn *= inverse, snn *= inverse;
+    const floatw a = suu + SLOPE_RIDGE, c = svv + SLOPE_RIDGE, determinant = fma(a, c, -suv * suv);
+    const floatw su = fma(c, sun, -suv * svn) / determinant, sv = fma(a, svn, -suv * sun) / determinant;
+    const floatw slope2 = fma(su, su, sv * sv), part = slope2 / (slope2 + MIN_SLOPE * MIN_SLOPE);
+    chart->su = su * part, chart->sv = sv * part;
+    chart->height = sub3(chart->n, add3(scale3(chart->u, chart->su), scale3(chart->v, chart->sv)));
+    chart->ridge = selectw((floatw)(RIDGE_CUBIC), (floatw)(RIDGE_CUBIC_BORDER), border);
+    const floatw steepness = snn / (suu + svv + 1e-20f), steep = steepness / STEEP;
+    chart->doubtful = (steepness > STEEP_DOUBTFUL) | (slope2 > SLOPE2_DOUBTFUL);
+    chart->bend = 1.0f / fma(steep, steep, one);
+    // A ring that is thinner than high is no sliver: its normal is wrong, as where a triangle is folded over.
+    const floatw least = fmax(MOST_UNEVEN * (suu + svv), snn) + 1e-20f;
+    suu = fmax(suu, least);
+    const floatw slope = suv / suu;
+    const floatw rest = fmax(fma(-slope, suv, svv), least);
+    chart->xx = CHART_SIZE / sqrt(suu);
+    chart->yy = CHART_SIZE / sqrt(rest);
+    chart->xy = -slope * chart->yy;
+    return spread;
+}
+
+inline void orient_chart(Chart* chart, Vec3w normal) {
+    chart->n = normal;
+    tangent_frame(normal, &chart->u, &chart->v);
+}
+
+// Mean direction of the normals of the ring; NaN where they cancel out.
+inline Vec3w ring_normal(const RingCursor start, __global const uint* rings, __global const uint* runs,
+                         __global const float* normals) {
+    RingCursor ring = start;
+    Vec3w sum = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    for (; ring.row < ring.end; ++ring.row) {
+        const Slots slots = ring_entry(&ring, rings, runs).slots;
+        Vec3w n;
+        gather3(normals, ring.last, slots, &n.x, &n.y, &n.z);
+        usable_normals(&n.x, &n.y, &n.z);
+        sum = select3(sum, add3(sum, n), finite3(n) & (slots.each != ring.self.each));
+    }
+    return scale3(sum, 1.0f / sqrt(dot3(sum, sum)));
+}
+
+__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_quadric(
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
+    __global const uint* runs, __global const float* positions,
+    uint positionOffset, __global const float* normals, uint normalOffset, uint planeStride,
+    __global float* planes, __global const uint* links, __global const uint* rounds) {
+    const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
+    if (first >= slots) return;
+    RingCursor ring = ring_begin(first, slots, slices);
+    positions += positionOffset;
+    normals += normalOffset;
+    Chart chart;
+    chart.last = ring.last;
+    const SlotFrame frame = slot_frame(&ring, positions, normals);
+    chart.origin = frame.origin, chart.n = frame.n, chart.u = frame.u, chart.v = frame.v;
+    maskw spread = scale_chart(&chart, ring, rings, runs, positions) & frame.sound;
+    const maskw doubtful = spread & chart.doubtful;
+    if (anyw(doubtful)) {
+        const Vec3w mean = ring_normal(ring, rings, runs, normals);
+        const maskw wrong = doubtful & (dot3(mean, chart.n) < WRONG_NORMAL);
+        if (anyw(wrong)) {
+            orient_chart(&chart, select3(chart.n, mean, wrong));
+            spread = scale_chart(&chart, ring, rings, runs, positions) & frame.sound;
+        }
+    }
+
+    Fit fit;
+#pragma unroll
+    for (int i = 0; i < MONOMIALS; ++i) fit.moments[i] = 0.0f;
+#pragma unroll
+    for (int i = 0; i < TERMS; ++i) fit.right[i] = 0.0f;
+    fit.weight = 0.0f;
+    const uintw none = (uintw)(0), one = (uintw)(1);
+    for (; ring.row < ring.end; ++ring.row) {
+        const uintw near_ = ring_entry(&ring, rings, runs).slots.each;
+        const maskw real = (near_ != ring.self.each) & spread;
+        add_point(&fit, near_, real, &chart, positions);
+        // Each lane walks the ring of its own neighbour, in that one's slice, in which this slot stands `here`.
+        const uintw begin = gather_uint(slices, near_ / MESH_LANES), round = gather_uint(rounds, near_);
+        const uintw here = loadw((size_t)ring.row * MESH_LANES + ring.lane, links);
+        const uintw length = selectw(none, round & ~(uintw)(MESH_ROUND), real);
+        const maskw closed = real & ((round & (uintw)(MESH_ROUND)) != 0);
+        // Closed: all but this slot, its two neighbours and the last one; with four in the ring just one is left.
+        const uintw rest = selectw(selectw(none, one, length == 4), length - 4, length > 4);
+        const uintw steps = selectw(length, rest, closed);
+        const uintw from = selectw(none, here + 2, closed);
+        const uint longest = largest_lane(steps);
+        for (uint step = 0; step < longest; ++step) {
+            const maskw inside = step < steps;
+            uintw row = selectw(none, from + step, inside);
+            row -= selectw(none, length, row >= length);
+            const uintw entry = gather_uint(rings, (begin + selectw(none, row, inside)) * MESH_LANES + near_ % MESH_LANES);
+            const uintw far_ = selectw(ring.self.each, RING_SLOT(entry), inside);
+            add_point(&fit, far_, inside & (far_ != ring.self.each), &chart, positions);
+        }
+    }
+    assemble(&fit);
+    solve(&fit, chart.ridge);
+
+    // Back to derivatives of the height, in units of the reach, by the tangent vectors.
+    const floatw fx = fit.right[0], fxx = fit.right[2], fxy = fit.right[3];
+    const floatw fy = fit.right[1], fyy = fit.right[4];
+    const floatw du = chart.su + fma(chart.xx, fx, chart.xy * fy), dv = fma(chart.yy, fy, chart.sv);
+    const floatw duu = chart.xx * fma(chart.xx, fxx, 2.0f * chart.xy * fxy) + chart.xy * chart.xy * fyy;
+    const floatw duv = chart.yy * fma(chart.xx, fxy, chart.xy * fyy), dvv = chart.yy * chart.yy * fyy;
+    // The second fundamental form of the graph, in an orthonormal frame of its tangent plane at the slot.
+    const Vec3w n = chart.n, u = chart.u, v = chart.v;
+    const floatw slope2 = fma(du, du, dv * dv), w = sqrt(1.0f + slope2);
+    const Vec3w normal = scale3(sub3(n, add3(scale3(u, du), scale3(v, dv))), 1.0f / w);
+    const Vec3w tu = scale3(add3(u, scale3(n, du)), inverseRootw(fma(du, du, (floatw)(1.0f))));
+    const Vec3w tv = cross3(normal, tu);
+    const floatw ux = dot3(tu, u), uy = dot3(tu, v), vx = dot3(tv, u), vy = dot3(tv, v);
+    const floatw part = -chart.scale / w;  // heights along the normal: bending away from it is negative
+    const floatw xx = duu * part, xy = duv * part, yy = dvv * part;
+    const floatw uu = ux * fma(xx, ux, 2.0f * xy * uy) + yy * uy * uy;
+    const floatw vv = vx * fma(xx, vx, 2.0f * xy * vy) + yy * vy * vy;
+    const floatw uv = xx * ux * vx + xy * fma(ux, vy, uy * vx) + yy * uy * vy;
+    const maskw measured = spread & finitew(uu) & finitew(uv) & finitew(vv);
+    store_principal(uu, uv, vv, tu, tv, measured, first, planeStride, planes);
+}

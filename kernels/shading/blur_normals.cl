@@ -1,0 +1,170 @@
+// Blurred normals from shading normals, on screen (docs/shading.md, "Blurred normals"): a separable mean over the surface
+// within the material's diffusion radius, which stops at depth edges and at other materials.
+//
+// Along one axis, first x, then y, the taps k = 1..PEL_BLUR_TAPS to each side lie `step` pixels apart, so that the last one
+// is about one radius away on the surface: step = ceil(radius / (PEL_BLUR_TAPS s)), s the distance to the nearer of the two
+// neighbours. A tap's weight is (1 - d^2 / radius^2)^2, d its distance in space. The walk ends at the border, at another
+// material, beyond the radius, and at a depth edge: a step more than PEL_BLUR_GAP times as long as the longest before it.
+// Taps with a NaN or Inf are passed over.
+//
+// Inputs: shading normals, positions or depth, material ids. Output: Nb of each pixel of a material without normal map;
+// NaN where the pixel's own normal or position is. One work-group: a run of tiles; one work-item: PEL_WIDTH pixels of a row
+// at a time, whose taps are PEL_WIDTH neighbours as long as they share a step, which is nearly always.
+// Launches: prepare_normals, blur_normals along x, blur_normals along y.
+#include "lib/image/planes.clh"
+#include "lib/shading/tiles.clh"
+#include "shared/shade_passes.h"
+
+// Ids of PEL_WIDTH pixels from `first` on that this work-item takes: those from x on which have a material; others are 0.
+static inline uintw ownIds(__global const PelShadeFrame* frame, __global uchar* material, uint x, uint y, uint first) {
+    const intw column = lanesw() + (int)first;
+    const uintw id = loadIds(frame, material, first, y);
+    return selectw((uintw)(0), id, (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id));
+}
+
+// tags: the id where normal and position are numbers, its negative where not, 0 where there is no material: of every pixel,
+// since taps go beyond the tiles of the list.
+__kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void prepare_normals(
+    __global const PelShadeFrame* frame, __global const uint* list, __global uchar* material, __global uchar* normal,
+    __global uchar* position, __global uchar* depth, __global float* normals, __global float* positions, __global float* tags,
+    uint plane) {
+    if (PEL_FORMAT_MATERIAL && list[0] == 0) return;
+    const uint groups = get_num_groups(0), group = get_group_id(0);
+    const uint end = (uint)((ulong)frame->tiles * (group + 1) / groups);
+    for (uint i = (uint)((ulong)frame->tiles * group / groups); i < end; ++i) {
+        const uint tile = frame->firstTile + i;
+        const uint2 origin = (uint2)(tile % frame->tilesX * PEL_TILE_WIDTH, tile / frame->tilesX * PEL_TILE_HEIGHT);
+        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP * PEL_WIDTH) {
+            const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
+            if (x >= frame->width || y >= frame->height) continue;
+            const uint first = vectorStart(x, frame->width);
+            const intw column = lanesw() + (int)first;
+            const uintw id = ownIds(frame, material, x, y, first);
+            const maskw own = (column >= (int)x) & (column < (int)frame->width), held = id != 0;
+            const size_t at = scratchIndex(frame, first, y);
+            floatw tag = 0.0f;
+            if (anyw(held)) {
+                const Vec3w n = loadNormal(PEL_FORMAT_NORMAL_SHADING,
+                                           imageSpan(normal, &frame->images[PEL_IMAGE_NORMAL_SHADING], first, y));
+                const Vec3w p = loadPosition(frame, position, depth, first, y);
+                tag = convert_floatw(id);
+                tag = selectw(-tag, tag, finite3(n) & finite3(p));
+                storePlanes(normals, plane, at, n, held);
+                storePlanes(positions, plane, at, p, held);
+            }
+            storePlane(tags, at, tag, own);
+        }
+    }
+}
+
+typedef struct Field {
+    __global const PelShadeFrame* frame;
+    __global const float *normals, *positions, *tags;
+    uint plane;
+    bool alongY;
+} Field;
+
+// The lanes of `mask` whose pixel `offset` away along the axis has the same material. x, y: of the first lane.
+static inline maskw sameMaterial(const Field* f, int x, int y, int offset, size_t at, floatw id, maskw mask) {
+    if (f->alongY) {
+        if (y + offset < 0 || y + offset >= (int)f->frame->height) return mask & 0;
+    } else {
+        const intw column = lanesw() + (x + offset);
+        mask &= (column >= 0) & (column < (int)f->frame->width);
+    }
+    return mask & (fabs(loadw(at, f->tags)) == id);
+}
+
+// Distance to a direct neighbour; Inf where there is none to compare with.
+static inline floatw neighbourDistance(const Field* f, int x, int y, int offset, size_t at, Vec3w p, floatw id, maskw mask) {
+    mask = sameMaterial(f, x, y, offset, at, id, mask);
+    if (!anyw(mask)) return (floatw)(INFINITY);
+    mask &= loadw(at, f->tags) > 0.0f;
+    const Vec3w away = sub3(loadPlanes(f->positions, f->plane, at), p);
+    return selectw((floatw)(INFINITY), sqrt(dot3(away, away)), mask);
+}
+
+// The greatest value of the lanes of `mask`, all of them positive; 0 for none.
+static inline int greatest(intw value, maskw mask) {
+    return (int)greatestId(as_uintw(value), mask);
+}
+
+// The sum of a pixel's normal and of those along the axis, of the lanes of `mask`.
+static inline Vec3w blurAlong(const Field* f, int x, int y, floatw id, floatw radius, maskw mask) {
+    const size_t centre = scratchIndex(f->frame, (uint)x, (uint)y);
+    const long pixel = f->alongY ? (long)f->frame->width : 1; // from one pixel to the next along the axis
+    const Vec3w p = loadPlanes(f->positions, f->plane, centre);
+    Vec3w sum = loadPlanes(f->normals, f->plane, centre);
+    floatw total = 1.0f;
+    const floatw s = fmin(neighbourDistance(f, x, y, -1, centre - pixel, p, id, mask),
+                          neighbourDistance(f, x, y, 1, centre + pixel, p, id, mask));
+    const floatw taps = ceil(radius / (s * (float)PEL_BLUR_TAPS)); // Inf or NaN where two pixels lie in one place
+    const intw steps = convert_intw(fmin(fmax(taps, (floatw)(1.0f)), (floatw)((float)PEL_BLUR_STEP_MAX)));
+    const floatw perRadius2 = 1.0f / (radius * radius);
+    maskw left = mask & (s < INFINITY);
+    while (anyw(left)) {
+        const int step = greatest(steps, left);
+        const maskw these = left & (steps == step);
+        left &= notw(these);
+        for (int side = -1; side <= 1; side += 2) {
+            Vec3w before = p;
+            floatw longest2 = squarew((float)step * s);
+            maskw on = these;
+            for (int k = 1; k <= PEL_BLUR_TAPS; ++k) {
+                const int offset = side * k * step;
+                const size_t at = centre + (size_t)(offset * pixel);
+                on = sameMaterial(f, x, y, offset, at, id, on);
+                if (!anyw(on)) break;
+                const maskw valid = on & (loadw(at, f->tags) > 0.0f);
+                const Vec3w q = loadPlanes(f->positions, f->plane, at), away = sub3(q, p);
+                const Vec3w hop = sub3(q, before);
+                const floatw gap2 = dot3(hop, hop), d2 = dot3(away, away) * perRadius2;
+                const maskw end = valid & ((gap2 > (float)(PEL_BLUR_GAP * PEL_BLUR_GAP) * longest2) | (d2 >= 1.0f));
+                const maskw take = valid & notw(end);
+                const floatw weight = (1.0f - d2) * (1.0f - d2);
+                const Vec3w n = loadPlanes(f->normals, f->plane, at);
+                sum = select3(sum, add3(sum, scale3(n, weight)), take);
+                total = selectw(total, total + weight, take);
+                longest2 = selectw(longest2, fmax(longest2, gap2), take);
+                before = select3(before, q, take);
+                on &= notw(end);
+            }
+        }
+    }
+    return scale3(sum, 1.0f / total);
+}
+
+// `from` and `to` differ; along y `to` holds the unblurred normals, which stay where the mean vanishes.
+__kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void blur_normals(
+    __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials, __global const uint* list,
+    __global uchar* material, __global const float* from, __global const float* positions, __global const float* tags,
+    __global float* to, uint plane, uint alongY) {
+    const TileRun run = tileRun(frame, list);
+    const Field field = {frame, from, positions, tags, plane, alongY != 0};
+    for (uint i = run.begin; i < run.end; ++i) {
+        const uint2 origin = tileOrigin(frame, list, i);
+        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP * PEL_WIDTH) {
+            const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
+            if (x >= frame->width || y >= frame->height) continue;
+            const uint first = vectorStart(x, frame->width);
+            const uintw id = ownIds(frame, material, x, y, first);
+#define PEL_RADIUS_(k, s) (id s && !materials[id s].hasNormalMap ? materials[id s].diffusionRadius : 0.0f)
+            const floatw radius = PEL_LANES(PEL_RADIUS_);
+#undef PEL_RADIUS_
+            const maskw wanted = radius > 0.0f;
+            if (!anyw(wanted)) continue;
+            const size_t at = scratchIndex(frame, first, y);
+            const maskw valid = wanted & (loadw(at, tags) > 0.0f);
+            Vec3w n = blurAlong(&field, (int)first, (int)y, convert_floatw(id), radius, valid);
+            if (alongY) {
+                const floatw length2 = dot3(n, n);
+                const maskw vanished = valid & notw(length2 > 1e-12f);
+                n = scale3(n, 1.0f / sqrt(length2));
+                if (anyw(vanished)) n = select3(n, loadPlanesOf(to, plane, at, vanished), vanished);
+                const floatw none = NAN; // the shading pass makes it the invalid colour
+                n = select3(vec3(none, none, none), n, valid);
+            }
+            storePlanes(to, plane, at, n, wanted);
+        }
+    }
+}

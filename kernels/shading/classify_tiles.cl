@@ -1,0 +1,65 @@
+// Which tiles hold a pixel of a material, and which variant of the shading kernel they need: compact lists of their numbers
+// (docs/shading.md, "Tiles").
+//
+// Inputs: the material id image, PelShadeFrame.materialMask, PelShadeMaterial.variants. Output: lists of tiles (shared/shade.h),
+// in runs of PEL_CLASSIFY_RUN tiles that stay in order, since neighbours share cache lines and pages; list 0 is left out when
+// only those of the variants are wanted. One work-item: one run. Variants: PEL_FORMAT_MATERIAL; PEL_BIT_NO_SKIPPING lists
+// every tile.
+#include "lib/image/image.clh"
+#include "lib/shading/material_id.clh"
+#include "shared/shade.h"
+
+// Bits of the variants that have what all materials of the pixels of `left` need.
+static inline uint commonVariants(__global const PelShadeMaterial* materials, uintw id, maskw left) {
+    uint able = ~0u;
+    while (anyw(left)) {
+        const uint current = greatestId(id, left);
+        able &= materials[current].variants;
+        left &= id != current;
+    }
+    return able;
+}
+
+// 0: no pixel of a material; else 1 + the last variant that has what all its materials need (they get cheaper).
+static inline uint classOfTile(__global const PelShadeFrame* frame, __global const PelShadeMaterial* materials,
+                               __global uchar* material, uint tile, uint variants) {
+    const uint x0 = tile % frame->tilesX * PEL_TILE_WIDTH, y0 = tile / frame->tilesX * PEL_TILE_HEIGHT;
+    const uint x1 = min(x0 + PEL_TILE_WIDTH, frame->width), y1 = min(y0 + PEL_TILE_HEIGHT, frame->height);
+    uint found = PEL_FEATURES & PEL_BIT_NO_SKIPPING, able = (1u << variants) - 1u, known = ~0u;
+    for (uint y = y0; y < y1; ++y)
+        for (uint x = x0; x < x1; x += PEL_WIDTH) {
+            if (found && able == 1u) return 1u;
+            const uint first = vectorStart(x, frame->width);
+            const uintw id = loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[PEL_IMAGE_MATERIAL], first, y));
+            if (!anyw(id != known)) continue; // nearly always
+            const maskw has = hasMaterial(frame, id);
+            known = greatestId(id, (maskw)(-1)); // nothing more to learn from it; in mixed vectors of what follows, likewise
+            if (!anyw(has)) continue;
+            found = 1;
+            if (able != 1u) able &= commonVariants(materials, id, has);
+        }
+    return found ? 32u - clz(able) : 0u;
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_CLASSIFY_GROUP, 1, 1))) void classify_tiles(
+    __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials, __global uchar* material,
+    __global uint* lists, uint variants, uint listAll) {
+    const uint begin = get_global_id(0) * PEL_CLASSIFY_RUN;
+    if (begin >= frame->tiles) return;
+    const uint count = min((uint)PEL_CLASSIFY_RUN, frame->tiles - begin), start = frame->firstTile + begin;
+    uchar classes[PEL_CLASSIFY_RUN];
+    uint counts[PEL_TILE_LISTS] = {0};
+    for (uint i = 0; i < count; ++i) {
+        const uint class_ = classOfTile(frame, materials, material, start + i, variants);
+        classes[i] = (uchar)class_;
+        if (!class_) continue;
+        counts[0] += listAll;
+        if (variants > 1u) ++counts[class_];
+    }
+    for (uint list = 0; list < PEL_TILE_LISTS; ++list) {
+        if (!counts[list]) continue;
+        size_t to = PEL_TILE_LISTS + (size_t)list * frame->listTiles + atomic_add(&lists[list], counts[list]);
+        for (uint i = 0; i < count; ++i)
+            if (list ? classes[i] == list : classes[i] != 0) lists[to++] = start + i;
+    }
+}

@@ -1,0 +1,421 @@
+// The screen-space shading pass: section 6 of the mathematics for every pixel that has a material.
+//
+// Inputs: the images of PelImageSlot and of each light in the caller's layout (shared/shade.h), materials, lights, the
+// tables in one buffer, and the lists of tiles from classify_tiles.cl, of which it takes one. Output: radiance, linear RGB.
+// One work-group takes one tile after another from the list; one work-item PEL_WIDTH pixels of a row at a time.
+// Variants: PEL_FEATURES (shared/features.h) and the format of each image, PEL_FORMAT_<SLOT>, 0 where there is none;
+// all wide shadows have one format, and all shadow maps one and the same PEL_SHADOW_CONTENT. Unused buffers are NULL.
+#include "lib/shading/ambient_cube.clh"
+#include "lib/shading/cube_thickness.clh"
+#include "lib/shading/deep_scatter.clh"
+#include "lib/shading/direct.clh"
+#include "lib/shading/ggx.clh"
+#include "lib/image/image.clh"
+#include "lib/shading/light.clh"
+#include "lib/shading/material_id.clh"
+#include "lib/shading/position.clh"
+#include "lib/shading/shadow.clh"
+#include "lib/shading/specular.clh"
+#include "lib/shading/thickness.clh"
+#include "shared/shade.h"
+
+#define HAS(bit) ((PEL_FEATURES & (bit)) != 0)
+#define SKIPPING (!HAS(PEL_BIT_NO_SKIPPING))
+#define NEEDS_POSITION \
+    (HAS(PEL_BIT_THICKNESS_TAPS) || HAS(PEL_BIT_SPECULAR) || HAS(PEL_BIT_POSITIONAL))
+#define SPAN(buffer, slot) imageSpan(scene->buffer, &frame->images[PEL_IMAGE_##slot], x, y)
+
+// The arguments of the kernel, as functions pass them on.
+typedef struct Scene {
+    __global const PelShadeFrame* frame;
+    __global const PelShadeMaterial* materials;
+    __global const PelShadeLight* lights;
+    __global const float4* luts;
+    __global uchar *position, *depth, *normalGeometric, *normalShading, *normalBlurred, *curvature, *albedo;
+    __global uchar *occlusion, *thickness, *roughness, *specular;
+    __global uchar* lightImages[PEL_LIGHT_BUFFERS];
+    __global const float* cube; // nodes of lib/shading/ambient_cube.clh
+} Scene;
+
+typedef struct Outputs {
+    __global uchar *diffuse, *deepScatter, *specular, *thickness;
+} Outputs;
+
+typedef struct Pixels {
+    Vec3w position, toCamera;
+    Vec3w ng, n, nb;
+    NormalPair pair;
+    Vec3w albedo;
+    floatw curvature, occlusion, thickness, roughness, specular;
+    floatw turnCosine, turnSine; // of the disk of taps; PEL_BIT_ROTATE_TAPS only
+    maskw valid;                 // no input that every material reads is NaN or Inf
+    uintw spoiled;               // PEL_BIT_... whose inputs are
+} Pixels;
+
+// The parts that outputs beside radiance take (PEL_FORMAT_OUT_...); not computed where there is none.
+typedef struct Parts {
+    Vec3w diffuse, deepScatter; // to be multiplied by albedo
+    floatw thickness;
+    bool measured; // thickness is
+} Parts;
+
+typedef struct Counts {
+    uint of[PEL_COUNTERS];
+} Counts;
+
+static inline void count(Counts* counts, const int which, maskw mask) {
+    if (HAS(PEL_BIT_COUNT)) counts->of[which] += countw(mask);
+}
+
+#define READ_NB (PEL_BIT_DIRECT_SCATTER | PEL_BIT_AMBIENT | PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER)
+
+// Notes where an input of these features is no number. What ambient light and positional lights read, every material reads.
+static inline void spoil(Pixels* p, const uint features, maskw finite) {
+    if (HAS(features & (PEL_BIT_AMBIENT | PEL_BIT_POSITIONAL)))
+        p->valid &= finite;
+    else
+        p->spoiled |= selectw((uintw)(features), (uintw)(0), finite);
+}
+
+static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
+    __global const PelShadeFrame* frame = scene->frame;
+    Pixels p;
+    p.n = loadNormal(PEL_FORMAT_NORMAL_SHADING, SPAN(normalShading, NORMAL_SHADING));
+    p.valid = finite3(p.n);
+    p.spoiled = 0;
+    p.ng = p.n;
+    if (PEL_FORMAT_NORMAL_GEOMETRIC) {
+        p.ng = loadNormal(PEL_FORMAT_NORMAL_GEOMETRIC, SPAN(normalGeometric, NORMAL_GEOMETRIC));
+        spoil(&p, PEL_BIT_SHADOW_LUT | PEL_BIT_THICKNESS_TAPS | (PEL_FORMAT_NORMAL_BLURRED ? 0 : READ_NB), finite3(p.ng));
+    }
+    p.nb = p.ng;
+    if (PEL_FORMAT_NORMAL_BLURRED) {
+        p.nb = loadNormal(PEL_FORMAT_NORMAL_BLURRED, SPAN(normalBlurred, NORMAL_BLURRED));
+        spoil(&p, READ_NB, finite3(p.nb));
+    }
+    p.pair = normalPair(p.n, p.nb);
+    if (NEEDS_POSITION) {
+        if (PEL_FORMAT_POSITION)
+            p.position = loadColor(PEL_FORMAT_POSITION, SPAN(position, POSITION));
+        else
+            p.position = positionFromDepth(frame->inverseViewProjection, frame->width, frame->height, x, y,
+                                           loadScalar(PEL_FORMAT_DEPTH, SPAN(depth, DEPTH)));
+        spoil(&p, PEL_BIT_THICKNESS_TAPS | PEL_BIT_SPECULAR | PEL_BIT_POSITIONAL, finite3(p.position));
+        p.toCamera = normalize3(sub3(loadUniform3(frame->cameraPosition), p.position));
+    }
+    if (HAS(PEL_BIT_ROTATE_TAPS)) tapTurn(x, y, &p.turnCosine, &p.turnSine);
+    if (PEL_FORMAT_ALBEDO) {
+        p.albedo = loadColor(PEL_FORMAT_ALBEDO, SPAN(albedo, ALBEDO));
+        p.valid &= finite3(p.albedo);
+    }
+#define LOAD_SCALAR(features, slot, name)                         \
+    if (HAS(features) && PEL_FORMAT_##slot) {                     \
+        p.name = loadScalar(PEL_FORMAT_##slot, SPAN(name, slot)); \
+        spoil(&p, features, finitew(p.name));                     \
+    }
+    LOAD_SCALAR(PEL_BIT_DIRECT_SCATTER, CURVATURE, curvature)
+    LOAD_SCALAR(PEL_BIT_AMBIENT, AMBIENT_OCCLUSION, occlusion)
+    LOAD_SCALAR(PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER, THICKNESS, thickness)
+    LOAD_SCALAR(PEL_BIT_SPECULAR, ROUGHNESS, roughness)
+    LOAD_SCALAR(PEL_BIT_SPECULAR, SPECULAR, specular)
+#undef LOAD_SCALAR
+    return p;
+}
+
+// One light's wide shadow of the pixels; 1 where it has no image.
+static inline floatw loadWideShadow(const Scene* scene, __global const PelShadeLight* light, uint x, uint y) {
+    if (!HAS(PEL_BIT_SHADOW) || light->wideBuffer >= PEL_LIGHT_BUFFERS) return (floatw)(1.0f);
+    return loadScalar(PEL_FORMAT_WIDE_SHADOW,
+                      imageSpan(scene->lightImages[light->wideBuffer], &light->wide, x, y));
+}
+
+// Thickness along a light with cascades: the finest that holds the point with its taps; 0 outside of all.
+static inline floatw measureInCascades(const Scene* scene, __global const PelShadeMaterial* material,
+                                       __global const PelShadeLight* light, const Pixels* p, Vec3w inside, float cutoff,
+                                       maskw needed) {
+    floatw thickness = 0.0f;
+    maskw left = needed;
+    for (uint i = 0; i < light->cascades && anyw(left); ++i) {
+        __global const PelShadeCascade* cascade = &light->cascade[i];
+        const Vec3w uvz = shadowCoordinates(cascade->worldToShadow, inside);
+        const float radiusU = material->thicknessFilterRadius * cascade->tapScale[0];
+        const float radiusV = material->thicknessFilterRadius * cascade->tapScale[1];
+        const maskw held = left & mapHolds(uvz, radiusU, radiusV);
+        if (!anyw(held)) continue;
+        __global const uchar* map = firstTexel(scene->lightImages[cascade->mapBuffer], &cascade->map);
+        const floatw some = thicknessOfMap(PEL_FORMAT_SHADOW_MAP, map, &cascade->map, light, cascade->depthRange, uvz, radiusU,
+                                           radiusV, material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine,
+                                           p->turnSine, cutoff, held);
+        thickness = selectw(thickness, some, held);
+        left &= notw(held);
+    }
+    return thickness;
+}
+
+// Length that the light travelled inside before it came out of the pixels of `needed`.
+static inline floatw measureThickness(const Scene* scene, __global const PelShadeMaterial* material,
+                                      __global const PelShadeLight* light, const Pixels* p, maskw needed,
+                                      bool beyondCutoff) {
+    const Vec3w inside = sub3(p->position, scale3(p->ng, (floatw)(material->deepScatterNormalOffset)));
+    const float cutoff = beyondCutoff ? INFINITY : material->thicknessCutoff;
+    if (HAS(PEL_BIT_SHADOW_CUBE) && light->projection >= PEL_MAP_CUBE)
+        return cubeThickness(PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map), light,
+                             cubePosition(light->worldToShadow, inside), material->thicknessFilterRadius,
+                             material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine, p->turnSine, cutoff, needed);
+    if (HAS(PEL_BIT_SHADOW_CASCADES) && light->cascades)
+        return measureInCascades(scene, material, light, p, inside, cutoff, needed);
+    return thicknessTaps(PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map), light,
+                         shadowCoordinates(light->worldToShadow, inside), material->thicknessFilterRadius,
+                         material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine, p->turnSine, cutoff, needed);
+}
+
+// Ambient light at the three normals.
+static inline Vec3w ambientOfPixels(const Scene* scene, float3 blend, const Pixels* p) {
+    __global const PelShadeFrame* frame = scene->frame;
+    if (!HAS(PEL_BIT_AMBIENT_CUBE)) return ambientLight(frame->ambient, blend, p->n, p->nb);
+    const Vec3w e = cubeAmbientLight(scene->cube, frame->cubeSize, blend, p->n, p->nb);
+    return HAS(PEL_BIT_CUBE_ALONE) ? e : add3(e, ambientLight(frame->ambient, blend, p->n, p->nb));
+}
+
+// And on the far side, in all channels along one normal.
+static inline Vec3w ambientBehind(const Scene* scene, Vec3w behind) {
+    __global const PelShadeFrame* frame = scene->frame;
+    const Vec3w e = HAS(PEL_BIT_CUBE_ALONE) ? cubeIrradiance(scene->cube, frame->cubeSize, behind)
+                                            : vec3(irradiance(frame->ambient, 0, behind), irradiance(frame->ambient, 1, behind),
+                                                   irradiance(frame->ambient, 2, behind));
+    if (!HAS(PEL_BIT_AMBIENT_CUBE) || HAS(PEL_BIT_CUBE_ALONE)) return e;
+    return add3(e, cubeIrradiance(scene->cube, frame->cubeSize, behind));
+}
+
+// What one light adds to pixels of one material: diffuse and deep scatter are multiplied by albedo later.
+static inline void addLight(const Scene* scene, __global const PelShadeMaterial* material,
+                            __global const PelShadeLight* light, const Pixels* p, floatw w, maskw active,
+                            Vec3w* diffuse, Vec3w* specular, Parts* parts, Counts* counts) {
+    const LightSample sample = sampleLight(light, p->position);
+    const maskw reached = active & (sample.strength > 0.0f);
+    const bool wantsThickness = PEL_FORMAT_OUT_THICKNESS && !parts->measured;
+    if (SKIPPING && !(wantsThickness || anyw(reached))) return;
+    const Vec3w l = sample.direction;
+    const floatw nl = dot3(p->n, l), bl = dot3(p->nb, l);
+    const Vec3w color = scale3(loadUniform3(light->color), sample.strength);
+
+    Vec3w direct;
+    if (HAS(PEL_BIT_DIRECT_SCATTER) && material->curvature.layout.width) {
+        direct = directScatter(scene->luts, material->curvature, vload3(0, material->normalBlend), p->pair, nl, bl, p->curvature);
+    } else {
+        direct.x = direct.y = direct.z = satw(nl);
+    }
+    if (HAS(PEL_BIT_SHADOW)) {
+        if (HAS(PEL_BIT_SHADOW_LUT) && material->shadow.layout.width && light->wideBuffer < PEL_LIGHT_BUFFERS) {
+            // Where no light arrives the shadow does not matter.
+            const maskw lit = reached & ((direct.x > 0.0f) | (direct.y > 0.0f) | (direct.z > 0.0f));
+            const maskw penumbra = lit & inPenumbra(material->shadow, w);
+            const floatw gl = dot3(p->ng, l);
+            count(counts, PEL_COUNT_SHADOW_LUT, penumbra);
+            if (!SKIPPING || anyw(penumbra))
+                direct = mul3(direct, shadowScatter(scene->luts, material->shadow, material->penumbraPerCosine, w, gl));
+            else if (anyw(lit))
+                direct = mul3(direct, shadowOutside(scene->luts, material->shadow, material->penumbraPerCosine, w, gl));
+        } else {
+            direct = scale3(direct, satw(w));
+        }
+    }
+
+    Vec3w sum = direct;
+    if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = add3(parts->diffuse, mul3(direct, color));
+    if (HAS(PEL_BIT_DEEP_SCATTER)) {
+        const floatw back = backLight(bl);
+        const bool taps = !PEL_FORMAT_THICKNESS && HAS(PEL_BIT_THICKNESS_TAPS) && material->thicknessTaps &&
+                          light->mapBuffer < PEL_LIGHT_BUFFERS;
+        const bool colored = material->deepScatterColor[0] != 0.0f || material->deepScatterColor[1] != 0.0f ||
+                             material->deepScatterColor[2] != 0.0f;
+        if (colored && (taps || PEL_FORMAT_THICKNESS)) {
+            const maskw needed = !SKIPPING || wantsThickness ? (maskw)(-1) : reached & (back > 0.0f);
+            if (anyw(needed)) {
+                floatw thickness = p->thickness;
+                if (!PEL_FORMAT_THICKNESS)
+                    thickness = measureThickness(scene, material, light, p, needed, wantsThickness);
+                if (wantsThickness) {
+                    parts->thickness = thickness;
+                    parts->measured = true;
+                }
+                if (taps) count(counts, PEL_COUNT_THICKNESS, needed & active);
+                const floatw through =
+                    back * transmittance(thickness, material->deepScatterFalloff, material->thicknessCutoff);
+                const Vec3w deep = scale3(loadUniform3(material->deepScatterColor), through);
+                if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = add3(parts->deepScatter, mul3(deep, color));
+                sum = add3(sum, deep);
+            }
+        }
+    }
+    *diffuse = add3(*diffuse, mul3(sum, color));
+
+    if (HAS(PEL_BIT_SPECULAR) && material->specular != 0.0f) {
+        floatw shadow = 1.0f;
+        if (HAS(PEL_BIT_SHADOW)) shadow = sharpenedShadow(material->specularSharpening, w);
+        const maskw needed = reached & (nl > 0.0f) & (shadow > 0.0f);
+        count(counts, PEL_COUNT_SPECULAR, needed);
+        if (!SKIPPING || anyw(needed)) {
+            floatw intensity = material->specular;
+            floatw roughness = material->roughness;
+            if (PEL_FORMAT_SPECULAR) intensity *= p->specular;
+            if (PEL_FORMAT_ROUGHNESS) roughness *= p->roughness;
+            floatw s;
+            if (HAS(PEL_BIT_GGX) && material->specularModel) {
+                floatw roughness2 = material->roughness2;
+                if (PEL_FORMAT_ROUGHNESS) roughness2 *= p->roughness;
+                s = specularGgx(p->n, l, p->toCamera, nl, roughness, roughness2, material->lobeMix, material->f0);
+            } else {
+                s = specularKsk(p->n, l, p->toCamera, nl, roughness, material->f0);
+            }
+            s = shadow * intensity * s;
+            *specular = add3(*specular, scale3(color, s));
+        }
+    }
+}
+
+// Pixels of one material, `active`.
+static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMaterial* material, Pixels* p, uint x,
+                                  uint y, maskw active, Parts* parts, Vec3w* specularPart, Counts* counts) {
+    __global const PelShadeFrame* frame = scene->frame;
+    // A pixel is spoiled by what its own material reads alone, so that its neighbours' materials do not matter.
+    p->valid &= ((p->spoiled & material->needs) == 0) | notw(active);
+    Vec3w diffuse = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = diffuse;
+    parts->diffuse = parts->deepScatter = diffuse;
+    parts->thickness = 0.0f;
+    parts->measured = PEL_FORMAT_THICKNESS != 0;
+    if (PEL_FORMAT_THICKNESS && PEL_FORMAT_OUT_THICKNESS) parts->thickness = p->thickness;
+    if (HAS(PEL_BIT_AMBIENT)) {
+        diffuse = ambientOfPixels(scene, vload3(0, material->normalBlend), p);
+        if (PEL_FORMAT_AMBIENT_OCCLUSION) diffuse = scale3(diffuse, p->occlusion);
+        if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = diffuse;
+    }
+    if (HAS(PEL_BIT_AMBIENT_SCATTER) && (material->needs & PEL_BIT_AMBIENT_SCATTER)) {
+        const floatw through = material->deepScatterAmbient * transmittance(p->thickness, material->deepScatterFalloff,
+                                                                            material->thicknessCutoff);
+        if (!SKIPPING || anyw(active & (through > 0.0f))) {
+            const Vec3w e = ambientBehind(scene, scale3(p->nb, (floatw)(-1.0f)));
+            Vec3w deep = scale3(mul3(loadUniform3(material->deepScatterColor), e), through);
+            // A cube may hold NaN, which must not matter where nothing comes through.
+            if (HAS(PEL_BIT_AMBIENT_CUBE)) deep = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), deep, through > 0.0f);
+            diffuse = add3(diffuse, deep);
+            if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = deep;
+        }
+    }
+    for (uint i = 0; i < frame->lights; ++i) {
+        __global const PelShadeLight* light = &scene->lights[i];
+        const floatw w = loadWideShadow(scene, light, x, y);
+        p->valid &= finitew(w);
+        addLight(scene, material, light, p, w, active & p->valid, &diffuse, &specular, parts, counts);
+    }
+    const Vec3w albedo = PEL_FORMAT_ALBEDO ? p->albedo : loadUniform3(material->albedo);
+    if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = mul3(parts->diffuse, albedo);
+    if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = mul3(parts->deepScatter, albedo);
+    *specularPart = specular;
+    return add3(mul3(albedo, diffuse), specular);
+}
+
+// Writes one output beside radiance.
+static inline void storePart(const int format, __global uchar* buffer, __global const PelShadeImage* image, uint x, uint y,
+                             Vec3w part, Vec3w invalid, maskw valid, maskw active) {
+    if (format) storeColor(format, imageSpan(buffer, image, x, y), select3(invalid, part, valid & finite3(part)), active);
+}
+
+// PEL_WIDTH pixels from (x, y) on, of which those of `active` are wanted.
+static inline void shadePixels(const Scene* scene, __global uchar* radiance, const Outputs* out, uint x, uint y, uintw id,
+                               maskw active, Counts* counts) {
+    __global const PelShadeFrame* frame = scene->frame;
+    Pixels p = loadPixels(scene, x, y);
+    Vec3w result = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = result;
+    Parts parts = {result, result, (floatw)(0.0f), false};
+    if (PEL_FORMAT_MATERIAL) {
+        // Nearly always one round: neighbours share their material.
+        maskw left = active;
+        while (anyw(left)) {
+            const uint current = greatestId(id, left);
+            const maskw mask = left & (id == current);
+            Parts some;
+            Vec3w someSpecular;
+            const Vec3w color =
+                shadeMaterial(scene, &scene->materials[current], &p, x, y, mask, &some, &someSpecular, counts);
+            result = select3(result, color, mask);
+            if (PEL_FORMAT_OUT_DIFFUSE) parts.diffuse = select3(parts.diffuse, some.diffuse, mask);
+            if (PEL_FORMAT_OUT_DEEP_SCATTER) parts.deepScatter = select3(parts.deepScatter, some.deepScatter, mask);
+            if (PEL_FORMAT_OUT_SPECULAR) specular = select3(specular, someSpecular, mask);
+            if (PEL_FORMAT_OUT_THICKNESS) parts.thickness = selectw(parts.thickness, some.thickness, mask);
+            left &= notw(mask);
+        }
+    } else {
+        result = shadeMaterial(scene, &scene->materials[1], &p, x, y, active, &parts, &specular, counts);
+    }
+    const Span target = imageSpan(radiance, &frame->images[PEL_IMAGE_RADIANCE], x, y);
+    const maskw valid = p.valid & finite3(result);
+    count(counts, PEL_COUNT_SHADED, active);
+    count(counts, PEL_COUNT_INVALID, active & notw(valid));
+    const Vec3w invalid = loadUniform3(frame->invalidColor);
+    result = select3(invalid, result, valid);
+    if (HAS(PEL_BIT_ACCUMULATE)) {
+        result = add3(result, loadColorOf(PEL_FORMAT_RADIANCE, target, active));
+        result = select3(invalid, result, finite3(result)); // what stood there was no number
+    }
+    storeColor(PEL_FORMAT_RADIANCE, target, result, active);
+    storePart(PEL_FORMAT_OUT_DIFFUSE, out->diffuse, &frame->images[PEL_IMAGE_OUT_DIFFUSE], x, y, parts.diffuse, invalid,
+              valid, active);
+    storePart(PEL_FORMAT_OUT_DEEP_SCATTER, out->deepScatter, &frame->images[PEL_IMAGE_OUT_DEEP_SCATTER], x, y,
+              parts.deepScatter, invalid, valid, active);
+    storePart(PEL_FORMAT_OUT_SPECULAR, out->specular, &frame->images[PEL_IMAGE_OUT_SPECULAR], x, y, specular, invalid,
+              valid, active);
+    if (PEL_FORMAT_OUT_THICKNESS)
+        storeScalar(PEL_FORMAT_OUT_THICKNESS,
+                    imageSpan(out->thickness, &frame->images[PEL_IMAGE_OUT_THICKNESS], x, y),
+                    selectw((floatw)(0.0f), parts.thickness, valid & finitew(parts.thickness)), active);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade(
+    __global const PelShadeFrame* restrict frame, __global const PelShadeMaterial* restrict materials,
+    __global const PelShadeLight* restrict lights, __global const float4* restrict luts, __global const uint* restrict list,
+    __global uint* counters, __global uchar* radiance, __global uchar* material, __global uchar* position,
+    __global uchar* depth, __global uchar* normalGeometric, __global uchar* normalShading,
+    __global uchar* normalBlurred, __global uchar* curvature, __global uchar* albedo, __global uchar* occlusion,
+    __global uchar* thickness, __global uchar* roughness, __global uchar* specular, __global uchar* light0,
+    __global uchar* light1, __global uchar* light2, __global uchar* light3, __global uchar* light4,
+    __global uchar* light5, __global uchar* light6, __global uchar* light7, __global uchar* light8,
+    __global uchar* light9, __global uchar* light10, __global uchar* light11, __global uchar* light12,
+    __global uchar* light13, __global uchar* light14, __global uchar* light15,
+    __global uchar* outDiffuse, __global uchar* outDeepScatter, __global uchar* outSpecular, __global uchar* outThickness,
+    __global const float* cube, uint part, uint parts, uint which) {
+    const Scene scene = {frame, materials, lights, luts, position, depth, normalGeometric, normalShading,
+                         normalBlurred, curvature, albedo, occlusion, thickness, roughness, specular,
+                         {light0, light1, light2, light3, light4, light5, light6, light7, light8, light9,
+                          light10, light11, light12, light13, light14, light15}, cube};
+    const Outputs out = {outDiffuse, outDeepScatter, outSpecular, outThickness};
+    Counts counts = {{0}};
+    const bool listed = PEL_FORMAT_MATERIAL && which != PEL_EVERY_TILE;
+    const uint tiles = listed ? list[which] : frame->tiles;
+    const size_t listStart = PEL_TILE_LISTS + (size_t)which * frame->listTiles;
+    // Each group takes a run of the list: neighbours in it share pages, and often cache lines, of the images.
+    // Of long frames a launch takes one part of `parts`, so that the host may stop between them.
+    const uint groups = get_num_groups(0) * parts, group = get_num_groups(0) * part + get_group_id(0);
+    const uint end = (uint)((ulong)tiles * (group + 1) / groups);
+    for (uint i = (uint)((ulong)tiles * group / groups); i < end; ++i) {
+        const uint tile = listed ? list[listStart + i] : frame->firstTile + i;
+        const uint tileX = tile % frame->tilesX * PEL_TILE_WIDTH, tileY = tile / frame->tilesX * PEL_TILE_HEIGHT;
+        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_SHADE_GROUP * PEL_WIDTH) {
+            const uint x = tileX + pixel % PEL_TILE_WIDTH, y = tileY + pixel / PEL_TILE_WIDTH;
+            if (x >= frame->width || y >= frame->height) continue;
+            // At the right edge vectors begin earlier; the lanes before x belong to the tile or vector before.
+            const uint first = vectorStart(x, frame->width);
+            const intw column = lanesw() + (int)first;
+            maskw active = (column >= (int)x) & (column < (int)frame->width);
+            uintw id = 1;
+            if (PEL_FORMAT_MATERIAL) {
+                id = loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[PEL_IMAGE_MATERIAL], first, y));
+                active &= hasMaterial(frame, id);
+            }
+            if (anyw(active)) shadePixels(&scene, radiance, &out, first, y, id, active, &counts);
+        }
+    }
+    if (HAS(PEL_BIT_COUNT))
+        for (uint i = 0; i < PEL_COUNTERS; ++i)
+            if (counts.of[i]) atomic_add(&counters[i], counts.of[i]);
+}

@@ -1,0 +1,154 @@
+// The wide shadow image of one light from its shadow map (lib/shading/wide_filter.clh): how much of the light arrives at each pixel
+// of a material, filtered over the material's shadowFilterWidth.
+//
+// Inputs: positions or depth, geometric normals, ids, the shadow map. Output: R32F, 0 to 1; pixels that the light does not
+// reach get 1. Of a light with cascades the finest that holds a pixel's filter is read; of a cube, all faces under it
+// (lib/shading/cube_filter.clh). One work-group: a run of tiles; one work-item: PEL_WIDTH pixels, whose filters it runs one after another,
+// PEL_WIDTH texels at a time. PEL_NORMAL_SLOT: where the geometric normals are; PEL_SHADOW_CONTENT: what texels hold;
+// PEL_BOUNDS: the bounds of blocks of the maps are there, and filters that they decide read no texel.
+#include "lib/shading/cube_filter.clh"
+#include "lib/shading/light.clh"
+#include "lib/shading/shadow_bounds.clh"
+#include "lib/shading/tiles.clh"
+#include "lib/shading/wide_filter.clh"
+#include "shared/shade_passes.h"
+
+// Below this cosine to the light the tangent plane is followed no steeper: five times the sideways distance.
+#define PEL_FLATTEST_COSINE 0.2f
+// Smaller filters would see texels come and go.
+#define PEL_LEAST_TEXELS 2.0f
+
+// PEL_WIDTH filters, one field after another.
+typedef struct Filters {
+    float x[PEL_WIDTH], y[PEL_WIDTH], z[PEL_WIDTH], dzdx[PEL_WIDTH], dzdy[PEL_WIDTH];
+    float radiusX[PEL_WIDTH], radiusY[PEL_WIDTH], cone[PEL_WIDTH], scale[PEL_WIDTH], step[PEL_WIDTH];
+} Filters;
+
+// Returns the lanes whose filter can be run; the others are behind the light, or no numbers.
+static inline maskw makeFilters(__global const PelWideShadow* light, Vec3w p, Vec3w n, floatw width, Filters* f) {
+    __global const float* m = light->worldToShadow;
+    const floatw w = matrixRow(m, 3, p), inverse = 1.0f / w;
+    const floatw u = matrixRow(m, 0, p) * inverse, v = matrixRow(m, 1, p) * inverse, z = matrixRow(m, 2, p) * inverse;
+    // Towards the light, of length 1 along the map's axis.
+    Vec3w toLight = scale3(loadUniform3(light->forward), (floatw)(-1.0f));
+    floatw zPerLength = light->zPerLength, extentU = light->extent[0], extentV = light->extent[1];
+    if (light->projection == 1) {
+        toLight = sub3(toLight, scale3(loadUniform3(light->right), (u - light->centre[0]) * extentU));
+        toLight = sub3(toLight, scale3(loadUniform3(light->down), (v - light->centre[1]) * extentV));
+        const floatw distance = 1.0f / fma(z, (floatw)(light->depthA), (floatw)(light->depthB));
+        zPerLength = -1.0f / (light->depthA * distance * distance);
+        extentU *= distance;
+        extentV *= distance;
+    }
+    const floatw texelU = extentU / (float)light->map.width, texelV = extentV / (float)light->map.height;
+    const floatw cosine = dot3(n, toLight), tilt = 1.0f / fmax(cosine, (floatw)(PEL_FLATTEST_COSINE));
+    // A point that faces away is behind its own body: up to two filter widths of that are not its shadow; the curvature
+    // table darkens it.
+    const floatw body = 2.0f * width * max0w(-cosine);
+    const floatw dzdx = dot3(n, loadUniform3(light->right)) * tilt * texelU * zPerLength;
+    const floatw dzdy = dot3(n, loadUniform3(light->down)) * tilt * texelV * zPerLength;
+    const floatw radiusX = fmax(0.5f * width / texelU, (floatw)(PEL_LEAST_TEXELS));
+    const floatw radiusY = fmax(0.5f * width / texelV, (floatw)(PEL_LEAST_TEXELS));
+    const floatw x = fma(u, (floatw)((float)light->map.width), (floatw)(-0.5f));
+    const floatw y = fma(v, (floatw)((float)light->map.height), (floatw)(-0.5f));
+    const floatw step = fmax(ceil(2.0f * fmax(radiusX, radiusY) / light->maxTexels), (floatw)(1.0f));
+    storew(x, 0, f->x);
+    storew(y, 0, f->y);
+    storew(z - (light->bias + body) * zPerLength, 0, f->z);
+    storew(dzdx, 0, f->dzdx);
+    storew(dzdy, 0, f->dzdy);
+    storew(radiusX, 0, f->radiusX);
+    storew(radiusY, 0, f->radiusY);
+    storew(light->coneSlope * tilt * 0.5f * width * zPerLength, 0, f->cone);
+#if PEL_SHADOW_CONTENT == PEL_CONTENT_MOMENTS
+    storew(1.0f / (floatw)(zPerLength), 0, f->scale);
+#elif PEL_SHADOW_CONTENT == PEL_CONTENT_EXPONENTIAL
+    storew((floatw)(light->exponent), 0, f->scale);
+#else
+    storew(1.0f / (light->softness * width * zPerLength), 0, f->scale);
+#endif
+    storew(step, 0, f->step);
+    maskw held = -1;
+    if ((PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) && light->cascades)
+        held = mapHolds(vec3(u, v, z), 0.5f * width / extentU, 0.5f * width / extentV);
+    // Far outside of the map, where integers would overflow, everything is lit.
+    return held & (w > 0.0f) & finite3(p) & finite3(n) & (fabs(x) < 1e6f) & (fabs(y) < 1e6f) & (radiusX < 1e6f) & (radiusY < 1e6f) &
+           finitew(dzdx) & finitew(dzdy) & finitew(zPerLength);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_shadow(
+    __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials, __global const PelShadeLight* lights,
+    __global const uint* list, __global uint* counters, __global uchar* material, __global uchar* normal,
+    __global uchar* position, __global uchar* depth, __global const PelWideShadow* wideShadow, uint lightIndex,
+    __global uchar* map0, __global uchar* map1, __global uchar* map2, __global uchar* map3,
+    __global const float* bounds, __global uchar* out) {
+    const TileRun run = tileRun(frame, list);
+    const WideContent content = {wideShadow->perExponent, wideShadow->minDeviation * wideShadow->minDeviation,
+                                 wideShadow->bleeding};
+    const uint maps = (PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) ? max(wideShadow->cascades, 1u) : 1;
+    uint filtered = 0, texels = 0; // pixels whose shadow was filtered, and whose filter read the map
+    for (uint i = run.begin; i < run.end; ++i) {
+        const uint2 origin = tileOrigin(frame, list, i);
+        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP * PEL_WIDTH) {
+            const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
+            if (x >= frame->width || y >= frame->height) continue;
+            const uint first = vectorStart(x, frame->width);
+            const intw column = lanesw() + (int)first;
+            const uintw id = loadIds(frame, material, first, y);
+            const maskw active = (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id);
+            if (!anyw(active)) continue;
+            const Vec3w p = loadPosition(frame, position, depth, first, y);
+            const Vec3w n = loadNormal(PEL_FORMAT_NORMAL, imageSpan(normal, &frame->images[PEL_NORMAL_SLOT], first, y));
+            // Ids without a material may lie beyond the table.
+#define PEL_WIDTH_(k, s) (active s ? materials[id s].shadowFilterWidth : 1.0f)
+            const floatw width = PEL_LANES(PEL_WIDTH_);
+#undef PEL_WIDTH_
+            maskw left = active;
+            if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING)) left &= sampleLight(&lights[lightIndex], p).strength > 0.0f;
+            float shown[PEL_WIDTH];
+            storew((floatw)(1.0f), 0, shown);
+            if ((PEL_FEATURES & PEL_BIT_SHADOW_CUBE) && wideShadow->projection >= PEL_MAP_CUBE) {
+                CubeFilters f;
+                __global const uchar* map = firstTexel(map0, &wideShadow->map);
+                __global const float* m = wideShadow->worldToShadow;
+                left &= makeCubeFilters(wideShadow, cubePosition(m, p), cubeTurned(m, n), width, PEL_FLATTEST_COSINE, &f);
+                if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(left), texels += countw(left);
+#define PEL_FILTER_(k, s) \
+    if (left s) shown[k] = wideShadowInCube(PEL_FORMAT_SHADOW_MAP, map, wideShadow, &f, k, &content);
+                PEL_EACH_LANE(PEL_FILTER_)
+#undef PEL_FILTER_
+            } else {
+                for (uint cascade = 0; cascade < maps && anyw(left); ++cascade) {
+                    Filters f;
+                    __global const PelWideShadow* light = wideShadow + cascade;
+                    __global const uchar* map = cascade == 0 ? map0 : cascade == 1 ? map1 : cascade == 2 ? map2 : map3;
+                    const maskw held = makeFilters(light, p, n, width, &f) & left;
+                    if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(held);
+                    left &= notw(held);
+                    const bool bounded = PEL_BOUNDS && boundsPay(frame, list, &light->map);
+#define PEL_FILTER_(k, s)                                                                                        \
+    if (held s) {                                                                                                \
+        const WideFilter one = {f.x[k], f.y[k], f.z[k], f.dzdx[k], f.dzdy[k], f.radiusX[k], f.radiusY[k],        \
+                                f.cone[k], f.scale[k], (int)f.step[k]};                                          \
+        shown[k] = bounded ? uniformShadow(bounds + light->bounds, &light->map, &one) : -1.0f;                   \
+        if (shown[k] < 0.0f) {                                                                                   \
+            ++texels;                                                                                            \
+            shown[k] = wideShadowOfPixel(PEL_FORMAT_SHADOW_MAP, map, &light->map, &one, &content);               \
+        }                                                                                                        \
+    }
+                    PEL_EACH_LANE(PEL_FILTER_)
+#undef PEL_FILTER_
+                }
+            }
+            const Span target = imageSpan(out, &wideShadow->out, first, y);
+#define PEL_STORE_(k, s) \
+    if (active s) *(__global float*)(target.first + (k) * target.stride) = shown[k];
+            PEL_EACH_LANE(PEL_STORE_)
+#undef PEL_STORE_
+        }
+    }
+    if ((PEL_FEATURES & PEL_BIT_COUNT) && filtered) {
+        atomic_add(&counters[PEL_COUNT_WIDE_SHADOW], filtered);
+        if (texels) atomic_add(&counters[PEL_COUNT_SHADOW_TEXELS], texels);
+    }
+}

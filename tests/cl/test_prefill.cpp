@@ -1,0 +1,190 @@
+// Programs built ahead of their first use: nothing is left to build, nothing of the caller's is touched, and it can be stopped.
+//
+// This program's own clBuildProgram comes before libOpenCL's, so that it can count.
+#include <CL/cl.h>
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "shading/pass_scene.h"
+
+using namespace shade_test;
+using pellucid::Buffer;
+using pellucid::Device;
+using pellucid::imageDesc;
+using pellucid::Shader;
+
+namespace {
+std::atomic<int> builds{0};
+}
+
+extern "C" {
+#pragma GCC visibility push(default)
+cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
+                      void (*notify)(cl_program, void*), void* user) {
+    ++builds;
+    return reinterpret_cast<decltype(clBuildProgram)*>(dlsym(RTLD_NEXT, "clBuildProgram"))(program, count, devices, options,
+                                                                                        notify, user);
+}
+#pragma GCC visibility pop
+}
+
+namespace {
+
+PelPrefill workOf(const std::vector<PelShader>& shaders, uint32_t groups = 0) {
+    PelPrefill work = pelPrefillDefaults();
+    work.groups = groups;
+    work.shaders = shaders.data();
+    work.numShaders = uint32_t(shaders.size());
+    return work;
+}
+
+struct Scene {
+    Frame frame;
+    Shader shader;
+    Buffer target;
+
+    Scene(const Device& device, const Tables& tables, uint32_t width, uint32_t height) {
+        frame = reliefFrame(1, width, height, 0.4f);
+        frame.lights.push_back(mapLight(1, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61).light);
+        frame.options.blurNormals = 1;
+        frame.options.tileLists = PEL_TILES_PER_VARIANT;
+        frame.curvatureLut = frame.shadowLut = true;
+        frame.slots[PEL_SLOT_CURVATURE] = frame.slots[PEL_SLOT_MATERIAL];
+        shader = Shader(device);
+        setFrame(device, shader, frame, tables);
+        target = Buffer(device, std::vector<float>(frame.pixels() * 3, -3));
+        shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, width, height));
+    }
+};
+
+struct Telling {
+    std::vector<double> fractions;
+    std::thread::id thread = std::this_thread::get_id();
+    size_t stopAt = 0;
+    static int tell(void* user, double fraction, const char* what) {
+        auto& t = *static_cast<Telling*>(user);
+        EXPECT_EQ(std::this_thread::get_id(), t.thread) << "on the calling thread";
+        EXPECT_STREQ(what, "building programs");
+        t.fractions.push_back(fraction);
+        return t.fractions.size() != t.stopAt;
+    }
+};
+
+TEST(Prefill, ACommitAndAnExecutionFindEverythingBuilt) {
+    const Device own("");
+    const Tables tables = makeTables(own, 32, 32);
+    // 16 x 2 pixels stand for a frame of the same formats.
+    Scene small(own, tables, 16, 2), large(own, tables, 150, 40);
+    // Another variant for some tiles.
+    for (Scene* scene : {&small, &large}) scene->shader.setMaterial(2, scene->frame.materials.at(2));
+    Telling telling;
+    pellucid::check(pelDeviceSetProgress(own.get(), Telling::tell, &telling));
+    builds = 0;
+    const std::vector<PelShader> shaders{small.shader.get()};
+    const PelPrefill work = workOf(shaders);
+    uint32_t built = 0;
+    pellucid::check(pelPrefillPrograms(own.get(), &work, &built));
+    EXPECT_EQ(built, 4u) << "two variants, blur, wide shadow";
+    EXPECT_EQ(int(built), builds.load());
+    ASSERT_GE(telling.fractions.size(), 2u);
+    EXPECT_EQ(telling.fractions.front(), 0);
+    EXPECT_EQ(telling.fractions.back(), 1);
+    EXPECT_TRUE(std::is_sorted(telling.fractions.begin(), telling.fractions.end()));
+    for (float v : small.target.readAll<float>()) ASSERT_EQ(v, -3) << "nothing is shaded";
+    EXPECT_THROW(small.shader.execute(), pellucid::Error) << "it is no commit";
+
+    pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));
+    builds = 0;
+    large.shader.commit().execute();
+    small.shader.commit().execute();
+    EXPECT_EQ(builds.load(), 0);
+    EXPECT_EQ(large.shader.stats().programsBuilt, 0u);
+    const auto shaded = large.target.readAll<float>();
+    EXPECT_GT(*std::max_element(shaded.begin(), shaded.end()), 0.01f);
+    pellucid::check(pelPrefillPrograms(own.get(), &work, &built));
+    EXPECT_EQ(built, 0u) << "all is there";
+}
+
+TEST(Prefill, TablesAndCurvatureFindEverythingBuilt) {
+    const Device own("");
+    Telling telling;
+    pellucid::check(pelDeviceSetProgress(own.get(), Telling::tell, &telling));
+    const uint32_t built = pellucid::prefillPrograms(own, PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABLE_LUTS | PEL_PROGRAMS_CURVATURE);
+    EXPECT_GE(built, 10u);
+    EXPECT_TRUE(std::is_sorted(telling.fractions.begin(), telling.fractions.end()));
+    pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));
+    builds = 0;
+    for (const PelCurvatureForm form : {PEL_FORM_ARC, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_SPHERE}) {
+        PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+        desc.form = form;
+        desc.width = 40, desc.height = 24;
+        pellucid::Lut(own, desc).read<uint8_t>(PEL_LUT_FACEWORKS8);
+    }
+    const float distances[2] = {0, 4}, values[6] = {1, 0.7f, 0.5f, 0, 0, 0};
+    PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+    PelProfile table = nullptr;
+    pellucid::check(pelProfileCreateTable(distances, values, 2, &table));
+    shadow.width = 40;
+    pellucid::Lut(own, shadow).read<float>(PEL_LUT_FLOAT);
+    shadow.profile = table;
+    pellucid::Lut(own, shadow).read<uint16_t>(PEL_LUT_HALF);
+    pelProfileRelease(table);
+    const float positions[12] = {1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1};
+    const uint32_t indices[12] = {0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
+    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
+    desc.numVertices = 4;
+    desc.indices = indices;
+    desc.numIndices = 12;
+    const pellucid::MeshTopology mesh(own, desc);
+    const Buffer where(own, sizeof positions, positions), out(own, 16);
+    for (const PelCurvatureEstimator e : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
+        PelCurvatureParams params = pelCurvatureParamsDefaults();
+        params.estimator = e;
+        mesh.curvature(params, pellucid::vertexView(where, 4), pellucid::vertexView(where, 4), pellucid::vertexView(out, 4));
+    }
+    EXPECT_EQ(builds.load(), 0);
+}
+
+TEST(Prefill, CanBeStoppedAndGoneOnWith) {
+    const Device own("");
+    Telling telling;
+    telling.stopAt = 3;
+    pellucid::check(pelDeviceSetProgress(own.get(), Telling::tell, &telling));
+    PelPrefill work = workOf({}, PEL_PROGRAMS_LUTS);
+    work.threads = 2;
+    uint32_t built = 77;
+    EXPECT_EQ(pelPrefillPrograms(own.get(), &work, &built), PEL_ERROR_CANCELLED);
+    EXPECT_EQ(built, 77u) << "no output is written on an error";
+    pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));
+    pellucid::check(pelPrefillPrograms(own.get(), &work, &built));
+    EXPECT_LT(built, 7u) << "what was built before the stop is kept: all of it, where builders were faster than the one who tells";
+}
+
+TEST(Prefill, SaysWhatIsWrong) {
+    const Device own(""), other("");
+    Shader empty(own), foreign(other);
+    PelPrefill work = workOf({}, 64);
+    EXPECT_EQ(pelPrefillPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(std::string(pelGetErrorMessage()).find("PelProgramGroup"), std::string::npos);
+    work = workOf({});
+    work.numShaders = 1;
+    work.shaders = nullptr;
+    EXPECT_EQ(pelPrefillPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    const PelShader foreignHandle = foreign.get(), emptyHandle = empty.get();
+    work.shaders = &foreignHandle;
+    EXPECT_EQ(pelPrefillPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(std::string(pelGetErrorMessage()).find("another PelDevice"), std::string::npos);
+    work.shaders = &emptyHandle;
+    EXPECT_EQ(pelPrefillPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_NE(std::string(pelGetErrorMessage()).find("radiance image is needed"), std::string::npos);
+    work = workOf({});
+    uint32_t built = 9;
+    EXPECT_EQ(pelPrefillPrograms(own.get(), &work, &built), PEL_SUCCESS);
+    EXPECT_EQ(built, 0u);
+    EXPECT_EQ(pelPrefillPrograms(own.get(), nullptr, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+}
+
+}  // namespace

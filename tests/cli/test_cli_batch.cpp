@@ -1,0 +1,301 @@
+// pellucid batch, profile and the forms of lut through the command line.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "cli_run.h"
+#include "io/lut/batch_entry.h"
+#include "io/image/image_file.h"
+#include "io/lut/lut_file.h"
+#include "io/xx_hash.h"
+
+namespace fs = std::filesystem;
+
+class BatchCommand : public CommandTest {
+  protected:
+    std::string manifest(const std::string& text) const {
+        std::ofstream(path("m.toml")) << text;
+        return path("m.toml");
+    }
+    std::vector<fs::path> files() const {
+        std::vector<fs::path> all;
+        for (const auto& entry : fs::directory_iterator(path("out"))) all.push_back(entry.path());
+        std::sort(all.begin(), all.end());
+        return all;
+    }
+};
+
+namespace {
+
+const char* const grid = R"(
+[[grid]]
+kind = "curvature"
+profile = ["skin", "marble"]
+form = ["arc", "sphere"]
+axis = "root"
+size = [8, 16]
+[[lut]]
+kind = "shadow"
+size = 12
+encoding = "float"
+[[lut]]
+kind = "specular"
+size = 9
+[[lut]]
+kind = "shadow"
+size = 12
+encoding = "float"
+)";
+
+}  // namespace
+
+TEST_F(BatchCommand, MakesKeepsAndRepairs) {
+    const std::string m = manifest(grid);
+    auto first = run({"batch", m, "-o", path("out"), "--json"});
+    ASSERT_EQ(first.exitCode, 0) << first.err;
+    expectReport(first.json());
+    EXPECT_EQ(first.json()["entries"], 10);
+    EXPECT_EQ(first.json()["made"], 10);
+    EXPECT_EQ(first.json()["duplicates"], 1);
+    ASSERT_EQ(files().size(), 10u);
+
+    // Nothing to do; then one file cut short, one with a changed byte, one missing.
+    EXPECT_EQ(run({"batch", m, "-o", path("out"), "--json"}).json()["kept"], 10);
+    const auto all = files();
+    std::vector<std::string> before;
+    for (const auto& file : all) before.push_back(read(file.string()));
+    fs::resize_file(all[0], fs::file_size(all[0]) / 2);
+    {
+        std::fstream file(all[1], std::ios::in | std::ios::out | std::ios::binary);
+        file.seekp(-9, std::ios::end);
+        file.put(char(before[1][before[1].size() - 9] ^ 0x55));
+    }
+    fs::remove(all[2]);
+    const auto repaired = run({"batch", m, "-o", path("out"), "--json"}).json();
+    EXPECT_EQ(repaired["made"], 3);
+    EXPECT_EQ(repaired["redone"], 2);
+    EXPECT_EQ(repaired["kept"], 7);
+    EXPECT_EQ(files(), all);
+    for (size_t i = 0; i < all.size(); ++i)
+        EXPECT_EQ(pellucid::io::readLut(pellucid::Device(""), all[i].string()).info().structSize,
+                  sizeof(PelLutInfo));
+}
+
+TEST_F(BatchCommand, ReportsWrongEntriesAndGoesOn) {
+    const std::string m = manifest(
+        "[[lut]]\nsize = 8\n\n[[lut]]\nsize = -3\n\n[[lut]]\nprofile = \"granite\"\n\n[[lut]]\nsize = "
+        "9\ncolour = 1\n");
+    const auto result = run({"batch", m, "-o", path("out"), "--json"});
+    EXPECT_EQ(result.exitCode, 3);
+    EXPECT_EQ(result.json()["made"], 1);
+    EXPECT_EQ(result.json()["failed"], 3);
+    for (const char* text : {"m.toml:5", "m.toml:8", "granite", "m.toml:12", "colour"})
+        EXPECT_NE(result.err.find(text), std::string::npos) << text << "\n" << result.err;
+}
+
+TEST_F(BatchCommand, RefusesWhatIsNoManifest) {
+    const std::string m = manifest("[[lut]\n");
+    EXPECT_EQ(run({"batch", m, "-o", path("out")}).exitCode, 3);
+    EXPECT_EQ(run({"batch", path("none.toml"), "-o", path("out")}).exitCode, 3);
+    EXPECT_EQ(run({"batch", manifest("x = 1\n"), "-o", path("out")}).exitCode, 3);
+    EXPECT_EQ(run({"batch", manifest("[[lut]]\n"), "-o", "/dev/null/folder"}).exitCode, 3);
+    EXPECT_EQ(run({"batch", manifest("[[lut]]\n")}).exitCode, 2);
+}
+
+// What the device refuses shows only when the table is made.
+TEST_F(BatchCommand, AnEntryThatCannotBeMadeIsReportedWithItsLine) {
+    const std::string m = manifest("[[lut]]\nsize = 8\n\n[[lut]]\nsize = 16384\n[[lut]]\nsize = 9\n");
+    const auto result = run({"batch", m, "-o", path("out"), "--json"},
+                            "POCL_MEMORY_LIMIT=1");  // GiB: too little for the large one
+    EXPECT_EQ(result.exitCode, 3);
+    EXPECT_EQ(result.json()["made"], 2);
+    EXPECT_EQ(result.json()["failed"], 1);
+    EXPECT_TRUE(contains(result.err, "m.toml:4: "));
+    EXPECT_TRUE(contains(result.json()["warnings"][0].get<std::string>(), "m.toml:4: "));
+}
+
+TEST_F(BatchCommand, AChangedAttributeIsNoticed) {
+    const std::string m = manifest("[[lut]]\nsize = 8\n");
+    ASSERT_EQ(run({"batch", m, "-o", path("out")}).exitCode, 0);
+    const std::string file = files().at(0).string();
+    std::string bytes = read(file);
+    const size_t at = bytes.find("linear", bytes.find("pellucid:axis"));
+    ASSERT_NE(at, std::string::npos);
+    const std::string good = bytes;
+    bytes[at] ^= 1;
+    std::ofstream(file, std::ios::binary) << bytes;
+    EXPECT_EQ(run({"batch", m, "-o", path("out"), "--json"}).json()["redone"], 1);
+    EXPECT_EQ(read(file), good);
+    std::ofstream(file, std::ios::binary) << good << '\0';
+    EXPECT_EQ(run({"batch", m, "-o", path("out"), "--json"}).json()["redone"], 1) << "longer than it was";
+}
+
+// Kills at moments that a seed chooses; what had its name then is whole and is kept.
+TEST_F(BatchCommand, KilledAtAnyMomentLosesWhatWasInFlight) {
+    std::string radii;
+    for (int i = 0; i < 300; ++i) radii += (i ? ", " : "") + std::to_string(1 + 0.01 * i);
+    const std::string m = manifest("[[grid]]\nsize = [24, 40]\ndiffusion_radius = [" + radii + "]\n");
+    fs::create_directories(path("out"));
+    const auto named = [&](bool hidden) {
+        size_t count = 0;
+        for (const fs::path& file : files()) count += (file.filename().string()[0] == '.') == hidden;
+        return count;
+    };
+    constexpr unsigned jobs = 6;
+    unsigned random = 1;
+    size_t kills = 0;
+    for (int round = 0; round < 5 && named(false) < 600; ++round) {
+        random = random * 1664525 + 1013904223;  // [Numerical Recipes]
+        const std::string line = "timeout -s KILL " + std::to_string(0.15 + (random >> 16) / 65536.0 * 0.35) +
+                                 " '" + PELLUCID_COMMAND + "' batch '" + m + "' -j " + std::to_string(jobs) +
+                                 " -o '" + path("out") + "' >/dev/null 2>&1";
+        const size_t before = named(false), left = named(true);
+        const int status = std::system(line.c_str());
+        kills += WIFSIGNALED(status) || WEXITSTATUS(status) == 137;
+        EXPECT_GE(named(false), before);
+        EXPECT_LE(named(true), left + jobs) << "more than was in flight";
+    }
+    EXPECT_GE(kills, 1u);
+    const size_t whole = named(false);
+    for (const fs::path& file : files())  // as if the kill had been a while ago
+        fs::last_write_time(file, fs::last_write_time(file) - std::chrono::minutes(5));
+    const auto result = run({"batch", m, "-o", path("out"), "--json"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(result.json()["kept"], whole);
+    EXPECT_EQ(result.json()["redone"], 0) << "a file that had its name was broken";
+    EXPECT_EQ(result.json()["made"], 600 - whole);
+    // The last one killed may still have been waiting for its disk.
+    for (int i = 0; i < 50 && named(true) > 0; ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        EXPECT_EQ(run({"batch", m, "-o", path("out"), "--json"}).json()["kept"], 600);
+    }
+    EXPECT_EQ(named(true), 0u) << "what the killed left behind is removed";
+}
+
+TEST_F(BatchCommand, SeveralDevicesShareAManifest) {
+    const std::string m = manifest(
+        "[[grid]]\nsize = [8, 12, 16, 20, 24, 28]\nform = [\"arc\", \"ring\"]\n"
+        "axis = [\"linear\", \"root\"]\n");
+    ASSERT_EQ(run({"batch", m, "-o", path("one")}).exitCode, 0);
+    const auto result =
+        run({"batch", m, "-o", path("out"), "--device", "", "--device", "", "-j", "4", "--json"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const auto devices = result.json()["devices"];
+    ASSERT_EQ(devices.size(), 2u);
+    EXPECT_EQ(devices[0]["made"].get<int>() + devices[1]["made"].get<int>(), 24);
+    EXPECT_GT(devices[0]["made"], 0);
+    EXPECT_GT(devices[1]["made"], 0);
+    for (const fs::path& file : files())
+        EXPECT_EQ(read(file.string()), read(path("one/" + file.filename().string()))) << "the same bytes";
+    EXPECT_EQ(run({"batch", m, "-o", path("out"), "--device", "abacus"}).exitCode, 4);
+}
+
+TEST_F(BatchCommand, AFullDiskIsAClearError) {
+    const std::string m = manifest("[[grid]]\nsize = [40, 44, 48, 52, 56, 60, 64, 68]\n");
+    fs::create_directories(path("out"));
+    // No file may become longer than 4 MiB (a shell's unit is 512 bytes): the device's compiler needs some.
+    write("large.toml", "[[lut]]\nsize = 1200\n");
+    const auto limited = run({"batch", path("large.toml"), "-o", path("out")}, "ulimit -f 8192;");
+    EXPECT_EQ(limited.exitCode, 3);
+    EXPECT_TRUE(contains(limited.err, "cannot be written: File too large"));
+    for (const fs::path& file : files()) EXPECT_NE(file.filename().string()[0], '.') << "no leftovers";
+
+    if (std::system("unshare -rm true 2>/dev/null") != 0)
+        GTEST_SKIP() << "no right to mount a small file system of one's own";
+    const std::string full = "unshare -rm sh -c 'mount -t tmpfs -o size=64k none \"" + path("out") +
+                             "\" && { \"$0\" \"$@\"; echo $? >\"" + path("code") + "\"; ls -A \"" +
+                             path("out") + "\" >\"" + path("left") + "\"; }'";
+    const auto result = run({"batch", m, "-o", path("out"), "--json"}, full);
+    EXPECT_EQ(read(path("code")), "3\n") << result.err;
+    EXPECT_TRUE(contains(result.err, "cannot be written: No space left on device"));
+    const std::string left = read(path("left"));
+    EXPECT_EQ(left.find(".curvature"), std::string::npos) << "no leftovers";
+    EXPECT_EQ(result.json()["made"].get<long>(), std::count(left.begin(), left.end(), '\n'));
+    EXPECT_EQ(run({"batch", m, "-o", path("out")}).exitCode, 0) << "with room it goes on";
+}
+
+TEST_F(BatchCommand, ProgressIsABarOnATerminalAndLinesElsewhere) {
+    std::string radii;
+    for (int i = 0; i < 4000; ++i) radii += (i ? ", " : "") + std::to_string(1 + 0.001 * i);
+    const std::string m = manifest("[[grid]]\nsize = 16\ndiffusion_radius = [" + radii + "]\n");
+    const auto plain = run({"batch", m, "-o", path("out")});
+    EXPECT_TRUE(contains(plain.err, "4000 of 4000, "));
+    EXPECT_TRUE(contains(plain.err, " per second"));
+    EXPECT_EQ(plain.err.find('\r'), std::string::npos);
+    EXPECT_TRUE(contains(plain.out, "4000 tables: 4000 made"));
+    fs::remove_all(path("out"));
+    if (std::system("script --version >/dev/null 2>&1") != 0)
+        GTEST_SKIP() << "script (bsdutils) is not installed";
+    const std::string line = "script -qec \"'" + std::string(PELLUCID_COMMAND) + "' batch '" + m + "' -o '" +
+                             path("out") + "'\" /dev/null >'" + path("terminal") + "' 2>&1 </dev/null";
+    ASSERT_EQ(std::system(line.c_str()), 0);
+    const std::string shown = read(path("terminal"));
+    for (const char* part : {"\r", "[#", "/4000, ", "/s", " s left", "4000 tables: 4000 made"})
+        EXPECT_TRUE(contains(shown, part));
+}
+
+TEST_F(BatchCommand, ProfilesAreListedShownDrawnAndFitted) {
+    EXPECT_GE(run({"profile", "list", "--json"}).json()["profiles"].size(), 9u);
+    EXPECT_EQ(run({"profile", "show", "marble", "--json"}).json()["kind"], "dipole");
+    EXPECT_EQ(run({"profile", "plot", "jade", "-o", path("jade.png")}).exitCode, 0);
+    EXPECT_GT(fs::file_size(path("jade.png")), 1000u);
+    ASSERT_EQ(run({"profile", "fit", "marble", "--gaussians", "3", "-o", path("fit.toml")}).exitCode, 0);
+    EXPECT_EQ(run({"profile", "show", path("fit.toml"), "--json"}).json()["gaussians"], 3);
+    expectRefused({"profile", "show", "granite"}, 3, "granite");
+    expectRefused({"profile", "plot", "jade", "-o", path("jade.gif")}, 3, ".png");
+    expectRefused({"profile", "fit", "marble", "--gaussians", "0"}, 2, "--gaussians");
+}
+
+TEST_F(BatchCommand, LutFilesCarryWhatTheyAre) {
+    ASSERT_EQ(run({"lut", "curvature", "-o", path("a.exr"), "--size", "8x6", "--form", "sphere", "--axis",
+                   "root", "--profile", "ketchup"})
+                  .exitCode,
+              0);
+    const PelLutInfo info = pellucid::io::readLut(pellucid::Device(""), path("a.exr")).info();
+    EXPECT_EQ(info.curvature.form, PEL_FORM_SPHERE);
+    EXPECT_EQ(info.curvature.axis, PEL_AXIS_ROOT);
+    EXPECT_STREQ(info.profile, "ketchup");
+    ASSERT_EQ(run({"lut", "specular", "-o", path("s.exr"), "--size", "8x6"}).exitCode, 0);
+    EXPECT_EQ(pellucid::io::readLut(pellucid::Device(""), path("s.exr")).info().kind, PEL_LUT_SPECULAR);
+    ASSERT_EQ(run({"lut", "shadow", "-o", path("s.tga"), "--size", "8x6"}).exitCode, 0);
+    expectRefused({"lut", "curvature", "-o", path("b.exr"), "--profile", "granite"}, 3, "granite");
+}
+
+// The bytes of a batch's files are encoded in memory; OpenImageIO reads them.
+TEST_F(BatchCommand, FilesHoldTheTexelsOfTheTable) {
+    const std::string m = manifest(
+        "[[grid]]\nsize = [1, 7, 33]\nencoding = [\"half\", \"float\"]\naxis = \"root\"\n"
+        "[[lut]]\nkind = \"shadow\"\nsize = 5\n[[lut]]\nkind = \"specular\"\nsize = 6\n");
+    const auto entries = pellucid::io::readManifest(m).entries;
+    ASSERT_EQ(entries.size(), 8u);
+    const pellucid::Device device("");
+    for (const auto& entry : entries) {
+        const std::string bytes = pellucid::io::makeEntryFile(device, entry);
+        EXPECT_EQ(pellucid::io::makeEntryFile(device, entry), bytes);
+        write("t.exr", bytes);
+        const pellucid::io::Image image = pellucid::io::readImage(path("t.exr"));
+        const bool half = entry.encoding == PEL_LUT_HALF;
+        EXPECT_EQ(image.channels.at(0).type,
+                  half ? pellucid::io::ChannelType::Half : pellucid::io::ChannelType::Float);
+        const pellucid::Lut lut = pellucid::io::readLut(device, path("t.exr"));
+        EXPECT_EQ(lut.info().kind, entry.info.kind);
+        const auto& info = entry.info;
+        const pellucid::Lut again = info.kind == PEL_LUT_CURVATURE ? pellucid::Lut(device, info.curvature)
+                                    : info.kind == PEL_LUT_SHADOW  ? pellucid::Lut(device, info.shadow)
+                                                                   : pellucid::Lut(device, info.specular);
+        if (half)
+            EXPECT_EQ(lut.read<uint16_t>(PEL_LUT_HALF), again.read<uint16_t>(PEL_LUT_HALF));
+        else
+            EXPECT_EQ(lut.read<float>(PEL_LUT_FLOAT), again.read<float>(PEL_LUT_FLOAT));
+    }
+}
+
+// Values of the reference implementation.
+TEST(XxHash, KnownValues) {
+    using pellucid::io::xxHash64;
+    EXPECT_EQ(xxHash64(""), 0xEF46DB3751D8E999u);
+    EXPECT_EQ(xxHash64("abc"), 0x44BC2CF5AD770999u);
+    EXPECT_EQ(xxHash64("Nobody inspects the spammish repetition"), 0xFBCEA83C8A378BF1u);
+}

@@ -1,0 +1,224 @@
+// Nearly every kernel once, at sizes that are no multiple of anything, against the oracle: the quickest look at another
+// device or tool.
+#include <gtest/gtest.h>
+
+#include "lut/lut_cases.h"
+#include "mesh/mesh_calls.h"
+#include "shading/pass_scene.h"
+#include "reference/screen.h"
+#include "mesh/reference_meshes.h"
+
+using namespace pellucid;
+
+namespace {
+
+const Device& device() {
+    static const Device device("");
+    return device;
+}
+
+struct SmallMesh {
+    fixture::Pair both = fixture::pairOf(
+        reference::tessellate(reference::torusSurface(30, 10), 11, 7, reference::Tessellation::irregular).mesh);
+    const reference::Mesh& truth = both.exact;
+    uint32_t vertices = both.mesh.vertices();
+    MeshTopology topology{device(), fixture::topologyDesc(both.mesh)};
+    Buffer positionBuffer{device(), both.mesh.positions}, normalBuffer{device(), both.mesh.normals};
+
+    PelVertexView view(const Buffer& buffer) const { return vertexView(buffer, vertices); }
+    std::vector<float> curvature(const PelCurvatureParams& params, uint32_t components = 1) const {
+        const Buffer out(device(), vertices * components * sizeof(float));
+        topology.curvature(params, view(positionBuffer), view(normalBuffer), view(out));
+        return out.readAll<float>();
+    }
+};
+
+double worst(const std::vector<float>& values, const std::vector<double>& truth) {
+    double difference = 0, largest = 0;
+    for (size_t i = 0; i < truth.size(); ++i) {
+        difference = std::max(difference, std::abs(values[i] - truth[i]));
+        largest = std::max(largest, std::abs(truth[i]));
+    }
+    return difference / largest;
+}
+
+}  // namespace
+
+TEST(Small, Curvature) {
+    const SmallMesh m;
+    PelCurvatureParams params = fixture::edgeParams(2);
+    EXPECT_LT(worst(m.curvature(params),
+                    reference::smoothed(m.truth, reference::edgeCurvature(m.truth), 2)),
+              tolerance::edgeCurvature);
+    params.estimator = PEL_CURVATURE_TENSOR;
+    params.smoothingPasses = 0;
+    params.quantity = PEL_QUANTITY_PRINCIPAL;
+    std::vector<double> principal;
+    for (const auto& k : reference::tensorCurvature(m.truth))
+        principal.insert(principal.end(), {k.first, k.second});
+    EXPECT_LT(worst(m.curvature(params, 2), principal), 1e-4);
+    // A fit to eleven by seven vertices says little: finite, and of the right order.
+    for (const PelCurvatureQuantity quantity :
+         {PEL_QUANTITY_ABSOLUTE, PEL_QUANTITY_GAUSSIAN, PEL_QUANTITY_FRAME}) {
+        params.estimator = PEL_CURVATURE_QUADRIC;
+        params.quantity = quantity;
+        params.smoothingRadius = quantity == PEL_QUANTITY_FRAME ? 0.0f : 5.0f;
+        params.smoothingCrease = 1;
+        for (const float v : m.curvature(params, quantity == PEL_QUANTITY_FRAME ? 8 : 1))
+            EXPECT_LE(std::abs(v), 1.0f + 1e-5f);
+    }
+}
+
+TEST(Small, NormalsAndUvScale) {
+    const SmallMesh m;
+    const Buffer out(device(), m.vertices * 3 * sizeof(float)), uvs(device(), m.both.mesh.uvs);
+    m.topology.normals(m.view(m.positionBuffer), m.view(out));
+    std::vector<double> truth;
+    for (const auto& n : reference::estimatedNormals(m.truth))
+        truth.insert(truth.end(), {n.x, n.y, n.z});
+    EXPECT_LT(worst(out.readAll<float>(), truth), 1e-5);
+    const double scale = reference::uvScale(m.truth);
+    EXPECT_NEAR(m.topology.uvScale(m.view(m.positionBuffer), m.view(uvs)) / scale, 1, 1e-5);
+}
+
+TEST(Small, CurvatureTables) {
+    for (const auto& [form, other] : fixture::forms) {
+        PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+        desc.width = 5, desc.height = 3, desc.form = form;
+        const Lut lut(device(), desc);
+        const std::vector<float> texels = lut.read<float>(PEL_LUT_FLOAT);
+        reference::CurvatureLutSpec spec;
+        spec.form = other, spec.width = 5, spec.height = 3;
+        const auto skin = reference::profileForRadius(reference::skinProfile(), desc.diffusionRadius);
+        for (int i = 0; i < 15; ++i) {
+            const reference::Rgb truth = reference::curvatureTexel(spec, *skin, i % 5, i / 5);
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(texels[size_t(3 * i + c)], truth[c], 1e-5) << form;
+        }
+        EXPECT_EQ(lut.read<uint16_t>(PEL_LUT_HALF).size(), 45u);
+        EXPECT_EQ(lut.read<uint8_t>(PEL_LUT_FACEWORKS8).size(), 60u);
+    }
+}
+
+TEST(Small, ShadowAndSpecularTables) {
+    PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+    shadow.width = 5, shadow.height = 3;
+    const std::vector<float> texels = Lut(device(), shadow).read<float>(PEL_LUT_FLOAT);
+    const reference::ShadowLutSpec spec{
+        5, 3, shadow.widthMin, shadow.widthMax, shadow.diffusionRadius, shadow.sharpening};
+    const auto skin = reference::skinProfile();
+    PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
+    specular.width = 5, specular.height = 3;
+    const Lut beckmann(device(), specular);
+    const std::vector<float> lobes = beckmann.read<float>(PEL_LUT_FLOAT);
+    EXPECT_EQ(beckmann.read<uint8_t>(PEL_LUT_FACEWORKS8).size(), 60u);
+    for (int i = 0; i < 15; ++i) {
+        const reference::Rgb truth = reference::shadowTexel(spec, *skin, i % 5, i / 5);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(texels[size_t(3 * i + c)], truth[c], 1e-5);
+        EXPECT_NEAR(lobes[size_t(3 * i)], reference::beckmannEncoded((i % 5 + 0.5) / 5, (i / 5 + 0.5) / 3),
+                    1e-5);
+    }
+}
+
+TEST(Small, Shading) {
+    shade_test::Frame frame = shade_test::randomFrame(3, 19, 9, 2);
+    frame.materials.at(7).thicknessTaps = 8;
+    const auto tables = shade_test::makeTables(device(), 12, 7);
+    const std::vector<float> out = shade_test::shade(device(), frame, tables);
+    double difference = 0;
+    for (size_t i = 0; i < frame.pixels(); ++i) {
+        const reference::Rgb sum = shade_test::truth(frame, tables, i).sum();
+        for (int c = 0; c < 3; ++c)
+            difference = std::max(difference, std::abs(sum[c] - out[3 * i + size_t(c)]));
+    }
+    EXPECT_LT(difference, tolerance::shadeSum);
+}
+
+TEST(Small, PassesOverPixels) {
+    const auto tables = shade_test::makeTables(device(), 12, 7);
+    const shade_test::MapLight from =
+        shade_test::mapLight(61, true, false, {0.5, 0.2, 0.9}, {4, 2, 5}, 40, 61);
+    shade_test::Frame f = shade_test::reliefFrame(1, 19, 9, 0.4f);
+    f.lights = {from.light};
+    shade_test::showWideShadow(f);
+    const std::vector<float> shadow = shade_test::shade(device(), f, tables);
+    const PelLight& l = from.light.params;
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        if (f.slots[PEL_SLOT_MATERIAL].at(i) == 0) continue;
+        const reference::WideFilterParams params{f.materials[1].shadowFilterWidth, l.shadowBias,
+                                                 l.shadowSoftness, l.shadowConeSlope,
+                                                 int(l.shadowFilterTexels)};
+        EXPECT_NEAR(shadow[3 * i],
+                    reference::wideShadow(from.map, from.view, f.slots[PEL_SLOT_POSITION].vec(i),
+                                          f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), params),
+                    tolerance::wideShadow);
+    }
+    shade_test::Frame g = shade_test::reliefFrame(1, 19, 9, 0.9f);
+    shade_test::showBlurredNormal(g);
+    g.options.blurNormals = 1;
+    const std::vector<float> blurred = shade_test::shade(device(), g, tables);
+    std::vector<bool> doubtful;
+    const auto normals = reference::blurredNormals(shade_test::surfaceOf(g), &doubtful);
+    for (size_t i = 0; i < g.pixels(); ++i)
+        if (normals[i] && !doubtful[i]) {
+            EXPECT_LT(reference::magnitude(shade_test::shownNormal(blurred, i) - *normals[i]),
+                      tolerance::shadeTerm);
+        }
+}
+
+TEST(Small, ScreenCurvature) {
+    constexpr uint32_t width = 19, height = 5;
+    reference::ScreenImage image{width, height, {}, {}, {}};
+    std::vector<float> normals, positions;
+    std::vector<uint32_t> ids;
+    for (uint32_t i = 0; i < width * height; ++i) {
+        const double x = 0.04 * (i % width) - 0.36, y = 0.04 * (i / width) - 0.08,
+                     z = std::sqrt(1 - x * x - y * y);
+        const float n[3] = {float(x), float(y), float(z)};
+        normals.insert(normals.end(), n, n + 3), positions.insert(positions.end(), n, n + 3);
+        image.normals.push_back({n[0], n[1], n[2]}), image.positions.push_back({n[0], n[1], n[2]});
+        ids.push_back(i % width < 10 ? 70000 : 3);
+    }
+    image.ids = ids;
+    const Buffer n(device(), normals), p(device(), positions), d(device(), ids),
+        out(device(), width * height * 4);
+    const PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
+    const PelImageDesc places = imageDesc(p, PEL_FORMAT_RGB32F, width, height),
+                       objects = imageDesc(d, PEL_FORMAT_R32_UINT, width, height);
+    screenCurvature(device(), params, imageDesc(n, PEL_FORMAT_RGB32F, width, height), &places, nullptr,
+                    &objects, imageDesc(out, PEL_FORMAT_R32F, width, height));
+    EXPECT_LT(worst(out.readAll<float>(), reference::screenCurvature(image, params.edge)),
+              tolerance::screenSphere);
+}
+
+TEST(Small, APartOfALiveMesh) {
+    SmallMesh m;
+    PelCurvatureParams params = pelCurvatureParamsDefaults();
+    params.smoothingPasses = 1;
+    const LiveMesh live(m.topology, params);
+    const Buffer out(device(), m.vertices * sizeof(float));
+    live.update(m.view(m.positionBuffer), nullptr, m.view(out));
+    for (int i = 30; i < 36; ++i) m.both.mesh.positions[size_t(i)] *= 1.01f;
+    m.positionBuffer = Buffer(device(), m.both.mesh.positions);
+    live.update(m.view(m.positionBuffer), nullptr, m.view(out), {{10, 2}});
+    const Buffer whole(device(), m.vertices * sizeof(float));
+    m.topology.curvature(params, m.view(m.positionBuffer), m.view(whole));
+    EXPECT_EQ(out.readAll<float>(), whole.readAll<float>());
+}
+
+TEST(Small, TablesOfOtherProfiles) {
+    const float path[3] = {1, 0.5f, 0.3f}, albedo[3] = {0.8f, 0.6f, 0.5f};
+    const std::vector<float> distances{0.5f, 1, 2}, values{1, 1, 1, 0.5f, 0.4f, 0.3f, 0, 0, 0};
+    for (const Profile& profile : {Profile::burley(path, albedo), Profile::table(distances, values)}) {
+        PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
+        PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+        curvature.width = shadow.width = 5, curvature.height = shadow.height = 3;
+        curvature.profile = shadow.profile = profile.get();
+        curvature.diffusionRadius = shadow.diffusionRadius = 0;
+        curvature.form = PEL_FORM_SPHERE;
+        // Light is neither made nor lost: nothing beyond 1, shadows symmetric.
+        for (const float v : Lut(device(), curvature).read<float>(PEL_LUT_FLOAT))
+            EXPECT_TRUE(v >= 0 && v <= 1);
+        for (const float v : Lut(device(), shadow).read<float>(PEL_LUT_FLOAT))
+            EXPECT_TRUE(v >= -1e-6f && v <= 1 + 1e-6f);
+    }
+}

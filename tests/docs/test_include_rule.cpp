@@ -1,0 +1,93 @@
+// Who may include whom (docs/dataflow.md, "Layers"): one way only.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A folder's own files, the standard library and other people's headers are always allowed.
+const std::map<std::string, std::set<std::string>> allowed = {
+    {"kernels/shared", {}},
+    {"kernels/lib", {"kernels/shared"}},
+    {"kernels/mesh", {"kernels/shared", "kernels/lib"}},
+    {"kernels/lut", {"kernels/shared", "kernels/lib"}},
+    {"kernels/shading", {"kernels/shared", "kernels/lib"}},
+    {"host/include/pellucid", {}},
+    {"host/cl", {"kernels/shared", "host/include/pellucid"}},
+    {"host/core", {"kernels/shared", "host/include/pellucid", "host/cl"}},
+    {"host/mesh", {"kernels/shared", "host/include/pellucid", "host/cl", "host/core"}},
+    {"host/lut", {"kernels/shared", "host/include/pellucid", "host/cl", "host/core"}},
+    {"host/shading", {"kernels/shared", "host/include/pellucid", "host/cl", "host/core", "host/lut"}},
+    {"host/api",
+     {"kernels/shared", "host/include/pellucid", "host/cl", "host/core", "host/mesh", "host/lut", "host/shading"}},
+    {"host/io", {"host/include/pellucid"}},
+    {"host/sample", {"host/include/pellucid"}},
+    {"bindings/bench", {"host/include/pellucid", "tests/reference"}},
+    {"bindings/cli", {"host/include/pellucid", "host/io", "host/sample", "bindings/bench"}},
+    {"bindings/python", {"host/include/pellucid", "host/io"}},
+    {"examples", {"host/include/pellucid"}},
+    {"bench",
+     {"kernels/shared", "kernels/lib", "host/include/pellucid", "host/io", "host/sample", "tests/reference",
+      "tests"}},
+    // host/cl: the files of compiled programs, which no call of the library shows.
+    {"tests", {"host/include/pellucid", "host/cl", "host/io", "host/sample", "bindings/bench", "tests/reference"}},
+    {"tests/reference", {}},
+};
+
+const fs::path root = PELLUCID_SOURCE_DIR;
+
+// The layer that a file belongs to: the longest entry of the table that is a folder above it, or "".
+std::string layerOf(const fs::path& relative) {
+    for (fs::path folder = relative.parent_path(); !folder.empty(); folder = folder.parent_path())
+        if (allowed.contains(folder.generic_string())) return folder.generic_string();
+    return "";
+}
+
+// Where an include lands inside the project, or "" for headers from elsewhere.
+std::string resolve(const fs::path& from, const std::string& included) {
+    for (const fs::path& base : {from.parent_path(), root / "host", root / "kernels", root / "host/include",
+                                 root / "tests", root / "bindings", root / "bench"}) {
+        std::error_code error;
+        if (fs::exists(base / included, error))
+            return layerOf(fs::relative(fs::canonical(base / included), root));
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST(IncludeRule, EveryIncludeGoesOneWay) {
+    const std::regex directive(R"(^\s*#\s*include\s*["<]([^">]+)[">])");
+    size_t files = 0, checked = 0;
+    for (const char* top : {"kernels", "host", "bindings", "examples", "bench", "tests"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+            static const std::set<std::string> endings{".h", ".hpp", ".c", ".cpp", ".cl", ".clh"};
+            if (!entry.is_regular_file() || !endings.contains(entry.path().extension())) continue;
+            const std::string layer = layerOf(fs::relative(entry.path(), root));
+            if (layer.empty()) continue;
+            ++files;
+            std::ifstream in(entry.path());
+            int number = 0;
+            for (std::string line; std::getline(in, line);) {
+                ++number;
+                std::smatch match;
+                if (!std::regex_search(line, match, directive)) continue;
+                const std::string target = resolve(entry.path(), match[1]);
+                if (target.empty() || target == layer) continue;
+                ++checked;
+                EXPECT_TRUE(allowed.at(layer).contains(target))
+                    << entry.path().string() << ":" << number << ": " << layer << " must not include "
+                    << target << " (" << match[1] << ")";
+            }
+        }
+    }
+    EXPECT_GT(files, 20u);
+    EXPECT_GT(checked, 10u);
+}

@@ -1,0 +1,180 @@
+// BC6H: what the format can hold comes back exactly, everything else within what its numbers allow. Readers
+// that are not ours: OpenImageIO here, Python's in tests/foreign.
+#include "io/lut/bc6h.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "io/lut/bc6h_fit.h"
+#include "io/file_error.h"
+#include "io/image/image_file.h"
+#include "io/lut/lut_file.h"
+#include "io_files.h"
+#include "tolerances.h"
+
+using namespace pellucid;
+using io::TexelError;
+
+namespace {
+
+using Halves = std::vector<uint16_t>;
+
+Halves table(uint32_t width, uint32_t height, PelLutAxis axis = PEL_AXIS_LINEAR) {
+    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    desc.width = width;
+    desc.height = height;
+    desc.axis = axis;
+    return Lut(Device(""), desc).read<uint16_t>(PEL_LUT_HALF);
+}
+
+TexelError errorOf(uint32_t width, uint32_t height, const Halves& texels) {
+    return io::differenceOf(texels, io::decodeBc6h(width, height, io::encodeBc6h(width, height, texels)));
+}
+
+}  // namespace
+
+TEST(Bc6h, EveryModeAndPartitionIsReadAsItIsWritten) {
+    std::mt19937 random(1);
+    std::set<int> modes;
+    size_t written = 0;
+    for (int i = 0; i < 20000; ++i) {
+        io::bc6h::Bytes bytes;
+        for (uint8_t& b : bytes) b = uint8_t(random());
+        const auto block = io::bc6h::unpack(bytes);
+        if (!block) {
+            EXPECT_EQ(bytes[0] & 0x13, 0x13) << "only these codes are reserved";
+            continue;
+        }
+        modes.insert(block->mode);
+        if (!io::bc6h::fitsMode(io::bc6h::mode(block->mode), block->ends)) continue;  // wrapped round
+        ++written;
+        EXPECT_EQ(io::bc6h::pack(*block), bytes) << "mode " << block->mode;
+    }
+    EXPECT_EQ(modes.size(), 14u);
+    EXPECT_GT(written, 5000u);
+}
+
+TEST(Bc6h, AConstantIsExact) {
+    for (uint16_t half : {0x0000, 0x0001, 0x2E66, 0x3800, 0x3BFF, 0x3C00, 0x5640, 0x7BFF}) {
+        const Halves texels(16 * 3, half);
+        EXPECT_EQ(io::decodeBc6h(4, 4, io::encodeBc6h(4, 4, texels)), texels) << half;
+    }
+}
+
+TEST(Bc6h, TwoColoursAreExactInEachPartition) {
+    for (int p = 0; p < io::bc6h::partitionCount; ++p) {
+        Halves texels;
+        for (int i = 0; i < 16; ++i)  // values that 6 bits hold
+            for (int c = 0; c < 3; ++c) {
+                const int q = io::bc6h::inSecond(p, i) ? 20 + 3 * c : 40 - 7 * c;
+                texels.push_back(io::bc6h::halfOf(io::bc6h::unquantised(q, 6)));
+            }
+        EXPECT_EQ(io::decodeBc6h(4, 4, io::encodeBc6h(4, 4, texels)), texels) << "partition " << p;
+    }
+}
+
+TEST(Bc6h, TablesKeepTheirValues) {
+    for (PelLutAxis axis : {PEL_AXIS_LINEAR, PEL_AXIS_ROOT}) {
+        const TexelError small = errorOf(64, 64, table(64, 64, axis)),
+                         large = errorOf(128, 128, table(128, 128, axis));
+        EXPECT_LE(small.max, tolerance::bc6hMax);
+        EXPECT_LE(small.rms, tolerance::bc6hRms);
+        EXPECT_LT(large.rms, 0.8 * small.rms) << "smoother blocks are better held";
+    }
+}
+
+// Each block, on its own, is at least as near as one line through its two extreme texels, quantised as the
+// coarsest one-line mode would.
+TEST(Bc6h, NoBlockIsWorseThanTheObviousOne) {
+    const uint32_t side = 64;
+    const Halves texels = table(side, side),
+                 found = io::decodeBc6h(side, side, io::encodeBc6h(side, side, texels));
+    for (uint32_t by = 0; by < side; by += 4)
+        for (uint32_t bx = 0; bx < side; bx += 4) {
+            double ours = 0, obvious = 0;
+            uint16_t low[3], high[3];
+            const auto at = [&](uint32_t i, size_t c) {
+                return (size_t(by + i / 4) * side + bx + i % 4) * 3 + c;
+            };
+            uint32_t lowest = 0, highest = 0;
+            for (uint32_t i = 1; i < 16; ++i) {
+                if (texels[at(i, 0)] < texels[at(lowest, 0)]) lowest = i;
+                if (texels[at(i, 0)] > texels[at(highest, 0)]) highest = i;
+            }
+            for (size_t c = 0; c < 3; ++c) {
+                low[c] = texels[at(lowest, c)];
+                high[c] = texels[at(highest, c)];
+            }
+            for (uint32_t i = 0; i < 16; ++i) {
+                double best = 1e9;
+                for (int k = 0; k < 16; ++k) {
+                    double sum = 0;
+                    for (size_t c = 0; c < 3; ++c) {
+                        const auto ten = [](uint16_t half) { return int(half * 64 / 31) >> 6; };
+                        const int value = io::bc6h::interpolated(io::bc6h::unquantised(ten(low[c]), 10),
+                                                                 io::bc6h::unquantised(ten(high[c]), 10),
+                                                                 io::bc6h::weights(1)[size_t(k)]);
+                        const double d = double(io::bc6h::linearValue(io::bc6h::halfOf(value))) -
+                                         io::bc6h::linearValue(texels[at(i, c)]);
+                        sum += d * d;
+                    }
+                    best = std::min(best, sum);
+                }
+                obvious += best;
+                for (size_t c = 0; c < 3; ++c) {
+                    const double d = double(io::bc6h::linearValue(found[at(i, c)])) -
+                                     io::bc6h::linearValue(texels[at(i, c)]);
+                    ours += d * d;
+                }
+            }
+            EXPECT_LE(ours, obvious * (1 + 1e-6)) << bx << ", " << by;
+        }
+}
+
+TEST(Bc6h, AnySizeAndTheSameBytesEachTime) {
+    for (const auto& [w, h] : {std::pair{1u, 1u}, {5u, 3u}, {4u, 7u}, {17u, 2u}}) {
+        const Halves texels = table(w, h);
+        const auto bytes = io::encodeBc6h(w, h, texels);
+        EXPECT_EQ(bytes.size(), size_t((w + 3) / 4) * ((h + 3) / 4) * 16);
+        EXPECT_EQ(io::encodeBc6h(w, h, texels), bytes);
+        EXPECT_EQ(io::decodeBc6h(w, h, bytes).size(), texels.size());
+    }
+    EXPECT_LT(errorOf(1, 1, table(1, 1)).max, 1e-9) << "one texel is a constant";
+}
+
+TEST(Bc6h, NegativeNanAndInfinityBecomeNumbers) {
+    const Halves texels = {0xBC00, 0x7E00, 0x7C00, 0xFC00, 0x8000, 0x3C00};  // -1, NaN, inf; -inf, -0, 1
+    const Halves found = io::decodeBc6h(2, 1, io::encodeBc6h(2, 1, texels));
+    EXPECT_EQ(found[0], 0);
+    EXPECT_EQ(found[1], 0);
+    EXPECT_EQ(found[2], 0x7BFF);
+    EXPECT_EQ(found[3], 0);
+    EXPECT_EQ(found[4], 0);
+    EXPECT_EQ(found[5], 0x3C00);
+}
+
+class Bc6hFile : public FolderTest {};
+
+// OpenImageIO decodes with code of its own.
+TEST_F(Bc6hFile, OpenImageIoReadsTheSame) {
+    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    desc.width = 34;
+    desc.height = 27;
+    const Lut lut(Device(""), desc);
+    const TexelError error = io::writeLutBc6h(path("t.dds"), lut);
+    const Halves texels = lut.read<uint16_t>(PEL_LUT_HALF);
+    const Halves expected = io::decodeBc6h(34, 27, io::encodeBc6h(34, 27, texels));
+    EXPECT_EQ(error.max, io::differenceOf(texels, expected).max);
+    io::Image image;
+    try {
+        image = io::readImage(path("t.dds"));
+    } catch (const io::FileError& e) {
+        GTEST_SKIP() << "this OpenImageIO reads no BC6H: " << e.what();
+    }
+    ASSERT_EQ(image.width, 34);
+    ASSERT_EQ(image.height, 27);
+    for (size_t i = 0; i < expected.size(); ++i)
+        ASSERT_EQ(image.channels[i % 3].pixels[i / 3], io::bc6h::linearValue(expected[i])) << i;
+}

@@ -1,0 +1,213 @@
+// host/io/image/image_file.h: EXR round trips to the bit, parts and data windows, look-up by name, 8-bit files,
+// NPY.
+#include <OpenImageIO/imageio.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+
+#include "io/atomic_file.h"
+#include "io/file_error.h"
+#include "io/image/image_file.h"
+#include "io_files.h"
+
+using namespace pellucid::io;
+
+namespace {
+
+class ImageFile : public FolderTest {};
+
+bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), 4 * a.size()) == 0;
+}
+
+Image makeImage(int width, int height) {
+    Image image;
+    image.width = width;
+    image.height = height;
+    return image;
+}
+
+}  // namespace
+
+TEST_F(ImageFile, ExrFloatsKeepTheirBits) {
+    Image image = makeImage(4, 3);
+    const float nan = std::bit_cast<float>(0x7fc12345u), inf = std::numeric_limits<float>::infinity();
+    const std::vector<float> awkward = {0.0f, -0.0f, 1e-45f, 1.17549435e-38f, 3.4028235e38f, inf,
+                                        -inf, nan,   0.1f,   -7.0f / 3.0f,    65504.0f,      1e10f};
+    image.channels = {{"View.Z", ChannelType::Float, awkward},
+                      {"View.A", ChannelType::Float, std::vector<float>(12, 0.5f)}};
+    writeExr(path("a.exr"), image);
+    const Image again = readImage(path("a.exr"));
+    ASSERT_EQ(again.width, 4);
+    ASSERT_EQ(again.height, 3);
+    ASSERT_EQ(again.channels.size(), 2u);
+    EXPECT_TRUE(sameBits(again.channel("View.Z").pixels, awkward));
+    EXPECT_TRUE(sameBits(again.channel("A").pixels, image.channels[1].pixels));
+    EXPECT_EQ(filesInFolder(), 1u);
+}
+
+TEST_F(ImageFile, ExrHalvesAndFloatsSideBySide) {
+    Image image = makeImage(2, 2);
+    image.channels = {{"N.X", ChannelType::Half, {0.5f, -1.0f, 65504.0f, 6.1035156e-05f}},
+                      {"N.Y", ChannelType::Half, {0.1f, 0.2f, 1e9f, std::nanf("")}},
+                      {"P.X", ChannelType::Float, {0.1f, 0.2f, 0.3f, 0.4f}}};
+    image.attributes = {
+        {"pellucid:form", std::string("arc")},
+        {"pellucid:radiusMin", 1.25f},
+        {"pellucid:version", 3},
+        {"pellucid:axes", std::vector<float>{1, 2, 3}},
+        {"pellucid:matrix", std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16}}};
+    writeExr(path("h.exr"), image);
+    const Image again = readImage(path("h.exr"));
+    EXPECT_TRUE(sameBits(again.channel("P.X").pixels, image.channels[2].pixels));
+    EXPECT_TRUE(sameBits(again.channel("N.X").pixels, image.channels[0].pixels));
+    EXPECT_EQ(again.channel("N.X").type, ChannelType::Half);
+    EXPECT_EQ(again.channel("P.X").type, ChannelType::Float);
+    const std::vector<float>& y = again.channel("N.Y").pixels;
+    EXPECT_EQ(y[0], 0.0999755859375f);  // the half nearest to 0.1
+    EXPECT_TRUE(std::isinf(y[2]));
+    EXPECT_TRUE(std::isnan(y[3]));
+    ASSERT_NE(again.attribute("pellucid:form"), nullptr);
+    for (const auto& [name, value] : image.attributes) {
+        ASSERT_NE(again.attribute(name), nullptr) << name;
+        EXPECT_EQ(*again.attribute(name), value) << name;
+    }
+    EXPECT_EQ(again.attribute("pellucid:none"), nullptr);
+}
+
+TEST_F(ImageFile, PartsAreWalkedAndPlacedByDataWindow) {
+    using namespace OIIO;
+    std::vector<ImageSpec> specs(2, ImageSpec(3, 2, 1, TypeDesc::FLOAT));
+    for (int part = 0; part < 2; ++part) {
+        specs[part].full_x = specs[part].full_y = 10;
+        specs[part].full_width = 4;
+        specs[part].full_height = 4;
+        specs[part].channelnames = {"Z"};
+        specs[part].attribute("oiio:subimagename", part == 0 ? "near" : "far");
+    }
+    specs[0].x = 11;  // inside the display window
+    specs[0].y = 12;
+    specs[1].x = 9;  // half outside it, to the left and above
+    specs[1].y = 9;
+    auto out = ImageOutput::create(path("p.exr"));
+    ASSERT_TRUE(out->open(path("p.exr"), 2, specs.data()));
+    const float near[6] = {1, 2, 3, 4, 5, 6}, far[6] = {10, 20, 30, 40, 50, 60};
+    ASSERT_TRUE(out->write_image(TypeDesc::FLOAT, near));
+    ASSERT_TRUE(out->open(path("p.exr"), specs[1], ImageOutput::AppendSubimage));
+    ASSERT_TRUE(out->write_image(TypeDesc::FLOAT, far));
+    ASSERT_TRUE(out->close());
+
+    const Image image = readImage(path("p.exr"));
+    EXPECT_EQ(image.width, 4);
+    EXPECT_EQ(image.height, 4);
+    EXPECT_EQ(image.channel("near.Z").pixels,
+              (std::vector<float>{0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 0, 4, 5, 6}));
+    EXPECT_EQ(image.channel("far.Z").pixels,
+              (std::vector<float>{50, 60, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
+    EXPECT_TRUE(contains(messageOf<FileError>([&] { image.channel("Z"); }), "near.Z, far.Z"));
+    EXPECT_FALSE(image.has("Z"));
+}
+
+TEST_F(ImageFile, ChannelsAreFoundByNameOrTheErrorListsThem) {
+    Image image = makeImage(1, 1);
+    image.source = "g.exr";
+    const std::string names[] = {"View.N.X", "View.N.Y", "View.NN.X"};
+    image.addInterleaved(names, std::vector<float>{1, 2, 3});
+    EXPECT_EQ(image.channel("N.Y").pixels[0], 2.0f);
+    EXPECT_EQ(image.channel("NN.X").pixels[0], 3.0f);
+    const std::string both[] = {"N.Y", "View.N.X"};
+    EXPECT_EQ(image.interleaved(both), (std::vector<float>{2, 1}));
+    const std::string message = messageOf<FileError>([&] { image.channel("N.Z"); });
+    EXPECT_TRUE(contains(message, "g.exr: has no channel 'N.Z'; it has: View.N.X, View.N.Y, View.NN.X"));
+    EXPECT_TRUE(contains(messageOf<FileError>([&] { image.channel("X"); }), "several"));
+    EXPECT_THROW(image.addInterleaved(names, std::vector<float>{1}), std::invalid_argument);
+}
+
+TEST_F(ImageFile, EightBitFilesKeepTheirBytes) {
+    for (const char* name : {"a.png", "a.bmp", "a.tga"}) {
+        for (int channels : {3, 4}) {
+            std::vector<uint8_t> bytes(static_cast<size_t>(5 * 3 * channels));
+            for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<uint8_t>(37 * i + 11);
+            writeImage8(path(name), 5, 3, channels, bytes);
+            auto in = OIIO::ImageInput::open(path(name));
+            ASSERT_TRUE(in) << name;
+            // TGA and PNG readers multiply by alpha unless told not to.
+            OIIO::ImageSpec config;
+            config.attribute("oiio:UnassociatedAlpha", 1);
+            in = OIIO::ImageInput::open(path(name), &config);
+            ASSERT_EQ(in->spec().nchannels, channels) << name;
+            std::vector<uint8_t> again(bytes.size());
+            ASSERT_TRUE(in->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, again.data()));
+            EXPECT_EQ(again, bytes) << name << ' ' << channels;
+        }
+    }
+}
+
+TEST_F(ImageFile, NpyHoldsShapeTypeAndBytes) {
+    const size_t shape[] = {2, 1, 2};
+    const std::vector<float> values = {0.1f, -2.0f, 1e10f, std::nanf("")};
+    writeNpy(path("a.npy"), shape, values);
+    const std::string file = read(path("a.npy"));
+    ASSERT_EQ(file.size() % 64, values.size() * 4 % 64);  // data starts on a multiple of 64
+    EXPECT_EQ(file.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
+    EXPECT_TRUE(contains(file, "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 1, 2, ), }"));
+    EXPECT_EQ(std::memcmp(file.data() + file.size() - 16, values.data(), 16), 0);
+    writeNpy(path("h.npy"), shape, values, ChannelType::Half);
+    const std::string halves = read(path("h.npy"));
+    uint16_t second;
+    std::memcpy(&second, halves.data() + halves.size() - 6, 2);
+    EXPECT_EQ(second, 0xc000);  // -2
+    EXPECT_THROW(writeNpy(path("b.npy"), shape, std::vector<float>(3)), std::invalid_argument);
+}
+
+TEST_F(ImageFile, BadFilesAndBadTargets) {
+    EXPECT_TRUE(contains(messageOf<FileError>([&] { readImage(path("no.exr")); }), "No such file"));
+    EXPECT_TRUE(
+        contains(messageOf<FileError>([&] { readImage(write("t.exr", "not an image")); }), "no image"));
+    Image image = makeImage(64, 64);
+    image.channels = {{"Z", ChannelType::Float, std::vector<float>(64 * 64)}};
+    for (size_t i = 0; i < image.channels[0].pixels.size(); ++i)
+        image.channels[0].pixels[i] = std::sin(float(i) * float(i));
+    writeExr(path("w.exr"), image);
+    const std::string whole = read(path("w.exr"));
+    EXPECT_TRUE(
+        contains(messageOf<FileError>([&] { readImage(write("c.exr", whole.substr(0, whole.size() / 2))); }),
+                 "c.exr: is damaged or cut off"));
+    EXPECT_TRUE(contains(messageOf<FileError>([&] { writeExr(path("w.jpg"), image); }), "known here: .exr"));
+    const size_t before = filesInFolder();
+    EXPECT_THROW(writeExr(path("no/w.exr"), image), FileError);
+    EXPECT_THROW(writeImage8(path("no/w.png"), 1, 1, 1, std::vector<uint8_t>(1)), FileError);
+    EXPECT_EQ(filesInFolder(), before);
+}
+
+TEST_F(ImageFile, FilesOfARealHost) {
+    const char* folder = std::getenv("PELLUCID_GBUFFER_DIR");
+    if (!folder) GTEST_SKIP() << "PELLUCID_GBUFFER_DIR names no folder with G-buffers of a real host";
+    const Image image = readImage(std::string(folder) + "/head_gbuf.exr");
+    EXPECT_EQ(image.width, 512);
+    EXPECT_EQ(image.channels.size(), 31u);
+    const std::vector<float>& depth = image.channel("Depth.Z").pixels;
+    const std::vector<float>& mask = image.channel("SkinMask.X").pixels;
+    size_t background = 0;
+    for (size_t i = 0; i < depth.size(); ++i) {
+        const bool hit = depth[i] < 1e9f;
+        background += !hit;
+        if (hit) {
+            const std::string normal[] = {"NShading.R", "NShading.G", "NShading.B"};
+            const float x = image.channel(normal[0]).pixels[i], y = image.channel(normal[1]).pixels[i],
+                        z = image.channel(normal[2]).pixels[i];
+            ASSERT_TRUE(x * x + y * y + z * z > 0.5f) << i;
+            ASSERT_GT(mask[i], 0.5f) << i;
+        }
+    }
+    EXPECT_GT(background, depth.size() / 10);
+    EXPECT_LT(background, depth.size());
+    // Alphabetical in the file, by name here; written again and read again it is the same.
+    writeExr(path("again.exr"), image);
+    const Image again = readImage(path("again.exr"));
+    for (const Channel& c : image.channels)
+        EXPECT_TRUE(sameBits(c.pixels, again.channel(c.name).pixels)) << c.name;
+}

@@ -1,0 +1,133 @@
+// host/io: tone mapping, the colour map, and contact sheets.
+#include <cmath>
+
+#include "io/image/color_map.h"
+#include "io/image/font.h"
+#include "io/image/image_file.h"
+#include "io/image/picture.h"
+#include "io/image/tone_map.h"
+#include "io_files.h"
+
+using namespace pellucid::io;
+
+namespace {
+
+Srgb8 at(const Picture& p, int x, int y) {
+    const uint8_t* c = &p.rgb[3 * static_cast<size_t>(y * p.width + x)];
+    return {c[0], c[1], c[2]};
+}
+
+// CIE L* of an sRGB colour, from its luminance (IEC 61966-2-1, CIE 15).
+double lightness(Srgb8 c) {
+    const double y = 0.2126 * decodeSrgb(c[0] / 255.0f) + 0.7152 * decodeSrgb(c[1] / 255.0f) +
+                     0.0722 * decodeSrgb(c[2] / 255.0f);
+    return 116 * std::cbrt(y) - 16;
+}
+
+}  // namespace
+
+TEST(ToneMap, IsProportionalBelowTheShoulderAndSmoothAbove) {
+    const ToneMap map{2.0f, 0.75f};
+    EXPECT_FLOAT_EQ(toneMapped(0.25f, map), 0.5f);
+    EXPECT_FLOAT_EQ(toneMapped(0.375f, map), 0.75f);
+    EXPECT_FLOAT_EQ(toneMapped(0.5f, map), 0.75f + 0.25f * 0.5f);  // t = 1
+    const float h = 1.0f / 4096;
+    EXPECT_NEAR((toneMapped(0.375f + h, map) - toneMapped(0.375f, map)) / h, 2.0f,
+                8 * h * 2);  // the slope goes on
+    float last = 0;
+    for (float x = 0; x < 100; x += 0.01f) {
+        const float y = toneMapped(x, map);
+        EXPECT_GE(y, last);
+        EXPECT_LE(y, 1.0f);
+        last = y;
+    }
+    for (float bad : {-1.0f, std::nanf(""), -INFINITY}) EXPECT_EQ(toneMapped(bad, map), 0.0f);
+    EXPECT_EQ(toneMapped(INFINITY, map), 1.0f);
+}
+
+TEST(ToneMap, BytesAreSrgb) {
+    const float rgb[] = {0.0f, 0.0031308f, 0.18f, 0.5f, 0.8f, INFINITY};
+    // 0.18 is sRGB 0.4614, 0.5 is 0.7354, 0.8 is 0.9063 (IEC 61966-2-1).
+    EXPECT_EQ(toSrgb8(rgb), (std::vector<uint8_t>{0, 10, 118, 188, 231, 255}));
+    for (int i = 0; i < 256; ++i) {
+        EXPECT_EQ(std::lround(255 * encodeSrgb(decodeSrgb(i / 255.0f))), i);
+    }
+}
+
+TEST(ColorMap, GetsLighterEvenly) {
+    const double low = lightness(sequentialColor(0)), high = lightness(sequentialColor(1));
+    EXPECT_GT(high - low, 50);
+    for (int i = 1; i <= 64; ++i) {
+        EXPECT_GT(lightness(sequentialColor(i / 64.0f)), lightness(sequentialColor((i - 1) / 64.0f))) << i;
+    }
+    const Srgb8 blue = sequentialColor(0), warm = sequentialColor(1);
+    EXPECT_GT(blue[2], blue[0]);
+    EXPECT_GT(warm[0], warm[2]);
+    EXPECT_EQ(sequentialColor(-5), blue);
+    EXPECT_EQ(sequentialColor(INFINITY), warm);
+    EXPECT_EQ(sequentialColor(NAN), (Srgb8{128, 128, 128}));
+}
+
+TEST(ColorMap, DivergesEvenlyFromZero) {
+    for (int i = 1; i <= 32; ++i) {
+        EXPECT_LT(lightness(divergingColor(i / 32.0f)), lightness(divergingColor((i - 1) / 32.0f))) << i;
+        EXPECT_LT(lightness(divergingColor(-i / 32.0f)), lightness(divergingColor((1 - i) / 32.0f))) << i;
+    }
+    EXPECT_GT(divergingColor(-1)[2], divergingColor(-1)[0]);
+    EXPECT_GT(divergingColor(1)[0], divergingColor(1)[2]);
+    EXPECT_EQ(scaleColor(-3, -3, 6), divergingColor(-0.5f));
+    EXPECT_EQ(scaleColor(0, -3, 6), divergingColor(0));
+    EXPECT_EQ(scaleColor(3, 0, 6), sequentialColor(0.5f));
+}
+
+TEST(Picture, TextIsDotsOfTheGlyphs) {
+    Picture p(20, 10);
+    const Srgb8 white = {255, 255, 255}, black = {0, 0, 0};
+    EXPECT_EQ(p.write(1, 1, "l1", white), 13);
+    EXPECT_EQ(at(p, 1, 1), white);  // upper end of the L
+    EXPECT_EQ(at(p, 2, 1), black);
+    EXPECT_EQ(at(p, 5, 7), white);  // its foot
+    EXPECT_EQ(textWidth("l1"), 11);
+    p.write(-3, -3, "XXXX", white, 4);  // sticks out on all sides
+    EXPECT_EQ(glyph('a'), glyph('A'));
+    EXPECT_EQ(glyph('\x80')[0], 31);
+    for (char c : std::string("abcdefghijklmnopqrstuvwxyz0123456789.,:+-/*=%()<>_"))
+        EXPECT_NE(glyph(c), glyph('\x80')) << c;
+}
+
+TEST(Picture, SheetsHoldTheirTiles) {
+    const std::vector<Tile> tiles = {{"A", Picture(30, 20, Srgb8{255, 0, 0})},
+                                     {"B", Picture(40, 10, Srgb8{0, 255, 0})},
+                                     {"C", Picture(10, 30, Srgb8{0, 0, 255})}};
+    const Picture sheet = contactSheet(tiles, 2, 1);
+    EXPECT_EQ(sheet.width, 6 + 30 + 6 + 40 + 6);
+    EXPECT_EQ(sheet.height, 6 + 20 + 13 + 6 + 30 + 13 + 6);
+    EXPECT_EQ(at(sheet, 6, 6), (Srgb8{255, 0, 0}));
+    EXPECT_EQ(at(sheet, 35, 25), (Srgb8{255, 0, 0}));
+    EXPECT_EQ(at(sheet, 42, 6), (Srgb8{0, 255, 0}));
+    EXPECT_EQ(at(sheet, 6, 45), (Srgb8{0, 0, 255}));
+    EXPECT_EQ(at(sheet, 7, 29), (Srgb8{225, 225, 225}));  // the top of the A, three pixels below its tile
+}
+
+TEST(Picture, ShrinkingAveragesLight) {
+    Picture p(4, 2);
+    p.paint(0, 0, {255, 255, 255});
+    p.paint(1, 1, {255, 255, 255});
+    const Picture small = shrunk(p, 2);
+    EXPECT_EQ(small.width, 2);
+    EXPECT_EQ(at(small, 0, 0), (Srgb8{188, 188, 188}));  // half the light is sRGB 188
+    EXPECT_EQ(at(small, 1, 0), (Srgb8{0, 0, 0}));
+}
+
+TEST(Picture, ColoursFollowValuesAndMask) {
+    const std::vector<float> values = {0, 5, 10, 3}, mask = {1, 1, 1, 0};
+    const Picture p = colored(2, 2, values, 0, 10, mask, {1, 2, 3});
+    EXPECT_EQ(at(p, 0, 0), sequentialColor(0));
+    EXPECT_EQ(at(p, 1, 0), sequentialColor(0.5f));
+    EXPECT_EQ(at(p, 0, 1), sequentialColor(1));
+    EXPECT_EQ(at(p, 1, 1), (Srgb8{1, 2, 3}));
+    const Picture bar = colorBar(200, 0, 0.25, "1/mm", 1);
+    EXPECT_EQ(at(bar, 0, 0), sequentialColor(0.5f / 200));
+    EXPECT_EQ(at(bar, 199, 0), sequentialColor(199.5f / 200));
+    EXPECT_THROW(Picture(2, 2, std::vector<uint8_t>(11)), std::invalid_argument);
+}

@@ -1,0 +1,108 @@
+// Profile files, the library of materials, and fits of Gaussians.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/file_error.h"
+#include "io/lut/profile_file.h"
+#include "io/lut/profile_fit.h"
+#include "tolerances.h"
+
+using namespace pellucid;
+
+namespace {
+
+void expectRefused(const std::string& text, const char* word, int line) {
+    try {
+        io::parseProfile("p.toml", text);
+        FAIL() << "accepted: " << text;
+    } catch (const io::FileError& e) {
+        EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << e.what();
+        EXPECT_EQ(e.line(), line) << e.what();
+    }
+}
+
+const std::string head = "name = \"x\"\nsource = \"here\"\nunit = \"cm\"\n";  // three lines
+
+}  // namespace
+
+TEST(ProfileFile, EveryMaterialOfTheLibraryLoads) {
+    ASSERT_GE(io::profileLibrary().size(), 9u);
+    EXPECT_EQ(io::profileLibrary()[0].name, "skin");
+    for (const io::LibraryProfile& entry : io::profileLibrary()) {
+        const io::ProfileFile file = io::findProfile(std::string(entry.name));
+        EXPECT_EQ(file.name, entry.name);
+        EXPECT_FALSE(file.source.empty()) << entry.name;
+        const PelProfileInfo info = file.profile.info();
+        EXPECT_EQ(info.name, std::string(entry.name));
+        EXPECT_GT(info.radius, 0) << entry.name;
+        EXPECT_EQ(*std::max_element(info.normalBlend, info.normalBlend + 3), 1) << entry.name;
+        // Red light goes furthest in all of them but jade and cream's kin; energy is 1 everywhere.
+        std::vector<double> at;
+        for (int i = 0; i < 4000; ++i) at.push_back(info.radius * std::exp(-14 + 17.5 * (i + 0.5) / 4000));
+        const auto P = file.profile.lineSpread(at);
+        for (int c = 0; c < 3; ++c) {
+            double energy = 0;
+            for (size_t i = 0; i < at.size(); ++i) energy += 2 * P[3 * i + c] * at[i] * 17.5 / 4000;
+            EXPECT_NEAR(energy, 1, tolerance::sampledEnergy) << entry.name << " channel " << c;
+        }
+    }
+    EXPECT_THROW(io::findProfile("granite"), io::FileError);
+    EXPECT_THROW(io::findProfile("no-such-file.toml"), io::FileError);
+}
+
+TEST(ProfileFile, UnitsBecomeMillimetres) {
+    const auto centimetres = io::parseProfile(
+        "p", head + "kind = \"gaussians\"\n[[gaussian]]\nvariance = 0.04\nweight = [1, 1, 1]\n");
+    EXPECT_NEAR(centimetres.profile.info().radius, 2, tolerance::profileEvaluation);
+    const auto metres =
+        io::parseProfile("p",
+                         "name=\"m\"\nsource=\"s\"\nunit=\"m\"\nkind=\"dipole\"\nabsorption=[2.1, 4.1, 7.1]\n"
+                         "reduced_scattering=[2190, 2620, 3000]\neta=1.5\n");
+    EXPECT_NEAR(metres.profile.info().radius / io::findProfile("marble").profile.info().radius, 1,
+                tolerance::profileEvaluation);
+    const auto table =
+        io::parseProfile("p", head +
+                                  "kind = \"table\"\n[[sample]]\ndistance = 0\nvalue = [1, 1, 1]\n"
+                                  "[[sample]]\ndistance = 0.3\nvalue = [0, 0, 0]\n");
+    EXPECT_EQ(table.profile.info().kind, PEL_PROFILE_TABLE);
+    EXPECT_EQ(table.profile.radial({3.5})[0], 0);
+    EXPECT_GT(table.profile.radial({2.9})[0], 0);
+}
+
+TEST(ProfileFile, MistakesHaveTheirLine) {
+    expectRefused("name = ", "TOML", 1);
+    expectRefused(head, "'kind'", 1);
+    expectRefused(head + "kind = \"glass\"\n", "'glass'", 4);
+    expectRefused(head + "kind = \"burley\"\n", "mean_free_path", 1);
+    expectRefused(head + "kind = \"burley\"\nmean_free_path = [1, 2]\nalbedo = [0, 0, 0]\n", "3 numbers", 5);
+    expectRefused(head + "kind = \"burley\"\nmean_free_path = [1, 2, -3]\nalbedo = [0, 0, 0]\n",
+                  "more than 0", 5);
+    expectRefused(head + "kind = \"skin\"\ncolour = 3\n", "colour", 5);
+    expectRefused(head + "kind = \"gaussians\"\n[[gaussian]]\nvariance = 1\nweight = [1, 1, 0]\n", "blue", 1);
+    expectRefused("name=\"x\"\nsource=\"s\"\nkind=\"dipole\"\n", "unit", 1);
+}
+
+TEST(ProfileFit, MoreGaussiansFitBetter) {
+    const Profile marble = io::findProfile("marble").profile;
+    double before = 1;
+    for (int count : {1, 2, 4, 6}) {
+        const io::ProfileFit fit = io::fitGaussians(marble, count);
+        ASSERT_EQ(int(fit.gaussians.size()), count);
+        const double error = *std::max_element(fit.error, fit.error + 3);
+        EXPECT_LT(error, before) << count;
+        before = error;
+    }
+    EXPECT_LT(before, tolerance::sixGaussians);
+    EXPECT_THROW(io::fitGaussians(marble, 0), std::invalid_argument);
+}
+
+TEST(ProfileFit, FindsGaussiansAgain) {
+    const Profile two = Profile::gaussians({{0.2f, {1, 2, 3}}, {4, {3, 2, 1}}});
+    const io::ProfileFit fit = io::fitGaussians(two, 2);
+    EXPECT_LT(*std::max_element(fit.error, fit.error + 3), tolerance::fittedAgain);
+    const auto again = io::parseProfile("fit", io::profileText(fit, "again", "a test"));
+    EXPECT_EQ(again.profile.info().gaussians, 2u);
+    EXPECT_NEAR(again.profile.info().width[0] / two.info().width[0], 1, tolerance::fittedAgain);
+}

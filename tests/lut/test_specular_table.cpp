@@ -1,0 +1,113 @@
+// kernels/lib/shading/specular_table.clh as a renderer includes it: against the oracle, and against the same texels in double precision.
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+#include <gtest/gtest.h>
+
+#include <pellucid/pellucid.hpp>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "reference/lut.h"
+#include "reference/shade.h"
+#include "tolerances.h"
+
+using reference::Vec3;
+
+namespace {
+
+constexpr size_t count = 4096;
+constexpr uint32_t width = 300, height = 200;
+
+// n, l, v, m per evaluation: ten floats each.
+std::vector<float> evaluate(const pellucid::Device& device, const std::vector<float>& table, const std::vector<float>& inputs, int lanes) {
+    const char* source =
+        "#include \"lib/shading/specular_table.clh\"\n"
+        "__kernel void evaluate(__global const float* in, __global const float* table, uint width, uint height, __global float* out) {\n"
+        "    const size_t at = get_global_id(0) * PEL_WIDTH, n = get_global_size(0) * PEL_WIDTH;\n"
+        "#define V(i) vec3(loadw(at, in + (i) * n), loadw(at, in + (i + 1) * n), loadw(at, in + (i + 2) * n))\n"
+        "    const Vec3w normal = V(0), light = V(3), view = V(6);\n"
+        "    storew(specularKskTable(table, width, height, normal, light, view, dot3(normal, light), loadw(at, in + 9 * n), 0.028f),\n"
+        "           at, out);\n"
+        "}\n";
+    void *context, *id, *queue;
+    pellucid::check(pelDeviceGetCl(device.get(), &context, &id, &queue));
+    cl_int code;
+    cl_program program = clCreateProgramWithSource(cl_context(context), 1, &source, nullptr, &code);
+    const auto cl = cl_device_id(id);
+    const std::string options = "-cl-std=CL1.2 -I" PELLUCID_SOURCE_DIR "/kernels -DPEL_WIDTH=" + std::to_string(lanes);
+    EXPECT_EQ(clBuildProgram(program, 1, &cl, options.c_str(), nullptr, nullptr), CL_SUCCESS);
+    cl_kernel kernel = clCreateKernel(program, "evaluate", &code);
+    const pellucid::Buffer in(device, inputs), texels(device, table), out(device, count * sizeof(float));
+    cl_uint next = 0;
+    for (const pellucid::Buffer* buffer : {&in, &texels}) {
+        void* memory;
+        pellucid::check(pelBufferGetCl(buffer->get(), &memory));
+        clSetKernelArg(kernel, next++, sizeof memory, &memory);
+    }
+    for (const cl_uint size : {width, height}) clSetKernelArg(kernel, next++, sizeof size, &size);
+    void* memory;
+    pellucid::check(pelBufferGetCl(out.get(), &memory));
+    clSetKernelArg(kernel, next++, sizeof memory, &memory);
+    const size_t items = count / size_t(lanes);
+    EXPECT_EQ(clEnqueueNDRangeKernel(cl_command_queue(queue), kernel, 1, nullptr, &items, nullptr, 0, nullptr, nullptr), CL_SUCCESS);
+    EXPECT_EQ(clFinish(cl_command_queue(queue)), CL_SUCCESS);
+    clReleaseKernel(kernel);
+    clReleaseProgram(program);
+    return out.readAll<float>();
+}
+
+TEST(SpecularTable, ReadsWhatTheTableHolds) {
+    const pellucid::Device device("");
+    PelSpecularLutDesc desc = pelSpecularLutDescDefaults();
+    desc.width = width, desc.height = height;
+    const auto rgb = pellucid::Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+    std::vector<float> table;
+    reference::Table truth{int(width), int(height), {}};
+    for (size_t i = 0; i < rgb.size(); i += 3) {
+        table.push_back(rgb[i]);
+        truth.texels.push_back({rgb[i], rgb[i + 1], rgb[i + 2]});
+    }
+    std::mt19937 engine(5);
+    std::normal_distribution<float> normal;
+    std::vector<float> inputs(10 * count);
+    const auto vec = [&](size_t i, size_t first) {
+        return Vec3{inputs[first * count + i], inputs[(first + 1) * count + i], inputs[(first + 2) * count + i]};
+    };
+    for (size_t i = 0; i < count; ++i) {
+        for (size_t first : {0, 3, 6}) {
+            const Vec3 v = reference::normalized(Vec3{normal(engine), normal(engine), normal(engine)});
+            for (size_t c = 0; c < 3; ++c) inputs[(first + c) * count + i] = float(v[int(c)]);
+        }
+        inputs[9 * count + i] = 0.2f + 0.3f * float(i) / count;
+    }
+    inputs[9 * count + 7] = 0;  // the ends of the table, and beyond them
+    inputs[9 * count + 8] = 1.5f;
+    inputs[9 * count + 9] = -1;
+    inputs[count + 10] = std::numeric_limits<float>::quiet_NaN();  // must not read elsewhere, nor disturb others
+    for (int lanes : {1, 8, 16}) {
+        const auto result = evaluate(device, table, inputs, lanes);
+        size_t lit = 0;
+        for (size_t i = 0; i < count; ++i) {
+            const Vec3 n = vec(i, 0), l = vec(i, 3), v = vec(i, 6), h = l + v;
+            const double m = inputs[9 * count + i];
+            if (i == 10) continue;
+            double expected = 0;
+            if (dot(n, l) > 0 && dot(n, h) > 0) {
+                const double nh = dot(n, reference::normalized(h));
+                const double p = std::pow(2 * bilinear(truth, nh, m).x, 10);
+                expected = dot(n, l) * p * reference::schlick(dot(v, reference::normalized(h)), 0.028) / dot(h, h);
+                ++lit;
+            }
+            EXPECT_NEAR(result[i], expected, tolerance::specularTable * std::max(1.0, expected)) << i;
+            // And what the table stands for: 300 x 200 texels of it.
+            if (m > 0.25 && m < 0.6) {
+                EXPECT_NEAR(result[i], reference::specular(n, l, v, m, 1), 0.05 * std::max(0.1, expected)) << i;
+            }
+        }
+        EXPECT_GT(lit, count / 8);
+    }
+}
+
+}  // namespace

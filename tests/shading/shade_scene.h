@@ -1,0 +1,403 @@
+// Random frames for the shading pass, and the oracle's answer to them.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <pellucid/pellucid.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <random>
+
+#include "reference/shade_pixel.h"
+#include "test_size.h"
+
+namespace shade_test {
+
+using reference::Rgb;
+using reference::Vec3;
+
+// A curvature and a shadow table, on the device and as the oracle takes them.
+struct Tables {
+    pellucid::Lut curvature, shadow;
+    reference::ScatterTable curvatureTruth, shadowTruth;
+};
+
+inline reference::Table readTable(const pellucid::Lut& lut, uint32_t width, uint32_t height) {
+    const auto texels = lut.read<float>(PEL_LUT_FLOAT);
+    reference::Table table{int(width), int(height), {}};
+    for (size_t i = 0; i < size_t(width) * height; ++i)
+        table.texels.push_back({texels[3 * i], texels[3 * i + 1], texels[3 * i + 2]});
+    return table;
+}
+
+inline Tables makeTables(const pellucid::Device& device, uint32_t width = 96, uint32_t height = 64) {
+    PelCurvatureLutDesc c = pelCurvatureLutDescDefaults();
+    PelShadowLutDesc s = pelShadowLutDescDefaults();
+    c.width = s.width = width;
+    c.height = s.height = height;
+    Tables t{pellucid::Lut(device, c), pellucid::Lut(device, s), {}, {}};
+    t.curvatureTruth = {readTable(t.curvature, width, height), c.radiusMin, c.radiusMax, c.diffusionRadius,
+                        0};
+    t.shadowTruth = {readTable(t.shadow, width, height), s.widthMin, s.widthMax, s.diffusionRadius,
+                     s.sharpening};
+    return t;
+}
+
+// One image of a frame: rows of `components` floats, as many as the format has.
+struct Image {
+    uint32_t components = 0;
+    std::vector<float> values;
+    double at(size_t pixel, uint32_t c = 0) const { return values[pixel * components + c]; }
+    Vec3 vec(size_t pixel) const { return {at(pixel, 0), at(pixel, 1), at(pixel, 2)}; }
+};
+
+struct Light {
+    PelLight params = pelLightDefaults();
+    Image wide;  // empty: none
+    uint32_t mapSize = 0;
+    Image map;
+};
+
+struct Frame {
+    uint32_t width = 0, height = 0;
+    Image slots[PEL_SLOT_COUNT];  // empty ones are not set
+    std::vector<Light> lights;
+    std::map<uint32_t, PelMaterial> materials;
+    PelAmbient ambient = pelAmbientDefaults();
+    reference::CubeMap cube;  // ambient light; size 0: none
+    PelCamera camera = pelCameraDefaults();
+    PelShaderOptions options = pelShaderOptionsDefaults();
+    bool curvatureLut = true, shadowLut = true;
+    size_t pixels() const { return size_t(width) * height; }
+};
+
+class Random {
+  public:
+    explicit Random(uint32_t seed) : engine_(seed) {}
+    float uniform(float least = 0, float most = 1) {
+        return least + (most - least) * float(engine_() >> 8) * 0x1p-24f;
+    }
+    uint32_t below(uint32_t count) { return uint32_t(engine_() % count); }
+    void unit(float (&v)[3]) {
+        float length2;
+        do {
+            for (float& x : v) x = uniform(-1, 1);
+            length2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+        } while (length2 > 1 || length2 < 0.01f);
+        for (float& x : v) x /= std::sqrt(length2);
+    }
+
+  private:
+    std::mt19937 engine_;
+};
+
+// Every input random and valid: normals within a cone of each other and seen from the front, w often 0 or 1,
+// curvature also outside the table, ids 0 (background), 1, 2 and 7 in runs as real frames have them.
+inline Frame randomFrame(uint32_t seed, uint32_t width, uint32_t height, uint32_t lights = 1) {
+    Random random(seed);
+    Frame f;
+    f.width = width;
+    f.height = height = sizedRows(width, height);
+    const auto fill = [&](Image& image, uint32_t components, auto value) {
+        image.components = components;
+        image.values.resize(f.pixels() * components);
+        for (float& v : image.values) v = value();
+    };
+    auto& s = f.slots;
+    for (float& p : f.camera.position) p = random.uniform(150, 300);
+    fill(s[PEL_SLOT_POSITION], 3, [&] { return random.uniform(-100, 100); });
+    for (int slot : {PEL_SLOT_NORMAL_GEOMETRIC, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_BLURRED})
+        fill(s[slot], 3, [] { return 0.0f; });
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        float base[3], facing = 0;
+        random.unit(base);
+        for (int c = 0; c < 3; ++c)
+            facing += base[c] * (f.camera.position[c] - s[PEL_SLOT_POSITION].values[3 * i + c]);
+        if (facing < 0)
+            for (float& b : base) b = -b;
+        for (int slot : {PEL_SLOT_NORMAL_GEOMETRIC, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_BLURRED}) {
+            float bend[3], sum = 0;
+            random.unit(bend);
+            float* n = &s[slot].values[3 * i];
+            for (int c = 0; c < 3; ++c) {
+                n[c] = base[c] + 0.4f * bend[c];
+                sum += n[c] * n[c];
+            }
+            for (int c = 0; c < 3; ++c) n[c] /= std::sqrt(sum);
+        }
+    }
+    fill(s[PEL_SLOT_CURVATURE], 1, [&] { return random.uniform(-0.1f, 1.2f); });
+    fill(s[PEL_SLOT_ALBEDO], 3, [&] { return random.uniform(); });
+    fill(s[PEL_SLOT_AMBIENT_OCCLUSION], 1, [&] { return random.uniform(); });
+    fill(s[PEL_SLOT_ROUGHNESS], 1, [&] { return random.uniform(0.7f, 1.5f); });
+    fill(s[PEL_SLOT_SPECULAR], 1, [&] { return random.uniform(); });
+    uint32_t run = 0, id = 0;
+    fill(s[PEL_SLOT_MATERIAL], 1, [&] {
+        constexpr uint32_t ids[] = {0, 1, 2, 7};
+        if (run-- == 0) run = random.below(40), id = ids[random.below(4)];
+        return float(id);
+    });
+    for (uint32_t known : {1u, 2u, 7u}) {
+        PelMaterial m = pelMaterialDefaults();
+        m.diffusionRadius = known == 1 ? 2.7f : random.uniform(1, 5);
+        for (float& c : m.deepScatterColor) c = random.uniform(0.1f, 1);
+        m.deepScatterRadius = random.uniform(15, 40);  // of the order of the random thickness
+        m.specular = random.uniform(0.2f, 1);
+        m.thicknessTaps = known == 7 ? 16 : known == 2 ? 8 : 32;
+        if (known == 7)
+            for (float& b : m.normalBlend) b = random.uniform();
+        f.materials[known] = m;
+    }
+    for (uint32_t i = 0; i < lights; ++i) {
+        Light light;
+        PelLight& l = light.params;
+        l.type = PelLightType(i % 3);
+        random.unit(l.toLight);
+        random.unit(l.spotDirection);
+        random.unit(l.position);
+        for (float& p : l.position) p *= 300;  // light of order 1 in the cube of positions
+        const float power = l.type == PEL_LIGHT_DIRECTIONAL ? 1.0f : 20000.0f;
+        for (float& c : l.color) c = power * random.uniform(0.2f, 1);
+        if (l.type == PEL_LIGHT_POINT) l.range = 280;
+        l.spotCosInner = 0.8f;
+        l.spotCosOuter = 0.2f;
+        fill(light.wide, 1, [&] { return std::fmin(1.0f, std::fmax(0.0f, random.uniform(-0.6f, 1.6f))); });
+        light.mapSize = 61;
+        light.map.components = 1;
+        light.map.values.resize(61 * 61);
+        for (float& z : light.map.values) z = random.uniform(0.4f, 0.52f);
+        // (x, y, z) / 200 + 1/2 sheared a little; perspective: w = distance, depth = a + b / w
+        const bool perspective = i % 2;
+        l.shadowProjection = perspective ? PEL_SHADOW_PERSPECTIVE : PEL_SHADOW_PARALLEL;
+        if (perspective) {
+            const float n = 100, far = 700;  // left-handed: z = f/(f-n) - nf/(f-n)/w
+            const float rows[16] = {1.2f,
+                                    0.1f,
+                                    0.5f,
+                                    150,
+                                    0,
+                                    1.1f,
+                                    0.5f,
+                                    150,
+                                    0,
+                                    0,
+                                    far / (far - n),
+                                    300 * far / (far - n) - n * far / (far - n),
+                                    0,
+                                    0,
+                                    1,
+                                    300};
+            std::copy_n(rows, 16, l.worldToShadow);
+            l.shadowDepthA = -(far - n) / (n * far);
+            l.shadowDepthB = 1 / n;
+            for (float& z : light.map.values) z = far / (far - n) * (1 - n / random.uniform(270, 305));
+        } else {
+            const float rows[16] = {0.005f, 0,       0.0005f, 0.5f, 0, 0.005f, 0, 0.5f,
+                                    0,      0.0001f, 0.005f,  0.5f, 0, 0,      0, 1};
+            std::copy_n(rows, 16, l.worldToShadow);
+            l.shadowDepthRange = 200;
+        }
+        f.lights.push_back(std::move(light));
+    }
+    for (float& c : f.ambient.constant) c = random.uniform(0.1f, 0.4f);
+    for (auto& basis : f.ambient.sh)
+        for (float& c : basis) c = random.uniform(-0.3f, 0.3f);
+    return f;
+}
+
+// --- the device's answer ---
+
+inline const pellucid::Device& device() {
+    static const pellucid::Device d("");
+    return d;
+}
+inline const Tables& tables() {
+    static const Tables t = makeTables(device());
+    return t;
+}
+
+inline pellucid::Buffer upload(const pellucid::Device& device, const Image& image) {
+    return pellucid::Buffer(device, image.values);
+}
+
+constexpr PelFormat floatFormats[] = {PEL_FORMAT_UNDEFINED, PEL_FORMAT_R32F, PEL_FORMAT_RG32F,
+                                      PEL_FORMAT_RGB32F, PEL_FORMAT_RGBA32F};
+
+// Sets everything but the output, in float32.
+inline void setFrame(const pellucid::Device& device, pellucid::Shader& shader, const Frame& f,
+                     const Tables& tables) {
+    shader.set(f.options).set(f.ambient).set(f.camera);
+    if (const uint32_t size = uint32_t(f.cube.size)) {
+        std::vector<float> texels;
+        for (const Rgb& t : f.cube.texels) texels.insert(texels.end(), {float(t.x), float(t.y), float(t.z)});
+        shader.setAmbientCube(
+            pellucid::imageDesc(pellucid::Buffer(device, texels), PEL_FORMAT_RGB32F, size, 6 * size));
+    }
+    for (int slot = 1; slot < PEL_SLOT_OUT_DIFFUSE; ++slot)
+        if (const Image& image = f.slots[slot]; !image.values.empty())
+            shader.set(PelImageSlot(slot),
+                       pellucid::imageDesc(upload(device, image), floatFormats[image.components], f.width,
+                                           f.height));
+    for (const auto& [id, material] : f.materials)
+        shader.setMaterial(id, material, f.curvatureLut ? tables.curvature : pellucid::Lut(),
+                           f.shadowLut ? tables.shadow : pellucid::Lut());
+    std::vector<PelLight> lights;
+    for (const Light& light : f.lights) lights.push_back(light.params);
+    shader.set(lights);
+    for (uint32_t i = 0; i < lights.size(); ++i) {
+        const Light& light = f.lights[i];
+        if (!light.wide.values.empty())
+            shader.set(i, PEL_LIGHT_WIDE_SHADOW,
+                       pellucid::imageDesc(upload(device, light.wide), PEL_FORMAT_R32F, f.width, f.height));
+        if (!light.map.values.empty())
+            shader.set(i, PEL_LIGHT_SHADOW_MAP,
+                       pellucid::imageDesc(upload(device, light.map), PEL_FORMAT_R32F, light.mapSize,
+                                           light.mapSize));
+    }
+}
+
+// RGB float32 over zeros. `stats`, if given, is filled.
+inline std::vector<float> shade(const pellucid::Device& device, const Frame& f, const Tables& tables,
+                                PelShaderStats* stats = nullptr) {
+    pellucid::Shader shader(device);
+    setFrame(device, shader, f, tables);
+    const pellucid::Buffer target(device, f.pixels() * 3 * sizeof(float));
+    shader.set(PEL_SLOT_RADIANCE, pellucid::imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+    shader.commit().execute();
+    if (stats) *stats = shader.stats();
+    return target.readAll<float>();
+}
+
+// --- the oracle's ---
+
+// The kernels' table of taps, read from their source: oracle and kernel must use the same disk.
+inline std::vector<reference::Vec2> diskTaps(uint32_t count) {
+    static std::map<uint32_t, std::vector<reference::Vec2>> disks;
+    auto& taps = disks[count];
+    if (!taps.empty()) return taps;
+    std::ifstream file(PELLUCID_SOURCE_DIR "/kernels/lib/shading/poisson_disk.clh");
+    const std::string start = "pelDisk" + std::to_string(count) + "[";
+    for (std::string line; std::getline(file, line);)
+        if (line.find(start) != std::string::npos)
+            while (std::getline(file, line) && line[0] != '}') {
+                double x = 0, y = 0;
+                EXPECT_EQ(std::sscanf(line.c_str(), " (float2)(%lff, %lff)", &x, &y), 2) << line;
+                taps.push_back({x, y});
+            }
+    EXPECT_EQ(taps.size(), count);
+    return taps;
+}
+
+inline reference::PixelLight truthLight(const Frame& f, const PelMaterial& material, const Light& light,
+                                        size_t i) {
+    const PelLight& l = light.params;
+    const auto vec = [](const float(&v)[3]) { return Vec3{v[0], v[1], v[2]}; };
+    reference::PixelLight out;
+    if (l.type == PEL_LIGHT_DIRECTIONAL) {
+        out.toLight = vec(l.toLight);
+        out.color = vec(l.color);
+    } else {
+        out = reference::lampAt({vec(l.position), vec(l.color), l.range, l.type == PEL_LIGHT_SPOT,
+                                 vec(l.spotDirection), l.spotCosInner, l.spotCosOuter},
+                                f.slots[PEL_SLOT_POSITION].vec(i));
+    }
+    if (!light.wide.values.empty()) out.wideShadow = light.wide.at(i);
+    if (!f.slots[PEL_SLOT_THICKNESS].values.empty()) {
+        out.hasThickness = true;
+        out.thickness = f.slots[PEL_SLOT_THICKNESS].at(i);
+    } else if (!light.map.values.empty() && material.thicknessTaps) {
+        out.hasThickness = true;
+        reference::Matrix4 m;
+        for (int r = 0; r < 4; ++r)
+            for (int c = 0; c < 4; ++c) m[r][c] = l.worldToShadow[4 * r + c];
+        const reference::DepthDecoding decoding{l.shadowProjection == PEL_SHADOW_PERSPECTIVE,
+                                                l.shadowDepthRange, l.shadowDepthA, l.shadowDepthB};
+        reference::ShadowMap map{
+            int(light.mapSize), int(light.mapSize), {light.map.values.begin(), light.map.values.end()}};
+        const int normal = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values.empty() ? PEL_SLOT_NORMAL_SHADING
+                                                                             : PEL_SLOT_NORMAL_GEOMETRIC;
+        out.thickness = reference::thickness(
+            map,
+            reference::shadowCoordinates(m, f.slots[PEL_SLOT_POSITION].vec(i), f.slots[normal].vec(i),
+                                         material.deepScatterNormalOffset),
+            f.options.rotateTaps
+                ? reference::turnedTaps(diskTaps(material.thicknessTaps), uint32_t(i % f.width), uint32_t(i / f.width))
+                : diskTaps(material.thicknessTaps),
+            material.thicknessFilterRadius, decoding, reference::MapFilter::bilinear);
+    }
+    return out;
+}
+
+// Background pixels give nothing.
+inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
+    const auto& s = f.slots;
+    const uint32_t id = s[PEL_SLOT_MATERIAL].values.empty() ? 1 : uint32_t(s[PEL_SLOT_MATERIAL].at(i));
+    const auto found = f.materials.find(id);
+    if (found == f.materials.end()) return {};
+    const PelMaterial& m = found->second;
+    const auto value = [&](PelImageSlot slot, double otherwise) {
+        return s[slot].values.empty() ? otherwise : s[slot].at(i);
+    };
+    reference::Material material;
+    material.albedo = s[PEL_SLOT_ALBEDO].values.empty() ? Rgb{m.albedo[0], m.albedo[1], m.albedo[2]}
+                                                        : s[PEL_SLOT_ALBEDO].vec(i);
+    material.diffusionRadius = m.diffusionRadius;
+    material.normalBlend = {m.normalBlend[0], m.normalBlend[1], m.normalBlend[2]};
+    material.shadowFilterWidth = m.shadowFilterWidth;
+    material.deepScatterColor = {m.deepScatterColor[0], m.deepScatterColor[1], m.deepScatterColor[2]};
+    material.deepScatterRadius = m.deepScatterRadius;
+    material.specular = m.specular * value(PEL_SLOT_SPECULAR, 1);
+    material.roughness = m.roughness * value(PEL_SLOT_ROUGHNESS, 1);
+    material.f0 = m.f0;
+    material.ggx = m.specularModel == PEL_SPECULAR_GGX;
+    material.roughness2 = m.roughness2 * value(PEL_SLOT_ROUGHNESS, 1);
+    material.lobeMix = m.lobeMix;
+    material.deepScatterAmbient = m.deepScatterAmbient;
+    const bool scatters = f.curvatureLut && !s[PEL_SLOT_CURVATURE].values.empty();
+    material.curvatureLut = scatters ? &tables.curvatureTruth : nullptr;
+    const bool wide = !f.lights.empty() && !f.lights[0].wide.values.empty();
+    material.shadowLut = f.shadowLut && wide ? &tables.shadowTruth : nullptr;
+    reference::Pixel pixel;
+    // Unit to double precision: 6e-8 of length would be seen as an angle by sharp lobes.
+    const auto unit = [&](PelImageSlot slot) { return reference::normalized(s[slot].vec(i)); };
+    pixel.shading = unit(PEL_SLOT_NORMAL_SHADING);
+    pixel.geometric = s[PEL_SLOT_NORMAL_GEOMETRIC].values.empty() ? pixel.shading : unit(PEL_SLOT_NORMAL_GEOMETRIC);
+    pixel.blurred = s[PEL_SLOT_NORMAL_BLURRED].values.empty() ? pixel.geometric : unit(PEL_SLOT_NORMAL_BLURRED);
+    if (material.specular > 0) {
+        const Vec3 eye{f.camera.position[0], f.camera.position[1], f.camera.position[2]};
+        pixel.toViewer = reference::normalized(eye - s[PEL_SLOT_POSITION].vec(i));
+    }
+    pixel.curvature = value(PEL_SLOT_CURVATURE, 0);
+    pixel.ambientOcclusion = value(PEL_SLOT_AMBIENT_OCCLUSION, 1);
+    pixel.hasThickness = !s[PEL_SLOT_THICKNESS].values.empty();
+    pixel.thickness = value(PEL_SLOT_THICKNESS, 0);
+    std::vector<reference::PixelLight> lights;
+    for (const Light& light : f.lights) lights.push_back(truthLight(f, m, light, i));
+    reference::Ambient ambient{{f.ambient.constant[0], f.ambient.constant[1], f.ambient.constant[2]}, {}};
+    if (f.cube.size) ambient.cube = &f.cube;
+    for (int k = 0; k < 9; ++k)
+        ambient.harmonics[k] = {f.ambient.sh[k][0], f.ambient.sh[k][1], f.ambient.sh[k][2]};
+    reference::Shaded shaded = reference::shadePixel(material, pixel, lights, ambient);
+    if (!scatters) {
+        // Without a curvature table direct light is Lambert's, of the shading normal.
+        reference::Pixel plain = pixel;
+        plain.blurred = plain.shading;
+        shaded.scattered = reference::shadePixel(material, plain, lights, ambient).scattered;
+    }
+    return shaded;
+}
+
+// Largest difference from the oracle of RGB float32 pixels.
+inline double worstError(const Frame& f, const std::vector<float>& result) {
+    double worst = 0;
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        const Rgb sum = truth(f, tables(), i).sum();
+        for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(sum[c] - result[3 * i + c]));
+    }
+    return worst;
+}
+
+}  // namespace shade_test
