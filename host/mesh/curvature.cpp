@@ -116,7 +116,7 @@ void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params,
         defines.erase("MESH_QUANTITY");
     }
     cl::Launch estimate(
-        topology.device().programs().get(edge ? "mesh/curvature.cl" : std::string(kernel) + ".cl", defines),
+        topology.device().programs().get(text("mesh/", edge ? "curvature" : kernel, ".cl"), defines),
         kernel);
     ringArguments(topology, estimate, rows);
     estimate.arg(data.positions.memory).arg(data.positions.layout.offset);
