@@ -1,4 +1,5 @@
-# Sums up CTest's LastTest.log: GoogleTest and pytest cases one by one, any other test as one. Fails when nothing ran or something failed.
+# Sums up CTest's LastTest.log: GoogleTest and pytest cases one by one, any other test as one. Names what was skipped and why.
+# Fails when nothing ran, when something failed, and, with -v may_skip=REGEX, when a reason to skip does not match.
 function close_test() {
     if (!open) return
     if (ok + bad + skip == 0) { if (good) ok = 1; else bad = 1 }
@@ -6,19 +7,36 @@ function close_test() {
     passed += ok; failed += bad; skipped += skip
     open = 0
 }
-/^[0-9]+\/[0-9]+ Testing: / { close_test(); open = 1; ok = bad = skip = good = 0 }
+function skip_because(name, reason) {
+    skip++
+    list = list "skipped: " name ": " reason "\n"
+    if (may_skip != "" && reason !~ may_skip) { forbidden++; list = list "    must not be skipped here\n" }
+}
+/^[0-9]+\/[0-9]+ Testing: / { close_test(); open = 1; ok = bad = skip = good = 0; test = $3 }
 /^\[       OK \] / { ok++ }
-/^\[  SKIPPED \] .*\([0-9]+ ms\)/ { skip++ }
+# FILE:LINE: Skipped, and the reason on the next line
+after_skipped { reason = $0; after_skipped = 0 }
+/: Skipped$/ { after_skipped = 1 }
+/^\[  SKIPPED \] .*\([0-9]+ ms\)/ { skip_because(test " " $4, reason); reason = "" }
 /^\[  FAILED  \] .*\([0-9]+ ms\)/ { bad++ }
-# Python tests, one a line: PATH::NAME PASSED
+# Python tests, one a line: PATH::NAME PASSED. What pytest skipped stands in its summary with the whole reason and a count:
+# SKIPPED [2] PATH:LINE: REASON
 /^[^ ]+::.* PASSED( |$)/ { ok++ }
-/^[^ ]+::.* (SKIPPED|XFAIL)( |$)/ { skip++ }
+/^[^ ]+::.* SKIPPED \(.*\)$/ { name = $1; sub(/^.* SKIPPED /, ""); skip_because(name, $0) }
+/^SKIPPED \[[0-9]+\] [^ ]+: / {
+    times = substr($2, 2) + 0; name = $3
+    sub(/:$/, "", name)
+    sub(/^SKIPPED \[[0-9]+\] [^ ]+: /, "")
+    while (times-- > 0) skip_because(name, $0)
+}
 /^[^ ]+::.* (FAILED|ERROR)( |$)/ { bad++ }
 /^Test Passed\./ { good = 1 }
 END {
     close_test()
+    printf "%s", list
     line = (passed + 0) " passed, " (failed + 0) " failed"
     if (skipped > 0) line = line ", " skipped " skipped"
+    if (forbidden > 0) line = line ", " forbidden " of them though nothing is missing"
     print line
-    exit (failed > 0 || passed == 0)
+    exit (failed > 0 || passed == 0 || forbidden > 0)
 }
