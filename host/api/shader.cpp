@@ -1,13 +1,15 @@
 #include "shading/shader.h"
 
 #include "api/entry.h"
+#include "api/shading_passes.h"
 #include "core/submission.h"
 
 using namespace pel;
 
 PelError pelShaderCreate(PelDevice device, PelShader* shader) {
     return entry([&] {
-        output(shader, "shader") = toHandle<PelShader>(make<Shader>(Ref(&fromHandle<Device>(device))));
+        output(shader, "shader") =
+            toHandle<PelShader>(make<Shader>(Ref(&fromHandle<Device>(device)), shadingPasses()));
     });
 }
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shading/shade_tables.h"
-#include "shading/shader.h"
-#include "shading/shader_check.h"
+#include "shading/check_settings.h"
+#include "shading/launch_ranges.h"
+#include "shading/shading_constants.h"
 #include "shared/screen.h"
 
 namespace pel {
@@ -58,13 +58,14 @@ void screenCurvature(Device& device, const PelScreenCurvatureParams& params,
     frame.position = describeImage(where);
     if (images.ids) frame.ids = describeImage(images.ids);
     frame.curvature = describeImage(images.curvature);
-    cl::Launch launch(device.programs().get("shading/screen_curvature.cl",
-                                            {{"PEL_FORMAT_NORMAL", text(formatCode(images.normals, lanes))},
-                                             {"PEL_FORMAT_POSITION", text(formatCode(images.positions, lanes))},
-                                             {"PEL_FORMAT_DEPTH", text(formatCode(images.depth, lanes))},
-                                             {"PEL_FORMAT_IDS", text(formatCode(images.ids, lanes))},
-                                             {"PEL_FORMAT_CURVATURE", text(formatCode(images.curvature, lanes))}}),
-                      "screen_curvature");
+    cl::Launch launch(
+        device.programs().get("shading/screen_curvature.cl",
+                              {{"PEL_FORMAT_NORMAL", text(formatCode(images.normals, lanes))},
+                               {"PEL_FORMAT_POSITION", text(formatCode(images.positions, lanes))},
+                               {"PEL_FORMAT_DEPTH", text(formatCode(images.depth, lanes))},
+                               {"PEL_FORMAT_IDS", text(formatCode(images.ids, lanes))},
+                               {"PEL_FORMAT_CURVATURE", text(formatCode(images.curvature, lanes))}}),
+        "screen_curvature");
     // Copied here and now: the queue, which may be busy, has no part in it.
     const cl::Memory memory = device.allocate(sizeof frame, &frame);
     launch.arg(memory).arg(images.normals.buffer->memory()).arg(where.buffer->memory());

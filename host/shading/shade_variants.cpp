@@ -1,11 +1,13 @@
-// Which programs a shader needs: the kernel variants of its features and formats, and how they are launched.
-#include "shading/shader.h"
+#include "shading/shade_variants.h"
 
 #include <algorithm>
 #include <bit>
 #include <set>
 
+#include "shading/features.h"
+#include "shading/launch_ranges.h"
 #include "shared/features.h"
+#include "shared/shade.h"
 
 namespace pel {
 namespace {
@@ -16,19 +18,24 @@ static_assert(PEL_BIT_DIRECT_SCATTER == PEL_FEATURE_DIRECT_SCATTER && PEL_BIT_SH
               PEL_BIT_THICKNESS_TAPS == PEL_FEATURE_THICKNESS_TAPS &&
               PEL_BIT_SPECULAR == PEL_FEATURE_SPECULAR);
 // What the passes before it do does not make another variant of the shading kernel.
-constexpr uint32_t shadeFeatures = (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER |
-                                   PEL_FEATURE_AMBIENT_CUBE | PEL_FEATURE_SHADOW_CUBE | PEL_FEATURE_SHADOW_CASCADES;
+constexpr uint32_t shadeFeatures = (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX |
+                                   PEL_FEATURE_AMBIENT_SCATTER | PEL_FEATURE_AMBIENT_CUBE |
+                                   PEL_FEATURE_SHADOW_CUBE | PEL_FEATURE_SHADOW_CASCADES;
 // Those that a material asks for (materialNeeds); the others hold for all of a frame.
-constexpr uint32_t materialFeatures = PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SHADOW_LUT | PEL_FEATURE_DEEP_SCATTER |
-                                      PEL_FEATURE_THICKNESS_TAPS | PEL_FEATURE_SPECULAR | PEL_FEATURE_GGX |
-                                      PEL_FEATURE_AMBIENT_SCATTER;
+constexpr uint32_t materialFeatures = PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SHADOW_LUT |
+                                      PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS |
+                                      PEL_FEATURE_SPECULAR | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER;
 static_assert(PEL_BIT_GGX == PEL_FEATURE_GGX && PEL_BIT_AMBIENT_SCATTER == PEL_FEATURE_AMBIENT_SCATTER &&
-              PEL_BIT_AMBIENT_CUBE == PEL_FEATURE_AMBIENT_CUBE && PEL_BIT_SHADOW_CUBE == PEL_FEATURE_SHADOW_CUBE &&
+              PEL_BIT_AMBIENT_CUBE == PEL_FEATURE_AMBIENT_CUBE &&
+              PEL_BIT_SHADOW_CUBE == PEL_FEATURE_SHADOW_CUBE &&
               PEL_BIT_SHADOW_CASCADES == PEL_FEATURE_SHADOW_CASCADES);
 static_assert(PEL_MAP_CUBE == PEL_SHADOW_CUBE && PEL_MAP_CUBE_RADIAL == PEL_SHADOW_CUBE_RADIAL &&
-              PEL_CONTENT_MOMENTS == PEL_SHADOW_CONTENT_MOMENTS && PEL_CONTENT_EXPONENTIAL == PEL_SHADOW_CONTENT_EXPONENTIAL);
-static_assert(PEL_IMAGE_OUT_DIFFUSE == PEL_SLOT_OUT_DIFFUSE && PEL_IMAGE_OUT_DEEP_SCATTER == PEL_SLOT_OUT_DEEP_SCATTER &&
-              PEL_IMAGE_OUT_SPECULAR == PEL_SLOT_OUT_SPECULAR && PEL_IMAGE_OUT_THICKNESS == PEL_SLOT_OUT_THICKNESS);
+              PEL_CONTENT_MOMENTS == PEL_SHADOW_CONTENT_MOMENTS &&
+              PEL_CONTENT_EXPONENTIAL == PEL_SHADOW_CONTENT_EXPONENTIAL);
+static_assert(PEL_IMAGE_OUT_DIFFUSE == PEL_SLOT_OUT_DIFFUSE &&
+              PEL_IMAGE_OUT_DEEP_SCATTER == PEL_SLOT_OUT_DEEP_SCATTER &&
+              PEL_IMAGE_OUT_SPECULAR == PEL_SLOT_OUT_SPECULAR &&
+              PEL_IMAGE_OUT_THICKNESS == PEL_SLOT_OUT_THICKNESS);
 
 // Whether the shading kernel itself reads or writes a slot.
 bool isShadeSlot(int slot) {
@@ -62,7 +69,8 @@ constexpr const char* formatDefines[PEL_SLOT_COUNT] = {
     "PEL_FORMAT_OUT_DIFFUSE",      "PEL_FORMAT_OUT_DEEP_SCATTER",
     "PEL_FORMAT_OUT_SPECULAR",     "PEL_FORMAT_OUT_THICKNESS"};
 
-// Tiles that a work-item of the classification takes: runs on a CPU, one each on a GPU, which has thousands of work-items.
+// Tiles that a work-item of the classification takes: runs on a CPU, one each on a GPU, which has thousands
+// of work-items.
 uint32_t classifyRun(const Device& device) {
     if (device.info().mathWidth == 1) return 1;
     // Long runs stay in order, which prefetchers follow; a few for each unit keep all of them busy.
@@ -80,9 +88,11 @@ bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
         case PEL_SLOT_DEPTH:
             return !state.images[PEL_SLOT_POSITION] && slotIsRead(state, PEL_SLOT_POSITION, features);
         case PEL_SLOT_NORMAL_BLURRED:
-            return features & (PEL_BIT_DIRECT_SCATTER | PEL_BIT_AMBIENT | PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER);
+            return features & (PEL_BIT_DIRECT_SCATTER | PEL_BIT_AMBIENT | PEL_BIT_DEEP_SCATTER |
+                               PEL_BIT_AMBIENT_SCATTER);
         case PEL_SLOT_NORMAL_GEOMETRIC:
-            return (!state.images[PEL_SLOT_NORMAL_BLURRED] && slotIsRead(state, PEL_SLOT_NORMAL_BLURRED, features)) ||
+            return (!state.images[PEL_SLOT_NORMAL_BLURRED] &&
+                    slotIsRead(state, PEL_SLOT_NORMAL_BLURRED, features)) ||
                    features & (PEL_BIT_SHADOW_LUT | PEL_BIT_THICKNESS_TAPS);
         case PEL_SLOT_CURVATURE:
             return features & PEL_BIT_DIRECT_SCATTER;
@@ -100,9 +110,10 @@ bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
 
 }  // namespace
 
-cl::ProgramKey shadeKey(const ShaderState& state, uint32_t features, const Device& device) {
+cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t features) {
     features &= shadeFeatures;
-    if (!(features & PEL_BIT_THICKNESS_TAPS)) features &= ~uint32_t(PEL_BIT_SHADOW_CUBE | PEL_BIT_SHADOW_CASCADES);
+    if (!(features & PEL_BIT_THICKNESS_TAPS))
+        features &= ~uint32_t(PEL_BIT_SHADOW_CUBE | PEL_BIT_SHADOW_CASCADES);
     if (state.options.accumulate) features |= PEL_BIT_ACCUMULATE;
     if (state.options.disableSkipping) features |= PEL_BIT_NO_SKIPPING;
     if (state.options.countPixels) features |= PEL_BIT_COUNT;
@@ -117,14 +128,13 @@ cl::ProgramKey shadeKey(const ShaderState& state, uint32_t features, const Devic
         content = light.params.shadowContent;
     }
     if (!(features & PEL_BIT_THICKNESS_TAPS)) map = content = 0;
-    cl::Defines defines{
-        {"PEL_FEATURES", std::to_string(features)},
-        {"PEL_SHADE_GROUP", std::to_string(shadeGroup(device))},
-        {"PEL_CLASSIFY_GROUP", std::to_string(classifyGroup(device))},
-        {"PEL_CLASSIFY_RUN", std::to_string(classifyRun(device))},
-        {"PEL_FORMAT_WIDE_SHADOW", std::to_string(wide)},
-        {"PEL_FORMAT_SHADOW_MAP", std::to_string(map)},
-        {"PEL_SHADOW_CONTENT", std::to_string(content)}};
+    cl::Defines defines{{"PEL_FEATURES", std::to_string(features)},
+                        {"PEL_SHADE_GROUP", std::to_string(tileGroup(device))},
+                        {"PEL_CLASSIFY_GROUP", std::to_string(classifyGroup(device))},
+                        {"PEL_CLASSIFY_RUN", std::to_string(classifyRun(device))},
+                        {"PEL_FORMAT_WIDE_SHADOW", std::to_string(wide)},
+                        {"PEL_FORMAT_SHADOW_MAP", std::to_string(map)},
+                        {"PEL_SHADOW_CONTENT", std::to_string(content)}};
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) {
         if (!isShadeSlot(slot)) continue;
         const uint32_t code =
@@ -137,38 +147,16 @@ cl::ProgramKey shadeKey(const ShaderState& state, uint32_t features, const Devic
     return key;
 }
 
-uint32_t shadeGroup(const Device& device) {
-    return device.info().mathWidth > 1 ? 1 : 64;
-}
-
-uint32_t formatCode(const ImageView& view, uint32_t mathWidth) {
-    if (!view) return 0;
-    const bool vectors = view.tightlyPacked() && view.width >= mathWidth;
-    return uint32_t(view.format) | (vectors ? 0 : PEL_FMT_STRIDED);
-}
-
-uint32_t mapFormatCode(const ShaderLight& light) {
-    uint32_t code = formatCode(light.images[PEL_LIGHT_SHADOW_MAP], 1);
-    for (uint32_t i = 1; i < light.params.shadowCascades; ++i) code |= formatCode(*shadowCascade(light, i).map, 1);
-    return code;
-}
-
 cl::Range classifyRange(const Device& device, size_t tiles) {
     const size_t run = classifyRun(device);
     return {{(tiles + run - 1) / run, 1, 1}, {classifyGroup(device), 1, 1}};
 }
 
-cl::Range tileRange(const Device& device, uint32_t tiles) {
-    const size_t group = shadeGroup(device);
-    const size_t groups = std::min<size_t>(tiles, 64 * size_t(device.info().computeUnits));
-    return {{groups * group, 1, 1}, {group, 1, 1}};
-}
-
 std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t features) {
     std::vector<uint32_t> variants{features};
     // What else is written must not depend on the variant; and tests want every term everywhere.
-    if (!state.images[PEL_SLOT_MATERIAL] || state.options.tileLists != PEL_TILES_PER_VARIANT || state.options.disableSkipping ||
-        features & PEL_FEATURE_OUTPUTS)
+    if (!state.images[PEL_SLOT_MATERIAL] || state.options.tileLists != PEL_TILES_PER_VARIANT ||
+        state.options.disableSkipping || features & PEL_FEATURE_OUTPUTS)
         return variants;
     std::set<uint32_t> needed;
     for (const auto& [id, material] : state.materials) needed.insert(materialNeeds(state, material));
@@ -176,7 +164,9 @@ std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t feature
     for (const uint32_t needs : needed) {
         const uint32_t left = (features & ~materialFeatures) | needs;
         // Another variant pays where it spares a term of its own (docs/shading.md, "Tiles").
-        if ((features & ~left) & (PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SPECULAR | PEL_FEATURE_DEEP_SCATTER)) partial.push_back(left);
+        if ((features & ~left) &
+            (PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SPECULAR | PEL_FEATURE_DEEP_SCATTER))
+            partial.push_back(left);
     }
     std::ranges::stable_sort(partial, std::greater{}, [](uint32_t f) { return std::popcount(f); });
     // The cheapest ones.

@@ -1,125 +1,198 @@
+// Commit and execution of a PelShader, and what it counted.
 #include "shading/shader.h"
 
-#include "core/struct_size.h"
-#include "shading/shader_check.h"
+#include <algorithm>
+
+#include "shading/features.h"
+#include "shading/shade_variants.h"
 
 namespace pel {
+namespace {
 
-Shader::Shader(Ref<Device> device) : Object(kind), device_(std::move(device)) {}
-
-void Shader::setOptions(const PelShaderOptions& options) {
-    checkOptions(options);
-    state_.options = options;
-    committed_ = false;
+ShaderPlan planOf(const ShaderState& state) {
+    ShaderPlan plan;
+    plan.features = deriveFeatures(state);
+    plan.state = state;
+    plan.variants = variantFeatures(state, plan.features);
+    const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
+    plan.tilesX = (frame.width + PEL_TILE_WIDTH - 1) / PEL_TILE_WIDTH;
+    plan.tileRows = (frame.height + PEL_TILE_HEIGHT - 1) / PEL_TILE_HEIGHT;
+    for (uint32_t i = 0; i < state.lights.size(); ++i)
+        if (filtersShadow(state.lights[i])) plan.filteredLights.push_back({i, cl::Memory()});
+    return plan;
 }
 
-void Shader::setImage(PelImageSlot slot, const PelImageDesc* image) {
-    if (uint32_t(slot) >= PEL_SLOT_COUNT)
-        invalidArgument("image slot ", int(slot), " is none of PelImageSlot");
-    ImageView view;
-    if (image) {
-        view = makeImageView(*image, *device_, slotName(slot));
-        checkImage(slot, view);
+}  // namespace
+
+Shader::Shader(Ref<Device> device, std::span<const PassKind> passes)
+    : Object(kind), device_(std::move(device)), passKinds_(passes) {}
+
+void Shader::commit() {
+    allocate(UINT32_MAX);
+    finishPlan();
+}
+
+// A plan and its passes' memory, in bands of at most this many rows of tiles.
+void Shader::allocate(uint32_t mostRows) {
+    ShaderPlan plan = planOf(state_);
+    // Old images go before new ones are made: both together would not keep to a budget. After a failure
+    // nothing is held.
+    committed_ = false;
+    plan_ = ShaderPlan();
+    PassList passes = std::exchange(passes_, PassList());
+    if (passes.empty()) passes = PassList(passKinds_);
+    passes.allocate(device_, plan, mostRows);
+    if (!counters_ && state_.options.countPixels)
+        counters_ = device_->allocate(PEL_COUNTERS * sizeof(cl_uint));
+    plan.counters = counters_;
+    plan_ = std::move(plan);
+    passes_ = std::move(passes);
+}
+
+void Shader::finishPlan() {
+    const uint32_t before = device_->programs().counts().built;
+    passes_.each([&](Pass& pass) { pass.build(*device_, plan_); });
+    programsBuilt_ += device_->programs().counts().built - before;
+    send();
+    committed_ = true;
+}
+
+// The plan's constants.
+void Shader::send() {
+    scratchRow_.reset();
+    bytesUploaded_ +=
+        constants_.update(*device_, plan_.state, plan_.variants, plan_.tilesX * plan_.listRows());
+    passes_.each([&](Pass& pass) { bytesUploaded_ += pass.upload(*device_, plan_); });
+}
+
+// Less at a time. Returns false when that is not possible.
+bool Shader::halveBand() {
+    const uint32_t rows = std::min(plan_.bandRows, plan_.tileRows);
+    if (!plan_.scratch || rows <= 1) return false;
+    device_->finish();
+    committed_ = false;
+    passes_.allocate(device_, plan_, rows / 2);
+    send();
+    committed_ = true;
+    return true;
+}
+
+PassWork Shader::beginWork() {
+    events_.clear();
+    bands_ = 0;
+    if (counters_ && state_.options.countPixels)
+        device_->fill(counters_.get(), 0, PEL_COUNTERS * sizeof(cl_uint), 0);
+    PassWork work{*device_, plan_, constants_, events_};
+    passes_.each([&](Pass& pass) { pass.enqueueFrame(work); });
+    return work;
+}
+
+void Shader::execute(bool blocking) {
+    if (!committed_)
+        fail(PEL_ERROR_INVALID_STATE,
+             "something was set after the last pelShaderCommit, or nothing was committed yet");
+    PassWork work = beginWork();
+    work.interruptible = blocking && device_->hasProgress();
+    for (uint32_t row = 0; row < plan_.tileRows;) {
+        work.rows = {row, row + std::min(plan_.bandRows, plan_.tileRows - row)};
+        work.band = bands_;
+        work.written = false;
+        try {
+            runBand(work);
+        } catch (const Error& e) {
+            // Drivers may find out only now that memory does not suffice. Pixels that are shaded already stay
+            // as they are: where radiance lies over an input they could not be shaded again.
+            if (e.code() != PEL_ERROR_OUT_OF_MEMORY || work.written || !halveBand()) throw;
+            continue;
+        }
+        row = work.rows.end;
+        ++bands_;
     }
-    state_.images[slot] = view;
-    committed_ = false;
+    if (work.interruptible) device_->progress(1, "shading");
+    launches_ = events_.size();
+    uploadedBefore_ = std::exchange(bytesUploaded_, 0);
+    executed_ = true;
 }
 
-void Shader::setMaterial(uint32_t id, const PelMaterial* material, Lut* curvatureLut, Lut* shadowLut) {
-    if (id < 1 || id >= PEL_MATERIALS)
-        invalidArgument("material id ", id, " is not between 1 and ", PEL_MATERIALS - 1,
-                        " (0 is the background)");
-    if (!material) {
-        state_.materials.erase(id);
-        committed_ = false;
-        return;
+void Shader::setRows(const PassWork& work, TileRows rows) {
+    constants_.setBand(*device_, rows.begin * plan_.tilesX, (rows.end - rows.begin) * plan_.tilesX,
+                       work.around.begin * PEL_TILE_HEIGHT);
+}
+
+// A band: passes make what they need in it and around it, the last of them shades it.
+void Shader::runBand(PassWork& work) {
+    const TileRows rows = work.rows;
+    work.around = {rows.begin - std::min(rows.begin, plan_.haloRows),
+                   std::min(rows.end + plan_.haloRows, plan_.tileRows)};
+    const uint32_t scratchRow = work.around.begin * PEL_TILE_HEIGHT;
+    if (plan_.scratch && scratchRow_ != scratchRow) {
+        scratchRow_.reset();
+        passes_.each([&](Pass& pass) { pass.moveScratch(*device_, plan_, constants_, scratchRow); });
+        scratchRow_ = scratchRow;
     }
-    checkMaterial(*material);
-    const auto check = [&](Lut* lut, PelLutKind kind, const char* what) {
-        if (!lut) return;
-        if (&lut->device() != device_.get())
-            invalidArgument("the ", what, " LUT belongs to another PelDevice than the shader");
-        if (lut->info().kind != kind) invalidArgument("the LUT given as ", what, " LUT is of the other kind");
-    };
-    check(curvatureLut, PEL_LUT_CURVATURE, "curvature");
-    check(shadowLut, PEL_LUT_SHADOW, "shadow");
-    ShaderMaterial& set = state_.materials[id];  // which may have a normal map already
-    set.params = *material;
-    set.curvatureLut = Ref(curvatureLut);
-    set.shadowLut = Ref(shadowLut);
-    committed_ = false;
+    setRows(work, work.around);
+    work.rows = work.around;
+    passes_.each([&](Pass& pass) { pass.enqueueAround(work); });
+    work.rows = rows;
+    if (!work.alone()) setRows(work, rows);
+    passes_.each([&](Pass& pass) { pass.enqueue(work); });
 }
 
-void Shader::setNormalMap(uint32_t id, const PelImageDesc* levels, uint32_t count) {
-    const auto found = state_.materials.find(id);
-    if (found == state_.materials.end())
-        invalidArgument("material ", id, " is not set: pelShaderSetMaterial comes before its normal map");
-    if (count > PEL_MAP_LEVELS) invalidArgument("a normal map of ", count, " levels; ", PEL_MAP_LEVELS, " are the most");
-    if (count > 0 && !levels) invalidArgument("levels is NULL but their count is ", count);
-    std::vector<ImageView> views;
-    const char* next = reinterpret_cast<const char*>(levels);
-    for (uint32_t i = 0; i < count; ++i) {
-        const auto* level = reinterpret_cast<const PelImageDesc*>(next);
-        views.push_back(makeImageView(readStruct(level, pelImageDescDefaults(), "PelImageDesc"), *device_,
-                                      text("normal map ", i).c_str()));
-        next += level->structSize;
+void Shader::addPrefillJobs(std::vector<std::function<void()>>& jobs) const {
+    Ref<Shader> shader = make<Shader>(device_, passKinds_);
+    shader->state_ = state_;
+    shader->allocate(1);
+    std::vector<cl::ProgramKey> keys;  // each once
+    shader->passes_.each([&](const Pass& pass) {
+        for (cl::ProgramKey& key : pass.programs(*device_, shader->plan_))
+            if (std::ranges::find(keys, key) == keys.end()) keys.push_back(std::move(key));
+    });
+    for (const cl::ProgramKey& key : keys)
+        jobs.push_back([device = device_, key] { device->programs().get(key); });
+    jobs.push_back([shader] {
+        shader->finishPlan();
+        shader->launchOnNothing();
+    });
+}
+
+// Every kernel that an execution launches, but in a frame of no tiles.
+void Shader::launchOnNothing() {
+    PassWork work = beginWork();
+    constants_.setBand(*device_, 0, 0, 0);
+    work.rows = work.around = {0, 1};
+    passes_.each([&](Pass& pass) { pass.enqueueAround(work); });
+    passes_.each([&](Pass& pass) { pass.enqueue(work); });
+    device_->finish();
+}
+
+PelShaderStats Shader::stats() {
+    device_->finish();
+    PelShaderStats stats = pelShaderStatsDefaults();
+    stats.features = plan_.features;
+    stats.programsBuilt = programsBuilt_;
+    stats.scratchBytes =
+        constants_.scratchBytes() + passes_.bytes() + (counters_ ? PEL_COUNTERS * sizeof(cl_uint) : 0);
+    if (!executed_) return stats;
+    stats.launches = launches_;
+    stats.bytesUploaded = uploadedBefore_;
+    stats.tilesTotal = stats.tilesShaded = constants_.frame().tiles;
+    stats.pixelsTotal = uint64_t(constants_.frame().width) * constants_.frame().height;
+    stats.bands = bands_;
+    stats.variants = plan_.variants.size();
+    if (committed_) passes_.each([&](const Pass& pass) { pass.addStats(*device_, plan_, bands_, stats); });
+    if (state_.options.countPixels && committed_) {
+        cl_uint counts[PEL_COUNTERS];
+        device_->read(counters_.get(), 0, sizeof counts, counts, true);
+        stats.pixelsShaded = counts[PEL_COUNT_SHADED];
+        stats.pixelsShadowLut = counts[PEL_COUNT_SHADOW_LUT];
+        stats.pixelsThickness = counts[PEL_COUNT_THICKNESS];
+        stats.pixelsSpecular = counts[PEL_COUNT_SPECULAR];
+        stats.pixelsInvalid = counts[PEL_COUNT_INVALID];
+        stats.pixelsWideShadow = counts[PEL_COUNT_WIDE_SHADOW];
+        stats.pixelsShadowTexels = counts[PEL_COUNT_SHADOW_TEXELS];
     }
-    checkNormalMap(views);
-    found->second.normalMap = std::move(views);
-    committed_ = false;
-}
-
-void Shader::setLights(const PelLight* lights, uint32_t count) {
-    if (count > 64) invalidArgument(count, " lights were given; 64 is the most");
-    if (count > 0 && !lights) invalidArgument("lights is NULL but their count is ", count);
-    std::vector<ShaderLight> list(count);
-    const char* next = reinterpret_cast<const char*>(lights);
-    for (uint32_t i = 0; i < count; ++i) {
-        const auto* light = reinterpret_cast<const PelLight*>(next);
-        list[i].params = readStruct(light, pelLightDefaults(), "PelLight");
-        next += light->structSize;
-        checkLight(list[i].params, i);
-        if (i < state_.lights.size()) list[i].images = state_.lights[i].images;
-    }
-    state_.lights = std::move(list);
-    committed_ = false;
-}
-
-void Shader::setLightImage(uint32_t light, PelLightSlot slot, const PelImageDesc* image) {
-    if (light >= state_.lights.size())
-        invalidArgument("light ", light, " of ", state_.lights.size(),
-                        " was named; pelShaderSetLights comes first");
-    if (uint32_t(slot) >= PEL_LIGHT_SLOT_COUNT)
-        invalidArgument("light image slot ", int(slot), " is none of PelLightSlot");
-    ImageView view;
-    if (image) {
-        view = makeImageView(*image, *device_, lightSlotName(slot));
-        checkLightImage(slot, view);
-    }
-    state_.lights[light].images[slot] = view;
-    committed_ = false;
-}
-
-void Shader::setAmbient(const PelAmbient& ambient) {
-    checkAmbient(ambient);
-    state_.ambient = ambient;
-    committed_ = false;
-}
-
-void Shader::setAmbientCube(const PelImageDesc* faces) {
-    ImageView view;
-    if (faces) {
-        view = makeImageView(*faces, *device_, "ambient cube");
-        checkAmbientCube(view);
-    }
-    state_.ambientCube = view;
-    committed_ = false;
-}
-
-void Shader::setCamera(const PelCamera& camera) {
-    checkCamera(camera);
-    state_.camera = camera;
-    committed_ = false;
+    for (const cl::Event& event : events_) stats.deviceMilliseconds += eventMilliseconds(event);
+    return stats;
 }
 
 }  // namespace pel

@@ -1,11 +1,11 @@
-#include "shading/shade_tables.h"
+#include "shading/shading_constants.h"
 
 #include <algorithm>
 #include <cfloat>
-#include <cstddef>
 #include <cmath>
+#include <cstddef>
 
-#include "shading/shader.h"
+#include "shading/features.h"
 
 namespace pel {
 namespace {
@@ -18,7 +18,8 @@ void copy(float (&to)[N], const float (&from)[N]) {
 // How far u (row 0) or v (row 1) of a parallel map goes per length.
 double uvPerLength(const float (&m)[16], int row) {
     const float* r = m + 4 * row;
-    return std::sqrt(double(r[0]) * r[0] + double(r[1]) * r[1] + double(r[2]) * r[2]) / std::abs(double(m[15]));
+    return std::sqrt(double(r[0]) * r[0] + double(r[1]) * r[1] + double(r[2]) * r[2]) /
+           std::abs(double(m[15]));
 }
 
 // Texels of a table with its copied last column and row (shared/lut.h).
@@ -27,17 +28,6 @@ size_t texelCount(const Lut& lut) {
 }
 
 }  // namespace
-
-size_t CachedUpload::update(Device& device, const void* bytes, size_t count) {
-    const auto* from = static_cast<const unsigned char*>(bytes);
-    if (memory_ && bytes_.size() == count && std::equal(from, from + count, bytes_.begin())) return 0;
-    // A new buffer: an execution that is still queued keeps reading the old one.
-    memory_ = device.allocate(std::max<size_t>(count, 16), nullptr);
-    bytes_.clear();
-    if (count) device.write(memory_.get(), 0, count, bytes, true);
-    bytes_.assign(from, from + count);
-    return count;
-}
 
 PelShadeImage describeImage(const ImageView& view) {
     PelShadeImage image{};
@@ -53,8 +43,8 @@ PelShadeImage describeImage(const ImageView& view) {
     return image;
 }
 
-size_t ShadeTables::update(Device& device, const ShaderState& state, const std::vector<uint32_t>& variants,
-                           uint32_t listTiles) {
+size_t ShadingConstants::update(Device& device, const ShaderState& state,
+                                const std::vector<uint32_t>& variants, uint32_t listTiles) {
     gatherLuts(device, state);
     fillFrame(state);
     frame_.listTiles = listTiles;
@@ -67,7 +57,7 @@ size_t ShadeTables::update(Device& device, const ShaderState& state, const std::
            lightUpload_.update(device, lights.data(), lights.size() * sizeof(PelShadeLight));
 }
 
-void ShadeTables::setBand(Device& device, uint32_t firstTile, uint32_t tiles, uint32_t scratchRow) {
+void ShadingConstants::setBand(Device& device, uint32_t firstTile, uint32_t tiles, uint32_t scratchRow) {
     const std::array<uint32_t, 3> band{tiles, firstTile, scratchRow};
     static_assert(offsetof(PelShadeFrame, firstTile) == offsetof(PelShadeFrame, tiles) + 4 &&
                   offsetof(PelShadeFrame, scratchRow) == offsetof(PelShadeFrame, tiles) + 8);
@@ -78,11 +68,11 @@ void ShadeTables::setBand(Device& device, uint32_t firstTile, uint32_t tiles, ui
     }
 }
 
-size_t ShadeTables::scratchBytes() const {
+size_t ShadingConstants::scratchBytes() const {
     return frameUpload_.bytes() + materialUpload_.bytes() + lightUpload_.bytes() + lutBytes_;
 }
 
-void ShadeTables::gatherLuts(Device& device, const ShaderState& state) {
+void ShadingConstants::gatherLuts(Device& device, const ShaderState& state) {
     std::vector<Ref<Lut>> wanted;
     for (const auto& [id, material] : state.materials)
         for (const Ref<Lut>& lut : {material.curvatureLut, material.shadowLut})
@@ -120,7 +110,7 @@ void ShadeTables::gatherLuts(Device& device, const ShaderState& state) {
     offsets_ = std::move(offsets);
 }
 
-PelShadeLut ShadeTables::describe(const Lut* lut, float materialRadius) const {
+PelShadeLut ShadingConstants::describe(const Lut* lut, float materialRadius) const {
     PelShadeLut result{};
     if (!lut) return result;
     const auto found =
@@ -131,7 +121,7 @@ PelShadeLut ShadeTables::describe(const Lut* lut, float materialRadius) const {
     return result;
 }
 
-void ShadeTables::fillFrame(const ShaderState& state) {
+void ShadingConstants::fillFrame(const ShaderState& state) {
     const ImageView& target = state.images[PEL_SLOT_RADIANCE];
     frame_ = {};
     frame_.width = target.width;
@@ -155,8 +145,8 @@ void ShadeTables::fillFrame(const ShaderState& state) {
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) frame_.images[slot] = describeImage(state.images[slot]);
 }
 
-std::vector<PelShadeMaterial> ShadeTables::describeMaterials(const ShaderState& state,
-                                                             const std::vector<uint32_t>& variants) const {
+std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(
+    const ShaderState& state, const std::vector<uint32_t>& variants) const {
     std::vector<PelShadeMaterial> table(state.materials.empty() ? 1 : state.materials.rbegin()->first + 1);
     for (const auto& [id, from] : state.materials) {
         const PelMaterial& m = from.params;
@@ -191,7 +181,7 @@ std::vector<PelShadeMaterial> ShadeTables::describeMaterials(const ShaderState& 
     return table;
 }
 
-uint32_t ShadeTables::lightBuffer(const cl::Memory& memory) {
+uint32_t ShadingConstants::lightBuffer(const cl::Memory& memory) {
     for (size_t i = 0; i < lightBuffers_.size(); ++i)
         if (lightBuffers_[i].get() == memory.get()) return uint32_t(i);
     if (lightBuffers_.size() == PEL_LIGHT_BUFFERS)
@@ -201,7 +191,7 @@ uint32_t ShadeTables::lightBuffer(const cl::Memory& memory) {
     return uint32_t(lightBuffers_.size() - 1);
 }
 
-std::vector<PelShadeLight> ShadeTables::describeLights(const ShaderState& state) {
+std::vector<PelShadeLight> ShadingConstants::describeLights(const ShaderState& state) {
     lightBuffers_.clear();
     std::vector<PelShadeLight> table;
     for (const ShaderLight& from : state.lights) {
@@ -235,7 +225,9 @@ std::vector<PelShadeLight> ShadeTables::describeLights(const ShaderState& state)
             cascade.mapBuffer = lightBuffer(c.map->buffer->memory());
             cascade.map = describeImage(*c.map);
             for (int r = 0; r < 2; ++r)
-                cascade.tapScale[r] = i == 0 ? 1.0f : float(uvPerLength(cascade.worldToShadow, r) / uvPerLength(l.worldToShadow, r));
+                cascade.tapScale[r] =
+                    i == 0 ? 1.0f
+                           : float(uvPerLength(cascade.worldToShadow, r) / uvPerLength(l.worldToShadow, r));
         }
         table.push_back(to);
     }

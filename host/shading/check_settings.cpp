@@ -1,17 +1,24 @@
 // What a shader accepts, value by value as it is set and as a whole at commit.
-#include "shading/shader_check.h"
+#include "shading/check_settings.h"
 
 #include <cmath>
 #include <initializer_list>
 
+#include "shared/shade.h"
+
 namespace pel {
 namespace {
 
-constexpr const char* slotNames[PEL_SLOT_COUNT] = {
-    "radiance",       "material",       "position",  "depth",  "geometric normal",
-    "shading normal", "blurred normal", "curvature", "albedo", "ambient occlusion",
-    "thickness",      "roughness",      "specular",  "UV",     "UV gradient",
-    "tangent",        "diffuse output", "deep scatter output", "specular output", "thickness output"};
+constexpr const char* slotNames[PEL_SLOT_COUNT] = {"radiance",         "material",
+                                                   "position",         "depth",
+                                                   "geometric normal", "shading normal",
+                                                   "blurred normal",   "curvature",
+                                                   "albedo",           "ambient occlusion",
+                                                   "thickness",        "roughness",
+                                                   "specular",         "UV",
+                                                   "UV gradient",      "tangent",
+                                                   "diffuse output",   "deep scatter output",
+                                                   "specular output",  "thickness output"};
 
 enum class Content { scalar, id, color, normal, output, scalarOutput, uv, gradient };
 
@@ -118,7 +125,8 @@ const char* slotName(PelImageSlot slot) {
 }
 
 const char* lightSlotName(PelLightSlot slot) {
-    constexpr const char* names[PEL_LIGHT_SLOT_COUNT] = {"wide shadow", "shadow map", "cascade 1", "cascade 2", "cascade 3"};
+    constexpr const char* names[PEL_LIGHT_SLOT_COUNT] = {"wide shadow", "shadow map", "cascade 1",
+                                                         "cascade 2", "cascade 3"};
     return names[slot];
 }
 
@@ -130,8 +138,8 @@ void checkLightImage(PelLightSlot slot, const ImageView& view) {
     checkContent(view, Content::scalar, lightSlotName(slot));
     // Taps address the map with 32 bits.
     if (slot != PEL_LIGHT_WIDE_SHADOW && view.byteEnd() - view.byteOffset > UINT32_MAX)
-        fail(PEL_ERROR_UNSUPPORTED, "the ", lightSlotName(slot), " image spans ", view.byteEnd() - view.byteOffset,
-             " bytes; 4 GiB is the most");
+        fail(PEL_ERROR_UNSUPPORTED, "the ", lightSlotName(slot), " image spans ",
+             view.byteEnd() - view.byteOffset, " bytes; 4 GiB is the most");
 }
 
 void checkNormalMap(const std::vector<ImageView>& levels) {
@@ -144,12 +152,14 @@ void checkNormalMap(const std::vector<ImageView>& levels) {
         checkContent(level, Content::color, name.c_str());
         if (level.format != first.format || level.tightlyPacked() != first.tightlyPacked() ||
             level.buffer->memory().get() != first.buffer->memory().get())
-            invalidArgument("the ", name, " image has another format, pixel stride or buffer than level 0; all levels need the "
-                            "same, each at its own byteOffset");
+            invalidArgument(
+                "the ", name,
+                " image has another format, pixel stride or buffer than level 0; all levels need the "
+                "same, each at its own byteOffset");
         const uint32_t width = std::max(first.width >> i, 1u), height = std::max(first.height >> i, 1u);
         if (level.width != width || level.height != height)
-            invalidArgument("the ", name, " image is ", level.width, " x ", level.height, "; below ", first.width, " x ",
-                            first.height, " it must be ", width, " x ", height);
+            invalidArgument("the ", name, " image is ", level.width, " x ", level.height, "; below ",
+                            first.width, " x ", first.height, " it must be ", width, " x ", height);
     }
 }
 
@@ -171,7 +181,8 @@ void checkMaterial(const PelMaterial& m) {
                   {"lobeMix", m.lobeMix, 0, 1},
                   {"deepScatterAmbient", m.deepScatterAmbient, 0, huge}});
     if (m.specularModel > PEL_SPECULAR_GGX)
-        invalidArgument("PelMaterial.specularModel is ", int(m.specularModel), ", which is none of PelSpecularModel");
+        invalidArgument("PelMaterial.specularModel is ", int(m.specularModel),
+                        ", which is none of PelSpecularModel");
     if (m.thicknessTaps != 0 && m.thicknessTaps != 8 && m.thicknessTaps != 16 && m.thicknessTaps != 32)
         invalidArgument("PelMaterial.thicknessTaps is ", m.thicknessTaps, "; it must be 0, 8, 16 or 32");
 }
@@ -181,7 +192,8 @@ void checkLight(const PelLight& l, uint32_t index) {
     checkFinite(name.c_str(), "color", l.color, 3);
     for (float c : l.color) within(name.c_str(), {{"color", c, 0, huge}});
     if (l.shadowFilterTexels != 0 && (l.shadowFilterTexels < 4 || l.shadowFilterTexels > 256))
-        invalidArgument(name, ".shadowFilterTexels is ", l.shadowFilterTexels, "; it must be 0, or between 4 and 256");
+        invalidArgument(name, ".shadowFilterTexels is ", l.shadowFilterTexels,
+                        "; it must be 0, or between 4 and 256");
     within(name.c_str(), {{"shadowBias", l.shadowBias, 0, huge},
                           {"shadowSoftness", l.shadowSoftness, 1e-3f, huge},
                           {"shadowConeSlope", l.shadowConeSlope, 0, huge},
@@ -190,9 +202,11 @@ void checkLight(const PelLight& l, uint32_t index) {
     if (l.shadowCascades > PEL_CASCADES)
         invalidArgument(name, ".shadowCascades is ", l.shadowCascades, "; ", PEL_CASCADES, " are the most");
     if (l.shadowContent > PEL_SHADOW_CONTENT_EXPONENTIAL)
-        invalidArgument(name, ".shadowContent is ", int(l.shadowContent), ", which is none of PelShadowContent");
+        invalidArgument(name, ".shadowContent is ", int(l.shadowContent),
+                        ", which is none of PelShadowContent");
     if (l.shadowProjection > PEL_SHADOW_CUBE_RADIAL)
-        invalidArgument(name, ".shadowProjection is ", int(l.shadowProjection), ", which is none of PelShadowProjection");
+        invalidArgument(name, ".shadowProjection is ", int(l.shadowProjection),
+                        ", which is none of PelShadowProjection");
     if (l.type > PEL_LIGHT_SPOT)
         invalidArgument(name, ".type is ", int(l.type), ", which is none of PelLightType");
     if (l.type == PEL_LIGHT_DIRECTIONAL) {
@@ -232,7 +246,8 @@ void checkCamera(const PelCamera& camera) {
 void checkOptions(const PelShaderOptions& options) {
     checkFinite("PelShaderOptions", "invalidColor", options.invalidColor, 3);
     if (options.tileLists > PEL_TILES_NO_LIST)
-        invalidArgument("PelShaderOptions.tileLists is ", int(options.tileLists), ", which is none of PelTileLists");
+        invalidArgument("PelShaderOptions.tileLists is ", int(options.tileLists),
+                        ", which is none of PelTileLists");
 }
 
 }  // namespace pel

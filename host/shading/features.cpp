@@ -1,7 +1,9 @@
-// Which features a shader's state asks for, and whether it has what they need.
+#include "shading/features.h"
+
 #include <algorithm>
 
-#include "shading/shader_check.h"
+#include "shading/check_settings.h"
+#include "shading/launch_ranges.h"
 
 namespace pel {
 namespace {
@@ -36,10 +38,12 @@ void checkSizes(const ShaderState& state) {
                 " image in memory, and not pixel on pixel: pixels would be overwritten before they are "
                 "read");
     };
-    for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot) check(state.images[slot], slotName(PelImageSlot(slot)), slot);
+    for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot)
+        check(state.images[slot], slotName(PelImageSlot(slot)), slot);
     if (const ImageView& cube = state.ambientCube) {
         checkOutputs(cube, "ambient cube", -1);
-        if (overlapsElsewhere(target, cube)) invalidArgument("the radiance image overlaps the ambient cube in memory");
+        if (overlapsElsewhere(target, cube))
+            invalidArgument("the radiance image overlaps the ambient cube in memory");
     }
     for (size_t i = 0; i < state.lights.size(); ++i) {
         check(state.lights[i].images[PEL_LIGHT_WIDE_SHADOW], text("wide shadow ", i));
@@ -48,7 +52,8 @@ void checkSizes(const ShaderState& state) {
             if (!map) continue;
             const std::string what = text(lightSlotName(PelLightSlot(slot)), " ", i);
             checkOutputs(map, what, -1);
-            if (overlapsElsewhere(target, map)) invalidArgument("the radiance image overlaps ", what, " in memory");
+            if (overlapsElsewhere(target, map))
+                invalidArgument("the radiance image overlaps ", what, " in memory");
         }
     }
 }
@@ -78,12 +83,14 @@ void checkMapForms(const ShaderState& state) {
         if (!map) continue;
         if (!first) first = &light;
         if (light.params.shadowContent != first->params.shadowContent)
-            fail(PEL_ERROR_UNSUPPORTED, "one light has shadowContent ", int(first->params.shadowContent), ", another ",
-                 int(light.params.shadowContent), "; the shadow maps of all lights need the same");
+            fail(PEL_ERROR_UNSUPPORTED, "one light has shadowContent ", int(first->params.shadowContent),
+                 ", another ", int(light.params.shadowContent),
+                 "; the shadow maps of all lights need the same");
         for (uint32_t i = 1; i < light.params.shadowCascades; ++i)
-            if (const ImageView& cascade = *shadowCascade(light, i).map; cascade && cascade.format != map.format)
-                fail(PEL_ERROR_UNSUPPORTED, "the first cascade has format ", map.info().name, ", another ", cascade.info().name,
-                     "; all shadow maps need the same");
+            if (const ImageView& cascade = *shadowCascade(light, i).map;
+                cascade && cascade.format != map.format)
+                fail(PEL_ERROR_UNSUPPORTED, "the first cascade has format ", map.info().name, ", another ",
+                     cascade.info().name, "; all shadow maps need the same");
     }
 }
 
@@ -96,11 +103,26 @@ void checkMapFormats(const ShaderState& state) {
         if (!first) first = &view;
         if (formatCode(view, 1) != formatCode(*first, 1))
             fail(PEL_ERROR_UNSUPPORTED, "the normal map of material ", id, " has format ", view.info().name,
-                 ", another ", first->info().name, ", or another packing; those of all materials need the same");
+                 ", another ", first->info().name,
+                 ", or another packing; those of all materials need the same");
     }
 }
 
 }  // namespace
+
+bool filtersShadow(const ShaderLight& light) {
+    return !light.images[PEL_LIGHT_WIDE_SHADOW] && light.images[PEL_LIGHT_SHADOW_MAP] &&
+           light.params.shadowFilterTexels > 0;
+}
+
+uint32_t formFeatures(const PelLight& l) {
+    uint32_t features = 0;
+    if (isCube(l)) features |= PEL_FEATURE_SHADOW_CUBE;
+    if (l.shadowCascades) features |= PEL_FEATURE_SHADOW_CASCADES;
+    if (l.shadowContent == PEL_SHADOW_CONTENT_EXPONENTIAL) features |= PEL_FEATURE_SHADOW_EXPONENTIAL;
+    if (l.shadowContent == PEL_SHADOW_CONTENT_MOMENTS) features |= PEL_FEATURE_SHADOW_MOMENTS;
+    return features;
+}
 
 bool isBlack(const PelAmbient& a) {
     return black(a.constant) &&
@@ -111,7 +133,8 @@ uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material)
     const auto& images = state.images;
     const PelMaterial& m = material.params;
     const auto some = [&](auto has) { return std::any_of(state.lights.begin(), state.lights.end(), has); };
-    const bool wide = some([](const ShaderLight& l) { return l.images[PEL_LIGHT_WIDE_SHADOW] || filtersShadow(l); });
+    const bool wide =
+        some([](const ShaderLight& l) { return l.images[PEL_LIGHT_WIDE_SHADOW] || filtersShadow(l); });
     const bool map = some([](const ShaderLight& l) { return bool(l.images[PEL_LIGHT_SHADOW_MAP]); });
     uint32_t needs = 0;
     if (!state.lights.empty()) {
@@ -166,7 +189,8 @@ uint32_t deriveFeatures(const ShaderState& state) {
     if (features & (PEL_FEATURE_THICKNESS_TAPS | PEL_FEATURE_FILTER_SHADOW)) features |= forms;
     for (int slot = PEL_SLOT_OUT_DIFFUSE; slot < PEL_SLOT_COUNT; ++slot)
         if (images[slot]) features |= PEL_FEATURE_OUTPUTS;
-    // Blurred normals matter to scattered and ambient light; a host's image goes before ours, a map before the blur.
+    // Blurred normals matter to scattered and ambient light; a host's image goes before ours, a map before
+    // the blur.
     const bool read = !state.lights.empty() || features & PEL_FEATURE_AMBIENT;
     if (read && !images[PEL_SLOT_NORMAL_BLURRED])
         for (const auto& [id, material] : state.materials) {

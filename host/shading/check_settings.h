@@ -1,8 +1,11 @@
 // What a shader accepts. Each throws PEL_ERROR_INVALID_ARGUMENT with the value and what would be right.
 #pragma once
-#include "shading/shader.h"
+#include "shading/shader_state.h"
 
 namespace pel {
+
+const char* slotName(PelImageSlot slot);
+const char* lightSlotName(PelLightSlot slot);
 
 // NAME.FIELD[i] of a structure.
 void checkFinite(const char* structure, const char* field, const float* values, size_t count);
@@ -11,7 +14,8 @@ void checkLightImage(PelLightSlot slot, const ImageView& view);
 void checkNormalMap(const std::vector<ImageView>& levels);
 void checkMaterial(const PelMaterial& material);
 void checkLight(const PelLight& light, uint32_t index);
-// A light's shadow map as it is at commit: its form, its images and the fields that they need (shadow_map_check.cpp).
+// A light's shadow map as it is at commit: its form, its images and the fields that they need
+// (check_shadow_map.cpp).
 void checkLightMap(const ShaderLight& light, uint32_t index);
 void checkAmbient(const PelAmbient& ambient);
 void checkAmbientCube(const ImageView& faces);

@@ -3,33 +3,23 @@
 #include <array>
 #include <vector>
 
-#include "core/device.h"
 #include "lut/lut.h"
+#include "shading/cached_upload.h"
 #include "shared/shade.h"
 
 namespace pel {
 
 struct ShaderState;
 
-// A buffer that is written anew only when its bytes differ from those it holds.
-class CachedUpload {
-  public:
-    // Returns the bytes sent.
-    size_t update(Device& device, const void* bytes, size_t count);
-    const cl::Memory& memory() const { return memory_; }
-    size_t bytes() const { return bytes_.size(); }
-
-  private:
-    std::vector<unsigned char> bytes_;
-    cl::Memory memory_;
-};
-
-class ShadeTables {
+class ShadingConstants {
   public:
     // Returns the bytes sent. The tables of all materials are copied into one buffer when there are several
-    // of them. `variants`: features of each variant of the shading kernel; `listTiles`: PelShadeFrame.listTiles.
-    size_t update(Device& device, const ShaderState& state, const std::vector<uint32_t>& variants, uint32_t listTiles);
-    // What launches from now on take: `tiles` from `firstTile` on, with scratch images that begin at a row of pixels.
+    // of them. `variants`: features of each variant of the shading kernel; `listTiles`:
+    // PelShadeFrame.listTiles.
+    size_t update(Device& device, const ShaderState& state, const std::vector<uint32_t>& variants,
+                  uint32_t listTiles);
+    // What launches from now on take: `tiles` from `firstTile` on, with scratch images that begin at a row of
+    // pixels.
     void setBand(Device& device, uint32_t firstTile, uint32_t tiles, uint32_t scratchRow);
 
     const PelShadeFrame& frame() const { return frame_; }
@@ -46,7 +36,8 @@ class ShadeTables {
     PelShadeLut describe(const Lut* lut, float materialRadius) const;
     uint32_t lightBuffer(const cl::Memory& memory);
     void fillFrame(const ShaderState& state);
-    std::vector<PelShadeMaterial> describeMaterials(const ShaderState& state, const std::vector<uint32_t>& variants) const;
+    std::vector<PelShadeMaterial> describeMaterials(const ShaderState& state,
+                                                    const std::vector<uint32_t>& variants) const;
     std::vector<PelShadeLight> describeLights(const ShaderState& state);
 
     PelShadeFrame frame_{};

@@ -1,0 +1,14 @@
+#include "api/shading_passes.h"
+
+#include "shading/passes.h"
+
+namespace pel {
+
+// A pass reads what those before it made.
+std::span<const PassKind> shadingPasses() {
+    static const PassKind passes[] = {ambientCubePass,  classifyTilesPass, blurNormalsPass, normalMapPass,
+                                      shadowBoundsPass, wideShadowPass,    shadePass};
+    return passes;
+}
+
+}  // namespace pel

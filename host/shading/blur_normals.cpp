@@ -1,0 +1,87 @@
+// Blurred normals on screen, where the caller gave none.
+#include <cstddef>
+
+#include "shading/blurred_normals.h"
+#include "shading/launch_ranges.h"
+#include "shading/passes.h"
+#include "shading/shading_constants.h"
+
+namespace pel {
+namespace {
+
+class BlurNormals final : public Pass {
+  public:
+    static bool needed(const ShaderPlan& plan) { return plan.features & PEL_FEATURE_BLUR_NORMALS; }
+
+    PassScratch scratch(const ShaderPlan&) const override {
+        return {10 * sizeof(float), 10 * planeGuardBytes,
+                PEL_BLUR_TAPS * PEL_BLUR_STEP_MAX / PEL_TILE_HEIGHT};
+    }
+    void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
+        const size_t plane = normalPlaneBytes(plan);
+        normals_.allocate(device, plan);
+        resize(positions_, device, 3 * plane);
+        resize(between_, device, 3 * plane);
+        resize(tags_, device, plane);
+    }
+    size_t bytes() const override {
+        size_t bytes = normals_.bytes();
+        for (const Ref<Buffer>& buffer : {positions_, between_, tags_})
+            if (buffer) bytes += buffer->bytes();
+        return bytes;
+    }
+
+    std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
+        const uint32_t lanes = device.info().mathWidth;
+        cl::Defines defines = surfaceDefines(device, plan.state, lanes);
+        defines["PEL_FEATURES"] = text(0);
+        defines["PEL_FORMAT_NORMAL_SHADING"] =
+            text(formatCode(plan.state.images[PEL_SLOT_NORMAL_SHADING], lanes));
+        return {{{"shading/blur_normals.cl"}, defines}};
+    }
+
+    void moveScratch(Device& device, const ShaderPlan& plan, const ShadingConstants& constants,
+                     uint32_t row) override {
+        normals_.move(device, plan, constants, row);
+    }
+
+    void enqueueAround(PassWork& work) override {
+        const auto& images = work.plan.state.images;
+        cl::Launch launch(program(), "prepare_normals");
+        launch.arg(work.constants.frameMemory())
+            .arg(work.plan.tileLists)
+            .arg(memoryOf(images[PEL_SLOT_MATERIAL]));
+        launch.arg(memoryOf(images[PEL_SLOT_NORMAL_SHADING]));
+        launch.arg(memoryOf(images[PEL_SLOT_POSITION])).arg(memoryOf(images[PEL_SLOT_DEPTH]));
+        launch.arg(normals_.memory())
+            .arg(positions_->memory())
+            .arg(tags_->memory())
+            .arg(cl_uint(work.plan.normalPlane));
+        work.launch(launch, tileRange(work.device, work.tiles()));
+        blur(work, false);
+    }
+    void enqueue(PassWork& work) override { blur(work, true); }
+
+  private:
+    void blur(PassWork& work, bool alongY) const {
+        const cl::Memory &from = alongY ? between_->memory() : normals_.memory(),
+                         &to = alongY ? normals_.memory() : between_->memory();
+        cl::Launch launch(program(), "blur_normals");
+        launch.arg(work.constants.frameMemory()).arg(work.constants.materials()).arg(work.plan.tileLists);
+        launch.arg(memoryOf(work.plan.state.images[PEL_SLOT_MATERIAL]))
+            .arg(from)
+            .arg(positions_->memory())
+            .arg(tags_->memory());
+        launch.arg(to).arg(cl_uint(work.plan.normalPlane)).arg(cl_uint(alongY));
+        work.launch(launch, tileRange(work.device, work.tiles()));
+    }
+
+    BlurredNormals normals_;
+    Ref<Buffer> positions_, between_, tags_;
+};
+
+}  // namespace
+
+constinit const PassKind blurNormalsPass = passKind<BlurNormals>();
+
+}  // namespace pel

@@ -1,0 +1,28 @@
+// The image of blurred normals that a blur or normal maps make: planes of floats, with a guard before and
+// after each.
+#pragma once
+#include "shading/scratch_image.h"
+#include "shading/shader_plan.h"
+#include "shared/shade_passes.h"
+
+namespace pel {
+
+class ShadingConstants;
+
+constexpr size_t planeGuardBytes = 2 * PEL_PLANE_GUARD * sizeof(float);
+// Of one plane of a value per pixel of a band, with its guards.
+size_t normalPlaneBytes(const ShaderPlan& plan);
+
+class BlurredNormals {
+  public:
+    // And puts it into its slot.
+    void allocate(const Ref<Device>& device, ShaderPlan& plan);
+    void move(Device& device, const ShaderPlan& plan, const ShadingConstants& constants, uint32_t row) const;
+    const cl::Memory& memory() const { return buffer_->memory(); }
+    size_t bytes() const { return buffer_ ? buffer_->bytes() : 0; }
+
+  private:
+    Ref<Buffer> buffer_;
+};
+
+}  // namespace pel

@@ -1,0 +1,91 @@
+// Lists of the tiles that have a material, and of those that each variant of the shading kernel takes.
+#include "shading/passes.h"
+#include "shading/shade_variants.h"
+#include "shading/shading_constants.h"
+
+namespace pel {
+namespace {
+
+constexpr size_t countBytes = PEL_TILE_LISTS * sizeof(cl_uint);
+
+class ClassifyTiles final : public Pass {
+  public:
+    static bool needed(const ShaderPlan& plan) { return bool(plan.state.images[PEL_SLOT_MATERIAL]); }
+
+    void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
+        const size_t lists = plan.variants.size() > 1 ? 1 + plan.variants.size() : 1;
+        const size_t bytes =
+            (PEL_TILE_LISTS + lists * size_t(plan.listRows()) * plan.tilesX) * sizeof(cl_uint);
+        if (bytes != listBytes_) {
+            listBytes_ = 0;
+            lists_ = cl::Memory();
+            lists_ = device->allocate(bytes);
+            listBytes_ = bytes;
+        }
+        plan.tileLists = lists_;
+    }
+    size_t bytes() const override { return listBytes_ + bandCountBytes_; }
+
+    std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
+        return {shadeKey(device, plan.state, plan.variants[0])};
+    }
+
+    void enqueueAround(PassWork& work) override { classify(work); }
+
+    void enqueue(PassWork& work) override {
+        if (!work.alone()) classify(work);
+        if (work.plan.bandRows < work.plan.tileRows) keepCounts(work);
+    }
+
+    void addStats(Device& device, const ShaderPlan& plan, uint64_t bands,
+                  PelShaderStats& stats) const override {
+        if (!listsTiles(plan)) return;
+        std::vector<cl_uint> counts(std::max<size_t>(bands, 1) * PEL_TILE_LISTS);
+        device.read(bands > 1 ? bandCounts_.get() : lists_.get(), 0, counts.size() * sizeof(cl_uint),
+                    counts.data(), true);
+        stats.tilesShaded = 0;
+        for (size_t i = 0; i < counts.size(); ++i) {
+            const size_t list = i % PEL_TILE_LISTS;
+            if (plan.variants.size() > 1 ? list > 0 : list == 0) stats.tilesShaded += counts[i];
+            if (list > 1) stats.tilesPartial += counts[i];
+        }
+    }
+
+  private:
+    static bool listsTiles(const ShaderPlan& plan) {
+        return plan.state.options.tileLists != PEL_TILES_NO_LIST || plan.scratch;
+    }
+
+    void classify(PassWork& work) const {
+        const ShaderPlan& plan = work.plan;
+        if (!listsTiles(plan)) return;
+        const bool listAll = plan.variants.size() == 1 || plan.scratch;
+        work.device.fill(lists_.get(), 0, countBytes, 0);
+        cl::Launch launch(program(), "classify_tiles");
+        launch.arg(work.constants.frameMemory()).arg(work.constants.materials());
+        launch.arg(plan.state.images[PEL_SLOT_MATERIAL].buffer->memory());
+        launch.arg(lists_).arg(cl_uint(plan.variants.size())).arg(cl_uint(listAll));
+        work.launch(launch, classifyRange(work.device, work.tiles()));
+    }
+
+    // The next band counts anew.
+    void keepCounts(PassWork& work) {
+        if (bandCountBytes_ < work.plan.tileRows * countBytes) {
+            bandCountBytes_ = 0;
+            bandCounts_ = work.device.allocate(work.plan.tileRows * countBytes);
+            bandCountBytes_ = work.plan.tileRows * countBytes;
+        }
+        cl::check(clEnqueueCopyBuffer(work.device.queue(), lists_.get(), bandCounts_.get(), 0,
+                                      work.band * countBytes, countBytes, 0, nullptr, nullptr),
+                  "clEnqueueCopyBuffer");
+    }
+
+    cl::Memory lists_, bandCounts_;  // the latter: the counts of the lists, band after band
+    size_t listBytes_ = 0, bandCountBytes_ = 0;
+};
+
+}  // namespace
+
+constinit const PassKind classifyTilesPass = passKind<ClassifyTiles>();
+
+}  // namespace pel

@@ -1,0 +1,19 @@
+// What a shader's state asks for, in PelFeature bits; nothing else turns a feature on.
+#pragma once
+#include "shading/shader_state.h"
+
+namespace pel {
+
+// PelFeature bits of what is bound and non-zero. Throws when something needed is missing or does not fit.
+uint32_t deriveFeatures(const ShaderState& state);
+// Those that a material asks for by itself, as far as the rest is there.
+uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material);
+// Those of the forms that a light's shadow map has.
+uint32_t formFeatures(const PelLight& light);
+
+// Whether a light's wide shadow is made from its shadow map.
+bool filtersShadow(const ShaderLight& light);
+// Whether PelAmbient gives no light; there may be a cube map beside it.
+bool isBlack(const PelAmbient& ambient);
+
+}  // namespace pel

@@ -1,0 +1,44 @@
+#include "shading/launch_ranges.h"
+
+#include <algorithm>
+
+#include "shared/features.h"
+
+namespace pel {
+
+uint32_t tileGroup(const Device& device) {
+    return device.info().mathWidth > 1 ? 1 : 64;
+}
+
+cl::Range tileRange(const Device& device, uint32_t tiles) {
+    const size_t group = tileGroup(device);
+    const size_t groups = std::min<size_t>(tiles, 64 * size_t(device.info().computeUnits));
+    return {{groups * group, 1, 1}, {group, 1, 1}};
+}
+
+uint32_t formatCode(const ImageView& view, uint32_t lanes) {
+    if (!view) return 0;
+    const bool vectors = view.tightlyPacked() && view.width >= lanes;
+    return uint32_t(view.format) | (vectors ? 0 : PEL_FMT_STRIDED);
+}
+
+uint32_t mapFormatCode(const ShaderLight& light) {
+    uint32_t code = 0;
+    for (uint32_t i = 0; i < cascadesOf(light); ++i) code |= formatCode(*shadowCascade(light, i).map, 1);
+    return code;
+}
+
+PelImageSlot geometricNormalSlot(const ShaderState& state) {
+    return state.images[PEL_SLOT_NORMAL_GEOMETRIC] ? PEL_SLOT_NORMAL_GEOMETRIC : PEL_SLOT_NORMAL_SHADING;
+}
+
+cl::Defines surfaceDefines(const Device& device, const ShaderState& state, uint32_t lanes) {
+    const auto code = [&](PelImageSlot slot) { return text(formatCode(state.images[slot], lanes)); };
+    return {{"PEL_PASS_GROUP", text(tileGroup(device))},
+            {"PEL_WIDTH", text(lanes)},
+            {"PEL_FORMAT_MATERIAL", code(PEL_SLOT_MATERIAL)},
+            {"PEL_FORMAT_POSITION", code(PEL_SLOT_POSITION)},
+            {"PEL_FORMAT_DEPTH", state.images[PEL_SLOT_POSITION] ? text(0) : code(PEL_SLOT_DEPTH)}};
+}
+
+}  // namespace pel

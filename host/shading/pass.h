@@ -1,0 +1,89 @@
+// A pass of shading: what lies beside one kernel file. The shader keeps the passes of a list in order and
+// asks each of those that are needed the same questions. Passes know each other by what they leave in the
+// plan alone, so that other rooms may add theirs: the list comes from outside (host/api/shading_passes.cpp).
+#pragma once
+#include <memory>
+
+#include "shading/shader_plan.h"
+
+namespace pel {
+
+class ShadingConstants;
+
+// Memory for images that a pass makes.
+struct PassScratch {
+    uint64_t pixelBytes = 0;  // per pixel of a band
+    uint64_t guardBytes = 0;  // beside that
+    uint32_t haloRows = 0;    // rows of tiles that have to be there before and after a band
+};
+
+// Launches of one execution, or of one band of it.
+struct PassWork {
+    Device& device;
+    const ShaderPlan& plan;
+    const ShadingConstants& constants;
+    std::vector<cl::Event>& events;
+    TileRows rows{0, 0};    // those of the launches
+    TileRows around{0, 0};  // those of the band with its halo
+    uint64_t band = 0;
+    bool interruptible = false;  // the caller waits, and may want to hear how far it is
+    bool written = false;        // set by the pass that writes the caller's images
+
+    // Whether the band has no halo: what was launched around it was launched for it.
+    bool alone() const { return rows.begin == around.begin && rows.end == around.end; }
+    uint32_t tiles() const { return (rows.end - rows.begin) * plan.tilesX; }
+    void launch(cl::Launch& launch, const cl::Range& range) {
+        events.push_back(device.launch(launch, range));
+    }
+};
+
+class Pass {
+  public:
+    virtual ~Pass() = default;
+
+    // Memory. What images need, before a band is chosen; then they are made, and named in the plan. Again
+    // with another band when memory did not suffice: what has the right size is kept, what has not goes
+    // before the new one comes.
+    virtual PassScratch scratch(const ShaderPlan&) const { return {}; }
+    virtual void allocate(const Ref<Device>&, ShaderPlan&) {}
+    virtual size_t bytes() const { return 0; }  // held now
+
+    // Programs.
+    virtual std::vector<cl::ProgramKey> programs(const Device&, const ShaderPlan&) const = 0;
+    void build(Device& device, const ShaderPlan& plan) {
+        programs_.clear();
+        for (const cl::ProgramKey& key : programs(device, plan))
+            programs_.push_back(device.programs().get(key));
+    }
+
+    // Constants, sent where they changed. Returns the bytes sent.
+    virtual size_t upload(Device&, ShaderPlan&) { return 0; }
+    // Says in them that images of passes begin at this row of pixels; after `upload` they say 0.
+    virtual void moveScratch(Device&, const ShaderPlan&, const ShadingConstants&, uint32_t /*row*/) {}
+
+    // Launches: once in an execution; for a band with its halo; for a band.
+    virtual void enqueueFrame(PassWork&) const {}
+    virtual void enqueueAround(PassWork&) {}
+    virtual void enqueue(PassWork&) {}
+
+    virtual void addStats(Device&, const ShaderPlan&, uint64_t /*bands*/, PelShaderStats&) const {}
+
+  protected:
+    const cl::Program& program(size_t index = 0) const { return programs_[index]; }
+
+  private:
+    std::vector<cl::Program> programs_;
+};
+
+// What stands in a list of passes. One that a state does not need is not made: it holds neither memory nor
+// programs.
+struct PassKind {
+    bool (*needed)(const ShaderPlan& plan);
+    std::unique_ptr<Pass> (*make)();
+};
+template <class P>
+constexpr PassKind passKind() {
+    return {P::needed, [] { return std::unique_ptr<Pass>(std::make_unique<P>()); }};
+}
+
+}  // namespace pel

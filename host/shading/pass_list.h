@@ -1,0 +1,31 @@
+// The passes that a shader has, and the memory that they share out.
+#pragma once
+#include <span>
+
+#include "shading/pass.h"
+
+namespace pel {
+
+class PassList {
+  public:
+    PassList() = default;
+    explicit PassList(std::span<const PassKind> kinds) : kinds_(kinds), passes_(kinds.size()) {}
+
+    // Makes those that are needed and drops the others. Their images hold as many rows of tiles as
+    // PelShaderOptions.scratchBudget, memory and `mostRows` allow.
+    void allocate(const Ref<Device>& device, ShaderPlan& plan, uint32_t mostRows);
+    size_t bytes() const;
+    bool empty() const { return kinds_.empty(); }
+
+    template <class Call>
+    void each(Call&& call) const {
+        for (const auto& pass : passes_)
+            if (pass) call(*pass);
+    }
+
+  private:
+    std::span<const PassKind> kinds_;
+    std::vector<std::unique_ptr<Pass>> passes_;  // one for each kind; empty: not needed
+};
+
+}  // namespace pel

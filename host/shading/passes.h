@@ -1,0 +1,10 @@
+// The passes of this room, each in a file beside its kernel's.
+#pragma once
+#include "shading/pass.h"
+
+namespace pel {
+
+extern const PassKind ambientCubePass, classifyTilesPass, blurNormalsPass, normalMapPass, shadowBoundsPass,
+    wideShadowPass, shadePass;
+
+}  // namespace pel

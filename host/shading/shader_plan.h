@@ -1,0 +1,50 @@
+// What a commit made of a shader's state (shader_state.h), and what its passes hand to each other.
+#pragma once
+#include "shading/shader_state.h"
+
+namespace pel {
+
+// TileRows of tiles, [begin, end).
+struct TileRows {
+    uint32_t begin, end;
+};
+
+// A light whose wide shadow is made from its shadow map.
+struct FilteredLight {
+    uint32_t index;        // of ShaderState.lights
+    cl::Memory constants;  // PelWideShadow of each of its maps
+};
+
+// A shadow map whose blocks' bounds are kept.
+struct BoundedMap {
+    uint32_t filtered, cascade;  // of ShaderPlan.filteredLights, and which of its maps
+    uint32_t blocks;
+    uint32_t offset;  // of its bounds, floats
+};
+
+struct ShaderPlan {
+    ShaderState state;  // as of the commit, with the images that passes make in their slots
+    uint32_t features = 0;
+    std::vector<uint32_t> variants;  // features of each variant of the shading kernel
+    uint32_t tilesX = 0, tileRows = 0;
+
+    // Bands: rows of tiles that are shaded at a time, and that passes need before and after them.
+    uint32_t bandRows = 0, haloRows = 0;
+    bool scratch = false;  // whether a pass makes images, which hold the rows of a band and of its halo
+
+    cl::Memory counters;      // PEL_COUNTERS; none unless pixels are counted
+    cl::Memory tileLists;     // lists of tiles; none without a material image
+    cl::Memory ambientNodes;  // of the ambient cube
+    uint32_t normalPlane =
+        0;  // floats from one plane of PEL_SLOT_NORMAL_BLURRED to the next, where a pass makes it
+    std::vector<FilteredLight> filteredLights;
+    std::vector<BoundedMap> boundedMaps;
+    cl::Memory bounds;
+
+    // TileRows of pixels that images of passes hold.
+    uint32_t scratchRows() const;
+    // TileRows of tiles that tile lists have room for.
+    uint32_t listRows() const;
+};
+
+}  // namespace pel

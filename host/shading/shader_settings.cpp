@@ -1,0 +1,125 @@
+// What the caller sets on a PelShader: checked and kept until the next commit.
+#include "core/struct_size.h"
+#include "shading/check_settings.h"
+#include "shading/shader.h"
+#include "shared/shade_passes.h"
+
+namespace pel {
+
+void Shader::setOptions(const PelShaderOptions& options) {
+    checkOptions(options);
+    state_.options = options;
+    committed_ = false;
+}
+
+void Shader::setImage(PelImageSlot slot, const PelImageDesc* image) {
+    if (uint32_t(slot) >= PEL_SLOT_COUNT)
+        invalidArgument("image slot ", int(slot), " is none of PelImageSlot");
+    ImageView view;
+    if (image) {
+        view = makeImageView(*image, *device_, slotName(slot));
+        checkImage(slot, view);
+    }
+    state_.images[slot] = view;
+    committed_ = false;
+}
+
+void Shader::setMaterial(uint32_t id, const PelMaterial* material, Lut* curvatureLut, Lut* shadowLut) {
+    if (id < 1 || id >= PEL_MATERIALS)
+        invalidArgument("material id ", id, " is not between 1 and ", PEL_MATERIALS - 1,
+                        " (0 is the background)");
+    if (!material) {
+        state_.materials.erase(id);
+        committed_ = false;
+        return;
+    }
+    checkMaterial(*material);
+    const auto check = [&](Lut* lut, PelLutKind kind, const char* what) {
+        if (!lut) return;
+        if (&lut->device() != device_.get())
+            invalidArgument("the ", what, " LUT belongs to another PelDevice than the shader");
+        if (lut->info().kind != kind) invalidArgument("the LUT given as ", what, " LUT is of the other kind");
+    };
+    check(curvatureLut, PEL_LUT_CURVATURE, "curvature");
+    check(shadowLut, PEL_LUT_SHADOW, "shadow");
+    ShaderMaterial& set = state_.materials[id];  // which may have a normal map already
+    set.params = *material;
+    set.curvatureLut = Ref(curvatureLut);
+    set.shadowLut = Ref(shadowLut);
+    committed_ = false;
+}
+
+void Shader::setNormalMap(uint32_t id, const PelImageDesc* levels, uint32_t count) {
+    const auto found = state_.materials.find(id);
+    if (found == state_.materials.end())
+        invalidArgument("material ", id, " is not set: pelShaderSetMaterial comes before its normal map");
+    if (count > PEL_MAP_LEVELS)
+        invalidArgument("a normal map of ", count, " levels; ", PEL_MAP_LEVELS, " are the most");
+    if (count > 0 && !levels) invalidArgument("levels is NULL but their count is ", count);
+    std::vector<ImageView> views;
+    const char* next = reinterpret_cast<const char*>(levels);
+    for (uint32_t i = 0; i < count; ++i) {
+        const auto* level = reinterpret_cast<const PelImageDesc*>(next);
+        views.push_back(makeImageView(readStruct(level, pelImageDescDefaults(), "PelImageDesc"), *device_,
+                                      text("normal map ", i).c_str()));
+        next += level->structSize;
+    }
+    checkNormalMap(views);
+    found->second.normalMap = std::move(views);
+    committed_ = false;
+}
+
+void Shader::setLights(const PelLight* lights, uint32_t count) {
+    if (count > 64) invalidArgument(count, " lights were given; 64 is the most");
+    if (count > 0 && !lights) invalidArgument("lights is NULL but their count is ", count);
+    std::vector<ShaderLight> list(count);
+    const char* next = reinterpret_cast<const char*>(lights);
+    for (uint32_t i = 0; i < count; ++i) {
+        const auto* light = reinterpret_cast<const PelLight*>(next);
+        list[i].params = readStruct(light, pelLightDefaults(), "PelLight");
+        next += light->structSize;
+        checkLight(list[i].params, i);
+        if (i < state_.lights.size()) list[i].images = state_.lights[i].images;
+    }
+    state_.lights = std::move(list);
+    committed_ = false;
+}
+
+void Shader::setLightImage(uint32_t light, PelLightSlot slot, const PelImageDesc* image) {
+    if (light >= state_.lights.size())
+        invalidArgument("light ", light, " of ", state_.lights.size(),
+                        " was named; pelShaderSetLights comes first");
+    if (uint32_t(slot) >= PEL_LIGHT_SLOT_COUNT)
+        invalidArgument("light image slot ", int(slot), " is none of PelLightSlot");
+    ImageView view;
+    if (image) {
+        view = makeImageView(*image, *device_, lightSlotName(slot));
+        checkLightImage(slot, view);
+    }
+    state_.lights[light].images[slot] = view;
+    committed_ = false;
+}
+
+void Shader::setAmbient(const PelAmbient& ambient) {
+    checkAmbient(ambient);
+    state_.ambient = ambient;
+    committed_ = false;
+}
+
+void Shader::setAmbientCube(const PelImageDesc* faces) {
+    ImageView view;
+    if (faces) {
+        view = makeImageView(*faces, *device_, "ambient cube");
+        checkAmbientCube(view);
+    }
+    state_.ambientCube = view;
+    committed_ = false;
+}
+
+void Shader::setCamera(const PelCamera& camera) {
+    checkCamera(camera);
+    state_.camera = camera;
+    committed_ = false;
+}
+
+}  // namespace pel

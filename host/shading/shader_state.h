@@ -1,0 +1,53 @@
+// What the caller set on a PelShader. What a commit makes of it is a ShaderPlan (shader_plan.h).
+#pragma once
+#include <array>
+#include <map>
+#include <vector>
+
+#include "core/image_view.h"
+#include "lut/lut.h"
+
+namespace pel {
+
+struct ShaderMaterial {
+    PelMaterial params;
+    Ref<Lut> curvatureLut, shadowLut;
+    std::vector<ImageView> normalMap;  // its levels, the finest first
+};
+
+struct ShaderLight {
+    PelLight params;
+    std::array<ImageView, PEL_LIGHT_SLOT_COUNT> images;
+};
+
+struct ShaderState {
+    PelShaderOptions options = pelShaderOptionsDefaults();
+    std::array<ImageView, PEL_SLOT_COUNT> images;
+    std::map<uint32_t, ShaderMaterial> materials;
+    std::vector<ShaderLight> lights;
+    PelAmbient ambient = pelAmbientDefaults();
+    ImageView ambientCube;  // six faces
+    PelCamera camera = pelCameraDefaults();
+};
+
+// One of a light's cascades, 0 the finest.
+struct ShadowCascade {
+    const float (*worldToShadow)[16];
+    float depthRange;
+    const ImageView* map;
+};
+inline ShadowCascade shadowCascade(const ShaderLight& light, uint32_t index) {
+    const PelLight& l = light.params;
+    if (index == 0) return {&l.worldToShadow, l.shadowDepthRange, &light.images[PEL_LIGHT_SHADOW_MAP]};
+    return {&l.cascadeToShadow[index - 1], l.cascadeDepthRange[index - 1],
+            &light.images[PEL_LIGHT_CASCADE_1 + index - 1]};
+}
+// How many maps a light has.
+inline uint32_t cascadesOf(const ShaderLight& light) {
+    return light.params.shadowCascades ? light.params.shadowCascades : 1;
+}
+inline bool isCube(const PelLight& light) {
+    return light.shadowProjection >= PEL_SHADOW_CUBE;
+}
+
+}  // namespace pel

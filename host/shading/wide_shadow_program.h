@@ -1,0 +1,12 @@
+// The one program of wide shadows and of their maps' bounds: a driver's cost per program is what a first
+// frame waits for.
+#pragma once
+#include "shading/shader_plan.h"
+
+namespace pel {
+
+constexpr size_t boundsGroup = 16;
+
+cl::ProgramKey wideShadowKey(const Device& device, const ShaderPlan& plan);
+
+}  // namespace pel
