@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh/mesh_file.h"
+#include "io/mesh/mesh_parts.h"
 
 namespace demo {
 
@@ -20,15 +20,12 @@ inline std::string directory() {
 }
 
 inline std::string meshFile() {
-    return named("PELLUCID_DEMO_MESH", PELLUCID_SOURCE_DIR "/build/demo/mannequin-devil.off");
+    return named("PELLUCID_DEMO_MESH", PELLUCID_SOURCE_DIR "/data/heads/head_female.obj");
 }
 
+// All parts of one of the heads in data/heads, with normals.
 inline pellucid::io::MeshData head(const std::string& file) {
-    pellucid::io::MeshData mesh = pellucid::io::loadMesh(file);
-    pellucid::io::scaleToHeight(mesh, 240, 2);  // mm
-    pellucid::io::loopSubdivide(mesh, 1);
-    pellucid::io::computeNormals(mesh);
-    return mesh;
+    return pellucid::io::loadParts(file, 2).mesh;
 }
 
 inline std::vector<float> curvature(const pellucid::Device& device, const pellucid::io::MeshData& mesh,

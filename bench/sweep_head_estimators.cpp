@@ -1,6 +1,6 @@
 // Makes docs/figures/curvature_estimators.png: the demo's head by each estimator on one scale, with a colour bar, and what
 // edge and tensor differ from quadric by on another. Prints the RMS values and differences.
-//   sweep_head_estimators FIGURE.png [MESH]    MESH: default build/demo/mannequin-devil.off, which ./run demo unpacks
+//   sweep_head_estimators FIGURE.png [MESH]    MESH: default data/heads/head_female.obj
 #include <pellucid/pellucid.hpp>
 
 #include <cmath>
@@ -26,7 +26,7 @@ io::Picture seen(const io::MeshData& mesh, const std::vector<float>& values, flo
     sample::Framing framing;
     framing.azimuth = 20;
     framing.fill = 1.15;  // the box is deeper than the head is wide
-    const sample::Camera camera = frameHead(scene.bounds(), {}, framing, double(width) / height);
+    const sample::Camera camera = frameHead(scene.bounds(), {{0, 1, 0}, {0, 0, 1}}, framing, double(width) / height);
     sample::GBufferOptions options;
     options.detail.enabled = false;
     const sample::GBuffer g = renderGBuffer(scene, camera, width, height, options);

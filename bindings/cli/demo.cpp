@@ -17,24 +17,26 @@ constexpr float headHeight = 240;  // mm, chin to crown of an adult with some ne
 
 struct Arguments {
     Run::Options run;
-    std::string mesh, output = "out/demo", size = "1280x720", up = "z";
-    uint32_t smoothing = 4;
+    std::string mesh, output = "out/demo", size = "1280x720", up = "auto";
+    uint32_t smoothing = 2;
     std::optional<int> subdivide;
     float height = headHeight;
 };
 
-// The head of Debian's libcgal-demo, where `./run demo` unpacks it.
-std::string standardMesh() {
-    const char* named = std::getenv("PELLUCID_DEMO_MESH");
-    if (named && *named) return named;
-    throw UsageError(
-        "no mesh given: name an OFF, OBJ, PLY or STL file, or use ./run demo, which unpacks one");
+// Most OBJ files have y up, most scans in the other formats z.
+bool yIsUp(const Arguments& a) {
+    return a.up == "y" || (a.up == "auto" && std::filesystem::path(a.mesh).extension() == ".obj");
 }
 
-io::MeshData loadHead(Run& run, const Arguments& a) {
-    io::MeshData mesh = io::loadMesh(a.mesh);
+// Somebody's mesh: all of it is skin.
+DemoHead loadMeshAsHead(Run& run, const Arguments& a) {
+    DemoHead head;
+    head.mesh = io::loadMesh(a.mesh);
+    io::MeshData& mesh = head.mesh;
     for (const std::string& warning : mesh.warnings) run.warn(warning);
-    io::scaleToHeight(mesh, a.height, a.up == "y" ? 1 : 2);
+    const bool y = yIsUp(a);
+    if (y) head.pose = {{0, 1, 0}, {0, 0, 1}};
+    io::scaleToHeight(mesh, a.height, y ? 1 : 2);
     const int levels = a.subdivide.value_or(1);
     if (levels > 0) {
         try {
@@ -45,37 +47,42 @@ io::MeshData loadHead(Run& run, const Arguments& a) {
         }
     }
     if (mesh.normals.empty()) io::computeNormals(mesh);
-    return mesh;
+    return head;
 }
 
+DemoHead loadHead(Run& run, const Arguments& a) {
+    return hasHeadParts(a.mesh) ? loadDemoHead(a.mesh, a.subdivide.value_or(2)) : loadMeshAsHead(run, a);
+}
+
+// A portrait with key, fill and rim light, and one with the key light behind an ear.
 std::vector<DemoViewRequest> requests(const Arguments& a) {
-    DemoViewRequest side, back;
-    parseSize(a.size, side.width, side.height);
-    if (a.up == "y") side.pose = {{0, 1, 0}, {0, 0, 1}};
-    side.name = "key";
-    side.framing.azimuth = 25;
-    side.keyLight = sample::KeyLight::Side;
-    side.keyIrradiance = 0.95f;
-    side.skyScale = 0.2f;
-    back = side;
+    DemoViewRequest key, back;
+    parseSize(a.size, key.width, key.height);
+    key.name = "key";
+    key.framing.azimuth = 25;
+    key.lights = {{"Key", 80, 25, {0.98f, 0.90f, 0.81f}},
+                  {"Fill", -5, 5, {0.05f, 0.06f, 0.07f}, false},
+                  {"Rim", -140, 25, {0.50f, 0.55f, 0.65f}}};
+    key.skyScale = 0.16f;
+    back = key;
     back.name = "backlit";
-    back.keyLight = sample::KeyLight::Back;
-    back.keyIrradiance = 2.2f;
+    back.lights = {{"Key", 150, 10, {2.2f, 2.07f, 1.9f}}, {"Fill", 5, 5, {0.08f, 0.09f, 0.11f}, false}};
     back.skyScale = 0.12f;
-    return {side, back};
+    return {key, back};
 }
 
 // One view: G-buffer, three shadings, files.
 ShadedView shadeView(Run& run, Stages& stages, LutStore& luts, const sample::Scene& scene,
-                     const DemoViewRequest& request, const std::string& folder) {
-    DemoView view = renderDemoView(scene, request);
+                     const DemoHead& head, const DemoViewRequest& request, const std::string& folder) {
+    DemoView view = renderDemoView(scene, head, request);
     const uint64_t pixels = view.gbuffer.pixelCount();
     const uint64_t gbufferBytes = pixels * view.gbuffer.channels.size() * sizeof(float);
     stages.add(view.name + ": G-buffer (sample host)", view.gbufferMilliseconds, 0, pixels, "pixels",
                gbufferBytes);
-    const io::Image& map = view.shadowMaps.begin()->second;
-    stages.add(view.name + ": shadow map (sample host)", view.shadowMapMilliseconds, 0, map.pixelCount(),
-               "texels", map.pixelCount() * sizeof(float));
+    uint64_t texels = 0;
+    for (const auto& [file, map] : view.shadowMaps) texels += map.pixelCount();
+    stages.add(view.name + ": shadow maps (sample host)", view.shadowMapMilliseconds, 0, texels, "texels",
+               texels * sizeof(float));
     stages.add(view.name + ": wide shadow (sample host)", view.wideShadowMilliseconds, 0, pixels, "pixels",
                pixels * sizeof(float));
 
@@ -91,7 +98,7 @@ ShadedView shadeView(Run& run, Stages& stages, LutStore& luts, const sample::Sce
     }
     const auto path = [&](const std::string& suffix) { return folder + "/" + view.name + suffix; };
     io::writeExr(path("_gbuffer.exr"), view.gbuffer);
-    io::writeExr(path("_shadowmap.exr"), map);
+    for (const auto& [file, map] : view.shadowMaps) io::writeExr(folder + "/" + file, map);
     io::writeScene(path(".toml"), view.scene);
     writeRadiance(path(".exr"), view.gbuffer.width, view.gbuffer.height, shaded.pictures.back().radiance);
     shaded.view = std::move(view);
@@ -99,7 +106,7 @@ ShadedView shadeView(Run& run, Stages& stages, LutStore& luts, const sample::Sce
 }
 
 void run(Arguments a) {
-    if (a.mesh.empty()) a.mesh = standardMesh();
+    if (a.mesh.empty()) a.mesh = standardHead();
     try {
         std::filesystem::create_directories(a.output);
         io::checkWritable(a.output + "/demo.png");
@@ -110,8 +117,9 @@ void run(Arguments a) {
     Stages stages(run);
     run.note(std::string("device: ") + run.device().info().name);
 
-    io::MeshData mesh;
-    stages.measure("load, subdivide, normals", 0, "", 0, [&] { mesh = loadHead(run, a); });
+    DemoHead head;
+    stages.measure("load, subdivide, normals", 0, "", 0, [&] { head = loadHead(run, a); });
+    const io::MeshData& mesh = head.mesh;
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     params.smoothingPasses = a.smoothing;
     MeshCurvature curvature;
@@ -129,16 +137,17 @@ void run(Arguments a) {
     stages.measure("shadow LUT", texels, "texels", texels * 16,
                    [&] { shadowLut = luts.get(standard, standard.luts[1].name, PEL_LUT_SHADOW); });
 
-    const sample::Scene scene(
-        sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, curvature.values, mesh.triangles, {}});
+    const sample::Scene scene(sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, curvature.values,
+                                               mesh.triangles, head.materials});
     std::vector<ShadedView> views;
     for (const DemoViewRequest& request : requests(a))
-        views.push_back(shadeView(run, stages, luts, scene, request, a.output));
+        views.push_back(shadeView(run, stages, luts, scene, head, request, a.output));
 
     std::vector<std::string> files = writePictures(a.output, views, curvatureLut, shadowLut);
     const DemoView& backlit = views.back().view;
-    Frame parts(run.device(), backlit.gbuffer, backlit.scene, luts, backlit.shadowMaps, pelShaderOptionsDefaults(),
-                {PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER, PEL_SLOT_OUT_SPECULAR, PEL_SLOT_OUT_THICKNESS});
+    Frame parts(
+        run.device(), backlit.gbuffer, backlit.scene, luts, backlit.shadowMaps, pelShaderOptionsDefaults(),
+        {PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER, PEL_SLOT_OUT_SPECULAR, PEL_SLOT_OUT_THICKNESS});
     parts.shade();
     files.push_back(writeParts(a.output, backlit, parts));
     run.report["output"] = a.output;
@@ -153,18 +162,23 @@ void addDemo(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "demo", "The whole chain on a mesh: curvature, tables, G-buffer, shading, pictures");
     auto a = std::make_shared<Arguments>();
-    command->add_option("mesh", a->mesh, "OFF, OBJ, PLY or STL file (default: $PELLUCID_DEMO_MESH)");
+    command->add_option(
+        "mesh", a->mesh,
+        "OFF, OBJ, PLY or STL file (default: a head that comes with pellucid, or $PELLUCID_DEMO_MESH)");
     command->add_option("-o,--output", a->output, "folder for the pictures")->capture_default_str();
     command->add_option("--size", a->size, "pixels, WxH")->capture_default_str();
     command->add_option("--height", a->height, "mm that the mesh is scaled to, along its up axis")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    command->add_option("--up", a->up, "the mesh's up axis: z (it looks to -y) or y (it looks to +z)")
-        ->check(CLI::IsMember({"y", "z"}))
+    command
+        ->add_option("--up", a->up,
+                     "the mesh's up axis: z (it looks to -y), y (it looks to +z), or auto: y for OBJ files")
+        ->check(CLI::IsMember({"auto", "y", "z"}))
         ->capture_default_str();
     command
         ->add_option("--subdivide", a->subdivide,
-                     "levels of Loop subdivision (default: 1 where the mesh allows it)")
+                     "levels of subdivision (default: 2 for the heads that come with pellucid, 1 for other "
+                     "meshes that allow it)")
         ->check(CLI::Range(0, 4));
     command->add_option("--smooth", a->smoothing, "smoothing passes of the curvature")
         ->check(CLI::Range(0, 1000))

@@ -1,6 +1,7 @@
 #include "demo_pictures.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "io/image/picture.h"
 #include "io/image/tone_map.h"
@@ -12,24 +13,19 @@ namespace {
 constexpr int sheetShrink = 2;  // the sheet shows pictures at half size, so that three fit a screen
 constexpr int lutSize = 320;    // pixels a side on the sheet
 
-io::Picture developed(const DemoView& view, const std::vector<float>& radiance) {
-    return {view.gbuffer.width, view.gbuffer.height, io::toSrgb8(radiance)};
-}
-
-io::Picture curvatureMap(const DemoView& view) {
-    const std::vector<float>& curvature = view.gbuffer.channel("Curvature.V").pixels;
+// Before a dark backdrop that is lighter in the middle.
+io::Picture developed(const DemoView& view, std::vector<float> radiance) {
+    const int width = view.gbuffer.width, height = view.gbuffer.height;
     const std::vector<float>& material = view.gbuffer.channel("Material.I").pixels;
-    std::vector<float> seen;
-    for (size_t i = 0; i < curvature.size(); ++i)
-        if (material[i] > 0) seen.push_back(curvature[i]);
-    const float high = std::max(percentile(seen, 0.98), 1e-6f);
-    const io::Picture map = io::shrunk(
-        io::colored(view.gbuffer.width, view.gbuffer.height, curvature, 0, high, material), sheetShrink);
-    const io::Picture bar = io::colorBar(map.width, 0, high, "1/mm");
-    io::Picture both(map.width, map.height + bar.height);
-    both.paste(0, 0, map);
-    both.paste(0, map.height, bar);
-    return both;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const size_t i = size_t(y) * width + x;
+            if (material[i] > 0) continue;
+            const float r = std::hypot(x - 0.5f * width, y - 0.45f * height) / height;
+            const float grey = 0.012f + 0.03f * std::exp(-3 * r * r);
+            radiance[3 * i] = 0.9f * grey, radiance[3 * i + 1] = grey, radiance[3 * i + 2] = 1.15f * grey;
+        }
+    return {width, height, io::toSrgb8(radiance)};
 }
 
 // The table as a picture, nearest texel, with values as linear radiance.
@@ -52,14 +48,15 @@ struct Crop {
 };
 
 Crop coveredPart(const DemoView& view) {
-    constexpr int margin = 16;
+    constexpr int margin = 40;
     const int width = view.gbuffer.width, height = view.gbuffer.height;
     const std::vector<float>& material = view.gbuffer.channel("Material.I").pixels;
     Crop c{width, height, 0, 0};
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             if (material[size_t(y) * width + x] > 0)
-                c = {std::min(c.left, x), std::min(c.top, y), std::max(c.right, x + 1), std::max(c.bottom, y + 1)};
+                c = {std::min(c.left, x), std::min(c.top, y), std::max(c.right, x + 1),
+                     std::max(c.bottom, y + 1)};
     if (c.right == 0) return {0, 0, width, height};
     return {std::max(c.left - margin, 0), std::max(c.top - margin, 0), std::min(c.right + margin, width),
             std::min(c.bottom + margin, height)};
@@ -71,6 +68,23 @@ io::Picture cropped(const io::Picture& picture, const Crop& c) {
         std::copy_n(&picture.rgb[3 * (size_t(c.top + y) * picture.width + c.left)], 3 * part.width,
                     &part.rgb[3 * size_t(y) * part.width]);
     return part;
+}
+
+io::Picture curvatureMap(const DemoView& view) {
+    const std::vector<float>& curvature = view.gbuffer.channel("Curvature.V").pixels;
+    const std::vector<float>& material = view.gbuffer.channel("Material.I").pixels;
+    std::vector<float> seen;
+    for (size_t i = 0; i < curvature.size(); ++i)
+        if (material[i] > 0) seen.push_back(curvature[i]);
+    const float high = std::max(percentile(seen, 0.98), 1e-6f);
+    const io::Picture whole =
+        io::colored(view.gbuffer.width, view.gbuffer.height, curvature, 0, high, material);
+    const io::Picture map = io::shrunk(cropped(whole, coveredPart(view)), sheetShrink);
+    const io::Picture bar = io::colorBar(map.width, 0, high, "1/mm");
+    io::Picture both(map.width, map.height + bar.height);
+    both.paste(0, 0, map);
+    both.paste(0, map.height, bar);
+    return both;
 }
 
 }  // namespace
@@ -86,8 +100,9 @@ std::string writeParts(const std::string& folder, const DemoView& view, const Fr
     add("diffuse", developed(view, frame.output(PEL_SLOT_OUT_DIFFUSE)));
     add("deep scatter", developed(view, frame.output(PEL_SLOT_OUT_DEEP_SCATTER)));
     add("specular", developed(view, frame.output(PEL_SLOT_OUT_SPECULAR)));
-    add("thickness", io::colored(view.gbuffer.width, view.gbuffer.height, frame.output(PEL_SLOT_OUT_THICKNESS), 0, longest,
-                                 view.gbuffer.channel("Material.I").pixels));
+    add("thickness",
+        io::colored(view.gbuffer.width, view.gbuffer.height, frame.output(PEL_SLOT_OUT_THICKNESS), 0, longest,
+                    view.gbuffer.channel("Material.I").pixels));
     const io::Picture bar = io::colorBar(tiles.back().picture.width, 0, longest, "mm", 1);
     io::Picture both(bar.width, tiles.back().picture.height + bar.height);
     both.paste(0, 0, tiles.back().picture);
@@ -108,10 +123,11 @@ std::vector<std::string> writePictures(const std::string& folder, const std::vec
     };
     std::vector<io::Tile> tiles;
     for (const ShadedView& view : views) {
-        write(view.view.name + ".png", developed(view.view, view.pictures.back().radiance));
+        const Crop part = coveredPart(view.view);
+        write(view.view.name + ".png", cropped(developed(view.view, view.pictures.back().radiance), part));
         for (const ShadedPicture& p : view.pictures)
-            tiles.push_back(
-                {view.view.name + ": " + p.title, io::shrunk(developed(view.view, p.radiance), sheetShrink)});
+            tiles.push_back({view.view.name + ": " + p.title,
+                             io::shrunk(cropped(developed(view.view, p.radiance), part), sheetShrink)});
     }
     tiles.push_back({"curvature", curvatureMap(views.front().view)});
     tiles.push_back({"curvature LUT: N.L across, curvature down", lutPicture(curvatureLut)});

@@ -22,8 +22,8 @@ struct ShadedView {
 std::vector<std::string> writePictures(const std::string& folder, const std::vector<ShadedView>& views,
                                        const Lut& curvatureLut, const Lut& shadowLut);
 
-// The parts of one view's radiance side by side, with its thickness: NAME_parts.png. `frame`: shaded with all outputs. Returns
-// the file name.
+// The parts of one view's radiance side by side, with its thickness: NAME_parts.png. `frame`: shaded with all
+// outputs. Returns the file name.
 std::string writeParts(const std::string& folder, const DemoView& view, const Frame& frame);
 
 }  // namespace pellucid::cli

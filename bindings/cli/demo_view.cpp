@@ -37,6 +37,14 @@ void copy(float (&to)[3], sample::Vec3 from) {
     to[0] = float(from.x), to[1] = float(from.y), to[2] = float(from.z);
 }
 
+PelMaterial glossy(float specular, float roughness) {
+    PelMaterial m = pelMaterialDefaults();
+    m.thicknessTaps = 0;
+    m.specular = specular;
+    m.roughness = roughness;
+    return m;
+}
+
 PelMaterial skin() {
     PelMaterial m = pelMaterialDefaults();
     // Blood and tissue let red through furthest.
@@ -45,6 +53,61 @@ PelMaterial skin() {
     m.deepScatterRadius = 6.0f;
     m.specular = 0.35f;
     return m;
+}
+
+// The first lamp's map has the view's name alone.
+std::string shadowMapFile(const std::string& view, const DemoLight& lamp) {
+    return view + (lamp.name == "Key" ? "" : "_" + lamp.name) + "_shadowmap.exr";
+}
+
+// Shows the head's frame; near and far plane enclose all of it.
+sample::Camera framed(const sample::Scene& mesh, const DemoHead& head, const sample::Framing& framing,
+                      double aspect) {
+    sample::Camera camera =
+        sample::frameHead(head.frame.empty() ? mesh.bounds() : head.frame, head.pose, framing, aspect);
+    for (int i = 0; i < 8; ++i) {
+        const double depth = dot(mesh.bounds().corner(i) - camera.eye, camera.forward());
+        camera.nearPlane = std::max(std::min(camera.nearPlane, depth - 1), 1e-3 * camera.farPlane);
+        camera.farPlane = std::max(camera.farPlane, depth + 1);
+    }
+    return camera;
+}
+
+// Shadow map and wide shadow of one lamp.
+void addShadow(DemoView& view, const sample::Scene& mesh, const sample::GBuffer& g, const DemoLight& lamp,
+               const sample::DirectionalLight& direction, float filterWidth, io::SceneLight& light) {
+    sample::ShadowMap map;
+    view.shadowMapMilliseconds +=
+        timed([&] { map = sample::renderShadowMap(mesh, direction, shadowMapSize); });
+    sample::Image wide;
+    sample::WideShadowOptions filter;
+    filter.filterWidth = filterWidth;
+    view.wideShadowMilliseconds += timed([&] { wide = sample::filterWideShadow(g, map, filter); });
+    light.wideShadow = lamp.name + "Shadow.V";
+    view.gbuffer.channels.push_back({light.wideShadow, io::ChannelType::Float, wide.data});
+    std::ranges::copy(map.worldToUvz.toFloats(), light.light.worldToShadow);
+    light.light.shadowProjection = PEL_SHADOW_PARALLEL;
+    light.light.shadowDepthRange = float(map.depthRange);
+    light.shadowMapFile = shadowMapFile(view.name, lamp);
+    light.shadowMapChannel = "Z";
+    io::Image& depth = view.shadowMaps[light.shadowMapFile];
+    depth.width = depth.height = map.size;
+    depth.channels.push_back({"Z", io::ChannelType::Float, map.depth});
+}
+
+std::vector<io::SceneMaterial> materialsOf(const DemoHead& head) {
+    std::vector<io::SceneMaterial> materials(std::max<size_t>(1, head.looks.size()));
+    for (size_t i = 0; i < materials.size(); ++i) materials[i].id = uint32_t(i + 1);
+    materials[0].material = skin();
+    materials[0].curvatureLut = curvatureLutName;
+    materials[0].shadowLut = shadowLutName;
+    if (materials.size() > 1) {
+        materials[DEMO_EYES - 1].material = glossy(0.6f, 0.08f);
+        materials[DEMO_TEETH - 1].material = glossy(0.5f, 0.15f);
+        materials[DEMO_TONGUE - 1].material = glossy(0.4f, 0.2f);
+        materials[DEMO_CUT - 1].material = glossy(0, 1);
+    }
+    return materials;
 }
 
 }  // namespace
@@ -58,29 +121,20 @@ io::SceneFile standardLuts() {
     return scene;
 }
 
-DemoView renderDemoView(const sample::Scene& mesh, const DemoViewRequest& request) {
+DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const DemoViewRequest& request) {
     DemoView view;
     view.name = request.name;
     const int width = int(request.width), height = int(request.height);
     const double aspect = double(width) / height;
-    const sample::Camera camera = sample::frameHead(mesh.bounds(), request.pose, request.framing, aspect);
-    const sample::DirectionalLight key{sample::keyLightDirection(request.pose, request.keyLight)};
-
-    io::SceneMaterial material;
-    material.material = skin();
-    material.curvatureLut = curvatureLutName;
-    material.shadowLut = shadowLutName;
+    const sample::Camera camera = framed(mesh, head, request.framing, aspect);
     view.scene.luts = standardLuts().luts;
+    view.scene.materials = materialsOf(head);
 
+    sample::GBufferOptions look;
+    look.looks = head.looks, look.tints = head.tints, look.eyes = head.eyes;
+    if (!head.looks.empty()) look.detail.blotchAmount = 0.02;  // the tints are enough
     sample::GBuffer g;
-    view.gbufferMilliseconds = timed([&] { g = sample::renderGBuffer(mesh, camera, width, height); });
-    sample::ShadowMap map;
-    view.shadowMapMilliseconds = timed([&] { map = sample::renderShadowMap(mesh, key, shadowMapSize); });
-    sample::Image wide;
-    sample::WideShadowOptions filter;
-    filter.filterWidth = material.material.shadowFilterWidth;
-    view.wideShadowMilliseconds = timed([&] { wide = sample::filterWideShadow(g, map, filter); });
-
+    view.gbufferMilliseconds = timed([&] { g = sample::renderGBuffer(mesh, camera, width, height, look); });
     view.gbuffer.width = width;
     view.gbuffer.height = height;
     addChannels(view, "Position", "XYZ", g.position.data.data(), PEL_SLOT_POSITION);
@@ -91,29 +145,23 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoViewRequest& reques
     addChannels(view, "Albedo", "RGB", g.albedo.data.data(), PEL_SLOT_ALBEDO);
     const std::vector<float> ids(g.material.begin(), g.material.end());
     addChannels(view, "Material", "I", ids.data(), PEL_SLOT_MATERIAL);
-    view.gbuffer.channels.push_back({"KeyShadow.V", io::ChannelType::Float, wide.data});
 
-    view.scene.materials.push_back(material);
-    io::SceneLight light;
-    light.light.type = PEL_LIGHT_DIRECTIONAL;
-    copy(light.light.toLight, key.toLight);
-    const float white[3] = {1.0f, 0.94f, 0.86f};
-    for (int c = 0; c < 3; ++c) light.light.color[c] = white[c] * request.keyIrradiance;
-    std::ranges::copy(map.worldToUvz.toFloats(), light.light.worldToShadow);
-    light.light.shadowProjection = PEL_SHADOW_PARALLEL;
-    light.light.shadowDepthRange = float(map.depthRange);
-    light.wideShadow = "KeyShadow.V";
-    light.shadowMapFile = request.name + "_shadowmap.exr";
-    light.shadowMapChannel = "Z";
-    view.scene.lights.push_back(light);
-
-    io::Image& depth = view.shadowMaps[light.shadowMapFile];
-    depth.width = depth.height = map.size;
-    depth.channels.push_back({"Z", io::ChannelType::Float, map.depth});
+    for (const DemoLight& lamp : request.lights) {
+        const sample::DirectionalLight direction{
+            sample::headDirection(head.pose, lamp.azimuth, lamp.elevation)};
+        io::SceneLight light;
+        light.light.type = PEL_LIGHT_DIRECTIONAL;
+        copy(light.light.toLight, direction.toLight);
+        std::ranges::copy(lamp.color, light.light.color);
+        if (lamp.shadow)
+            addShadow(view, mesh, g, lamp, direction, view.scene.materials[0].material.shadowFilterWidth,
+                      light);
+        view.scene.lights.push_back(light);
+    }
 
     sample::Sky sky;
-    sky.up = request.pose.up;
-    sky.lamp = key.toLight;  // its reflection from the room
+    sky.up = head.pose.up;
+    sky.lamp = sample::headDirection(head.pose, request.lights[0].azimuth, request.lights[0].elevation);
     const sample::Harmonics harmonics = sample::projectIrradiance(sky);
     for (int i = 0; i < 9; ++i)
         for (int c = 0; c < 3; ++c)

@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "demo_head.h"
 #include "frame.h"
 #include "sample/camera.h"
 #include "sample/scene.h"
@@ -16,13 +17,19 @@ struct DemoView {
     double gbufferMilliseconds = 0, shadowMapMilliseconds = 0, wideShadowMilliseconds = 0;
 };
 
+// A lamp round the head.
+struct DemoLight {
+    std::string name;
+    double azimuth, elevation;  // degrees, as in sample::headDirection
+    float color[3];             // irradiance / pi
+    bool shadow = true;         // a soft lamp beside the camera needs none
+};
+
 struct DemoViewRequest {
     std::string name;
-    sample::HeadPose pose;
     sample::Framing framing;
-    sample::KeyLight keyLight = sample::KeyLight::Side;
-    float keyIrradiance = 1;  // irradiance / pi of the key light
-    float skyScale = 1;       // of the ambient light
+    std::vector<DemoLight> lights;  // the first one's reflection is in the sky
+    float skyScale = 1;             // of the ambient light
     uint32_t width = 1280, height = 720;
 };
 
@@ -30,7 +37,7 @@ struct DemoViewRequest {
 io::SceneFile standardLuts();
 
 // Renders with the stand-in host.
-DemoView renderDemoView(const sample::Scene& mesh, const DemoViewRequest& request);
+DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const DemoViewRequest& request);
 
 // The same scene with less in it: plain Lambert, or everything but deep scatter.
 io::SceneFile withoutScattering(io::SceneFile scene);

@@ -23,7 +23,7 @@ struct Camera {
     Matrix4 inverseViewProjection(double aspect) const;
 };
 
-// Which way a head looks. The default is that of most scans on a z-up axis, such as CGAL's mannequin; {y, z}
+// Which way a head looks. The default is that of most scans with z up; {y, z}
 // suits y-up files.
 struct HeadPose {
     Vec3 up{0, 0, 1};      // unit, towards the crown

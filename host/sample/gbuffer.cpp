@@ -112,10 +112,26 @@ class Renderer {
         surface(x, y, position, geometric, ray.direction, depth);
     }
 
+    Vec3 eyeColor(Vec3 p) const {
+        const auto nearest = std::ranges::min_element(
+            options_.eyes, {}, [&](const EyeLook& eye) { return length(p - eye.centre); });
+        const LinearColor c = nearest == options_.eyes.end() ? EyeLook().sclera : nearest->at(p);
+        return {c[0], c[1], c[2]};
+    }
+
     void surface(int x, int y, Vec3 position, Vec3 geometric, Vec3 direction, double depth) {
+        const uint32_t id = out_.material[size_t(y) * size_t(out_.width) + size_t(x)];
+        const Look look = id - 1 < options_.looks.size() ? options_.looks[id - 1] : Look();
         Vec3 shading = geometric, blurred = geometric;
-        Vec3 albedo{options_.albedo[0], options_.albedo[1], options_.albedo[2]};
-        if (detail_) {
+        Vec3 albedo{look.albedo[0], look.albedo[1], look.albedo[2]};
+        if (look.kind == Look::Kind::Eye) albedo = eyeColor(position);
+        if (look.kind == Look::Kind::Skin) {
+            for (const Tint& tint : options_.tints) {
+                const LinearColor factor = tint.at(position);
+                albedo = {albedo.x * factor[0], albedo.y * factor[1], albedo.z * factor[2]};
+            }
+        }
+        if (detail_ && look.kind == Look::Kind::Skin) {
             // Half a pixel of standard deviation, longer where the surface is seen at a slant.
             const double facing = dot(direction, geometric);
             const Footprint pixel{geometric, 0.5 * view_.pixel * depth,

@@ -6,6 +6,7 @@
 
 #include "sample/camera.h"
 #include "sample/image.h"
+#include "sample/look.h"
 #include "sample/scene.h"
 
 namespace pellucid::sample {
@@ -25,7 +26,9 @@ struct SkinDetail {
 struct GBufferOptions {
     SkinDetail detail;
     double diffusionRadius = 2.7;                      // mm: what the blurred normal is blurred over
-    std::array<float, 3> albedo{0.72f, 0.49f, 0.39f};  // linear; the mean where detail varies it
+    std::vector<Look> looks;     // of material ids 1, 2, ...; ids beyond are skin
+    std::vector<Tint> tints;     // on skin
+    std::vector<EyeLook> eyes;   // an eye's pixel belongs to the nearest
 };
 
 constexpr float backgroundDepth = 1e10f;  // mm, of viewDepth where nothing was hit

@@ -220,7 +220,7 @@ TEST(SampleDetail, AlbedoVariesAboutItsMean) {
             low = std::min(low, a);
             high = std::max(high, a);
         }
-        EXPECT_NEAR(sum / count, options.albedo[c], tolerance::sampleAlbedoMean);
+        EXPECT_NEAR(sum / count, sample::Look().albedo[size_t(c)], tolerance::sampleAlbedoMean);
         EXPECT_LT(low, high);
         EXPECT_GT(low, 0);
         EXPECT_LE(high, 1);

@@ -3,14 +3,25 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <stdexcept>
 
-#include "io/image/font.h"
+#include <OpenImageIO/imagebufalgo.h>
 
 namespace pellucid::io {
 namespace {
 
 constexpr Srgb8 paper = {28, 28, 30}, ink = {225, 225, 225};
+
+constexpr const char* fontFile = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+
+// Where Debian puts it, else wherever OpenImageIO looks for fonts.
+std::string font() {
+    return std::filesystem::exists(fontFile) ? fontFile : "DejaVuSans";
+}
+constexpr int fontSize(int scale) {
+    return 8 * scale;
+}
 
 std::string shownNumber(double value) {
     char text[32];
@@ -51,24 +62,16 @@ void Picture::paste(int x, int y, const Picture& other) {
 }
 
 int Picture::write(int x, int y, std::string_view text, Srgb8 color, int scale) {
-    for (char character : text) {
-        const auto rows = glyph(character);
-        for (int row = 0; row < glyphHeight * scale; ++row) {
-            for (int column = 0; column < glyphWidth * scale; ++column) {
-                const bool dot =
-                    rows[static_cast<size_t>(row / scale)] >> (glyphWidth - 1 - column / scale) & 1;
-                if (dot) paint(x + column, y + row, color);
-            }
-        }
-        x += glyphAdvance * scale;
-    }
-    return x;
+    OIIO::ImageBuf pixels(OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::UINT8), rgb.data());
+    const float ink_[3] = {color[0] / 255.0f, color[1] / 255.0f, color[2] / 255.0f};
+    OIIO::ImageBufAlgo::render_text(pixels, x, y + 7 * scale, std::string(text), fontSize(scale), font(),
+                                    ink_);  // y: the baseline
+    return x + textWidth(text, scale);
 }
 
 int textWidth(std::string_view text, int scale) {
-    return text.empty()
-               ? 0
-               : (static_cast<int>(text.size()) * glyphAdvance - (glyphAdvance - glyphWidth)) * scale;
+    const OIIO::ROI size = OIIO::ImageBufAlgo::text_size(std::string(text), fontSize(scale), font());
+    return size.defined() ? std::max(size.xend, 0) : 0;
 }
 
 Picture shrunk(const Picture& picture, int factor) {
@@ -99,7 +102,7 @@ Picture shrunk(const Picture& picture, int factor) {
 }
 
 Picture contactSheet(std::span<const Tile> tiles, int columns, int textScale) {
-    const int gap = 6 * textScale, labelHeight = glyphHeight * textScale + gap;
+    const int gap = 6 * textScale, labelHeight = textHeight(textScale) + gap;
     columns = std::max(1, std::min<int>(columns, static_cast<int>(tiles.size())));
     const int rows = (static_cast<int>(tiles.size()) + columns - 1) / columns;
     std::vector<int> widths(static_cast<size_t>(columns), 0), heights(static_cast<size_t>(rows), 0);
@@ -129,8 +132,8 @@ Picture contactSheet(std::span<const Tile> tiles, int columns, int textScale) {
 }
 
 Picture colorBar(int width, double low, double high, std::string_view unit, int textScale) {
-    const int barHeight = 3 * glyphHeight * textScale, textTop = barHeight + 2 * textScale;
-    Picture bar(width, textTop + 2 * (glyphHeight + 2) * textScale, paper);
+    const int barHeight = 2 * textHeight(textScale), textTop = barHeight + 2 * textScale;
+    Picture bar(width, textTop + 2 * textHeight(textScale), paper);
     for (int x = 0; x < width; ++x) {
         const double value = low + (high - low) * (x + 0.5) / width;
         const Srgb8 color =
@@ -141,7 +144,7 @@ Picture colorBar(int width, double low, double high, std::string_view unit, int 
     bar.write(0, textTop, shownNumber(low), ink, textScale);
     bar.write((width - textWidth(middle, textScale)) / 2, textTop, middle, ink, textScale);
     bar.write(width - textWidth(right, textScale), textTop, right, ink, textScale);
-    bar.write((width - textWidth(unit, textScale)) / 2, textTop + (glyphHeight + 2) * textScale, unit, ink,
+    bar.write((width - textWidth(unit, textScale)) / 2, textTop + textHeight(textScale), unit, ink,
               textScale);
     return bar;
 }

@@ -22,13 +22,14 @@ struct Picture {
     void paint(int x, int y, Srgb8 color);  // outside the picture: nothing
     // Copies `other` with its upper left corner at (x, y); what sticks out is dropped.
     void paste(int x, int y, const Picture& other);
-    // Writes text with its upper left corner at (x, y), 7 * scale pixels high. Letters are shown in capitals;
-    // characters without a glyph as a box. Returns the x after it.
+    // Writes text in DejaVu Sans with its upper left corner at (x, y), textHeight(scale) pixels high. Without that font (Debian's
+    // fonts-dejavu-core) nothing is written: pictures do not fail for the sake of a label. Returns the x after it.
     int write(int x, int y, std::string_view text, Srgb8 color, int scale = 1);
 };
 
-// Pixels that write() needs for a text, in width.
+// Pixels that write() needs.
 int textWidth(std::string_view text, int scale = 1);
+constexpr int textHeight(int scale = 1) { return 9 * scale; }
 
 // The mean of factor x factor pixels for each, in linear light; sizes are rounded down, at least 1 pixel.
 Picture shrunk(const Picture& picture, int factor);

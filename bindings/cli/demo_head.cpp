@@ -1,0 +1,134 @@
+#include "demo_head.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "command.h"
+#include "io/mesh/mesh_parts.h"
+
+namespace pellucid::cli {
+namespace {
+
+using sample::Bounds;
+using sample::LinearColor;
+using sample::Vec3;
+
+Vec3 positionOf(const io::MeshData& mesh, uint32_t v) {
+    return {mesh.positions[3 * v], mesh.positions[3 * v + 1], mesh.positions[3 * v + 2]};
+}
+
+Bounds boundsOfPart(const io::PartedMesh& head, const std::string& name) {
+    Bounds bounds;
+    const int part = head.part(name);
+    for (size_t t = 0; part >= 0 && t < head.partOf.size(); ++t)
+        if (head.partOf[t] == uint32_t(part))
+            for (int c = 0; c < 3; ++c) bounds.add(positionOf(head.mesh, head.mesh.triangles[3 * t + c]));
+    return bounds;
+}
+
+// The point of the head furthest to the front within `reach` of (x, y), seen from the front.
+Vec3 foremost(const io::MeshData& mesh, double x, double y, double reach) {
+    Vec3 best{x, y, -INFINITY};
+    for (uint32_t v = 0; v < mesh.vertexCount(); ++v) {
+        const Vec3 p = positionOf(mesh, v);
+        if (std::hypot(p.x - x, p.y - y) < reach && p.z > best.z) best.z = p.z;
+    }
+    return best;
+}
+
+// Blood shows where skin is thin: lips, cheeks, nose, ears. Places and sizes follow the distance between the
+// eyes, the mouth and the outline; the strength is chosen by eye.
+std::vector<sample::Tint> tintsOf(const io::PartedMesh& head, const Bounds (&eyes)[2], const Bounds& mouth,
+                                  const Bounds& skin) {
+    const Vec3 left = eyes[0].centre(), right = eyes[1].centre();
+    const double e = std::abs(left.x - right.x);
+    const double lipLine = mouth.centre().y;
+    std::vector<sample::Tint> tints;
+    const auto add = [&](double x, double y, Vec3 radii, LinearColor factor, double edge) {
+        Vec3 centre = foremost(head.mesh, x, y, 0.08 * e);
+        centre.z -= 0.3 * radii.z * e;
+        tints.push_back({centre, radii * e, factor, edge});
+    };
+    add(0, lipLine + 0.02 * e, {0.42, 0.15, 0.4}, {0.86, 0.56, 0.60}, 0.35);
+    for (const double side : {-1.0, 1.0}) {
+        add(side * 0.66 * e, left.y - 0.66 * e, {0.5, 0.42, 0.7}, {1.02, 0.84, 0.84}, 1);
+        const double x = side > 0 ? skin.high.x : skin.low.x;
+        tints.push_back({{x, left.y - 0.25 * e, skin.centre().z - 0.1 * e},
+                         Vec3{0.35, 0.75, 0.6} * e,
+                         {1.02, 0.80, 0.78},
+                         1});
+    }
+    add(0, 0.5 * (left.y + lipLine) - 0.02 * e, {0.3, 0.3, 0.5}, {1.02, 0.86, 0.86}, 1);
+    return tints;
+}
+
+std::vector<std::filesystem::path> headFolders() {
+    std::error_code error;
+    const std::filesystem::path bin = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+    return {bin / "../share/pellucid/heads", bin / "../../../data/heads"};  // installed; build/PRESET/bin
+}
+
+}  // namespace
+
+std::string standardHead() {
+    const char* named = std::getenv("PELLUCID_DEMO_MESH");
+    if (named && *named) return named;
+    for (const std::filesystem::path& folder : headFolders())
+        if (std::error_code error; std::filesystem::exists(folder / "head_female.obj", error))
+            return (folder / "head_female.obj").lexically_normal().string();
+    throw UsageError(
+        "no mesh given, and the head that comes with pellucid is not in its share/pellucid/heads; name an "
+        "OFF, OBJ, PLY or STL file");
+}
+
+bool hasHeadParts(const std::string& path) {
+    if (std::filesystem::path(path).extension() != ".obj") return false;
+    return io::loadParts(path, 0).part("skin") >= 0;
+}
+
+DemoHead loadDemoHead(const std::string& path, int levels) {
+    io::PartedMesh head = io::loadParts(path, levels);
+    // A straight cut in place of the ragged end of the data.
+    const Bounds whole = boundsOfPart(head, "skin");
+    const float cut = float(whole.low.y + 0.13 * (whole.high.y - whole.low.y));
+    io::cutAndClose(head, "skin", {0, 0.976f, 0.22f}, 0.976f * cut, "cut");
+    DemoHead out;
+    out.pose = {{0, 1, 0}, {0, 0, 1}};
+    for (const uint32_t part : head.partOf) {
+        const std::string& name = head.parts[part];
+        out.materials.push_back(name.starts_with("eye")      ? DEMO_EYES
+                                : name.starts_with("teeth")  ? DEMO_TEETH
+                                : name.starts_with("tongue") ? DEMO_TONGUE
+                                : name == "cut"              ? DEMO_CUT
+                                                             : DEMO_SKIN);
+    }
+    out.looks.resize(5);
+    out.looks[DEMO_SKIN - 1].albedo = {0.76f, 0.54f, 0.44f};
+    out.looks[DEMO_EYES - 1].kind = sample::Look::Kind::Eye;
+    out.looks[DEMO_TEETH - 1] = {sample::Look::Kind::Plain, {0.75f, 0.70f, 0.58f}};
+    out.looks[DEMO_TONGUE - 1] = {sample::Look::Kind::Plain, {0.55f, 0.22f, 0.20f}};
+    out.looks[DEMO_CUT - 1] = {sample::Look::Kind::Plain, {0.02f, 0.02f, 0.02f}};
+
+    const Bounds skin = boundsOfPart(head, "skin");
+    const Bounds eyes[2] = {boundsOfPart(head, "eye_left"), boundsOfPart(head, "eye_right")};
+    Bounds mouth = boundsOfPart(head, "teeth_upper");
+    const Bounds lower = boundsOfPart(head, "teeth_lower");
+    for (int i = 0; i < 8 && !lower.empty(); ++i) mouth.add(lower.corner(i));
+    for (const Bounds& ball : eyes) {
+        if (ball.empty()) continue;
+        sample::EyeLook eye;
+        eye.radius = 0.5 * (ball.high.y - ball.low.y);
+        // The cornea bulges: the ball's middle is behind that of its box.
+        eye.centre = {ball.centre().x, ball.centre().y, ball.low.z + eye.radius};
+        eye.irisRadius = 0.42 * eye.radius;
+        eye.pupilRadius = 0.16 * eye.radius;
+        out.eyes.push_back(eye);
+    }
+    if (!eyes[0].empty() && !eyes[1].empty() && !mouth.empty()) out.tints = tintsOf(head, eyes, mouth, skin);
+    out.frame = skin;
+    out.mesh = std::move(head.mesh);
+    return out;
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,33 @@
+// The head of the demo: one of the two that come with the project, or somebody's mesh.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "io/mesh/mesh_file.h"
+#include "sample/camera.h"
+#include "sample/look.h"
+
+namespace pellucid::cli {
+
+// Material ids of the demo.
+enum DemoMaterial : uint32_t { DEMO_SKIN = 1, DEMO_EYES = 2, DEMO_TEETH = 3, DEMO_TONGUE = 4, DEMO_CUT = 5 };
+
+struct DemoHead {
+    io::MeshData mesh;                // mm
+    std::vector<uint32_t> materials;  // DemoMaterial per triangle; empty: all skin
+    std::vector<sample::Look> looks;  // of the ids 1, 2, ...
+    std::vector<sample::Tint> tints;  // lips, cheeks, ears
+    std::vector<sample::EyeLook> eyes;
+    sample::HeadPose pose;
+    sample::Bounds frame;  // what the picture shows: a neck that was cut off is left out
+};
+
+// The OBJ file of the head that the demo shows when no mesh is named. Throws UsageError when it is nowhere.
+std::string standardHead();
+
+// `levels`: Catmull-Clark.
+DemoHead loadDemoHead(const std::string& path, int levels);
+// True if `path` is an OBJ file with a part "skin".
+bool hasHeadParts(const std::string& path);
+
+}  // namespace pellucid::cli

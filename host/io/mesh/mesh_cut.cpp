@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "io/mesh/mesh_parts.h"
+
+namespace pellucid::io {
+namespace {
+
+// New vertices on cut edges; the same for both triangles of an edge.
+class Cutter {
+  public:
+    Cutter(MeshData& mesh, const float (&normal)[3], float offset)
+        : mesh_(mesh), normal_{normal[0], normal[1], normal[2]}, offset_(offset) {}
+
+    double above(uint32_t v) const {
+        const float* p = &mesh_.positions[3 * size_t(v)];
+        return normal_[0] * p[0] + normal_[1] * p[1] + normal_[2] * p[2] - offset_;
+    }
+    uint32_t crossing(uint32_t a, uint32_t b) {
+        if (a > b) std::swap(a, b);
+        const auto [entry, isNew] = cuts_.try_emplace({a, b}, uint32_t(mesh_.vertexCount()));
+        if (isNew) {
+            const double t = above(a) / (above(a) - above(b));
+            for (std::vector<float>* array : {&mesh_.positions, &mesh_.normals})
+                for (size_t k = 0; k < 3; ++k) {
+                    const float x = (*array)[3 * size_t(a) + k], y = (*array)[3 * size_t(b) + k];
+                    array->push_back(float(x + t * (y - x)));
+                }
+        }
+        return entry->second;
+    }
+
+  private:
+    MeshData& mesh_;
+    std::array<double, 3> normal_;
+    double offset_;
+    std::map<std::pair<uint32_t, uint32_t>, uint32_t> cuts_;
+};
+
+// A fan from the middle of the rim, with vertices of its own.
+void closeRim(PartedMesh& mesh, const std::vector<std::array<uint32_t, 2>>& rim, const float (&normal)[3],
+              uint32_t part) {
+    MeshData& data = mesh.mesh;
+    const auto copy = [&](const double(&p)[3]) {
+        for (size_t k = 0; k < 3; ++k) {
+            data.positions.push_back(float(p[k]));
+            data.normals.push_back(-normal[k]);
+        }
+        return uint32_t(data.vertexCount() - 1);
+    };
+    double middle[3] = {0, 0, 0};
+    for (const auto& edge : rim)
+        for (size_t k = 0; k < 3; ++k)
+            middle[k] += data.positions[3 * size_t(edge[0]) + k] / double(rim.size());
+    const uint32_t centre = copy(middle);
+    std::map<uint32_t, uint32_t> copies;
+    const auto own = [&](uint32_t v) {
+        const auto [entry, isNew] = copies.try_emplace(v);
+        if (isNew)
+            entry->second = copy({data.positions[3 * size_t(v)], data.positions[3 * size_t(v) + 1],
+                                  data.positions[3 * size_t(v) + 2]});
+        return entry->second;
+    };
+    for (const auto& edge : rim) {
+        const uint32_t corners[3] = {own(edge[1]), own(edge[0]), centre};
+        data.triangles.insert(data.triangles.end(), corners, corners + 3);
+        mesh.partOf.push_back(part);
+    }
+}
+
+}  // namespace
+
+void cutAndClose(PartedMesh& mesh, const std::string& part, const float (&normal)[3], float offset,
+                 const std::string& cap) {
+    MeshData& data = mesh.mesh;
+    Cutter cutter(data, normal, offset);
+    const int wanted = mesh.part(part);
+    std::vector<uint32_t> triangles, partOf;
+    std::vector<std::array<uint32_t, 2>> rim;  // edges of the cut, as the kept triangles run through them
+    const auto add = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t of) {
+        triangles.insert(triangles.end(), {a, b, c});
+        partOf.push_back(of);
+    };
+    const std::vector<uint32_t> before = std::move(data.triangles);
+    for (size_t t = 0; t < mesh.partOf.size(); ++t) {
+        std::array<uint32_t, 3> v{before[3 * t], before[3 * t + 1], before[3 * t + 2]};
+        const uint32_t of = mesh.partOf[t];
+        const auto kept = std::count_if(v.begin(), v.end(), [&](uint32_t i) { return cutter.above(i) >= 0; });
+        if (kept == 0) continue;
+        if (kept == 3) {
+            add(v[0], v[1], v[2], of);
+            continue;
+        }
+        // The corner that is alone on its side comes first.
+        while ((cutter.above(v[0]) >= 0) != (kept == 1) || (cutter.above(v[1]) >= 0) == (kept == 1))
+            std::rotate(v.begin(), v.begin() + 1, v.end());
+        const uint32_t p = cutter.crossing(v[0], v[1]), q = cutter.crossing(v[0], v[2]);
+        if (kept == 1) {
+            add(v[0], p, q, of);
+            if (int(of) == wanted) rim.push_back({p, q});
+        } else {
+            add(p, v[1], v[2], of);
+            add(p, v[2], q, of);
+            if (int(of) == wanted) rim.push_back({q, p});
+        }
+    }
+    data.triangles = std::move(triangles);
+    mesh.partOf = std::move(partOf);
+    std::map<uint32_t, int> ends;
+    for (const auto& edge : rim) ++ends[edge[0]], --ends[edge[1]];
+    if (rim.empty() || std::any_of(ends.begin(), ends.end(), [](const auto& end) { return end.second != 0; }))
+        return;
+    mesh.parts.push_back(cap);
+    closeRim(mesh, rim, normal, uint32_t(mesh.parts.size() - 1));
+}
+
+}  // namespace pellucid::io

@@ -1,0 +1,31 @@
+// Polygon meshes with named parts, made smooth: the heads of the demo.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "io/mesh/mesh_file.h"
+
+namespace pellucid::io {
+
+struct PartedMesh {
+    MeshData mesh;                   // no UVs; normals over all vertices
+    std::vector<std::string> parts;  // the OBJ file's groups, in the order of their first face
+    std::vector<uint32_t> partOf;    // index into `parts`, per triangle
+
+    int part(const std::string& name) const;  // -1: there is none
+};
+
+// Reads an OBJ file with its groups ("g NAME"; faces before the first are in a part ""). Each part is
+// subdivided `levels` times by Catmull-Clark, so that a part's polygons become 4^levels quads and more, and
+// cut into triangles. Parts do not share vertices afterwards. Throws FileError as loadMesh does, and for a
+// part that is not manifold.
+PartedMesh loadParts(const std::string& path, int levels);
+
+// Removes what lies below a plane, where dot(normal, p) < offset, cuts the triangles that cross it, and
+// closes each hole of the cut part with triangles of a new part called `cap`, whose normals face down the
+// plane. The cut has to be one closed, star-shaped curve, as that of a neck is; of an open curve nothing is
+// closed.
+void cutAndClose(PartedMesh& mesh, const std::string& part, const float (&normal)[3], float offset,
+                 const std::string& cap);
+
+}  // namespace pellucid::io

@@ -1,0 +1,144 @@
+// host/io: meshes with parts, their subdivision and the cut of a neck; the heads that come with the project.
+#include <cmath>
+#include <map>
+
+#include "io/file_error.h"
+#include "io/mesh/mesh_parts.h"
+#include "io_files.h"
+
+using namespace pellucid::io;
+
+namespace {
+
+using MeshParts = FolderTest;
+
+// Two cubes of side 2, the second one 10 to the right.
+std::string cubes() {
+    std::string text;
+    for (int cube = 0; cube < 2; ++cube)
+        for (int i = 0; i < 8; ++i)
+            text += "v " + std::to_string(10 * cube + (i & 1 ? 1 : -1)) + " " + (i & 2 ? "1" : "-1") + " " +
+                    (i & 4 ? "1" : "-1") + "\n";
+    const int quads[6][4] = {{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5},
+                             {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}};
+    for (int cube = 0; cube < 2; ++cube) {
+        text += cube ? "g right\n" : "g left\n";
+        for (const auto& quad : quads) {
+            text += "f";
+            for (int v : quad) text += " " + std::to_string(v + 8 * cube);
+            text += "\n";
+        }
+    }
+    return text;
+}
+
+double area(const MeshData& mesh, size_t t) {
+    double e[2][3];
+    for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < 2; ++i)
+            e[i][k] = mesh.positions[3 * mesh.triangles[3 * t + 1 + i] + k] -
+                      mesh.positions[3 * mesh.triangles[3 * t] + k];
+    return 0.5 * std::hypot(e[0][1] * e[1][2] - e[0][2] * e[1][1], e[0][2] * e[1][0] - e[0][0] * e[1][2],
+                            e[0][0] * e[1][1] - e[0][1] * e[1][0]);
+}
+
+// Sum of signed volumes of tetrahedra: that of the body if the surface is closed and faces outwards.
+double volume(const MeshData& mesh) {
+    double sum = 0;
+    for (size_t t = 0; t < mesh.triangleCount(); ++t) {
+        const float* p[3];
+        for (int i = 0; i < 3; ++i) p[i] = &mesh.positions[3 * mesh.triangles[3 * t + i]];
+        sum += double(p[0][0]) * (double(p[1][1]) * p[2][2] - double(p[1][2]) * p[2][1]) -
+               double(p[0][1]) * (double(p[1][0]) * p[2][2] - double(p[1][2]) * p[2][0]) +
+               double(p[0][2]) * (double(p[1][0]) * p[2][1] - double(p[1][1]) * p[2][0]);
+    }
+    return sum / 6;
+}
+
+}  // namespace
+
+TEST_F(MeshParts, GroupsAndQuadsOfAnObj) {
+    const PartedMesh mesh = loadParts(write("cubes.obj", cubes()), 0);
+    ASSERT_EQ(mesh.parts, (std::vector<std::string>{"left", "right"}));
+    EXPECT_EQ(mesh.mesh.triangleCount(), 24u);
+    ASSERT_EQ(mesh.partOf.size(), 24u);
+    for (size_t t = 0; t < 24; ++t) {
+        EXPECT_EQ(mesh.partOf[t], t / 12);
+        EXPECT_EQ(mesh.mesh.positions[3 * mesh.mesh.triangles[3 * t]] > 5, t >= 12);
+    }
+    EXPECT_NEAR(volume(mesh.mesh), 16, 1e-5);
+    EXPECT_EQ(mesh.part("right"), 1);
+    EXPECT_EQ(mesh.part("none"), -1);
+}
+
+// The limit of a corner of n quads is (n^2 V + 4 sum E + sum F) / (n (n + 5)), E its neighbours by an edge, F
+// those across a quad [Halstead, Kass, DeRose, SIGGRAPH 1993]: half of a cube's corner.
+TEST_F(MeshParts, SubdivisionIsCatmullClarks) {
+    const PartedMesh mesh = loadParts(write("cubes.obj", cubes()), 4);
+    EXPECT_EQ(mesh.mesh.triangleCount(), 2u * 6 * 256 * 2);
+    double corner = 0, face = 0;
+    for (size_t v = 0; v < mesh.mesh.vertexCount(); ++v) {
+        const float* p = &mesh.mesh.positions[3 * v];
+        if (p[0] > 5) continue;
+        corner = std::max(corner, double(p[0]) + p[1] + p[2]);
+        face = std::max(face, double(p[2]));
+    }
+    EXPECT_NEAR(corner / 3, 0.5, 1e-3);  // after four levels
+    EXPECT_GT(face, 0.6);
+    EXPECT_LT(face, 1);
+    for (size_t t = 0; t < mesh.mesh.triangleCount(); ++t) EXPECT_GT(area(mesh.mesh, t), 0);
+}
+
+TEST_F(MeshParts, ACutIsStraightAndClosed) {
+    PartedMesh mesh = loadParts(write("cubes.obj", cubes()), 3);
+    const double before = volume(mesh.mesh);
+    cutAndClose(mesh, "left", {0, 1, 0}, 0, "cap");
+    ASSERT_EQ(mesh.part("cap"), 2);
+    ASSERT_EQ(mesh.partOf.size(), mesh.mesh.triangleCount());
+    float lowest = 1;
+    double capArea = 0;
+    std::map<std::pair<uint32_t, uint32_t>, int> edges;
+    for (size_t t = 0; t < mesh.mesh.triangleCount(); ++t) {
+        for (int i = 0; i < 3; ++i)
+            lowest = std::min(lowest, mesh.mesh.positions[3 * mesh.mesh.triangles[3 * t + i] + 1]);
+        if (mesh.partOf[t] == 2) {
+            capArea += area(mesh.mesh, t);
+            EXPECT_EQ(mesh.mesh.normals[3 * mesh.mesh.triangles[3 * t] + 1], -1);
+        }
+    }
+    EXPECT_NEAR(lowest, 0, 1e-6);
+    EXPECT_GT(capArea, 1);
+    // The left cube is closed: half of its volume. The right one is cut without a cap, in the plane through
+    // the origin, which an open rim in that plane does not change.
+    EXPECT_NEAR(volume(mesh.mesh), before / 2, 1e-4);
+
+    PartedMesh whole = loadParts(write("cubes.obj", cubes()), 1);
+    const size_t triangles = whole.mesh.triangleCount();
+    cutAndClose(whole, "left", {0, 1, 0}, -5, "cap");  // misses
+    EXPECT_EQ(whole.mesh.triangleCount(), triangles);
+    EXPECT_EQ(whole.part("cap"), -1);
+}
+
+TEST_F(MeshParts, WhatCannotBeReadIsNamed) {
+    EXPECT_THROW(loadParts(path("none.obj"), 1), FileError);
+    EXPECT_THROW(loadParts(write("a.off", "OFF\n0 0 0\n"), 1), FileError);
+    EXPECT_THROW(loadParts(write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), 1), FileError);
+    // Three faces at one edge.
+    const std::string fins = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 0 0\nf 1 2 3\nf 1 2 4\nf 1 2 5\n";
+    try {
+        loadParts(write("fins.obj", fins), 1);
+        FAIL();
+    } catch (const FileError& e) {
+        EXPECT_NE(std::string(e.what()).find("face"), std::string::npos);
+    }
+}
+
+TEST(Heads, HaveTheirParts) {
+    for (const char* name : {"head_female", "head_male"}) {
+        const PartedMesh head = loadParts(PELLUCID_SOURCE_DIR "/data/heads/" + std::string(name) + ".obj", 1);
+        for (const char* part : {"skin", "eye_left", "eye_right", "teeth_upper", "teeth_lower", "tongue"})
+            EXPECT_GE(head.part(part), 0) << name << " " << part;
+        EXPECT_GT(head.mesh.triangleCount(), 30000u);
+        for (const float n : head.mesh.normals) ASSERT_TRUE(std::isfinite(n));
+    }
+}
