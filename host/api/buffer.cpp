@@ -7,48 +7,47 @@ using namespace pel;
 
 PelError pelBufferCreate(PelDevice device, size_t bytes, const void* initial, PelBuffer* buffer) {
     return entry([&] {
-        output(buffer, "buffer") =
-            toHandle<PelBuffer>(Buffer::create(Ref(&fromHandle<Device>(device)), bytes, initial));
+        handOut(buffer, "buffer", [&] { return Buffer::create(fromHandle<Device>(device), bytes, initial); });
     });
 }
 
 PelError pelBufferCreateFromHost(PelDevice device, void* memory, size_t bytes, PelBuffer* buffer) {
     return entry([&] {
-        output(buffer, "buffer") =
-            toHandle<PelBuffer>(Buffer::createFromHost(Ref(&fromHandle<Device>(device)), memory, bytes));
+        handOut(buffer, "buffer",
+                [&] { return Buffer::createFromHost(fromHandle<Device>(device), memory, bytes); });
     });
 }
 
 PelError pelBufferCreateFromCl(PelDevice device, void* clMem, PelBuffer* buffer) {
     return entry([&] {
-        output(buffer, "buffer") =
-            toHandle<PelBuffer>(Buffer::createFromCl(Ref(&fromHandle<Device>(device)), cl_mem(clMem)));
+        handOut(buffer, "buffer",
+                [&] { return Buffer::createFromCl(fromHandle<Device>(device), cl_mem(clMem)); });
     });
 }
 
 void pelBufferRetain(PelBuffer buffer) {
-    retainHandle(buffer);
+    retainEntry<Buffer>(buffer);
 }
 void pelBufferRelease(PelBuffer buffer) {
-    releaseHandle(buffer);
+    releaseEntry<Buffer>(buffer);
 }
 
 PelError pelBufferGetSize(PelBuffer buffer, size_t* bytes) {
-    return entry([&] { output(bytes, "bytes") = fromHandle<Buffer>(buffer).bytes(); });
+    return entry([&] { output(bytes, "bytes") = fromHandle<Buffer>(buffer)->bytes(); });
 }
 
 PelError pelBufferGetCl(PelBuffer buffer, void** clMem) {
-    return entry([&] { output(clMem, "clMem") = fromHandle<Buffer>(buffer).memory().get(); });
+    return entry([&] { output(clMem, "clMem") = fromHandle<Buffer>(buffer)->memory().get(); });
 }
 
 PelError pelBufferRead(PelBuffer buffer, size_t offset, size_t bytes, void* destination,
                        const PelSubmit* submit) {
     return entry([&] {
-        Buffer& b = fromHandle<Buffer>(buffer);
-        b.checkRange(offset, bytes, "the read");
+        const Ref<Buffer> b = fromHandle<Buffer>(buffer);
+        b->checkRange(offset, bytes, "the read");
         if (bytes > 0) output(static_cast<char*>(destination), "destination");
-        Submission submission(b.device(), submit);
-        if (bytes > 0) b.device().read(b.memory().get(), offset, bytes, destination, submission.blocking());
+        Submission submission(b->device(), submit);
+        if (bytes > 0) b->device().read(b->memory().get(), offset, bytes, destination, submission.blocking());
         submission.finish();
     });
 }
@@ -56,19 +55,19 @@ PelError pelBufferRead(PelBuffer buffer, size_t offset, size_t bytes, void* dest
 PelError pelBufferWrite(PelBuffer buffer, size_t offset, size_t bytes, const void* source,
                         const PelSubmit* submit) {
     return entry([&] {
-        Buffer& b = fromHandle<Buffer>(buffer);
-        b.checkRange(offset, bytes, "the write");
+        const Ref<Buffer> b = fromHandle<Buffer>(buffer);
+        b->checkRange(offset, bytes, "the write");
         if (bytes > 0 && !source) invalidArgument("source is NULL but ", bytes, " bytes are to be written");
-        Submission submission(b.device(), submit);
-        if (bytes > 0) b.device().write(b.memory().get(), offset, bytes, source, submission.blocking());
+        Submission submission(b->device(), submit);
+        if (bytes > 0) b->device().write(b->memory().get(), offset, bytes, source, submission.blocking());
         submission.finish();
     });
 }
 
 PelError pelBufferMap(PelBuffer buffer, void** memory) {
-    return entry([&] { output(memory, "memory") = fromHandle<Buffer>(buffer).map(); });
+    return entry([&] { output(memory, "memory") = fromHandle<Buffer>(buffer)->map(); });
 }
 
 PelError pelBufferUnmap(PelBuffer buffer) {
-    return entry([&] { fromHandle<Buffer>(buffer).unmap(); });
+    return entry([&] { fromHandle<Buffer>(buffer)->unmap(); });
 }

@@ -56,72 +56,73 @@ PelError pelDeviceEnumerate(uint32_t index, PelDeviceInfo* info) {
 }
 
 PelError pelDeviceCreate(const char* selector, PelDevice* device) {
-    return entry([&] { output(device, "device") = toHandle<PelDevice>(Device::create(selector)); });
+    return entry([&] { handOut(device, "device", [&] { return Device::create(selector); }); });
 }
 
 PelError pelDeviceCreateFromCl(void* clContext, void* clDeviceId, void* clCommandQueue, PelDevice* device) {
     return entry([&] {
-        output(device, "device") = toHandle<PelDevice>(Device::createFromCl(
-            cl_context(clContext), cl_device_id(clDeviceId), cl_command_queue(clCommandQueue)));
+        handOut(device, "device", [&] {
+            return Device::createFromCl(cl_context(clContext), cl_device_id(clDeviceId),
+                                        cl_command_queue(clCommandQueue));
+        });
     });
 }
 
 void pelDeviceRetain(PelDevice device) {
-    retainHandle(device);
+    retainEntry<Device>(device);
 }
 void pelDeviceRelease(PelDevice device) {
-    releaseHandle(device);
+    releaseEntry<Device>(device);
 }
 
 PelError pelDeviceGetInfo(PelDevice device, PelDeviceInfo* info) {
-    return entry([&] { writeStruct(info, fromHandle<Device>(device).info(), "PelDeviceInfo"); });
+    return entry([&] { writeStruct(info, fromHandle<Device>(device)->info(), "PelDeviceInfo"); });
 }
 
 PelError pelDeviceGetCl(PelDevice device, void** clContext, void** clDeviceId, void** clCommandQueue) {
     return entry([&] {
-        Device& d = fromHandle<Device>(device);
-        if (clContext) *clContext = d.context();
-        if (clDeviceId) *clDeviceId = d.id();
-        if (clCommandQueue) *clCommandQueue = d.queue();
+        const Ref<Device> d = fromHandle<Device>(device);
+        if (clContext) *clContext = d->context();
+        if (clDeviceId) *clDeviceId = d->id();
+        if (clCommandQueue) *clCommandQueue = d->queue();
     });
 }
 
 PelError pelDeviceFinish(PelDevice device) {
-    return entry([&] { fromHandle<Device>(device).finish(); });
+    return entry([&] { fromHandle<Device>(device)->finish(); });
 }
 
 PelError pelDeviceGetStats(PelDevice device, PelDeviceStats* stats) {
-    return entry([&] { writeStruct(stats, fromHandle<Device>(device).stats(), "PelDeviceStats"); });
+    return entry([&] { writeStruct(stats, fromHandle<Device>(device)->stats(), "PelDeviceStats"); });
 }
 
 PelError pelDeviceSetProgress(PelDevice device, PelProgressCallback callback, void* user) {
-    return entry([&] { fromHandle<Device>(device).setProgress(callback, user); });
+    return entry([&] { fromHandle<Device>(device)->setProgress(callback, user); });
 }
 
 PelError pelEventCreateFromCl(PelDevice device, void* clEvent, PelEvent* event) {
     return entry([&] {
-        Device& d = fromHandle<Device>(device);
+        const Ref<Device> d = fromHandle<Device>(device);
         if (!clEvent) invalidArgument("a cl_event is needed, not NULL");
-        output(event, "event") =
-            toHandle<PelEvent>(make<Event>(Ref<Device>(&d), cl::Event::retained(cl_event(clEvent))));
+        handOut(event, "event", [&] { return make<Event>(d, cl::Event::retained(cl_event(clEvent))); });
     });
 }
 
 PelError pelEventGetCl(PelEvent event, void** clEvent) {
-    return entry([&] { output(clEvent, "clEvent") = fromHandle<Event>(event).cl().get(); });
+    return entry([&] { output(clEvent, "clEvent") = fromHandle<Event>(event)->cl().get(); });
 }
 
 PelError pelEventWait(PelEvent event) {
-    return entry([&] { fromHandle<Event>(event).wait(); });
+    return entry([&] { fromHandle<Event>(event)->wait(); });
 }
 
 PelError pelEventIsDone(PelEvent event, int* done) {
-    return entry([&] { output(done, "done") = fromHandle<Event>(event).isDone(); });
+    return entry([&] { output(done, "done") = fromHandle<Event>(event)->isDone(); });
 }
 
 void pelEventRetain(PelEvent event) {
-    retainHandle(event);
+    retainEntry<Event>(event);
 }
 void pelEventRelease(PelEvent event) {
-    releaseHandle(event);
+    releaseEntry<Event>(event);
 }

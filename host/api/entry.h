@@ -2,8 +2,9 @@
 #pragma once
 #include <new>
 
+#include "cl/process.h"
 #include "core/error_log.h"
-#include "core/object.h"
+#include "core/handle_table.h"
 #include "core/struct_size.h"
 
 namespace pel {
@@ -11,6 +12,7 @@ namespace pel {
 template <class Body>
 PelError entry(Body&& body) noexcept {
     try {
+        cl::checkProcess();
         body();
         return PEL_SUCCESS;
     } catch (const Error& e) {
@@ -24,12 +26,15 @@ PelError entry(Body&& body) noexcept {
     }
 }
 
-inline void retainHandle(void* handle) noexcept {
-    if (Object* object = liveObject(handle)) object->retain();
+// Retain and Release: NULL does nothing, and an error has no way out but the message and the callback.
+template <class T>
+void retainEntry(const void* handle) noexcept {
+    if (handle) entry([&] { retainHandle(handle, T::kind); });
 }
 
-inline void releaseHandle(void* handle) noexcept {
-    if (Object* object = liveObject(handle)) object->release();
+template <class T>
+void releaseEntry(const void* handle) noexcept {
+    if (handle) entry([&] { releaseHandle(handle, T::kind); });
 }
 
 // Throws when an output parameter is missing.
@@ -37,6 +42,13 @@ template <class T>
 T& output(T* pointer, const char* name) {
     if (!pointer) invalidArgument(name, " is where the result goes: it must not be NULL");
     return *pointer;
+}
+
+// A handle of what `make` makes, which is not called when there is nowhere to put it.
+template <class Handle, class Make>
+void handOut(Handle* to, const char* name, const Make& make) {
+    Handle& place = output(to, name);
+    place = toHandle<Handle>(make());
 }
 
 }  // namespace pel

@@ -11,11 +11,11 @@ template <class Desc>
 PelError createLut(PelDevice device, const Desc* desc, const Desc& defaults, const char* name, PelLut* lut,
                    const PelSubmit* submit, Ref<Lut> (*make)(Ref<Device>, const Desc&)) {
     return entry([&] {
-        Device& d = fromHandle<Device>(device);
+        const Ref<Device> d = fromHandle<Device>(device);
         const Desc request = readStruct(desc, defaults, name);
         PelLut& result = output(lut, "lut");
-        Submission submission(d, submit);
-        Ref<Lut> made = make(Ref<Device>(&d), request);
+        Submission submission(*d, submit);
+        Ref<Lut> made = make(d, request);
         submission.finish();
         result = toHandle<PelLut>(std::move(made));
     });
@@ -47,41 +47,47 @@ PelError pelSpecularLutCreate(PelDevice device, const PelSpecularLutDesc* desc, 
 PelError pelLutCreateFromTexels(PelDevice device, const PelLutInfo* info, const float* texels, size_t bytes,
                                 PelLut* lut) {
     return entry([&] {
-        Device& d = fromHandle<Device>(device);
+        const Ref<Device> d = fromHandle<Device>(device);
         const auto known = readStruct(info, pelLutInfoDefaults(), "PelLutInfo");
-        output(lut, "lut") = toHandle<PelLut>(uploadLut(Ref<Device>(&d), known, texels, bytes));
+        handOut(lut, "lut", [&] { return uploadLut(d, known, texels, bytes); });
     });
 }
 
 void pelLutRetain(PelLut lut) {
-    retainHandle(lut);
+    retainEntry<Lut>(lut);
 }
 void pelLutRelease(PelLut lut) {
-    releaseHandle(lut);
+    releaseEntry<Lut>(lut);
 }
 
 PelError pelLutGetInfo(PelLut lut, PelLutInfo* info) {
-    return entry([&] { writeStruct(info, fromHandle<Lut>(lut).info(), "PelLutInfo"); });
+    return entry([&] { writeStruct(info, fromHandle<Lut>(lut)->info(), "PelLutInfo"); });
 }
 
 PelError pelLutGetSize(PelLut lut, PelLutEncoding encoding, size_t* bytes) {
-    return entry([&] { output(bytes, "bytes") = packedBytes(fromHandle<Lut>(lut), encoding); });
+    return entry([&] {
+        const Ref<Lut> l = fromHandle<Lut>(lut);
+        output(bytes, "bytes") = packedBytes(*l, encoding);
+    });
 }
 
 PelError pelLutCountClipped(PelLut lut, uint64_t* clipped) {
-    return entry([&] { output(clipped, "clipped") = countClipped(fromHandle<Lut>(lut)); });
+    return entry([&] {
+        const Ref<Lut> l = fromHandle<Lut>(lut);
+        output(clipped, "clipped") = countClipped(*l);
+    });
 }
 
 PelError pelLutRead(PelLut lut, PelLutEncoding encoding, void* destination, size_t bytes,
                     const PelSubmit* submit) {
     return entry([&] {
-        Lut& l = fromHandle<Lut>(lut);
-        const size_t needed = packedBytes(l, encoding);
+        const Ref<Lut> l = fromHandle<Lut>(lut);
+        const size_t needed = packedBytes(*l, encoding);
         if (bytes < needed)
             invalidArgument("the LUT takes ", needed, " bytes in this encoding; destination has ", bytes);
         output(static_cast<char*>(destination), "destination");
-        Submission submission(l.device(), submit);
-        readLut(l, encoding, destination, submission.blocking());
+        Submission submission(l->device(), submit);
+        readLut(*l, encoding, destination, submission.blocking());
         submission.finish();
     });
 }

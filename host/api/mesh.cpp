@@ -1,9 +1,9 @@
 #include "api/entry.h"
-#include "mesh/mesh_topology.h"
 #include "core/submission.h"
 #include "mesh/curvature.h"
 #include "mesh/live_mesh.h"
 #include "mesh/mesh_normals.h"
+#include "mesh/mesh_topology.h"
 #include "mesh/uv_scale.h"
 
 using namespace pel;
@@ -14,7 +14,7 @@ PelError pelMeshTopologyCreate(PelDevice device, const PelMeshTopologyDesc* desc
         output(topology, "topology");
         PelMeshReport found = pelMeshReportDefaults();
         const auto full = readStruct(desc, pelMeshTopologyDescDefaults(), "PelMeshTopologyDesc");
-        const Ref<Device> d(&fromHandle<Device>(device));
+        const Ref<Device> d = fromHandle<Device>(device);
         Ref<MeshTopology> made = MeshTopology::create(
             d, full, found, [&](double fraction) { d->progress(fraction, "analysing the mesh"); });
         if (report) writeStruct(report, found, "PelMeshReport");
@@ -24,7 +24,7 @@ PelError pelMeshTopologyCreate(PelDevice device, const PelMeshTopologyDesc* desc
 
 PelError pelMeshTopologySave(PelMeshTopology topology, void* destination, size_t* size) {
     return entry([&] {
-        const std::vector<char> bytes = fromHandle<MeshTopology>(topology).save();
+        const std::vector<char> bytes = fromHandle<MeshTopology>(topology)->save();
         const size_t room = output(size, "size");
         if (destination && room < bytes.size())
             invalidArgument("the analysis takes ", bytes.size(), " bytes, and there is room for ", room);
@@ -37,7 +37,7 @@ PelError pelMeshTopologyLoad(PelDevice device, const void* bytes, size_t size, P
                              PelMeshReport* report) {
     return entry([&] {
         output(topology, "topology");
-        Ref<MeshTopology> made = MeshTopology::load(Ref(&fromHandle<Device>(device)), bytes, size);
+        Ref<MeshTopology> made = MeshTopology::load(fromHandle<Device>(device), bytes, size);
         if (report) writeStruct(report, made->report(), "PelMeshReport");
         *topology = toHandle<PelMeshTopology>(std::move(made));
     });
@@ -46,40 +46,40 @@ PelError pelMeshTopologyLoad(PelDevice device, const void* bytes, size_t size, P
 PelError pelMeshNormals(PelMeshTopology topology, const PelVertexView* positions,
                         const PelVertexView* normals, const PelSubmit* submit) {
     return entry([&] {
-        MeshTopology& mesh = fromHandle<MeshTopology>(topology);
-        const VertexView p = checkedView(positions, "positions", mesh.device(), mesh.vertices(), 3);
-        const VertexView n = checkedView(normals, "normals", mesh.device(), mesh.vertices(), 3);
-        Submission submission(mesh.device(), submit);
-        meshNormals(mesh, p, n);
+        const Ref<MeshTopology> mesh = fromHandle<MeshTopology>(topology);
+        const VertexView p = checkedView(positions, "positions", mesh->device(), mesh->vertices(), 3);
+        const VertexView n = checkedView(normals, "normals", mesh->device(), mesh->vertices(), 3);
+        Submission submission(mesh->device(), submit);
+        meshNormals(*mesh, p, n);
         submission.finish();
     });
 }
 
 void pelMeshTopologyRetain(PelMeshTopology topology) {
-    retainHandle(topology);
+    retainEntry<MeshTopology>(topology);
 }
 void pelMeshTopologyRelease(PelMeshTopology topology) {
-    releaseHandle(topology);
+    releaseEntry<MeshTopology>(topology);
 }
 
 PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* params,
                           const PelVertexView* positions, const PelVertexView* normals,
                           const PelVertexView* curvature, PelMeshReport* report, const PelSubmit* submit) {
     return entry([&] {
-        MeshTopology& mesh = fromHandle<MeshTopology>(topology);
+        const Ref<MeshTopology> mesh = fromHandle<MeshTopology>(topology);
         const auto full = readStruct(params, pelCurvatureParamsDefaults(), "PelCurvatureParams");
         checkCurvatureParams(full);
         const auto view = [&](const PelVertexView* v, const char* name, uint32_t components) {
-            return checkedView(v, name, mesh.device(), mesh.vertices(), components);
+            return checkedView(v, name, mesh->device(), mesh->vertices(), components);
         };
         const VertexView p = view(positions, "positions", 3);
         const VertexView n = normals ? view(normals, "normals", 3) : VertexView{};
         const VertexView out = view(curvature, "curvature", quantityFloats(full.quantity));
-        PelMeshReport found = mesh.report();
+        PelMeshReport found = mesh->report();
         if (report) writeStruct(report, found, "PelMeshReport");  // fails before any work does
         MeshCounts counts{};
-        Submission submission(mesh.device(), submit);
-        meshCurvature(mesh, full, p, n, out, report ? &counts : nullptr);
+        Submission submission(mesh->device(), submit);
+        meshCurvature(*mesh, full, p, n, out, report ? &counts : nullptr);
         submission.finish();
         if (!report) return;
         found.zeroLengthEdges = counts.zeroLengthEdges;
@@ -92,10 +92,10 @@ PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* pa
 PelError pelMeshUvScale(PelMeshTopology topology, const PelVertexView* positions, const PelVertexView* uvs,
                         float* uvScale) {
     return entry([&] {
-        MeshTopology& mesh = fromHandle<MeshTopology>(topology);
-        const VertexView p = checkedView(positions, "positions", mesh.device(), mesh.vertices(), 3);
-        const VertexView uv = checkedView(uvs, "uvs", mesh.device(), mesh.vertices(), 2);
-        output(uvScale, "uvScale") = meshUvScale(mesh, p, uv);
+        const Ref<MeshTopology> mesh = fromHandle<MeshTopology>(topology);
+        const VertexView p = checkedView(positions, "positions", mesh->device(), mesh->vertices(), 3);
+        const VertexView uv = checkedView(uvs, "uvs", mesh->device(), mesh->vertices(), 2);
+        output(uvScale, "uvScale") = meshUvScale(*mesh, p, uv);
     });
 }
 
@@ -104,36 +104,36 @@ PelError pelLiveMeshCreate(PelMeshTopology topology, const PelCurvatureParams* p
         output(live, "live");
         const auto full = readStruct(params, pelCurvatureParamsDefaults(), "PelCurvatureParams");
         checkCurvatureParams(full);
-        *live = toHandle<PelLiveMesh>(make<LiveMesh>(Ref(&fromHandle<MeshTopology>(topology)), full));
+        *live = toHandle<PelLiveMesh>(make<LiveMesh>(fromHandle<MeshTopology>(topology), full));
     });
 }
 
 void pelLiveMeshRetain(PelLiveMesh live) {
-    retainHandle(live);
+    retainEntry<LiveMesh>(live);
 }
 void pelLiveMeshRelease(PelLiveMesh live) {
-    releaseHandle(live);
+    releaseEntry<LiveMesh>(live);
 }
 
 PelError pelLiveMeshUpdate(PelLiveMesh live, const PelVertexView* positions, const PelVertexView* normals,
                            const PelVertexView* curvature, const PelVertexRange* changed, uint32_t numChanged,
                            const PelSubmit* submit) {
     return entry([&] {
-        LiveMesh& mesh = fromHandle<LiveMesh>(live);
-        const MeshTopology& topology = *mesh.topology();
+        const Ref<LiveMesh> mesh = fromHandle<LiveMesh>(live);
+        const MeshTopology& topology = *mesh->topology();
         const auto view = [&](const PelVertexView* v, const char* name, uint32_t components) {
             return checkedView(v, name, topology.device(), topology.vertices(), components);
         };
         const VertexView p = view(positions, "positions", 3);
         const VertexView n = normals ? view(normals, "normals", 3) : VertexView{};
-        const VertexView out = view(curvature, "curvature", quantityFloats(mesh.params().quantity));
+        const VertexView out = view(curvature, "curvature", quantityFloats(mesh->params().quantity));
         checkRanges(changed, numChanged, topology.vertices());
         Submission submission(topology.device(), submit);
-        mesh.update(p, n, out, changed, numChanged);
+        mesh->update(p, n, out, changed, numChanged);
         submission.finish();
     });
 }
 
 PelError pelLiveMeshGetStats(PelLiveMesh live, PelLiveMeshStats* stats) {
-    return entry([&] { writeStruct(stats, fromHandle<LiveMesh>(live).stats(), "PelLiveMeshStats"); });
+    return entry([&] { writeStruct(stats, fromHandle<LiveMesh>(live)->stats(), "PelLiveMeshStats"); });
 }

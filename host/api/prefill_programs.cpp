@@ -4,6 +4,7 @@
 #include <exception>
 #include <thread>
 
+#include "core/handle_table.h"
 #include "mesh/curvature.h"
 #include "lut/luts.h"
 #include "mesh/uv_scale.h"
@@ -47,12 +48,14 @@ void tableLutJobs(const Ref<Device>& device, PrefillJobs& jobs) {
     for (const PelCurvatureForm form : {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_ARC})
         jobs.push_back([device, profile, form] {
             PelCurvatureLutDesc desc = smallCurvatureLut(form);
-            desc.profile = reinterpret_cast<PelProfile>(static_cast<Object*>(profile.get()));
+            const LentHandle<PelProfile, Profile> lent(profile);
+            desc.profile = lent.get();
             integrateCurvatureLut(device, desc);
         });
     jobs.push_back([device, profile] {
         PelShadowLutDesc desc = smallShadowLut();
-        desc.profile = reinterpret_cast<PelProfile>(static_cast<Object*>(profile.get()));
+        const LentHandle<PelProfile, Profile> lent(profile);
+        desc.profile = lent.get();
         integrateShadowLut(device, desc);
     });
 }

@@ -7,54 +7,52 @@
 using namespace pel;
 
 PelError pelProfileCreateSkin(PelProfile* profile) {
-    return entry([&] { output(profile, "profile") = toHandle<PelProfile>(Profile::skin()); });
+    return entry([&] { handOut(profile, "profile", [&] { return Profile::skin(); }); });
 }
 
 PelError pelProfileCreateGaussians(const PelGaussian* gaussians, uint32_t count, PelProfile* profile) {
-    return entry(
-        [&] { output(profile, "profile") = toHandle<PelProfile>(Profile::gaussians(gaussians, count)); });
+    return entry([&] { handOut(profile, "profile", [&] { return Profile::gaussians(gaussians, count); }); });
 }
 
 PelError pelProfileCreateBurley(const float meanFreePath[3], const float albedo[3], PelBurleyFit fit,
                                 PelProfile* profile) {
-    return entry([&] {
-        output(profile, "profile") = toHandle<PelProfile>(Profile::burley(meanFreePath, albedo, fit));
-    });
+    return entry(
+        [&] { handOut(profile, "profile", [&] { return Profile::burley(meanFreePath, albedo, fit); }); });
 }
 
 PelError pelProfileCreateDipole(const float absorption[3], const float reducedScattering[3], float eta,
                                 PelProfile* profile) {
     return entry([&] {
-        output(profile, "profile") =
-            toHandle<PelProfile>(Profile::dipole(absorption, reducedScattering, eta));
+        handOut(profile, "profile", [&] { return Profile::dipole(absorption, reducedScattering, eta); });
     });
 }
 
 PelError pelProfileCreateTable(const float* distances, const float* values, uint32_t count,
                                PelProfile* profile) {
     return entry(
-        [&] { output(profile, "profile") = toHandle<PelProfile>(Profile::table(distances, values, count)); });
+        [&] { handOut(profile, "profile", [&] { return Profile::table(distances, values, count); }); });
 }
 
 void pelProfileRetain(PelProfile profile) {
-    retainHandle(profile);
+    retainEntry<Profile>(profile);
 }
 void pelProfileRelease(PelProfile profile) {
-    releaseHandle(profile);
+    releaseEntry<Profile>(profile);
 }
 
 PelError pelProfileGetInfo(PelProfile profile, PelProfileInfo* info) {
-    return entry([&] { writeStruct(info, fromHandle<Profile>(profile).info(), "PelProfileInfo"); });
+    return entry([&] { writeStruct(info, fromHandle<Profile>(profile)->info(), "PelProfileInfo"); });
 }
 
 PelError pelProfileSetName(PelProfile profile, const char* name) {
-    return entry([&] { fromHandle<Profile>(profile).setName(name); });
+    return entry([&] { fromHandle<Profile>(profile)->setName(name); });
 }
 
 PelError pelProfileEvaluate(PelProfile profile, const double* distances, uint32_t count, double* radial,
                             double* lineSpread) {
     return entry([&] {
-        const ProfileShape& shape = fromHandle<Profile>(profile).shape();
+        const Ref<Profile> held = fromHandle<Profile>(profile);
+        const ProfileShape& shape = held->shape();
         if (count > 0 && !distances) invalidArgument("distances are needed, not NULL");
         for (uint32_t i = 0; i < count; ++i)
             if (!std::isfinite(distances[i]) || distances[i] <= 0)

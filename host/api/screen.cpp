@@ -9,12 +9,12 @@ PelError pelScreenCurvature(PelDevice device, const PelScreenCurvatureParams* pa
                             const PelImageDesc* depth, const PelImageDesc* ids, const PelImageDesc* curvature,
                             const PelSubmit* submit) {
     return entry([&] {
-        Device& on = fromHandle<Device>(device);
+        const Ref<Device> on = fromHandle<Device>(device);
         const auto defaults = pelScreenCurvatureParamsDefaults();
         const auto full = params ? readStruct(params, defaults, "PelScreenCurvatureParams") : defaults;
         const auto view = [&](const PelImageDesc* desc, const char* name, bool needed) {
             if (desc)
-                return makeImageView(readStruct(desc, pelImageDescDefaults(), "PelImageDesc"), on, name);
+                return makeImageView(readStruct(desc, pelImageDescDefaults(), "PelImageDesc"), *on, name);
             if (needed) invalidArgument("`", name, "` is needed, not NULL");
             return ImageView();
         };
@@ -22,8 +22,8 @@ PelError pelScreenCurvature(PelDevice device, const PelScreenCurvatureParams* pa
                                            view(positions, "positions", false), view(depth, "depth", false),
                                            view(ids, "ids", false), view(curvature, "curvature", true)};
         checkScreenCurvature(full, images);
-        Submission submission(on, submit);
-        screenCurvature(on, full, images);
+        Submission submission(*on, submit);
+        screenCurvature(*on, full, images);
         submission.finish();
     });
 }

@@ -8,96 +8,96 @@ using namespace pel;
 
 PelError pelShaderCreate(PelDevice device, PelShader* shader) {
     return entry([&] {
-        output(shader, "shader") =
-            toHandle<PelShader>(make<Shader>(Ref(&fromHandle<Device>(device)), shadingPasses()));
+        handOut(shader, "shader", [&] { return make<Shader>(fromHandle<Device>(device), shadingPasses()); });
     });
 }
 
 void pelShaderRetain(PelShader shader) {
-    retainHandle(shader);
+    retainEntry<Shader>(shader);
 }
 void pelShaderRelease(PelShader shader) {
-    releaseHandle(shader);
+    releaseEntry<Shader>(shader);
 }
 
 PelError pelShaderSetOptions(PelShader shader, const PelShaderOptions* options) {
     return entry([&] {
-        fromHandle<Shader>(shader).setOptions(
+        fromHandle<Shader>(shader)->setOptions(
             readStruct(options, pelShaderOptionsDefaults(), "PelShaderOptions"));
     });
 }
 
 PelError pelShaderSetImage(PelShader shader, PelImageSlot slot, const PelImageDesc* image) {
     return entry([&] {
-        Shader& s = fromHandle<Shader>(shader);
-        if (!image) return s.setImage(slot, nullptr);
+        const Ref<Shader> s = fromHandle<Shader>(shader);
+        if (!image) return s->setImage(slot, nullptr);
         const PelImageDesc desc = readStruct(image, pelImageDescDefaults(), "PelImageDesc");
-        s.setImage(slot, &desc);
+        s->setImage(slot, &desc);
     });
 }
 
 PelError pelShaderSetMaterial(PelShader shader, uint32_t id, const PelMaterial* material, PelLut curvatureLut,
                               PelLut shadowLut) {
     return entry([&] {
-        Shader& s = fromHandle<Shader>(shader);
-        if (!material) return s.setMaterial(id, nullptr, nullptr, nullptr);
+        const Ref<Shader> s = fromHandle<Shader>(shader);
+        if (!material) return s->setMaterial(id, nullptr, nullptr, nullptr);
+        const Ref<Lut> curvature = curvatureLut ? fromHandle<Lut>(curvatureLut) : Ref<Lut>();
+        const Ref<Lut> shadow = shadowLut ? fromHandle<Lut>(shadowLut) : Ref<Lut>();
         const PelMaterial m = readStruct(material, pelMaterialDefaults(), "PelMaterial");
-        s.setMaterial(id, &m, curvatureLut ? &fromHandle<Lut>(curvatureLut) : nullptr,
-                      shadowLut ? &fromHandle<Lut>(shadowLut) : nullptr);
+        s->setMaterial(id, &m, curvature.get(), shadow.get());
     });
 }
 
 PelError pelShaderSetNormalMap(PelShader shader, uint32_t id, const PelImageDesc* levels, uint32_t count) {
-    return entry([&] { fromHandle<Shader>(shader).setNormalMap(id, levels, count); });
+    return entry([&] { fromHandle<Shader>(shader)->setNormalMap(id, levels, count); });
 }
 
 PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t count) {
-    return entry([&] { fromHandle<Shader>(shader).setLights(lights, count); });
+    return entry([&] { fromHandle<Shader>(shader)->setLights(lights, count); });
 }
 
 PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot,
                                 const PelImageDesc* image) {
     return entry([&] {
-        Shader& s = fromHandle<Shader>(shader);
-        if (!image) return s.setLightImage(light, slot, nullptr);
+        const Ref<Shader> s = fromHandle<Shader>(shader);
+        if (!image) return s->setLightImage(light, slot, nullptr);
         const PelImageDesc desc = readStruct(image, pelImageDescDefaults(), "PelImageDesc");
-        s.setLightImage(light, slot, &desc);
+        s->setLightImage(light, slot, &desc);
     });
 }
 
 PelError pelShaderSetAmbient(PelShader shader, const PelAmbient* ambient) {
     return entry([&] {
-        fromHandle<Shader>(shader).setAmbient(readStruct(ambient, pelAmbientDefaults(), "PelAmbient"));
+        fromHandle<Shader>(shader)->setAmbient(readStruct(ambient, pelAmbientDefaults(), "PelAmbient"));
     });
 }
 
 PelError pelShaderSetAmbientCube(PelShader shader, const PelImageDesc* faces) {
     return entry([&] {
-        Shader& s = fromHandle<Shader>(shader);
-        if (!faces) return s.setAmbientCube(nullptr);
+        const Ref<Shader> s = fromHandle<Shader>(shader);
+        if (!faces) return s->setAmbientCube(nullptr);
         const PelImageDesc desc = readStruct(faces, pelImageDescDefaults(), "PelImageDesc");
-        s.setAmbientCube(&desc);
+        s->setAmbientCube(&desc);
     });
 }
 
 PelError pelShaderSetCamera(PelShader shader, const PelCamera* camera) {
     return entry(
-        [&] { fromHandle<Shader>(shader).setCamera(readStruct(camera, pelCameraDefaults(), "PelCamera")); });
+        [&] { fromHandle<Shader>(shader)->setCamera(readStruct(camera, pelCameraDefaults(), "PelCamera")); });
 }
 
 PelError pelShaderCommit(PelShader shader) {
-    return entry([&] { fromHandle<Shader>(shader).commit(); });
+    return entry([&] { fromHandle<Shader>(shader)->commit(); });
 }
 
 PelError pelShaderExecute(PelShader shader, const PelSubmit* submit) {
     return entry([&] {
-        Shader& s = fromHandle<Shader>(shader);
-        Submission submission(s.device(), submit);
-        s.execute(submit == nullptr);
+        const Ref<Shader> s = fromHandle<Shader>(shader);
+        Submission submission(s->device(), submit);
+        s->execute(submit == nullptr);
         submission.finish();
     });
 }
 
 PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats) {
-    return entry([&] { writeStruct(stats, fromHandle<Shader>(shader).stats(), "PelShaderStats"); });
+    return entry([&] { writeStruct(stats, fromHandle<Shader>(shader)->stats(), "PelShaderStats"); });
 }

@@ -7,6 +7,8 @@
 #include <mutex>
 #include <optional>
 
+#include "cl/process.h"
+
 namespace pel::cl {
 namespace {
 
@@ -80,6 +82,7 @@ std::string infoString(cl_device_id device, cl_device_info what) {
 }
 
 std::vector<cl_device_id> allDevices() {
+    claimProcess();
     // Loaders load their drivers at the first call, and to a second one that comes meanwhile ocl-icd says that there are none, or
     // crashes. Never destroyed: devices may be made while the process ends.
     static std::mutex& loading = *new std::mutex;

@@ -1,6 +1,7 @@
 #include "core/device.h"
 
 #include "cl/platform.h"
+#include "cl/process.h"
 
 namespace pel {
 
@@ -20,6 +21,7 @@ Ref<Device> Device::createFromCl(cl_context context, cl_device_id id, cl_command
         invalidArgument(
             "a device from the caller's OpenCL objects needs all of cl_context, cl_device_id and "
             "cl_command_queue");
+    cl::claimProcess();
     cl_command_queue_properties properties = 0;
     cl_context queueContext = nullptr;
     cl_device_id queueDevice = nullptr;

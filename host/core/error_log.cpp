@@ -2,6 +2,8 @@
 
 #include <mutex>
 
+#include "cl/process.h"
+
 namespace pel {
 namespace {
 
@@ -9,6 +11,16 @@ std::mutex callbackMutex;
 PelErrorCallback callback = nullptr;
 void* callbackUser = nullptr;
 thread_local std::string message;
+
+// Another thread may have held the lock when this process was forked: nobody would ever give it back.
+std::unique_lock<std::mutex> lockCallback() {
+    std::unique_lock lock(callbackMutex, std::defer_lock);
+    if (cl::isFork())
+        (void)lock.try_lock();
+    else
+        lock.lock();
+    return lock;
+}
 
 void keep(const char* what) noexcept {
     try {
@@ -21,7 +33,7 @@ void keep(const char* what) noexcept {
 }  // namespace
 
 void setErrorCallback(PelErrorCallback newCallback, void* user) {
-    std::lock_guard lock(callbackMutex);
+    const auto lock = lockCallback();
     callback = newCallback;
     callbackUser = user;
 }
@@ -38,7 +50,7 @@ PelError report(PelError code, const char* what) noexcept {
     PelErrorCallback call;
     void* user;
     {
-        std::lock_guard lock(callbackMutex);
+        const auto lock = lockCallback();
         call = callback;
         user = callbackUser;
     }

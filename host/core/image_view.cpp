@@ -1,5 +1,7 @@
 #include "core/image_view.h"
 
+#include "core/handle_table.h"
+
 namespace pel {
 namespace {
 
@@ -45,7 +47,7 @@ ImageView makeImageView(const PelImageDesc& desc, Device& device, const char* wh
         invalidArgument("the ", what, " image is ", desc.width, " x ", desc.height,
                         "; both must be between 1 and 16384");
     ImageView view;
-    view.buffer = Ref(&fromHandle<Buffer>(desc.buffer));
+    view.buffer = fromHandle<Buffer>(desc.buffer);
     if (&view.buffer->device() != &device)
         invalidArgument("the buffer of the ", what, " image belongs to another PelDevice than the shader");
     view.format = desc.format;

@@ -1,21 +1,9 @@
 #include "core/object.h"
 
-#include <mutex>
-#include <unordered_map>
-
 namespace pel {
 namespace {
 
-struct Registry {
-    std::mutex mutex;
-    std::unordered_map<const void*, Kind> live;
-};
-
-// Never destroyed: handles may be released by other static objects on the way out.
-Registry& registry() {
-    static Registry* r = new Registry;
-    return *r;
-}
+std::atomic<uint64_t> objects{0};
 
 }  // namespace
 
@@ -41,30 +29,16 @@ const char* kindName(Kind kind) {
     return "object";
 }
 
-Object::Object(Kind kind) {
-    std::lock_guard lock(registry().mutex);
-    registry().live.emplace(this, kind);
+Object::Object(Kind kind) : kind_(kind) {
+    objects.fetch_add(1, std::memory_order_relaxed);
 }
 
 Object::~Object() {
-    std::lock_guard lock(registry().mutex);
-    registry().live.erase(this);
+    objects.fetch_sub(1, std::memory_order_relaxed);
 }
 
-Object& checkedObject(void* handle, Kind kind) {
-    if (!handle) invalidArgument("a ", kindName(kind), " is needed here, not NULL");
-    std::lock_guard lock(registry().mutex);
-    const auto found = registry().live.find(handle);
-    if (found == registry().live.end())
-        invalidArgument("this is no ", kindName(kind), ", or one that was released already");
-    if (found->second != kind)
-        invalidArgument("a ", kindName(kind), " is needed here, not a ", kindName(found->second));
-    return *static_cast<Object*>(handle);
-}
-
-Object* liveObject(void* handle) {
-    std::lock_guard lock(registry().mutex);
-    return registry().live.contains(handle) ? static_cast<Object*>(handle) : nullptr;
+uint64_t Object::alive() {
+    return objects.load(std::memory_order_relaxed);
 }
 
 }  // namespace pel

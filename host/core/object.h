@@ -1,7 +1,8 @@
-// Counted objects behind the C handles. Every live object is on record, so that a null, released or mistaken
-// handle is an error and not a crash.
+// Counted objects. What the library itself holds is counted here; what callers hold, in the table of handles
+// (core/handle_table.h), so that no caller can let go of what another one, or the library, still uses.
 #pragma once
 #include <atomic>
+#include <cstdint>
 #include <utility>
 
 #include "cl/error.h"
@@ -19,6 +20,9 @@ class Object {
     void release() {
         if (count_.fetch_sub(1, std::memory_order_acq_rel) == 1) delete this;
     }
+    Kind objectKind() const { return kind_; }
+    // How many there are in the process, those included that only other objects hold.
+    static uint64_t alive();
 
   protected:
     explicit Object(Kind kind);
@@ -26,17 +30,8 @@ class Object {
 
   private:
     std::atomic<uint32_t> count_{1};
+    const Kind kind_;
 };
-
-// Throws PEL_ERROR_INVALID_ARGUMENT unless `handle` is a live object of that kind.
-Object& checkedObject(void* handle, Kind kind);
-// As above, but null is fine and so is an unknown handle (returns null): for Release, which reports nothing.
-Object* liveObject(void* handle);
-
-template <class T>
-T& fromHandle(void* handle) {
-    return static_cast<T&>(checkedObject(handle, T::kind));
-}
 
 template <class T>
 class Ref {
@@ -61,7 +56,8 @@ class Ref {
     }
     T* get() const { return object_; }
     T* operator->() const { return object_; }
-    T& operator*() const { return *object_; }
+    T& operator*() const& { return *object_; }
+    T& operator*() const&& = delete;  // the object might be gone with the temporary
     explicit operator bool() const { return object_ != nullptr; }
     T* detach() { return std::exchange(object_, nullptr); }
 
@@ -72,12 +68,6 @@ class Ref {
 template <class T, class... Args>
 Ref<T> make(Args&&... args) {
     return Ref<T>::adopt(new T(std::forward<Args>(args)...));
-}
-
-// The C handle of a new object: its one reference passes to the caller.
-template <class Handle, class T>
-Handle toHandle(Ref<T> object) {
-    return reinterpret_cast<Handle>(static_cast<Object*>(object.detach()));
 }
 
 }  // namespace pel

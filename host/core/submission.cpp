@@ -1,5 +1,7 @@
 #include "core/submission.h"
 
+#include "core/handle_table.h"
+
 namespace pel {
 
 Event::Event(Ref<Device> device, cl::Event event)
@@ -22,9 +24,12 @@ bool Event::isDone() const {
 Submission::Submission(Device& device, const PelSubmit* submit) : device_(device), submit_(submit) {
     if (!submit || submit->numWaits == 0) return;
     if (!submit->waits) invalidArgument("PelSubmit.numWaits is ", submit->numWaits, " but waits is NULL");
+    std::vector<Ref<Event>> events;
     std::vector<cl_event> waits;
-    for (uint32_t i = 0; i < submit->numWaits; ++i)
-        waits.push_back(fromHandle<Event>(submit->waits[i]).cl().get());
+    for (uint32_t i = 0; i < submit->numWaits; ++i) {
+        events.push_back(fromHandle<Event>(submit->waits[i]));
+        waits.push_back(events.back()->cl().get());
+    }
     cl::check(clEnqueueBarrierWithWaitList(device.queue(), cl_uint(waits.size()), waits.data(), nullptr),
               "clEnqueueBarrierWithWaitList");
 }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/handle_table.h"
+
 namespace pel {
 namespace {
 
@@ -64,7 +66,7 @@ LutLayout layoutOf(const PelLutInfo& info) {
 
 Ref<Profile> profileOf(const PelLutInfo& info) {
     const PelProfile handle = profileHandle(info);
-    return handle ? Ref<Profile>(&fromHandle<Profile>(handle)) : Profile::skin();
+    return handle ? fromHandle<Profile>(handle) : Profile::skin();
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "mesh/vertex_view.h"
 
+#include "core/handle_table.h"
+
 namespace pel {
 
 VertexView checkedView(const PelVertexView* view, const char* name, const Device& device, uint32_t count,
@@ -8,7 +10,8 @@ VertexView checkedView(const PelVertexView* view, const char* name, const Device
     if (view->count != count)
         invalidArgument("`", name, "` has ", view->count, " vertices, the topology has ", count);
     if (count == 0) return {};
-    const Buffer& buffer = fromHandle<Buffer>(view->buffer);
+    const Ref<Buffer> held = fromHandle<Buffer>(view->buffer);
+    const Buffer& buffer = *held;
     if (&buffer.device() != &device)
         invalidArgument("the buffer of `", name, "` belongs to another device than the topology");
     const uint64_t element = components * sizeof(float);

@@ -8,7 +8,10 @@
  * - Colours are linear RGB.
  * - Matrices are 16 floats in row-major order and multiply column vectors: clip = M * (x, y, z, 1).
  * - Every structure that may grow starts with structSize; the pel*Defaults() functions fill it and every other field.
- * - Handles are counted: each Create or Retain is paired with a Release. Objects keep what they use alive.
+ * - Handles are counted: each Create or Retain is paired with a Release. Objects keep what they use alive. A handle is
+ *   never given out again: NULL, a released, a mistaken or an invented one is PEL_ERROR_INVALID_ARGUMENT. Retain and Release
+ *   return nothing; their errors are told by pelGetErrorMessage and the callback.
+ * - After fork, calls of the child return PEL_ERROR_INVALID_STATE if the parent had used OpenCL by then.
  * - A function that can fail returns PelError. On an error no output is written and all objects stay usable;
  *   pelGetErrorMessage() says what was wrong, where, and what would be right.
  * - Functions may be called from any thread. One object may be used by several threads at a time, except that a

@@ -1,0 +1,184 @@
+// Every type of handle with a way to make, use, count and hold one.
+#pragma once
+#include <functional>
+#include <pellucid/pellucid.hpp>
+#include <string>
+#include <vector>
+
+namespace handles {
+
+using Handle = void*;
+
+struct Kind {
+    std::string name;
+    std::function<Handle()> create;
+    std::function<void(Handle)> retain, release;
+    std::function<PelError(Handle)> use;
+    // Another object that keeps this one, as a question whether it still works.
+    std::function<std::function<bool()>(Handle)> hold;
+};
+
+inline const pellucid::Device& device() {
+    static const pellucid::Device device("");
+    return device;
+}
+
+inline const pellucid::MeshTopology& triangle() {
+    static const pellucid::MeshTopology mesh = [] {
+        static const uint32_t indices[3] = {0, 1, 2};
+        PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
+        desc.numVertices = desc.numIndices = 3;
+        desc.indices = indices;
+        return pellucid::MeshTopology(device(), desc);
+    }();
+    return mesh;
+}
+
+// A new one of the C handle's type that only the caller holds.
+template <class Wrapper, class H>
+Handle taken(const Wrapper& made, void (*retain)(H)) {
+    retain(made.get());
+    return made.get();
+}
+
+template <class H>
+Kind kind(const char* name, void (*retain)(H), void (*release)(H), std::function<Handle()> create,
+          std::function<PelError(H)> use, std::function<std::function<bool()>(H)> hold) {
+    return {name,
+            std::move(create),
+            [retain](Handle h) { retain(static_cast<H>(h)); },
+            [release](Handle h) { release(static_cast<H>(h)); },
+            [use](Handle h) { return use(static_cast<H>(h)); },
+            [hold](Handle h) { return hold(static_cast<H>(h)); }};
+}
+
+inline pellucid::Lut smallTable(PelProfile profile = nullptr) {
+    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    desc.width = desc.height = 4;
+    desc.profile = profile;
+    return pellucid::Lut(device(), desc);
+}
+
+inline const std::vector<Kind>& kinds() {
+    using namespace pellucid;
+    static const std::vector<Kind> all{
+        kind<PelDevice>(
+            "PelDevice", pelDeviceRetain, pelDeviceRelease, [] { return taken(Device(""), pelDeviceRetain); },
+            pelDeviceFinish,
+            [](PelDevice h) {
+                PelBuffer made = nullptr;
+                const int value = 7;
+                check(pelBufferCreate(h, sizeof value, &value, &made));
+                return [buffer = Buffer(made)] { return buffer.readAll<int>() == std::vector<int>{7}; };
+            }),
+        kind<PelEvent>(
+            "PelEvent", pelEventRetain, pelEventRelease,
+            [] {
+                PelEvent done = nullptr;
+                const PelSubmit submit{nullptr, 0, &done};
+                static const Buffer buffer(device(), 16);
+                buffer.read(nullptr, 0, 0, &submit);
+                return done;
+            },
+            pelEventWait,
+            [](PelEvent h) {  // only the driver holds events
+                void* event = nullptr;
+                check(pelEventGetCl(h, &event));
+                PelEvent other = nullptr;
+                check(pelEventCreateFromCl(device().get(), event, &other));
+                return [kept = Event(other)] {
+                    kept.wait();
+                    return kept.isDone();
+                };
+            }),
+        kind<PelBuffer>(
+            "PelBuffer", pelBufferRetain, pelBufferRelease,
+            [] { return taken(Buffer(device(), 64), pelBufferRetain); },
+            [](PelBuffer h) {
+                size_t bytes = 0;
+                return pelBufferGetSize(h, &bytes);
+            },
+            [](PelBuffer h) {
+                Shader shader(device());
+                PelImageDesc image = pelImageDescDefaults();
+                image.buffer = h, image.width = 4, image.height = 4, image.format = PEL_FORMAT_R32F;
+                shader.set(PEL_SLOT_THICKNESS, image);
+                return [shader] {
+                    PelShaderStats stats = pelShaderStatsDefaults();
+                    return pelShaderGetStats(shader.get(), &stats) == PEL_SUCCESS;
+                };
+            }),
+        kind<PelMeshTopology>(
+            "PelMeshTopology", pelMeshTopologyRetain, pelMeshTopologyRelease,
+            [] {
+                const std::vector<char> saved = triangle().save();
+                return taken(MeshTopology::load(device(), saved.data(), saved.size()), pelMeshTopologyRetain);
+            },
+            [](PelMeshTopology h) {
+                size_t size = 0;
+                return pelMeshTopologySave(h, nullptr, &size);
+            },
+            [](PelMeshTopology h) {
+                PelLiveMesh live = nullptr;
+                const PelCurvatureParams params = pelCurvatureParamsDefaults();
+                check(pelLiveMeshCreate(h, &params, &live));
+                const Buffer positions(device(), std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}),
+                    out(device(), 12);
+                return [positions, out, mesh = LiveMesh(live)] {
+                    mesh.update(vertexView(positions, 3), nullptr, vertexView(out, 3));
+                    return out.readAll<float>() == std::vector<float>(3, 0);
+                };
+            }),
+        kind<PelLiveMesh>(
+            "PelLiveMesh", pelLiveMeshRetain, pelLiveMeshRelease,
+            [] { return taken(LiveMesh(triangle(), pelCurvatureParamsDefaults()), pelLiveMeshRetain); },
+            [](PelLiveMesh h) {
+                PelLiveMeshStats stats = pelLiveMeshStatsDefaults();
+                return pelLiveMeshGetStats(h, &stats);
+            },
+            [](PelLiveMesh) { return [] { return true; }; }),  // nothing holds these
+        kind<PelLut>(
+            "PelLut", pelLutRetain, pelLutRelease, [] { return taken(smallTable(), pelLutRetain); },
+            [](PelLut h) {
+                PelLutInfo info = pelLutInfoDefaults();
+                return pelLutGetInfo(h, &info);
+            },
+            [](PelLut h) {
+                Shader shader(device());
+                const PelMaterial material = pelMaterialDefaults();
+                check(pelShaderSetMaterial(shader.get(), 1, &material, h, nullptr));
+                return [shader] {
+                    const PelMaterial again = pelMaterialDefaults();
+                    return pelShaderSetMaterial(shader.get(), 1, &again, nullptr, nullptr) == PEL_SUCCESS;
+                };
+            }),
+        kind<PelShader>(
+            "PelShader", pelShaderRetain, pelShaderRelease,
+            [] { return taken(Shader(device()), pelShaderRetain); },
+            [](PelShader h) {
+                PelShaderStats stats = pelShaderStatsDefaults();
+                return pelShaderGetStats(h, &stats);
+            },
+            [](PelShader) { return [] { return true; }; }),  // nor these
+        kind<PelProfile>(
+            "PelProfile", pelProfileRetain, pelProfileRelease,
+            [] { return taken(Profile::skin(), pelProfileRetain); },
+            [](PelProfile h) {
+                PelProfileInfo info = pelProfileInfoDefaults();
+                return pelProfileGetInfo(h, &info);
+            },
+            [](PelProfile h) {
+                return [table = smallTable(h)] { return table.read<float>(PEL_LUT_FLOAT).size() == 48; };
+            }),
+    };
+    return all;
+}
+
+// Whether a handle is somebody's, of whatever type.
+inline bool isLive(Handle h) {
+    for (const Kind& kind : kinds())
+        if (kind.use(h) == PEL_SUCCESS) return true;
+    return false;
+}
+
+}  // namespace handles
