@@ -1,31 +1,20 @@
 #include "core/image_view.h"
 
 #include "core/handle_table.h"
+#include "shared/formats.h"
 
 namespace pel {
 namespace {
 
-constexpr FormatInfo formats[] = {
-    {"undefined", 0, 0, 0, false},
-    {"R32F", 1, 4, 4, false},
-    {"RG32F", 2, 4, 8, false},
-    {"RGB32F", 3, 4, 12, false},
-    {"RGBA32F", 4, 4, 16, false},
-    {"R16F", 1, 2, 2, false},
-    {"RG16F", 2, 2, 4, false},
-    {"RGB16F", 3, 2, 6, false},
-    {"RGBA16F", 4, 2, 8, false},
-    {"R8_UNORM", 1, 1, 1, false},
-    {"RGBA8_UNORM", 4, 1, 4, false},
-    {"RGBA8_SRGB", 4, 1, 4, false},
-    {"R16_UNORM", 1, 2, 2, false},
-    {"OCT16X2_SNORM", 2, 4, 4, false},  // read as one word, like the next
-    {"A2B10G10R10_UNORM", 4, 4, 4, false},
-    {"R8_UINT", 1, 1, 1, false},
-    {"R16_UINT", 1, 2, 2, false},
-    {"R32_UINT", 1, 4, 4, false},
-    {"PLANAR_RGB32F", 3, 4, 4, true},
-};
+#define FORMAT(name, number, kind, components, componentBytes, pixelBytes) \
+    {#name, FormatKind::kind, components, componentBytes, pixelBytes, FormatKind::kind == FormatKind::PLANAR},
+constexpr FormatInfo formats[] = {{"undefined", FormatKind::NONE, 0, 0, 0, false}, PEL_EACH_FORMAT(FORMAT)};
+#undef FORMAT
+
+#define CHECK(name, number, kind, components, componentBytes, pixelBytes) \
+    static_assert(PEL_FORMAT_##name == number);
+PEL_EACH_FORMAT(CHECK)
+#undef CHECK
 
 }  // namespace
 

@@ -4,8 +4,12 @@
 
 namespace pel {
 
+// The kinds of shared/formats.h.
+enum class FormatKind { NONE, FLOAT, UNORM, SRGB, OCTAHEDRAL, UINT, PLANAR };
+
 struct FormatInfo {
     const char* name;
+    FormatKind kind;
     uint32_t components;
     uint32_t componentBytes;
     uint32_t pixelBytes;

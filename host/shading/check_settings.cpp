@@ -4,89 +4,43 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "shading/image_slots.h"
 #include "shared/shade.h"
 
 namespace pel {
 namespace {
 
-constexpr const char* slotNames[PEL_SLOT_COUNT] = {"radiance",         "material",
-                                                   "position",         "depth",
-                                                   "geometric normal", "shading normal",
-                                                   "blurred normal",   "curvature",
-                                                   "albedo",           "ambient occlusion",
-                                                   "thickness",        "roughness",
-                                                   "specular",         "UV",
-                                                   "UV gradient",      "tangent",
-                                                   "diffuse output",   "deep scatter output",
-                                                   "specular output",  "thickness output"};
-
-enum class Content { scalar, id, color, normal, output, scalarOutput, uv, gradient };
-
-Content content(PelImageSlot slot) {
-    switch (slot) {
-        case PEL_SLOT_RADIANCE:
-        case PEL_SLOT_OUT_DIFFUSE:
-        case PEL_SLOT_OUT_DEEP_SCATTER:
-        case PEL_SLOT_OUT_SPECULAR:
-            return Content::output;
-        case PEL_SLOT_OUT_THICKNESS:
-            return Content::scalarOutput;
-        case PEL_SLOT_MATERIAL:
-            return Content::id;
-        case PEL_SLOT_POSITION:
-        case PEL_SLOT_ALBEDO:
-            return Content::color;
-        case PEL_SLOT_NORMAL_GEOMETRIC:
-        case PEL_SLOT_NORMAL_SHADING:
-        case PEL_SLOT_NORMAL_BLURRED:
-        case PEL_SLOT_TANGENT:
-            return Content::normal;
-        case PEL_SLOT_UV:
-            return Content::uv;
-        case PEL_SLOT_UV_GRADIENT:
-            return Content::gradient;
-        default:
-            return Content::scalar;
-    }
-}
-
-bool isUint(PelFormat f) {
-    return f == PEL_FORMAT_R8_UINT || f == PEL_FORMAT_R16_UINT || f == PEL_FORMAT_R32_UINT;
-}
-
-bool isFloat(PelFormat f) {
-    return f >= PEL_FORMAT_R32F && f <= PEL_FORMAT_RGBA16F;
-}
-
 void checkContent(const ImageView& view, Content content, const char* what) {
-    const PelFormat f = view.format;
+    const FormatKind kind = view.info().kind;
+    const bool isUint = kind == FormatKind::UINT, isFloat = kind == FormatKind::FLOAT;
+    const bool octahedral = kind == FormatKind::OCTAHEDRAL;
     const uint32_t components = view.info().components;
     const char* right = nullptr;
     switch (content) {
-        case Content::scalar:
-            if (isUint(f) || f == PEL_FORMAT_OCT16X2_SNORM) right = "a float or unorm format";
+        case Content::SCALAR:
+            if (isUint || octahedral) right = "a float or unorm format";
             break;
-        case Content::id:
-            if (!isUint(f) && !isFloat(f)) right = "a uint or float format";
+        case Content::ID:
+            if (!isUint && !isFloat) right = "a uint or float format";
             break;
-        case Content::color:
-            if (isUint(f) || components < 3) right = "three components, float or unorm";
+        case Content::COLOR:
+            if (isUint || components < 3) right = "three components, float or unorm";
             break;
-        case Content::normal:
-            if (isUint(f) || f == PEL_FORMAT_RGBA8_SRGB || (components < 3 && f != PEL_FORMAT_OCT16X2_SNORM))
+        case Content::NORMAL:
+            if (isUint || kind == FormatKind::SRGB || (components < 3 && !octahedral))
                 right = "three components, float or unorm, or OCT16X2_SNORM";
             break;
-        case Content::uv:
-            if (!isFloat(f) || components < 2) right = "two components, float or half";
+        case Content::UV:
+            if (!isFloat || components < 2) right = "two components, float or half";
             break;
-        case Content::gradient:
-            if (!isFloat(f) || components < 4) right = "four components, float or half";
+        case Content::GRADIENT:
+            if (!isFloat || components < 4) right = "four components, float or half";
             break;
-        case Content::scalarOutput:
-            if (!isFloat(f)) right = "float or half";
+        case Content::SCALAR_OUTPUT:
+            if (!isFloat) right = "float or half";
             break;
-        case Content::output:
-            if (!((isFloat(f) && components >= 3) || f == PEL_FORMAT_PLANAR_RGB32F))
+        case Content::COLOR_OUTPUT:
+            if (!((isFloat && components >= 3) || kind == FormatKind::PLANAR))
                 right = "RGB or RGBA, float or half";
             break;
     }
@@ -120,22 +74,12 @@ void checkFinite(const char* structure, const char* field, const float* values, 
             invalidArgument(structure, ".", field, "[", i, "] is ", values[i], "; it must be finite");
 }
 
-const char* slotName(PelImageSlot slot) {
-    return slotNames[slot];
-}
-
-const char* lightSlotName(PelLightSlot slot) {
-    constexpr const char* names[PEL_LIGHT_SLOT_COUNT] = {"wide shadow", "shadow map", "cascade 1",
-                                                         "cascade 2", "cascade 3"};
-    return names[slot];
-}
-
 void checkImage(PelImageSlot slot, const ImageView& view) {
-    checkContent(view, content(slot), slotName(slot));
+    checkContent(view, imageSlot(slot).content, slotName(slot));
 }
 
 void checkLightImage(PelLightSlot slot, const ImageView& view) {
-    checkContent(view, Content::scalar, lightSlotName(slot));
+    checkContent(view, Content::SCALAR, lightSlotName(slot));
     // Taps address the map with 32 bits.
     if (slot != PEL_LIGHT_WIDE_SHADOW && view.byteEnd() - view.byteOffset > UINT32_MAX)
         fail(PEL_ERROR_UNSUPPORTED, "the ", lightSlotName(slot), " image spans ",
@@ -149,7 +93,7 @@ void checkNormalMap(const std::vector<ImageView>& levels) {
         if (level.format == PEL_FORMAT_OCT16X2_SNORM || level.format == PEL_FORMAT_RGBA8_SRGB)
             invalidArgument("the ", name, " image has format ", level.info().name,
                             "; it needs three components, float or unorm, that may be averaged");
-        checkContent(level, Content::color, name.c_str());
+        checkContent(level, Content::COLOR, name.c_str());
         if (level.format != first.format || level.tightlyPacked() != first.tightlyPacked() ||
             level.buffer->memory().get() != first.buffer->memory().get())
             invalidArgument(
@@ -180,7 +124,7 @@ void checkMaterial(const PelMaterial& m) {
                   {"roughness2", m.roughness2, 0, huge},
                   {"lobeMix", m.lobeMix, 0, 1},
                   {"deepScatterAmbient", m.deepScatterAmbient, 0, huge}});
-    if (m.specularModel > PEL_SPECULAR_GGX)
+    if (unsigned(m.specularModel) >= PEL_MODELS)
         invalidArgument("PelMaterial.specularModel is ", int(m.specularModel),
                         ", which is none of PelSpecularModel");
     if (m.thicknessTaps != 0 && m.thicknessTaps != 8 && m.thicknessTaps != 16 && m.thicknessTaps != 32)
@@ -201,13 +145,13 @@ void checkLight(const PelLight& l, uint32_t index) {
                           {"shadowBleeding", l.shadowBleeding, 0, 0.999f}});
     if (l.shadowCascades > PEL_CASCADES)
         invalidArgument(name, ".shadowCascades is ", l.shadowCascades, "; ", PEL_CASCADES, " are the most");
-    if (l.shadowContent > PEL_SHADOW_CONTENT_EXPONENTIAL)
+    if (unsigned(l.shadowContent) >= PEL_CONTENTS)
         invalidArgument(name, ".shadowContent is ", int(l.shadowContent),
                         ", which is none of PelShadowContent");
-    if (l.shadowProjection > PEL_SHADOW_CUBE_RADIAL)
+    if (unsigned(l.shadowProjection) >= PEL_MAPS)
         invalidArgument(name, ".shadowProjection is ", int(l.shadowProjection),
                         ", which is none of PelShadowProjection");
-    if (l.type > PEL_LIGHT_SPOT)
+    if (unsigned(l.type) >= PEL_TYPES)
         invalidArgument(name, ".type is ", int(l.type), ", which is none of PelLightType");
     if (l.type == PEL_LIGHT_DIRECTIONAL) {
         checkFinite(name.c_str(), "toLight", l.toLight, 3);
@@ -232,7 +176,7 @@ void checkAmbient(const PelAmbient& ambient) {
 }
 
 void checkAmbientCube(const ImageView& faces) {
-    checkContent(faces, Content::color, "ambient cube");
+    checkContent(faces, Content::COLOR, "ambient cube");
     if (faces.height != 6 * faces.width && faces.width != 6 * faces.height)
         invalidArgument("the ambient cube image is ", faces.width, " x ", faces.height,
                         "; six square faces one below the other are n x 6n pixels, side by side 6n x n");

@@ -1,11 +1,9 @@
 // What a shader accepts. Each throws PEL_ERROR_INVALID_ARGUMENT with the value and what would be right.
 #pragma once
+#include "shading/image_slots.h"
 #include "shading/shader_state.h"
 
 namespace pel {
-
-const char* slotName(PelImageSlot slot);
-const char* lightSlotName(PelLightSlot slot);
 
 // NAME.FIELD[i] of a structure.
 void checkFinite(const char* structure, const char* field, const float* values, size_t count);

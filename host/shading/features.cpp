@@ -20,9 +20,10 @@ void checkSizes(const ShaderState& state) {
     const ImageView& target = state.images[PEL_SLOT_RADIANCE];
     // Outputs beside radiance: none may lie over any other image.
     const auto checkOutputs = [&](const ImageView& view, const std::string& what, int itself) {
-        for (int slot = PEL_SLOT_OUT_DIFFUSE; slot < PEL_SLOT_COUNT; ++slot)
-            if (slot != itself && state.images[slot] && overlapsElsewhere(state.images[slot], view))
-                invalidArgument("the ", slotName(PelImageSlot(slot)), " image overlaps the ", what,
+        for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
+            if (isOutput(slot) && slot != itself && state.images[slot] &&
+                overlapsElsewhere(state.images[slot], view))
+                invalidArgument("the ", slotName(slot), " image overlaps the ", what,
                                 " image in memory, and not pixel on pixel");
     };
     auto check = [&](const ImageView& view, const std::string& what, int itself = -1) {
@@ -38,8 +39,7 @@ void checkSizes(const ShaderState& state) {
                 " image in memory, and not pixel on pixel: pixels would be overwritten before they are "
                 "read");
     };
-    for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot)
-        check(state.images[slot], slotName(PelImageSlot(slot)), slot);
+    for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot) check(state.images[slot], slotName(slot), slot);
     if (const ImageView& cube = state.ambientCube) {
         checkOutputs(cube, "ambient cube", -1);
         if (overlapsElsewhere(target, cube))
@@ -187,8 +187,8 @@ uint32_t deriveFeatures(const ShaderState& state) {
     if (state.ambientCube) features |= PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE;
     for (const auto& [id, material] : state.materials) features |= materialNeeds(state, material);
     if (features & (PEL_FEATURE_THICKNESS_TAPS | PEL_FEATURE_FILTER_SHADOW)) features |= forms;
-    for (int slot = PEL_SLOT_OUT_DIFFUSE; slot < PEL_SLOT_COUNT; ++slot)
-        if (images[slot]) features |= PEL_FEATURE_OUTPUTS;
+    for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
+        if (isOutput(slot) && images[slot]) features |= PEL_FEATURE_OUTPUTS;
     // Blurred normals matter to scattered and ambient light; a host's image goes before ours, a map before
     // the blur.
     const bool read = !state.lights.empty() || features & PEL_FEATURE_AMBIENT;

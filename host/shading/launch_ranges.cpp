@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "shared/features.h"
+#include "shared/formats.h"
 
 namespace pel {
 

@@ -1,5 +1,6 @@
 // The shading kernel, in the variants that the materials need: the last pass, which writes the caller's
 // images.
+#include "shading/image_slots.h"
 #include "shading/launch_ranges.h"
 #include "shading/passes.h"
 #include "shading/scratch_image.h"
@@ -49,13 +50,12 @@ class Shade final : public Pass {
             .arg(constants.lights())
             .arg(constants.luts());
         launch.arg(plan.tileLists).arg(plan.counters);
-        for (int slot = 0; slot < PEL_SHADE_SLOTS; ++slot) launch.arg(memoryOf(plan.state.images[slot]));
+        launch.arg(plan.ambientNodes);
+        for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
+            if (imageSlot(slot).role != SlotRole::PASS) launch.arg(memoryOf(plan.state.images[slot]));
         const auto& lightBuffers = constants.lightBuffers();
         for (size_t i = 0; i < PEL_LIGHT_BUFFERS; ++i)
             launch.arg(i < lightBuffers.size() ? lightBuffers[i] : cl::Memory());
-        for (int slot = PEL_SLOT_OUT_DIFFUSE; slot < PEL_SLOT_COUNT; ++slot)
-            launch.arg(memoryOf(plan.state.images[slot]));
-        launch.arg(plan.ambientNodes);
         const uint32_t list = plan.variants.size() > 1 ? 1 + variant : 0;
         launch.arg(cl_uint(part)).arg(cl_uint(parts));
         launch.arg(cl_uint(plan.state.options.tileLists == PEL_TILES_NO_LIST ? PEL_EVERY_TILE : list));

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "shading/features.h"
+#include "shading/image_slots.h"
 #include "shading/launch_ranges.h"
 #include "shared/features.h"
 #include "shared/shade.h"
@@ -29,46 +30,6 @@ static_assert(PEL_BIT_GGX == PEL_FEATURE_GGX && PEL_BIT_AMBIENT_SCATTER == PEL_F
               PEL_BIT_AMBIENT_CUBE == PEL_FEATURE_AMBIENT_CUBE &&
               PEL_BIT_SHADOW_CUBE == PEL_FEATURE_SHADOW_CUBE &&
               PEL_BIT_SHADOW_CASCADES == PEL_FEATURE_SHADOW_CASCADES);
-static_assert(PEL_MAP_CUBE == PEL_SHADOW_CUBE && PEL_MAP_CUBE_RADIAL == PEL_SHADOW_CUBE_RADIAL &&
-              PEL_CONTENT_MOMENTS == PEL_SHADOW_CONTENT_MOMENTS &&
-              PEL_CONTENT_EXPONENTIAL == PEL_SHADOW_CONTENT_EXPONENTIAL);
-static_assert(PEL_IMAGE_OUT_DIFFUSE == PEL_SLOT_OUT_DIFFUSE &&
-              PEL_IMAGE_OUT_DEEP_SCATTER == PEL_SLOT_OUT_DEEP_SCATTER &&
-              PEL_IMAGE_OUT_SPECULAR == PEL_SLOT_OUT_SPECULAR &&
-              PEL_IMAGE_OUT_THICKNESS == PEL_SLOT_OUT_THICKNESS);
-
-// Whether the shading kernel itself reads or writes a slot.
-bool isShadeSlot(int slot) {
-    return slot < PEL_SHADE_SLOTS || slot >= PEL_SLOT_OUT_DIFFUSE;
-}
-static_assert(PEL_FMT_R32F == PEL_FORMAT_R32F && PEL_FMT_RGBA16F == PEL_FORMAT_RGBA16F &&
-              PEL_FMT_R8_UNORM == PEL_FORMAT_R8_UNORM && PEL_FMT_RGBA8_SRGB == PEL_FORMAT_RGBA8_SRGB &&
-              PEL_FMT_OCT16X2_SNORM == PEL_FORMAT_OCT16X2_SNORM && PEL_FMT_R8_UINT == PEL_FORMAT_R8_UINT &&
-              PEL_FMT_PLANAR_RGB32F == PEL_FORMAT_PLANAR_RGB32F);
-static_assert(PEL_IMAGE_RADIANCE == PEL_SLOT_RADIANCE && PEL_IMAGE_MATERIAL == PEL_SLOT_MATERIAL &&
-              PEL_IMAGE_POSITION == PEL_SLOT_POSITION && PEL_IMAGE_DEPTH == PEL_SLOT_DEPTH &&
-              PEL_IMAGE_NORMAL_GEOMETRIC == PEL_SLOT_NORMAL_GEOMETRIC &&
-              PEL_IMAGE_NORMAL_SHADING == PEL_SLOT_NORMAL_SHADING &&
-              PEL_IMAGE_NORMAL_BLURRED == PEL_SLOT_NORMAL_BLURRED &&
-              PEL_IMAGE_CURVATURE == PEL_SLOT_CURVATURE && PEL_IMAGE_ALBEDO == PEL_SLOT_ALBEDO &&
-              PEL_IMAGE_AMBIENT_OCCLUSION == PEL_SLOT_AMBIENT_OCCLUSION &&
-              PEL_IMAGE_THICKNESS == PEL_SLOT_THICKNESS && PEL_IMAGE_ROUGHNESS == PEL_SLOT_ROUGHNESS &&
-              PEL_IMAGE_SPECULAR == PEL_SLOT_SPECULAR && PEL_IMAGE_UV == PEL_SLOT_UV &&
-              PEL_IMAGE_UV_GRADIENT == PEL_SLOT_UV_GRADIENT && PEL_IMAGE_TANGENT == PEL_SLOT_TANGENT &&
-              PEL_IMAGE_SLOTS == PEL_SLOT_COUNT);
-
-constexpr const char* formatDefines[PEL_SLOT_COUNT] = {
-    "PEL_FORMAT_RADIANCE",         "PEL_FORMAT_MATERIAL",
-    "PEL_FORMAT_POSITION",         "PEL_FORMAT_DEPTH",
-    "PEL_FORMAT_NORMAL_GEOMETRIC", "PEL_FORMAT_NORMAL_SHADING",
-    "PEL_FORMAT_NORMAL_BLURRED",   "PEL_FORMAT_CURVATURE",
-    "PEL_FORMAT_ALBEDO",           "PEL_FORMAT_AMBIENT_OCCLUSION",
-    "PEL_FORMAT_THICKNESS",        "PEL_FORMAT_ROUGHNESS",
-    "PEL_FORMAT_SPECULAR",         "PEL_FORMAT_UV",
-    "PEL_FORMAT_UV_GRADIENT",      "PEL_FORMAT_TANGENT",
-    "PEL_FORMAT_OUT_DIFFUSE",      "PEL_FORMAT_OUT_DEEP_SCATTER",
-    "PEL_FORMAT_OUT_SPECULAR",     "PEL_FORMAT_OUT_THICKNESS"};
-
 // Tiles that a work-item of the classification takes: runs on a CPU, one each on a GPU, which has thousands
 // of work-items.
 uint32_t classifyRun(const Device& device) {
@@ -82,30 +43,12 @@ uint32_t classifyGroup(const Device& device) {
 
 // Slots that no feature reads are left out: fewer variants, and no input that cannot matter.
 bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
-    switch (slot) {
-        case PEL_SLOT_POSITION:
-            return features & (PEL_BIT_SPECULAR | PEL_BIT_THICKNESS_TAPS | PEL_BIT_POSITIONAL);
-        case PEL_SLOT_DEPTH:
-            return !state.images[PEL_SLOT_POSITION] && slotIsRead(state, PEL_SLOT_POSITION, features);
-        case PEL_SLOT_NORMAL_BLURRED:
-            return features & (PEL_BIT_DIRECT_SCATTER | PEL_BIT_AMBIENT | PEL_BIT_DEEP_SCATTER |
-                               PEL_BIT_AMBIENT_SCATTER);
-        case PEL_SLOT_NORMAL_GEOMETRIC:
-            return (!state.images[PEL_SLOT_NORMAL_BLURRED] &&
-                    slotIsRead(state, PEL_SLOT_NORMAL_BLURRED, features)) ||
-                   features & (PEL_BIT_SHADOW_LUT | PEL_BIT_THICKNESS_TAPS);
-        case PEL_SLOT_CURVATURE:
-            return features & PEL_BIT_DIRECT_SCATTER;
-        case PEL_SLOT_AMBIENT_OCCLUSION:
-            return features & PEL_BIT_AMBIENT;
-        case PEL_SLOT_THICKNESS:
-            return features & (PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER);
-        case PEL_SLOT_ROUGHNESS:
-        case PEL_SLOT_SPECULAR:
-            return features & PEL_BIT_SPECULAR;
-        default:
-            return true;
-    }
+    uint32_t bits = imageSlot(slot).bits;
+    if (slot == PEL_SLOT_DEPTH && state.images[PEL_SLOT_POSITION]) return false;
+    // The geometric normal stands in for a blurred one that is not there.
+    if (slot == PEL_SLOT_NORMAL_GEOMETRIC && !state.images[PEL_SLOT_NORMAL_BLURRED])
+        bits |= PEL_READ_NORMAL_BLURRED;
+    return bits == uint32_t(PEL_BITS_ALL_) || features & bits;
 }
 
 }  // namespace
@@ -136,10 +79,10 @@ cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t
                         {"PEL_FORMAT_SHADOW_MAP", std::to_string(map)},
                         {"PEL_SHADOW_CONTENT", std::to_string(content)}};
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) {
-        if (!isShadeSlot(slot)) continue;
+        if (imageSlot(slot).role == SlotRole::PASS) continue;
         const uint32_t code =
             slotIsRead(state, slot, features) ? formatCode(state.images[slot], device.info().mathWidth) : 0;
-        defines[formatDefines[slot]] = std::to_string(code);
+        defines[imageSlot(slot).define] = std::to_string(code);
     }
     cl::ProgramKey key{{"shading/shade.cl"}, defines};
     // In one program: a driver's cost per program is what a first frame waits for.

@@ -21,9 +21,27 @@
 
 #define HAS(bit) ((PEL_FEATURES & (bit)) != 0)
 #define SKIPPING (!HAS(PEL_BIT_NO_SKIPPING))
-#define NEEDS_POSITION \
-    (HAS(PEL_BIT_THICKNESS_TAPS) || HAS(PEL_BIT_SPECULAR) || HAS(PEL_BIT_POSITIONAL))
-#define SPAN(buffer, slot) imageSpan(scene->buffer, &frame->images[PEL_IMAGE_##slot], x, y)
+#define NEEDS_POSITION HAS(PEL_READ_POSITION)
+#define SPAN(slot) imageSpan(scene->images.slot, &frame->images[PEL_IMAGE_##slot], x, y)
+
+// The buffers of the images that this kernel reads or writes, by the names of their slots: of the list of slots, those of all roles
+// but PASS.
+#define TAKE_TARGET(X, name) X(name)
+#define TAKE_SHADE(X, name) X(name)
+#define TAKE_PASS(X, name)
+#define TAKE_OUTPUT(X, name) X(name)
+#define IMAGE_FIELD_(name) __global uchar* name;
+#define IMAGE_FIELD(name, number, role, content, components, key, words, bits) TAKE_##role(IMAGE_FIELD_, name)
+#define IMAGE_ARGUMENT_(name) __global uchar *name,
+#define IMAGE_ARGUMENT(name, number, role, content, components, key, words, bits) TAKE_##role(IMAGE_ARGUMENT_, name)
+#define IMAGE_VALUE_(name) name,
+#define IMAGE_VALUE(name, number, role, content, components, key, words, bits) TAKE_##role(IMAGE_VALUE_, name)
+#define LIGHT_ARGUMENT(i) __global uchar *light##i,
+#define LIGHT_VALUE(i) light##i,
+
+typedef struct Images {
+    PEL_EACH_IMAGE(IMAGE_FIELD)
+} Images;
 
 // The arguments of the kernel, as functions pass them on.
 typedef struct Scene {
@@ -31,15 +49,10 @@ typedef struct Scene {
     __global const PelShadeMaterial* materials;
     __global const PelShadeLight* lights;
     __global const float4* luts;
-    __global uchar *position, *depth, *normalGeometric, *normalShading, *normalBlurred, *curvature, *albedo;
-    __global uchar *occlusion, *thickness, *roughness, *specular;
+    Images images;
     __global uchar* lightImages[PEL_LIGHT_BUFFERS];
     __global const float* cube; // nodes of lib/shading/ambient_cube.clh
 } Scene;
-
-typedef struct Outputs {
-    __global uchar *diffuse, *deepScatter, *specular, *thickness;
-} Outputs;
 
 typedef struct Pixels {
     Vec3w position, toCamera;
@@ -67,8 +80,6 @@ static inline void count(Counts* counts, const int which, maskw mask) {
     if (HAS(PEL_BIT_COUNT)) counts->of[which] += countw(mask);
 }
 
-#define READ_NB (PEL_BIT_DIRECT_SCATTER | PEL_BIT_AMBIENT | PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER)
-
 // Notes where an input of these features is no number. What ambient light and positional lights read, every material reads.
 static inline void spoil(Pixels* p, const uint features, maskw finite) {
     if (HAS(features & (PEL_BIT_AMBIENT | PEL_BIT_POSITIONAL)))
@@ -80,44 +91,44 @@ static inline void spoil(Pixels* p, const uint features, maskw finite) {
 static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
     __global const PelShadeFrame* frame = scene->frame;
     Pixels p;
-    p.n = loadNormal(PEL_FORMAT_NORMAL_SHADING, SPAN(normalShading, NORMAL_SHADING));
+    p.n = loadNormal(PEL_FORMAT_NORMAL_SHADING, SPAN(NORMAL_SHADING));
     p.valid = finite3(p.n);
     p.spoiled = 0;
     p.ng = p.n;
     if (PEL_FORMAT_NORMAL_GEOMETRIC) {
-        p.ng = loadNormal(PEL_FORMAT_NORMAL_GEOMETRIC, SPAN(normalGeometric, NORMAL_GEOMETRIC));
-        spoil(&p, PEL_BIT_SHADOW_LUT | PEL_BIT_THICKNESS_TAPS | (PEL_FORMAT_NORMAL_BLURRED ? 0 : READ_NB), finite3(p.ng));
+        p.ng = loadNormal(PEL_FORMAT_NORMAL_GEOMETRIC, SPAN(NORMAL_GEOMETRIC));
+        spoil(&p, PEL_READ_NORMAL_GEOMETRIC | (PEL_FORMAT_NORMAL_BLURRED ? 0 : PEL_READ_NORMAL_BLURRED), finite3(p.ng));
     }
     p.nb = p.ng;
     if (PEL_FORMAT_NORMAL_BLURRED) {
-        p.nb = loadNormal(PEL_FORMAT_NORMAL_BLURRED, SPAN(normalBlurred, NORMAL_BLURRED));
-        spoil(&p, READ_NB, finite3(p.nb));
+        p.nb = loadNormal(PEL_FORMAT_NORMAL_BLURRED, SPAN(NORMAL_BLURRED));
+        spoil(&p, PEL_READ_NORMAL_BLURRED, finite3(p.nb));
     }
     p.pair = normalPair(p.n, p.nb);
     if (NEEDS_POSITION) {
         if (PEL_FORMAT_POSITION)
-            p.position = loadColor(PEL_FORMAT_POSITION, SPAN(position, POSITION));
+            p.position = loadColor(PEL_FORMAT_POSITION, SPAN(POSITION));
         else
             p.position = positionFromDepth(frame->inverseViewProjection, frame->width, frame->height, x, y,
-                                           loadScalar(PEL_FORMAT_DEPTH, SPAN(depth, DEPTH)));
-        spoil(&p, PEL_BIT_THICKNESS_TAPS | PEL_BIT_SPECULAR | PEL_BIT_POSITIONAL, finite3(p.position));
+                                           loadScalar(PEL_FORMAT_DEPTH, SPAN(DEPTH)));
+        spoil(&p, PEL_READ_POSITION, finite3(p.position));
         p.toCamera = normalize3(sub3(loadUniform3(frame->cameraPosition), p.position));
     }
     if (HAS(PEL_BIT_ROTATE_TAPS)) tapTurn(x, y, &p.turnCosine, &p.turnSine);
     if (PEL_FORMAT_ALBEDO) {
-        p.albedo = loadColor(PEL_FORMAT_ALBEDO, SPAN(albedo, ALBEDO));
+        p.albedo = loadColor(PEL_FORMAT_ALBEDO, SPAN(ALBEDO));
         p.valid &= finite3(p.albedo);
     }
-#define LOAD_SCALAR(features, slot, name)                         \
-    if (HAS(features) && PEL_FORMAT_##slot) {                     \
-        p.name = loadScalar(PEL_FORMAT_##slot, SPAN(name, slot)); \
-        spoil(&p, features, finitew(p.name));                     \
+#define LOAD_SCALAR(slot, name)                              \
+    if (HAS(PEL_READ_##slot) && PEL_FORMAT_##slot) {         \
+        p.name = loadScalar(PEL_FORMAT_##slot, SPAN(slot));  \
+        spoil(&p, PEL_READ_##slot, finitew(p.name));         \
     }
-    LOAD_SCALAR(PEL_BIT_DIRECT_SCATTER, CURVATURE, curvature)
-    LOAD_SCALAR(PEL_BIT_AMBIENT, AMBIENT_OCCLUSION, occlusion)
-    LOAD_SCALAR(PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER, THICKNESS, thickness)
-    LOAD_SCALAR(PEL_BIT_SPECULAR, ROUGHNESS, roughness)
-    LOAD_SCALAR(PEL_BIT_SPECULAR, SPECULAR, specular)
+    LOAD_SCALAR(CURVATURE, curvature)
+    LOAD_SCALAR(AMBIENT_OCCLUSION, occlusion)
+    LOAD_SCALAR(THICKNESS, thickness)
+    LOAD_SCALAR(ROUGHNESS, roughness)
+    LOAD_SCALAR(SPECULAR, specular)
 #undef LOAD_SCALAR
     return p;
 }
@@ -261,7 +272,7 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
             if (PEL_FORMAT_SPECULAR) intensity *= p->specular;
             if (PEL_FORMAT_ROUGHNESS) roughness *= p->roughness;
             floatw s;
-            if (HAS(PEL_BIT_GGX) && material->specularModel) {
+            if (HAS(PEL_BIT_GGX) && material->specularModel == PEL_MODEL_GGX) {
                 floatw roughness2 = material->roughness2;
                 if (PEL_FORMAT_ROUGHNESS) roughness2 *= p->roughness;
                 s = specularGgx(p->n, l, p->toCamera, nl, roughness, roughness2, material->lobeMix, material->f0);
@@ -315,15 +326,13 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
     return add3(mul3(albedo, diffuse), specular);
 }
 
-// Writes one output beside radiance.
-static inline void storePart(const int format, __global uchar* buffer, __global const PelShadeImage* image, uint x, uint y,
-                             Vec3w part, Vec3w invalid, maskw valid, maskw active) {
-    if (format) storeColor(format, imageSpan(buffer, image, x, y), select3(invalid, part, valid & finite3(part)), active);
-}
+// Writes one colour beside radiance.
+#define STORE_PART(slot, part)                    \
+    if (PEL_FORMAT_##slot)                        \
+        storeColor(PEL_FORMAT_##slot, SPAN(slot), select3(invalid, part, valid & finite3(part)), active);
 
 // PEL_WIDTH pixels from (x, y) on, of which those of `active` are wanted.
-static inline void shadePixels(const Scene* scene, __global uchar* radiance, const Outputs* out, uint x, uint y, uintw id,
-                               maskw active, Counts* counts) {
+static inline void shadePixels(const Scene* scene, uint x, uint y, uintw id, maskw active, Counts* counts) {
     __global const PelShadeFrame* frame = scene->frame;
     Pixels p = loadPixels(scene, x, y);
     Vec3w result = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = result;
@@ -348,7 +357,7 @@ static inline void shadePixels(const Scene* scene, __global uchar* radiance, con
     } else {
         result = shadeMaterial(scene, &scene->materials[1], &p, x, y, active, &parts, &specular, counts);
     }
-    const Span target = imageSpan(radiance, &frame->images[PEL_IMAGE_RADIANCE], x, y);
+    const Span target = SPAN(RADIANCE);
     const maskw valid = p.valid & finite3(result);
     count(counts, PEL_COUNT_SHADED, active);
     count(counts, PEL_COUNT_INVALID, active & notw(valid));
@@ -359,36 +368,20 @@ static inline void shadePixels(const Scene* scene, __global uchar* radiance, con
         result = select3(invalid, result, finite3(result)); // what stood there was no number
     }
     storeColor(PEL_FORMAT_RADIANCE, target, result, active);
-    storePart(PEL_FORMAT_OUT_DIFFUSE, out->diffuse, &frame->images[PEL_IMAGE_OUT_DIFFUSE], x, y, parts.diffuse, invalid,
-              valid, active);
-    storePart(PEL_FORMAT_OUT_DEEP_SCATTER, out->deepScatter, &frame->images[PEL_IMAGE_OUT_DEEP_SCATTER], x, y,
-              parts.deepScatter, invalid, valid, active);
-    storePart(PEL_FORMAT_OUT_SPECULAR, out->specular, &frame->images[PEL_IMAGE_OUT_SPECULAR], x, y, specular, invalid,
-              valid, active);
+    STORE_PART(OUT_DIFFUSE, parts.diffuse)
+    STORE_PART(OUT_DEEP_SCATTER, parts.deepScatter)
+    STORE_PART(OUT_SPECULAR, specular)
     if (PEL_FORMAT_OUT_THICKNESS)
-        storeScalar(PEL_FORMAT_OUT_THICKNESS,
-                    imageSpan(out->thickness, &frame->images[PEL_IMAGE_OUT_THICKNESS], x, y),
+        storeScalar(PEL_FORMAT_OUT_THICKNESS, SPAN(OUT_THICKNESS),
                     selectw((floatw)(0.0f), parts.thickness, valid & finitew(parts.thickness)), active);
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade(
     __global const PelShadeFrame* restrict frame, __global const PelShadeMaterial* restrict materials,
     __global const PelShadeLight* restrict lights, __global const float4* restrict luts, __global const uint* restrict list,
-    __global uint* counters, __global uchar* radiance, __global uchar* material, __global uchar* position,
-    __global uchar* depth, __global uchar* normalGeometric, __global uchar* normalShading,
-    __global uchar* normalBlurred, __global uchar* curvature, __global uchar* albedo, __global uchar* occlusion,
-    __global uchar* thickness, __global uchar* roughness, __global uchar* specular, __global uchar* light0,
-    __global uchar* light1, __global uchar* light2, __global uchar* light3, __global uchar* light4,
-    __global uchar* light5, __global uchar* light6, __global uchar* light7, __global uchar* light8,
-    __global uchar* light9, __global uchar* light10, __global uchar* light11, __global uchar* light12,
-    __global uchar* light13, __global uchar* light14, __global uchar* light15,
-    __global uchar* outDiffuse, __global uchar* outDeepScatter, __global uchar* outSpecular, __global uchar* outThickness,
-    __global const float* cube, uint part, uint parts, uint which) {
-    const Scene scene = {frame, materials, lights, luts, position, depth, normalGeometric, normalShading,
-                         normalBlurred, curvature, albedo, occlusion, thickness, roughness, specular,
-                         {light0, light1, light2, light3, light4, light5, light6, light7, light8, light9,
-                          light10, light11, light12, light13, light14, light15}, cube};
-    const Outputs out = {outDiffuse, outDeepScatter, outSpecular, outThickness};
+    __global uint* counters, __global const float* cube, PEL_EACH_IMAGE(IMAGE_ARGUMENT) PEL_EACH_LIGHT_BUFFER(LIGHT_ARGUMENT)
+    uint part, uint parts, uint which) {
+    const Scene scene = {frame, materials, lights, luts, {PEL_EACH_IMAGE(IMAGE_VALUE)}, {PEL_EACH_LIGHT_BUFFER(LIGHT_VALUE)}, cube};
     Counts counts = {{0}};
     const bool listed = PEL_FORMAT_MATERIAL && which != PEL_EVERY_TILE;
     const uint tiles = listed ? list[which] : frame->tiles;
@@ -409,10 +402,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
             maskw active = (column >= (int)x) & (column < (int)frame->width);
             uintw id = 1;
             if (PEL_FORMAT_MATERIAL) {
-                id = loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[PEL_IMAGE_MATERIAL], first, y));
+                id = loadId(PEL_FORMAT_MATERIAL, imageSpan(MATERIAL, &frame->images[PEL_IMAGE_MATERIAL], first, y));
                 active &= hasMaterial(frame, id);
             }
-            if (anyw(active)) shadePixels(&scene, radiance, &out, first, y, id, active, &counts);
+            if (anyw(active)) shadePixels(&scene, first, y, id, active, &counts);
         }
     }
     if (HAS(PEL_BIT_COUNT))

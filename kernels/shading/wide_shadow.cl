@@ -32,7 +32,7 @@ static inline maskw makeFilters(__global const PelWideShadow* light, Vec3w p, Ve
     // Towards the light, of length 1 along the map's axis.
     Vec3w toLight = scale3(loadUniform3(light->forward), (floatw)(-1.0f));
     floatw zPerLength = light->zPerLength, extentU = light->extent[0], extentV = light->extent[1];
-    if (light->projection == 1) {
+    if (light->projection == PEL_MAP_PERSPECTIVE) {
         toLight = sub3(toLight, scale3(loadUniform3(light->right), (u - light->centre[0]) * extentU));
         toLight = sub3(toLight, scale3(loadUniform3(light->down), (v - light->centre[1]) * extentV));
         const floatw distance = 1.0f / fma(z, (floatw)(light->depthA), (floatw)(light->depthB));
@@ -60,13 +60,12 @@ static inline maskw makeFilters(__global const PelWideShadow* light, Vec3w p, Ve
     storew(radiusX, 0, f->radiusX);
     storew(radiusY, 0, f->radiusY);
     storew(light->coneSlope * tilt * 0.5f * width * zPerLength, 0, f->cone);
-#if PEL_SHADOW_CONTENT == PEL_CONTENT_MOMENTS
-    storew(1.0f / (floatw)(zPerLength), 0, f->scale);
-#elif PEL_SHADOW_CONTENT == PEL_CONTENT_EXPONENTIAL
-    storew((floatw)(light->exponent), 0, f->scale);
-#else
-    storew(1.0f / (light->softness * width * zPerLength), 0, f->scale);
-#endif
+    if (PEL_SHADOW_CONTENT == PEL_CONTENT_MOMENTS)
+        storew(1.0f / (floatw)(zPerLength), 0, f->scale);
+    else if (PEL_SHADOW_CONTENT == PEL_CONTENT_EXPONENTIAL)
+        storew((floatw)(light->exponent), 0, f->scale);
+    else
+        storew(1.0f / (light->softness * width * zPerLength), 0, f->scale);
     storew(step, 0, f->step);
     maskw held = -1;
     if ((PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) && light->cascades)

@@ -1,5 +1,5 @@
-// What a variant of the shading kernel is made of, one list for host and device: feature bits (PEL_FEATURES),
-// and image formats (PEL_FORMAT_<SLOT>), both compile-time numbers. Numbers of the scene are arguments.
+// What a variant of the shading kernel is made of, beside the formats of images (shared/formats.h): feature bits
+// (PEL_FEATURES), a compile-time number. Numbers of the scene are arguments.
 #ifndef PEL_SHARED_FEATURES
 #define PEL_SHARED_FEATURES
 
@@ -23,28 +23,5 @@
 #define PEL_BIT_COUNT 0x80000       // count pixels per feature
 #define PEL_BIT_CUBE_ALONE 0x100000  // ambient light has no other part than the cube map
 #define PEL_BIT_ROTATE_TAPS 0x200000 // thickness taps are turned from pixel to pixel
-
-// Formats: PelFormat's numbers; 0 is an image that is not there.
-#define PEL_FMT_R32F 1
-#define PEL_FMT_RG32F 2
-#define PEL_FMT_RGB32F 3
-#define PEL_FMT_RGBA32F 4
-#define PEL_FMT_R16F 5
-#define PEL_FMT_RG16F 6
-#define PEL_FMT_RGB16F 7
-#define PEL_FMT_RGBA16F 8
-#define PEL_FMT_R8_UNORM 9
-#define PEL_FMT_RGBA8_UNORM 10
-#define PEL_FMT_RGBA8_SRGB 11
-#define PEL_FMT_R16_UNORM 12
-#define PEL_FMT_OCT16X2_SNORM 13
-#define PEL_FMT_A2B10G10R10_UNORM 14
-#define PEL_FMT_R8_UINT 15
-#define PEL_FMT_R16_UINT 16
-#define PEL_FMT_R32_UINT 17
-#define PEL_FMT_PLANAR_RGB32F 18
-// Added to a format whose pixels are not tightly packed, not aligned, or fewer in a row than the math width:
-// such pixels are read one by one, tight ones in vectors.
-#define PEL_FMT_STRIDED 32
 
 #endif

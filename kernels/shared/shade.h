@@ -2,6 +2,9 @@
 // unit, colours are linear RGB, matrices are row-major and multiply column vectors.
 #ifndef PEL_SHARED_SHADE
 #define PEL_SHARED_SHADE
+#include "shared/choices.h"
+#include "shared/formats.h"
+#include "shared/image_slots.h"
 #include "shared/lut.h"
 #include "shared/scalars.h"
 
@@ -9,35 +12,13 @@
 #define PEL_TILE_HEIGHT 2
 #define PEL_TILE_PIXELS (PEL_TILE_WIDTH * PEL_TILE_HEIGHT)
 #define PEL_LIGHT_BUFFERS 16 // distinct buffers among all images of all lights
+#define PEL_EACH_LIGHT_BUFFER(X) X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8) X(9) X(10) X(11) X(12) X(13) X(14) X(15)
 #define PEL_MATERIALS 256    // ids 0 (background) to 255
 // Lists of tiles in one buffer: PEL_TILE_LISTS counts, then the lists, each with room for PelShadeFrame.listTiles. List 0 has
 // every tile with a material; list 1 + i the tiles of variant i of the shading kernel, where there are several.
 #define PEL_TILE_VARIANTS 3
 #define PEL_TILE_LISTS (1 + PEL_TILE_VARIANTS)
 #define PEL_EVERY_TILE 0xffffffffu // instead of a list's number: visit all tiles
-// Images of a frame: PelImageSlot.
-#define PEL_IMAGE_RADIANCE 0
-#define PEL_IMAGE_MATERIAL 1
-#define PEL_IMAGE_POSITION 2
-#define PEL_IMAGE_DEPTH 3
-#define PEL_IMAGE_NORMAL_GEOMETRIC 4
-#define PEL_IMAGE_NORMAL_SHADING 5
-#define PEL_IMAGE_NORMAL_BLURRED 6
-#define PEL_IMAGE_CURVATURE 7
-#define PEL_IMAGE_ALBEDO 8
-#define PEL_IMAGE_AMBIENT_OCCLUSION 9
-#define PEL_IMAGE_THICKNESS 10
-#define PEL_IMAGE_ROUGHNESS 11
-#define PEL_IMAGE_SPECULAR 12
-#define PEL_IMAGE_UV 13
-#define PEL_IMAGE_UV_GRADIENT 14
-#define PEL_IMAGE_TANGENT 15
-#define PEL_IMAGE_OUT_DIFFUSE 16
-#define PEL_IMAGE_OUT_DEEP_SCATTER 17
-#define PEL_IMAGE_OUT_SPECULAR 18
-#define PEL_IMAGE_OUT_THICKNESS 19
-#define PEL_IMAGE_SLOTS 20
-#define PEL_SHADE_SLOTS 13 // those of them that shade.cl reads; from PEL_IMAGE_OUT_DIFFUSE on it writes; the rest is others'
 // Transmittance below 2^-16 counts as none: it lets taps stop early and is a third of the accuracy promised.
 #define PEL_LEAST_TRANSMITTANCE_LOG2 16
 
@@ -70,16 +51,6 @@ typedef struct PelShadeFrame {
     PelUint32 cubeSize;    // texels along an edge of the ambient cube map; 0: none
     PelShadeImage images[PEL_IMAGE_SLOTS];
 } PelShadeFrame;
-
-// Projections of a shadow map: PelShadowProjection.
-#define PEL_MAP_PARALLEL 0
-#define PEL_MAP_PERSPECTIVE 1
-#define PEL_MAP_CUBE 2
-#define PEL_MAP_CUBE_RADIAL 3
-// What its texels hold, for all maps of a program (PEL_SHADOW_CONTENT): PelShadowContent.
-#define PEL_CONTENT_DEPTH 0
-#define PEL_CONTENT_MOMENTS 1
-#define PEL_CONTENT_EXPONENTIAL 2
 
 // A look-up table inside the buffer of all tables.
 typedef struct PelShadeLut {

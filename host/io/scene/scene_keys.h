@@ -6,16 +6,20 @@
 #include <string_view>
 
 #include "io/scene/scene_file.h"
+#include "shared/choices.h"
+#include "shared/image_slots.h"
 
 namespace pellucid::io {
 
 enum class Range { Any, NotNegative, Positive, AtLeastOne, ZeroToOne };
 
-constexpr std::string_view lightTypes[] = {"directional", "point", "spot"};            // PelLightType
-constexpr std::string_view shadowProjections[] = {"parallel", "perspective", "cube", "cube-radial"};  // PelShadowProjection
-constexpr std::string_view shadowContents[] = {"depth", "moments", "exponential"};     // PelShadowContent
+#define PELLUCID_KEY(name, number, key) key,
+constexpr std::string_view lightTypes[] = {PEL_EACH_LIGHT_TYPE(PELLUCID_KEY)};
+constexpr std::string_view shadowProjections[] = {PEL_EACH_SHADOW_PROJECTION(PELLUCID_KEY)};
+constexpr std::string_view shadowContents[] = {PEL_EACH_SHADOW_CONTENT(PELLUCID_KEY)};
+constexpr std::string_view specularModels[] = {PEL_EACH_SPECULAR_MODEL(PELLUCID_KEY)};
+#undef PELLUCID_KEY
 constexpr std::string_view cascadeKeys[] = {"cascade_1", "cascade_2", "cascade_3"};
-constexpr std::string_view specularModels[] = {"ksk", "ggx"};                          // PelSpecularModel
 constexpr std::string_view curvatureForms[] = {"arc", "ring", "half-ring", "sphere"};  // PelCurvatureForm
 constexpr std::string_view lutAxes[] = {"linear", "root"};                             // PelLutAxis
 
@@ -24,34 +28,26 @@ struct SlotKey {
     std::string_view key;
     size_t components;
 };
-constexpr SlotKey slotKeys[] = {
-    {PEL_SLOT_MATERIAL, "material", 1},
-    {PEL_SLOT_POSITION, "position", 3},
-    {PEL_SLOT_DEPTH, "depth", 1},
-    {PEL_SLOT_NORMAL_GEOMETRIC, "normal_geometric", 3},
-    {PEL_SLOT_NORMAL_SHADING, "normal_shading", 3},
-    {PEL_SLOT_NORMAL_BLURRED, "normal_blurred", 3},
-    {PEL_SLOT_CURVATURE, "curvature", 1},
-    {PEL_SLOT_ALBEDO, "albedo", 3},
-    {PEL_SLOT_AMBIENT_OCCLUSION, "ambient_occlusion", 1},
-    {PEL_SLOT_THICKNESS, "thickness", 1},
-    {PEL_SLOT_ROUGHNESS, "roughness", 1},
-    {PEL_SLOT_SPECULAR, "specular", 1},
-    {PEL_SLOT_UV, "uv", 2},
-    {PEL_SLOT_UV_GRADIENT, "uv_gradient", 4},
-    {PEL_SLOT_TANGENT, "tangent", 4},
-};
+// Inputs name their channels, outputs their files.
+#define PELLUCID_INPUT_TARGET(...)
+#define PELLUCID_INPUT_SHADE(...) {__VA_ARGS__},
+#define PELLUCID_INPUT_PASS(...) {__VA_ARGS__},
+#define PELLUCID_INPUT_OUTPUT(...)
+#define PELLUCID_OUTPUT_TARGET(...)
+#define PELLUCID_OUTPUT_SHADE(...)
+#define PELLUCID_OUTPUT_PASS(...)
+#define PELLUCID_OUTPUT_OUTPUT(...) {__VA_ARGS__},
+#define PELLUCID_INPUT(name, number, role, content, components, key, words, bits) \
+    PELLUCID_INPUT_##role(PEL_SLOT_##name, key, components)
+#define PELLUCID_OUTPUT(name, number, role, content, components, key, words, bits) \
+    PELLUCID_OUTPUT_##role(PEL_SLOT_##name, key)
+constexpr SlotKey slotKeys[] = {PEL_EACH_IMAGE(PELLUCID_INPUT)};
 
 struct OutputKey {
     PelImageSlot slot;
     std::string_view key;
 };
-constexpr OutputKey outputKeys[] = {
-    {PEL_SLOT_OUT_DIFFUSE, "diffuse"},
-    {PEL_SLOT_OUT_DEEP_SCATTER, "deep_scatter"},
-    {PEL_SLOT_OUT_SPECULAR, "specular"},
-    {PEL_SLOT_OUT_THICKNESS, "thickness"},
-};
+constexpr OutputKey outputKeys[] = {PEL_EACH_IMAGE(PELLUCID_OUTPUT)};
 
 template <class Visitor, class Scene>
 void outputFileKeys(Visitor& v, Scene& scene) {

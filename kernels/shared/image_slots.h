@@ -1,0 +1,48 @@
+// The images of a G-buffer: the one list of them, from which names, checks, keys of scene files, programs and the arguments of
+// shade.cl come. pellucid.h's PelImageSlot, which documents them, is checked against it (host/shading/image_slots.cpp).
+#ifndef PEL_SHARED_IMAGE_SLOTS
+#define PEL_SHARED_IMAGE_SLOTS
+#include "shared/features.h"
+
+// Features whose terms read the blurred normal, or the geometric one where it is not there.
+#define PEL_BITS_BLURRED_ (PEL_BIT_DIRECT_SCATTER | PEL_BIT_AMBIENT | PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER)
+#define PEL_BITS_POSITION_ (PEL_BIT_SPECULAR | PEL_BIT_THICKNESS_TAPS | PEL_BIT_POSITIONAL)
+#define PEL_BITS_ALL_ 0x7fffffff
+
+// clang-format off
+// X(name, number, role, content, components, key, words, bits)
+// role: SHADE is read by shade.cl, PASS by passes before it alone, OUTPUT is written, TARGET is written or added to.
+// content: what its pixels are, with the formats that they may have. components: how many names of channels a scene file gives.
+// key: in scene files; words: in messages. bits: PEL_BIT_... of the features that read it in shade.cl; depth is read where
+// there are no positions, and the geometric normal by these features and for a blurred one that is not there.
+#define PEL_EACH_IMAGE(X)                                                                                                      \
+    X(RADIANCE, 0, TARGET, COLOR_OUTPUT, 0, "radiance", "radiance", PEL_BITS_ALL_)                                             \
+    X(MATERIAL, 1, SHADE, ID, 1, "material", "material", PEL_BITS_ALL_)                                                        \
+    X(POSITION, 2, SHADE, COLOR, 3, "position", "position", PEL_BITS_POSITION_)                                                \
+    X(DEPTH, 3, SHADE, SCALAR, 1, "depth", "depth", PEL_BITS_POSITION_)                                                        \
+    X(NORMAL_GEOMETRIC, 4, SHADE, NORMAL, 3, "normal_geometric", "geometric normal", PEL_BIT_SHADOW_LUT | PEL_BIT_THICKNESS_TAPS) \
+    X(NORMAL_SHADING, 5, SHADE, NORMAL, 3, "normal_shading", "shading normal", PEL_BITS_ALL_)                                  \
+    X(NORMAL_BLURRED, 6, SHADE, NORMAL, 3, "normal_blurred", "blurred normal", PEL_BITS_BLURRED_)                              \
+    X(CURVATURE, 7, SHADE, SCALAR, 1, "curvature", "curvature", PEL_BIT_DIRECT_SCATTER)                                        \
+    X(ALBEDO, 8, SHADE, COLOR, 3, "albedo", "albedo", PEL_BITS_ALL_)                                                           \
+    X(AMBIENT_OCCLUSION, 9, SHADE, SCALAR, 1, "ambient_occlusion", "ambient occlusion", PEL_BIT_AMBIENT)                       \
+    X(THICKNESS, 10, SHADE, SCALAR, 1, "thickness", "thickness", PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER)               \
+    X(ROUGHNESS, 11, SHADE, SCALAR, 1, "roughness", "roughness", PEL_BIT_SPECULAR)                                             \
+    X(SPECULAR, 12, SHADE, SCALAR, 1, "specular", "specular", PEL_BIT_SPECULAR)                                                \
+    X(UV, 13, PASS, UV, 2, "uv", "UV", 0)                                                                                      \
+    X(UV_GRADIENT, 14, PASS, GRADIENT, 4, "uv_gradient", "UV gradient", 0)                                                     \
+    X(TANGENT, 15, PASS, NORMAL, 4, "tangent", "tangent", 0)                                                                   \
+    X(OUT_DIFFUSE, 16, OUTPUT, COLOR_OUTPUT, 0, "diffuse", "diffuse output", PEL_BITS_ALL_)                                    \
+    X(OUT_DEEP_SCATTER, 17, OUTPUT, COLOR_OUTPUT, 0, "deep_scatter", "deep scatter output", PEL_BITS_ALL_)                     \
+    X(OUT_SPECULAR, 18, OUTPUT, COLOR_OUTPUT, 0, "specular", "specular output", PEL_BITS_ALL_)                                 \
+    X(OUT_THICKNESS, 19, OUTPUT, SCALAR_OUTPUT, 0, "thickness", "thickness output", PEL_BITS_ALL_)
+// clang-format on
+
+// PEL_IMAGE_<NAME>, their count, and PEL_READ_<NAME>: the bits.
+#define PEL_IMAGE_NUMBER_(name, number, role, content, components, key, words, bits) PEL_IMAGE_##name = number,
+#define PEL_IMAGE_BITS_(name, number, role, content, components, key, words, bits) PEL_READ_##name = bits,
+#define PEL_IMAGE_ONE_(name, number, role, content, components, key, words, bits) +1
+enum { PEL_EACH_IMAGE(PEL_IMAGE_NUMBER_) PEL_IMAGE_SLOTS = 0 PEL_EACH_IMAGE(PEL_IMAGE_ONE_) };
+enum { PEL_EACH_IMAGE(PEL_IMAGE_BITS_) PEL_READ_NONE = 0 };
+
+#endif
