@@ -1,4 +1,5 @@
-// Runs the cases of a test program. Ends with 77 where none failed and some were skipped, so that CTest says so.
+// Runs the cases of a test program. Ends with 77 where none failed and some were skipped, so that CTest says
+// so.
 #include <gtest/gtest.h>
 
 int main(int argc, char** argv) {

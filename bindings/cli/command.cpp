@@ -56,6 +56,7 @@ void Run::note(const std::string& text) const {
 }
 
 void Run::warn(const std::string& text) {
+    if (options_.strict) throw InputError(text + " (--strict)");
     warnings_.push_back(text);
     std::fprintf(stderr, "warning: %s\n", text.c_str());
 }
@@ -81,6 +82,7 @@ void addRunOptions(CLI::App& command, Run::Options& options) {
     command.add_option("--device", options.device,
                        "OpenCL device: number, name or type (default: PELLUCID_DEVICE, best GPU, CPU)");
     command.add_flag("--json", options.json, "print one JSON object on standard output");
+    command.add_flag("--strict", options.strict, "what would be a warning is an error: exit code 3, and nothing is written");
 }
 
 void parseSize(const std::string& text, uint32_t& width, uint32_t& height) {

@@ -29,6 +29,7 @@ class Run {
     struct Options {
         std::string device;  // selector; "" for the standard one
         bool json = false;
+        bool strict = false;  // a warning is an error
     };
     explicit Run(const Options& options);
     ~Run();
@@ -38,7 +39,8 @@ class Run {
     double deviceMilliseconds() const;  // kernels since this run began
 
     void note(const std::string& text) const;  // to stderr, for people
-    void warn(const std::string& text);        // to stderr, and into the report
+    // To stderr, and into the report; with --strict an InputError. Before anything is written.
+    void warn(const std::string& text);
     // Key and value of the report, in this order. Numbers, texts, arrays and objects alike.
     nlohmann::ordered_json report;
 
@@ -55,7 +57,7 @@ class Run {
     static int onProgress(void* user, double fraction, const char* what);
 };
 
-// Adds --device and --json.
+// Adds --device, --json and --strict.
 void addRunOptions(CLI::App& command, Run::Options& options);
 
 // "WxH" to two numbers; throws UsageError.

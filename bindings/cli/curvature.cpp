@@ -88,6 +88,7 @@ void run(const Arguments& a) {
         run.note("no normals in " + a.mesh + ": they were made from its triangles");
     }
     const MeshCurvature result = meshCurvature(run, mesh, params, weld);
+    reportMesh(run, result.report);
     // `share`: of the values beyond either end of the colours.
     const auto scale = [&](double share) -> std::pair<float, float> {
         if (!a.range.empty()) return {a.range[0], a.range[1]};
@@ -108,7 +109,6 @@ void run(const Arguments& a) {
         run.report["picture"] = a.picture;
     }
     run.report["output"] = a.output;
-    reportMesh(run, result.report);
     const auto [least, most] = std::minmax_element(result.values.begin(), result.values.end());
     run.report["curvature_min"] = *least;
     run.report["curvature_median"] = percentile(result.values, 0.5);

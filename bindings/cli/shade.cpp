@@ -49,6 +49,13 @@ void warnOfNothing(Run& run, const io::SceneFile& scene, const std::vector<PelIm
                  "material with thickness_taps and a deep_scatter_color");
 }
 
+void warnOfInvalid(Run& run, const PelShaderStats& stats) {
+    if (stats.pixelsInvalid == 0) return;
+    const std::string share = stats.pixelsInvalid == stats.pixelsShaded ? "all " : std::to_string(stats.pixelsInvalid) + " of ";
+    run.warn(share + std::to_string(stats.pixelsShaded) +
+             " pixels of a material have NaN or Inf in an input or in their result; they are black");
+}
+
 void run(const Arguments& a) {
     try {
         io::requireExtension(a.output, {"exr"});
@@ -75,6 +82,9 @@ void run(const Arguments& a) {
     try {
         Frame frame(run.device(), gbuffer, scene, luts, {}, options, outputs);
         frame.shade();
+        const PelShaderStats stats = frame.stats();
+        warnOfNothing(run, scene, outputs, stats.features);
+        warnOfInvalid(run, stats);
         writeRadiance(a.output, gbuffer.width, gbuffer.height, frame.radiance());
         for (const auto& [slot, file] : files) writeOutput(file, slot, gbuffer, frame);
         run.report["output"] = a.output;
@@ -82,11 +92,8 @@ void run(const Arguments& a) {
         run.report["width"] = gbuffer.width;
         run.report["height"] = gbuffer.height;
         run.report["pixels"] = gbuffer.pixelCount();
-        const PelShaderStats stats = frame.stats();
-        warnOfNothing(run, scene, outputs, stats.features);
+        run.report["pixels_invalid"] = stats.pixelsInvalid;
         if (a.stats) run.report["stats"] = toJson(stats);
-        if (stats.pixelsInvalid > 0)
-            run.warn(std::to_string(stats.pixelsInvalid) + " pixels have NaN or Inf inputs; they are 0");
     } catch (const Error& e) {
         // What the library refuses here came from the two files.
         if (e.code() == PEL_ERROR_INVALID_ARGUMENT)

@@ -42,7 +42,7 @@ void Shader::allocate(uint32_t mostRows) {
     PassList passes = std::exchange(passes_, PassList());
     if (passes.empty()) passes = PassList(passKinds_);
     passes.allocate(device_, plan, mostRows);
-    if (!counters_ && state_.options.countPixels)
+    if (!counters_)
         counters_ = device_->allocate(PEL_COUNTERS * sizeof(cl_uint));
     plan.counters = counters_;
     plan_ = std::move(plan);
@@ -80,8 +80,7 @@ bool Shader::halveBand() {
 PassWork Shader::beginWork() {
     events_.clear();
     bands_ = 0;
-    if (counters_ && state_.options.countPixels)
-        device_->fill(counters_.get(), 0, PEL_COUNTERS * sizeof(cl_uint), 0);
+    device_->fill(counters_.get(), 0, PEL_COUNTERS * sizeof(cl_uint), 0);
     PassWork work{*device_, plan_, constants_, events_};
     passes_.each([&](Pass& pass) { pass.enqueueFrame(work); });
     return work;
@@ -180,7 +179,7 @@ PelShaderStats Shader::stats() {
     stats.bands = bands_;
     stats.variants = plan_.variants.size();
     if (committed_) passes_.each([&](const Pass& pass) { pass.addStats(*device_, plan_, bands_, stats); });
-    if (state_.options.countPixels && committed_) {
+    if (committed_) {
         cl_uint counts[PEL_COUNTERS];
         device_->read(counters_.get(), 0, sizeof counts, counts, true);
         stats.pixelsShaded = counts[PEL_COUNT_SHADED];

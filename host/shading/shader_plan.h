@@ -32,7 +32,7 @@ struct ShaderPlan {
     uint32_t bandRows = 0, haloRows = 0;
     bool scratch = false;  // whether a pass makes images, which hold the rows of a band and of its halo
 
-    cl::Memory counters;      // PEL_COUNTERS; none unless pixels are counted
+    cl::Memory counters;      // PEL_COUNTERS
     cl::Memory tileLists;     // lists of tiles; none without a material image
     cl::Memory ambientNodes;  // of the ambient cube
     uint32_t normalPlane =

@@ -76,8 +76,13 @@ typedef struct Counts {
     uint of[PEL_COUNTERS];
 } Counts;
 
-static inline void count(Counts* counts, const int which, maskw mask) {
-    if (HAS(PEL_BIT_COUNT)) counts->of[which] += countw(mask);
+// How many pixels of a material there were, and how many of them were invalid, is always counted; the rest on request.
+static inline bool isCounted(const uint which) {
+    return HAS(PEL_BIT_COUNT) || which == PEL_COUNT_SHADED || which == PEL_COUNT_INVALID;
+}
+
+static inline void count(Counts* counts, const uint which, maskw mask) {
+    if (isCounted(which)) counts->of[which] += countw(mask);
 }
 
 // Notes where an input of these features is no number. What ambient light and positional lights read, every material reads.
@@ -359,14 +364,16 @@ static inline void shadePixels(const Scene* scene, uint x, uint y, uintw id, mas
     }
     const Span target = SPAN(RADIANCE);
     const maskw valid = p.valid & finite3(result);
-    count(counts, PEL_COUNT_SHADED, active);
-    count(counts, PEL_COUNT_INVALID, active & notw(valid));
+    maskw shown = valid;
     const Vec3w invalid = loadUniform3(frame->invalidColor);
     result = select3(invalid, result, valid);
     if (HAS(PEL_BIT_ACCUMULATE)) {
         result = add3(result, loadColorOf(PEL_FORMAT_RADIANCE, target, active));
-        result = select3(invalid, result, finite3(result)); // what stood there was no number
+        shown &= finite3(result); // what stood there may be NaN or Inf
+        result = select3(invalid, result, finite3(result));
     }
+    count(counts, PEL_COUNT_SHADED, active);
+    count(counts, PEL_COUNT_INVALID, active & notw(shown));
     storeColor(PEL_FORMAT_RADIANCE, target, result, active);
     STORE_PART(OUT_DIFFUSE, parts.diffuse)
     STORE_PART(OUT_DEEP_SCATTER, parts.deepScatter)
@@ -408,7 +415,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
             if (anyw(active)) shadePixels(&scene, first, y, id, active, &counts);
         }
     }
-    if (HAS(PEL_BIT_COUNT))
-        for (uint i = 0; i < PEL_COUNTERS; ++i)
-            if (counts.of[i]) atomic_add(&counters[i], counts.of[i]);
+    for (uint i = 0; i < PEL_COUNTERS; ++i)
+        if (isCounted(i) && counts.of[i]) atomic_add(&counters[i], counts.of[i]);
 }

@@ -28,6 +28,35 @@ TEST_F(Shade, PlainLightIsAlbedoTimesCosine) {
     }
 }
 
+// A frame of NaN is no black picture that nobody speaks of.
+TEST_F(Shade, InvalidPixelsAreCountedAndWarnedOf) {
+    const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()};
+    for (const bool all : {true, false})
+        for (const float value : bad) {
+            io::Image spoilt = gbuffer_;
+            std::vector<float>& normals = spoilt.channels[0].pixels;
+            for (size_t i = 0; i < normals.size(); ++i)
+                if (all || i % width == 3) normals[i] = value;
+            io::writeExr(path("bad.exr"), spoilt);
+            std::vector<std::string> arguments = command("s.toml", "bad.exr");
+            arguments.push_back("--strict");
+            const std::string message = (all ? "all 50 pixels" : "5 of 50 pixels") + std::string(" of a material have NaN or Inf");
+            expectRefused(arguments, 3, message);
+            arguments.back() = "--json";
+            const Result result = run(arguments);
+            EXPECT_EQ(result.exitCode, 0) << result.err;
+            EXPECT_TRUE(contains(result.err, "warning: " + message)) << result.err;
+            EXPECT_EQ(result.json().at("pixels_invalid"), all ? 50 : 5);
+            ASSERT_EQ(result.json().at("warnings").size(), 1u);
+            std::filesystem::remove(path("o.exr"));
+        }
+    std::vector<std::string> arguments = command();
+    arguments.insert(arguments.end(), {"--strict", "--json"});
+    const Result fine = run(arguments);
+    EXPECT_EQ(fine.exitCode, 0) << fine.err;
+    EXPECT_EQ(fine.json().at("pixels_invalid"), 0);
+}
+
 TEST_F(Shade, MissingChannelsAreAnsweredWithThoseFound) {
     scene_.channels[PEL_SLOT_CURVATURE] = {"Curvature.V"};
     io::writeScene(path("c.toml"), scene_);

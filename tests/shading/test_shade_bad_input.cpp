@@ -1,6 +1,7 @@
 // What a shader refuses, with which words; and pixels that are no numbers.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <thread>
@@ -233,6 +234,58 @@ TEST(ShadeBadPixels, NanAndInfStayInTheirPixel) {
                 EXPECT_EQ(result[3 * i + c],
                           std::find(bad.begin(), bad.end(), i) != bad.end() ? color[c] : clean[3 * i + c])
                     << "pixel " << i;
+    }
+}
+
+// Counted without asking, in each way of finding tiles, where nothing else of pixels is.
+TEST(ShadeBadPixels, AFrameOfNothingElseIsCountedAlways) {
+    for (const float value : {nan, inf, -inf})
+        for (const PelTileLists lists : {PEL_TILES_ONE_LIST, PEL_TILES_PER_VARIANT, PEL_TILES_NO_LIST}) {
+            Frame f = randomFrame(2, 65, 19, 2);
+            f.options.tileLists = lists;
+            std::fill(f.slots[PEL_SLOT_NORMAL_SHADING].values.begin(), f.slots[PEL_SLOT_NORMAL_SHADING].values.end(), value);
+            uint64_t materials = 0;
+            for (const float id : f.slots[PEL_SLOT_MATERIAL].values) materials += id != 0;
+            PelShaderStats stats = pelShaderStatsDefaults();
+            for (const float shown : shade(device(), f, tables(), &stats)) EXPECT_EQ(shown, 0.0f);
+            EXPECT_EQ(stats.pixelsShaded, materials);
+            EXPECT_EQ(stats.pixelsInvalid, materials);
+            EXPECT_EQ(stats.pixelsSpecular, 0u) << "not asked for";
+        }
+}
+
+// What stands in the image already is an input too.
+TEST(ShadeBadPixels, AccumulatingOntoNanGivesTheInvalidColor) {
+    for (const uint32_t components : {3u, 4u}) {
+        Frame f = randomFrame(4, 49, 21);
+        f.options.accumulate = 1;
+        f.options.invalidColor[1] = 0.5f;
+        const auto clean = shade(device(), f, tables());
+        std::vector<float> before(f.pixels() * components, 0.25f);
+        uint64_t bad = 0;
+        for (size_t i = 3; i < f.pixels(); i += 7) {
+            before[components * i + i % 3] = i % 2 ? nan : i % 4 ? inf : -inf;
+            bad += f.slots[PEL_SLOT_MATERIAL].values[i] != 0;
+        }
+        Shader shader(device());
+        setFrame(device(), shader, f, tables());
+        const Buffer target(device(), before);
+        shader.set(PEL_SLOT_RADIANCE,
+                   imageDesc(target, components == 3 ? PEL_FORMAT_RGB32F : PEL_FORMAT_RGBA32F, f.width, f.height));
+        shader.commit().execute();
+        const auto after = target.readAll<float>();
+        for (size_t i = 0; i < f.pixels(); ++i) {
+            const bool material = f.slots[PEL_SLOT_MATERIAL].values[i] != 0, spoilt = i % 7 == 3;
+            for (size_t c = 0; c < 3; ++c) {
+                const float was = before[components * i + c], is = after[components * i + c];
+                if (!material)
+                    EXPECT_EQ(std::memcmp(&was, &is, sizeof was), 0) << "background, pixel " << i;
+                else
+                    EXPECT_EQ(is, spoilt ? f.options.invalidColor[c] : clean[3 * i + c] + 0.25f) << "pixel " << i;
+            }
+        }
+        EXPECT_GT(bad, 20u);
+        EXPECT_EQ(shader.stats().pixelsInvalid, bad);
     }
 }
 

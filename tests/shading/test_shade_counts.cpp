@@ -10,8 +10,8 @@ using namespace shade_test;
 
 namespace {
 
-// What the counters of pixels should hold, from the scene in double precision. `doubtful`: pixels that rounding may put on either
-// side.
+// What the counters of pixels should hold, from the scene in double precision. `doubtful`: pixels that
+// rounding may put on either side.
 struct Counts {
     uint64_t shaded = 0, invalid = 0, shadowLut = 0, thickness = 0, specular = 0, doubtful = 0;
 };
@@ -34,12 +34,15 @@ Counts countsOf(const Frame& f, const Tables& tables) {
         }
         for (const Light& light : f.lights) {
             const reference::PixelLight l = truthLight(f, m, light, i);
-            const double nl = reference::dot(reference::normalized(s[PEL_SLOT_NORMAL_SHADING].vec(i)), l.toLight);
-            const double bl = reference::dot(reference::normalized(s[PEL_SLOT_NORMAL_BLURRED].vec(i)), l.toLight);
+            const double nl =
+                reference::dot(reference::normalized(s[PEL_SLOT_NORMAL_SHADING].vec(i)), l.toLight);
+            const double bl =
+                reference::dot(reference::normalized(s[PEL_SLOT_NORMAL_BLURRED].vec(i)), l.toLight);
             const double reach = reference::magnitude(l.color);
             const double halfTexel = 0.5 / tables.shadowTruth.table.width, w = light.wide.at(i);
             const double shadow = reference::sharpenedShadow(w, tables.shadowTruth.sharpening);
-            for (double edge : {nl, bl - 0.3, w > 0 ? w - halfTexel : 1, w < 1 ? 1 - w - halfTexel : 1, w > 0 && shadow > 0 ? shadow : 1})
+            for (double edge : {nl, bl - 0.3, w > 0 ? w - halfTexel : 1, w < 1 ? 1 - w - halfTexel : 1,
+                                w > 0 && shadow > 0 ? shadow : 1})
                 if (std::abs(edge) < near) ++c.doubtful;
             if (reach == 0) continue;
             c.shadowLut += nl > 0 && w > halfTexel && 1 - w > halfTexel;
@@ -57,7 +60,8 @@ Frame countedFrame(uint32_t seed, uint32_t width, uint32_t height) {
     f.options.countPixels = 1;
     const float nan = std::numeric_limits<float>::quiet_NaN();
     for (size_t i = seed; i < f.pixels(); i += 41) f.slots[PEL_SLOT_ALBEDO].values[3 * i + i % 3] = nan;
-    for (size_t i = seed; i < f.pixels(); i += 53) f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + i % 3] = INFINITY;
+    for (size_t i = seed; i < f.pixels(); i += 53)
+        f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + i % 3] = INFINITY;
     return f;
 }
 
@@ -75,7 +79,8 @@ TEST_P(ShadeCounts, PixelsAreTheHostsOwn) {
                 PelShaderStats stats = pelShaderStatsDefaults();
                 shade(device, f, tables, &stats);
                 const Counts c = countsOf(f, tables);
-                const std::string where = "seed " + std::to_string(seed) + (skip ? ", skipping" : "") + ", lists " + std::to_string(lists);
+                const std::string where = "seed " + std::to_string(seed) + (skip ? ", skipping" : "") +
+                                          ", lists " + std::to_string(lists);
                 EXPECT_LE(c.doubtful, 3u);
                 EXPECT_EQ(stats.pixelsTotal, f.pixels()) << where;
                 EXPECT_EQ(stats.pixelsShaded, c.shaded) << where;
@@ -83,7 +88,8 @@ TEST_P(ShadeCounts, PixelsAreTheHostsOwn) {
                 EXPECT_NEAR(double(stats.pixelsShadowLut), double(c.shadowLut), double(c.doubtful)) << where;
                 EXPECT_NEAR(double(stats.pixelsSpecular), double(c.specular), double(c.doubtful)) << where;
                 if (skip) {
-                    EXPECT_NEAR(double(stats.pixelsThickness), double(c.thickness), double(c.doubtful)) << where;
+                    EXPECT_NEAR(double(stats.pixelsThickness), double(c.thickness), double(c.doubtful))
+                        << where;
                 } else {
                     EXPECT_EQ(stats.pixelsThickness, (c.shaded - c.invalid) * f.lights.size()) << where;
                 }
@@ -123,7 +129,8 @@ TEST_P(ShadeCounts, TilesAreTheHostsOwn) {
     const Tables tables = makeTables(device);
     Frame f = randomFrame(9, 7 * PEL_TILE_WIDTH + 3, 5 * PEL_TILE_HEIGHT + 1);
     Random random(4);
-    const uint32_t columns = (f.width + PEL_TILE_WIDTH - 1) / PEL_TILE_WIDTH, rows = (f.height + PEL_TILE_HEIGHT - 1) / PEL_TILE_HEIGHT;
+    const uint32_t columns = (f.width + PEL_TILE_WIDTH - 1) / PEL_TILE_WIDTH,
+                   rows = (f.height + PEL_TILE_HEIGHT - 1) / PEL_TILE_HEIGHT;
     std::vector<uint32_t> ofTile(columns * rows);
     for (uint32_t& id : ofTile) id = random.below(3);
     // One pixel of each tile that has a material, not always the same.
@@ -140,7 +147,8 @@ TEST_P(ShadeCounts, TilesAreTheHostsOwn) {
     plain.specular = 0;
     for (float& c : plain.deepScatterColor) c = 0;
     f.materials[2] = plain;
-    const auto with = uint64_t(std::count(ofTile.begin(), ofTile.end(), 1u)), less = uint64_t(std::count(ofTile.begin(), ofTile.end(), 2u));
+    const auto with = uint64_t(std::count(ofTile.begin(), ofTile.end(), 1u)),
+               less = uint64_t(std::count(ofTile.begin(), ofTile.end(), 2u));
     ASSERT_GT(with, 5u);
     ASSERT_GT(less, 5u);
     for (const PelTileLists lists : {PEL_TILES_ONE_LIST, PEL_TILES_PER_VARIANT, PEL_TILES_NO_LIST}) {
@@ -157,7 +165,8 @@ TEST_P(ShadeCounts, TilesAreTheHostsOwn) {
             EXPECT_EQ(stats.variants, 1u);
             EXPECT_EQ(stats.tilesPartial, 0u);
         }
-        EXPECT_EQ(stats.launches, stats.variants + (lists != PEL_TILES_NO_LIST)) << "the list, and each variant";
+        EXPECT_EQ(stats.launches, stats.variants + (lists != PEL_TILES_NO_LIST))
+            << "the list, and each variant";
     }
 }
 

@@ -1,5 +1,5 @@
-// Materials in the last column alone, and in single pixels, of frames one pixel wider than the vectors: nothing is left out, and
-// nothing else is touched.
+// Materials in the last column alone, and in single pixels, of frames one pixel wider than the vectors:
+// nothing is left out, and nothing else is touched.
 #include <gtest/gtest.h>
 
 #include "lanes.h"
@@ -19,7 +19,8 @@ constexpr uint32_t widths[] = {1, 2, 7, 8, 9, 15, 16, 17, 31, 33, PEL_TILE_WIDTH
 template <class Where>
 void onlyAt(Frame& f, Where where) {
     for (size_t i = 0; i < f.pixels(); ++i)
-        f.slots[PEL_SLOT_MATERIAL].values[i] = where(uint32_t(i % f.width), uint32_t(i / f.width)) ? 1.0f : 0.0f;
+        f.slots[PEL_SLOT_MATERIAL].values[i] =
+            where(uint32_t(i % f.width), uint32_t(i / f.width)) ? 1.0f : 0.0f;
 }
 
 TEST_P(LastColumn, IsShaded) {
@@ -40,7 +41,8 @@ TEST_P(LastColumn, IsShaded) {
             }
             for (size_t i = 0; i < f.pixels(); ++i) {
                 const Rgb right = i % width + 1 == width ? truth(f, tables, i).sum() : Rgb{0, 0, 0};
-                for (int c = 0; c < 3; ++c) ASSERT_NEAR(shown[3 * i + c], right[c], tolerance::shadeSum) << where << ", pixel " << i;
+                for (int c = 0; c < 3; ++c)
+                    ASSERT_NEAR(shown[3 * i + c], right[c], tolerance::shadeSum) << where << ", pixel " << i;
             }
         }
 }
@@ -64,7 +66,8 @@ TEST_P(LastColumn, HasItsPasses) {
             const std::vector<float> shadow = shade(device, lit, none, &stats);
             EXPECT_EQ(stats.pixelsWideShadow, f.height) << where;
             const PelLight& l = from.light.params;
-            const reference::WideFilterParams params{f.materials[1].shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope,
+            const reference::WideFilterParams params{f.materials[1].shadowFilterWidth, l.shadowBias,
+                                                     l.shadowSoftness, l.shadowConeSlope,
                                                      int(l.shadowFilterTexels)};
             Frame soft = f;
             showBlurredNormal(soft);
@@ -85,7 +88,8 @@ TEST_P(LastColumn, HasItsPasses) {
                     << where << ", pixel " << i;
                 ASSERT_TRUE(normals[i].has_value());
                 if (doubtful[i]) continue;
-                ASSERT_LE(reference::magnitude(shownNormal(blurred, i) - *normals[i]), tolerance::shadeTerm) << where << ", " << i;
+                ASSERT_LE(reference::magnitude(shownNormal(blurred, i) - *normals[i]), tolerance::shadeTerm)
+                    << where << ", " << i;
             }
         }
 }

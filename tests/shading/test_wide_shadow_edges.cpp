@@ -11,8 +11,9 @@ namespace {
 double shadowTruth(const Frame& f, const MapLight& from, size_t i) {
     const PelMaterial& m = f.materials.at(uint32_t(f.slots[PEL_SLOT_MATERIAL].at(i)));
     const PelLight& l = f.lights[0].params;
-    return reference::wideShadow(from.map, from.view, f.slots[PEL_SLOT_POSITION].vec(i), f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i),
-                                 {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope, int(l.shadowFilterTexels)});
+    return reference::wideShadow(
+        from.map, from.view, f.slots[PEL_SLOT_POSITION].vec(i), f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i),
+        {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope, int(l.shadowFilterTexels)});
 }
 
 Frame sceneUnder(const MapLight& from, uint32_t seed) {
@@ -45,15 +46,18 @@ Seen compare(Frame f, const MapLight& from, const std::string& where) {
     f.options.disableSkipping = 1;
     EXPECT_EQ(shown, shade(device(), f, tables())) << where << ": without bounds";
     // Of a hard shadow float depths are a larger part.
-    EXPECT_LE(seen.worst, f.lights[0].params.shadowSoftness < 0.1f ? tolerance::wideShadowAnywhere : tolerance::wideShadow) << where;
+    EXPECT_LE(seen.worst, f.lights[0].params.shadowSoftness < 0.1f ? tolerance::wideShadowAnywhere
+                                                                   : tolerance::wideShadow)
+        << where;
     return seen;
 }
 
 constexpr float softnesses[] = {0.01f, 0.25f, 1.0f, 1.7f, 5.0f, 40.0f};
 
 void setDepth(MapLight& from, size_t texel, double distance) {
-    const double z = from.view.decoding.perspective ? (1 / distance - from.view.decoding.b) / from.view.decoding.a
-                                                    : distance / from.view.decoding.range;
+    const double z = from.view.decoding.perspective
+                         ? (1 / distance - from.view.decoding.b) / from.view.decoding.a
+                         : distance / from.view.decoding.range;
     from.light.map.values[texel] = float(z);
     from.map.depth[texel] = double(float(z));
 }
@@ -66,7 +70,8 @@ TEST(WideShadowEdges, SoftnessFromHardToWiderThanTheFilter) {
                 from.light.params.shadowSoftness = softness;
                 Frame f = sceneUnder(from, 1);
                 for (auto& [id, material] : f.materials) material.shadowFilterWidth *= 0.4f;
-                const std::string where = "softness " + std::to_string(softness) + (perspective ? ", perspective" : "") +
+                const std::string where = "softness " + std::to_string(softness) +
+                                          (perspective ? ", perspective" : "") +
                                           (reversed ? ", reversed" : "");
                 const Seen seen = compare(f, from, where);
                 EXPECT_LT(seen.read, seen.filtered) << where << ": bounds decide some";
@@ -74,17 +79,20 @@ TEST(WideShadowEdges, SoftnessFromHardToWiderThanTheFilter) {
             }
 }
 
-// Under a closed roof that comes down into the ground everything is in shadow, but for where it is nearer than the softness, or below.
+// Under a closed roof that comes down into the ground everything is in shadow, but for where it is nearer
+// than the softness, or below.
 TEST(WideShadowEdges, UnderARoofThatComesDown) {
     for (const float softness : softnesses)
         for (const bool perspective : {false, true})
             for (const bool reversed : {false, true}) {
                 MapLight from = mapLight(7, perspective, reversed, {0.1, 0.2, 0.9}, {26, 12, 0}, 90, 200);
                 from.light.params.shadowSoftness = softness;
-                for (size_t i = 0; i < from.light.map.values.size(); ++i) setDepth(from, i, 168 - 0.2 * double(i % 200) + 0.01 * double(i / 200));
+                for (size_t i = 0; i < from.light.map.values.size(); ++i)
+                    setDepth(from, i, 168 - 0.2 * double(i % 200) + 0.01 * double(i / 200));
                 Frame f = sceneUnder(from, 1);
                 for (auto& [id, material] : f.materials) material.shadowFilterWidth *= 0.4f;
-                const std::string where = "softness " + std::to_string(softness) + (perspective ? ", perspective" : "") +
+                const std::string where = "softness " + std::to_string(softness) +
+                                          (perspective ? ", perspective" : "") +
                                           (reversed ? ", reversed" : "");
                 const Seen seen = compare(f, from, where);
                 EXPECT_LT(seen.read, seen.filtered) << where << ": bounds decide some";
@@ -95,8 +103,9 @@ TEST(WideShadowEdges, UnderARoofThatComesDown) {
             }
 }
 
-// A plane under a roof that is the whole map: beyond each of its four borders light comes in, although the outermost texels are
-// near the light. With bias and slope, and with filters of which the map is a small part.
+// A plane under a roof that is the whole map: beyond each of its four borders light comes in, although the
+// outermost texels are near the light. With bias and slope, and with filters of which the map is a small
+// part.
 TEST(WideShadowEdges, OutsideOfTheMapEverythingIsLit) {
     for (const bool perspective : {false, true})
         for (const bool reversed : {false, true})
@@ -105,7 +114,9 @@ TEST(WideShadowEdges, OutsideOfTheMapEverythingIsLit) {
                 for (size_t i = 0; i < from.light.map.values.size(); ++i) setDepth(from, i, 100);
                 from.light.params.shadowFilterTexels = 256;
                 const Frame f = sceneUnder(from, 2);
-                const std::string where = std::to_string(size) + " texels" + (perspective ? ", perspective" : "") + (reversed ? ", reversed" : "");
+                const std::string where = std::to_string(size) + " texels" +
+                                          (perspective ? ", perspective" : "") +
+                                          (reversed ? ", reversed" : "");
                 const Seen seen = compare(f, from, where);
                 EXPECT_GT(seen.between, 200u) << where;
                 if (size > 2) {
@@ -125,7 +136,8 @@ TEST(WideShadowEdges, EachBorderByItself) {
     Frame f = sceneUnder(from, 2);
     const double k = from.view.extent / 2;
     const Vec3 middle = from.view.origin + 150.0 * from.view.forward;
-    const Vec3 borders[] = {middle - k * from.view.right, middle + k * from.view.right, middle - k * from.view.down, middle + k * from.view.down};
+    const Vec3 borders[] = {middle - k * from.view.right, middle + k * from.view.right,
+                            middle - k * from.view.down, middle + k * from.view.down};
     for (size_t i = 0; i < f.pixels(); ++i) {
         f.slots[PEL_SLOT_MATERIAL].values[i] = 1;
         const float up[3] = {0, 0, 1};

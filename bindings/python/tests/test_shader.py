@@ -117,6 +117,16 @@ def test_accumulate(device, view, tolerance):
     assert np.abs(out - 0.25 - view.lambert)[view.inside].max() < tolerance["shadeTerm"]
 
 
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_invalid_pixels_are_always_counted(device, view, value):
+    radiance = np.ones((HEIGHT, WIDTH, 3), np.float32)
+    shader = shader_for(device, view, radiance, normal_shading=np.full_like(view.normal, value))
+    shader.execute()
+    stats = shader.stats()
+    assert stats.pixels_invalid == stats.pixels_shaded == view.inside.sum()
+    assert (radiance[view.inside] == 0).all()
+
+
 def test_submitted_work_keeps_its_arrays(device, view):
     import gc
 

@@ -762,11 +762,13 @@ typedef struct PelShaderStats {
     uint64_t tilesTotal;
     uint64_t tilesShaded;     /* with at least one pixel of a material */
     uint64_t pixelsTotal;
-    uint64_t pixelsShaded;    /* of a material. This and the following need PelShaderOptions.countPixels */
+    uint64_t pixelsShaded;    /* of a material. This and pixelsInvalid are always counted, the others of pixels and texels
+                                 with PelShaderOptions.countPixels */
     uint64_t pixelsShadowLut; /* that read the shadow LUT, summed over lights, like the next two */
     uint64_t pixelsThickness; /* that took thickness taps */
     uint64_t pixelsSpecular;
-    uint64_t pixelsInvalid;    /* with a NaN or Inf input */
+    uint64_t pixelsInvalid;    /* of a material, with NaN or Inf in an input, in the result, or in what it is added to: they get
+                                  PelShaderOptions.invalidColor */
     double deviceMilliseconds; /* kernels; 0 on a queue without profiling */
     uint64_t pixelsWideShadow; /* whose wide shadow was filtered from a shadow map, summed over lights */
     uint64_t bands;            /* rows of tiles are shaded in this many rounds, to keep to PelShaderOptions.scratchBudget */
@@ -788,7 +790,7 @@ typedef struct PelShaderOptions {
     uint32_t structSize;
     uint32_t accumulate;      /* 1: radiance is added to the output image; 0: it replaces pixels that have a material */
     uint32_t disableSkipping; /* 1: shade every tile and evaluate every term; the same bits come out, for tests */
-    uint32_t countPixels;     /* 1: fill the pixel counters of PelShaderStats, at some cost */
+    uint32_t countPixels;     /* 1: fill all pixel counters of PelShaderStats, at some cost */
     float invalidColor[3];    /* radiance of a pixel with a NaN or Inf input; default 0 */
     uint32_t blurNormals;     /* 1: without PEL_SLOT_NORMAL_BLURRED, blurred normals are shading normals blurred on screen
                                  over PelMaterial.diffusionRadius; needs positions or depth */
