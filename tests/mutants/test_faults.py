@@ -1,0 +1,69 @@
+"""The faults that ./run check mutants makes: of each kind, in code alone, the same ones each time."""
+import unittest
+from pathlib import Path
+
+import faults
+
+ROOT = Path(__file__).resolve().parents[2]
+CODE = """// a comment: 1 + 2 < 3
+#define LEFT_ALONE 0.5f
+float mean(const float* v, int n) {
+    if (n <= 0) fail("not 1 + 2 but 3", n + 1);
+    float sum = 0.5f;
+    for (int i = 0; i < n; ++i) sum += v[i] * scale(n, v);
+    const bool odd = !even(n) && n > 3;
+    cl::check(launch(n), "launch");
+    total.add(sum);
+    return std::max(sum - n, odd ? a : b) / 3.0f;
+}
+"""
+
+
+class Faults(unittest.TestCase):
+    def every(self, path, text):
+        return [text[:start] + new + text[end:] for start, end, new, kind in faults.candidates(path, text, faults.masked(path, text))]
+
+    def test_every_kind(self):
+        made = self.every("a.cpp", CODE)
+        for wanted in ("if (n < 0) fail", "if (false) fail", "if (true) fail", "sum = 0.55f;", "i + 1 < n;", "sum -= v[i]", "v[i] / scale",
+                       "+= v[i];", "scale(v, n)", "= even(n)", "|| n > 3", "&& n >= 3", "(void)(launch(n));", "    ;\n    return",
+                       "std::min(", "max(n - sum,", "max(sum + n,", "max(sum,", "odd ? b : a", "* 3.0f;"):
+            self.assertTrue(any(wanted in text for text in made), wanted)
+        for text in made:
+            self.assertNotEqual(text, CODE)
+            for kept in ("// a comment: 1 + 2 < 3\n#define LEFT_ALONE 0.5f\n", '"launch"'):
+                self.assertTrue(kept in text or "(void)(launch" in text or "    ;\n" in text, text)
+            if "fail(" in text:
+                self.assertIn('fail("not 1 + 2 but 3", n + 1)', text)
+
+    def test_python(self):
+        code = 'def f(a, b):\n    """1 + 2"""\n    if not a:  # 3 < 4\n        raise ValueError("5 + 6")\n    g(a, b)\n    return a and b is None\n'
+        made = self.every("a.py", code)
+        for wanted in ("if a:", "if False:", "    pass\n", "g(b, a)", "a or b"):
+            self.assertTrue(any(wanted in text for text in made), wanted)
+        for text in made:
+            compile(text, "a.py", "exec")
+            self.assertTrue(all(kept in text for kept in ('"""1 + 2"""', "# 3 < 4", '"5 + 6"')), text)
+
+    def test_one_for_each_line_and_the_same_ones_after_edits_elsewhere(self):
+        first = list(faults.faults("a.cpp", CODE))
+        self.assertEqual(len({f.line for f in first}), len(first))
+        self.assertEqual(len(first), 7)
+        moved = list(faults.faults("b/a.cpp", "int other() {\n    return 1;\n}\n\n" + CODE))
+        self.assertEqual([f.name for f in first][1:], [f.name for f in moved][-len(first) + 1:])
+
+    def test_the_tree(self):
+        count = names = 0
+        for path in [*ROOT.glob("kernels/**/*.cl*"), *ROOT.glob("host/**/*.cpp"), *ROOT.glob("bindings/python/pellucid/**/*.py")]:
+            text = path.read_text()
+            found = list(faults.faults(str(path.relative_to(ROOT)), text))
+            count, names = count + len(found), names + len({f.name for f in found})
+            for fault in found:
+                self.assertNotEqual(fault.apply(text), text)
+                self.assertEqual(fault.apply(text).count("\n") <= text.count("\n"), True)
+        self.assertGreater(count, 3000)
+        self.assertGreater(names, 0.995 * count)
+
+
+if __name__ == "__main__":
+    unittest.main()
