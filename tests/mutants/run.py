@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How many of the small faults that one could make do the tests notice?
 
-    run.py [N] [SEED] [--only REGEX] [--again] [--list] [--seconds S]
+    run.py [N] [SEED] [--only REGEX] [--again] [--list] [--seconds S] [--as-is]
 
 Takes N lines (50) of kernels, host, command and Python package by SEED (1), puts one fault into each (faults.py), one at a time, builds
 what changed, and runs the tests that execute the line until one fails. Prints killed or survived, the diff of each survivor, and the
@@ -13,6 +13,7 @@ any fault, to see which lines it executes (gcov), which kernels it launches (PoC
 test executes is a survivor. A test that hangs has noticed; a fault that does not compile does not count, nor does one whose name
 stands in equivalent.txt.
 --only: faults in files whose path matches. --again: survivors of earlier runs once more, after tests were added. --list: names only.
+--as-is: goes on with the copy as it is, while the tree changes.
 Ends with 1 when less than 92 % were noticed. build/mutants/tree may be a link to a folder where the compiler's cache knows the tree.
 """
 import argparse
@@ -75,14 +76,28 @@ def command(words, limit, log, **environment):
 class Workplace:
     """The copy of the tree, its build, and its Python environment."""
 
-    def __init__(self):
+    def __init__(self, as_is):
         for folder in ("tmp", "pocl", "cache", "counts"):
             (WORK / folder).mkdir(parents=True, exist_ok=True)
         BUILD.mkdir(parents=True, exist_ok=True)
         self.scratch = WORK / "tmp"
         self.environment = {"TMPDIR": self.scratch, "XDG_CACHE_HOME": WORK / "cache", "PELLUCID_COMMAND": BUILD / "bin/pellucid",
                             "GTEST_COLOR": "no"}
-        self.copy()
+        if self.applied.exists():  # a run was killed
+            path, text = json.loads(self.applied.read_text())
+            self.restore(path, text)
+        if not as_is:
+            self.copy()
+
+    applied = WORK / "applied.json"
+
+    def apply(self, fault, original):
+        self.applied.write_text(json.dumps([fault.path, original]))
+        (TREE / fault.path).write_text(fault.apply(original))
+
+    def restore(self, path, original):
+        (TREE / path).write_text(original)
+        self.applied.unlink(missing_ok=True)
 
     def copy(self):
         """Makes the copy as the tree is; what did not change keeps its time."""
@@ -288,8 +303,7 @@ class Coverage:
 
 def judge(place, coverage, fault, seconds):
     """(verdict, by what)."""
-    target = TREE / fault.path
-    original = target.read_text()
+    original = (TREE / fault.path).read_text()
     python, kernel = fault.path.startswith("bindings/python"), fault.path.startswith("kernels")
     known = {p for p in (WORK / "pocl").glob("*/*")}
     log = WORK / "test.log"
@@ -302,7 +316,7 @@ def judge(place, coverage, fault, seconds):
                     continue
                 # Without the fault.
                 measured += 1
-                target.write_text(original)
+                place.restore(fault.path, original)
                 applied = False
             if not coverage.executes(name, fault):
                 continue
@@ -311,7 +325,7 @@ def judge(place, coverage, fault, seconds):
                 left += 1
                 continue
             if not applied:
-                target.write_text(fault.apply(original))
+                place.apply(fault, original)
                 applied = True
                 if not (place.python() if python else place.build("pellucid")):
                     return "does not compile", ""
@@ -326,7 +340,8 @@ def judge(place, coverage, fault, seconds):
                 return "killed", name if isinstance(status, int) else f"{name}, which {status}"
         return "survived", f"{ran} tests that execute it passed, {left} were not tried" if ran + left else "no test executes this line"
     finally:
-        target.write_text(original)
+        if applied:
+            place.restore(fault.path, original)
         for path in set((WORK / "pocl").glob("*/*")) - known if kernel else ():
             shutil.rmtree(path, ignore_errors=True)
 
@@ -361,9 +376,10 @@ def main():
     parser.add_argument("--only", default="")
     parser.add_argument("--again", action="store_true")
     parser.add_argument("--list", action="store_true")
+    parser.add_argument("--as-is", action="store_true")
     parser.add_argument("--seconds", type=float, default=120)
     o = parser.parse_args()
-    place = Workplace()
+    place = Workplace(o.as_is)
     same, every = equivalent(), sample(o.seed, o.only)
     if o.list:
         for fault in every[:o.n]:

@@ -49,6 +49,32 @@ TEST(ShadeBadInput, ExecuteNeedsACommit) {
     r.shader.commit().execute();
 }
 
+TEST(ShadeBadInput, ExecuteNeedsACommitAfterWhateverIsSet) {
+    Ready r;
+    pellucid::Shader& s = r.shader;
+    const Buffer texels(device(), std::vector<float>(6 * 4 * 4 * 3, 0.5f));
+    const std::function<void()> setters[] = {
+        [&] { s.set(r.frame.options); },
+        [&] { s.set(PEL_SLOT_RADIANCE, imageDesc(r.target, PEL_FORMAT_RGB32F, 32, 16)); },
+        [&] { pellucid::check(pelShaderSetImage(s.get(), PEL_SLOT_AMBIENT_OCCLUSION, nullptr)); },
+        [&] { s.setMaterial(1, r.frame.materials.at(1), tables().curvature, tables().shadow); },
+        [&] { pellucid::check(pelShaderSetMaterial(s.get(), 9, nullptr, nullptr, nullptr)); },
+        [&] { s.setNormalMap(1, {}); },
+        [&] { s.set(std::vector<PelLight>{r.frame.lights[0].params}); },
+        [&] { pellucid::check(pelShaderSetLightImage(s.get(), 0, PEL_LIGHT_WIDE_SHADOW, nullptr)); },
+        [&] { s.set(r.frame.ambient); },
+        [&] { s.setAmbientCube(imageDesc(texels, PEL_FORMAT_RGB32F, 4, 24)); },
+        [&] { pellucid::check(pelShaderSetAmbientCube(s.get(), nullptr)); },
+        [&] { s.set(r.frame.camera); }};
+    s.commit().execute();
+    for (size_t i = 0; i < std::size(setters); ++i) {
+        SCOPED_TRACE("setter " + std::to_string(i));
+        setters[i]();
+        expectError(PEL_ERROR_INVALID_STATE, {"pelShaderCommit"}, [&] { s.execute(); });
+        s.commit().execute();
+    }
+}
+
 TEST(ShadeBadInput, ImagesThatDoNotFit) {
     Ready r;
     const Buffer buffer(device(), 32 * 16 * 16);

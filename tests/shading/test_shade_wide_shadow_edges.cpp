@@ -128,6 +128,39 @@ TEST(WideShadowEdges, OutsideOfTheMapEverythingIsLit) {
             }
 }
 
+// A straight edge between two blocks of the map: filters that overlap blocks of both sides read texels, and
+// no others do.
+TEST(WideShadowEdges, TexelsAreReadAcrossTheEdgeAlone) {
+    for (const bool nearIsLeft : {true, false}) {
+        MapLight from = mapLight(3, false, false, {0, 0, 1}, {24, 10, 0}, 128, 128);
+        for (size_t i = 0; i < from.light.map.values.size(); ++i)
+            setDepth(from, i, (i % 128 < 64) == nearIsLeft ? 50 : 250);
+        Frame f = sceneUnder(from, 2);
+        uint64_t skin = 0, across = 0, doubtful = 0;
+        for (size_t i = 0; i < f.pixels(); ++i) {
+            const float up[3] = {0, 0, 1};
+            std::copy_n(up, 3, &f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * i]);
+            f.slots[PEL_SLOT_POSITION].values[3 * i + 2] = 0;
+            const uint32_t id = uint32_t(f.slots[PEL_SLOT_MATERIAL].values[i]);
+            if (id == 0) continue;
+            ++skin;
+            const Vec3 offset = f.slots[PEL_SLOT_POSITION].vec(i) - from.view.origin;
+            const double x = reference::dot(from.view.right, offset) / from.view.extent * 128 + 63.5;
+            const double radius =
+                std::max(0.5 * f.materials[id].shadowFilterWidth, 2.0);  // texels, at least two
+            across += x - radius <= 63 && x + radius >= 64;
+            doubtful += std::abs(x - radius - 63) < 1e-3 || std::abs(x + radius - 64) < 1e-3;
+        }
+        PelShaderStats stats = pelShaderStatsDefaults();
+        shade(device(), f, tables(), &stats);
+        EXPECT_EQ(stats.pixelsWideShadow, skin);
+        EXPECT_NEAR(double(stats.pixelsShadowTexels), double(across), double(doubtful));
+        EXPECT_GT(across, 500u);
+        EXPECT_LT(across, skin / 2);
+        EXPECT_LT(doubtful, across / 20);
+    }
+}
+
 // Left, right, above and below the map by themselves: half of the filter lies outside.
 TEST(WideShadowEdges, EachBorderByItself) {
     MapLight from = mapLight(3, false, false, {0, 0, 1}, {26, 12, 0}, 16, 64);
