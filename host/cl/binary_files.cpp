@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cl/error.h"
+#include "cl/private_folder.h"
 
 namespace pel::cl {
 namespace fs = std::filesystem;
@@ -84,15 +85,12 @@ fs::path binaryFolder() {
         const std::string text = own;
         return text == "0" || text == "off" ? fs::path() : fs::path(text);
     }
-    for (const auto& [variable, below] : {std::pair{"XDG_CACHE_HOME", ""}, std::pair{"HOME", ".cache"}}) {
-        // The XDG base directory specification wants relative paths ignored.
-        const char* base = std::getenv(variable);
-        if (base && fs::path(base).is_absolute()) return fs::path(base) / below / "pellucid";
-    }
-    return {};
+    const std::vector<fs::path> homes = cacheHomes();
+    return homes.empty() ? fs::path() : homes.front() / "pellucid";
 }
 
 std::optional<std::string> BinaryFiles::load(const Digest& name) const {
+    if (!whyNotPrivate(folder_).empty()) return {};
     const File file(pathOf(name), O_RDONLY | O_NONBLOCK);  // a pipe of that name would have us wait
     struct stat status {};
     Header header;
@@ -107,8 +105,7 @@ std::optional<std::string> BinaryFiles::load(const Digest& name) const {
 
 bool BinaryFiles::store(const Digest& name, const std::string& binary) const {
     if (binary.empty() || binary.size() > limit_) return false;
-    std::error_code error;
-    if (fs::create_directories(folder_, error)) fs::permissions(folder_, fs::perms::owner_all, error);
+    if (!makePrivateFolder(folder_) || !whyNotPrivate(folder_).empty()) return false;
     // Under a name of its own until it is whole: other processes write and read the same programs.
     static std::atomic<unsigned> counter{0};
     const fs::path path = pathOf(name),

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 
+#include "cl/pocl_cache.h"
 #include "cl/process.h"
 
 namespace pel::cl {
@@ -67,9 +68,14 @@ std::string platformName(cl_device_id device) {
     return name.c_str();
 }
 
+bool isPocl(cl_device_id device) {
+    return platformName(device) == pocl;
+}
+
 bool keepsPrograms(cl_device_id device) {
     const std::string platform = platformName(device);
-    // PoCL would compile everything once more to make binaries; NVIDIA has ~/.nv/ComputeCache; Oclgrind compiles next to nothing.
+    // PoCL would compile everything once more to make binaries; NVIDIA has ~/.nv/ComputeCache; Oclgrind
+    // compiles next to nothing.
     return platform == pocl || platform == "NVIDIA CUDA" || platform == "Oclgrind";
 }
 
@@ -83,10 +89,11 @@ std::string infoString(cl_device_id device, cl_device_info what) {
 
 std::vector<cl_device_id> allDevices() {
     claimProcess();
-    // Loaders load their drivers at the first call, and to a second one that comes meanwhile ocl-icd says that there are none, or
-    // crashes. Never destroyed: devices may be made while the process ends.
+    // Loaders load their drivers at the first call, and to a second one that comes meanwhile ocl-icd says
+    // that there are none, or crashes. Never destroyed: devices may be made while the process ends.
     static std::mutex& loading = *new std::mutex;
     std::lock_guard lock(loading);
+    choosePoclCache();
     cl_uint count = 0;
     // A loader without platforms answers with an error; that is no failure here.
     if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS || count == 0) return {};
@@ -101,6 +108,7 @@ std::vector<cl_device_id> allDevices() {
         check(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, devices, all.data() + first, nullptr),
               "clGetDeviceIDs");
     }
+    poclCacheIsChosen();
     return all;
 }
 
@@ -126,10 +134,11 @@ PelDeviceInfo describe(cl_device_id device, uint32_t index) {
     const std::string platform = platformName(device);
     copyText(d.platform, platform);
 
-    // CPUs vectorise explicit vector types, GPUs vectorise across work-items (docs/dataflow.md, "Widths"). So does a driver
-    // that has no vectors on a CPU (rusticl on llvmpipe): each lane would be eight there. Intel's prefers 1 and has 16, and
-    // with those shading is up to twice as fast as with 8.
-    const uint32_t lanes = std::max(d.preferredFloatWidth, info<cl_uint>(device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT));
+    // CPUs vectorise explicit vector types, GPUs vectorise across work-items (docs/dataflow.md, "Widths"). So
+    // does a driver that has no vectors on a CPU (rusticl on llvmpipe): each lane would be eight there.
+    // Intel's prefers 1 and has 16, and with those shading is up to twice as fast as with 8.
+    const uint32_t lanes =
+        std::max(d.preferredFloatWidth, info<cl_uint>(device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT));
     d.mathWidth = d.type != PEL_DEVICE_CPU || lanes <= 1 ? 1 : lanes >= 16 ? 16 : 8;
     d.mathWidth = requestedMathWidth().value_or(d.mathWidth);
     std::string quirks;

@@ -16,6 +16,8 @@ PelDeviceInfo describe(cl_device_id device, uint32_t index);
 // The position in allDevices() that a selector means (see pelDeviceCreate).
 uint32_t selectDevice(const char* selector);
 
+bool isPocl(cl_device_id device);
+
 // Whether its driver keeps compiled programs on disk, or they are not worth keeping.
 bool keepsPrograms(cl_device_id device);
 

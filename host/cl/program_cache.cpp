@@ -2,12 +2,18 @@
 
 #include <chrono>
 
+#include "cl/host_memory.h"
 #include "cl/kernel_files.h"
+#include "cl/platform.h"
+#include "cl/pocl_cache.h"
 
 namespace pel::cl {
 
 ProgramCache::ProgramCache(Context context, cl_device_id device, uint32_t mathWidth)
-    : context_(std::move(context)), device_(device), mathWidth_(mathWidth), binaries_(context_.get(), device) {}
+    : context_(std::move(context)),
+      device_(device),
+      mathWidth_(mathWidth),
+      binaries_(context_.get(), device) {}
 
 Program ProgramCache::get(const ProgramKey& wanted) {
     Defines all = wanted.defines;
@@ -22,7 +28,8 @@ Program ProgramCache::get(const ProgramKey& wanted) {
     if (!slot) slot = std::make_shared<Entry>();
     const std::shared_ptr<Entry> entry = slot;
     lock.unlock();
-    // Who asks for the same program waits here for whoever builds it; after a failure the next one tries again.
+    // Who asks for the same program waits here for whoever builds it; after a failure the next one tries
+    // again.
     std::lock_guard building(entry->building);
     if (entry->program) return entry->program;
     const auto start = std::chrono::steady_clock::now();
@@ -32,7 +39,8 @@ Program ProgramCache::get(const ProgramKey& wanted) {
     ++counts_.built;
     counts_.loaded += now.loaded;
     counts_.stored += now.stored;
-    counts_.milliseconds += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    counts_.milliseconds +=
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return entry->program;
 }
 
@@ -41,7 +49,8 @@ ProgramCache::Counts ProgramCache::counts() const {
     return counts_;
 }
 
-Program ProgramCache::build(const std::vector<std::string>& files, const std::string& options, Counts& counts) const {
+Program ProgramCache::build(const std::vector<std::string>& files, const std::string& options,
+                            Counts& counts) const {
     const std::string source = kernelSource(files);
     if (Program program = binaries_.load(source, options)) {
         counts.loaded = 1;
@@ -54,6 +63,10 @@ Program ProgramCache::build(const std::vector<std::string>& files, const std::st
 
 Program ProgramCache::compile(const std::string& source, const std::vector<std::string>& files,
                               const std::string& options) const {
+    if (isPocl(device_)) {  // which ends the process where it cannot go on
+        checkPoclCache();
+        requireMemory(0, "compiling a program");
+    }
     const char* text = source.c_str();
     cl_int code = CL_SUCCESS;
     Program program(clCreateProgramWithSource(context_.get(), 1, &text, nullptr, &code));
@@ -64,8 +77,8 @@ Program ProgramCache::compile(const std::string& source, const std::vector<std::
     clGetProgramBuildInfo(program.get(), device_, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
     std::string log(size, '\0');
     clGetProgramBuildInfo(program.get(), device_, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
-    fail(PEL_ERROR_DEVICE, "kernel file ", files[0], " did not build with ", options, ": ", errorName(code), "\n",
-         log.c_str());
+    fail(PEL_ERROR_DEVICE, "kernel file ", files[0], " did not build with ", options, ": ", errorName(code),
+         "\n", log.c_str());
 }
 
 }  // namespace pel::cl

@@ -3,7 +3,23 @@
 namespace pel {
 
 Buffer::Buffer(Ref<Device> device, cl::Memory memory, size_t bytes)
-    : Object(kind), device_(std::move(device)), memory_(std::move(memory)), bytes_(bytes) {}
+    : Object(kind), device_(std::move(device)), memory_(std::move(memory)), bytes_(bytes) {
+    // Where the bytes lie, for other buffers may be views of the same: of host memory, or of a cl_mem that
+    // this is a part of.
+    void* host = nullptr;
+    cl_mem whole = nullptr;
+    size_t offset = 0;
+    const auto ask = [&](cl_mem_info what, auto& value) {
+        cl::check(clGetMemObjectInfo(memory_.get(), what, sizeof value, &value, nullptr),
+                  "clGetMemObjectInfo");
+    };
+    ask(CL_MEM_HOST_PTR, host);
+    ask(CL_MEM_ASSOCIATED_MEMOBJECT, whole);
+    if (whole) ask(CL_MEM_OFFSET, offset);
+    place_ = host    ? Place{nullptr, reinterpret_cast<uintptr_t>(host)}
+             : whole ? Place{whole, offset}
+                     : Place{memory_.get(), 0};
+}
 
 Buffer::~Buffer() {
     if (mapped_) clEnqueueUnmapMemObject(device_->queue(), memory_.get(), mapped_, 0, nullptr, nullptr);
@@ -11,12 +27,7 @@ Buffer::~Buffer() {
 
 Ref<Buffer> Buffer::create(Ref<Device> device, size_t bytes, const void* initial) {
     if (bytes == 0) invalidArgument("a buffer of 0 bytes was asked for; at least 1 is needed");
-    cl::Memory memory = device->allocate(bytes, initial);
-    if (!initial) {
-        const cl_uchar zero = 0;
-        cl::check(clEnqueueFillBuffer(device->queue(), memory.get(), &zero, 1, 0, bytes, 0, nullptr, nullptr),
-                  "clEnqueueFillBuffer");
-    }
+    cl::Memory memory = initial ? device->allocate(bytes, initial) : device->allocateZeros(bytes);
     return make<Buffer>(std::move(device), std::move(memory), bytes);
 }
 

@@ -15,6 +15,13 @@ class Buffer final : public Object {
     size_t bytes() const { return bytes_; }
     const cl::Memory& memory() const { return memory_; }
 
+    // Where byte 0 lies. Two buffers with one `whole` lie in the same memory, NULL being the host's.
+    struct Place {
+        cl_mem whole = nullptr;
+        uint64_t offset = 0;
+    };
+    const Place& place() const { return place_; }
+
     // Throws unless [offset, offset + bytes) lies inside.
     void checkRange(uint64_t offset, uint64_t bytes, const char* what) const;
     void* map();
@@ -27,6 +34,7 @@ class Buffer final : public Object {
     Ref<Device> device_;
     cl::Memory memory_;
     size_t bytes_;
+    Place place_;
     std::mutex mutex_;
     void* mapped_ = nullptr;
     uint32_t mapCount_ = 0;

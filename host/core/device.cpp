@@ -1,5 +1,6 @@
 #include "core/device.h"
 
+#include "cl/host_memory.h"
 #include "cl/platform.h"
 #include "cl/process.h"
 
@@ -71,13 +72,30 @@ cl::Event Device::launch(cl::Launch& launch, const cl::Range& range) {
 }
 
 cl::Memory Device::allocate(size_t bytes, const void* initial) {
+    return allocate(bytes, initial, false);
+}
+
+cl::Memory Device::allocateZeros(size_t bytes) {
+    return allocate(bytes, nullptr, true);
+}
+
+cl::Memory Device::allocate(size_t bytes, const void* initial, bool zeros) {
     if (bytes > info_.maxAllocationBytes)
         fail(PEL_ERROR_OUT_OF_MEMORY, bytes, " bytes are more than this device allocates at once (",
              info_.maxAllocationBytes, ")");
-    cl_int code = CL_SUCCESS;
-    cl_mem_flags flags = CL_MEM_READ_WRITE | (initial ? CL_MEM_COPY_HOST_PTR : 0);
-    cl::Memory memory(clCreateBuffer(context_.get(), flags, bytes, const_cast<void*>(initial), &code));
-    if (code != CL_SUCCESS) cl::check(code, text("clCreateBuffer(", bytes, " bytes)").c_str());
+    cl::Memory memory;
+    if (info_.type == PEL_DEVICE_CPU && info_.sharedMemory) {
+        memory = cl::createInHostMemory(context_.get(), bytes, initial, zeros);
+    } else {
+        cl_int code = CL_SUCCESS;
+        const cl_mem_flags flags = CL_MEM_READ_WRITE | (initial ? CL_MEM_COPY_HOST_PTR : 0);
+        memory = cl::Memory(clCreateBuffer(context_.get(), flags, bytes, const_cast<void*>(initial), &code));
+        if (code != CL_SUCCESS) cl::check(code, text("clCreateBuffer(", bytes, " bytes)").c_str());
+        const cl_uchar zero = 0;
+        if (zeros)
+            cl::check(clEnqueueFillBuffer(queue(), memory.get(), &zero, 1, 0, bytes, 0, nullptr, nullptr),
+                      "clEnqueueFillBuffer");
+    }
     std::lock_guard lock(mutex_);
     stats_.bytesAllocated += bytes;
     if (initial) stats_.bytesToDevice += bytes;

@@ -27,6 +27,7 @@ class Device final : public Object {
 
     // Device memory, uninitialised unless `initial` is given (copied during the call).
     cl::Memory allocate(size_t bytes, const void* initial = nullptr);
+    cl::Memory allocateZeros(size_t bytes);
     void countTransfer(size_t toDevice, size_t toHost);
     // Non-NULL `destination`/`source`; blocking ones return when the bytes are there.
     void read(cl_mem memory, size_t offset, size_t bytes, void* destination, bool blocking);
@@ -48,6 +49,7 @@ class Device final : public Object {
   private:
     ~Device() override;
     void foldEvents();
+    cl::Memory allocate(size_t bytes, const void* initial, bool zeros);
 
     cl::Context context_;
     cl_device_id id_;

@@ -77,9 +77,14 @@ ImageView makeImageView(const PelImageDesc& desc, Device& device, const char* wh
 }
 
 bool overlapsElsewhere(const ImageView& a, const ImageView& b) {
-    if (a.buffer.get() != b.buffer.get() && a.buffer->memory().get() != b.buffer->memory().get())
+    const Buffer::Place &inA = a.buffer->place(), &inB = b.buffer->place();
+    if (inA.whole != inB.whole) return false;
+    if (inA.offset + a.byteEnd() <= inB.offset + b.byteOffset ||
+        inB.offset + b.byteEnd() <= inA.offset + a.byteOffset)
         return false;
-    if (a.byteEnd() <= b.byteOffset || b.byteEnd() <= a.byteOffset) return false;
+    // OpenCL leaves open what is seen through one cl_mem of what is written through another over the same
+    // memory.
+    if (a.buffer->memory().get() != b.buffer->memory().get()) return true;
     // Pixels of one and the same layout: interleaved components, or the very same image.
     const bool samePixels =
         a.pixelStride == b.pixelStride && a.rowStride == b.rowStride && !a.info().planar && !b.info().planar;

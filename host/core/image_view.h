@@ -36,7 +36,7 @@ struct ImageView {
 ImageView makeImageView(const PelImageDesc& desc, Device& device, const char* what);
 
 // Whether writing `a` pixel by pixel could change pixels of `b` that are read later: they overlap, and not
-// pixel on pixel.
+// pixel on pixel in one cl_mem. Buffers over the same host memory, or parts of one cl_mem, are noticed.
 bool overlapsElsewhere(const ImageView& a, const ImageView& b);
 
 }  // namespace pel

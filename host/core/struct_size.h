@@ -2,19 +2,46 @@
 // fit.
 #pragma once
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
+#include <iterator>
 
 #include "cl/error.h"
 
 namespace pel {
 
+// Whether `size` bytes of T are whole fields, more than structSize: an older header's structure ends where a
+// field of this one ends, or where the next begins. A newer one's is longer, by whole numbers.
+template <class T>
+bool isWholeStruct(uint32_t size);
+
+#define PEL_FIELD(T, name) {offsetof(T, name), offsetof(T, name) + sizeof(T::name)},
+#define PEL_STRUCT(T, fields)                                                 \
+    template <>                                                               \
+    inline bool isWholeStruct<T>(uint32_t size) {                             \
+        static constexpr struct { size_t begin, end; } all[] = {fields};      \
+        if (size >= sizeof(T)) return size % sizeof(uint32_t) == 0;           \
+        return std::any_of(all + 1, std::end(all), [&](const auto& f) {       \
+            return size == f.end || (size == f.begin && size > all[1].begin); \
+        });                                                                   \
+    }
+#include "struct_fields.inc"  // cmake/StructFieldsScript.cmake, from pellucid.h
+#undef PEL_STRUCT
+#undef PEL_FIELD
+
+template <class T>
+void checkStructSize(uint32_t size, const char* name) {
+    if (size > 1u << 16 || !isWholeStruct<T>(size))
+        invalidArgument(name, ".structSize is ", size, ", which is no size that ", name,
+                        " has or had; it is ", sizeof(T),
+                        " in this version: start from the pel...Defaults() function of ", name);
+}
+
 // The caller's structure over `defaults`; fields that its header did not have keep their defaults.
 template <class T>
 T readStruct(const T* from, T defaults, const char* name) {
     if (!from) invalidArgument("a ", name, " is needed, not NULL");
-    if (from->structSize < sizeof(uint32_t) || from->structSize > 1u << 16)
-        invalidArgument(name, ".structSize is ", from->structSize,
-                        ": start from the pel...Defaults() function of ", name);
+    checkStructSize<T>(from->structSize, name);
     std::memcpy(&defaults, from, std::min<size_t>(from->structSize, sizeof(T)));
     defaults.structSize = sizeof(T);
     return defaults;
@@ -24,9 +51,7 @@ template <class T>
 void writeStruct(T* to, const T& value, const char* name) {
     if (!to) invalidArgument("a ", name, " to fill is needed, not NULL");
     const uint32_t size = to->structSize;
-    if (size < sizeof(uint32_t) || size > 1u << 16)
-        invalidArgument(name, ".structSize is ", size, ": start from the pel...Defaults() function of ",
-                        name);
+    checkStructSize<T>(size, name);
     std::memcpy(to, &value, std::min<size_t>(size, sizeof(T)));
     to->structSize = size;
 }

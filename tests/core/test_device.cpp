@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <set>
 
 using namespace pellucid;
 
@@ -104,6 +105,49 @@ TEST(Handles, OlderCallersGetTheFieldsTheyKnow) {
     EXPECT_EQ(info.clockMhz, 12345u) << "written beyond the caller's structure";
 }
 
+// Sizes that no header has had would give fields of which a part is the caller's and a part a default.
+TEST(Handles, StructuresAreWholeFields) {
+    const Device device("");
+    const Shader shader(device);
+    const auto accepted = [](auto call, uint32_t most) {
+        std::set<uint32_t> sizes;
+        for (uint32_t size = 0; size <= most; ++size) {
+            const PelError error = call(size);
+            if (error == PEL_SUCCESS)
+                sizes.insert(size);
+            else
+                EXPECT_NE(std::strstr(pelGetErrorMessage(), "structSize"), nullptr)
+                    << size << ": " << pelGetErrorMessage();
+        }
+        return sizes;
+    };
+    const auto camera = [&](uint32_t size) {
+        PelCamera value = pelCameraDefaults();
+        value.structSize = size;
+        return pelShaderSetCamera(shader.get(), &value);
+    };
+    EXPECT_EQ(accepted(camera, sizeof(PelCamera)), (std::set<uint32_t>{16, 80}));
+    const auto ambient = [&](uint32_t size) {
+        PelAmbient value = pelAmbientDefaults();
+        value.structSize = size;
+        return pelShaderSetAmbient(shader.get(), &value);
+    };
+    EXPECT_EQ(accepted(ambient, sizeof(PelAmbient)), (std::set<uint32_t>{16, 124}));
+    struct Longer {
+        PelDeviceStats stats;
+        char later[16];
+    } longer{};
+    const auto stats = [&](uint32_t size) {
+        longer.stats = pelDeviceStatsDefaults();
+        longer.stats.structSize = size;
+        return pelDeviceGetStats(device.get(), &longer.stats);
+    };
+    EXPECT_EQ(accepted(stats, sizeof longer),
+              (std::set<uint32_t>{8, 16, 24, 32, 40, 48, 56, 60, 64, 68, 72, 76, 80}));
+    for (const uint32_t size : {1u << 17, UINT32_MAX, UINT32_MAX - 3})
+        EXPECT_EQ(camera(size), PEL_ERROR_INVALID_ARGUMENT) << size;
+}
+
 TEST(Buffers, ReadWriteMapAndRanges) {
     const Device device("");
     const Buffer buffer(device, 4 * sizeof(int));
@@ -176,7 +220,8 @@ TEST(Errors, CallbacksMayFailAndThrow) {
         [](void*, PelError, const char* message) {
             ++heard;
             EXPECT_EQ(pelDeviceFinish(nullptr), PEL_ERROR_INVALID_ARGUMENT);  // tells nobody
-            EXPECT_NE(std::string(message).find("no such device"), std::string::npos) << "still the outer one";
+            EXPECT_NE(std::string(message).find("no such device"), std::string::npos)
+                << "still the outer one";
             throw std::runtime_error("from the callback");
         },
         nullptr);
@@ -193,7 +238,8 @@ TEST(Errors, ProgressCallbacksMayThrow) {
     PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
     desc.numVertices = desc.numIndices = 3;
     desc.indices = triangle;
-    device.setProgress([](void*, double, const char*) -> int { throw std::runtime_error("enough of it"); }, nullptr);
+    device.setProgress([](void*, double, const char*) -> int { throw std::runtime_error("enough of it"); },
+                       nullptr);
     try {
         pellucid::MeshTopology(device, desc);
         ADD_FAILURE() << "the exception was lost";

@@ -1,0 +1,95 @@
+#include "cl/host_memory.h"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+
+namespace pel::cl {
+namespace {
+
+constexpr size_t page = 4096, cacheLine = 128;
+constexpr size_t mapped = 32 << 20;  // from here on memory of its own: zero already, and given back at once
+constexpr size_t unasked =
+    16 << 20;  // how much may be allocated without asking what is left, which takes 100 us
+
+std::atomic<uint64_t> inUse{0};
+
+class Block {
+  public:
+    Block(size_t bytes, bool zeros) : bytes_(bytes) {
+        if (bytes >= mapped) {
+            at_ = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+            if (at_ == MAP_FAILED) none();
+            commit();
+        } else {
+            const size_t alignment = bytes < page ? cacheLine : page;
+            at_ = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+            if (!at_) none();
+            if (zeros) std::memset(at_, 0, bytes);
+        }
+        inUse.fetch_add(bytes, std::memory_order_relaxed);
+    }
+    ~Block() {
+        if (bytes_ >= mapped)
+            ::munmap(at_, bytes_);
+        else
+            std::free(at_);
+        inUse.fetch_sub(bytes_, std::memory_order_relaxed);
+    }
+    Block(const Block&) = delete;
+    Block& operator=(const Block&) = delete;
+    void* at() const { return at_; }
+
+  private:
+    [[noreturn]] void none() const {
+        fail(PEL_ERROR_OUT_OF_MEMORY, "the system has no ", bytes_, " bytes of memory for a buffer");
+    }
+    // Pages that come only when they are touched would be promised twice, and whoever touches the last dies.
+    void commit() {
+#ifdef MADV_HUGEPAGE
+        (void)::madvise(at_, bytes_, MADV_HUGEPAGE);
+#endif
+#ifdef MADV_POPULATE_WRITE
+        if (::madvise(at_, bytes_, MADV_POPULATE_WRITE) == 0) return;
+#endif
+        for (size_t i = 0; i < bytes_; i += page) static_cast<volatile char*>(at_)[i] = 0;
+    }
+    size_t bytes_;
+    void* at_ = nullptr;
+};
+
+// Asks what is left once enough has been allocated to matter.
+void checkNow(size_t bytes) {
+    static std::atomic<uint64_t> since{0};
+    if (since.fetch_add(bytes, std::memory_order_relaxed) + bytes < unasked) return;
+    since.store(0, std::memory_order_relaxed);
+    requireMemory(bytes, "a buffer");
+}
+
+}  // namespace
+
+Memory createInHostMemory(cl_context context, size_t bytes, const void* initial, bool zeros) {
+    checkNow(bytes);
+    auto block = std::make_unique<Block>(bytes, zeros && !initial);
+    if (initial) std::memcpy(block->at(), initial, bytes);
+    cl_int code = CL_SUCCESS;
+    Memory memory(
+        clCreateBuffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, block->at(), &code));
+    if (code != CL_SUCCESS) check(code, text("clCreateBuffer(", bytes, " bytes)").c_str());
+    const auto giveBack = [](cl_mem, void* user) { delete static_cast<Block*>(user); };
+    check(clSetMemObjectDestructorCallback(memory.get(), +giveBack, block.get()),
+          "clSetMemObjectDestructorCallback");
+    (void)block.release();
+    return memory;
+}
+
+uint64_t hostMemoryInUse() {
+    return inUse.load(std::memory_order_relaxed);
+}
+
+}  // namespace pel::cl

@@ -1,0 +1,107 @@
+#include "cl/pocl_cache.h"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <utility>
+
+#include "cl/error.h"
+#include "cl/private_folder.h"
+#include "cl/process.h"
+
+namespace pel::cl {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr uint64_t leastRoom = 32 << 20;  // bytes; the largest shading variant leaves less than 2 MB
+
+// Never destroyed: devices may be used while the process ends.
+fs::path& folderInUse() {
+    static fs::path& folder = *new fs::path;
+    return folder;
+}
+
+bool setByUs = false;
+
+// "" when PoCL may use it.
+std::string whyNot(const fs::path& folder) {
+    if (!makePrivateFolder(folder)) return text(folder.string(), " cannot be made");
+    if (const std::string why = whyNotPrivate(folder); !why.empty()) return why;
+    if (roomIn(folder) < leastRoom)
+        return text(folder.string(), " has less than ", leastRoom >> 20, " MiB to write to");
+    return {};
+}
+
+// For this process alone, and gone with it.
+fs::path temporaryFolder(std::string& why) {
+    const char* base = std::getenv("TMPDIR");
+    for (const fs::path& parent : {fs::path(base ? base : ""), fs::path("/tmp"), fs::path("/dev/shm")}) {
+        if (!parent.is_absolute()) continue;
+        std::string name = parent / "pellucid-pocl-XXXXXX";
+        if (!::mkdtemp(name.data())) {  // which no one else can enter
+            why += text("; ", parent.string(), " takes no new folder");
+            continue;
+        }
+        if (const std::string reason = whyNot(name); !reason.empty()) {
+            why += "; " + reason;
+            ::rmdir(name.c_str());
+            continue;
+        }
+        folderInUse() = name;
+        std::atexit([] {
+            std::error_code ignored;
+            if (!isFork()) fs::remove_all(folderInUse(), ignored);
+        });
+        return name;
+    }
+    return {};
+}
+
+}  // namespace
+
+void choosePoclCache() {
+    static bool& chosen = *new bool(false);
+    if (chosen) return;
+    const char* set = std::getenv("POCL_CACHE_DIR");
+    if (set && *set) {
+        folderInUse() = set;
+    } else {
+        std::string why;
+        fs::path folder;
+        for (const fs::path& home : cacheHomes()) {
+            folder = home / "pellucid" / "pocl";
+            const std::string reason = whyNot(folder);
+            if (reason.empty()) break;
+            why += (why.empty() ? "" : "; ") + reason;
+            folder.clear();
+        }
+        if (folder.empty())
+            folder = temporaryFolder(why);
+        else
+            removeDamagedPrograms(folder);
+        if (folder.empty())
+            fail(PEL_ERROR_DEVICE, "PoCL needs a folder for compiled kernels, and there is none: ", why,
+                 ". Set POCL_CACHE_DIR to one");
+        folderInUse() = folder;
+        ::setenv("POCL_CACHE_DIR", folder.c_str(), 1);
+        setByUs = true;
+    }
+    chosen = true;
+}
+
+void poclCacheIsChosen() {
+    if (std::exchange(setByUs, false)) ::unsetenv("POCL_CACHE_DIR");
+}
+
+void checkPoclCache() {
+    const fs::path& folder = folderInUse();
+    std::error_code error;
+    if (folder.empty() || !fs::exists(folder, error)) return;  // PoCL makes it, or was loaded by the host
+    const uint64_t room = roomIn(folder);
+    if (room < leastRoom)
+        fail(PEL_ERROR_DEVICE, "PoCL keeps compiled kernels in ", folder.string(), ", which has ", room >> 20,
+             " MiB to write to; ", leastRoom >> 20,
+             " are needed, for it ends the process when it cannot write. Make room, or set POCL_CACHE_DIR");
+}
+
+}  // namespace pel::cl

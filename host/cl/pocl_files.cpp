@@ -1,0 +1,86 @@
+// Files of PoCL's cache that are not whole: a disk was full, a machine lost power.
+#include <elf.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <cstring>
+#include <fstream>
+
+#include "cl/pocl_cache.h"
+
+namespace pel::cl {
+namespace fs = std::filesystem;
+namespace {
+
+// A shared library whose section headers, which come last, are there.
+bool wholeElf(std::ifstream& file, uint64_t size) {
+    Elf64_Ehdr header;
+    if (!file.read(reinterpret_cast<char*>(&header), sizeof header) ||
+        std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0)
+        return false;
+    if (header.e_ident[EI_CLASS] != ELFCLASS64) return true;  // not ours to judge
+    return header.e_shoff <= size && uint64_t(header.e_shnum) * header.e_shentsize <= size - header.e_shoff;
+}
+
+// LLVM bitcode (llvm.org/docs/BitCodeFormat.html): after the magic number, blocks that say how long they are,
+// to the end of the file. A block begins with a word of its kind and a word with the number of words that
+// follow.
+bool wholeBitcode(std::ifstream& file, uint64_t size) {
+    char magic[4];
+    if (!file.read(magic, sizeof magic) || std::memcmp(magic, "BC\xC0\xDE", 4) != 0) return false;
+    uint64_t at = sizeof magic;
+    while (at < size) {
+        uint32_t block[2];
+        if (!file.seekg(std::streamoff(at)) || !file.read(reinterpret_cast<char*>(block), sizeof block))
+            return false;
+        constexpr uint32_t enterBlock = 1;
+        if ((block[0] & 3) != enterBlock) return false;
+        at += sizeof block + 4 * uint64_t(block[1]);
+    }
+    return at == size;
+}
+
+bool whole(const fs::path& path, uint64_t size) {
+    std::ifstream file(path, std::ios::binary);
+    return path.extension() == ".so" ? wholeElf(file, size) : wholeBitcode(file, size);
+}
+
+}  // namespace
+
+// PoCL's folders: two letters, the rest of a program's hash, and in that program.bc and a .so for each kernel
+// and size.
+unsigned removeDamagedPrograms(const fs::path& folder) {
+    // What was whole at the last look and has not been written since is passed over. A file may be being
+    // written just now.
+    const fs::path stamp = folder / "checked";
+    const auto now = fs::file_time_type::clock::now();
+    std::error_code error;
+    const fs::file_time_type before = fs::last_write_time(stamp, error);
+    const bool first = bool(error);
+    unsigned removed = 0;
+    for (auto letters = fs::directory_iterator(folder, error); !error && letters != fs::directory_iterator();
+         letters.increment(error)) {
+        if (letters->path().filename().string().size() != 2) continue;
+        std::error_code inner;
+        for (auto program = fs::directory_iterator(*letters, inner);
+             !inner && program != fs::directory_iterator(); program.increment(inner)) {
+            bool damaged = false;
+            std::error_code gone;  // by another process
+            for (auto at = fs::recursive_directory_iterator(*program, gone);
+                 !damaged && !gone && at != fs::recursive_directory_iterator(); at.increment(gone)) {
+                const fs::path& path = at->path();
+                if (path.extension() != ".so" && path.extension() != ".bc") continue;
+                std::error_code missing;
+                const auto written = at->last_write_time(missing);
+                const uint64_t size = at->file_size(missing);
+                damaged = !missing && (first || written >= before) && !whole(path, size);
+            }
+            if (damaged && fs::remove_all(*program, gone) > 0) ++removed;
+        }
+    }
+    std::ofstream(stamp).put('\n');
+    fs::last_write_time(stamp, now - std::chrono::seconds(10), error);
+    return removed;
+}
+
+}  // namespace pel::cl

@@ -1,0 +1,207 @@
+// Where PoCL keeps compiled kernels: in a folder of this user's alone, and nothing in it that PoCL would die
+// of.
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/mount.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <pellucid/pellucid.hpp>
+
+#include "cl/pocl_cache.h"
+#include "cl/private_folder.h"
+#include "io/io_files.h"
+
+namespace fs = std::filesystem;
+using pel::cl::whyNotPrivate;
+
+namespace {
+
+class PoclCache : public FolderTest {
+  protected:
+    // A small table made by a process of its own, the first there to use OpenCL, after `set` was called. What
+    // it ended with: 0, a PelError, or 1000 and a signal.
+    int table(const std::function<void()>& set) {
+        std::fflush(nullptr);
+        const pid_t child = ::fork();
+        if (child == 0) {
+            ::unsetenv("POCL_CACHE_DIR");
+            ::unsetenv("XDG_CACHE_HOME");
+            ::setenv("HOME", path("home").c_str(), 1);
+            set();
+            try {
+                const pellucid::Device device("");
+                PelSpecularLutDesc desc = pelSpecularLutDescDefaults();
+                desc.width = desc.height = 4;
+                pellucid::Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+                if (std::getenv("POCL_CACHE_DIR") && fs::path(std::getenv("POCL_CACHE_DIR")) != path("own"))
+                    throw pellucid::Error(PEL_ERROR_UNKNOWN, "the environment was left changed");
+            } catch (const pellucid::Error& e) {
+                std::ofstream(path("message")) << e.what();
+                std::exit(e.code());
+            }
+            std::exit(0);
+        }
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+    }
+    std::vector<fs::path> kernels(const fs::path& below, const std::string& extension) const {
+        std::vector<fs::path> found;
+        std::error_code none;
+        for (const auto& entry : fs::recursive_directory_iterator(below, none))
+            if (entry.path().extension() == extension) found.push_back(entry.path());
+        return found;
+    }
+    static mode_t mode(const fs::path& at) {
+        struct stat status {};
+        return ::stat(at.c_str(), &status) == 0 ? status.st_mode & 07777 : 0;
+    }
+    void SetUp() override {
+        FolderTest::SetUp();
+        bool pocl = false;
+        const pid_t child = ::fork();
+        if (child == 0)
+            ::_exit(std::string(pellucid::Device("").info().platform) == "Portable Computing Language");
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        pocl = WIFEXITED(status) && WEXITSTATUS(status) == 1;
+        if (!pocl) GTEST_SKIP() << "the device is no PoCL";
+        fs::create_directory(path("home"));
+        fs::permissions(path("home"), fs::perms::owner_all);
+    }
+    fs::path ours() const { return fs::path(path("home")) / ".cache/pellucid/pocl"; }
+};
+
+}  // namespace
+
+TEST_F(PoclCache, IsAPrivateFolderOfOurs) {
+    ASSERT_EQ(table([] {}), 0);
+    EXPECT_GE(kernels(ours(), ".so").size(), 1u);
+    EXPECT_EQ(mode(ours()), 0700u);
+    EXPECT_EQ(mode(ours().parent_path()), 0700u);
+    EXPECT_FALSE(fs::exists(fs::path(path("home")) / ".cache/pocl"));
+}
+
+TEST_F(PoclCache, TheUsersOwnIsLeftAlone) {
+    fs::create_directory(path("own"));
+    ASSERT_EQ(table([&] { ::setenv("POCL_CACHE_DIR", path("own").c_str(), 1); }), 0);
+    EXPECT_GE(kernels(path("own"), ".so").size(), 1u);
+    EXPECT_FALSE(fs::exists(ours()));
+}
+
+// A folder that others may write to, another user's, a file, a link of another's: none is used, and nothing
+// is left in /tmp.
+TEST_F(PoclCache, FoldersOfOthersAreRefused) {
+    fs::create_directory(path("temporary"));
+    fs::permissions(path("temporary"), fs::perms::owner_all);
+    const auto set = [&] { ::setenv("TMPDIR", path("temporary").c_str(), 1); };
+    fs::create_directories(ours());
+    for (const mode_t open : {0777, 0770, 0707, 01777}) {
+        ::chmod(ours().c_str(), open);
+        EXPECT_EQ(table(set), 0) << std::oct << open;
+    }
+    ::chmod(ours().c_str(), 0700);
+    ::chmod(path("home").c_str(), 0777);  // where the folder could be exchanged
+    EXPECT_EQ(table(set), 0);
+    ::chmod(path("home").c_str(), 0700);
+    if (::geteuid() == 0) {
+        ASSERT_EQ(::chown(ours().c_str(), 12345, 12345), 0);
+        EXPECT_EQ(table(set), 0);
+    }
+    EXPECT_EQ(kernels(ours(), ".so").size(), 0u);
+    fs::remove_all(ours());
+    std::ofstream(ours()) << "a file";
+    EXPECT_EQ(table(set), 0);
+    EXPECT_TRUE(fs::is_empty(path("temporary"))) << "its own folder went with the process";
+}
+
+TEST_F(PoclCache, WithoutHomeNothingInTheTemporaryFolderIsTrusted) {
+    // What PoCL would use, by its name.
+    const fs::path fixed = "/tmp/pocl";
+    const bool there = fs::exists(fixed);
+    EXPECT_EQ(table([&] {
+                  ::unsetenv("HOME");
+                  ::setenv("XDG_CACHE_HOME", path("home").c_str(), 1);
+              }),
+              0);
+    EXPECT_GE(kernels(fs::path(path("home")) / "pellucid/pocl", ".so").size(), 1u);
+    const auto homes = pel::cl::cacheHomes();
+    const char* home = std::getenv("HOME");
+    const std::string saved = home ? home : "";
+    ::unsetenv("HOME");
+    EXPECT_FALSE(pel::cl::cacheHomes().empty()) << "the system knows";
+    for (const fs::path& each : pel::cl::cacheHomes()) EXPECT_TRUE(each.is_absolute());
+    if (home) ::setenv("HOME", saved.c_str(), 1);
+    EXPECT_EQ(fs::exists(fixed), there);
+}
+
+TEST_F(PoclCache, DamagedFilesAreCompiledAgain) {
+    ASSERT_EQ(table([] {}), 0);
+    for (const char* extension : {".so", ".bc"})
+        for (const std::string how : {"empty", "half", "other"}) {
+            const auto files = kernels(ours(), extension);
+            ASSERT_GE(files.size(), 1u);
+            for (const fs::path& file : files) {
+                const auto size = fs::file_size(file);
+                if (how == "other")
+                    std::ofstream(file, std::ios::binary) << std::string(size, 'x');
+                else
+                    fs::resize_file(file, how == "half" ? size / 2 : 0);
+            }
+            EXPECT_EQ(table([] {}), 0) << extension << " " << how;
+            EXPECT_GE(kernels(ours(), extension).size(), 1u);
+            // And again, when the last look is later than the damage could be.
+            EXPECT_EQ(pel::cl::removeDamagedPrograms(ours()), 0u) << extension << " " << how;
+        }
+}
+
+// Mounting needs a name space of its own: skipped where that is not allowed.
+TEST_F(PoclCache, AFullDiskIsAnError) {
+    fs::create_directory(path("full"));
+    const auto mounted = [&](const char* options) {
+        return [this, options] {
+            if (::unshare(CLONE_NEWNS) != 0 ||
+                ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+                ::mount("tmpfs", path("full").c_str(), "tmpfs", 0, options) != 0)
+                ::_exit(99);
+        };
+    };
+    const int own = table([&] {
+        mounted("size=4m,mode=700")();
+        ::setenv("POCL_CACHE_DIR", path("full").c_str(), 1);
+    });
+    if (own == 99) GTEST_SKIP() << "this user may not mount";
+    EXPECT_EQ(own, PEL_ERROR_DEVICE);
+    EXPECT_NE(read(path("message")).find(path("full")), std::string::npos) << read(path("message"));
+    // Without a wish of the user's, another folder is taken.
+    EXPECT_EQ(table([&] {
+                  mounted("size=4m,mode=700")();
+                  ::setenv("HOME", path("full").c_str(), 1);
+                  ::setenv("XDG_CACHE_HOME", path("full").c_str(), 1);
+              }),
+              0);
+}
+
+TEST_F(PoclCache, WholeFilesAreKept) {
+    ASSERT_EQ(table([] {}), 0);
+    const auto before = kernels(ours(), ".so");
+    std::vector<fs::file_time_type> times;
+    for (const auto& file : before) times.push_back(fs::last_write_time(file));
+    ASSERT_EQ(table([] {}), 0);
+    fs::remove(ours() / "checked");
+    EXPECT_EQ(pel::cl::removeDamagedPrograms(ours()), 0u);
+    for (size_t i = 0; i < before.size(); ++i)
+        EXPECT_EQ(fs::last_write_time(before[i]), times[i]) << "compiled again";
+}
+
+TEST(PrivateFolder, LooksAtAllAbove) {
+    EXPECT_EQ(whyNotPrivate("/"), "");
+    EXPECT_NE(whyNotPrivate("/tmp"), "") << "others write there";
+    EXPECT_NE(whyNotPrivate("/no such folder"), "");
+    EXPECT_NE(whyNotPrivate("/etc/passwd"), "") << "no folder";
+}

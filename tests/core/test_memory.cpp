@@ -1,0 +1,249 @@
+// Memory that runs out is an error, never the end of the process. Each test runs in a fork, which is the
+// first to use OpenCL there (and must not, itself, be the parent of others): limits of a process cannot be
+// raised again.
+#include <CL/cl.h>
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <pellucid/pellucid.hpp>
+#include <thread>
+
+#include "cl/host_memory.h"
+
+using namespace pellucid;
+
+namespace {
+
+std::atomic<int> untilFailure{0};  // calls of clCreateBuffer; 0: none fails
+
+}  // namespace
+
+extern "C" __attribute__((visibility("default"))) cl_mem clCreateBuffer(cl_context context,
+                                                                        cl_mem_flags flags, size_t bytes,
+                                                                        void* host, cl_int* code) {
+    if (untilFailure > 0 && --untilFailure == 0) {
+        if (code) *code = CL_MEM_OBJECT_ALLOCATION_FAILURE;
+        return nullptr;
+    }
+    return reinterpret_cast<decltype(clCreateBuffer)*>(dlsym(RTLD_NEXT, "clCreateBuffer"))(context, flags,
+                                                                                           bytes, host, code);
+}
+
+namespace {
+
+// Where a failure of the child is told: expectations of Google Test are the child's own.
+#define CHILD_EXPECT(condition)                                                                            \
+    do {                                                                                                   \
+        if (!(condition)) {                                                                                \
+            std::fprintf(stderr, "%s:%d: %s\n%s\n", __FILE__, __LINE__, #condition, pelGetErrorMessage()); \
+            ::_exit(1);                                                                                    \
+        }                                                                                                  \
+    } while (false)
+
+void inFork(const std::function<void()>& work) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+        work();
+        ::_exit(0);
+    }
+    int status = 0;
+    for (int i = 0; i < 12000 && ::waitpid(child, &status, WNOHANG) != child; ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ASSERT_TRUE(WIFEXITED(status)) << "signal " << WTERMSIG(status);
+    EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+uint64_t addressSpace() {
+    uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * uint64_t(::sysconf(_SC_PAGESIZE));
+}
+
+void limitAddressSpace(uint64_t more) {
+    const rlim_t most = addressSpace() + more;
+    const rlimit limit{most, most};
+    CHILD_EXPECT(::setrlimit(RLIMIT_AS, &limit) == 0);
+}
+
+bool sharesMemory(const Device& device) {
+    return device.info().type == PEL_DEVICE_CPU && device.info().sharedMemory;
+}
+
+}  // namespace
+
+TEST(Memory, AddressSpaceRunsOut) {
+    inFork([] {
+        const Device device("");
+        if (!sharesMemory(device)) return;
+        { Buffer(device, 16).readAll<int>(); }
+        limitAddressSpace(1200 << 20);
+        for (const size_t bytes : {size_t(200) << 20, size_t(24) << 20, size_t(3) << 20, size_t(100) << 20}) {
+            std::vector<Buffer> all;
+            PelBuffer made = nullptr;
+            PelError error = PEL_SUCCESS;
+            for (int i = 0; i < 2000 && error == PEL_SUCCESS; ++i) {
+                error = pelBufferCreate(device.get(), bytes, nullptr, &made);
+                if (error == PEL_SUCCESS) all.emplace_back(made);
+            }
+            CHILD_EXPECT(error == PEL_ERROR_OUT_OF_MEMORY);
+            CHILD_EXPECT(std::strstr(pelGetErrorMessage(), "memory") ||
+                         std::strstr(pelGetErrorMessage(), "ulimit"));
+            CHILD_EXPECT(all.size() * bytes > 500u << 20);
+            // What there is goes on working, and so does everything once there is room.
+            const int value = 7;
+            all.back().write(&value, sizeof value, bytes - sizeof value);
+            int back = 0;
+            all.back().read(&back, sizeof back, bytes - sizeof back);
+            CHILD_EXPECT(back == 7);
+        }
+        PelSpecularLutDesc desc = pelSpecularLutDescDefaults();
+        desc.width = desc.height = 8;
+        CHILD_EXPECT(Lut(device, desc).read<float>(PEL_LUT_FLOAT).size() == 3 * 64u);
+    });
+}
+
+// Whatever allocates says so, not buffers alone.
+TEST(Memory, TablesAndTopologiesRunOutOfIt) {
+    inFork([] {
+        const Device device("");
+        if (!sharesMemory(device)) return;
+        PelSpecularLutDesc desc = pelSpecularLutDescDefaults();
+        desc.width = desc.height = 8;
+        Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+        limitAddressSpace(300 << 20);
+        desc.width = desc.height = 4096;  // 268 MB
+        PelLut made = nullptr;
+        CHILD_EXPECT(pelSpecularLutCreate(device.get(), &desc, &made, nullptr) == PEL_ERROR_OUT_OF_MEMORY);
+        std::vector<uint32_t> indices(3 << 20);
+        PelMeshTopologyDesc mesh = pelMeshTopologyDescDefaults();
+        mesh.numVertices = 3;
+        mesh.indices = indices.data();
+        mesh.numIndices = indices.size();
+        const rlimit none{addressSpace() + (8 << 20), addressSpace() + (8 << 20)};
+        CHILD_EXPECT(::setrlimit(RLIMIT_AS, &none) == 0);
+        PelMeshTopology topology = nullptr;
+        CHILD_EXPECT(pelMeshTopologyCreate(device.get(), &mesh, &topology, nullptr) ==
+                     PEL_ERROR_OUT_OF_MEMORY);
+    });
+}
+
+TEST(Memory, MoreThanThereIsIsNeverPromised) {
+    for (const uint64_t bytes : {UINT64_MAX, UINT64_MAX / 2, uint64_t(1) << 50}) {
+        try {
+            pel::cl::requireMemory(bytes, "a test");
+            ADD_FAILURE() << bytes;
+        } catch (const pel::Error& e) {
+            EXPECT_EQ(e.code(), PEL_ERROR_OUT_OF_MEMORY);
+            EXPECT_NE(std::string(e.what()).find("a test"), std::string::npos);
+        }
+    }
+    EXPECT_NO_THROW(pel::cl::requireMemory(1, "a test"));
+    inFork([] {
+        const Device device("");
+        PelBuffer buffer = nullptr;
+        for (const size_t bytes :
+             {SIZE_MAX, SIZE_MAX / 2, size_t(1) << 50, size_t(device.info().globalMemoryBytes)})
+            CHILD_EXPECT(pelBufferCreate(device.get(), bytes, nullptr, &buffer) == PEL_ERROR_OUT_OF_MEMORY);
+    });
+}
+
+TEST(Memory, HoldsWhatWasAsked) {
+    inFork([] {
+        const Device device("");
+        for (const size_t bytes : {1u, 127u, 4095u, 4096u, 4097u, 1u << 20, 33u << 20}) {
+            for (int turn = 0; turn < 2; ++turn) {  // the second finds what the first left
+                std::vector<char> pattern(bytes);
+                for (size_t i = 0; i < bytes; ++i) pattern[i] = char(i * 31 + 1);
+                const Buffer zeros(device, bytes), filled(device, pattern);
+                CHILD_EXPECT(zeros.readAll<char>() == std::vector<char>(bytes, 0));
+                CHILD_EXPECT(filled.readAll<char>() == pattern);
+                zeros.write(pattern.data(), bytes);
+            }
+        }
+    });
+}
+
+TEST(Memory, LastsAsLongAsAnybodyHoldsTheMemory) {
+    inFork([] {
+        const Device device("");
+        const uint64_t before = addressSpace();
+        for (const size_t bytes : {size_t(1000), size_t(256) << 20}) {
+            Buffer second;
+            {
+                const Buffer first(device, std::vector<char>(bytes, 5));
+                void* memory = nullptr;
+                check(pelBufferGetCl(first.get(), &memory));
+                second = Buffer::fromCl(device, memory);
+            }
+            char last = 0;
+            second.read(&last, 1, bytes - 1);
+            CHILD_EXPECT(last == 5);
+        }
+        if (sharesMemory(device)) CHILD_EXPECT(addressSpace() < before + (200u << 20));  // given back
+    });
+}
+
+// Each clCreateBuffer in turn.
+TEST(Memory, DriversThatRefuse) {
+    inFork([] {
+        const Device device("");
+        const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
+        std::vector<float> host(4096, 1), positions{0, 0, 0, 1, 0, 0, 1, 1, 0.5f, 0, 1, 0};
+        PelMeshTopologyDesc mesh = pelMeshTopologyDescDefaults();
+        mesh.numVertices = 4, mesh.numIndices = 6, mesh.indices = indices;
+        PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
+        specular.width = specular.height = 4;
+        PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
+        curvature.width = curvature.height = 4;
+        PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+        shadow.width = shadow.height = 4;
+        PelCurvatureParams params = pelCurvatureParamsDefaults();
+        params.smoothingRadius = 0.5f;
+        const std::function<void()> calls[] = {
+            [&] { Buffer(device, 100); },
+            [&] { Buffer(device, positions); },
+            [&] { Buffer(device, size_t(40) << 20); },
+            [&] { Buffer::fromHost(device, host.data(), 4096); },
+            [&] { Lut(device, specular).read<uint16_t>(PEL_LUT_HALF); },
+            [&] { Lut(device, curvature).clippedTexels(); },
+            [&] { Lut(device, shadow).read<uint8_t>(PEL_LUT_FACEWORKS8); },
+            [&] {
+                const MeshTopology topology(device, mesh);
+                const Buffer p(device, positions), out(device, 64);
+                topology.curvature(params, vertexView(p, 4), vertexView(out, 4));
+                const LiveMesh live(topology, params);
+                live.update(vertexView(p, 4), nullptr, vertexView(out, 4));
+            },
+        };
+        for (size_t call = 0; call < std::size(calls); ++call) {
+            calls[call]();
+            const uint64_t before = addressSpace();
+            int failures = 0;
+            for (int n = 1; n < 100; ++n) {
+                untilFailure = n;
+                PelError error = PEL_SUCCESS;
+                try {
+                    calls[call]();
+                } catch (const Error& e) {
+                    error = e.code();
+                }
+                const bool struck = untilFailure == 0;
+                untilFailure = 0;
+                CHILD_EXPECT(error == (struck ? PEL_ERROR_OUT_OF_MEMORY : PEL_SUCCESS));
+                calls[call]();  // as if nothing had been
+                if (!struck) break;
+                ++failures;
+            }
+            CHILD_EXPECT(failures > 0 && failures < 90);
+            CHILD_EXPECT(addressSpace() < before + (30u << 20));
+        }
+    });
+}
