@@ -1,12 +1,12 @@
-// Nearly every kernel once, at sizes that are no multiple of anything, against the oracle: the quickest look
-// at another device or tool.
+// Nearly every kernel once, at sizes that are no multiple of anything, against the oracle: the quickest look at another
+// device or tool.
 #include <gtest/gtest.h>
 
 #include "lut/lut_cases.h"
 #include "mesh/mesh_calls.h"
-#include "mesh/reference_meshes.h"
-#include "reference/screen.h"
 #include "shading/pass_scene.h"
+#include "reference/screen.h"
+#include "mesh/reference_meshes.h"
 
 using namespace pellucid;
 
@@ -19,8 +19,7 @@ const Device& device() {
 
 struct SmallMesh {
     fixture::Pair both = fixture::pairOf(
-        reference::tessellate(reference::torusSurface(30, 10), 11, 7, reference::Tessellation::irregular)
-            .mesh);
+        reference::tessellate(reference::torusSurface(30, 10), 11, 7, reference::Tessellation::irregular).mesh);
     const reference::Mesh& truth = both.exact;
     uint32_t vertices = both.mesh.vertices();
     MeshTopology topology{device(), fixture::topologyDesc(both.mesh)};
@@ -48,7 +47,8 @@ double worst(const std::vector<float>& values, const std::vector<double>& truth)
 TEST(Small, Curvature) {
     const SmallMesh m;
     PelCurvatureParams params = fixture::edgeParams(2);
-    EXPECT_LT(worst(m.curvature(params), reference::smoothed(m.truth, reference::edgeCurvature(m.truth), 2)),
+    EXPECT_LT(worst(m.curvature(params),
+                    reference::smoothed(m.truth, reference::edgeCurvature(m.truth), 2)),
               tolerance::edgeCurvature);
     params.estimator = PEL_CURVATURE_TENSOR;
     params.smoothingPasses = 0;
@@ -74,7 +74,8 @@ TEST(Small, NormalsAndUvScale) {
     const Buffer out(device(), m.vertices * 3 * sizeof(float)), uvs(device(), m.both.mesh.uvs);
     m.topology.normals(m.view(m.positionBuffer), m.view(out));
     std::vector<double> truth;
-    for (const auto& n : reference::estimatedNormals(m.truth)) truth.insert(truth.end(), {n.x, n.y, n.z});
+    for (const auto& n : reference::estimatedNormals(m.truth))
+        truth.insert(truth.end(), {n.x, n.y, n.z});
     EXPECT_LT(worst(out.readAll<float>(), truth), 1e-5);
     const double scale = reference::uvScale(m.truth);
     EXPECT_NEAR(m.topology.uvScale(m.view(m.positionBuffer), m.view(uvs)) / scale, 1, 1e-5);

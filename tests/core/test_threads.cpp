@@ -1,5 +1,5 @@
-// Objects that several threads use at a time give each of them what it would have got alone. The check for
-// data races (./run check tsan) finds here what happens to go well, too.
+// Objects that several threads use at a time give each of them what it would have got alone. The check for data races (./run check
+// tsan) finds here what happens to go well, too.
 #include <atomic>
 #include <functional>
 #include <set>
@@ -33,8 +33,7 @@ TEST(Threads, OneTopologyAndOneLiveMesh) {
     std::atomic<int> wrong{0};
     onThreads([&](int t) {
         const Buffer out(fixture::device(), n * sizeof(float));
-        const PelVertexView p = vertexView(positions, n), normal = vertexView(normals, n),
-                            o = vertexView(out, n);
+        const PelVertexView p = vertexView(positions, n), normal = vertexView(normals, n), o = vertexView(out, n);
         for (int i = 0; i < 5; ++i) {
             if (t % 2)
                 topology.curvature(params, p, normal, o);
@@ -109,9 +108,7 @@ TEST(Threads, Errors) {
     onThreads([&](int t) {
         const std::string name = "no such device " + std::to_string(t);
         for (int i = 0; i < 20; ++i) {
-            if (t == 0)
-                pelSetErrorCallback(
-                    i % 2 ? nullptr : +[](void*, PelError, const char*) { ++heard; }, nullptr);
+            if (t == 0) pelSetErrorCallback(i % 2 ? nullptr : +[](void*, PelError, const char*) { ++heard; }, nullptr);
             PelDevice device = nullptr;
             wrong += pelDeviceCreate(name.c_str(), &device) != PEL_ERROR_NO_DEVICE;
             wrong += std::string(pelGetErrorMessage()).find(name) == std::string::npos;

@@ -1,0 +1,85 @@
+// Programs kept on disk are for one driver with its settings: another setting compiles anew.
+#include <cstdlib>
+#include <pellucid/pellucid.hpp>
+
+#include "io/io_files.h"
+
+namespace {
+
+class ProgramKey : public FolderTest {
+  protected:
+    struct Counts {
+        uint32_t loaded, stored;
+        bool operator==(const Counts&) const = default;
+    };
+    // A device of its own each time: it asks for the settings once.
+    Counts table() const {
+        const pellucid::Device device("");
+        PelSpecularLutDesc desc = pelSpecularLutDescDefaults();
+        desc.width = desc.height = 4;
+        const pellucid::Lut lut(device, desc);
+        const PelDeviceStats stats = device.stats();
+        return {stats.programsLoaded, stats.programsStored};
+    }
+    void SetUp() override {
+        FolderTest::SetUp();
+        std::filesystem::permissions(folder_, std::filesystem::perms::owner_all);
+        ::setenv("PELLUCID_CACHE", "on", 1);
+        ::setenv("PELLUCID_CACHE_DIR", path("cache").c_str(), 1);
+    }
+    void TearDown() override {
+        for (const char* name : {"PELLUCID_CACHE", "PELLUCID_CACHE_DIR"}) ::unsetenv(name);
+        FolderTest::TearDown();
+    }
+};
+
+TEST_F(ProgramKey, HasTheDriversSettings) {
+    const Counts first = table();
+    if (first.stored == 0) GTEST_SKIP() << "this driver gives no binaries";
+    EXPECT_EQ(first.loaded, 0u);
+    EXPECT_EQ(table(), (Counts{first.stored, 0})) << "the same settings";
+    for (const char* name :
+         {"CL_CONFIG_TEST", "POCL_TEST", "RUSTICL_TEST", "LP_TEST", "GALLIVM_TEST", "IGC_TEST"}) {
+        for (const char* value : {"1", "2"}) {
+            ::setenv(name, value, 1);
+            EXPECT_EQ(table(), (Counts{0, first.stored})) << name << "=" << value << " was forgotten";
+            EXPECT_EQ(table(), (Counts{first.stored, 0})) << name << "=" << value << " the second time";
+        }
+        ::unsetenv(name);
+    }
+    // What says nothing about the output: other variables, and where it is kept.
+    for (const char* name : {"UNRELATED_TEST", "POCL_CACHE_TEST"}) {
+        ::setenv(name, "1", 1);
+        EXPECT_EQ(table(), (Counts{first.stored, 0})) << name;
+        ::unsetenv(name);
+    }
+}
+
+TEST_F(ProgramKey, HasTheWidth) {
+    const Counts first = table();
+    if (first.stored == 0) GTEST_SKIP() << "this driver gives no binaries";
+    const uint32_t own = pellucid::Device("").info().mathWidth;
+    ::setenv("PELLUCID_MATH_WIDTH", own == 1 ? "8" : "1", 1);
+    EXPECT_EQ(table(), (Counts{0, first.stored}));
+    ::unsetenv("PELLUCID_MATH_WIDTH");
+    EXPECT_EQ(table(), (Counts{first.stored, 0}));
+}
+
+TEST_F(ProgramKey, FoldersThatOthersMayWriteToAreNotUsed) {
+    const Counts first = table();
+    if (first.stored == 0) GTEST_SKIP() << "this driver gives no binaries";
+    for (const char* which : {"cache", "."})
+        for (const auto open : {std::filesystem::perms::others_write, std::filesystem::perms::group_write}) {
+            std::filesystem::permissions(path(which), open, std::filesystem::perm_options::add);
+            EXPECT_EQ(table(), (Counts{0, 0})) << which;
+            std::filesystem::permissions(path(which), open, std::filesystem::perm_options::remove);
+        }
+    if (::geteuid() == 0) {
+        ASSERT_EQ(::chown(path("cache").c_str(), 12345, 12345), 0);
+        EXPECT_EQ(table(), (Counts{0, 0})) << "another user's";
+        ASSERT_EQ(::chown(path("cache").c_str(), 0, 0), 0);
+    }
+    EXPECT_EQ(table(), (Counts{first.stored, 0}));
+}
+
+}  // namespace
