@@ -110,6 +110,8 @@ def number(text):
         value = int(digits)
         return f"{value + 1 if value != 1 else 2}{suffix}"
     value = float(digits)
+    if 0 < abs(value) < 1e-15:
+        return None  # a guard against 0, whatever its size
     changed = 1.0 if value == 0 else value * (1.1 if 1e-3 <= value <= 1e4 else 100.0)
     return f"{changed!r}{suffix}"
 
@@ -136,7 +138,10 @@ def candidates(path, text, m):
         line = m[m.rfind("\n", 0, match.start()) + 1:m.find("\n", match.end())]
         if match[1] not in ("<<", ">>") or not (line.count(match[1]) > 1 or '"' in line):
             yield *match.span(1), OPERATOR[match[1]], "operator"
-    for match in re.finditer(r"(?<=[\w)\]]) ([-+*/]) (?=\S)", m):
+    for match in re.finditer(r"(?<=[\w)\]]) ([-+*/]) (?=[^\s\"])", m):
+        # Texts are joined with + as well, and know no other operator.
+        if match[1] == "+" and '"' in m[m.rfind("\n", 0, match.start()) + 1:m.find("\n", match.end())]:
+            continue
         end = term_end(m, match.end(), match[1])
         yield *match.span(1), OPERATOR[match[1]], "operator"
         if end > match.end():
