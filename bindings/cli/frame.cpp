@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "io/file_error.h"
-#include "io/lut/lut_file.h"
 #include "io/image/mip_chain.h"
+#include "io/lut/lut_file.h"
 #include "io/lut/profile_file.h"
 
 namespace pellucid::cli {
@@ -62,19 +62,21 @@ Lut LutStore::get(const io::SceneFile& scene, const std::string& name, PelLutKin
 }
 
 Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene, LutStore& luts,
-             const ShadowMaps& shadowMaps, const PelShaderOptions& options, const std::vector<PelImageSlot>& outputs)
+             const ShadowMaps& shadowMaps, const PelShaderOptions& options,
+             const std::vector<PelImageSlot>& outputs)
     : shader_(device), radiance_(device, gbuffer.pixelCount() * 3 * sizeof(float)) {
     PelShaderOptions all = options;
     all.blurNormals |= scene.blurNormals;
     all.rotateTaps |= scene.rotateTaps;
+    all.targetError = scene.targetError;
     shader_.set(all);
     shader_.set(PEL_SLOT_RADIANCE,
                 imageDesc(radiance_, PEL_FORMAT_RGB32F, uint32_t(gbuffer.width), uint32_t(gbuffer.height)));
     for (PelImageSlot slot : outputs) {
         const bool length = slot == PEL_SLOT_OUT_THICKNESS;
         const Buffer buffer(device, gbuffer.pixelCount() * (length ? 1 : 3) * sizeof(float));
-        shader_.set(slot, imageDesc(buffer, length ? PEL_FORMAT_R32F : PEL_FORMAT_RGB32F, uint32_t(gbuffer.width),
-                                    uint32_t(gbuffer.height)));
+        shader_.set(slot, imageDesc(buffer, length ? PEL_FORMAT_R32F : PEL_FORMAT_RGB32F,
+                                    uint32_t(gbuffer.width), uint32_t(gbuffer.height)));
         outputs_[slot] = buffer;
     }
     for (size_t slot = 0; slot < scene.channels.size(); ++slot)
@@ -95,18 +97,21 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
         if (!l.wideShadow.empty())
             shader_.set(i, PEL_LIGHT_WIDE_SHADOW, upload(device, gbuffer, {l.wideShadow}));
         if (l.shadowMapFile.empty()) continue;
-        const auto setMap = [&](PelLightSlot slot, const std::string& file, const std::string& channel, const std::string& second) {
+        const auto setMap = [&](PelLightSlot slot, const std::string& file, const std::string& channel,
+                                const std::string& second) {
             const auto known = shadowMaps.find(file);
             const io::Image read = known == shadowMaps.end() ? io::readImage(file) : io::Image();
             const io::Image& map = known == shadowMaps.end() ? read : known->second;
-            std::vector<std::string> channels{channel.empty() && map.channels.size() == 1 ? map.channels[0].name : channel};
+            std::vector<std::string> channels{
+                channel.empty() && map.channels.size() == 1 ? map.channels[0].name : channel};
             if (!second.empty()) channels.push_back(second);
             shader_.set(i, slot, upload(device, map, channels));
         };
         setMap(PEL_LIGHT_SHADOW_MAP, l.shadowMapFile, l.shadowMapChannel, l.secondChannel);
         for (uint32_t k = 0; k + 1 < l.light.shadowCascades; ++k) {
             const io::SceneCascade& c = l.cascades[k];
-            setMap(PelLightSlot(PEL_LIGHT_CASCADE_1 + k), c.file.empty() ? l.shadowMapFile : c.file, c.channel, c.secondChannel);
+            setMap(PelLightSlot(PEL_LIGHT_CASCADE_1 + k), c.file.empty() ? l.shadowMapFile : c.file,
+                   c.channel, c.secondChannel);
         }
     }
     shader_.set(scene.ambient);
@@ -118,9 +123,12 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
 void Frame::setAmbientCube(const Device& device, const std::string& file) {
     const io::Image image = io::readImage(file);
     if (image.height != 6 * image.width && image.width != 6 * image.height)
-        throw io::FileError(file, "is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                                      "; a cube map is six square faces, one below the other (n x 6n) or side by side (6n x n)");
-    shader_.setAmbientCube(upload(device, image, colorChannels(file, image, "a cube map needs three: red, green, blue")));
+        throw io::FileError(
+            file,
+            "is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                "; a cube map is six square faces, one below the other (n x 6n) or side by side (6n x n)");
+    shader_.setAmbientCube(
+        upload(device, image, colorChannels(file, image, "a cube map needs three: red, green, blue")));
 }
 
 void Frame::setNormalMap(const Device& device, uint32_t id, const std::string& file) {
@@ -133,30 +141,34 @@ void Frame::setNormalMap(const Device& device, uint32_t id, const std::string& f
     inputBytes_ += inputs_.back().bytes();
     std::vector<PelImageDesc> levels;
     for (const io::MipLevel& level : chain.levels)
-        levels.push_back(imageDesc(inputs_.back(), PEL_FORMAT_RGB32F, uint32_t(level.width), uint32_t(level.height),
-                                   level.byteOffset));
+        levels.push_back(imageDesc(inputs_.back(), PEL_FORMAT_RGB32F, uint32_t(level.width),
+                                   uint32_t(level.height), level.byteOffset));
     shader_.setNormalMap(id, levels);
 }
 
-PelImageDesc Frame::measureCurvature(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene) {
+PelImageDesc Frame::measureCurvature(const Device& device, const io::Image& gbuffer,
+                                     const io::SceneFile& scene) {
     const auto image = [&](PelImageSlot slot) {
-        return scene.channels[slot].empty() ? pelImageDescDefaults() : upload(device, gbuffer, scene.channels[slot]);
+        return scene.channels[slot].empty() ? pelImageDescDefaults()
+                                            : upload(device, gbuffer, scene.channels[slot]);
     };
     // The surface's own normals where there are: those of a normal map turn without the surface doing so.
     const PelImageDesc normals =
-        image(scene.channels[PEL_SLOT_NORMAL_GEOMETRIC].empty() ? PEL_SLOT_NORMAL_SHADING : PEL_SLOT_NORMAL_GEOMETRIC);
+        image(scene.channels[PEL_SLOT_NORMAL_GEOMETRIC].empty() ? PEL_SLOT_NORMAL_SHADING
+                                                                : PEL_SLOT_NORMAL_GEOMETRIC);
     const PelImageDesc positions = image(PEL_SLOT_POSITION), ids = image(PEL_SLOT_MATERIAL);
     const PelImageDesc depth = positions.buffer ? pelImageDescDefaults() : image(PEL_SLOT_DEPTH);
     if (!positions.buffer && !depth.buffer)
-        throw io::FileError(scene.source, "[channels] curvature = \"screen\" is measured from positions or depth; "
-                                          "name their channels");
+        throw io::FileError(scene.source,
+                            "[channels] curvature = \"screen\" is measured from positions or depth; "
+                            "name their channels");
     PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
     std::copy_n(scene.camera.inverseViewProjection, 16, params.inverseViewProjection);
     inputs_.emplace_back(device, gbuffer.pixelCount() * sizeof(float));
     const PelImageDesc curvature =
         imageDesc(inputs_.back(), PEL_FORMAT_R32F, uint32_t(gbuffer.width), uint32_t(gbuffer.height));
-    screenCurvature(device, params, normals, positions.buffer ? &positions : nullptr, depth.buffer ? &depth : nullptr,
-                    ids.buffer ? &ids : nullptr, curvature);
+    screenCurvature(device, params, normals, positions.buffer ? &positions : nullptr,
+                    depth.buffer ? &depth : nullptr, ids.buffer ? &ids : nullptr, curvature);
     return curvature;
 }
 
@@ -202,6 +214,8 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
         {PEL_FEATURE_AMBIENT_SCATTER, "ambient_scatter"},
         {PEL_FEATURE_OUTPUTS, "outputs"},
         {PEL_FEATURE_AMBIENT_CUBE, "ambient_cube"},
+        {PEL_FEATURE_IRRADIANCE, "irradiance"},
+        {PEL_FEATURE_MAKE_IRRADIANCE, "make_irradiance"},
         {PEL_FEATURE_SHADOW_CUBE, "shadow_cube"},
         {PEL_FEATURE_SHADOW_CASCADES, "shadow_cascades"},
         {PEL_FEATURE_SHADOW_MOMENTS, "shadow_moments"},

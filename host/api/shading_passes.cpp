@@ -7,7 +7,7 @@ namespace pel {
 // A pass reads what those before it made.
 std::span<const PassKind> shadingPasses() {
     static const PassKind passes[] = {ambientCubePass,  classifyTilesPass, blurNormalsPass, normalMapPass,
-                                      shadowBoundsPass, wideShadowPass,    shadePass};
+                                      shadowBoundsPass, wideShadowPass,    irradiancePass,  shadePass};
     return passes;
 }
 

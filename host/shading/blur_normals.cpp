@@ -1,9 +1,9 @@
 // Blurred normals on screen, where the caller gave none.
 #include <cstddef>
 
-#include "shading/blurred_normals.h"
 #include "shading/launch_ranges.h"
 #include "shading/passes.h"
+#include "shading/scratch_planes.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
@@ -18,7 +18,7 @@ class BlurNormals final : public Pass {
                 PEL_BLUR_TAPS * PEL_BLUR_STEP_MAX / PEL_TILE_HEIGHT};
     }
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
-        const size_t plane = normalPlaneBytes(plan);
+        const size_t plane = scratchPlaneBytes(plan);
         normals_.allocate(device, plan);
         resize(positions_, device, 3 * plane);
         resize(between_, device, 3 * plane);
@@ -56,7 +56,7 @@ class BlurNormals final : public Pass {
         launch.arg(normals_.memory())
             .arg(positions_->memory())
             .arg(tags_->memory())
-            .arg(cl_uint(work.plan.normalPlane));
+            .arg(cl_uint(work.plan.scratchPlane));
         work.launch(launch, tileRange(work.device, work.tiles()));
         blur(work, false);
     }
@@ -72,11 +72,11 @@ class BlurNormals final : public Pass {
             .arg(from)
             .arg(positions_->memory())
             .arg(tags_->memory());
-        launch.arg(to).arg(cl_uint(work.plan.normalPlane)).arg(cl_uint(alongY));
+        launch.arg(to).arg(cl_uint(work.plan.scratchPlane)).arg(cl_uint(alongY));
         work.launch(launch, tileRange(work.device, work.tiles()));
     }
 
-    BlurredNormals normals_;
+    ScratchPlanes normals_{PEL_SLOT_NORMAL_BLURRED};
     Ref<Buffer> positions_, between_, tags_;
 };
 

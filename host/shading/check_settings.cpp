@@ -127,6 +127,8 @@ void checkMaterial(const PelMaterial& m) {
     if (unsigned(m.specularModel) >= PEL_MODELS)
         invalidArgument("PelMaterial.specularModel is ", int(m.specularModel),
                         ", which is none of PelSpecularModel");
+    if (unsigned(m.scattering) >= PEL_SCATTERS)
+        invalidArgument("PelMaterial.scattering is ", int(m.scattering), ", which is none of PelScattering");
     if (m.thicknessTaps != 0 && m.thicknessTaps != 8 && m.thicknessTaps != 16 && m.thicknessTaps != 32)
         invalidArgument("PelMaterial.thicknessTaps is ", m.thicknessTaps, "; it must be 0, 8, 16 or 32");
 }
@@ -189,6 +191,7 @@ void checkCamera(const PelCamera& camera) {
 
 void checkOptions(const PelShaderOptions& options) {
     checkFinite("PelShaderOptions", "invalidColor", options.invalidColor, 3);
+    within("PelShaderOptions", {{"targetError", options.targetError, 0, 1}});
     if (options.tileLists > PEL_TILES_NO_LIST)
         invalidArgument("PelShaderOptions.tileLists is ", int(options.tileLists),
                         ", which is none of PelTileLists");

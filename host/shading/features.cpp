@@ -65,7 +65,7 @@ void checkLightFormats(const ShaderState& state, PelLightSlot slot) {
         const ImageView& view = light.images[slot];
         if (!view) continue;
         if (slot == PEL_LIGHT_WIDE_SHADOW && view.format != PEL_FORMAT_R32F &&
-            std::any_of(state.lights.begin(), state.lights.end(), filtersShadow))
+            std::ranges::any_of(state.lights, [&](const ShaderLight& l) { return filtersShadow(state, l); }))
             fail(PEL_ERROR_UNSUPPORTED, "a wide shadow image has format ", view.info().name,
                  "; beside a light whose wide shadow is made from its shadow map it needs R32F");
         if (!first) first = &view;
@@ -110,9 +110,21 @@ void checkMapFormats(const ShaderState& state) {
 
 }  // namespace
 
-bool filtersShadow(const ShaderLight& light) {
+bool makesIrradiance(const ShaderState& state) {
+    return !state.images[PEL_SLOT_IRRADIANCE] &&
+           std::ranges::any_of(state.materials, [](const auto& m) { return readsIrradiance(m.second); });
+}
+
+// By irradiance that has to be made, or by specular light beside it.
+static bool takesSharpShadows(const ShaderState& state) {
+    return makesIrradiance(state) || std::ranges::any_of(state.materials, [](const auto& m) {
+               return readsIrradiance(m.second) && m.second.params.specular > 0;
+           });
+}
+
+bool filtersShadow(const ShaderState& state, const ShaderLight& light) {
     return !light.images[PEL_LIGHT_WIDE_SHADOW] && light.images[PEL_LIGHT_SHADOW_MAP] &&
-           light.params.shadowFilterTexels > 0;
+           (light.params.shadowFilterTexels > 0 || takesSharpShadows(state));
 }
 
 uint32_t formFeatures(const PelLight& l) {
@@ -133,13 +145,15 @@ uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material)
     const auto& images = state.images;
     const PelMaterial& m = material.params;
     const auto some = [&](auto has) { return std::any_of(state.lights.begin(), state.lights.end(), has); };
-    const bool wide =
-        some([](const ShaderLight& l) { return l.images[PEL_LIGHT_WIDE_SHADOW] || filtersShadow(l); });
+    const bool wide = some(
+        [&](const ShaderLight& l) { return l.images[PEL_LIGHT_WIDE_SHADOW] || filtersShadow(state, l); });
     const bool map = some([](const ShaderLight& l) { return bool(l.images[PEL_LIGHT_SHADOW_MAP]); });
-    uint32_t needs = 0;
+    const bool tables = !readsIrradiance(material);
+    uint32_t needs = tables ? 0 : PEL_FEATURE_IRRADIANCE;
     if (!state.lights.empty()) {
-        if (material.curvatureLut && images[PEL_SLOT_CURVATURE]) needs |= PEL_FEATURE_DIRECT_SCATTER;
-        if (material.shadowLut && wide) needs |= PEL_FEATURE_SHADOW_LUT;
+        if (tables && material.curvatureLut && images[PEL_SLOT_CURVATURE])
+            needs |= PEL_FEATURE_DIRECT_SCATTER;
+        if (tables && material.shadowLut && wide) needs |= PEL_FEATURE_SHADOW_LUT;
         if (!black(m.deepScatterColor)) {
             if (images[PEL_SLOT_THICKNESS])
                 needs |= PEL_FEATURE_DEEP_SCATTER;
@@ -172,8 +186,8 @@ uint32_t deriveFeatures(const ShaderState& state) {
     uint32_t forms = 0;
     for (size_t i = 0; i < state.lights.size(); ++i) {
         const ShaderLight& light = state.lights[i];
-        filtered |= filtersShadow(light);
-        wide |= light.images[PEL_LIGHT_WIDE_SHADOW] || filtersShadow(light);
+        filtered |= filtersShadow(state, light);
+        wide |= light.images[PEL_LIGHT_WIDE_SHADOW] || filtersShadow(state, light);
         positional |= light.params.type != PEL_LIGHT_DIRECTIONAL;
         if (light.images[PEL_LIGHT_SHADOW_MAP]) {
             checkLightMap(light, uint32_t(i));
@@ -187,6 +201,7 @@ uint32_t deriveFeatures(const ShaderState& state) {
     if (state.ambientCube) features |= PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE;
     for (const auto& [id, material] : state.materials) features |= materialNeeds(state, material);
     if (features & (PEL_FEATURE_THICKNESS_TAPS | PEL_FEATURE_FILTER_SHADOW)) features |= forms;
+    if (makesIrradiance(state)) features |= PEL_FEATURE_MAKE_IRRADIANCE;
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
         if (isOutput(slot) && images[slot]) features |= PEL_FEATURE_OUTPUTS;
     // Blurred normals matter to scattered and ambient light; a host's image goes before ours, a map before
@@ -196,7 +211,8 @@ uint32_t deriveFeatures(const ShaderState& state) {
         for (const auto& [id, material] : state.materials) {
             if (!material.normalMap.empty())
                 features |= PEL_FEATURE_NORMAL_MAP;
-            else if (state.options.blurNormals)
+            else if (state.options.blurNormals &&
+                     (!readsIrradiance(material) || !black(material.params.deepScatterColor)))
                 features |= PEL_FEATURE_BLUR_NORMALS;
         }
     if (features & PEL_FEATURE_NORMAL_MAP) {

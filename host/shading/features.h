@@ -11,8 +11,14 @@ uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material)
 // Those of the forms that a light's shadow map has.
 uint32_t formFeatures(const PelLight& light);
 
-// Whether a light's wide shadow is made from its shadow map.
-bool filtersShadow(const ShaderLight& light);
+// Whether a light's shadow image is made from its shadow map.
+bool filtersShadow(const ShaderState& state, const ShaderLight& light);
+// Whether a material's diffuse light comes from irradiance per pixel.
+inline bool readsIrradiance(const ShaderMaterial& material) {
+    return material.params.scattering != PEL_SCATTERING_PREINTEGRATED;
+}
+// Whether that has to be made, which takes sharp shadows.
+bool makesIrradiance(const ShaderState& state);
 // Whether PelAmbient gives no light; there may be a cube map beside it.
 bool isBlack(const PelAmbient& ambient);
 

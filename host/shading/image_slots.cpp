@@ -28,11 +28,20 @@ PEL_EACH_LIGHT_TYPE(CHECK_TYPE)
 PEL_EACH_SHADOW_PROJECTION(CHECK_PROJECTION)
 PEL_EACH_SHADOW_CONTENT(CHECK_CONTENT)
 PEL_EACH_SPECULAR_MODEL(CHECK_MODEL)
+#define CHECK_SCATTERING(name, number, key) static_assert(PEL_SCATTERING_##name == number);
+PEL_EACH_SCATTERING(CHECK_SCATTERING)
 
 }  // namespace
 
 const ImageSlot& imageSlot(int slot) {
     return slots[slot];
+}
+
+const char* scatteringName(PelScattering scattering) {
+#define KEY(name, number, key) key,
+    constexpr const char* names[] = {PEL_EACH_SCATTERING(KEY)};
+#undef KEY
+    return names[scattering];
 }
 
 const char* lightSlotName(PelLightSlot slot) {

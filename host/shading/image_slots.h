@@ -28,5 +28,6 @@ inline bool isOutput(int slot) {
     return imageSlot(slot).role == SlotRole::OUTPUT;
 }
 const char* lightSlotName(PelLightSlot slot);
+const char* scatteringName(PelScattering scattering);  // "screen"
 
 }  // namespace pel

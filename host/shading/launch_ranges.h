@@ -6,7 +6,7 @@ namespace pel {
 
 // CPUs run one vector of pixels after another in each work-item; GPUs want a full work-group in a tile.
 uint32_t tileGroup(const Device& device);
-// PassWork-items that keep every unit busy to the end; each group takes a run of the tiles.
+// Work-items that keep every unit busy to the end; each group takes a run of the tiles.
 cl::Range tileRange(const Device& device, uint32_t tiles);
 
 // What a variant of a kernel knows of an image: its format, and whether its pixels are read one by one. Those

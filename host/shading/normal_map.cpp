@@ -3,9 +3,9 @@
 #include <cmath>
 #include <optional>
 
-#include "shading/blurred_normals.h"
 #include "shading/launch_ranges.h"
 #include "shading/passes.h"
+#include "shading/scratch_planes.h"
 #include "shading/shading_constants.h"
 
 namespace pel {
@@ -39,7 +39,7 @@ class NormalMap final : public Pass {
         if (alsoBlurs(plan))
             normals_.reset();
         else if (!normals_)
-            normals_.emplace();
+            normals_.emplace(PEL_SLOT_NORMAL_BLURRED);
         if (normals_) normals_->allocate(device, plan);
         ids_.clear();
         for (const auto& [id, material] : plan.state.materials)
@@ -63,8 +63,8 @@ class NormalMap final : public Pass {
         defines["PEL_FORMAT_UV_GRADIENT"] = code(PEL_SLOT_UV_GRADIENT);
         defines["PEL_FORMAT_TANGENT"] = code(PEL_SLOT_TANGENT);
         defines["PEL_TANGENT_COMPONENTS"] = text(tangent.info().components);
-        defines["PEL_TANGENT_UNORM"] =
-            text(int(tangent.info().kind == FormatKind::UNORM || tangent.info().kind == FormatKind::OCTAHEDRAL));
+        defines["PEL_TANGENT_UNORM"] = text(
+            int(tangent.info().kind == FormatKind::UNORM || tangent.info().kind == FormatKind::OCTAHEDRAL));
         defines["PEL_FORMAT_NORMAL_MAP"] = text(formatCode(plan.state.materials.at(ids_[0]).normalMap[0], 1));
         return {{{"shading/normal_map.cl"}, defines}};
     }
@@ -94,7 +94,7 @@ class NormalMap final : public Pass {
                                       PEL_SLOT_UV_GRADIENT, PEL_SLOT_TANGENT})
                 launch.arg(memoryOf(state.images[slot]));
             launch.arg(constants_[k].memory()).arg(memoryOf(state.materials.at(ids_[k]).normalMap[0]));
-            launch.arg(memoryOf(state.images[PEL_SLOT_NORMAL_BLURRED])).arg(cl_uint(work.plan.normalPlane));
+            launch.arg(memoryOf(state.images[PEL_SLOT_NORMAL_BLURRED])).arg(cl_uint(work.plan.scratchPlane));
             work.launch(launch, tileRange(work.device, work.tiles()));
         }
     }
@@ -102,7 +102,7 @@ class NormalMap final : public Pass {
   private:
     std::vector<uint32_t> ids_;  // of materials with a map
     std::vector<CachedUpload> constants_;
-    std::optional<BlurredNormals> normals_;  // empty: those of the blur
+    std::optional<ScratchPlanes> normals_;  // empty: those of the blur
 };
 
 }  // namespace

@@ -15,6 +15,7 @@ struct PassScratch {
     uint64_t pixelBytes = 0;  // per pixel of a band
     uint64_t guardBytes = 0;  // beside that
     uint32_t haloRows = 0;    // rows of tiles that have to be there before and after a band
+    bool wholeFrame = false;  // pixels need others that may be anywhere: there is one band
 };
 
 // Launches of one execution, or of one band of it.
@@ -80,10 +81,11 @@ class Pass {
 struct PassKind {
     bool (*needed)(const ShaderPlan& plan);
     std::unique_ptr<Pass> (*make)();
+    uint32_t methods = 0;  // bit i: materials may name the PelScattering i because of it
 };
 template <class P>
-constexpr PassKind passKind() {
-    return {P::needed, [] { return std::unique_ptr<Pass>(std::make_unique<P>()); }};
+constexpr PassKind passKind(uint32_t methods = 0) {
+    return {P::needed, [] { return std::unique_ptr<Pass>(std::make_unique<P>()); }, methods};
 }
 
 }  // namespace pel

@@ -12,6 +12,7 @@ void chooseBand(ShaderPlan& plan, const PassScratch& scratch, uint32_t mostRows)
     const ImageView& frame = plan.state.images[PEL_SLOT_RADIANCE];
     plan.scratch = scratch.pixelBytes > 0;
     plan.haloRows = scratch.haloRows;
+    plan.wholeFrame = scratch.wholeFrame;
     plan.bandRows = std::max(1u, plan.scratch ? std::min(plan.tileRows, mostRows) : plan.tileRows);
     const uint64_t budget = plan.state.options.scratchBudget,
                    rowBytes = uint64_t(frame.width) * scratch.pixelBytes;
@@ -19,7 +20,8 @@ void chooseBand(ShaderPlan& plan, const PassScratch& scratch, uint32_t mostRows)
     if (!budget || bytes() <= budget) return;
     const uint64_t halo = 2 * plan.haloRows,
                    fit = (budget - std::min(budget, scratch.guardBytes)) / rowBytes / PEL_TILE_HEIGHT;
-    plan.bandRows = uint32_t(std::clamp<uint64_t>(fit, halo + 1, plan.bandRows + halo) - halo);
+    if (!plan.wholeFrame)
+        plan.bandRows = uint32_t(std::clamp<uint64_t>(fit, halo + 1, plan.bandRows + halo) - halo);
     if (bytes() > budget)
         fail(PEL_ERROR_OUT_OF_MEMORY, "PelShaderOptions.scratchBudget is ", budget, " bytes; a frame of ",
              frame.width, " x ", frame.height, " with these passes needs at least ", bytes(), ", for ",
@@ -49,13 +51,15 @@ void PassList::allocate(const Ref<Device>& device, ShaderPlan& plan, uint32_t mo
         scratch.pixelBytes += one.pixelBytes;
         scratch.guardBytes += one.guardBytes;
         scratch.haloRows = std::max(scratch.haloRows, one.haloRows);
+        scratch.wholeFrame |= one.wholeFrame;
     }
     chooseBand(plan, scratch, mostRows);
     for (;;) {
         try {
             return each([&](Pass& pass) { pass.allocate(device, plan); });
         } catch (const Error& e) {  // less at a time may still be had
-            if (e.code() != PEL_ERROR_OUT_OF_MEMORY || !plan.scratch || plan.bandRows == 1) throw;
+            if (e.code() != PEL_ERROR_OUT_OF_MEMORY || !plan.scratch || plan.wholeFrame || plan.bandRows == 1)
+                throw;
             plan.bandRows = (plan.bandRows + 1) / 2;
         }
     }

@@ -5,6 +5,6 @@
 namespace pel {
 
 extern const PassKind ambientCubePass, classifyTilesPass, blurNormalsPass, normalMapPass, shadowBoundsPass,
-    wideShadowPass, shadePass;
+    wideShadowPass, irradiancePass, shadePass;
 
 }  // namespace pel

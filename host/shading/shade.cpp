@@ -1,11 +1,10 @@
 // The shading kernel, in the variants that the materials need: the last pass, which writes the caller's
 // images.
-#include "shading/image_slots.h"
+#include "shared/shade.h"
 #include "shading/launch_ranges.h"
 #include "shading/passes.h"
-#include "shading/scratch_image.h"
+#include "shading/scene_arguments.h"
 #include "shading/shade_variants.h"
-#include "shading/shading_constants.h"
 
 namespace pel {
 namespace {
@@ -43,19 +42,8 @@ class Shade final : public Pass {
   private:
     void enqueueVariant(PassWork& work, uint32_t variant, uint32_t part, uint32_t parts) const {
         const ShaderPlan& plan = work.plan;
-        const ShadingConstants& constants = work.constants;
         cl::Launch launch(program(variant), "shade");
-        launch.arg(constants.frameMemory())
-            .arg(constants.materials())
-            .arg(constants.lights())
-            .arg(constants.luts());
-        launch.arg(plan.tileLists).arg(plan.counters);
-        launch.arg(plan.ambientNodes);
-        for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
-            if (imageSlot(slot).role != SlotRole::PASS) launch.arg(memoryOf(plan.state.images[slot]));
-        const auto& lightBuffers = constants.lightBuffers();
-        for (size_t i = 0; i < PEL_LIGHT_BUFFERS; ++i)
-            launch.arg(i < lightBuffers.size() ? lightBuffers[i] : cl::Memory());
+        sceneArguments(launch, work);
         const uint32_t list = plan.variants.size() > 1 ? 1 + variant : 0;
         launch.arg(cl_uint(part)).arg(cl_uint(parts));
         launch.arg(cl_uint(plan.state.options.tileLists == PEL_TILES_NO_LIST ? PEL_EVERY_TILE : list));

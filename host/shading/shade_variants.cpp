@@ -19,13 +19,15 @@ static_assert(PEL_BIT_DIRECT_SCATTER == PEL_FEATURE_DIRECT_SCATTER && PEL_BIT_SH
               PEL_BIT_THICKNESS_TAPS == PEL_FEATURE_THICKNESS_TAPS &&
               PEL_BIT_SPECULAR == PEL_FEATURE_SPECULAR);
 // What the passes before it do does not make another variant of the shading kernel.
-constexpr uint32_t shadeFeatures = (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX |
-                                   PEL_FEATURE_AMBIENT_SCATTER | PEL_FEATURE_AMBIENT_CUBE |
-                                   PEL_FEATURE_SHADOW_CUBE | PEL_FEATURE_SHADOW_CASCADES;
+constexpr uint32_t shadeFeatures =
+    (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER |
+    PEL_FEATURE_AMBIENT_CUBE | PEL_FEATURE_IRRADIANCE | PEL_FEATURE_SHADOW_CUBE | PEL_FEATURE_SHADOW_CASCADES;
 // Those that a material asks for (materialNeeds); the others hold for all of a frame.
 constexpr uint32_t materialFeatures = PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SHADOW_LUT |
                                       PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS |
-                                      PEL_FEATURE_SPECULAR | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER;
+                                      PEL_FEATURE_SPECULAR | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER |
+                                      PEL_FEATURE_IRRADIANCE;
+static_assert(PEL_BIT_IRRADIANCE == PEL_FEATURE_IRRADIANCE);
 static_assert(PEL_BIT_GGX == PEL_FEATURE_GGX && PEL_BIT_AMBIENT_SCATTER == PEL_FEATURE_AMBIENT_SCATTER &&
               PEL_BIT_AMBIENT_CUBE == PEL_FEATURE_AMBIENT_CUBE &&
               PEL_BIT_SHADOW_CUBE == PEL_FEATURE_SHADOW_CUBE &&
@@ -53,8 +55,7 @@ bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
 
 }  // namespace
 
-cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t features) {
-    features &= shadeFeatures;
+cl::Defines sceneDefines(const Device& device, const ShaderState& state, uint32_t features) {
     if (!(features & PEL_BIT_THICKNESS_TAPS))
         features &= ~uint32_t(PEL_BIT_SHADOW_CUBE | PEL_BIT_SHADOW_CASCADES);
     if (state.options.accumulate) features |= PEL_BIT_ACCUMULATE;
@@ -72,9 +73,6 @@ cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t
     }
     if (!(features & PEL_BIT_THICKNESS_TAPS)) map = content = 0;
     cl::Defines defines{{"PEL_FEATURES", std::to_string(features)},
-                        {"PEL_SHADE_GROUP", std::to_string(tileGroup(device))},
-                        {"PEL_CLASSIFY_GROUP", std::to_string(classifyGroup(device))},
-                        {"PEL_CLASSIFY_RUN", std::to_string(classifyRun(device))},
                         {"PEL_FORMAT_WIDE_SHADOW", std::to_string(wide)},
                         {"PEL_FORMAT_SHADOW_MAP", std::to_string(map)},
                         {"PEL_SHADOW_CONTENT", std::to_string(content)}};
@@ -84,7 +82,14 @@ cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t
             slotIsRead(state, slot, features) ? formatCode(state.images[slot], device.info().mathWidth) : 0;
         defines[imageSlot(slot).define] = std::to_string(code);
     }
-    cl::ProgramKey key{{"shading/shade.cl"}, defines};
+    return defines;
+}
+
+cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t features) {
+    cl::ProgramKey key{{"shading/shade.cl"}, sceneDefines(device, state, features & shadeFeatures)};
+    key.defines["PEL_SHADE_GROUP"] = std::to_string(tileGroup(device));
+    key.defines["PEL_CLASSIFY_GROUP"] = std::to_string(classifyGroup(device));
+    key.defines["PEL_CLASSIFY_RUN"] = std::to_string(classifyRun(device));
     // In one program: a driver's cost per program is what a first frame waits for.
     if (state.images[PEL_SLOT_MATERIAL]) key.files.push_back("shading/classify_tiles.cl");
     return key;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "shading/features.h"
+#include "shading/image_slots.h"
 #include "shading/shade_variants.h"
 
 namespace pel {
@@ -18,7 +19,7 @@ ShaderPlan planOf(const ShaderState& state) {
     plan.tilesX = (frame.width + PEL_TILE_WIDTH - 1) / PEL_TILE_WIDTH;
     plan.tileRows = (frame.height + PEL_TILE_HEIGHT - 1) / PEL_TILE_HEIGHT;
     for (uint32_t i = 0; i < state.lights.size(); ++i)
-        if (filtersShadow(state.lights[i])) plan.filteredLights.push_back({i, cl::Memory()});
+        if (filtersShadow(state, state.lights[i])) plan.filteredLights.push_back({i, cl::Memory()});
     return plan;
 }
 
@@ -35,6 +36,7 @@ void Shader::commit() {
 // A plan and its passes' memory, in bands of at most this many rows of tiles.
 void Shader::allocate(uint32_t mostRows) {
     ShaderPlan plan = planOf(state_);
+    checkMethods();
     // Old images go before new ones are made: both together would not keep to a budget. After a failure
     // nothing is held.
     committed_ = false;
@@ -47,6 +49,17 @@ void Shader::allocate(uint32_t mostRows) {
     plan.counters = counters_;
     plan_ = std::move(plan);
     passes_ = std::move(passes);
+}
+
+// Each method of scattering that a material names has a pass.
+void Shader::checkMethods() const {
+    uint32_t methods = 1u << PEL_SCATTERING_NONE | 1u << PEL_SCATTERING_PREINTEGRATED;
+    for (const PassKind& kind : passKinds_) methods |= kind.methods;
+    for (const auto& [id, material] : state_.materials)
+        if (!(methods >> material.params.scattering & 1))
+            fail(PEL_ERROR_UNSUPPORTED, "PelMaterial.scattering of material ", id, " is ",
+                 scatteringName(material.params.scattering),
+                 ", which this build of the library does not have");
 }
 
 void Shader::finishPlan() {
@@ -68,7 +81,7 @@ void Shader::send() {
 // Less at a time. Returns false when that is not possible.
 bool Shader::halveBand() {
     const uint32_t rows = std::min(plan_.bandRows, plan_.tileRows);
-    if (!plan_.scratch || rows <= 1) return false;
+    if (!plan_.scratch || plan_.wholeFrame || rows <= 1) return false;
     device_->finish();
     committed_ = false;
     passes_.allocate(device_, plan_, rows / 2);
@@ -189,6 +202,9 @@ PelShaderStats Shader::stats() {
         stats.pixelsInvalid = counts[PEL_COUNT_INVALID];
         stats.pixelsWideShadow = counts[PEL_COUNT_WIDE_SHADOW];
         stats.pixelsShadowTexels = counts[PEL_COUNT_SHADOW_TEXELS];
+        stats.pixelsIrradiance = counts[PEL_COUNT_IRRADIANCE];
+        static_assert(std::size(decltype(stats.pixelsByScattering){}) == PEL_SCATTERS);
+        for (int i = 0; i < PEL_SCATTERS; ++i) stats.pixelsByScattering[i] = counts[PEL_COUNT_SCATTERING + i];
     }
     for (const cl::Event& event : events_) stats.deviceMilliseconds += eventMilliseconds(event);
     return stats;

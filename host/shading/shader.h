@@ -37,6 +37,7 @@ class Shader final : public Object {
   private:
     ~Shader() override = default;
     void allocate(uint32_t mostRows);
+    void checkMethods() const;
     void finishPlan();
     void send();
     void launchOnNothing();

@@ -4,7 +4,7 @@
 
 namespace pel {
 
-// TileRows of tiles, [begin, end).
+// Rows of tiles, [begin, end).
 struct TileRows {
     uint32_t begin, end;
 };
@@ -30,20 +30,20 @@ struct ShaderPlan {
 
     // Bands: rows of tiles that are shaded at a time, and that passes need before and after them.
     uint32_t bandRows = 0, haloRows = 0;
+    bool wholeFrame = false;
     bool scratch = false;  // whether a pass makes images, which hold the rows of a band and of its halo
 
-    cl::Memory counters;      // PEL_COUNTERS
-    cl::Memory tileLists;     // lists of tiles; none without a material image
-    cl::Memory ambientNodes;  // of the ambient cube
-    uint32_t normalPlane =
-        0;  // floats from one plane of PEL_SLOT_NORMAL_BLURRED to the next, where a pass makes it
+    cl::Memory counters;        // PEL_COUNTERS
+    cl::Memory tileLists;       // lists of tiles; none without a material image
+    cl::Memory ambientNodes;    // of the ambient cube
+    uint32_t scratchPlane = 0;  // floats from plane to plane of images that passes make (scratch_planes.h)
     std::vector<FilteredLight> filteredLights;
     std::vector<BoundedMap> boundedMaps;
     cl::Memory bounds;
 
-    // TileRows of pixels that images of passes hold.
+    // Rows of pixels that images of passes hold.
     uint32_t scratchRows() const;
-    // TileRows of tiles that tile lists have room for.
+    // Rows of tiles that tile lists have room for.
     uint32_t listRows() const;
 };
 

@@ -168,7 +168,8 @@ std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(
         to.roughness = m.roughness;
         to.f0 = m.f0;
         to.diffusionRadius = m.diffusionRadius;
-        to.shadowFilterWidth = m.shadowFilterWidth;
+        to.shadowFilterWidth = readsIrradiance(from) ? 0 : m.shadowFilterWidth;
+        to.scattering = m.scattering;
         to.specularModel = m.specularModel;
         to.roughness2 = m.roughness2;
         to.lobeMix = m.lobeMix;

@@ -1,64 +1,31 @@
 // The screen-space shading pass: section 6 of the mathematics for every pixel that has a material.
+// Where a material scatters on the screen or not at all, its diffuse light comes from the irradiance image.
 //
 // Inputs: the images of PelImageSlot and of each light in the caller's layout (shared/shade.h), materials, lights, the
 // tables in one buffer, and the lists of tiles from classify_tiles.cl, of which it takes one. Output: radiance, linear RGB.
 // One work-group takes one tile after another from the list; one work-item PEL_WIDTH pixels of a row at a time.
 // Variants: PEL_FEATURES (shared/features.h) and the format of each image, PEL_FORMAT_<SLOT>, 0 where there is none;
 // all wide shadows have one format, and all shadow maps one and the same PEL_SHADOW_CONTENT. Unused buffers are NULL.
-#include "lib/shading/ambient_cube.clh"
 #include "lib/shading/cube_thickness.clh"
 #include "lib/shading/deep_scatter.clh"
 #include "lib/shading/direct.clh"
 #include "lib/shading/ggx.clh"
 #include "lib/image/image.clh"
-#include "lib/shading/light.clh"
 #include "lib/shading/material_id.clh"
 #include "lib/shading/position.clh"
+#include "lib/shading/scene.clh"
 #include "lib/shading/shadow.clh"
 #include "lib/shading/specular.clh"
 #include "lib/shading/thickness.clh"
 #include "shared/shade.h"
 
-#define HAS(bit) ((PEL_FEATURES & (bit)) != 0)
-#define SKIPPING (!HAS(PEL_BIT_NO_SKIPPING))
 #define NEEDS_POSITION HAS(PEL_READ_POSITION)
-#define SPAN(slot) imageSpan(scene->images.slot, &frame->images[PEL_IMAGE_##slot], x, y)
-
-// The buffers of the images that this kernel reads or writes, by the names of their slots: of the list of slots, those of all roles
-// but PASS.
-#define TAKE_TARGET(X, name) X(name)
-#define TAKE_SHADE(X, name) X(name)
-#define TAKE_PASS(X, name)
-#define TAKE_OUTPUT(X, name) X(name)
-#define IMAGE_FIELD_(name) __global uchar* name;
-#define IMAGE_FIELD(name, number, role, content, components, key, words, bits) TAKE_##role(IMAGE_FIELD_, name)
-#define IMAGE_ARGUMENT_(name) __global uchar *name,
-#define IMAGE_ARGUMENT(name, number, role, content, components, key, words, bits) TAKE_##role(IMAGE_ARGUMENT_, name)
-#define IMAGE_VALUE_(name) name,
-#define IMAGE_VALUE(name, number, role, content, components, key, words, bits) TAKE_##role(IMAGE_VALUE_, name)
-#define LIGHT_ARGUMENT(i) __global uchar *light##i,
-#define LIGHT_VALUE(i) light##i,
-
-typedef struct Images {
-    PEL_EACH_IMAGE(IMAGE_FIELD)
-} Images;
-
-// The arguments of the kernel, as functions pass them on.
-typedef struct Scene {
-    __global const PelShadeFrame* frame;
-    __global const PelShadeMaterial* materials;
-    __global const PelShadeLight* lights;
-    __global const float4* luts;
-    Images images;
-    __global uchar* lightImages[PEL_LIGHT_BUFFERS];
-    __global const float* cube; // nodes of lib/shading/ambient_cube.clh
-} Scene;
 
 typedef struct Pixels {
     Vec3w position, toCamera;
     Vec3w ng, n, nb;
     NormalPair pair;
-    Vec3w albedo;
+    Vec3w albedo, irradiance;
     floatw curvature, occlusion, thickness, roughness, specular;
     floatw turnCosine, turnSine; // of the disk of taps; PEL_BIT_ROTATE_TAPS only
     maskw valid;                 // no input that every material reads is NaN or Inf
@@ -71,19 +38,6 @@ typedef struct Parts {
     floatw thickness;
     bool measured; // thickness is
 } Parts;
-
-typedef struct Counts {
-    uint of[PEL_COUNTERS];
-} Counts;
-
-// How many pixels of a material there were, and how many of them were invalid, is always counted; the rest on request.
-static inline bool isCounted(const uint which) {
-    return HAS(PEL_BIT_COUNT) || which == PEL_COUNT_SHADED || which == PEL_COUNT_INVALID;
-}
-
-static inline void count(Counts* counts, const uint which, maskw mask) {
-    if (isCounted(which)) counts->of[which] += countw(mask);
-}
 
 // Notes where an input of these features is no number. What ambient light and positional lights read, every material reads.
 static inline void spoil(Pixels* p, const uint features, maskw finite) {
@@ -124,6 +78,10 @@ static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
         p.albedo = loadColor(PEL_FORMAT_ALBEDO, SPAN(ALBEDO));
         p.valid &= finite3(p.albedo);
     }
+    if (HAS(PEL_READ_IRRADIANCE)) {
+        p.irradiance = loadColor(PEL_FORMAT_IRRADIANCE, SPAN(IRRADIANCE));
+        spoil(&p, PEL_READ_IRRADIANCE, finite3(p.irradiance));
+    }
 #define LOAD_SCALAR(slot, name)                              \
     if (HAS(PEL_READ_##slot) && PEL_FORMAT_##slot) {         \
         p.name = loadScalar(PEL_FORMAT_##slot, SPAN(slot));  \
@@ -136,13 +94,6 @@ static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
     LOAD_SCALAR(SPECULAR, specular)
 #undef LOAD_SCALAR
     return p;
-}
-
-// One light's wide shadow of the pixels; 1 where it has no image.
-static inline floatw loadWideShadow(const Scene* scene, __global const PelShadeLight* light, uint x, uint y) {
-    if (!HAS(PEL_BIT_SHADOW) || light->wideBuffer >= PEL_LIGHT_BUFFERS) return (floatw)(1.0f);
-    return loadScalar(PEL_FORMAT_WIDE_SHADOW,
-                      imageSpan(scene->lightImages[light->wideBuffer], &light->wide, x, y));
 }
 
 // Thickness along a light with cascades: the finest that holds the point with its taps; 0 outside of all.
@@ -193,19 +144,9 @@ static inline Vec3w ambientOfPixels(const Scene* scene, float3 blend, const Pixe
     return HAS(PEL_BIT_CUBE_ALONE) ? e : add3(e, ambientLight(frame->ambient, blend, p->n, p->nb));
 }
 
-// And on the far side, in all channels along one normal.
-static inline Vec3w ambientBehind(const Scene* scene, Vec3w behind) {
-    __global const PelShadeFrame* frame = scene->frame;
-    const Vec3w e = HAS(PEL_BIT_CUBE_ALONE) ? cubeIrradiance(scene->cube, frame->cubeSize, behind)
-                                            : vec3(irradiance(frame->ambient, 0, behind), irradiance(frame->ambient, 1, behind),
-                                                   irradiance(frame->ambient, 2, behind));
-    if (!HAS(PEL_BIT_AMBIENT_CUBE) || HAS(PEL_BIT_CUBE_ALONE)) return e;
-    return add3(e, cubeIrradiance(scene->cube, frame->cubeSize, behind));
-}
-
 // What one light adds to pixels of one material: diffuse and deep scatter are multiplied by albedo later.
 static inline void addLight(const Scene* scene, __global const PelShadeMaterial* material,
-                            __global const PelShadeLight* light, const Pixels* p, floatw w, maskw active,
+                            __global const PelShadeLight* light, const Pixels* p, floatw w, maskw active, bool scattered,
                             Vec3w* diffuse, Vec3w* specular, Parts* parts, Counts* counts) {
     const LightSample sample = sampleLight(light, p->position);
     const maskw reached = active & (sample.strength > 0.0f);
@@ -216,12 +157,14 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
     const Vec3w color = scale3(loadUniform3(light->color), sample.strength);
 
     Vec3w direct;
-    if (HAS(PEL_BIT_DIRECT_SCATTER) && material->curvature.layout.width) {
+    if (scattered) {
+        direct.x = direct.y = direct.z = 0.0f;
+    } else if (HAS(PEL_BIT_DIRECT_SCATTER) && material->curvature.layout.width) {
         direct = directScatter(scene->luts, material->curvature, vload3(0, material->normalBlend), p->pair, nl, bl, p->curvature);
     } else {
         direct.x = direct.y = direct.z = satw(nl);
     }
-    if (HAS(PEL_BIT_SHADOW)) {
+    if (HAS(PEL_BIT_SHADOW) && !scattered) {
         if (HAS(PEL_BIT_SHADOW_LUT) && material->shadow.layout.width && light->wideBuffer < PEL_LIGHT_BUFFERS) {
             // Where no light arrives the shadow does not matter.
             const maskw lit = reached & ((direct.x > 0.0f) | (direct.y > 0.0f) | (direct.z > 0.0f));
@@ -294,6 +237,9 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
 static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMaterial* material, Pixels* p, uint x,
                                   uint y, maskw active, Parts* parts, Vec3w* specularPart, Counts* counts) {
     __global const PelShadeFrame* frame = scene->frame;
+    // Whether its diffuse light is the image's: that of the lights and of the ambient, scattered already.
+    const bool scattered = HAS(PEL_BIT_IRRADIANCE) && material->scattering != PEL_SCATTER_PREINTEGRATED;
+    if (HAS(PEL_BIT_COUNT)) counts->of[PEL_COUNT_SCATTERING + material->scattering] += countw(active);
     // A pixel is spoiled by what its own material reads alone, so that its neighbours' materials do not matter.
     p->valid &= ((p->spoiled & material->needs) == 0) | notw(active);
     Vec3w diffuse = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = diffuse;
@@ -301,7 +247,10 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
     parts->thickness = 0.0f;
     parts->measured = PEL_FORMAT_THICKNESS != 0;
     if (PEL_FORMAT_THICKNESS && PEL_FORMAT_OUT_THICKNESS) parts->thickness = p->thickness;
-    if (HAS(PEL_BIT_AMBIENT)) {
+    if (scattered) {
+        diffuse = p->irradiance;
+        if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = diffuse;
+    } else if (HAS(PEL_BIT_AMBIENT)) {
         diffuse = ambientOfPixels(scene, vload3(0, material->normalBlend), p);
         if (PEL_FORMAT_AMBIENT_OCCLUSION) diffuse = scale3(diffuse, p->occlusion);
         if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = diffuse;
@@ -310,7 +259,7 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
         const floatw through = material->deepScatterAmbient * transmittance(p->thickness, material->deepScatterFalloff,
                                                                             material->thicknessCutoff);
         if (!SKIPPING || anyw(active & (through > 0.0f))) {
-            const Vec3w e = ambientBehind(scene, scale3(p->nb, (floatw)(-1.0f)));
+            const Vec3w e = ambientAlong(scene, scale3(p->nb, (floatw)(-1.0f)));
             Vec3w deep = scale3(mul3(loadUniform3(material->deepScatterColor), e), through);
             // A cube may hold NaN, which must not matter where nothing comes through.
             if (HAS(PEL_BIT_AMBIENT_CUBE)) deep = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), deep, through > 0.0f);
@@ -318,11 +267,12 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
             if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = deep;
         }
     }
-    for (uint i = 0; i < frame->lights; ++i) {
+    const bool lit = !SKIPPING || !scattered || PEL_FORMAT_OUT_THICKNESS || (material->needs & (PEL_BIT_SPECULAR | PEL_BIT_DEEP_SCATTER));
+    for (uint i = 0; lit && i < frame->lights; ++i) {
         __global const PelShadeLight* light = &scene->lights[i];
         const floatw w = loadWideShadow(scene, light, x, y);
         p->valid &= finitew(w);
-        addLight(scene, material, light, p, w, active & p->valid, &diffuse, &specular, parts, counts);
+        addLight(scene, material, light, p, w, active & p->valid, scattered, &diffuse, &specular, parts, counts);
     }
     const Vec3w albedo = PEL_FORMAT_ALBEDO ? p->albedo : loadUniform3(material->albedo);
     if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = mul3(parts->diffuse, albedo);
@@ -384,11 +334,8 @@ static inline void shadePixels(const Scene* scene, uint x, uint y, uintw id, mas
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade(
-    __global const PelShadeFrame* restrict frame, __global const PelShadeMaterial* restrict materials,
-    __global const PelShadeLight* restrict lights, __global const float4* restrict luts, __global const uint* restrict list,
-    __global uint* counters, __global const float* cube, PEL_EACH_IMAGE(IMAGE_ARGUMENT) PEL_EACH_LIGHT_BUFFER(LIGHT_ARGUMENT)
-    uint part, uint parts, uint which) {
-    const Scene scene = {frame, materials, lights, luts, {PEL_EACH_IMAGE(IMAGE_VALUE)}, {PEL_EACH_LIGHT_BUFFER(LIGHT_VALUE)}, cube};
+    SCENE_ARGUMENTS uint part, uint parts, uint which) {
+    const Scene scene = SCENE_VALUE;
     Counts counts = {{0}};
     const bool listed = PEL_FORMAT_MATERIAL && which != PEL_EVERY_TILE;
     const uint tiles = listed ? list[which] : frame->tiles;

@@ -1,5 +1,5 @@
-// The wide shadow image of one light from its shadow map (lib/shading/wide_filter.clh): how much of the light arrives at each pixel
-// of a material, filtered over the material's shadowFilterWidth.
+// The shadow image of one light from its shadow map: how much of the light arrives at each pixel of a material, filtered over the
+// material's shadowFilterWidth (lib/shading/wide_filter.clh), or over about a texel where that is 0 (lib/shading/sharp_shadow.clh).
 //
 // Inputs: positions or depth, geometric normals, ids, the shadow map. Output: R32F, 0 to 1; pixels that the light does not
 // reach get 1. Of a light with cascades the finest that holds a pixel's filter is read; of a cube, all faces under it
@@ -9,6 +9,7 @@
 #include "lib/shading/cube_filter.clh"
 #include "lib/shading/light.clh"
 #include "lib/shading/shadow_bounds.clh"
+#include "lib/shading/sharp_shadow.clh"
 #include "lib/shading/tiles.clh"
 #include "lib/shading/wide_filter.clh"
 #include "shared/shade_passes.h"
@@ -17,6 +18,11 @@
 #define PEL_FLATTEST_COSINE 0.2f
 // Smaller filters would see texels come and go.
 #define PEL_LEAST_TEXELS 2.0f
+// Of sharp shadows: the same cosine, and the tolerance in texels, for light from straight above by what a texel is wide and what the
+// normal may be off (a facet of 6 degrees to the surface). docs/shading.md, "Sharp shadows", has what others give.
+#define PEL_SHARP_FLATTEST 0.05f
+#define PEL_SHARP_OFFSET 0.1f
+#define PEL_SHARP_CURVE 0.1f
 
 // PEL_WIDTH filters, one field after another.
 typedef struct Filters {
@@ -24,24 +30,51 @@ typedef struct Filters {
     float radiusX[PEL_WIDTH], radiusY[PEL_WIDTH], cone[PEL_WIDTH], scale[PEL_WIDTH], step[PEL_WIDTH];
 } Filters;
 
-// Returns the lanes whose filter can be run; the others are behind the light, or no numbers.
-static inline maskw makeFilters(__global const PelWideShadow* light, Vec3w p, Vec3w n, floatw width, Filters* f) {
+// Where a point lies in a map, and the tangent plane there.
+typedef struct Receiver {
+    floatw u, v, z, w;
+    floatw zPerLength;       // depth per length along the light
+    floatw extentU, extentV; // length that u, v from 0 to 1 span
+    floatw texelU, texelV;   // length
+    floatw cosine;           // of the normal to the light
+    floatw x, y;             // texels from the middle of texel (0, 0)
+} Receiver;
+
+static inline Receiver receiverInMap(__global const PelWideShadow* light, Vec3w p, Vec3w n) {
+    Receiver r;
     __global const float* m = light->worldToShadow;
-    const floatw w = matrixRow(m, 3, p), inverse = 1.0f / w;
-    const floatw u = matrixRow(m, 0, p) * inverse, v = matrixRow(m, 1, p) * inverse, z = matrixRow(m, 2, p) * inverse;
+    r.w = matrixRow(m, 3, p);
+    const floatw inverse = 1.0f / r.w;
+    r.u = matrixRow(m, 0, p) * inverse, r.v = matrixRow(m, 1, p) * inverse, r.z = matrixRow(m, 2, p) * inverse;
     // Towards the light, of length 1 along the map's axis.
     Vec3w toLight = scale3(loadUniform3(light->forward), (floatw)(-1.0f));
-    floatw zPerLength = light->zPerLength, extentU = light->extent[0], extentV = light->extent[1];
+    r.zPerLength = light->zPerLength, r.extentU = light->extent[0], r.extentV = light->extent[1];
     if (light->projection == PEL_MAP_PERSPECTIVE) {
-        toLight = sub3(toLight, scale3(loadUniform3(light->right), (u - light->centre[0]) * extentU));
-        toLight = sub3(toLight, scale3(loadUniform3(light->down), (v - light->centre[1]) * extentV));
-        const floatw distance = 1.0f / fma(z, (floatw)(light->depthA), (floatw)(light->depthB));
-        zPerLength = -1.0f / (light->depthA * distance * distance);
-        extentU *= distance;
-        extentV *= distance;
+        toLight = sub3(toLight, scale3(loadUniform3(light->right), (r.u - light->centre[0]) * r.extentU));
+        toLight = sub3(toLight, scale3(loadUniform3(light->down), (r.v - light->centre[1]) * r.extentV));
+        const floatw distance = 1.0f / fma(r.z, (floatw)(light->depthA), (floatw)(light->depthB));
+        r.zPerLength = -1.0f / (light->depthA * distance * distance);
+        r.extentU *= distance;
+        r.extentV *= distance;
     }
-    const floatw texelU = extentU / (float)light->map.width, texelV = extentV / (float)light->map.height;
-    const floatw cosine = dot3(n, toLight), tilt = 1.0f / fmax(cosine, (floatw)(PEL_FLATTEST_COSINE));
+    r.texelU = r.extentU / (float)light->map.width, r.texelV = r.extentV / (float)light->map.height;
+    r.cosine = dot3(n, toLight);
+    r.x = fma(r.u, (floatw)((float)light->map.width), (floatw)(-0.5f));
+    r.y = fma(r.v, (floatw)((float)light->map.height), (floatw)(-0.5f));
+    return r;
+}
+
+// Whether depths round the receiver can be compared: it is before the light, near the map, and all is numbers.
+static inline maskw comparable(const Receiver* r, Vec3w p, Vec3w n) {
+    // Far outside of the map, where integers would overflow, everything is lit.
+    return (r->w > 0.0f) & finite3(p) & finite3(n) & (fabs(r->x) < 1e6f) & (fabs(r->y) < 1e6f) & finitew(r->zPerLength);
+}
+
+// Returns the lanes whose filter can be run; the others are behind the light, or no numbers.
+static inline maskw makeFilters(__global const PelWideShadow* light, Vec3w p, Vec3w n, floatw width, Filters* f) {
+    const Receiver r = receiverInMap(light, p, n);
+    const floatw zPerLength = r.zPerLength, texelU = r.texelU, texelV = r.texelV, cosine = r.cosine;
+    const floatw tilt = 1.0f / fmax(cosine, (floatw)(PEL_FLATTEST_COSINE));
     // A point that faces away is behind its own body: up to two filter widths of that are not its shadow; the curvature
     // table darkens it.
     const floatw body = 2.0f * width * max0w(-cosine);
@@ -49,12 +82,10 @@ static inline maskw makeFilters(__global const PelWideShadow* light, Vec3w p, Ve
     const floatw dzdy = dot3(n, loadUniform3(light->down)) * tilt * texelV * zPerLength;
     const floatw radiusX = fmax(0.5f * width / texelU, (floatw)(PEL_LEAST_TEXELS));
     const floatw radiusY = fmax(0.5f * width / texelV, (floatw)(PEL_LEAST_TEXELS));
-    const floatw x = fma(u, (floatw)((float)light->map.width), (floatw)(-0.5f));
-    const floatw y = fma(v, (floatw)((float)light->map.height), (floatw)(-0.5f));
     const floatw step = fmax(ceil(2.0f * fmax(radiusX, radiusY) / light->maxTexels), (floatw)(1.0f));
-    storew(x, 0, f->x);
-    storew(y, 0, f->y);
-    storew(z - (light->bias + body) * zPerLength, 0, f->z);
+    storew(r.x, 0, f->x);
+    storew(r.y, 0, f->y);
+    storew(r.z - (light->bias + body) * zPerLength, 0, f->z);
     storew(dzdx, 0, f->dzdx);
     storew(dzdy, 0, f->dzdy);
     storew(radiusX, 0, f->radiusX);
@@ -69,10 +100,35 @@ static inline maskw makeFilters(__global const PelWideShadow* light, Vec3w p, Ve
     storew(step, 0, f->step);
     maskw held = -1;
     if ((PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) && light->cascades)
-        held = mapHolds(vec3(u, v, z), 0.5f * width / extentU, 0.5f * width / extentV);
-    // Far outside of the map, where integers would overflow, everything is lit.
-    return held & (w > 0.0f) & finite3(p) & finite3(n) & (fabs(x) < 1e6f) & (fabs(y) < 1e6f) & (radiusX < 1e6f) & (radiusY < 1e6f) &
-           finitew(dzdx) & finitew(dzdy) & finitew(zPerLength);
+        held = mapHolds(vec3(r.u, r.v, r.z), 0.5f * width / r.extentU, 0.5f * width / r.extentV);
+    return held & comparable(&r, p, n) & (radiusX < 1e6f) & (radiusY < 1e6f) & finitew(dzdx) & finitew(dzdy);
+}
+
+// How far before the tangent plane, in lengths along the light, another depth may be and still be the receiver's own. What the
+// surface is off its plane inside of the footprint, a mesh's facets among it, grows as texels do, and the flatter the light comes in.
+static inline floatw sharpTolerance(floatw texel, floatw tilt) {
+    return texel * tilt * fma(tilt, (floatw)(PEL_SHARP_CURVE), (floatw)(PEL_SHARP_OFFSET));
+}
+
+// The sharp shadow of the lanes of `left` that this map holds; those are taken out of `left`.
+static inline floatw sharpInMap(__global const PelWideShadow* light, __global const uchar* map, Vec3w p, Vec3w n, float perExponent,
+                                floatw shown, maskw* left) {
+    const Receiver r = receiverInMap(light, p, n);
+    maskw held = *left & comparable(&r, p, n);
+    if ((PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) && light->cascades)
+        held &= mapHolds(vec3(r.u, r.v, r.z), 1.5f * r.texelU / r.extentU, 1.5f * r.texelV / r.extentV);
+    if (!anyw(held)) return shown;
+    *left &= notw(held);
+    const floatw tilt = 1.0f / fmax(r.cosine, (floatw)(PEL_SHARP_FLATTEST));
+    SharpReceiver s;
+    s.x = r.x, s.y = r.y, s.z = r.z;
+    s.dzdx = dot3(n, loadUniform3(light->right)) * tilt * r.texelU * r.zPerLength;
+    s.dzdy = dot3(n, loadUniform3(light->down)) * tilt * r.texelV * r.zPerLength;
+    // A float's last bits, of the largest depths that stand beside it, are no shadow.
+    const floatw least = (fabs(r.z) + 1.0f) * 4e-7f;
+    const floatw tolerance = fmax(sharpTolerance(fmax(r.texelU, r.texelV), tilt) * fabs(r.zPerLength), least);
+    s.perTolerance = copysign(1.0f / tolerance, r.zPerLength);
+    return selectw(shown, sharpShadow(PEL_FORMAT_SHADOW_MAP, map, &light->map, &s, perExponent, held), held);
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_shadow(
@@ -100,27 +156,40 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
             const Vec3w n = loadNormal(PEL_FORMAT_NORMAL, imageSpan(normal, &frame->images[PEL_NORMAL_SLOT], first, y));
             // Ids without a material may lie beyond the table.
 #define PEL_WIDTH_(k, s) (active s ? materials[id s].shadowFilterWidth : 1.0f)
-            const floatw width = PEL_LANES(PEL_WIDTH_);
+            floatw width = PEL_LANES(PEL_WIDTH_);
 #undef PEL_WIDTH_
             maskw left = active;
             if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING)) left &= sampleLight(&lights[lightIndex], p).strength > 0.0f;
+            maskw sharp = left & (width == 0.0f);
             float shown[PEL_WIDTH];
             storew((floatw)(1.0f), 0, shown);
+            if (!(wideShadow->maxTexels > 0.0f)) left = sharp; // only sharp shadows are made of this light
             if ((PEL_FEATURES & PEL_BIT_SHADOW_CUBE) && wideShadow->projection >= PEL_MAP_CUBE) {
                 CubeFilters f;
                 __global const uchar* map = firstTexel(map0, &wideShadow->map);
                 __global const float* m = wideShadow->worldToShadow;
-                left &= makeCubeFilters(wideShadow, cubePosition(m, p), cubeTurned(m, n), width, PEL_FLATTEST_COSINE, &f);
+                // Of cubes the smallest disk, two texels in radius, is the sharp shadow.
+                const Vec3w q = cubePosition(m, p);
+                width = selectw(width, sqrt(dot3(q, q)) * (8.0f / (float)wideShadow->map.width), sharp);
+                left &= makeCubeFilters(wideShadow, q, cubeTurned(m, n), width, PEL_FLATTEST_COSINE, &f);
                 if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(left), texels += countw(left);
 #define PEL_FILTER_(k, s) \
     if (left s) shown[k] = wideShadowInCube(PEL_FORMAT_SHADOW_MAP, map, wideShadow, &f, k, &content);
                 PEL_EACH_LANE(PEL_FILTER_)
 #undef PEL_FILTER_
             } else {
-                for (uint cascade = 0; cascade < maps && anyw(left); ++cascade) {
+                left &= notw(sharp);
+                for (uint cascade = 0; cascade < maps && anyw(left | sharp); ++cascade) {
                     Filters f;
                     __global const PelWideShadow* light = wideShadow + cascade;
-                    __global const uchar* map = cascade == 0 ? map0 : cascade == 1 ? map1 : cascade == 2 ? map2 : map3;
+                    __global uchar* map = cascade == 0 ? map0 : cascade == 1 ? map1 : cascade == 2 ? map2 : map3;
+                    if (anyw(sharp)) {
+                        const maskw before = sharp;
+                        storew(sharpInMap(light, firstTexel(map, &light->map), p, n, content.perExponent, loadw(0, shown), &sharp), 0,
+                               shown);
+                        if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(before & notw(sharp)), texels += countw(before & notw(sharp));
+                        if (!anyw(left)) continue;
+                    }
                     const maskw held = makeFilters(light, p, n, width, &f) & left;
                     if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(held);
                     left &= notw(held);

@@ -24,15 +24,26 @@
 #define PEL_EACH_SPECULAR_MODEL(X)     \
     X(KSK, 0, "ksk")                   \
     X(GGX, 1, "ggx")
+// PelScattering
+#define PEL_EACH_SCATTERING(X)         \
+    X(NONE, 0, "none")                 \
+    X(PREINTEGRATED, 1, "preintegrated") \
+    X(SEPARABLE, 2, "separable")       \
+    X(SCREEN, 3, "screen")             \
+    X(LIGHT, 4, "light")               \
+    X(TEXTURE, 5, "texture")           \
+    X(AUTO, 6, "auto")
 // clang-format on
 
 #define PEL_NUMBER_TYPE_(name, number, key) PEL_TYPE_##name = number,
 #define PEL_NUMBER_MAP_(name, number, key) PEL_MAP_##name = number,
 #define PEL_NUMBER_CONTENT_(name, number, key) PEL_CONTENT_##name = number,
 #define PEL_NUMBER_MODEL_(name, number, key) PEL_MODEL_##name = number,
+#define PEL_NUMBER_SCATTER_(name, number, key) PEL_SCATTER_##name = number,
 enum { PEL_EACH_LIGHT_TYPE(PEL_NUMBER_TYPE_) PEL_TYPES };
 enum { PEL_EACH_SHADOW_PROJECTION(PEL_NUMBER_MAP_) PEL_MAPS };
 enum { PEL_EACH_SHADOW_CONTENT(PEL_NUMBER_CONTENT_) PEL_CONTENTS };
 enum { PEL_EACH_SPECULAR_MODEL(PEL_NUMBER_MODEL_) PEL_MODELS };
+enum { PEL_EACH_SCATTERING(PEL_NUMBER_SCATTER_) PEL_SCATTERS };
 
 #endif

@@ -35,7 +35,8 @@
     X(OUT_DIFFUSE, 16, OUTPUT, COLOR_OUTPUT, 0, "diffuse", "diffuse output", PEL_BITS_ALL_)                                    \
     X(OUT_DEEP_SCATTER, 17, OUTPUT, COLOR_OUTPUT, 0, "deep_scatter", "deep scatter output", PEL_BITS_ALL_)                     \
     X(OUT_SPECULAR, 18, OUTPUT, COLOR_OUTPUT, 0, "specular", "specular output", PEL_BITS_ALL_)                                 \
-    X(OUT_THICKNESS, 19, OUTPUT, SCALAR_OUTPUT, 0, "thickness", "thickness output", PEL_BITS_ALL_)
+    X(OUT_THICKNESS, 19, OUTPUT, SCALAR_OUTPUT, 0, "thickness", "thickness output", PEL_BITS_ALL_)                                \
+    X(IRRADIANCE, 20, SHADE, COLOR, 3, "irradiance", "irradiance", PEL_BIT_IRRADIANCE)
 // clang-format on
 
 // PEL_IMAGE_<NAME>, their count, and PEL_READ_<NAME>: the bits.

@@ -76,13 +76,14 @@ typedef struct PelShadeMaterial {
     float roughness;
     float f0;
     float diffusionRadius;   // length
-    float shadowFilterWidth; // length
+    float shadowFilterWidth; // length; 0: a sharp shadow
     PelUint32 hasNormalMap;
     PelUint32 specularModel; // PelSpecularModel
     float roughness2;
     float lobeMix;
     float deepScatterAmbient;
     PelUint32 needs;    // PEL_BIT_...: features that this material asks for
+    PelUint32 scattering; // PelScattering
     PelUint32 variants; // bit i: variant i of the shading kernel has all of them
 } PelShadeMaterial;
 
@@ -128,12 +129,14 @@ typedef struct PelShadeLight {
 #define PEL_COUNT_INVALID 4
 #define PEL_COUNT_WIDE_SHADOW 5
 #define PEL_COUNT_SHADOW_TEXELS 6
-#define PEL_COUNTERS 7
+#define PEL_COUNT_IRRADIANCE 7
+#define PEL_COUNT_SCATTERING 8 // and on: one for each PelScattering
+#define PEL_COUNTERS (PEL_COUNT_SCATTERING + PEL_SCATTERS)
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelShadeImage) == 32 && sizeof(PelShadeLut) == 40);
 static_assert(sizeof(PelShadeFrame) == 4 * (8 + 8 + 3 + 16 + 27 + 3 + 1) + PEL_IMAGE_SLOTS * 32);
-static_assert(sizeof(PelShadeMaterial) == 4 * 28 + 2 * sizeof(PelShadeLut));
+static_assert(sizeof(PelShadeMaterial) == 4 * 29 + 2 * sizeof(PelShadeLut));
 static_assert(sizeof(PelShadeCascade) == 4 * (16 + 4) + 32);
 static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64 + 8 + PEL_CASCADES * sizeof(PelShadeCascade));
 #endif

@@ -236,7 +236,7 @@ inline void setFrame(const pellucid::Device& device, pellucid::Shader& shader, c
         shader.setAmbientCube(
             pellucid::imageDesc(pellucid::Buffer(device, texels), PEL_FORMAT_RGB32F, size, 6 * size));
     }
-    for (int slot = 1; slot < PEL_SLOT_OUT_DIFFUSE; ++slot)
+    for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot)
         if (const Image& image = f.slots[slot]; !image.values.empty())
             shader.set(PelImageSlot(slot),
                        pellucid::imageDesc(upload(device, image), floatFormats[image.components], f.width,
@@ -323,9 +323,9 @@ inline reference::PixelLight truthLight(const Frame& f, const PelMaterial& mater
             map,
             reference::shadowCoordinates(m, f.slots[PEL_SLOT_POSITION].vec(i), f.slots[normal].vec(i),
                                          material.deepScatterNormalOffset),
-            f.options.rotateTaps
-                ? reference::turnedTaps(diskTaps(material.thicknessTaps), uint32_t(i % f.width), uint32_t(i / f.width))
-                : diskTaps(material.thicknessTaps),
+            f.options.rotateTaps ? reference::turnedTaps(diskTaps(material.thicknessTaps),
+                                                         uint32_t(i % f.width), uint32_t(i / f.width))
+                                 : diskTaps(material.thicknessTaps),
             material.thicknessFilterRadius, decoding, reference::MapFilter::bilinear);
     }
     return out;
@@ -364,8 +364,10 @@ inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
     // Unit to double precision: 6e-8 of length would be seen as an angle by sharp lobes.
     const auto unit = [&](PelImageSlot slot) { return reference::normalized(s[slot].vec(i)); };
     pixel.shading = unit(PEL_SLOT_NORMAL_SHADING);
-    pixel.geometric = s[PEL_SLOT_NORMAL_GEOMETRIC].values.empty() ? pixel.shading : unit(PEL_SLOT_NORMAL_GEOMETRIC);
-    pixel.blurred = s[PEL_SLOT_NORMAL_BLURRED].values.empty() ? pixel.geometric : unit(PEL_SLOT_NORMAL_BLURRED);
+    pixel.geometric =
+        s[PEL_SLOT_NORMAL_GEOMETRIC].values.empty() ? pixel.shading : unit(PEL_SLOT_NORMAL_GEOMETRIC);
+    pixel.blurred =
+        s[PEL_SLOT_NORMAL_BLURRED].values.empty() ? pixel.geometric : unit(PEL_SLOT_NORMAL_BLURRED);
     if (material.specular > 0) {
         const Vec3 eye{f.camera.position[0], f.camera.position[1], f.camera.position[2]};
         pixel.toViewer = reference::normalized(eye - s[PEL_SLOT_POSITION].vec(i));

@@ -611,7 +611,10 @@ typedef enum PelImageSlot {
     PEL_SLOT_OUT_SPECULAR = 18,
     PEL_SLOT_OUT_THICKNESS = 19,    /* length, one component: of the thickness image, or along the first light with a shadow
                                        map; 0 where neither is */
-    PEL_SLOT_COUNT = 20
+    PEL_SLOT_IRRADIANCE = 20,       /* RGB, irradiance / pi: all lights and the ambient, shadows sharp; no specular, no albedo. Read
+                                       by materials that do not scatter by tables (PelMaterial.scattering); not set: made from
+                                       lights, PEL_LIGHT_WIDE_SHADOW or shadow maps, and the ambient */
+    PEL_SLOT_COUNT = 21
 } PelImageSlot;
 
 /* The images of one light. */
@@ -689,6 +692,17 @@ typedef enum PelSpecularModel {
     PEL_SPECULAR_GGX = 1  /* two lobes of GGX of widths roughness and roughness2, mixed by lobeMix */
 } PelSpecularModel;
 
+/* How diffuse light spreads under the surface. A method that this build does not have is an error at commit. */
+typedef enum PelScattering {
+    PEL_SCATTERING_NONE = 0,          /* not at all: Lambert, with a sharp shadow */
+    PEL_SCATTERING_PREINTEGRATED = 1, /* by the tables, from curvature, blurred normals and wide shadows [Penner 2011] */
+    PEL_SCATTERING_SEPARABLE = 2,     /* two filters across the screen, from irradiance per pixel [Jimenez et al. 2015] */
+    PEL_SCATTERING_SCREEN = 3,        /* the profile summed over the screen, from irradiance per pixel */
+    PEL_SCATTERING_LIGHT = 4,         /* the profile summed over the light's shadow map */
+    PEL_SCATTERING_TEXTURE = 5,       /* irradiance in texture space [d'Eon, Luebke 2007] */
+    PEL_SCATTERING_AUTO = 6           /* what the inputs allow, with the least work for PelShaderOptions.targetError */
+} PelScattering;
+
 typedef struct PelMaterial {
     uint32_t structSize;
     float albedo[3];       /* used when PEL_SLOT_ALBEDO is not set */
@@ -712,6 +726,8 @@ typedef struct PelMaterial {
     float deepScatterAmbient;      /* share of ambient light that comes through from behind: times deepScatterColor and the
                                       irradiance on -Nb. Needs PEL_SLOT_THICKNESS, measured along the
                                       inward normal: off without it, also with shadow maps; 0 */
+    PelScattering scattering;      /* PEL_SCATTERING_PREINTEGRATED. All but it take shadows from maps sharp: compared about a
+                                      texel wide, whatever the filter's fields of PelLight say */
 } PelMaterial;
 
 /* Light from everywhere: E(n) = constant + sum of sh[i] * basis_i(n) over the 9 orthonormal real spherical harmonics of
@@ -745,6 +761,8 @@ typedef enum PelFeature {
     PEL_FEATURE_AMBIENT_SCATTER = 1 << 11, /* deepScatterAmbient, ambient light and a thickness image */
     PEL_FEATURE_OUTPUTS = 1 << 12,      /* an output beside radiance */
     PEL_FEATURE_AMBIENT_CUBE = 1 << 13, /* ambient light from a cube map */
+    PEL_FEATURE_IRRADIANCE = 1 << 14,   /* a material whose diffuse light comes from irradiance per pixel */
+    PEL_FEATURE_MAKE_IRRADIANCE = 1 << 15, /* which is made here: there is no PEL_SLOT_IRRADIANCE */
     PEL_FEATURE_SHADOW_CUBE = 1 << 24,     /* a shadow map of a cube, for thickness or a wide shadow */
     PEL_FEATURE_SHADOW_CASCADES = 1 << 25, /* cascades, likewise */
     PEL_FEATURE_SHADOW_EXPONENTIAL = 1 << 26, /* PEL_SHADOW_CONTENT_EXPONENTIAL, likewise */
@@ -776,6 +794,8 @@ typedef struct PelShaderStats {
     uint64_t tilesPartial;     /* shaded by a variant with fewer features than the shader has */
     uint64_t pixelsShadowTexels; /* of those, whose filter read texels: of the others the bounds of the map's blocks said that they
                                     are lit or in shadow */
+    uint64_t pixelsIrradiance;      /* whose irradiance was made */
+    uint64_t pixelsByScattering[7]; /* shaded, by PelMaterial.scattering */
 } PelShaderStats;
 
 /* How the shading kernel finds its tiles. The same bits come out of each. */
@@ -800,6 +820,8 @@ typedef struct PelShaderOptions {
                                  frames are shaded in bands of rows, with the same bits as a result. 0: no limit, and bands
                                  only when memory runs out */
     PelTileLists tileLists;
+    float targetError;        /* of methods that leave out what changes little: how much of white their result may be off, 0 to 1;
+                                 0.002 */
 } PelShaderOptions;
 
 PEL_API PelError pelShaderCreate(PelDevice device, PelShader* shader);

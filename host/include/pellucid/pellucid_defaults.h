@@ -98,6 +98,7 @@ static inline PelMaterial pelMaterialDefaults(void) {
     s.uvScale = 1.0f;
     s.roughness2 = 0.15f;
     s.lobeMix = 0.15f;
+    s.scattering = PEL_SCATTERING_PREINTEGRATED;
     return s;
 }
 static inline PelAmbient pelAmbientDefaults(void) { PEL_ZEROED_(PelAmbient, s); return s; }
@@ -108,7 +109,11 @@ static inline PelCamera pelCameraDefaults(void) {
     return s;
 }
 static inline PelShaderStats pelShaderStatsDefaults(void) { PEL_ZEROED_(PelShaderStats, s); return s; }
-static inline PelShaderOptions pelShaderOptionsDefaults(void) { PEL_ZEROED_(PelShaderOptions, s); return s; }
+static inline PelShaderOptions pelShaderOptionsDefaults(void) {
+    PEL_ZEROED_(PelShaderOptions, s);
+    s.targetError = 2e-3f;
+    return s;
+}
 static inline PelPrefill pelPrefillDefaults(void) { PEL_ZEROED_(PelPrefill, s); return s; }
 /* clang-format on */
 

@@ -74,7 +74,8 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
         if (!m.normalMap.empty())
             for (const auto& [slot, key] : {std::pair{PEL_SLOT_UV, "uv"}, {PEL_SLOT_TANGENT, "tangent"}})
                 if (scene.channels[slot].empty())
-                    channels.fail(key, "is missing; the normal map of material " + std::to_string(m.id) + " needs it");
+                    channels.fail(
+                        key, "is missing; the normal map of material " + std::to_string(m.id) + " needs it");
         for (PelLutKind kind : {PEL_LUT_CURVATURE, PEL_LUT_SHADOW}) {
             const std::string& name = kind == PEL_LUT_CURVATURE ? m.curvatureLut : m.shadowLut;
             if (name.empty() || scene.lut(name, kind)) continue;
@@ -111,6 +112,7 @@ SceneFile readScene(const std::string& path) {
     if (version == 0) reader.fail("version", "is missing; this program writes and reads version 1");
     reader.integer("blur_normals", scene.blurNormals, 0, 1);
     reader.integer("rotate_taps", scene.rotateTaps, 0, 1);
+    reader.number("target_error", scene.targetError, Range::ZeroToOne);
     reader.table("camera", true, [&](TomlReader& r) { cameraKeys(r, scene.camera); });
     reader.table("ambient", true, [&](TomlReader& r) { ambientKeys(r, scene); });
     reader.table("outputs", true, [&](TomlReader& r) { outputFileKeys(r, scene); });

@@ -18,6 +18,7 @@ constexpr std::string_view lightTypes[] = {PEL_EACH_LIGHT_TYPE(PELLUCID_KEY)};
 constexpr std::string_view shadowProjections[] = {PEL_EACH_SHADOW_PROJECTION(PELLUCID_KEY)};
 constexpr std::string_view shadowContents[] = {PEL_EACH_SHADOW_CONTENT(PELLUCID_KEY)};
 constexpr std::string_view specularModels[] = {PEL_EACH_SPECULAR_MODEL(PELLUCID_KEY)};
+constexpr std::string_view scatterings[] = {PEL_EACH_SCATTERING(PELLUCID_KEY)};
 #undef PELLUCID_KEY
 constexpr std::string_view cascadeKeys[] = {"cascade_1", "cascade_2", "cascade_3"};
 constexpr std::string_view curvatureForms[] = {"arc", "ring", "half-ring", "sphere"};  // PelCurvatureForm
@@ -138,6 +139,7 @@ void materialKeys(Visitor& v, Material& m) {
     v.number("roughness2", m.material.roughness2, Range::Positive);
     v.number("lobe_mix", m.material.lobeMix, Range::ZeroToOne);
     v.number("deep_scatter_ambient", m.material.deepScatterAmbient, Range::NotNegative);
+    v.choice("scattering", m.material.scattering, scatterings);
 }
 
 template <class Visitor, class Lut>

@@ -83,6 +83,8 @@ void writeScene(const std::string& path, const SceneFile& scene) {
         "# A scene of `pellucid shade`. Lengths are in the unit of the G-buffer's positions.\nversion = 1\n";
     if (scene.blurNormals) TomlWriter(out).integer("blur_normals", scene.blurNormals, 0, 1);
     if (scene.rotateTaps) TomlWriter(out).integer("rotate_taps", scene.rotateTaps, 0, 1);
+    if (scene.targetError != pelShaderOptionsDefaults().targetError)
+        TomlWriter(out).number("target_error", scene.targetError, Range::ZeroToOne);
     const auto table = [&](const std::string& header, const std::string& name, auto&& function) {
         out += "\n" + header + "\n";
         TomlWriter writer(out, name);

@@ -1,0 +1,50 @@
+// Irradiance per pixel of the materials whose diffuse light comes from it, where the caller gave none. What
+// scatters it runs between this pass and the shading kernel: it reads PEL_SLOT_IRRADIANCE, and puts its own
+// result into that slot of the plan.
+#include "shading/launch_ranges.h"
+#include "shading/passes.h"
+#include "shading/scene_arguments.h"
+#include "shading/scratch_planes.h"
+#include "shading/shade_variants.h"
+#include "shared/features.h"
+
+namespace pel {
+namespace {
+
+class Irradiance final : public Pass {
+  public:
+    static bool needed(const ShaderPlan& plan) { return plan.features & PEL_FEATURE_MAKE_IRRADIANCE; }
+
+    PassScratch scratch(const ShaderPlan&) const override { return {3 * sizeof(float), 3 * planeGuardBytes}; }
+    void allocate(const Ref<Device>& device, ShaderPlan& plan) override { planes_.allocate(device, plan); }
+    size_t bytes() const override { return planes_.bytes(); }
+
+    std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
+        cl::Defines defines = sceneDefines(
+            device, plan.state,
+            plan.features & (PEL_FEATURE_SHADOW | PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE));
+        defines["PEL_PASS_GROUP"] = text(tileGroup(device));
+        return {{{"shading/irradiance.cl"}, defines}};
+    }
+
+    void moveScratch(Device& device, const ShaderPlan& plan, const ShadingConstants& constants,
+                     uint32_t row) override {
+        planes_.move(device, plan, constants, row);
+    }
+
+    void enqueue(PassWork& work) override {
+        cl::Launch launch(program(), "make_irradiance");
+        sceneArguments(launch, work);
+        launch.arg(planes_.memory()).arg(cl_uint(work.plan.scratchPlane));
+        work.launch(launch, tileRange(work.device, work.tiles()));
+    }
+
+  private:
+    ScratchPlanes planes_{PEL_SLOT_IRRADIANCE};
+};
+
+}  // namespace
+
+constinit const PassKind irradiancePass = passKind<Irradiance>();
+
+}  // namespace pel

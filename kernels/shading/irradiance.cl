@@ -1,0 +1,58 @@
+// Light that arrives at each pixel, before it scatters: irradiance / pi of all lights, shadows sharp, and of the ambient light
+// (section 6 of the mathematics without a profile); no specular, no albedo.
+//
+// Inputs: shading normals, positions or depth where a light has a position, ambient occlusion, shadows per pixel and light, ids.
+// Output: planes of RGB, NaN where an input is. Pixels of materials that scatter by tables (PEL_SCATTER_PREINTEGRATED) are left
+// as they are. One work-group: a run of tiles; one work-item: PEL_WIDTH pixels of a row at a time. Variants: as shade.cl.
+#include "lib/image/planes.clh"
+#include "lib/shading/scene.clh"
+#include "lib/shading/tiles.clh"
+
+// At PEL_WIDTH pixels from (x, y) on. Where no light arrives its shadow does not matter.
+static inline Vec3w arrivingLight(const Scene* scene, uint x, uint y) {
+    __global const PelShadeFrame* frame = scene->frame;
+    const Vec3w n = loadNormal(PEL_FORMAT_NORMAL_SHADING, SPAN(NORMAL_SHADING));
+    Vec3w p = n;
+    if (HAS(PEL_BIT_POSITIONAL)) p = loadPosition(frame, scene->images.POSITION, scene->images.DEPTH, x, y);
+    maskw valid = finite3(n) & finite3(p);
+    Vec3w e = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    if (HAS(PEL_BIT_AMBIENT)) {
+        e = ambientAlong(scene, n);
+        if (PEL_FORMAT_AMBIENT_OCCLUSION) e = scale3(e, loadScalar(PEL_FORMAT_AMBIENT_OCCLUSION, SPAN(AMBIENT_OCCLUSION)));
+    }
+    for (uint i = 0; i < frame->lights; ++i) {
+        __global const PelShadeLight* light = &scene->lights[i];
+        const LightSample sample = sampleLight(light, p);
+        const floatw w = loadWideShadow(scene, light, x, y);
+        valid &= finitew(w);
+        e = add3(e, scale3(loadUniform3(light->color), sample.strength * satw(dot3(n, sample.direction)) * satw(w)));
+    }
+    const floatw none = NAN;
+    return select3(vec3(none, none, none), e, valid);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void make_irradiance(
+    SCENE_ARGUMENTS __global float* out, uint plane) {
+    const Scene scene = SCENE_VALUE;
+    const TileRun run = tileRun(frame, list);
+    uint lit = 0;
+    for (uint i = run.begin; i < run.end; ++i) {
+        const uint2 origin = tileOrigin(frame, list, i);
+        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP * PEL_WIDTH) {
+            const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
+            if (x >= frame->width || y >= frame->height) continue;
+            const uint first = vectorStart(x, frame->width);
+            const intw column = lanesw() + (int)first;
+            const uintw id = loadIds(frame, MATERIAL, first, y);
+            const maskw active = (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id);
+            if (!anyw(active)) continue;
+#define PEL_SCATTERS_(k, s) (active s && materials[id s].scattering != PEL_SCATTER_PREINTEGRATED ? 1.0f : 0.0f)
+            const maskw wanted = PEL_LANES(PEL_SCATTERS_) > 0.0f;
+#undef PEL_SCATTERS_
+            if (!anyw(wanted)) continue;
+            storePlanes(out, plane, scratchIndex(frame, first, y), arrivingLight(&scene, first, y), wanted);
+            if (HAS(PEL_BIT_COUNT)) lit += countw(wanted);
+        }
+    }
+    if (HAS(PEL_BIT_COUNT) && lit) atomic_add(&counters[PEL_COUNT_IRRADIANCE], lit);
+}

@@ -1,0 +1,189 @@
+// Sharp shadows from shadow maps: neither acne nor gaps, whatever the angle, the shape and the unit of
+// lengths.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "pass_scene.h"
+
+using namespace shade_test;
+
+namespace {
+
+// Distance along a ray of the light to the first surface.
+using Cast = std::function<double(Vec3 origin, Vec3 direction)>;
+
+struct Scene {
+    std::vector<Vec3> points, normals;
+    MapLight light;
+    double texel;  // of the map, at the target
+};
+
+constexpr uint32_t mapSize = 256;
+constexpr double extent = 85;  // 0.33 a texel
+
+Scene sceneOf(Vec3 toLight, bool perspective, bool reversed, const Cast& cast) {
+    Scene s;
+    s.light = mapLight(1, perspective, reversed, toLight, {0, 0, 0}, extent, mapSize);
+    s.texel = extent / mapSize;
+    const auto& v = s.light.view;
+    for (uint32_t i = 0; i < mapSize * mapSize; ++i) {
+        const double across = v.extent * ((i % mapSize + 0.5) / mapSize - 0.5),
+                     down = v.extent * ((i / mapSize + 0.5) / mapSize - 0.5);
+        const Vec3 side = across * v.right + down * v.down;
+        const double t = perspective ? cast(v.origin, v.forward + side) : cast(v.origin + side, v.forward);
+        s.light.light.map.values[i] =
+            float(perspective ? (1 / t - v.decoding.b) / v.decoding.a : t / v.decoding.range);
+    }
+    return s;
+}
+
+// Shadow times N.L of each point, all lengths counted in another unit.
+std::vector<float> lit(const Scene& s, double unit = 1, uint32_t cascades = 0) {
+    Frame f;
+    f.width = uint32_t(s.points.size()), f.height = 1;
+    f.curvatureLut = f.shadowLut = false;
+    for (int slot : {PEL_SLOT_POSITION, PEL_SLOT_NORMAL_SHADING}) f.slots[slot].components = 3;
+    for (size_t i = 0; i < s.points.size(); ++i)
+        for (int c = 0; c < 3; ++c) {
+            f.slots[PEL_SLOT_POSITION].values.push_back(float(unit * s.points[i][c]));
+            f.slots[PEL_SLOT_NORMAL_SHADING].values.push_back(float(s.normals[i][c]));
+        }
+    f.materials[1] = pelMaterialDefaults();
+    f.materials[1].scattering = PEL_SCATTERING_NONE;
+    for (float& a : f.materials[1].albedo) a = 1;
+    Light light = s.light.light;
+    PelLight& l = light.params;
+    for (int r = 0; r < 4; ++r)
+        for (int c = 0; c < 3; ++c) l.worldToShadow[4 * r + c] = float(l.worldToShadow[4 * r + c] / unit);
+    l.shadowDepthRange = float(l.shadowDepthRange * unit);
+    l.shadowDepthA = float(l.shadowDepthA / unit);
+    l.shadowDepthB = float(l.shadowDepthB / unit);
+    l.shadowFilterTexels = 0;  // no wide shadow is wanted
+    l.shadowCascades = cascades;
+    f.lights = {light};
+    std::vector<float> radiance = shade(device(), f, tables()), result;
+    for (size_t i = 0; i < radiance.size(); i += 3) result.push_back(radiance[i]);
+    return result;
+}
+
+double cosine(const Scene& s, size_t i) {
+    return reference::dot(s.normals[i], -1.0 * s.light.view.forward);
+}
+
+Vec3 lightAt(double cosine, double turn) {
+    const double sine = std::sqrt(1 - cosine * cosine);
+    return {sine * std::cos(turn), sine * std::sin(turn), cosine};
+}
+
+const Cast ground = [](Vec3 o, Vec3 d) { return -o[2] / d[2]; };
+
+void scatterOverGround(Scene& s, uint32_t count) {
+    Random random(3);
+    for (uint32_t i = 0; i < count; ++i) {
+        s.points.push_back({random.uniform(-8, 8), random.uniform(-8, 8), 0});
+        s.normals.push_back({0, 0, 1});
+    }
+}
+
+TEST(SharpShadow, APlaneThrowsNoneOnItselfAtAnyAngleInAnyUnit) {
+    for (double c : {1.0, 0.7, 0.3, 0.1, 0.06})
+        for (double turn : {0.3, 2.0})
+            for (int form = 0; form < 4; ++form) {
+                Scene s = sceneOf(lightAt(c, turn), form & 1, form & 2, ground);
+                scatterOverGround(s, 512);
+                for (double unit : {1.0, 0.1, 0.001, 1000.0}) {
+                    const std::vector<float> e = lit(s, unit);
+                    double least = 1, most = 0;
+                    for (size_t i = 0; i < e.size(); ++i) {
+                        least = std::min(least, e[i] / cosine(s, i));
+                        most = std::max(most, e[i] / cosine(s, i));
+                    }
+                    EXPECT_GT(least, 1 - 1e-4)
+                        << "cosine " << c << " turn " << turn << " form " << form << " unit " << unit;
+                    EXPECT_LT(most, 1 + 1e-4);
+                }
+            }
+}
+
+// Its own limb is the hardest: there the plane is right over less than a texel. What is lost or gained is
+// irradiance.
+TEST(SharpShadow, ABallIsLitUpToItsTerminator) {
+    for (double radius : {10.0, 3.0})
+        for (bool perspective : {false, true}) {
+            const Cast ball = [&](Vec3 o, Vec3 d) {
+                const double dd = reference::dot(d, d), od = reference::dot(o, d),
+                             rest = reference::dot(o, o) - radius * radius;
+                const double root = od * od - dd * rest;
+                return root < 0 ? 290.0 : (-od - std::sqrt(root)) / dd;
+            };
+            Scene s = sceneOf(lightAt(0.6, 1), perspective, false, ball);
+            Random random(5);
+            for (int i = 0; i < 4000; ++i) {
+                float n[3];
+                random.unit(n);
+                s.normals.push_back({n[0], n[1], n[2]});
+                s.points.push_back(radius * s.normals.back());
+            }
+            double worst = 0, sum = 0;
+            const std::vector<float> e = lit(s);
+            for (size_t i = 0; i < e.size(); ++i) {
+                const double error = e[i] - std::max(cosine(s, i), 0.0);
+                worst = std::max(worst, std::abs(error));
+                sum += error * error;
+            }
+            std::printf("ball of radius %g: worst %.4f, rms %.5f\n", radius, worst,
+                        std::sqrt(sum / double(e.size())));
+            EXPECT_LT(worst, 0.05);
+            EXPECT_LT(std::sqrt(sum / double(e.size())), 0.005);
+        }
+}
+
+// A sheet over half of the ground: what is under it is dark up to its edge, however near it hangs, as far as
+// texels can tell.
+TEST(SharpShadow, EdgesAreWhereTheyBelongAndOccludersMayBeNear) {
+    for (double c : {1.0, 0.7, 0.4}) {
+        const Vec3 toLight = lightAt(c, 0.3);
+        for (double texels : {1.0, 4.0, 60.0}) {
+            const double height = texels * extent / mapSize;
+            const Cast sheet = [&](Vec3 o, Vec3 d) {
+                const double t = (height - o[2]) / d[2];
+                return (o + t * d)[0] < 0 ? t : ground(o, d);
+            };
+            Scene s = sceneOf(toLight, false, false, sheet);
+            scatterOverGround(s, 4000);
+            // Where the sheet's edge throws its shadow.
+            const double edge = -height * toLight[0] / toLight[2];
+            const std::vector<float> e = lit(s);
+            double misplaced = 0;
+            for (size_t i = 0; i < e.size(); ++i) {
+                const double share = e[i] / cosine(s, i), beyond = (s.points[i][0] - edge) / s.texel;
+                if (beyond > 2 / c) EXPECT_GT(share, 0.999) << c << " " << texels << " at " << beyond;
+                if (beyond < -2 / c) EXPECT_LT(share, 0.001) << c << " " << texels << " at " << beyond;
+                misplaced += (share - (beyond > 0)) * 16 / double(e.size());
+            }
+            EXPECT_LT(std::abs(misplaced), 0.6 * s.texel / c)
+                << "how far the edge is off its place: cosine " << c << " height " << texels;
+        }
+    }
+}
+
+// Finer cascades take the points that they hold, coarser ones the rest; a map alone or as its own only
+// cascade is the same.
+TEST(SharpShadow, OneCascadeIsTheMap) {
+    Scene s = sceneOf(lightAt(0.7, 1), false, false, ground);
+    scatterOverGround(s, 256);
+    EXPECT_EQ(lit(s), lit(s, 1, 1));
+}
+
+// What lies outside of the map is lit, and texels that are no number throw no shadow.
+TEST(SharpShadow, NoShadowFromWhatIsNotThere) {
+    Scene s = sceneOf(lightAt(0.7, 1), false, false, ground);
+    for (double away : {100.0, 1e4, 1e9}) s.points.push_back({away, away, 0}), s.normals.push_back({0, 0, 1});
+    scatterOverGround(s, 64);
+    for (float& z : s.light.light.map.values) z = std::numeric_limits<float>::quiet_NaN();
+    const std::vector<float> e = lit(s);
+    for (size_t i = 0; i < e.size(); ++i) EXPECT_NEAR(e[i], cosine(s, i), 1e-6) << i;
+}
+
+}  // namespace
