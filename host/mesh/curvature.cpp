@@ -159,7 +159,7 @@ void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, con
     if (params.smoothingPasses > 0 || params.smoothingRadius > 0)
         values.to = scratch(MeshTopology::scratchTo, planeBytes * values.planes);
     // Before the uniform passes, whose result is not lost when this throws.
-    const Diffusion diffusion = planDiffusion(topology, data, params, scratch, values.to);
+    const Diffusion diffusion = planDiffusion(topology, data, params, scratch);
     smoothUniform(topology, passDefines(topology, params, data.stride), params.smoothingPasses, values);
     if (diffusion.passes() > 0) smoothToRadius(topology, data, diffusion, values, scratch);
     storeQuantity(topology, params, data.stride, values.from, estimated, curvature, nullptr);

@@ -1,5 +1,5 @@
 // Which rows an update works on. A changed vertex reaches, in edges: its own gathered row (0), normals that
-// are made and smoothing weights (1, weights at creases one more), estimates (`estimateReach_`), and each
+// are made and smoothing weights (1, weights at creases and those by areas one more), estimates (`estimateReach_`), and each
 // smoothing pass one further. The estimates of all other rows are still there; the values between passes are
 // not kept, so that pass p of P works on P - p rows more than it must, from which the last pass draws. Rows
 // are dealt out in whole slices.
@@ -100,7 +100,7 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
         find(ranges);  // passes_ is known from the first update
     const SlotData data =
         gatherBySlot(topology, positions, normals, scratch, rowsUpTo(0, other), rowsUpTo(1, other));
-    const Diffusion diffusion = planDiffusion(topology, data, params_, scratch, values.to);
+    const Diffusion diffusion = planDiffusion(topology, data, params_, scratch);
     passes_ = params_.smoothingPasses + diffusion.passes();
     estimateCurvature(topology, params_, data, estimated, rowsUpTo(estimateReach_, estimates));
     // Another target has nothing yet: smoothing and storing begin anew from the estimates.
@@ -110,7 +110,7 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
                   rowsOfPass);
     if (diffusion.passes() > 0)
         smoothToRadius(topology, data, diffusion, values, scratch,
-                       rowsUpTo(madeNormals_ && params_.smoothingCrease > 0 ? 2 : 1, other),
+                       rowsUpTo(diffusion.weightReach(madeNormals_), other),
                        [&](uint32_t stage) { return rowsOfPass(params_.smoothingPasses + stage); });
     const Rows stored = rowsUpTo(farthest, storing);
     if (stored.list) {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/mesh_diffusion.h"
+
 namespace pel {
 namespace {
-
-constexpr uint32_t mostStages = 4000;
 
 cl::Program program(const MeshTopology& topology, const SlotData& data, const Rows& rows,
                     PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT) {
@@ -18,36 +18,45 @@ cl::Program program(const MeshTopology& topology, const SlotData& data, const Ro
                                              {"PEL_WIDTH", std::to_string(width(topology.device()))}});
 }
 
-// Weights for a diffusion over `time`, length^2; returns the memory that holds them.
-const cl::Memory& makeWeights(MeshTopology& topology, const SlotData& data, PelSmoothingWeights kind, float time,
-                              float limit, float crease2, const Scratch& scratch, const cl::Memory& rates,
-                              const Rows& rows) {
+// Weights over a limit of rates (none: 0); returns the memory that holds them.
+const cl::Memory& makeWeights(MeshTopology& topology, const SlotData& data, PelSmoothingWeights kind,
+                              float limit, float crease2, const Scratch& scratch, const Rows& rows) {
     const cl::Memory& weights = scratch(MeshTopology::scratchWeights, topology.ringEntries() * sizeof(float));
+    const cl::Memory& rates =
+        scratch(MeshTopology::scratchRates, (topology.slots() + MESH_LANES) * sizeof(float));
     cl::Launch launch(program(topology, data, rows, kind), "diffuse_weights");
     ringArguments(topology, launch, rows);
     launch.arg(data.positions.memory).arg(data.positions.layout.offset);
     launch.arg(data.normals.memory).arg(data.normals.layout.offset);
-    launch.arg(time).arg(limit).arg(crease2).arg(weights).arg(rates);
+    launch.arg(limit).arg(crease2).arg(weights).arg(rates);
     launchRows(topology, launch, rows, width(topology.device()));
+    if (kind == PEL_SMOOTHING_AREA && limit > 0) {
+        cl::Launch slow(program(topology, data, rows, kind), "diffuse_limit");
+        ringArguments(topology, slow, rows);
+        slow.arg(limit).arg(weights).arg(rates);
+        launchRows(topology, slow, rows, width(topology.device()));
+    }
     return weights;
 }
 
-// The rate that all but the worst percent of the slots stay below: slivers must not set the price for
-// everybody.
-float measureRate(MeshTopology& topology, const SlotData& data, PelSmoothingWeights kind, const Scratch& scratch,
-                  const cl::Memory& rates) {
-    makeWeights(topology, data, kind, 0.0f, 0.0f, 0.0f, scratch, rates, {});
+// The largest rate that is believed, so that slivers do not set the price for everybody, and the middle one.
+// By cotangents all but the worst percent of the slots: the rest gets heavier by its slivers only. By areas,
+// where it would conduct less, hardly any.
+MeshTopology::DiffusionRates measureRates(MeshTopology& topology, const SlotData& data,
+                                          PelSmoothingWeights kind, const Scratch& scratch) {
+    makeWeights(topology, data, kind, 0.0f, 0.0f, scratch, {});
     std::vector<float> values(topology.slots());
-    topology.device().read(rates.get(), 0, values.size() * sizeof(float), values.data(), true);
-    const auto place = values.begin() + std::ptrdiff_t(values.size() / 100 * 99);
-    std::nth_element(values.begin(), place, values.end());
-    return *place;
-}
-
-// Stable up to rate * time = (s^2 + s) / 2 in s stages, the rate being half the largest eigenvalue at most.
-float spanOf(uint32_t stages) {
-    const float s = float(stages);
-    return s * s + s;
+    topology.device().read(scratch(MeshTopology::scratchRates, 0).get(), 0, values.size() * sizeof(float),
+                           values.data(), true);
+    const auto place = [&](size_t percent) {
+        const auto at = values.begin() +
+                        std::ptrdiff_t(values.size() / 100 * percent + values.size() % 100 * percent / 100);
+        std::nth_element(values.begin(), at, values.end());
+        return *at;
+    };
+    const float middle = place(50), most = place(99);
+    if (kind == PEL_SMOOTHING_COTANGENT) return {most, middle};
+    return {std::min(16 * most, *std::max_element(values.begin(), values.end())), middle};
 }
 
 }  // namespace
@@ -67,24 +76,26 @@ void smoothUniform(MeshTopology& topology, const cl::Defines& defines, uint32_t 
 }
 
 Diffusion planDiffusion(MeshTopology& topology, const SlotData& data, const PelCurvatureParams& params,
-                        const Scratch& scratch, const cl::Memory& rates) {
+                        const Scratch& scratch) {
     Diffusion diffusion;
     diffusion.weights = params.smoothingWeights;
-    const float radius = params.smoothingRadius;
+    const double radius = params.smoothingRadius, time = 0.5 * radius * radius;
     if (!(radius > 0) || topology.ringEntries() == 0) return diffusion;
-    // A blur of standard deviation r is the heat equation after r^2 / 2; this is the time of one super step.
-    diffusion.time = 0.5f * radius * radius / MESH_SUPER_STEPS;
-    uint32_t stages = params.smoothingStages;
-    if (stages == 0) {
-        float& rate = topology.diffusionRate[params.smoothingWeights];
-        if (!(rate > 0)) rate = measureRate(topology, data, params.smoothingWeights, scratch, rates);
-        const double wanted = MESH_SUPER_STEPS * std::sqrt(2.0 * diffusion.time * rate);
-        if (wanted > mostStages)
+    if (params.smoothingStages > 0) {
+        diffusion.limit = float(spanOfStages(params.smoothingStages) / time);
+        diffusion.coefficients = heatCoefficients(params.smoothingStages, time * diffusion.limit, 0);
+    } else {
+        auto& rates = topology.diffusionRates[params.smoothingWeights];
+        if (!(rates.most > 0)) rates = measureRates(topology, data, params.smoothingWeights, scratch);
+        const double span = time * rates.most, wanted = stagesOfSpan(span);
+        if (!(wanted <= mostStages))
             invalidArgument("PelCurvatureParams.smoothingRadius is ", radius, ", which would take ", wanted,
                             " stages on a mesh this fine; at most ", mostStages, " are done");
-        stages = uint32_t(std::ceil(wanted));
+        if (!(span > 0)) return diffusion;
+        diffusion.limit = rates.most;
+        // Vertices of the middle rate are sqrt(4 / rate) apart.
+        diffusion.coefficients = heatCoefficients(uint32_t(wanted), span, 0.25 * rates.most / rates.middle);
     }
-    diffusion.stages = std::max(1u, (stages + MESH_SUPER_STEPS - 1) / MESH_SUPER_STEPS);
     // The normal turns by 2 sin(angle / 2) in length.
     const float turn = 2.0f * std::sin(0.5f * params.smoothingCrease);
     diffusion.turn2 = turn * turn;
@@ -93,23 +104,21 @@ Diffusion planDiffusion(MeshTopology& topology, const SlotData& data, const PelC
 
 void smoothToRadius(MeshTopology& topology, const SlotData& data, const Diffusion& diffusion,
                     SlotPlanes& values, const Scratch& scratch, const Rows& weighed, const RowsOfPass& rows) {
-    const float span = spanOf(diffusion.stages);
-    // `to` is free until the first stage.
-    const cl::Memory& weights = makeWeights(topology, data, diffusion.weights, diffusion.time, 0.5f * span, diffusion.turn2,
-                                            scratch, values.to, weighed);
+    const cl::Memory& weights =
+        makeWeights(topology, data, diffusion.weights, diffusion.limit, diffusion.turn2, scratch, weighed);
+    const cl::Memory& sum =
+        scratch(MeshTopology::scratchSum, size_t(values.planeStride) * values.planes * sizeof(float));
     for (uint32_t stage = 0; stage < diffusion.passes(); ++stage) {
-        const uint32_t j = stage % diffusion.stages + 1;
-        const float mu = j == 1 ? 1.0f : float(2 * j - 1) / float(j),
-                    nu = j == 1 ? 0.0f : 1.0f / float(j) - 1.0f;
         const Rows here = rows ? rows(stage) : Rows{};
         cl::Launch launch(program(topology, data, here), "diffuse_stage");
         ringArguments(topology, launch, here);
         launch.arg(weights).arg(values.planeStride);
-        launch.arg(values.from).arg(j == 1 ? values.from : values.before).arg(values.to);
-        launch.arg(mu).arg(nu).arg(mu * 2.0f / span);
+        launch.arg(values.from).arg(stage == 0 ? values.from : values.before).arg(values.to).arg(sum);
+        launch.arg(int(stage == 0)).arg(diffusion.coefficients[0]).arg(diffusion.coefficients[stage + 1]);
         launchRows(topology, launch, here, width(topology.device()), values.planes);
         values.advance();
     }
+    values.from = sum;
 }
 
 }  // namespace pel

@@ -1,5 +1,5 @@
-// Smoothing of values on a mesh: kernels/mesh/curvature.cl (uniform passes) and kernels/mesh/curvature_diffuse.cl (to a
-// radius).
+// Smoothing of values on a mesh: kernels/mesh/curvature.cl (uniform passes) and
+// kernels/mesh/curvature_diffuse.cl (to a radius).
 #pragma once
 #include "mesh/mesh_passes.h"
 
@@ -25,13 +25,18 @@ void smoothUniform(MeshTopology& topology, const cl::Defines& defines, uint32_t 
 
 // Passes of a smoothing to a radius, and how they go. Waits the first time if params say nothing of stages.
 struct Diffusion {
-    float time = 0, turn2 = 0;  // of a super step, length^2; square of the normal's change at a crease
-    uint32_t stages = 0;        // of each super step
+    float limit = 0, turn2 = 0;  // of rates, 1/length^2; square of the normal's change at a crease
+    std::vector<float>
+        coefficients;  // of the Chebyshev polynomials from degree 0 on; none: nothing is to be done
     PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT;
-    uint32_t passes() const { return stages * MESH_SUPER_STEPS; }
+    uint32_t passes() const { return coefficients.empty() ? 0 : uint32_t(coefficients.size()) - 1; }
+    // How many edges farther than themselves changed positions reach into the weights.
+    uint32_t weightReach(bool madeNormals) const {
+        return (madeNormals && turn2 > 0 ? 2 : 1) + (weights == PEL_SMOOTHING_AREA ? 1 : 0);
+    }
 };
 Diffusion planDiffusion(MeshTopology& topology, const SlotData& data, const PelCurvatureParams& params,
-                        const Scratch& scratch, const cl::Memory& rates);
+                        const Scratch& scratch);
 
 // `weighed`: rows whose weights are to be made.
 void smoothToRadius(MeshTopology& topology, const SlotData& data, const Diffusion& diffusion,

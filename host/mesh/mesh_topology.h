@@ -45,6 +45,8 @@ class MeshTopology final : public Object {
         scratchTo,
         scratchReduce,
         scratchWeights,
+        scratchRates,
+        scratchSum,
         scratchNormals,
         scratchLinks,
         scratchRounds,
@@ -55,8 +57,12 @@ class MeshTopology final : public Object {
 
     // Entries of the rings, fillers included.
     size_t ringEntries() const { return ringEntries_; }
-    // How fast the finest parts of the mesh even out, 1/length^2; 0: not measured yet. Guarded by lock().
-    float diffusionRate[2] = {0, 0};
+    // How fast the finest parts of the mesh even out, and its middle, 1/length^2, by weights; 0: not measured yet. Guarded by
+    // lock().
+    struct DiffusionRates {
+        float most = 0, middle = 0;
+    };
+    DiffusionRates diffusionRates[2];
     // Links and rounds (mesh_links.cl) are in their scratch memory, or queued. Guarded likewise.
     bool linked = false;
 

@@ -2,13 +2,13 @@
 // a standard deviation of the radius (a Gaussian blur where the surface is flat). Twice the triangles give
 // the same answer.
 //
-// The Laplacian is the cotangent one [Pinkall & Polthier 1993] over Voronoi areas; or, with DIFFUSE_AREA, each edge has
+// The Laplacian L is the cotangent one [Pinkall & Polthier 1993] over Voronoi areas; or, with DIFFUSE_AREA, each edge has
 // the area of its triangles over the square of its length, and the slot the sum of those areas over 4: the ring's
-// second moment, the sum of weight times length^2, is then that of the Laplacian, 4, and no weight is negative. Time runs in
-// MESH_SUPER_STEPS super steps of Runge-Kutta-Legendre of first order [Meyer, Balsara & Aslam, JCP 2014],
-// whose number of stages grows with radius / edge, not with its square. A wave that the exact blur leaves
-// exp(-x) of is left J0(2 sqrt(x / 4))^4 of: 1.6 % less where it matters most, x = 1/2, and below 3 % of all
-// that is short.
+// second moment, the sum of weight times length^2, is then that of the Laplacian, 4, and no weight is negative.
+//
+// What is left after a time, exp(time L), is summed up in Chebyshev polynomials of L [Tal-Ezer, Spectral Methods in Time for
+// Parabolic Problems, SIAM J. Numer. Anal. 26, 1989]: one stage each, their number grows with radius / edge, not with its
+// square, and what is left out is below 2e-4. Coefficients: host/mesh/mesh_diffusion.cpp.
 //
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h); planes as in
 // curvature.cl. One work-item: PEL_WIDTH slots (of plane get_global_id(1) in diffuse_stage). Variants:
@@ -16,15 +16,15 @@
 
 #include "lib/mesh/mesh_triangle.clh"
 
-// Writes, for each entry of the rings, time * weight / area, so that a stage needs nothing else; and the
-// slot's rate, the sum of weight / area, 1/length^2. limit: a slot whose rate * time exceeds it is slowed
-// down to it, which keeps every stage stable on slivers. crease2: square of the change of normal at which
-// weights fall to 1/e; 0: none do.
+// Writes, for each entry of the rings, weight / area / limit, so that a stage needs nothing else; and the slot's rate, the sum
+// of weight / area, 1/length^2. A slot whose rate exceeds the limit is slowed down to it, which keeps every stage stable on
+// slivers (with DIFFUSE_AREA by diffuse_limit, from weight / area). crease2: square of the change of normal at which weights
+// fall to 1/e; 0: none do.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_weights(
     uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
     __global const uint* runs, __global const float* positions,
-    uint positionOffset, __global const float* normals, uint normalOffset, float time, float limit,
-    float crease2, __global float* weights, __global float* rates) {
+    uint positionOffset, __global const float* normals, uint normalOffset, float limit, float crease2,
+    __global float* weights, __global float* rates) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ring_begin(first, slots, slices);
@@ -100,25 +100,46 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
         rate += fabs(weight);
         storew(weight, at, weights);
     }
-    const floatw slowed = fmin((floatw)(time), limit / rate);  // limit / 0 is Inf
+#if !DIFFUSE_AREA
+    const floatw slowed = 1.0f / fmax((floatw)(limit), rate);
     for (uint row = begin; row < ring.end; ++row) {
         const uint at = row * MESH_LANES + ring.lane;
         const floatw weight = loadw(at, weights);
         storew(selectw(zero, weight * slowed, weight != zero), at, weights);
     }
+#endif
     storew(rate, first, rates);
 }
 
-// next = mu * current + nu * before + step * Laplacian(current); next may be before.
+#if DIFFUSE_AREA
+// Slows an edge down as the faster one of its ends asks for: alike from both, so that nothing is lost between them.
+__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_limit(
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
+    __global const uint* runs, float limit, __global float* weights, __global const float* rates) {
+    const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
+    if (first >= slots) return;
+    RingCursor ring = ring_begin(first, slots, slices);
+    const floatw own = fmax((floatw)(limit), loadw(first, rates));
+    for (; ring.row < ring.end; ++ring.row) {
+        const uint at = ring.row * MESH_LANES + ring.lane;
+        const floatw weight = loadw(at, weights);
+        const floatw rate = fmax(own, gather1(rates, ring_entry(&ring, rings, runs).slots));
+        storew(selectw((floatw)(0.0f), weight / rate, weight != 0.0f), at, weights);
+    }
+}
+#endif
+
+// next = gain (current + L current / limit) - before, where gain is 2, or 1 for the first stage, which has nothing before;
+// sum += coefficient next, where the first stage begins with `begin` current. next may be before.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_stage(
     uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
     __global const uint* runs, __global const float* weights,
     uint planeStride, __global const float* current, __global const float* before, __global float* next,
-    float mu, float nu, float step) {
+    __global float* sum, int isFirst, float begin, float coefficient) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     const size_t plane = (size_t)get_global_id(1) * planeStride;
-    current += plane, before += plane, next += plane;
+    current += plane, before += plane, next += plane, sum += plane;
     RingCursor ring = ring_begin(first, slots, slices);
     const floatw self = loadw(first, current);
     floatw change = 0.0f;
@@ -130,5 +151,12 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_st
         // NaN: nothing was measured there. A slot that has none itself keeps its NaN.
         change = selectw(change, fma(weight, difference, change), difference == difference);
     }
-    storew(fma((floatw)(mu), self, fma((floatw)(nu), loadw(first, before), step * change)), first, next);
+    floatw value = self + change, total = begin * self;
+    if (!isFirst) {
+        // Of values that do not change nothing is rounded.
+        value = fma((floatw)(2.0f), change, self + (self - loadw(first, before)));
+        total = loadw(first, sum);
+    }
+    storew(fma((floatw)(coefficient), value, total), first, sum);
+    storew(value, first, next);
 }

@@ -3,30 +3,46 @@
 // Inputs: one-rings (shared/mesh.h). Outputs: links, beside the entries of the rings: the row, counted from its slice's first,
 // in which this slot stands in that neighbour's ring (the last one, where there are several; 0 for fillers); rounds, for each
 // slot: neighbours in its list, and MESH_ROUND where they are one closed walk of more than two.
+// Each edge is looked up in the shorter one of its two rings, by the slot that has the longer one: the hub of a fan has as
+// many neighbours as that has triangles.
 // One work-item: one slot.
 // Variants: none. It runs once for a topology.
 
 #include "shared/mesh.h"
 
+inline size_t entry_at(__global const uint* slices, uint slot, uint row) {
+    return (size_t)(slices[slot / MESH_LANES] + row) * MESH_LANES + slot % MESH_LANES;
+}
+
+// Neighbours in a slot's list: it ends with its slice, or with the slot itself.
+inline uint list_length(__global const uint* slices, __global const uint* rings, uint slot, uint most) {
+    const uint rows = min(slices[slot / MESH_LANES + 1] - slices[slot / MESH_LANES], most);
+    uint length = 0;
+    while (length < rows && (rings[entry_at(slices, slot, length)] & MESH_SLOT) != slot) ++length;
+    return length;
+}
+
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_links(
     uint slots, __global const uint* slices, __global const uint* rings, __global uint* links, __global uint* rounds) {
     const uint slot = get_global_id(0);
     if (slot >= slots) return;
-    const uint lane = slot % MESH_LANES;
-    uint length = 0, walks = 0, open = 0;
-    for (uint row = slices[slot / MESH_LANES]; row < slices[slot / MESH_LANES + 1]; ++row) {
-        const size_t at = (size_t)row * MESH_LANES + lane;
-        const uint entry = rings[at], near_ = entry & MESH_SLOT;
-        uint here = 0;
-        if (near_ != slot) {
-            ++length;
-            walks += (entry & MESH_START) != 0;
-            open |= entry & MESH_SINGLE;
-            const uint begin = slices[near_ / MESH_LANES], end = slices[near_ / MESH_LANES + 1];
-            for (uint other = begin; other < end; ++other)
-                if ((rings[(size_t)other * MESH_LANES + near_ % MESH_LANES] & MESH_SLOT) == slot) here = other - begin;
+    const uint length = list_length(slices, rings, slot, 0xffffffffu);
+    uint walks = 0, open = 0;
+    for (uint row = 0; row < length; ++row) {
+        const uint entry = rings[entry_at(slices, slot, row)], near_ = entry & MESH_SLOT;
+        walks += (entry & MESH_START) != 0;
+        open |= entry & MESH_SINGLE;
+        const uint others = list_length(slices, rings, near_, length + 1);
+        if (others > length || (others == length && near_ > slot)) continue;  // left to the neighbour
+        for (uint other = 0; other < others; ++other) {
+            const size_t at = entry_at(slices, near_, other);
+            if ((rings[at] & MESH_SLOT) != slot) continue;
+            // Both ways. The last one of several stays, as the rows ascend.
+            links[at] = row;
+            links[entry_at(slices, slot, row)] = other;
         }
-        links[at] = here;
     }
+    for (uint row = length; row < slices[slot / MESH_LANES + 1] - slices[slot / MESH_LANES]; ++row)
+        links[entry_at(slices, slot, row)] = 0;
     rounds[slot] = length | (walks == 1 && !open && length > 2 ? MESH_ROUND : 0);
 }

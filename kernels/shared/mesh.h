@@ -59,8 +59,6 @@ typedef struct MeshCounts {
     unsigned int pad;
 } MeshCounts;
 
-#define MESH_SUPER_STEPS 4  // of a smoothing to a radius (curvature_diffuse.cl)
-
 // The triangles are dealt out to this many work-items, on every device, so that their sums come out the same.
 #define UV_SCALE_ITEMS 4096
 

@@ -3,6 +3,7 @@
 // surfaces instead, and does not notice a weight that is somewhat off.
 #include "mesh_fixture.h"
 #include "reference/curvature_quadric.h"
+#include "reference/scattered.h"
 #include "reference_meshes.h"
 #include "tolerances.h"
 
@@ -106,6 +107,10 @@ std::vector<std::pair<std::string, reference::Mesh>> meshes() {
     all.emplace_back("noisy torus", tessellate(torusSurface(3, 1), sized(40, 12), sized(20, 8), irregular).mesh);
     orient(all.back().second);
     addNoise(all.back().second, 0.05, 5);
+    const FlatMesh scattered = delaunay(uniformPoints(sized(600, 120), 3)), split = poked(flatGrid(12, 12), 0.5, 3, 2);
+    all.emplace_back("ellipsoid of scattered points", lifted(scattered, ellipsoidCap(1, 1.5, 2)).mesh);
+    all.emplace_back("saddle of split triangles", lifted(split, monkeySaddle(2)).mesh);
+    all.emplace_back("slender torus", tessellate(torusSurface(3, 1), 400, 12, regular).mesh);
     all.emplace_back("noisy saddle, open", tessellate(monkeySaddle(2), sized(24, 10), sized(17, 8), irregular).mesh);
     orient(all.back().second);
     addNoise(all.back().second, 0.05, 6);
@@ -124,7 +129,7 @@ std::vector<float> measured(const Mesh& mesh, PelCurvatureQuantity quantity, uin
 
 TEST(CurvatureQuadricOracle, AllQuantities) {
     std::set<size_t> valences;
-    size_t borders = 0, replaced = 0;
+    size_t borders = 0, replaced = 0, wide = 0;
     for (const auto& [name, given] : meshes()) {
         SCOPED_TRACE(name);
         const Pair pair = pairOf(given);
@@ -149,6 +154,7 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
             valences.insert(ring[v].size());
             borders += k.border;
             replaced += k.replaced;
+            wide += k.wide;
             const float* f = &frames[8 * v];
             const reference::Vec3 d1{f[2], f[3], f[4]}, d2{f[5], f[6], f[7]};
             const double errors[5] = {
@@ -174,6 +180,7 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
     for (size_t n = 3; n <= 12; ++n) EXPECT_TRUE(valences.contains(n)) << n;
     EXPECT_GT(borders, 100u);
     EXPECT_GT(replaced, 5u);
+    EXPECT_GT(wide, 500u);
 }
 
 // Neither does a result depend on where the tangent frame's axes point: the ridge that decides at borders weighs all

@@ -27,7 +27,7 @@ std::vector<double> smoothed(const Mesh& mesh, std::vector<double> values, int p
 
 // The heat equation on the surface until a point has spread over a standard deviation of `radius` (docs/curvature.md,
 // "Smoothing"; kernels/mesh/curvature_diffuse.cl): cotangents over Voronoi areas or, by area, the triangles of an edge over the
-// square of its length; four super steps of Runge-Kutta-Legendre, `stages` in all.
+// square of its length. `stages`: what the library may spend, which bounds how fast a vertex evens out.
 // A triangle has no plane at a corner of which the squared sine is at most this.
 constexpr double flatTriangle = 1e-10;
 struct RadiusSmoothing {

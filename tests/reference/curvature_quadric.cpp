@@ -34,12 +34,23 @@ std::vector<Neighbourhood> neighbourhoods(const Mesh& mesh) {
     return all;
 }
 
+// The ring; of more than 36 the 17 neighbours to either side of `vertex`, on open ones 16.
+std::set<int> nearOf(const Neighbourhood& n, int vertex) {
+    if (n.ring.size() <= 36) return n.ring;
+    std::set<int> near;
+    for (const auto& steps : {n.across, n.before}) {
+        int at = vertex;
+        for (int i = 0; i < (n.closed ? 17 : 16) && steps.contains(at); ++i) near.insert(at = steps.at(at));
+    }
+    return near;
+}
+
 // How often each vertex counts in the fit at `vertex`.
 std::map<int, int> twoRing(const std::vector<Neighbourhood>& all, int vertex) {
     std::map<int, int> counts;
     for (int b : all[vertex].ring) {
         ++counts[b];
-        std::set<int> further = all[b].ring;
+        std::set<int> further = nearOf(all[b], vertex);
         further.erase(vertex);
         if (all[b].closed) {
             const int next = all[vertex].across.at(b), before = all[vertex].before.at(b);
@@ -75,9 +86,22 @@ struct Chart {
     double bend = 0;
     double xu = 0, yu = 0, yv = 0;  // coordinates x = xu u, y = yu u + yv v; u, v in units of twice the reach
     double steepness = 0, slope2 = 0;
+    double unit = 0, round = 1, farthest2 = 4;
+    bool thin = false;  // than high
 };
 
-Chart chartOf(const Mesh& mesh, const std::set<int>& ring, int vertex, Vec3 normal) {
+// (x, y) = size L^-1 (u, v) with L L' = moments.
+void shape(Chart& chart, double uu, double uv, double vv, double thick, double size) {
+    const double least = std::max(1e-6 * (uu + vv), thick);
+    const double l11 = std::sqrt(std::max(uu, least)), l21 = uv / l11;
+    const double l22 = std::sqrt(std::max(vv - l21 * l21, least));
+    chart.xu = size / l11;
+    chart.yv = size / l22;
+    chart.yu = -chart.yv * l21 / l11;
+    chart.round = std::min(1.0, std::pow(2 * l11 * l22 / (uu + vv), 2));
+}
+
+Chart chartOf(const Mesh& mesh, const std::set<int>& ring, int vertex, Vec3 normal, bool replaced) {
     Chart chart;
     chart.frame = frameOf(normal);
     for (int b : ring)
@@ -100,13 +124,9 @@ Chart chartOf(const Mesh& mesh, const std::set<int>& ring, int vertex, Vec3 norm
     chart.slopeV = part * sv;
     chart.steepness = nn / (uu + vv);
     chart.bend = 1 / (1 + std::pow(chart.steepness / 0.04, 2));
-    // L with L L' = moments: (x, y) = sqrt(1/2) L^-1 (u, v).
-    const double least = std::max(1e-6 * (uu + vv), nn);
-    const double l11 = std::sqrt(std::max(uu, least)), l21 = uv / l11;
-    const double l22 = std::sqrt(std::max(vv - l21 * l21, least));
-    chart.xu = std::sqrt(0.5) / l11;
-    chart.yv = std::sqrt(0.5) / l22;
-    chart.yu = -chart.yv * l21 / l11;
+    chart.unit = 2 * chart.reach;
+    chart.thin = uu < nn || vv - uv * uv / uu < nn;
+    shape(chart, uu, uv, vv, replaced ? nn : 0, std::sqrt(0.5));
     return chart;
 }
 
@@ -153,8 +173,84 @@ void principal(QuadricCurvature& out, const Frame& frame, double hu, double hv, 
     out.secondDirection = cross(out.normal, out.firstDirection);
 }
 
+// All points as wide as long, near ones weighing more.
+void widen(Chart& chart, const Mesh& mesh, const std::map<int, int>& points, int vertex, bool replaced) {
+    double uu = 0, uv = 0, vv = 0, nn = 0, total = 0;
+    for (const auto& [point, count] : points) {
+        const Vec3 p = (mesh.positions[point] - mesh.positions[vertex]) / chart.unit;
+        const double u = dot(p, chart.frame.u), v = dot(p, chart.frame.v);
+        const double n = dot(p, chart.frame.n) - chart.slopeU * u - chart.slopeV * v;
+        const double weight = count / (0.05 + dot(p, p));
+        uu += weight * u * u, uv += weight * u * v, vv += weight * v * v, nn += weight * n * n,
+            total += weight;
+    }
+    // Its unit makes the mean square of the distance 0.72.
+    const double unit2 = (uu + vv) / total / 0.72, part = 1 / (total * unit2);
+    chart.unit *= std::sqrt(unit2);
+    chart.farthest2 = 16;
+    shape(chart, part * uu, part * uv, part * vv, replaced ? part * nn : 0, 0.5);
+}
+
 void nearer(double& margin, double value, double threshold) {
     margin = std::min(margin, std::abs(value / threshold - 1));
+}
+
+double determinant(std::array<std::array<double, 9>, 9> a, size_t first, size_t last) {
+    double product = 1;
+    for (size_t i = first; i < last; ++i) {
+        product *= a[i][i];
+        for (size_t k = i + 1; k < last; ++k)
+            for (size_t j = last; j-- > i;) a[k][j] -= a[k][i] / a[i][i] * a[i][j];
+    }
+    return product;
+}
+
+// How well the points tell quadratic terms from linear ones and cubic terms from all lower ones: 1, as if
+// these were not there; 0, not at all.
+double distinct(const std::array<std::array<double, 9>, 9>& a) {
+    const double five = determinant(a, 0, 5);
+    return std::min(five / (determinant(a, 0, 2) * determinant(a, 2, 5)),
+                    determinant(a, 0, 9) / (five * determinant(a, 5, 9)));
+}
+
+struct Fit {
+    std::array<double, 9> solution{};
+    double distinct = 0;
+    int points = 0;
+};
+
+Fit fitTo(const Mesh& mesh, const std::map<int, int>& points, const Chart& chart, int vertex, bool border,
+          double& margin) {
+    Fit fit;
+    std::array<std::array<double, 9>, 9> matrix{};
+    std::array<double, 9> right{};
+    double total = 0;
+    for (const auto& [point, count] : points) {
+        const Vec3 p = (mesh.positions[point] - mesh.positions[vertex]) / chart.unit;
+        const double u = dot(p, chart.frame.u), v = dot(p, chart.frame.v);
+        const double x = chart.xu * u, y = chart.yu * u + chart.yv * v;
+        nearer(margin, x * x + y * y, chart.farthest2);
+        if (!(x * x + y * y <= chart.farthest2)) continue;
+        const double q = dot(p, chart.frame.n) - chart.slopeU * u - chart.slopeV * v;
+        const double r2 = u * u + v * v, bent = r2 + chart.bend * q * q;
+        const double z = bent > 0 ? q * r2 / bent : 0;
+        const double weight = 1 / (0.05 * chart.round + dot(p, p));
+        const double terms[9] = {
+            x, y, x * x / 2, x * y, y * y / 2, x * x * x / 6, x * x * y / 2, x * y * y / 2, y * y * y / 6};
+        total += count * std::min(weight, 20.0);
+        ++fit.points;
+        for (int i = 0; i < 9; ++i) {
+            right[i] += count * weight * z * terms[i];
+            for (int j = 0; j < 9; ++j) matrix[i][j] += count * weight * terms[i] * terms[j];
+        }
+    }
+    // The squares of all derivatives of an order: mixed ones stand there twice, or three times.
+    const double often[9] = {1, 1, 1, 2, 1, 1, 3, 3, 1};
+    for (int i = 0; i < 9; ++i) matrix[i][i] += total * often[i] * (i < 5 ? 1e-7 : border ? 1e-3 : 1e-5);
+    if (!(total > 0)) return fit;
+    fit.distinct = distinct(matrix);
+    fit.solution = solve(matrix, right);
+    return fit;
 }
 
 }  // namespace
@@ -167,11 +263,11 @@ std::vector<QuadricCurvature> quadricCurvature(const Mesh& mesh) {
         const std::set<int>& ring = all[vertex].ring;
         out.border = all[vertex].border;
         const Vec3 given = normalized(mesh.normals[vertex]);
-        Chart chart = chartOf(mesh, ring, vertex, given);
+        Chart chart = chartOf(mesh, ring, vertex, given, false);
         if (!(chart.reach > 0)) continue;
         out.measured = true;
 
-        const bool doubtful = chart.steepness > 0.05 || chart.slope2 > 0.01;
+        const bool doubtful = chart.steepness > 0.05 || chart.slope2 > 0.01 || chart.thin;
         Vec3 sum;
         for (int b : ring) sum = sum + normalized(mesh.normals[b]);
         const double cosine = dot(normalized(sum), given);
@@ -182,45 +278,26 @@ std::vector<QuadricCurvature> quadricCurvature(const Mesh& mesh) {
         if (doubtful) nearer(out.margin, cosine, 0.99);
         if (doubtful && cosine < 0.99) {
             out.replaced = true;
-            chart = chartOf(mesh, ring, vertex, normalized(sum));
+            chart = chartOf(mesh, ring, vertex, normalized(sum), true);
         }
 
-        std::array<std::array<double, 9>, 9> matrix{};
-        std::array<double, 9> right{};
-        double total = 0;
-        for (const auto& [point, count] : twoRing(all, vertex)) {
-            const Vec3 p = (mesh.positions[point] - mesh.positions[vertex]) / (2 * chart.reach);
-            const double u = dot(p, chart.frame.u), v = dot(p, chart.frame.v);
-            const double x = chart.xu * u, y = chart.yu * u + chart.yv * v;
-            nearer(out.margin, x * x + y * y, 4);
-            if (!(x * x + y * y <= 4)) continue;
-            const double q = dot(p, chart.frame.n) - chart.slopeU * u - chart.slopeV * v;
-            const double r2 = u * u + v * v, bent = r2 + chart.bend * q * q;
-            const double z = bent > 0 ? q * r2 / bent : 0;
-            const double weight = count / (0.05 + dot(p, p));
-            const double terms[9] = {x,
-                                     y,
-                                     x * x / 2,
-                                     x * y,
-                                     y * y / 2,
-                                     x * x * x / 6,
-                                     x * x * y / 2,
-                                     x * y * y / 2,
-                                     y * y * y / 6};
-            total += weight;
-            ++out.points;
-            for (int i = 0; i < 9; ++i) {
-                right[i] += weight * z * terms[i];
-                for (int j = 0; j < 9; ++j) matrix[i][j] += weight * terms[i] * terms[j];
-            }
+        const std::map<int, int> points = twoRing(all, vertex);
+        double fine = 1;  // of the narrow fit, which does not count where it is not used
+        Fit fit = fitTo(mesh, points, chart, vertex, out.border, fine);
+        nearer(out.margin, fit.distinct, 1e-3);
+        nearer(out.margin, chart.round, 0.1);
+        if (fit.distinct < 1e-3 || chart.round < 0.1) {
+            out.wide = true;
+            widen(chart, mesh, points, vertex, out.replaced);
+            fine = 1;
+            fit = fitTo(mesh, points, chart, vertex, out.border, fine);
         }
-        // The squares of all derivatives of an order: mixed ones stand there twice, or three times.
-        const double often[9] = {1, 1, 1, 2, 1, 1, 3, 3, 1};
-        for (int i = 0; i < 9; ++i) matrix[i][i] += total * often[i] * (i < 5 ? 1e-7 : out.border ? 1e-3 : 1e-5);
-        const std::array<double, 9> s = solve(matrix, right);
+        out.margin = std::min(out.margin, fine);
+        out.points = fit.points;
+        const std::array<double, 9>& s = fit.solution;
 
         // Back to u and v, and to lengths.
-        const double unit = 2 * chart.reach, xu = chart.xu, yu = chart.yu, yv = chart.yv;
+        const double unit = chart.unit, xu = chart.xu, yu = chart.yu, yv = chart.yv;
         principal(out, chart.frame, chart.slopeU + xu * s[0] + yu * s[1], chart.slopeV + yv * s[1],
                   (xu * xu * s[2] + 2 * xu * yu * s[3] + yu * yu * s[4]) / unit,
                   yv * (xu * s[3] + yu * s[4]) / unit, yv * yv * s[4] / unit);

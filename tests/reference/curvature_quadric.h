@@ -10,9 +10,10 @@ struct QuadricCurvature : PrincipalCurvatures {
     Vec3 normal;                           // unit, of the fitted surface
     bool measured = false;                 // false: no neighbour at another place
     bool replaced = false;                 // the given normal was not believed
+    bool wide = false;                     // fitted once more, to the whole two-ring
     bool border = false;
     int points = 0;  // distinct vertices that tell about this one
-    // How near the nearest yes-or-no decision (replace the normal, leave a point out) came to its threshold,
+    // How near the nearest yes-or-no decision (replace the normal, leave a point out, fit once more) came to its threshold,
     // relative: where it is as small as float rounding, single precision may decide the other way.
     double margin = 1;
 };

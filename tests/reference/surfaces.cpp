@@ -21,6 +21,14 @@ Vec3 direction(double longitude, double latitude) {
             std::sin(latitude)};
 }
 
+// Of the graph z(x, y) with this gradient and (zxx, zxy, zyy). Minus: one that bends up bends towards its upward normal.
+SurfacePoint graphPoint(double x, double y, double z, Vec2 g, Vec3 h) {
+    const double w2 = 1 + g.x * g.x + g.y * g.y, w = std::sqrt(w2);
+    const double gaussian = (h.x * h.z - h.y * h.y) / (w2 * w2);
+    const double mean = -((1 + g.y * g.y) * h.x - 2 * g.x * g.y * h.y + (1 + g.x * g.x) * h.z) / (2 * w2 * w);
+    return {{x, y, z}, Vec3{-g.x, -g.y, 1} / w, fromMeanAndGaussian(mean, gaussian)};
+}
+
 }  // namespace
 
 Surface planeSurface(double side) {
@@ -98,18 +106,37 @@ Surface ellipsoidSurface(double a, double b, double c) {
 
 Surface monkeySaddle(double side) {
     return {[](double x, double y) {
-                const double fx = 3 * (x * x - y * y), fy = -6 * x * y, fxx = 6 * x, fxy = -6 * y,
-                             fyy = -6 * x;
-                const double w2 = 1 + fx * fx + fy * fy, w = std::sqrt(w2);
-                const double gaussian = (fxx * fyy - fxy * fxy) / (w2 * w2);
-                // Minus: a graph that bends up bends towards its upward normal.
-                const double mean =
-                    -((1 + fy * fy) * fxx - 2 * fx * fy * fxy + (1 + fx * fx) * fyy) / (2 * w2 * w);
-                return SurfacePoint{{x, y, x * x * x - 3 * x * y * y},
-                                    Vec3{-fx, -fy, 1} / w,
-                                    fromMeanAndGaussian(mean, gaussian)};
+                return graphPoint(x, y, x * x * x - 3 * x * y * y, {3 * (x * x - y * y), -6 * x * y},
+                                  {6 * x, -6 * y, -6 * x});
             },
             -side / 2, side / 2, -side / 2, side / 2};
+}
+
+Surface gaussianBump(double height, double width, double side) {
+    return {[=](double x, double y) {
+                const double w2 = width * width, z = height * std::exp(-(x * x + y * y) / (2 * w2));
+                return graphPoint(x, y, z, {-x * z / w2, -y * z / w2},
+                                  {(x * x / w2 - 1) * z / w2, x * y * z / (w2 * w2), (y * y / w2 - 1) * z / w2});
+            },
+            -side / 2, side / 2, -side / 2, side / 2};
+}
+
+Surface catenoid(double waist) {
+    return {[=](double u, double v) {
+                const double c = std::cosh(v), k = 1 / (waist * c * c);
+                return SurfacePoint{{waist * c * std::cos(u), waist * c * std::sin(u), waist * v},
+                                    Vec3{std::cos(u), std::sin(u), -std::sinh(v)} / c,
+                                    {k, -k}};
+            },
+            0, 2, -1, 1};
+}
+
+Surface ellipsoidCap(double a, double b, double c) {
+    return {[=](double u, double v) {
+                const double r2 = u * u + v * v;
+                return ellipsoidPoint(Vec3{2 * u, 2 * v, 1 - r2} / (1 + r2), a, b, c);
+            },
+            -1, 1, -1, 1};
 }
 
 }  // namespace reference

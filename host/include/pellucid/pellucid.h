@@ -311,8 +311,8 @@ typedef enum PelCurvatureQuantity {
 typedef enum PelSmoothingWeights {
     PEL_SMOOTHING_COTANGENT = 0, /* cotangents over Voronoi areas [Pinkall & Polthier 1993]: spreads alike in all directions,
                                     whatever the triangles. Default */
-    PEL_SMOOTHING_AREA = 1       /* area of an edge's triangles over the square of its length: never negative, so that no
-                                    value leaves the range of its neighbours; on stretched cells it spreads further along
+    PEL_SMOOTHING_AREA = 1       /* area of an edge's triangles over the square of its length: never negative, and the sum of
+                                    value times area of all vertices stays; on stretched cells it spreads further along
                                     than across */
 } PelSmoothingWeights;
 
@@ -327,7 +327,7 @@ typedef struct PelCurvatureParams {
                                  smoothingStages is given */
     float smoothingCrease;    /* with a radius: angle between normals, radians, across which smoothing falls to 1/e, so
                                  that sharp features stay; 0: none stay */
-    uint32_t smoothingStages; /* with a radius: work spent, about 4 * radius / edge length; 0: chosen from the mesh. Too
+    uint32_t smoothingStages; /* with a radius: work spent, about 9 * radius / edge length; 0: chosen from the mesh. Too
                                  few smooth less, never wrongly */
     PelSmoothingWeights smoothingWeights; /* with a radius */
 } PelCurvatureParams;

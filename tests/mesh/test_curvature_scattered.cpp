@@ -1,0 +1,148 @@
+// Curvature of meshes whose vertices have any number of neighbours at any distance, and of slender cells.
+#include <chrono>
+
+#include "mesh_fixture.h"
+#include "reference/scattered.h"
+#include "reference_meshes.h"
+#include "tolerances.h"
+
+using namespace fixture;
+using namespace reference;
+
+namespace {
+
+struct Errors {
+    double rms = 0, worst = 0;  // of mean curvature, in parts of the local curvedness
+};
+
+// Where a surface is flat, parts of a tenth of its RMS curvedness. Away from borders: the outermost triangles
+// of scattered points are slivers along many edges of others.
+Errors errorsOf(const AnalyticMesh& mesh, uint32_t passes, const FlatMesh* flat = nullptr) {
+    PelCurvatureParams params = meanParams(PEL_CURVATURE_QUADRIC);
+    params.smoothingPasses = passes;
+    const fixture::Mesh sampled = pairOf(mesh.mesh).mesh;
+    const std::vector<float> values = curvature(sampled, topologyDesc(sampled), params).values;
+    std::vector<bool> border = nearBorder(mesh.mesh, 4 + int(passes));
+    for (size_t v = 0; flat && v < border.size(); ++v) {
+        const Vec2 p = flat->points[v];
+        if (std::min({p.x, p.y, 1 - p.x, 1 - p.y}) < 0.03) border[v] = true;
+    }
+    double whole = 0, count = 0;
+    const auto curvedness = [&](size_t v) {
+        const auto& k = mesh.truth[v].curvature;
+        return std::sqrt((k.first * k.first + k.second * k.second) / 2);
+    };
+    for (size_t v = 0; v < values.size(); ++v)
+        if (!border[v]) whole += std::pow(curvedness(v), 2), ++count;
+    EXPECT_GT(count, double(values.size()) / 2);
+    Errors errors;
+    for (size_t v = 0; v < values.size(); ++v) {
+        if (border[v]) continue;
+        const double part = std::abs(values[v] - mesh.truth[v].curvature.mean()) /
+                            std::max(curvedness(v), 0.1 * std::sqrt(whole / count));
+        errors.rms += part * part / count;
+        errors.worst = std::max(errors.worst, part);
+    }
+    errors.rms = std::sqrt(errors.rms);
+    return errors;
+}
+
+const std::pair<const char*, Surface> surfaces[] = {{"ellipsoid", ellipsoidCap(1, 1.5, 2)},
+                                                    {"catenoid", catenoid(1)},
+                                                    {"monkey saddle", monkeySaddle(1)},
+                                                    {"bump", gaussianBump(0.5, 0.4, 2)}};
+
+void expectAccurate(const char* name, const FlatMesh& flat, bool alsoMade = true) {
+    for (const auto& [surface, shape] : surfaces)
+        for (bool made : {false, true}) {
+            if (made && !alsoMade) continue;
+            AnalyticMesh mesh = lifted(flat, shape);
+            if (made) mesh.mesh.normals = estimatedNormals(mesh.mesh);
+            const Errors errors = errorsOf(mesh, 0, &flat);
+            EXPECT_LE(errors.rms, tolerance::scatteredRms) << name << ", " << surface << ", made " << made;
+            EXPECT_LE(errors.worst, tolerance::scatteredWorst)
+                << name << ", " << surface << ", made " << made;
+        }
+}
+
+}  // namespace
+
+TEST(CurvatureScattered, DelaunayTrianglesOfRandomPoints) {
+    expectAccurate("Delaunay", delaunay(uniformPoints(20000, 1)));
+}
+
+TEST(CurvatureScattered, PoissonDisks) {
+    expectAccurate("Poisson disks", delaunay(poissonDiskPoints(20000, 1)));
+}
+
+TEST(CurvatureScattered, TrianglesSplitAtTheirCentroids) {
+    expectAccurate("poked twice", poked(flatGrid(140, 140), 0.2, 2, 3));
+    // Normals averaged over slivers within slivers are off by 8 degrees: only exact ones.
+    expectAccurate("poked four times", poked(flatGrid(70, 70), 0.7, 4, 3), false);
+}
+
+TEST(CurvatureScattered, RedGreenRefinement) {
+    expectAccurate("red and green", redGreen(flatGrid(90, 90), 0.3, 1));
+}
+
+TEST(CurvatureScattered, UniformPassesMoveValuesByWhatTheyMustOnly) {
+    // Two passes take a value from where its neighbours stand in the mean; on random triangles that is not
+    // where the vertex stands. What they may add to the truth smoothed alike is next to nothing.
+    const FlatMesh flat = delaunay(uniformPoints(20000, 1));
+    for (const auto& [surface, shape] : surfaces) {
+        AnalyticMesh mesh = lifted(flat, shape);
+        std::vector<double> means;
+        for (const auto& point : mesh.truth) means.push_back(point.curvature.mean());
+        means = smoothed(mesh.mesh, means, 2);
+        for (size_t v = 0; v < means.size(); ++v) {
+            auto& k = mesh.truth[v].curvature;
+            const double by = means[v] - k.mean();
+            k = {k.first + by, k.second + by};
+        }
+        const Errors errors = errorsOf(mesh, 2, &flat);
+        EXPECT_LE(errors.rms, tolerance::scatteredRms) << surface;
+        EXPECT_LE(errors.worst, tolerance::scatteredWorst) << surface;
+    }
+}
+
+TEST(CurvatureScattered, SlenderCellsOfATorus) {
+    // A strip of a torus in cells 1 : 25 and 1 : 125, long round the tube. Positions are known to 2.4e-7
+    // there, which counts over the square of the shorter edge.
+    for (int columns : {4800, 24000}) {
+        Surface strip = torusSurface(3, 1);
+        strip.uEnd *= 60.0 / columns;
+        strip.wrapsU = false;
+        const Errors errors = errorsOf(tessellate(strip, 60, 64, Tessellation::regular), 0);
+        EXPECT_LE(errors.worst, tolerance::slenderTorus * std::pow(columns / 4800.0, 2)) << columns;
+    }
+}
+
+TEST(CurvatureHub, AFanOfManyTrianglesIsQuickAndRight) {
+    // A sphere whose poles have 30,000 neighbours each: an estimate, smoothing and updates that cost the square of that would take
+    // minutes instead of a fraction of a second.
+    const fixture::Mesh mesh = latLongSphere(4, 30000, 1);
+    const auto begin = std::chrono::steady_clock::now();
+    for (auto estimator : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
+        PelCurvatureParams params = meanParams(estimator, 0.01f);
+        params.smoothingPasses = 2;
+        params.smoothingStages = 4;
+        expectFinite(curvature(mesh, topologyDesc(mesh), params).values);
+        expectFinite(curvature(mesh, weldedDesc(mesh, 1e-7f), params).values);
+        const pellucid::MeshTopology topology(device(), topologyDesc(mesh));
+        const pellucid::LiveMesh live(topology, params);
+        const uint32_t n = mesh.vertices();
+        const pellucid::Buffer positions(device(), mesh.positions), out(device(), n * sizeof(float));
+        live.update(vertexView(positions, n), nullptr, vertexView(out, n));
+        live.update(vertexView(positions, n), nullptr, vertexView(out, n), std::vector<PelVertexRange>{{0, 1}});
+        expectFinite(out.readAll<float>());
+    }
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    EXPECT_LT(seconds.count(), 60) << "kernels are compiled meanwhile, on machines that do other things";
+}
+
+TEST(CurvatureHub, TheRimOfAFanSeesItsNeighbours) {
+    // A belt of a sphere below a pole of 60 neighbours, which only show what is near.
+    const fixture::Mesh mesh = latLongSphere(40, 60, 1);
+    const auto values = curvature(mesh, topologyDesc(mesh), meanParams(PEL_CURVATURE_QUADRIC)).values;
+    for (uint32_t v = 0; v < 61; ++v) EXPECT_NEAR(values[v], 1, tolerance::longCells) << v;
+}
