@@ -128,7 +128,8 @@ def candidates(path, text, m):
     """(start, end, new, kind) of every fault."""
     python = path.endswith(".py")
     for match in re.finditer(r"(?<![\w.'])(?:0[xX][0-9a-fA-F]+|\d+\.\d*(?:[eE][-+]?\d+)?|\d+(?:[eE][-+]?\d+)?|\.\d+)[fFuUlL]*(?![\w.'])", m):
-        yield *match.span(), number(match[0]), "constant"
+        if changed := number(match[0]):
+            yield *match.span(), changed, "constant"
     for match in re.finditer(r" (<=|>=|==|!=|<|>)(?= )", m):
         line = m[m.rfind("\n", 0, match.start()) + 1:match.start()]
         # A loop ends one too early: one too late would be undefined, and often unseen.
@@ -203,7 +204,7 @@ def faults(path, text):
     for found in sorted(set(candidates(path, text, m))):
         while starts[row + 1] <= found[0]:
             row += 1
-        if found[2] is not None and not NOTHING_CHANGES.search(lines[row]):
+        if not NOTHING_CHANGES.search(lines[row]):
             by_line.setdefault(row, []).append(found)
     for row, several in by_line.items():
         around = "\n".join(line.strip() for line in lines[max(0, row - 1):row + 2])
