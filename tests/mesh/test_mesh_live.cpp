@@ -1,5 +1,6 @@
 // Meshes that move: a topology kept, saved and loaded; normals made on the device; one submit and nothing
 // more.
+#include "cl/cl_spy.h"
 #include "mesh_fixture.h"
 #include "reference_meshes.h"
 #include "tolerances.h"
@@ -164,10 +165,13 @@ TEST(MeshLive, ANewPoseIsOneSubmitWithoutCopiesOrBuilds) {
     const Buffer positions(device(), mesh.positions), out(device(), n * 4);
     topology.curvature(tensorParams(), vertexView(positions, n), vertexView(out, n));
     const PelDeviceStats before = device().stats();
+    const spy::Counts asked = spy::counts();
     PelEvent event = nullptr;
     const PelSubmit submit{nullptr, 0, &event};
     topology.curvature(tensorParams(), vertexView(positions, n), vertexView(out, n), nullptr, &submit);
     Event(event).wait();
+    EXPECT_EQ(spy::counts().transfers, asked.transfers);
+    EXPECT_EQ(spy::counts().buffersMade, asked.buffersMade);
     const PelDeviceStats after = device().stats();
     EXPECT_EQ(after.launches - before.launches, 5u) << "normals, tensor, two smoothing passes, store";
     EXPECT_EQ(after.bytesToDevice, before.bytesToDevice);

@@ -1,5 +1,6 @@
 // Live meshes: an update of a part gives the bits of measuring everything anew, and counters show that it did
 // not.
+#include "cl/cl_spy.h"
 #include "mesh_fixture.h"
 #include "reference_meshes.h"
 #include "tolerances.h"
@@ -146,8 +147,12 @@ TEST(LiveMesh, NothingChangedCostsNothing) {
     EXPECT_EQ(live.stats().rowsStored, pose.n) << "the first update measures everything whatever it is told";
     const std::vector<float> values = pose.result.readAll<float>();
     const PelDeviceStats before = device().stats();
+    const spy::Counts asked = spy::counts();
     pose.update(live, &none);
     pose.update(live, &empty);
+    EXPECT_EQ(spy::counts().transfers, asked.transfers);
+    EXPECT_EQ(spy::counts().launches, asked.launches);
+    EXPECT_EQ(spy::counts().buffersMade, asked.buffersMade);
     const PelDeviceStats after = device().stats();
     EXPECT_EQ(after.launches, before.launches);
     EXPECT_EQ(after.bytesToDevice, before.bytesToDevice);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <thread>
 
+#include "cl/cl_spy.h"
 #include "shade_scene.h"
 
 using namespace shade_test;
@@ -470,8 +471,11 @@ TEST(ShadeStats, NothingIsSentOrBuiltTwice) {
     EXPECT_EQ(stats.launches, 2u);
     const uint64_t built = stats.programsBuilt;
     const uint64_t sent = device().stats().bytesToDevice, allocated = device().stats().bytesAllocated;
+    const spy::Counts asked = spy::counts();
     shader.set(f.ambient).commit().execute();
     shader.execute();
+    EXPECT_EQ(spy::counts().transfers, asked.transfers);
+    EXPECT_EQ(spy::counts().buffersMade, asked.buffersMade);
     stats = shader.stats();
     EXPECT_EQ(stats.bytesUploaded, 0u);
     EXPECT_EQ(stats.programsBuilt, built);

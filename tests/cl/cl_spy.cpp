@@ -1,0 +1,184 @@
+#include "cl/cl_spy.h"
+
+#include <CL/cl.h>
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+
+namespace {
+
+enum Type { contexts, queues, memory, programs, kernels, events, types };
+constexpr const char* names[types] = {"contexts", "queues",  "memory objects",
+                                      "programs", "kernels", "events"};
+std::atomic<int64_t> live[types];
+std::atomic<uint64_t> buffersMade, bytesCopied, transfers, launches;
+
+template <class F>
+F* next(const char* name) {
+    return reinterpret_cast<F*>(dlsym(RTLD_NEXT, name));
+}
+
+template <class T>
+T* made(Type type, T* object) {
+    if (object) ++live[type];
+    return object;
+}
+
+cl_int counted(Type type, int by, cl_int code) {
+    if (code == CL_SUCCESS) live[type] += by;
+    return code;
+}
+
+cl_int withEvent(cl_int code, const cl_event* event) {
+    if (code == CL_SUCCESS && event) ++live[events];
+    return code;
+}
+
+cl_int copied(cl_int code, const cl_event* event, size_t bytes) {
+    if (code == CL_SUCCESS) ++transfers, bytesCopied += bytes;
+    return withEvent(code, event);
+}
+
+pid_t watched = 0;
+
+void check() {
+    if (::getpid() != watched) return;  // a fork has counts of objects that are its parent's
+    bool left = false;
+    for (int i = 0; i < types; ++i) left |= live[i] != 0;
+    if (!left) return;
+    std::fprintf(stderr, "\nOpenCL objects that nobody released at the end of the program:");
+    for (int i = 0; i < types; ++i)
+        if (live[i] != 0) std::fprintf(stderr, " %lld %s;", static_cast<long long>(live[i]), names[i]);
+    std::fprintf(stderr, "\n");
+    std::fflush(nullptr);
+    ::_exit(1);
+}
+
+// Registered before any static object is made, and so called after the last of them is gone.
+[[gnu::constructor(101)]] void watch() {
+    watched = ::getpid();
+    std::atexit(check);
+}
+
+}  // namespace
+
+namespace spy {
+
+Counts counts() {
+    return {live[contexts], live[queues], live[memory], live[programs], live[kernels],
+            live[events],   buffersMade,  bytesCopied,  transfers,      launches};
+}
+
+}  // namespace spy
+
+#pragma GCC visibility push(default)
+extern "C" {
+
+#define REAL(function) next<decltype(function)>(#function)
+#define COUNT_REFERENCES(type, Type, handle)                \
+    cl_int clRetain##Type(handle h) {                       \
+        return counted(type, 1, REAL(clRetain##Type)(h));   \
+    }                                                       \
+    cl_int clRelease##Type(handle h) {                      \
+        return counted(type, -1, REAL(clRelease##Type)(h)); \
+    }
+COUNT_REFERENCES(contexts, Context, cl_context)
+COUNT_REFERENCES(queues, CommandQueue, cl_command_queue)
+COUNT_REFERENCES(memory, MemObject, cl_mem)
+COUNT_REFERENCES(programs, Program, cl_program)
+COUNT_REFERENCES(kernels, Kernel, cl_kernel)
+COUNT_REFERENCES(events, Event, cl_event)
+
+cl_context clCreateContext(const cl_context_properties* properties, cl_uint count,
+                           const cl_device_id* devices,
+                           void(CL_CALLBACK* notify)(const char*, const void*, size_t, void*), void* user,
+                           cl_int* code) {
+    return made(contexts, REAL(clCreateContext)(properties, count, devices, notify, user, code));
+}
+cl_command_queue clCreateCommandQueue(cl_context context, cl_device_id device,
+                                      cl_command_queue_properties properties, cl_int* code) {
+    return made(queues, REAL(clCreateCommandQueue)(context, device, properties, code));
+}
+cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void* host, cl_int* code) {
+    cl_mem buffer = REAL(clCreateBuffer)(context, flags, bytes, host, code);
+    if (buffer) ++buffersMade;
+    if (buffer && (flags & CL_MEM_COPY_HOST_PTR)) ++transfers, bytesCopied += bytes;
+    return made(memory, buffer);
+}
+cl_mem clCreateSubBuffer(cl_mem whole, cl_mem_flags flags, cl_buffer_create_type type, const void* info,
+                         cl_int* code) {
+    return made(memory, REAL(clCreateSubBuffer)(whole, flags, type, info, code));
+}
+cl_program clCreateProgramWithSource(cl_context context, cl_uint count, const char** texts,
+                                     const size_t* sizes, cl_int* code) {
+    return made(programs, REAL(clCreateProgramWithSource)(context, count, texts, sizes, code));
+}
+cl_program clCreateProgramWithBinary(cl_context context, cl_uint count, const cl_device_id* devices,
+                                     const size_t* sizes, const unsigned char** binaries, cl_int* status,
+                                     cl_int* code) {
+    return made(programs,
+                REAL(clCreateProgramWithBinary)(context, count, devices, sizes, binaries, status, code));
+}
+cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* code) {
+    return made(kernels, REAL(clCreateKernel)(program, name, code));
+}
+cl_event clCreateUserEvent(cl_context context, cl_int* code) {
+    return made(events, REAL(clCreateUserEvent)(context, code));
+}
+cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
+                              const size_t* offset, const size_t* global, const size_t* local, cl_uint waits,
+                              const cl_event* list, cl_event* event) {
+    const cl_int code =
+        REAL(clEnqueueNDRangeKernel)(queue, kernel, dimensions, offset, global, local, waits, list, event);
+    if (code == CL_SUCCESS) ++launches;
+    return withEvent(code, event);
+}
+cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
+                           size_t bytes, void* to, cl_uint waits, const cl_event* list, cl_event* event) {
+    return copied(REAL(clEnqueueReadBuffer)(queue, buffer, blocking, offset, bytes, to, waits, list, event),
+                  event, bytes);
+}
+cl_int clEnqueueWriteBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,
+                            size_t bytes, const void* from, cl_uint waits, const cl_event* list,
+                            cl_event* event) {
+    return copied(
+        REAL(clEnqueueWriteBuffer)(queue, buffer, blocking, offset, bytes, from, waits, list, event), event,
+        bytes);
+}
+cl_int clEnqueueCopyBuffer(cl_command_queue queue, cl_mem from, cl_mem to, size_t fromOffset, size_t toOffset,
+                           size_t bytes, cl_uint waits, const cl_event* list, cl_event* event) {
+    return copied(REAL(clEnqueueCopyBuffer)(queue, from, to, fromOffset, toOffset, bytes, waits, list, event),
+                  event, bytes);
+}
+cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem buffer, const void* pattern, size_t patternBytes,
+                           size_t offset, size_t bytes, cl_uint waits, const cl_event* list,
+                           cl_event* event) {
+    return withEvent(
+        REAL(clEnqueueFillBuffer)(queue, buffer, pattern, patternBytes, offset, bytes, waits, list, event),
+        event);
+}
+void* clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, cl_map_flags flags,
+                         size_t offset, size_t bytes, cl_uint waits, const cl_event* list, cl_event* event,
+                         cl_int* code) {
+    void* const mapped =
+        REAL(clEnqueueMapBuffer)(queue, buffer, blocking, flags, offset, bytes, waits, list, event, code);
+    if (mapped && event) ++live[events];
+    return mapped;
+}
+cl_int clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem buffer, void* mapped, cl_uint waits,
+                               const cl_event* list, cl_event* event) {
+    return withEvent(REAL(clEnqueueUnmapMemObject)(queue, buffer, mapped, waits, list, event), event);
+}
+cl_int clEnqueueMarkerWithWaitList(cl_command_queue queue, cl_uint waits, const cl_event* list,
+                                   cl_event* event) {
+    return withEvent(REAL(clEnqueueMarkerWithWaitList)(queue, waits, list, event), event);
+}
+cl_int clEnqueueBarrierWithWaitList(cl_command_queue queue, cl_uint waits, const cl_event* list,
+                                    cl_event* event) {
+    return withEvent(REAL(clEnqueueBarrierWithWaitList)(queue, waits, list, event), event);
+}
+
+}  // extern "C"

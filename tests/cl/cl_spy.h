@@ -1,0 +1,25 @@
+// What the library asks of OpenCL, counted between it and the loader (cl_spy.cpp is linked before the loader
+// into each test program). At the end of the program nothing of OpenCL may be left: the spy then fails it.
+#pragma once
+#include <cstdint>
+
+namespace spy {
+
+struct [[gnu::visibility("default")]] Counts {
+    // References that the library holds now.
+    int64_t contexts, queues, memory, programs, kernels, events;
+    // Since the program began.
+    uint64_t buffersMade;  // clCreateBuffer that succeeded
+    uint64_t
+        bytesCopied;     // by CL_MEM_COPY_HOST_PTR and the enqueued reads, writes and copies between buffers
+    uint64_t transfers;  // how many of those
+    uint64_t launches;   // clEnqueueNDRangeKernel that succeeded
+
+    int64_t left() const {
+        return contexts + queues + memory + programs + kernels + events;
+    }
+};
+
+[[gnu::visibility("default")]] Counts counts();
+
+}  // namespace spy
