@@ -1,10 +1,12 @@
 """Contexts, queues, buffers and events that PyOpenCL made."""
 import gc
+import weakref
 
 import numpy as np
 import pytest
 
 import pellucid as pel
+from pellucid import _flight
 
 cl = pytest.importorskip("pyopencl")
 cl_array = pytest.importorskip("pyopencl.array")
@@ -60,6 +62,34 @@ def test_events_both_ways(queue):
     gate.set_status(cl.command_execution_status.COMPLETE)
     cl.wait_for_events([cl.Event.from_int_ptr(event.cl)])
     assert event.done and out[0] == 5
+
+
+@pytest.mark.parametrize("kind", ["buffer read", "buffer write", "table read", "curvature"])
+def test_what_waiting_work_uses_is_kept_until_it_is_done(queue, sphere, kind):
+    device = pel.Device.from_cl(queue)
+    n = len(sphere.positions)
+    buffer, table = pel.Buffer(device, np.zeros(64, np.float32)), pel.Lut.shadow(device, width=8, height=8)
+    topology = pel.MeshTopology(device, sphere.triangles, n)
+    device.finish()
+    gate = cl.UserEvent(queue.context)
+    waits = [pel.Event.from_cl(device, gate)]
+    array = np.full({"table read": (8, 8, 3), "curvature": n}.get(kind, 64), 7, np.float32)
+    gone = []
+    weakref.finalize(array, gone.append, kind)
+    event = {"buffer read": lambda: buffer.submit_read(array, waits=waits),
+             "buffer write": lambda: buffer.submit_write(array, waits=waits),
+             "table read": lambda: table.submit_read("float", array, waits=waits),
+             "curvature": lambda: topology.submit_curvature(sphere.positions, sphere.normals, array, waits=waits)}[kind]()
+    del array
+    gc.collect()
+    assert not gone and not event.done
+    gate.set_status(cl.command_execution_status.COMPLETE)
+    event.wait()
+    device.finish()
+    del event
+    _flight.sweep()
+    gc.collect()
+    assert gone, "and no longer"
 
 
 def test_a_buffer_of_another_context_is_refused(queue):
