@@ -81,9 +81,7 @@ void writeAlone(benchmark::State& state, bool flushed) {
                 for (size_t i; (i = next++) < m.entries.size();) {
                     const fs::path path = folder.path / m.entries[i].file;
                     if (flushed) {
-                        io::AtomicFile file(path.string());
-                        file.write(bytes.data(), bytes.size());
-                        file.commit();
+                        io::writeWholeFile(path.string(), bytes);
                     } else {
                         std::ofstream(path, std::ios::binary)
                             .write(bytes.data(), std::streamsize(bytes.size()));

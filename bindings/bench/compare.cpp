@@ -51,6 +51,21 @@ std::string compareOne(Json& out, const Json& before, const Json& after, double 
 
 }  // namespace
 
+nlohmann::ordered_json parseReport(const std::string& text) {
+    using Json = nlohmann::ordered_json;
+    constexpr int deepest = 16;  // copies and texts of values are made by recursion
+    bool deep = false;
+    Json report = Json::parse(
+        text,
+        [&](int depth, Json::parse_event_t, Json&) {
+            deep |= depth > deepest;
+            return depth <= deepest;  // else it is left out
+        },
+        false);
+    const bool sound = !deep && !report.is_discarded() && report.is_object() && report.contains("devices") && report["devices"].is_array();
+    return sound ? report : Json(Json::value_t::discarded);
+}
+
 Json compareReports(const Json& before, const Json& after) {
     Json result = {{"devices", Json::array()}, {"same", 0},  {"faster", 0},      {"slower", 0},
                    {"less_accurate", 0},       {"fails", 0}, {"not_compared", 0}};

@@ -5,6 +5,10 @@
 
 namespace pellucid::bench {
 
+// The report that a text is: an object with an array "devices", nested no deeper than any report. Anything else is discarded
+// (is_discarded()).
+nlohmann::ordered_json parseReport(const std::string& text);
+
 // {"devices": [{"name", "machine", "operations": [{"name", "old_ms", "new_ms", "ratio", "noise",
 // "verdict"}]}], "slower", "faster", "less_accurate", ...}. Verdicts: "same", "faster", "slower", "less
 // accurate", "only old", "only new".

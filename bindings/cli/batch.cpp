@@ -11,8 +11,8 @@
 #include <mutex>
 
 #include "command.h"
-#include "io/lut/batch_run.h"
 #include "io/file_error.h"
+#include "io/lut/batch_run.h"
 
 namespace pellucid::cli {
 namespace {
@@ -112,7 +112,6 @@ void runBatch(const Arguments& arguments) {
     std::filesystem::create_directories(arguments.folder, error);
     if (error || !std::filesystem::is_directory(arguments.folder))
         throw io::FileError(arguments.folder, "is no folder and cannot be made one");
-    std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error like a full disk
     std::signal(SIGINT, [](int signal) {
         interrupted = true;  // the entries in flight are finished; a second Ctrl-C kills
         std::signal(signal, SIG_DFL);
@@ -149,7 +148,7 @@ void runBatch(const Arguments& arguments) {
     const nlohmann::ordered_json report =
         reportOf(manifest, run, options.devices, seconds() - start, failures);
     if (arguments.json)
-        std::printf("%s\n", report.dump(2).c_str());
+        printJson(report);
     else
         std::printf("%zu tables: %zu made (%zu of them anew), %zu were there, %zu failed\n",
                     manifest.entries.size(), report["made"].get<size_t>(), report["redone"].get<size_t>(),

@@ -6,7 +6,6 @@
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 
 #include "bench/compare.h"
@@ -15,6 +14,7 @@
 #include "command.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
+#include "io/input_file.h"
 
 namespace pellucid::cli {
 namespace {
@@ -30,12 +30,6 @@ struct Arguments {
 };
 
 std::atomic<bool> stopped{false};
-
-void writeText(const std::string& path, const std::string& text) {
-    io::AtomicFile file(path);
-    file.write(text.data(), text.size());
-    file.commit();
-}
 
 // Numbers of the devices to measure: those asked for, or all but simulators.
 std::vector<std::string> chosenDevices(const Arguments& a) {
@@ -68,7 +62,7 @@ void measureWithEvents(const Arguments& a) {
     std::FILE* out = ::fdopen(::dup(STDOUT_FILENO), "w");
     ::dup2(STDERR_FILENO, STDOUT_FILENO);
     const auto tell = [out](const Json& event) {
-        std::fprintf(out, "%s\n", event.dump().c_str());
+        std::fprintf(out, "%s\n", jsonText(event, -1).c_str());
         std::fflush(out);
     };
     bench::Request request = requestOf(a, a.devices.empty() ? "" : a.devices[0]);
@@ -81,7 +75,7 @@ void measureWithEvents(const Arguments& a) {
 void measure(const Arguments& a) {
     if (a.events) return measureWithEvents(a);
     if (a.firstUse) {
-        std::cout << bench::firstUse(a.devices.empty() ? "" : a.devices[0]).dump() << std::endl;
+        std::cout << jsonText(bench::firstUse(a.devices.empty() ? "" : a.devices[0]), -1) << std::endl;
         return;
     }
     if (a.output.empty()) throw UsageError("-o is needed: a folder for bench.json and bench.html");
@@ -114,14 +108,14 @@ void measure(const Arguments& a) {
         for (const Json& e : d.at("operations"))
             deviceMilliseconds += e.value("device_ms", 0.0) * e.value("runs", 0.0);
     }
-    writeText(jsonPath, report.dump(1) + "\n");
-    writeText(htmlPath, bench::htmlPage(report));
+    io::writeWholeFile(jsonPath, jsonText(report, 1) + "\n");
+    io::writeWholeFile(htmlPath, bench::htmlPage(report));
     const std::chrono::duration<double, std::milli> total = std::chrono::steady_clock::now() - start;
     const Json said = {{"device", names},           {"report", jsonPath},
                        {"page", htmlPath},          {"device_ms", deviceMilliseconds},
                        {"total_ms", total.count()}, {"warnings", Json::array()}};
     if (a.json) {
-        std::cout << said.dump(2) << std::endl;
+        printJson(said);
         return;
     }
     for (const Json& d : report["devices"]) {
@@ -151,12 +145,8 @@ void measure(const Arguments& a) {
 }
 
 Json readReport(const std::string& path) {
-    std::ifstream file(path);
-    if (!file) throw InputError(path + ": cannot be read");
-    Json report = Json::parse(file, nullptr, false);
-    if (report.is_discarded() || !report.is_object() || !report.contains("devices") ||
-        !report["devices"].is_array())
-        throw InputError(path + ": not a report of `pellucid bench` (its bench.json)");
+    Json report = bench::parseReport(io::readWholeFile(path, io::textLimit));
+    if (report.is_discarded()) throw InputError(path + ": not a report of `pellucid bench` (its bench.json)");
     return report;
 }
 
@@ -173,7 +163,7 @@ void compare(const Arguments& a) {
         throw InputError("nothing to compare: no operation of one size on one device is in both " + a.before +
                          " and " + a.after);
     if (a.json)
-        std::cout << result.dump(2) << std::endl;
+        printJson(result);
     else
         std::cout << bench::describeComparison(result) << std::flush;
     if (number("slower") + number("less_accurate") + number("fails") > 0) throw CLI::RuntimeError(exitWorse);

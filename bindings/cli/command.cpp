@@ -67,15 +67,24 @@ void Run::finish() {
     report["total_ms"] = total.count();
     report["warnings"] = warnings_;
     if (options_.json) {
-        std::cout << report.dump(2) << std::endl;
+        printJson(report);
         return;
     }
     for (const auto& [key, value] : report.items()) {
         // Tables are for programs: people saw theirs on the way.
         if (value.is_array() && (value.empty() || value[0].is_object())) continue;
-        std::cout << key << ": " << (value.is_string() ? value.get<std::string>() : value.dump()) << "\n";
+        std::cout << key << ": " << (value.is_string() ? value.get<std::string>() : jsonText(value, -1))
+                  << "\n";
     }
     std::cout << std::flush;
+}
+
+void printJson(const nlohmann::ordered_json& report) {
+    std::cout << jsonText(report) << std::endl;
+}
+
+std::string jsonText(const nlohmann::ordered_json& value, int indent) {
+    return value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 void addRunOptions(CLI::App& command, Run::Options& options) {

@@ -57,6 +57,11 @@ class Run {
     static int onProgress(void* user, double fraction, const char* what);
 };
 
+// One JSON object on standard output. Names of files that are no UTF-8 come with U+FFFD for what is none:
+// JSON has no other bytes.
+void printJson(const nlohmann::ordered_json& report);
+std::string jsonText(const nlohmann::ordered_json& value, int indent = 2);
+
 // Adds --device, --json and --strict.
 void addRunOptions(CLI::App& command, Run::Options& options);
 

@@ -8,6 +8,7 @@
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/image/image_file.h"
+#include "io/input_file.h"
 #include "io/mesh/mesh_file.h"
 #include "mesh_curvature.h"
 

@@ -1,6 +1,5 @@
 // pellucid devices [--json]: what OpenCL offers here.
 #include <cstdio>
-#include <iostream>
 
 #include "command.h"
 
@@ -66,7 +65,7 @@ void addDevices(CLI::App& app) {
                                                    {"device_ms", chosen.stats().kernelMilliseconds},
                                                    {"total_ms", total.count()},
                                                    {"warnings", nlohmann::ordered_json::array()}};
-            std::cout << report.dump(2) << std::endl;
+            printJson(report);
         }
     });
 }

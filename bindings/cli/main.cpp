@@ -1,5 +1,10 @@
 // The `pellucid` command. Exit codes: 0 done, 2 wrong use, 3 bad input file, 4 no device or device failure.
+#include <fcntl.h>
+
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <iostream>
 
 #include "command.h"
 #include "io/file_error.h"
@@ -25,9 +30,26 @@ void checkSubcommand(const CLI::App& app, int argc, char** argv, const std::stri
     throw UsageError("there is no subcommand '" + path + argv[1] + "'; there are " + names);
 }
 
+// Of standard output: a report that nobody gets is no success.
+int finish(int code) {
+    const bool written = std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout);
+    return written ? code
+                   : fail(exitBadInput, "standard output cannot be written: the report is not complete");
+}
+
+// Descriptors 0 to 2 are taken, or the first file to be opened would be what everybody prints to. One that
+// was closed fails still.
+void holdStandardStreams() {
+    for (int fd = 0; fd < 3; ++fd)
+        if (::fcntl(fd, F_GETFD) < 0 && ::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY) != fd)
+            std::exit(exitWrongUse);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+    holdStandardStreams();
+    std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error like a full disk
     CLI::App app("Subsurface scattering for deferred renderers on OpenCL", "pellucid");
     app.require_subcommand(1);
     app.set_version_flag("--version", std::to_string(PEL_VERSION_MAJOR) + "." +
@@ -45,11 +67,11 @@ int main(int argc, char** argv) {
     try {
         checkSubcommand(app, argc, argv);
         app.parse(argc, argv);
-        return exitDone;
+        return finish(exitDone);
     } catch (const CLI::Success& e) {
-        return app.exit(e);  // --help and --version
+        return finish(app.exit(e));  // --help and --version
     } catch (const CLI::RuntimeError& e) {
-        return e.get_exit_code();  // a subcommand's own
+        return finish(e.get_exit_code());  // a subcommand's own
     } catch (const CLI::ParseError& e) {
         app.exit(e);
         return exitWrongUse;

@@ -6,6 +6,7 @@
 #include "io/atomic_file.h"
 #include "io/image/image_file.h"
 #include "io/image/picture.h"
+#include "io/input_file.h"
 #include "io/lut/profile_file.h"
 #include "io/lut/profile_fit.h"
 
@@ -34,12 +35,12 @@ nlohmann::ordered_json described(const io::ProfileFile& file) {
 
 void print(const nlohmann::ordered_json& report, bool json) {
     if (json) {
-        std::printf("%s\n", report.dump(2).c_str());
+        printJson(report);
         return;
     }
     for (const auto& [key, value] : report.items())
         std::printf("%-14s %s\n", key.c_str(),
-                    value.is_string() ? value.get<std::string>().c_str() : value.dump().c_str());
+                    value.is_string() ? value.get<std::string>().c_str() : jsonText(value, -1).c_str());
 }
 
 void list(const Arguments& a) {
@@ -47,7 +48,7 @@ void list(const Arguments& a) {
     for (const io::LibraryProfile& entry : io::profileLibrary())
         all.push_back(described(io::findProfile(std::string(entry.name))));
     if (a.json) {
-        std::printf("%s\n", nlohmann::ordered_json{{"profiles", all}}.dump(2).c_str());
+        printJson({{"profiles", all}});
         return;
     }
     std::printf("%-12s %-8s %9s  %-26s %s\n", "name", "kind", "radius mm", "width mm (R, G, B)", "source");
@@ -145,9 +146,7 @@ void fit(const Arguments& a) {
         best, file.name + "-" + std::to_string(a.gaussians) + "-gaussians",
         "sum of " + std::to_string(a.gaussians) + " Gaussians fitted to the line spread of " + file.name);
     if (!a.output.empty()) {
-        io::AtomicFile out(a.output);
-        out.write(text.data(), text.size());
-        out.commit();
+        io::writeWholeFile(a.output, text);
         report["output"] = a.output;
     }
     if (a.json)

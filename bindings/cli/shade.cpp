@@ -5,6 +5,7 @@
 #include "frame.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
+#include "io/input_file.h"
 #include "io/scene/scene_keys.h"
 
 namespace pellucid::cli {

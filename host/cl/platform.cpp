@@ -1,9 +1,13 @@
 #include "cl/platform.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <mutex>
 #include <optional>
 
@@ -17,6 +21,20 @@ constexpr const char* pocl = "Portable Computing Language";
 constexpr const char* missingPackage =
     "no OpenCL device was found: install a driver, for example PoCL for the CPU (Debian: apt-get install "
     "pocl-opencl-icd), or the one of your GPU's vendor";
+
+// PoCL says that it has no device at all when it cannot write to the folder that POCL_CACHE_DIR names. What is wrong with that
+// folder; "" for nothing.
+std::string poclFolderTrouble() {
+    namespace fs = std::filesystem;
+    const char* folder = std::getenv("POCL_CACHE_DIR");
+    if (!folder || !*folder) return {};
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (!error && ::access(folder, W_OK | X_OK) != 0) error.assign(errno, std::generic_category());
+    if (!error) return {};
+    return text("; PoCL, where it is installed, says so too when POCL_CACHE_DIR, ", folder, ", cannot be written to (", error.message(),
+                "): name another folder, or none");
+}
 
 template <class T>
 T info(cl_device_id device, cl_device_info what) {
@@ -159,7 +177,11 @@ uint32_t selectDevice(const char* selector) {
         source = "PELLUCID_DEVICE";
     }
     const std::vector<cl_device_id> ids = allDevices();
-    if (ids.empty()) fail(PEL_ERROR_NO_DEVICE, missingPackage);
+    if (ids.empty()) {
+        const std::string trouble = poclFolderTrouble();
+        if (!trouble.empty()) fail(PEL_ERROR_NO_DEVICE, "no OpenCL device was found", trouble);
+        fail(PEL_ERROR_NO_DEVICE, missingPackage);
+    }
     std::vector<PelDeviceInfo> devices;
     for (size_t i = 0; i < ids.size(); ++i) devices.push_back(describe(ids[i], uint32_t(i)));
 

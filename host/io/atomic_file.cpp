@@ -1,166 +1,198 @@
 #include "io/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
-#include <cctype>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
 
 #include "io/content_hash.h"
 #include "io/file_error.h"
+#include "io/input_file.h"
 
 namespace pellucid::io {
 namespace fs = std::filesystem;
 namespace {
 
-std::string systemMessage() {
-    return std::strerror(errno);
+// Seconds since the last write after which a temporary file is nobody's: a writer that this program's locks
+// would show, and others.
+constexpr double lockedAge = 60, foreignAge = 86400;
+
+// Whose locks are ours to see: those under this kernel, containers included. 8 hexadecimal digits.
+// bindings/python/pellucid/batch/ store.py makes the same.
+const std::string& machineTag() {
+    static const std::string tag = [] {
+        std::string name;
+        std::ifstream("/proc/sys/kernel/random/boot_id") >> name;
+        if (name.empty()) {
+            char host[256] = {};
+            ::gethostname(host, sizeof host - 1);
+            name = host;
+        }
+        return ContentHash().add(name).text().substr(0, 8);
+    }();
+    return tag;
 }
 
-// Flushes what is at `path`, which another writer (OpenImageIO) may have closed already.
-bool flushToDisk(const std::string& path) {
-    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (fd < 0) return false;
-    const bool ok = ::fsync(fd) == 0;
-    ::close(fd);
-    return ok;
+// 64 bits that nobody can foresee.
+std::string randomDigits() {
+    uint64_t bits = 0;
+    if (::getentropy(&bits, sizeof bits) != 0)
+        throw FileError("/dev/urandom", std::string("no random numbers: ") + std::strerror(errno));
+    return hexDigits(bits);
 }
 
-// Which machine a temporary file belongs to: 4 hexadecimal digits.
-std::string machineTag() {
-    char name[256] = {};
-    ::gethostname(name, sizeof name - 1);
-    return ContentHash().add(name).text().substr(0, 4);
+// .STEM.MACHINE-RANDOM.tmp.EXTENSION, shorter than any file system's limit.
+std::string temporaryName(const std::string& name) {
+    const fs::path path(name);
+    std::string temporary =
+        "." + path.stem().string().substr(0, 120) + "." + machineTag() + "-" + randomDigits() + ".tmp";
+    return temporary += path.extension().string().substr(0, 40);
+}
+
+// The machine of a temporary file; "" for another name.
+std::string machineOf(const std::string& name) {
+    constexpr size_t tag = 8, random = 16, all = 1 + tag + 1 + random;
+    const size_t end = name.rfind(".tmp");
+    if (name.empty() || name[0] != '.' || end == std::string::npos || end < all) return "";
+    if (name.size() > end + 4 && name[end + 4] != '.') return "";
+    const std::string part = name.substr(end - all, all);
+    const auto hex = [&](size_t from, size_t count) {
+        return part.find_first_not_of("0123456789abcdef", from) >= from + count;
+    };
+    return part[0] == '.' && hex(1, tag) && part[1 + tag] == '-' && hex(2 + tag, random) ? part.substr(1, tag)
+                                                                                         : "";
+}
+
+// A folder, to name files in it and to flush it. Where it may not be listed it can still hold files.
+int openFolder(const std::string& path) {
+    const int fd = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    return fd >= 0 || errno != EACCES ? fd : ::open(path.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+}
+
+std::string folderOf(const std::string& path) {
+    const std::string parent = fs::path(path).parent_path().string();
+    return parent.empty() ? "." : parent;
+}
+
+// Whether names in this folder are on the disk. Some file systems cannot flush folders, and say so.
+bool flushed(int fd) {
+    return ::fsync(fd) == 0 || errno == EINVAL || errno == EBADF || errno == ENOTSUP;
+}
+
+void refuseOtherThanFile(const std::string& path) {
+    const std::string other = otherThanFile(path);
+    if (!other.empty()) throw FileError(path, "is " + other + "; the output must be the name of a file");
 }
 
 }  // namespace
 
-AtomicFile::AtomicFile(std::string target) : target_(std::move(target)) {
-    // Hidden, unique to process and call, and with the same extension: image writers choose their format by
-    // it.
-    static std::atomic<unsigned> counter{0};
-    const fs::path path(target_);
-    static const std::string machine = machineTag();
-    const std::string unique = machine + "-" + std::to_string(::getpid()) + "-" + std::to_string(counter++);
-    std::string name(".");
-    name.append(path.stem().string())
-        .append(".")
-        .append(unique)
-        .append(".tmp")
-        .append(path.extension().string());
-    temporary_ = (path.parent_path() / name).string();
+AtomicFile::AtomicFile(std::string target)
+    : target_(std::move(target)), name_(fs::path(target_).filename().string()) {
+    refuseOtherThanFile(target_);
+    if (name_.empty())
+        throw FileError(target_.empty() ? "(no name)" : target_, "an output needs a file name");
+    const std::string folder = folderOf(target_);
+    folder_ = openFolder(folder);
+    if (folder_ < 0 && errno == ENOENT)
+        throw FileError(target_, "cannot be written: there is no folder '" + folder + "'; create it first");
+    if (folder_ < 0) fail();
+    temporary_ = temporaryName(name_);
+    file_ = ::openat(folder_, temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (file_ < 0) {
+        const int why = errno;
+        ::close(folder_);
+        errno = why;
+        fail();
+    }
+    ::flock(file_, LOCK_EX | LOCK_NB);  // where there are no locks, age alone tells
 }
 
 AtomicFile::~AtomicFile() {
-    if (!done_) ::unlink(temporary_.c_str());
+    if (!temporary_.empty()) ::unlinkat(folder_, temporary_.c_str(), 0);
+    if (file_ >= 0) ::close(file_);
+    ::close(folder_);
+}
+
+void AtomicFile::fail(const char* what) const {
+    throw FileError(target_, what + std::string(std::strerror(errno)));
 }
 
 void AtomicFile::write(const void* bytes, size_t count) {
-    const int fd = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (fd < 0) throw FileError(target_, "cannot be written: " + systemMessage());
     const char* next = static_cast<const char*>(bytes);
     while (count > 0) {
-        const ssize_t wrote = ::write(fd, next, std::min<size_t>(count, size_t{1} << 30));
+        const ssize_t wrote = ::write(file_, next, std::min<size_t>(count, size_t{1} << 30));
         if (wrote < 0 && errno == EINTR) continue;
-        if (wrote <= 0) {
-            const std::string why = systemMessage();
-            ::close(fd);
-            throw FileError(target_, "cannot be written: " + why);
-        }
+        if (wrote == 0) errno = ENOSPC;
+        if (wrote <= 0) fail();
         next += wrote;
         count -= static_cast<size_t>(wrote);
     }
-    flushed_ = ::fsync(fd) == 0;
-    if (::close(fd) != 0 || !flushed_) throw FileError(target_, "cannot be written: " + systemMessage());
 }
 
-void AtomicFile::commit() {
-    if ((!flushed_ && !flushToDisk(temporary_)) || std::rename(temporary_.c_str(), target_.c_str()) != 0)
-        throw FileError(target_, "cannot be written: " + systemMessage());
-    done_ = true;
+void AtomicFile::commit(bool folderToo) {
+    if (::fsync(file_) != 0) fail();
+    // Network file systems may tell only now that they are full. The lock stays with the second descriptor.
+    const int locked = ::fcntl(file_, F_DUPFD_CLOEXEC, 0);
+    if (locked < 0) fail();
+    const int closed = ::close(file_);
+    file_ = locked;
+    if (closed != 0 && errno != EINTR) fail();
+    refuseOtherThanFile(target_);
+    if (::renameat(folder_, temporary_.c_str(), folder_, name_.c_str()) != 0) fail();
+    temporary_.clear();
+    if (folderToo && !flushed(folder_)) fail("is written, but its name may not outlive a power cut: ");
 }
 
-size_t removeAbandonedFiles(const std::string& folder) {
-    static const std::string machine = machineTag();
+void writeWholeFile(const std::string& path, std::string_view bytes) {
+    AtomicFile file(path);
+    file.write(bytes.data(), bytes.size());
+    file.commit();
+}
+
+void flushFolder(const std::string& path) {
+    const int folder = openFolder(path);
+    const bool done = folder >= 0 && flushed(folder);
+    const int why = errno;
+    if (folder >= 0) ::close(folder);
+    if (!done) throw FileError(path, std::string("names in it may not outlive a power cut: ") + std::strerror(why));
+}
+
+size_t removeAbandonedFiles(const std::string& path) {
+    const int folder = openFolder(path);
+    if (folder < 0) return 0;
     size_t removed = 0;
     std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
-        // .STEM.MACHINE-PROCESS-COUNT.tmp.EXTENSION
-        const std::string name = entry.path().filename().string();
-        const size_t end = name.rfind(".tmp.");
-        if (name[0] != '.' || end == std::string::npos) continue;
-        const size_t begin = name.rfind('.', end - 1) + 1;
-        char tag[5] = {};
-        long process = 0;
-        unsigned count = 0;
-        if (std::sscanf(name.substr(begin, end - begin).c_str(), "%4[0-9a-f]-%ld-%u", tag, &process,
-                        &count) != 3)
-            continue;
-        struct stat status;
-        if (::stat(entry.path().c_str(), &status) != 0) continue;
-        const double age = std::difftime(std::time(nullptr), status.st_mtime);
-        const bool gone = machine == tag && ::kill(pid_t(process), 0) != 0 && errno == ESRCH;
-        if (age > 86400 || (gone && age > 60)) removed += ::unlink(entry.path().c_str()) == 0;
+    for (fs::directory_iterator at(path, error), end; !error && at != end; at.increment(error)) {
+        const std::string name = at->path().filename().string();
+        const std::string machine = machineOf(name);
+        if (machine.empty()) continue;
+        const int fd = ::openat(folder, name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        if (fd < 0) continue;
+        struct stat status {};
+        if (::fstat(fd, &status) == 0 && S_ISREG(status.st_mode)) {
+            const double age = std::difftime(std::time(nullptr), status.st_mtime);
+            if (age > (machine == machineTag() ? lockedAge : foreignAge) &&
+                ::flock(fd, LOCK_EX | LOCK_NB) == 0)
+                removed += ::unlinkat(folder, name.c_str(), 0) == 0;
+        }
+        ::close(fd);
     }
+    ::close(folder);
     return removed;
 }
 
 void checkWritable(const std::string& path) {
-    std::error_code ignored;
-    if (path.empty()) throw FileError("(no name)", "an output needs a file name");
-    if (fs::is_directory(path, ignored)) throw FileError(path, "is a folder; the output must be a file name");
-    const fs::path parent = fs::path(path).parent_path();
-    if (!parent.empty() && !fs::is_directory(parent, ignored))
-        throw FileError(path,
-                        "cannot be written: there is no folder '" + parent.string() + "'; create it first");
-    AtomicFile probe(path);  // creating a file here is the only sure test; its destructor removes it
-    probe.write("", 0);
-}
-
-std::string extensionOf(const std::string& path) {
-    std::string extension = fs::path(path).extension().string();
-    if (!extension.empty()) extension.erase(0, 1);
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
-
-std::string requireExtension(const std::string& path, std::initializer_list<std::string_view> known) {
-    const std::string extension = extensionOf(path);
-    if (std::find(known.begin(), known.end(), extension) != known.end()) return extension;
-    std::string list;
-    for (std::string_view k : known) list.append(list.empty() ? "." : ", .").append(k);
-    throw FileError(
-        path, (extension.empty() ? "has no extension" : "has the unknown extension '." + extension + "'") +
-                  "; known here: " + list);
-}
-
-void checkReadable(const std::string& path) {
-    std::error_code ignored;
-    if (fs::is_directory(path, ignored)) throw FileError(path, "is a folder, not a file");
-    if (::access(path.c_str(), R_OK) != 0) throw FileError(path, "cannot be read: " + systemMessage());
-}
-
-std::string readWholeFile(const std::string& path) {
-    checkReadable(path);
-    std::FILE* file = std::fopen(path.c_str(), "rb");
-    if (!file) throw FileError(path, "cannot be read: " + systemMessage());
-    std::string text;
-    char block[1 << 16];
-    size_t got;
-    while ((got = std::fread(block, 1, sizeof block, file)) > 0) text.append(block, got);
-    const bool failed = std::ferror(file) != 0;
-    std::fclose(file);
-    if (failed) throw FileError(path, "cannot be read: " + systemMessage());
-    return text;
+    const AtomicFile probe(path);  // making a file there is the only sure test; its destructor removes it
+    removeAbandonedFiles(folderOf(path));
 }
 
 }  // namespace pellucid::io

@@ -1,50 +1,49 @@
-// Files that appear complete or not at all.
+// The one way to a file on the disk: it appears complete or not at all, and what stood there before stays
+// until then.
 #pragma once
 #include <cstddef>
-#include <initializer_list>
 #include <string>
 #include <string_view>
 
 namespace pellucid::io {
 
-// A file under a temporary name beside its target. Write to temporaryPath(), then commit(): it is flushed to
-// the disk and renamed. Without commit() the destructor removes it, and what stood at the target stays as it
-// was.
+// A file under a temporary name beside its target: of random letters, made anew and never through a link,
+// locked while its writer lives. write() puts it on the disk, commit() gives it its name and flushes the
+// folder. Without commit() the destructor removes it.
 class AtomicFile {
   public:
+    // Throws FileError when the folder is missing or may not be written to, or when a folder, a pipe or a
+    // device has this name.
     explicit AtomicFile(std::string target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    const std::string& temporaryPath() const { return temporary_; }  // keeps the target's extension
-    // Creates or truncates, writes all, waits for the disk; throws FileError (disk full, …).
+    // Appends; throws FileError (disk full, …).
     void write(const void* bytes, size_t count);
-    void commit();  // throws FileError
+    // Waits for the disk, renames, and waits until the folder is there too; throws FileError. Of many files in one folder each may leave
+    // the folder out, and flushFolder() be called for all.
+    void commit(bool folderToo = true);
 
   private:
-    std::string target_, temporary_;
-    bool flushed_ = false, done_ = false;
+    [[noreturn]] void fail(const char* what = "cannot be written: ") const;
+    std::string target_, name_, temporary_;  // the last two without the folder
+    int folder_ = -1, file_ = -1;
 };
 
-// Removes what programs that were killed left in a folder: temporary files of processes of this machine that
-// are gone, older than a minute, and anyone's older than a day. Returns how many.
+// All of it: an AtomicFile written and committed.
+void writeWholeFile(const std::string& path, std::string_view bytes);
+
+// Waits until the names in a folder are on the disk, where the file system can do that; throws FileError.
+void flushFolder(const std::string& path);
+
+// Removes what programs that were killed left in a folder: temporary files that nobody locks any more, a
+// minute after they were last written, and those of other machines, whose locks are not seen everywhere,
+// after a day. Returns how many.
 size_t removeAbandonedFiles(const std::string& folder);
 
 // Throws FileError unless a file can be created or replaced at `path`: call it before long work, not after.
+// Removes abandoned files beside it.
 void checkWritable(const std::string& path);
-
-// The extension in lower case, without the dot; "" if there is none.
-std::string extensionOf(const std::string& path);
-
-// Throws FileError unless the extension of `path` is one of `known`; the message lists them. Returns the
-// extension.
-std::string requireExtension(const std::string& path, std::initializer_list<std::string_view> known);
-
-// Throws FileError when there is no such file, or it is a folder or unreadable.
-void checkReadable(const std::string& path);
-
-// The whole file. Throws FileError when it is missing, a folder, or unreadable.
-std::string readWholeFile(const std::string& path);
 
 }  // namespace pellucid::io

@@ -22,13 +22,9 @@ class TextScan {
         while (!rest_.empty()) {
             ++line_;
             const size_t end = rest_.find('\n');
-            std::string_view text = rest_.substr(0, end);
+            const std::string_view text = rest_.substr(0, end);
             rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-            if (const size_t comment = text.find(comment_); comment != std::string_view::npos) {
-                text = text.substr(0, comment);
-                sawComment_ = true;
-            }
-            split(text);
+            split(text.substr(0, text.find(comment_)));
             if (!words_.empty()) return true;
         }
         words_.clear();
@@ -37,7 +33,6 @@ class TextScan {
 
     const std::vector<std::string_view>& words() const { return words_; }
     int line() const { return line_; }
-    bool sawComment() const { return sawComment_; }
     [[noreturn]] void fail(const std::string& message) const { throw FileError(path_, message, line_); }
 
     // Word i of the line as a finite number; `what` names it in the error.
@@ -85,7 +80,6 @@ class TextScan {
     std::vector<std::string_view> words_;
     char comment_;
     int line_;
-    bool sawComment_ = false;
 };
 
 }  // namespace pellucid::io

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "io/file_error.h"
+#include "io/input_file.h"
 
 namespace pellucid::io {
 namespace {
@@ -76,6 +77,10 @@ bool inRange(float x, Range range) {
 }  // namespace
 
 toml::table parseToml(const std::string& file, const std::string& text) {
+    if (text.size() > textLimit)
+        throw FileError(file, "has " + std::to_string(text.size()) + " bytes; TOML may have " +
+                                  std::to_string(textLimit));
+    checkTomlDepth(file, text);
     try {
         return toml::parse(text, file);
     } catch (const toml::parse_error& error) {

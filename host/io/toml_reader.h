@@ -1,6 +1,14 @@
 // Reads one TOML table key by key, and knows which keys it was asked for: the rest are errors.
 #pragma once
+
+// Damaged text breaks some of toml++'s assertions, which NDEBUG has the compiler take for granted; the checks behind them say what
+// is wrong with the text.
+#pragma push_macro("NDEBUG")
+#undef NDEBUG
+#define TOML_ASSERT(expr) static_cast<void>(0)
 #include <toml++/toml.h>
+#pragma pop_macro("NDEBUG")
+
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -13,7 +21,11 @@
 
 namespace pellucid::io {
 
-// Parses the text of `file`; throws FileError with the line where it is no TOML.
+// Throws FileError, with the line, where keys have more than 16 parts or brackets nest more than 16 deep.
+void checkTomlDepth(const std::string& file, std::string_view text);
+
+// Parses the text of `file`; throws FileError with the line where it is no TOML, nests too deep, or has more
+// than textLimit bytes.
 toml::table parseToml(const std::string& file, const std::string& text);
 
 class TomlReader {

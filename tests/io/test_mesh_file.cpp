@@ -4,7 +4,6 @@
 #include <map>
 #include <set>
 
-#include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/mesh/mesh_file.h"
 #include "io_files.h"
@@ -299,22 +298,4 @@ TEST_F(MeshFile, ScaleToHeight) {
     MeshData mesh = loadMesh(write("a.off", offTetrahedron));
     EXPECT_EQ(scaleToHeight(mesh, 240, 1), 120.0f);
     EXPECT_EQ(mesh.positions[1], 120.0f);
-}
-
-TEST_F(MeshFile, OutputsAppearWholeOrNotAtAll) {
-    MeshData mesh = loadMesh(write("a.off", offTetrahedron));
-    EXPECT_TRUE(contains(messageOf<FileError>([&] { checkWritable(path("no/such/o.ply")); }), "no folder"));
-    EXPECT_TRUE(contains(messageOf<FileError>([&] { checkWritable(folder_.string()); }), "is a folder"));
-    const size_t before = filesInFolder();
-    checkWritable(path("o.ply"));
-    EXPECT_EQ(filesInFolder(), before);
-    write("o.ply", "old");
-    {
-        AtomicFile file(path("o.ply"));
-        file.write("new", 3);
-        EXPECT_EQ(read(path("o.ply")), "old");
-    }
-    EXPECT_EQ(read(path("o.ply")), "old");
-    EXPECT_EQ(filesInFolder(), before + 1);
-    EXPECT_THROW(writePly(path("no/o.ply"), mesh, std::vector<float>(4, 0.0f), 0, 1), FileError);
 }

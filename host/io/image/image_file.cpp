@@ -1,5 +1,6 @@
 #include "io/image/image_file.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/half.h>
 #include <OpenImageIO/imageio.h>
 
@@ -8,6 +9,7 @@
 
 #include "io/atomic_file.h"
 #include "io/file_error.h"
+#include "io/input_file.h"
 
 namespace pellucid::io {
 namespace {
@@ -22,70 +24,6 @@ std::string listOf(const std::vector<std::string>& names) {
 
 bool endsWith(const std::string& text, const std::string& end) {
     return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
-// A channel with its part's name, unless the file has one part only or the name says it already.
-std::string fullName(const ImageSpec& spec, const std::string& channel, bool severalParts) {
-    const std::string part =
-        spec.get_string_attribute("oiio:subimagename", spec.get_string_attribute("name"));
-    if (!severalParts || part.empty() || channel.rfind(part + ".", 0) == 0) return channel;
-    return part + "." + channel;
-}
-
-void copyAttributes(Image& image, const ImageSpec& spec) {
-    for (const ParamValue& p : spec.extra_attribs) {
-        const std::string name = p.name().string();
-        const TypeDesc type = p.type();
-        if (type == TypeDesc::STRING) {
-            image.attributes.emplace_back(name, *static_cast<const char* const*>(p.data()));
-        } else if (type == TypeDesc::INT) {
-            image.attributes.emplace_back(name, *static_cast<const int*>(p.data()));
-        } else if (type == TypeDesc::FLOAT) {
-            image.attributes.emplace_back(name, *static_cast<const float*>(p.data()));
-        } else if (type.basetype == TypeDesc::FLOAT) {
-            const float* values = static_cast<const float*>(p.data());
-            image.attributes.emplace_back(name, std::vector<float>(values, values + type.basevalues()));
-        }
-    }
-}
-
-// Reads one part and places it by its data window.
-void readPart(Image& image, ImageInput& input, int part, bool severalParts) {
-    const ImageSpec spec = input.spec(part);
-    if (spec.deep) throw FileError(image.source, "holds deep pixels; flatten it first");
-    if (spec.full_width != image.width || spec.full_height != image.height) {
-        throw FileError(image.source, "part " + std::to_string(part) + " is " +
-                                          std::to_string(spec.full_width) + " x " +
-                                          std::to_string(spec.full_height) + " pixels, part 0 is " +
-                                          std::to_string(image.width) + " x " + std::to_string(image.height) +
-                                          "; all parts must have one display window");
-    }
-    const auto channels = static_cast<size_t>(spec.nchannels);
-    std::vector<float> pixels(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height) * channels);
-    if (!input.read_image(part, 0, 0, spec.nchannels, TypeDesc::FLOAT, pixels.data())) {
-        throw FileError(image.source, "is damaged or cut off: " + input.geterror());
-    }
-    for (size_t c = 0; c < channels; ++c) {
-        Channel channel;
-        channel.name = fullName(spec, spec.channelnames[c], severalParts);
-        channel.type = spec.channelformat(static_cast<int>(c)) == TypeDesc::HALF ? ChannelType::Half
-                                                                                 : ChannelType::Float;
-        channel.pixels.assign(image.pixelCount(), 0.0f);
-        for (int y = 0; y < spec.height; ++y) {
-            const int64_t row = int64_t(spec.y) + y - spec.full_y;
-            if (row < 0 || row >= image.height) continue;
-            for (int x = 0; x < spec.width; ++x) {
-                const int64_t column = int64_t(spec.x) + x - spec.full_x;
-                if (column < 0 || column >= image.width) continue;
-                const size_t from =
-                    (static_cast<size_t>(y) * static_cast<size_t>(spec.width) + static_cast<size_t>(x));
-                const size_t to =
-                    static_cast<size_t>(row) * static_cast<size_t>(image.width) + static_cast<size_t>(column);
-                channel.pixels[to] = pixels[from * channels + c];
-            }
-        }
-        image.channels.push_back(std::move(channel));
-    }
 }
 
 void setAttribute(ImageSpec& spec, const std::string& name, const Attribute& value) {
@@ -108,16 +46,16 @@ void setAttribute(ImageSpec& spec, const std::string& name, const Attribute& val
     }
 }
 
-// Opens, writes and closes `file` under its temporary name, then commits it.
+// Encodes in memory, so that whatever can go wrong on a disk goes wrong in one place.
 void writeWithOiio(const std::string& path, const ImageSpec& spec, TypeDesc type, const void* pixels) {
-    AtomicFile file(path);
-    auto output = ImageOutput::create(file.temporaryPath());
+    std::vector<unsigned char> bytes;
+    Filesystem::IOVecOutput memory(bytes);
+    auto output = ImageOutput::create(path, &memory);
     if (!output) throw FileError(path, "cannot be written: " + OIIO::geterror());
-    if (!output->open(file.temporaryPath(), spec))
+    if (!output->set_ioproxy(&memory) || !output->open(path, spec) || !output->write_image(type, pixels) ||
+        !output->close())
         throw FileError(path, "cannot be written: " + output->geterror());
-    const bool ok = output->write_image(type, pixels);
-    if (!ok || !output->close()) throw FileError(path, "cannot be written: " + output->geterror());
-    file.commit();
+    writeWholeFile(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace
@@ -176,22 +114,6 @@ const Attribute* Image::attribute(const std::string& name) const {
         if (key == name) return &value;
     }
     return nullptr;
-}
-
-Image readImage(const std::string& path) {
-    checkReadable(path);
-    auto input = ImageInput::open(path);
-    if (!input) throw FileError(path, "is no image that can be read: " + OIIO::geterror());
-    int parts = 0;
-    while (input->seek_subimage(parts, 0)) ++parts;
-    Image image;
-    image.source = path;
-    const ImageSpec first = input->spec(0);
-    image.width = first.full_width;
-    image.height = first.full_height;
-    copyAttributes(image, first);
-    for (int part = 0; part < parts; ++part) readPart(image, *input, part, parts > 1);
-    return image;
 }
 
 void writeExr(const std::string& path, const Image& image) {

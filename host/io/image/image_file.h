@@ -2,11 +2,14 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "io/input_file.h"
 
 namespace pellucid::io {
 
@@ -44,11 +47,17 @@ struct Image {
     const Attribute* attribute(const std::string& name) const;  // nullptr if there is none
 };
 
-// Reads all parts and channels of an image file at full precision (8- and 16-bit integers come as 0 to 1).
-// Each part is placed by its data window into the display window; pixels outside its data window are 0, those
-// outside the display window are dropped. Throws FileError: missing, broken or deep file, parts of different
-// display windows.
-Image readImage(const std::string& path);
+// Reads all parts and channels of an .exr, .png, .jpg, .tga or .bmp file at full precision (8- and 16-bit
+// integers come as 0 to 1, colours as they are stored, whatever alpha). Each part is placed by its data
+// window into the display window; pixels outside its data window are 0, those outside the display window are
+// dropped. `check` sees size, attributes and the channels' names before any pixel is read, and throws where
+// the image is not what is wanted. Throws FileError: missing, broken or deep file, another format, parts of
+// different display windows, more than `limit` bytes of pixels as floats.
+Image readImage(const std::string& path, const std::function<void(const Image&)>& check = {},
+                uint64_t limit = inputLimit());
+// The same from the bytes of a file; `path` is for messages and names the format.
+Image decodeImage(const std::string& path, std::string bytes,
+                  const std::function<void(const Image&)>& check = {}, uint64_t limit = inputLimit());
 
 // Writes a single-part scan-line EXR with ZIP compression, each channel in its own type; float32 values keep
 // their bits.

@@ -30,9 +30,7 @@ void write(const std::string& path, const char* descr, std::span<const size_t> s
     out += static_cast<char>(header.size() >> 8);
     out += header;
     out.append(static_cast<const char*>(bytes), count * elementBytes);
-    AtomicFile file(path);
-    file.write(out.data(), out.size());
-    file.commit();
+    writeWholeFile(path, out);
 }
 
 }  // namespace

@@ -37,11 +37,7 @@ class Bytes {
         return *this;
     }
     size_t size() const { return data_.size(); }
-    void write(const std::string& path) const {
-        AtomicFile file(path);
-        file.write(data_.data(), data_.size());
-        file.commit();
-    }
+    void write(const std::string& path) const { writeWholeFile(path, {data_.data(), data_.size()}); }
 
   private:
     std::vector<char> data_;

@@ -1,20 +1,24 @@
 #include "io/lut/batch_manifest.h"
 
 #include <filesystem>
+#include <iomanip>
 #include <map>
 #include <optional>
 #include <set>
 #include <sstream>
 
-#include "io/atomic_file.h"
 #include "io/content_hash.h"
 #include "io/file_error.h"
+#include "io/input_file.h"
 #include "io/lut/lut_describe.h"
 #include "io/lut/profile_file.h"
 #include "io/toml_reader.h"
 
 namespace pellucid::io {
 namespace {
+
+// In memory an entry takes about a kilobyte.
+constexpr size_t mostEntries = 1'000'000, mostProfileBytes = size_t{64} << 20;
 
 constexpr std::string_view encodingNames[] = {"float", "half"};  // PelLutEncoding
 
@@ -89,6 +93,7 @@ class Expansion {
     void add(TomlReader& reader) {
         const Request r = readRequest(reader);
         reader.finish();  // an unknown key spoils the entry before any table is taken from it
+        refuseTooMany(reader, r);
         for (const std::string& encoding : r.encodings)
             for (uint32_t side : r.sizes) {
                 if (r.kind == PEL_LUT_SPECULAR) {
@@ -116,6 +121,21 @@ class Expansion {
         std::string key;
     };
 
+    // Before anything is expanded: five short lists can ask for more tables than fit any memory.
+    void refuseTooMany(const TomlReader& reader, const Request& r) {
+        double asked = double(r.encodings.size()) * double(r.sizes.size());
+        if (r.kind != PEL_LUT_SPECULAR) asked *= double(r.profiles.size()) * double(r.radii.size());
+        if (r.kind == PEL_LUT_CURVATURE) asked *= double(r.forms.size()) * double(r.axes.size());
+        asked_ += asked;
+        if (asked_ <= double(mostEntries)) return;
+        asked_ -= asked;
+        std::ostringstream text;
+        text.imbue(std::locale::classic());
+        text << "asks for " << std::fixed << std::setprecision(0) << asked
+             << " tables, and a manifest may ask for " << mostEntries << " in all; split it";
+        reader.fail("size", text.str());
+    }
+
     const Known& profile(const TomlReader& reader, const std::string& name) {
         auto [at, fresh] = known_.try_emplace(name);
         if (fresh) try {
@@ -137,7 +157,14 @@ class Expansion {
 
     Profile load(const std::string& name) {
         if (extensionOf(name) != "toml") return findProfile(name).profile;
-        if (folder_) manifest_.profiles[name] = readWholeFile((*folder_ / name).string());
+        if (folder_) {
+            std::string text = readWholeFile((*folder_ / name).string(), textLimit);
+            profileBytes_ += text.size();
+            if (profileBytes_ > mostProfileBytes)
+                throw FileError(name, "makes the profile files of this manifest more than " +
+                                          std::to_string(mostProfileBytes) + " bytes; split the manifest");
+            manifest_.profiles[name] = std::move(text);
+        }
         const auto at = manifest_.profiles.find(name);
         if (at == manifest_.profiles.end()) throw FileError(name, "was not sent along with the manifest");
         return parseProfile(name, at->second).profile;
@@ -186,6 +213,8 @@ class Expansion {
     std::optional<std::filesystem::path> folder_;
     std::map<std::string, Known> known_;
     std::set<std::string> files_;
+    double asked_ = 0;  // tables, those that are asked for twice too
+    size_t profileBytes_ = 0;
 };
 
 BatchManifest expanded(const std::string& path, BatchManifest manifest,
@@ -209,7 +238,7 @@ BatchManifest expanded(const std::string& path, BatchManifest manifest,
 
 BatchManifest readManifest(const std::string& path) {
     BatchManifest manifest;
-    manifest.text = readWholeFile(path);
+    manifest.text = readWholeFile(path, textLimit);
     return expanded(path, std::move(manifest), std::filesystem::path(path).parent_path());
 }
 

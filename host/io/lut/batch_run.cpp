@@ -1,14 +1,35 @@
 #include "io/lut/batch_run.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <system_error>
 
 #include "io/atomic_file.h"
+#include "io/input_file.h"
 #include "io/lut/batch_entry.h"
 #include "io/lut/lut_exr.h"
 
 namespace pellucid::io {
+namespace {
+
+// How many entries can be in flight with the file handles that are left: each needs its folder, its file and
+// one for the lock, and the driver some for its programs.
+size_t jobsForHandles() {
+    constexpr rlim_t perJob = 3, others = 32;
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return SIZE_MAX;
+    rlim_t taken = 0;
+    std::error_code error;
+    for (std::filesystem::directory_iterator at("/proc/self/fd", error), end; !error && at != end;
+         at.increment(error))
+        ++taken;
+    return limit.rlim_cur > taken + others ? size_t((limit.rlim_cur - taken - others) / perJob) : 0;
+}
+
+}  // namespace
 
 BatchRun::BatchRun(const BatchManifest& manifest, BatchOptions options)
     : manifest_(manifest), options_(std::move(options)), madeBy_(options_.devices.size()) {
@@ -16,6 +37,7 @@ BatchRun::BatchRun(const BatchManifest& manifest, BatchOptions options)
     const size_t cores = std::max(1u, std::thread::hardware_concurrency());
     size_t jobs = options_.jobs ? options_.jobs : 4 * cores * options_.devices.size();
     jobs = std::min({jobs, std::max<size_t>(1, manifest_.entries.size()), size_t(256)});
+    jobs = std::max<size_t>(1, std::min(jobs, jobsForHandles()));
     for (size_t i = 0; i < jobs; ++i) {
         ++active_;
         try {
@@ -35,6 +57,7 @@ BatchRun::~BatchRun() {
 void BatchRun::finish() {
     workers_.clear();  // waits for them
     if (fatal_) std::rethrow_exception(fatal_);
+    if (made_ > 0) flushFolder(options_.folder);
 }
 
 BatchCounts BatchRun::counts() const {
@@ -74,7 +97,7 @@ void BatchRun::handle(const BatchEntry& entry, size_t device) {
     const std::string bytes = make(entry, device);
     AtomicFile file(path);
     file.write(bytes.data(), bytes.size());
-    file.commit();
+    file.commit(false);  // the folder once for all, in finish(): a name that a power cut takes is an entry to be made again
     if (exists) ++redone_;
     ++made_;
     ++madeBy_[device];

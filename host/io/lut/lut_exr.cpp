@@ -2,10 +2,10 @@
 
 #include <bit>
 #include <cstring>
-#include <optional>
 #include <stdexcept>
 
 #include "io/content_hash.h"
+#include "io/image/exr_header.h"
 #include "io/lut/lut_describe.h"
 #include "io/xx_hash.h"
 
@@ -97,39 +97,6 @@ void scanLines(Bytes& b, uint32_t width, uint32_t height, std::string_view texel
     }
 }
 
-// Reads attributes one after the other; everything is checked against the end.
-class Header {
-  public:
-    explicit Header(std::string_view file) : file_(file) {}
-
-    struct Attribute {
-        std::string_view name, value;
-        size_t valueAt;
-    };
-    std::optional<Attribute> next() {
-        const auto name = text(), type = name && !name->empty() ? text() : std::nullopt;
-        if (!type || file_.size() - at_ < 4) return {};
-        uint32_t size;
-        std::memcpy(&size, file_.data() + at_, 4);
-        at_ += 4;
-        if (file_.size() - at_ < size) return {};
-        const Attribute found{*name, file_.substr(at_, size), at_};
-        at_ += size;
-        return found;
-    }
-
-  private:
-    std::optional<std::string_view> text() {
-        const size_t end = file_.find('\0', at_);
-        if (end == std::string_view::npos) return {};
-        const std::string_view found = file_.substr(at_, end - at_);
-        at_ = end + 1;
-        return found;
-    }
-    std::string_view file_;
-    size_t at_ = 8;  // behind magic and version
-};
-
 }  // namespace
 
 std::string encodeLutExr(const PelLutInfo& info, PelLutEncoding encoding, std::string_view texels,
@@ -150,7 +117,7 @@ std::string encodeLutExr(const PelLutInfo& info, PelLutEncoding encoding, std::s
 
 bool verifyLutExr(std::string_view file, std::string_view key) {
     if (file.size() < 8) return false;
-    Header header(file);
+    ExrAttributes header(file);
     bool keyFits = false;
     while (const auto attribute = header.next()) {
         if (attribute->name == keyName) keyFits = attribute->value == key;

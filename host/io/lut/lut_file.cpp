@@ -9,8 +9,9 @@
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/image/image_file.h"
-#include "io/lut/lut_describe.h"
 #include "io/image/texture_file.h"
+#include "io/input_file.h"
+#include "io/lut/lut_describe.h"
 
 namespace pellucid::io {
 namespace {
@@ -174,9 +175,12 @@ void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLut
     }
 }
 
-Lut readLut(const Device& device, const std::string& path) {
-    const Image image = readImage(path);
-    auto need = [&]<class T>(const char* name, T*) -> const T& {
+namespace {
+
+// What the attributes of an image say of a table; throws FileError where they are not a table's.
+PelLutInfo lutInfoOf(const Image& image) {
+    const std::string& path = image.source;
+    const auto need = [&]<class T>(const char* name, T*) -> const T& {
         const Attribute* attribute = image.attribute(name);
         if (!attribute || !std::holds_alternative<T>(*attribute))
             throw FileError(path,
@@ -207,8 +211,26 @@ Lut readLut(const Device& device, const std::string& path) {
     info.curvature.height = info.shadow.height = info.specular.height = uint32_t(image.height);
     visitLutNumbers(
         info, [&](const char* name, float& value) { value = need(name, static_cast<float*>(nullptr)); });
+    for (const std::string& channel : rgb) image.channel(channel);
+    return info;
+}
+
+}  // namespace
+
+LutTexels decodeLut(const std::string& path, std::string bytes) {
+    LutTexels table;
+    // The channels, all of them side by side, the device's and a copy on the way there.
+    const uint64_t limit = inputLimit() / 4;
+    const Image image = decodeImage(
+        path, std::move(bytes), [&](const Image& header) { table.info = lutInfoOf(header); }, limit);
+    table.texels = image.interleaved(rgb);
+    return table;
+}
+
+Lut readLut(const Device& device, const std::string& path) {
+    const LutTexels table = decodeLut(path, readWholeFile(path));
     try {
-        return Lut(device, info, image.interleaved(rgb));
+        return Lut(device, table.info, table.texels);
     } catch (const Error& e) {
         throw FileError(path, e.what());
     }

@@ -26,6 +26,15 @@ PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncodin
 TexelError writeLutBc6h(const std::string& path, const Lut& lut);
 void checkLutPathBc6h(const std::string& path);
 
+// A table that was read, on no device yet.
+struct LutTexels {
+    PelLutInfo info = pelLutInfoDefaults();
+    std::vector<float> texels;  // R, G, B
+};
+// From the bytes of a file; `path` is for messages. Throws FileError: no or incomplete description, broken,
+// more than a quarter of inputLimit() as floats.
+LutTexels decodeLut(const std::string& path, std::string bytes);
+
 // Reads what writeLut wrote as .exr. Throws FileError: no such file, no or incomplete description, wrong
 // size.
 Lut readLut(const Device& device, const std::string& path);

@@ -1,7 +1,7 @@
 #include "io/lut/profile_file.h"
 
-#include "io/atomic_file.h"
 #include "io/file_error.h"
+#include "io/input_file.h"
 #include "io/toml_reader.h"
 
 namespace pellucid::io {
@@ -122,7 +122,7 @@ std::optional<std::string_view> libraryProfile(std::string_view name) {
 }
 
 ProfileFile findProfile(const std::string& nameOrPath) {
-    if (extensionOf(nameOrPath) == "toml") return parseProfile(nameOrPath, readWholeFile(nameOrPath));
+    if (extensionOf(nameOrPath) == "toml") return parseProfile(nameOrPath, readWholeFile(nameOrPath, textLimit));
     if (const auto text = libraryProfile(nameOrPath)) return parseProfile(nameOrPath, std::string(*text));
     std::string known;
     for (const LibraryProfile& entry : profileLibrary())

@@ -1,66 +1,21 @@
 #include "io/mesh/mesh_file.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <map>
 
-#include "io/atomic_file.h"
-#include "io/image/color_map.h"
 #include "io/file_error.h"
+#include "io/image/color_map.h"
+#include "io/input_file.h"
 #include "io/mesh/mesh_import.h"
 #include "io/mesh/mesh_text.h"
 
 namespace pellucid::io {
 namespace {
 
-// A text that OpenMesh can read, on the disk as its readers want it; removed again.
-class TemporaryText {
-  public:
-    TemporaryText(const std::string& text, const std::string& extension)
-        : path_((std::filesystem::temp_directory_path() / "pellucid-mesh-XXXXXX").string() + "." +
-                extension) {
-        const int fd = ::mkstemps(path_.data(), static_cast<int>(extension.size()) + 1);
-        const bool ok = fd >= 0 && ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-        if (fd >= 0) ::close(fd);
-        if (!ok) throw FileError(path_, "cannot be written, but a temporary file is needed here");
-    }
-    ~TemporaryText() { ::unlink(path_.c_str()); }
-    const std::string& path() const { return path_; }
-
-  private:
-    std::string path_;
-};
-
 std::string counted(size_t count, const std::string& one, const std::string& several) {
     return std::to_string(count) + " " + (count == 1 ? one : several);
-}
-
-void checkVertices(const std::string& path, const RawMesh& raw) {
-    for (size_t i = 0; i < raw.positions.size(); ++i) {
-        if (!std::isfinite(raw.positions[i])) {
-            throw FileError(
-                path,
-                "vertex " + std::to_string(i / 3) +
-                    " (counted from 0) has a position that is NaN or infinite; positions must be finite");
-        }
-    }
-}
-
-void checkCorners(const std::string& path, const RawMesh& raw) {
-    const auto vertices = static_cast<int64_t>(raw.positions.size() / 3);
-    for (size_t f = 0; f + 1 < raw.faceStart.size(); ++f) {
-        for (size_t c = raw.faceStart[f]; c < raw.faceStart[f + 1]; ++c) {
-            if (raw.corners[c] >= 0 && raw.corners[c] < vertices) continue;
-            throw FileError(path, "face " + std::to_string(f) + " (counted from 0) refers to vertex " +
-                                      std::to_string(raw.corners[c]) + ", but the file has " +
-                                      counted(static_cast<size_t>(vertices), "vertex", "vertices") +
-                                      "; 0 to " + std::to_string(vertices - 1) + " would be right");
-        }
-    }
 }
 
 // Corner UVs become vertex UVs; a vertex whose corners differ is copied, or (no splitting) the UVs are left
@@ -138,7 +93,10 @@ void checkNormals(MeshData& mesh) {
 }  // namespace
 
 MeshData loadMesh(const std::string& path, const MeshLoadOptions& options) {
-    const std::string text = readWholeFile(path);
+    return decodeMesh(path, readWholeFile(path), options);
+}
+
+MeshData decodeMesh(const std::string& path, const std::string& text, const MeshLoadOptions& options) {
     const std::string extension = requireExtension(path, {"off", "obj", "ply", "stl"});
     if (text.empty()) throw FileError(path, "is empty; a mesh was expected");
     MeshText checked;
@@ -147,15 +105,9 @@ MeshData loadMesh(const std::string& path, const MeshLoadOptions& options) {
     if (extension == "stl") checked = checkStl(path, text);
     if (extension == "ply") checked = checkPly(path, text);
 
-    RawMesh raw;
-    if (checked.canonical) {
-        const TemporaryText readable(*checked.canonical, extension);
-        raw = importWithOpenMesh(readable.path(), extension);
-    } else {
-        raw = importWithOpenMesh(path, extension);
-    }
-    checkVertices(path, raw);
-    checkCorners(path, raw);
+    RawMesh raw = checked.mesh ? std::move(*checked.mesh)
+                               : importWithOpenMesh(path, checked.canonical ? *checked.canonical : text, extension, checked.binary);
+    checkRawMesh(path, raw);
 
     MeshData mesh;
     mesh.source = path;

@@ -33,6 +33,8 @@ struct MeshLoadOptions {
 // mesh refuses. Throws FileError: file missing or broken (with its line in text files), extension unknown, a
 // position not finite, an index out of range, no face.
 MeshData loadMesh(const std::string& path, const MeshLoadOptions& options = {});
+// The same from the bytes of a file; `path` is for messages and names the format.
+MeshData decodeMesh(const std::string& path, const std::string& text, const MeshLoadOptions& options = {});
 
 // Unit normals: face normals weighted with the corner's angle, summed over all vertices at the same position,
 // so that seams do not show. Vertices of no triangle get (0, 0, 1).

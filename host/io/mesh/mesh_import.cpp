@@ -2,6 +2,9 @@
 
 #include <OpenMesh/Core/IO/MeshIO.hh>
 
+#include <cmath>
+#include <sstream>
+
 #include "io/file_error.h"
 #include "io/mesh/quiet_open_mesh.h"
 
@@ -86,16 +89,48 @@ class RawImporter final : public OpenMesh::IO::BaseImporter {
     RawMesh& mesh_;
 };
 
+void checkVertices(const std::string& path, const RawMesh& raw) {
+    for (size_t i = 0; i < raw.positions.size(); ++i) {
+        if (!std::isfinite(raw.positions[i])) {
+            throw FileError(
+                path,
+                "vertex " + std::to_string(i / 3) +
+                    " (counted from 0) has a position that is NaN or infinite; positions must be finite");
+        }
+    }
+}
+
+void checkCorners(const std::string& path, const RawMesh& raw) {
+    const auto vertices = static_cast<int64_t>(raw.positions.size() / 3);
+    for (size_t f = 0; f + 1 < raw.faceStart.size(); ++f) {
+        for (size_t c = raw.faceStart[f]; c < raw.faceStart[f + 1]; ++c) {
+            if (raw.corners[c] >= 0 && raw.corners[c] < vertices) continue;
+            throw FileError(path, "face " + std::to_string(f) + " (counted from 0) refers to vertex " +
+                                      std::to_string(raw.corners[c]) + ", but the file has " +
+                                      std::to_string(vertices) + (vertices == 1 ? " vertex" : " vertices") +
+                                      "; 0 to " + std::to_string(vertices - 1) + " would be right");
+        }
+    }
+}
+
 }  // namespace
 
-RawMesh importWithOpenMesh(const std::string& path, const std::string& extension) {
+void checkRawMesh(const std::string& path, const RawMesh& raw) {
+    checkVertices(path, raw);
+    checkCorners(path, raw);
+}
+
+RawMesh importWithOpenMesh(const std::string& path, const std::string& text, const std::string& extension,
+                           bool binaryStl) {
     QuietOpenMesh quiet;
     RawMesh mesh;
     RawImporter importer(mesh);
     OpenMesh::IO::Options options = OpenMesh::IO::Options::VertexNormal;
     options += OpenMesh::IO::Options::VertexTexCoord;
     options += OpenMesh::IO::Options::FaceTexCoord;
-    const bool read = OpenMesh::IO::IOManager().read(path, importer, options);
+    std::istringstream stream(text, std::ios::binary);
+    if (binaryStl) options += OpenMesh::IO::Options::Binary;
+    const bool read = OpenMesh::IO::IOManager().read(stream, extension, importer, options);
     if (!read) throw FileError(path, "is no ." + extension + " file that OpenMesh can read");
     const size_t vertices = importer.n_vertices();
     if (!mesh.normals.empty()) mesh.normals.resize(3 * vertices, 0.0f);

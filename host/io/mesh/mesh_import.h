@@ -16,7 +16,12 @@ struct RawMesh {
     std::vector<float> cornerUvs;     // u, v per corner, or empty
 };
 
-// Reads `path` with the OpenMesh reader for `extension` ("off", "obj", "ply", "stl"). Throws FileError.
-RawMesh importWithOpenMesh(const std::string& path, const std::string& extension);
+// Throws FileError where a position is not finite, or a corner refers to a vertex that there is not.
+void checkRawMesh(const std::string& path, const RawMesh& raw);
+
+// Reads the text of `path` with the OpenMesh reader for `extension` ("obj", "stl"). Opens no
+// file, nor those that the text names (an OBJ's materials). Throws FileError.
+RawMesh importWithOpenMesh(const std::string& path, const std::string& text, const std::string& extension,
+                           bool binaryStl);
 
 }  // namespace pellucid::io

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "io/atomic_file.h"
 #include "io/file_error.h"
+#include "io/input_file.h"
 #include "io/mesh/mesh_import.h"
 #include "io/mesh/mesh_text.h"
 #include "io/mesh/quiet_open_mesh.h"
@@ -93,9 +93,13 @@ int PartedMesh::part(const std::string& name) const {
 
 PartedMesh loadParts(const std::string& path, int levels) {
     requireExtension(path, {"obj"});
-    const std::string text = readWholeFile(path);
+    return decodeParts(path, readWholeFile(path), levels);
+}
+
+PartedMesh decodeParts(const std::string& path, const std::string& text, int levels) {
     const MeshText checked = checkObj(path, text);
-    const RawMesh raw = importWithOpenMesh(path, "obj");
+    const RawMesh raw = importWithOpenMesh(path, checked.canonical ? *checked.canonical : text, "obj", false);
+    checkRawMesh(path, raw);
     PartedMesh out;
     out.mesh.source = path;
     const std::vector<uint32_t> groups = groupsOf(path, text, out.parts);

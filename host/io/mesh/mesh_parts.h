@@ -20,6 +20,8 @@ struct PartedMesh {
 // cut into triangles. Parts do not share vertices afterwards. Throws FileError as loadMesh does, and for a
 // part that is not manifold.
 PartedMesh loadParts(const std::string& path, int levels);
+// The same from the bytes of a file; `path` is for messages.
+PartedMesh decodeParts(const std::string& path, const std::string& text, int levels);
 
 // Removes what lies below a plane, where dot(normal, p) < offset, cuts the triangles that cross it, and
 // closes each hole of the cut part with triangles of a new part called `cap`, whose normals face down the

@@ -64,9 +64,7 @@ MeshText checkOff(const std::string& path, const std::string& text) {
     uvs = flags.find("ST") != std::string::npos;
 
     MeshText result;
-    bool changed =
-        scan.line() != 1 || scan.words().size() > 1;  // OpenMesh wants the header alone on the first line
-    std::string canonical = header + '\n';
+    RawMesh& mesh = result.mesh.emplace();
     size_t at = 1;
     if (scan.words().size() == 1) {
         if (!scan.nextLine())
@@ -77,8 +75,6 @@ MeshText checkOff(const std::string& path, const std::string& text) {
     const long long vertices = scan.integer(scan.words()[at], "number of vertices");
     const long long faces = scan.integer(scan.words()[at + 1], "number of faces");
     if (vertices < 0 || faces < 0) scan.fail("the numbers of vertices and faces cannot be negative");
-    changed |= scan.words().size() - at != 3;
-    canonical += std::to_string(vertices) + ' ' + std::to_string(faces) + " 0\n";
 
     for (long long v = 0; v < vertices; ++v) {
         if (!scan.nextLine()) {
@@ -86,18 +82,17 @@ MeshText checkOff(const std::string& path, const std::string& text) {
                       std::to_string(v) + " found");
         }
         checkPosition(scan, 0);
-        size_t needed = 3;
-        if (normals) {
-            for (size_t i = 3; i < 6; ++i) scan.number(i, "normal");
-            needed = 6;
-        }
+        for (size_t i = 0; i < 3; ++i) mesh.positions.push_back(scan.number(i, "coordinate"));
+        if (normals)
+            for (size_t i = 3; i < 6; ++i) mesh.normals.push_back(scan.number(i, "normal"));
         if (uvs) {
-            if (scan.words().size() < needed + 2) scan.fail("the texture coordinates are missing");
-            for (size_t i = scan.words().size() - 2; i < scan.words().size(); ++i)
-                scan.number(i, "texture coordinate");
+            // Colours stand before them, in a number of ways.
+            const size_t count = scan.words().size();
+            if (count < (normals ? 6u : 3u) + 2) scan.fail("the texture coordinates are missing");
+            for (size_t i = count - 2; i < count; ++i) mesh.uvs.push_back(scan.number(i, "texture coordinate"));
         }
-        appendWords(canonical, scan, scan.words().size());
     }
+    mesh.faceStart.push_back(0);
     for (long long f = 0; f < faces; ++f) {
         if (!scan.nextLine()) {
             scan.fail("ends early: " + std::to_string(faces) + " faces announced, " + std::to_string(f) +
@@ -112,14 +107,11 @@ MeshText checkOff(const std::string& path, const std::string& text) {
             const long long index = scan.integer(scan.words()[i], "vertex");
             if (index < 0 || index >= vertices)
                 scan.fail(outOfRange(index, 0, static_cast<size_t>(vertices), "vertex"));
+            mesh.corners.push_back(index);
         }
-        // Colours after the indices: OpenMesh reads them only under a C header.
-        changed |=
-            scan.words().size() != static_cast<size_t>(corners) + 1 && flags.find('C') == std::string::npos;
-        appendWords(canonical, scan, static_cast<size_t>(corners) + 1);
+        mesh.faceStart.push_back(static_cast<uint32_t>(mesh.corners.size()));
     }
     result.faces = static_cast<size_t>(faces);
-    if (changed || scan.sawComment()) result.canonical = std::move(canonical);
     return result;
 }
 
@@ -142,8 +134,11 @@ MeshText checkObj(const std::string& path, const std::string& text) {
     }
     MeshText result;
     size_t soFar[3] = {0, 0, 0};
+    bool materials = false;
+    const auto isMaterial = [](std::string_view word) { return word == "mtllib" || word == "usemtl"; };
     for (TextScan scan(path, text); scan.nextLine();) {
         const int kind = kindOf(scan.words()[0]);
+        materials |= isMaterial(scan.words()[0]);
         if (kind >= 0) ++soFar[kind];
         if (scan.words().back().back() == '\\')
             scan.fail("lines continued with '\\' are not supported; join them");
@@ -151,6 +146,11 @@ MeshText checkObj(const std::string& path, const std::string& text) {
         ++result.faces;
         if (scan.words().size() < 4) scan.fail("a face needs at least three corners");
         for (size_t i = 1; i < scan.words().size(); ++i) checkObjCorner(scan, scan.words()[i], soFar, total);
+    }
+    if (materials) {  // OpenMesh would open the files that they name
+        result.canonical.emplace();
+        for (TextScan scan(path, text); scan.nextLine();)
+            if (!isMaterial(scan.words()[0])) appendWords(*result.canonical, scan, scan.words().size());
     }
     return result;
 }
@@ -174,6 +174,7 @@ MeshText checkStl(const std::string& path, const std::string& text) {
                 }
             }
             result.faces = facets;
+            result.binary = true;
             return result;
         }
     }

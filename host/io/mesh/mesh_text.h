@@ -1,15 +1,19 @@
-// A strict look at the text of a mesh file before OpenMesh's lenient readers see it. They take "nan" for the
-// end of the file, skip a broken vertex and so shift all later indices, and take trailing face colours for
-// faces.
+// A strict look at the text of a mesh file before OpenMesh's lenient readers see it, or, where little is left
+// to do then, in place of them (OFF, PLY). They take "nan" for the end of the file, skip a broken vertex and
+// so shift all later indices, and take trailing face colours for faces.
 #pragma once
 #include <cstddef>
 #include <optional>
 #include <string>
 
+#include "io/mesh/mesh_import.h"
+
 namespace pellucid::io {
 
 struct MeshText {
-    size_t faces = 0;  // faces that the file lists
+    size_t faces = 0;             // faces that the file lists
+    bool binary = false;          // an STL that is no text
+    std::optional<RawMesh> mesh;  // where the look at the text has read it already
     std::optional<std::string>
         canonical;  // the same mesh without what OpenMesh cannot read, when there was such a thing
 };

@@ -38,9 +38,7 @@ void writePly(const std::string& path, const MeshData& mesh, std::span<const flo
         out += '\3';
         append(&mesh.triangles[t], 12);
     }
-    AtomicFile file(path);
-    file.write(out.data(), out.size());
-    file.commit();
+    writeWholeFile(path, out);
 }
 
 }  // namespace pellucid::io

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <set>
 
-#include "io/atomic_file.h"
 #include "io/file_error.h"
+#include "io/input_file.h"
 #include "io/scene/scene_keys.h"
 #include "io/toml_reader.h"
 
@@ -103,7 +103,11 @@ const SceneLut* SceneFile::lut(const std::string& name, PelLutKind kind) const {
 }
 
 SceneFile readScene(const std::string& path) {
-    const toml::table root = parseToml(path, readWholeFile(path));
+    return parseScene(path, readWholeFile(path, textLimit));
+}
+
+SceneFile parseScene(const std::string& path, const std::string& text) {
+    const toml::table root = parseToml(path, text);
     SceneFile scene;
     scene.source = path;
     TomlReader reader(path, root, "the scene");

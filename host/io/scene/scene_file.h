@@ -72,6 +72,8 @@ struct SceneFile {
 // line: bad TOML, unknown key (with the key that was perhaps meant), wrong type, value out of its range,
 // wrong number of values, a name that nothing has.
 SceneFile readScene(const std::string& path);
+// The same from text; `path` is for messages, and what the scene's paths are relative to.
+SceneFile parseScene(const std::string& path, const std::string& text);
 
 // Writes a scene that readScene reads back to the same values, floats to the bit. File paths are written as
 // they are.

@@ -115,9 +115,7 @@ void writeScene(const std::string& path, const SceneFile& scene) {
             }
         });
     }
-    AtomicFile file(path);
-    file.write(out.data(), out.size());
-    file.commit();
+    writeWholeFile(path, out);
 }
 
 }  // namespace pellucid::io

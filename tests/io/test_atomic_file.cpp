@@ -1,0 +1,232 @@
+// host/io/atomic_file.h and input_file.h: files that appear whole or not at all, under names that nobody
+// foresees; what is no file; limits.
+//
+// This program's own calls to the disk come before the C library's, and fail on demand.
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <regex>
+#include <thread>
+
+#include "io/atomic_file.h"
+#include "io/file_error.h"
+#include "io/input_file.h"
+#include "io_files.h"
+
+using namespace pellucid::io;
+
+namespace {
+
+std::atomic<int> failFileSync{0}, failFolderSync{0}, failClose{0}, failRename{0};  // errno; 0: as ever
+std::atomic<int> fileSyncs{0}, folderSyncs{0}, renames{0};
+
+template <class F>
+F* next(const char* name) {
+    return reinterpret_cast<F*>(dlsym(RTLD_NEXT, name));
+}
+
+bool isFolder(int fd) {
+    struct stat status {};
+    return ::fstat(fd, &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+int failing(std::atomic<int>& with) {
+    errno = with.exchange(0);
+    return -1;
+}
+
+}  // namespace
+
+extern "C" int fsync(int fd) {
+    const bool folder = isFolder(fd);
+    ++(folder ? folderSyncs : fileSyncs);
+    if (folder) EXPECT_GT(renames.load(), 0) << "the folder is flushed before the name is in it";
+    if (folder ? failFolderSync : failFileSync) return failing(folder ? failFolderSync : failFileSync);
+    return next<int(int)>("fsync")(fd);
+}
+extern "C" int close(int fd) {
+    const int result = next<int(int)>("close")(fd);
+    return failClose && result == 0 ? failing(failClose) : result;
+}
+extern "C" int renameat(int from, const char* name, int to, const char* newName) noexcept {
+    EXPECT_GT(fileSyncs.load(), 0) << "the file gets its name before it is on the disk";
+    if (failRename) return failing(failRename);
+    ++renames;
+    return next<int(int, const char*, int, const char*)>("renameat")(from, name, to, newName);
+}
+
+namespace {
+
+class AtomicFileTest : public FolderTest {
+  protected:
+    // The one temporary file in the folder.
+    std::string temporary() const {
+        std::string found;
+        for (const auto& entry : std::filesystem::directory_iterator(folder_))
+            if (entry.path().filename().string().find(".tmp") != std::string::npos)
+                found = entry.path().string();
+        return found;
+    }
+    std::string refusal(const std::string& name) const {
+        return messageOf<FileError>([&] { writeWholeFile(path(name), "new"); });
+    }
+    static void age(const std::string& file, double seconds) {
+        timespec times[2];
+        ::clock_gettime(CLOCK_REALTIME, &times[0]);
+        times[0].tv_sec -= time_t(seconds);
+        times[1] = times[0];
+        ASSERT_EQ(::utimensat(AT_FDCWD, file.c_str(), times, 0), 0);
+    }
+};
+
+}  // namespace
+
+TEST_F(AtomicFileTest, AppearsWholeOrNotAtAll) {
+    write("o.ply", "old");
+    {
+        AtomicFile file(path("o.ply"));
+        file.write("ne", 2);
+        file.write("w", 1);
+        EXPECT_EQ(read(path("o.ply")), "old");
+        EXPECT_EQ(filesInFolder(), 2u);
+    }
+    EXPECT_EQ(read(path("o.ply")), "old");
+    EXPECT_EQ(filesInFolder(), 1u);
+    writeWholeFile(path("o.ply"), "new");
+    EXPECT_EQ(read(path("o.ply")), "new");
+    EXPECT_EQ(filesInFolder(), 1u);
+    checkWritable(path("p.ply"));
+    EXPECT_EQ(filesInFolder(), 1u);
+    EXPECT_TRUE(contains(messageOf<FileError>([&] { checkWritable(path("no/such/o.ply")); }), "no folder"));
+    EXPECT_TRUE(contains(messageOf<FileError>([&] { checkWritable(folder_.string()); }), "is a folder"));
+    EXPECT_TRUE(contains(messageOf<FileError>([&] { checkWritable(""); }), "needs a file name"));
+}
+
+TEST_F(AtomicFileTest, FileAndFolderAreFlushedInTurn) {
+    fileSyncs = folderSyncs = renames = 0;
+    writeWholeFile(path("o"), "new");
+    EXPECT_EQ(fileSyncs, 1);
+    EXPECT_EQ(renames, 1);
+    EXPECT_EQ(folderSyncs, 1);
+}
+
+TEST_F(AtomicFileTest, FailuresOfTheDiskAreErrors) {
+    write("o", "old");
+    for (std::atomic<int>* fault : {&failFileSync, &failClose, &failRename})
+        for (int code : {EIO, ENOSPC, EDQUOT}) {
+            *fault = code;
+            EXPECT_TRUE(contains(refusal("o"), std::string("o: cannot be written: ") + std::strerror(code)));
+            EXPECT_EQ(*fault, 0) << "never called";
+            EXPECT_EQ(read(path("o")), "old");
+            EXPECT_EQ(filesInFolder(), 1u);
+        }
+    failFolderSync = EIO;
+    EXPECT_TRUE(contains(refusal("o"), "may not outlive a power cut: Input/output error"));
+    EXPECT_EQ(read(path("o")), "new");
+    failFolderSync = EINVAL;  // of file systems that cannot
+    EXPECT_EQ(refusal("o"), "");
+}
+
+TEST_F(AtomicFileTest, TemporaryNamesAreRandomAndNoLinkIsFollowed) {
+    const AtomicFile one(path("o.exr"));
+    const std::string first = temporary();
+    EXPECT_TRUE(std::regex_match(first, std::regex(R"(.*/\.o\.[0-9a-f]{8}-[0-9a-f]{16}\.tmp\.exr)")))
+        << first;
+    std::filesystem::rename(first, path("away"));
+    const AtomicFile two(path("o.exr"));
+    EXPECT_NE(temporary(), first);
+    // A link in place of the target is replaced; what it leads to stays.
+    write("elsewhere", "precious");
+    std::filesystem::create_symlink("elsewhere", path("link"));
+    writeWholeFile(path("link"), "new");
+    EXPECT_EQ(read(path("elsewhere")), "precious");
+    EXPECT_EQ(read(path("link")), "new");
+    const std::string longName(250, 'n');
+    writeWholeFile(path(longName), "new");
+    EXPECT_EQ(read(path(longName)), "new");
+}
+
+TEST_F(AtomicFileTest, WhatIsNoFileIsNeitherReadNorReplaced) {
+    ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+    std::filesystem::create_symlink("/dev/full", path("full"));
+    std::filesystem::create_symlink("/dev/zero", path("zero"));
+    std::filesystem::create_directory(path("folder"));
+    for (const auto& [name, what] : {std::pair{"pipe", "is a pipe"},
+                                     {"full", "is a device"},
+                                     {"zero", "is a device"},
+                                     {"folder", "is a folder"}}) {
+        EXPECT_TRUE(contains(refusal(name), what));
+        EXPECT_TRUE(contains(messageOf<FileError>([&] { checkWritable(path(name)); }), what));
+        EXPECT_TRUE(contains(messageOf<FileError>([&] { readWholeFile(path(name)); }), what));
+        EXPECT_TRUE(contains(messageOf<FileError>([&] { checkReadable(path(name)); }), what));
+    }
+    EXPECT_EQ(otherThanFile(path("pipe")), "a pipe");
+}
+
+TEST_F(AtomicFileTest, AbandonedFilesAreRemovedAndLiveOnesAreNot) {
+    int ready[2], leave[2];
+    ASSERT_EQ(::pipe(ready), 0);
+    ASSERT_EQ(::pipe(leave), 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        char byte = 0;
+        const AtomicFile file(path("o.exr"));
+        if (::write(ready[1], &byte, 1) != 1 || ::read(leave[0], &byte, 1) != 1) ::_exit(1);
+        ::_exit(0);  // as if killed
+    }
+    char byte = 0;
+    ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+    const std::string left = temporary();
+    age(left, 100000);
+    EXPECT_EQ(removeAbandonedFiles(folder_.string()), 0u) << "its writer lives";
+    ASSERT_EQ(::write(leave[1], &byte, 1), 1);
+    ::waitpid(child, nullptr, 0);
+    age(left, 30);
+    EXPECT_EQ(removeAbandonedFiles(folder_.string()), 0u) << "too young";
+    age(left, 90);
+    checkWritable(path("another.npy"));
+    EXPECT_EQ(filesInFolder(), 0u);
+
+    // Another machine's: its locks may not be seen here.
+    const std::string foreign = write(".o.00000000-0123456789abcdef.tmp.exr", "x");
+    age(foreign, 3600);
+    EXPECT_EQ(removeAbandonedFiles(folder_.string()), 0u);
+    age(foreign, 100000);
+    EXPECT_EQ(removeAbandonedFiles(folder_.string()), 1u);
+    // Files of other programs.
+    const std::string tag = std::filesystem::path(left).filename().string().substr(3, 8);
+    for (const std::string& name :
+         {std::string(".tmp"), "." + tag + "-0123456789abcdef.tmpx", ".o." + tag + "-0123456789abcde.tmp",
+          ".o." + tag + "-0123456789abcdeg.tmp", "o." + tag + "-0123456789abcdef.tmp.exr",
+          std::string(".o.tmp.exr")})
+        age(write(name, "x"), 1e6);
+    std::filesystem::create_symlink("/etc/passwd", path(".o." + tag + "-0123456789abcdef.tmp.exr"));
+    EXPECT_EQ(removeAbandonedFiles(folder_.string()), 0u);
+    EXPECT_EQ(removeAbandonedFiles(path("none")), 0u);
+}
+
+TEST_F(AtomicFileTest, InputsHaveALimit) {
+    EXPECT_EQ(readWholeFile(write("a", "abc")), "abc");
+    EXPECT_EQ(readWholeFile(write("e", "")), "");
+    EXPECT_FALSE(readWholeFile("/proc/self/status").empty()) << "a file that says it has no bytes";
+    EXPECT_EQ(readWholeFile(path("a"), 3), "abc");
+    EXPECT_TRUE(contains(messageOf<FileError>([&] { readWholeFile(path("a"), 2); }), "may have 2"));
+    ASSERT_EQ(::truncate(path("e").c_str(), off_t{1} << 40), 0);  // nothing of it is on the disk
+    EXPECT_TRUE(contains(messageOf<FileError>([&] { readWholeFile(path("e")); }),
+                         "more than the limit of 2048 MiB (PELLUCID_INPUT_LIMIT_MIB raises it)"));
+    ::setenv("PELLUCID_INPUT_LIMIT_MIB", "1", 1);
+    EXPECT_EQ(inputLimit(), uint64_t{1} << 20);
+    ASSERT_EQ(::truncate(path("e").c_str(), (1 << 20) + 1), 0);
+    EXPECT_TRUE(contains(messageOf<FileError>([&] { readWholeFile(path("e")); }), "limit of 1 MiB"));
+    for (const char* bad : {"0", "-1", "1.5", "x", "99999999999999999999"}) {
+        ::setenv("PELLUCID_INPUT_LIMIT_MIB", bad, 1);
+        EXPECT_TRUE(contains(messageOf<FileError>([] { inputLimit(); }), "a whole number of MiB"));
+    }
+    ::unsetenv("PELLUCID_INPUT_LIMIT_MIB");
+}

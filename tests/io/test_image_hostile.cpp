@@ -1,0 +1,224 @@
+// Images that are no friends: other formats under a known name, sizes that nothing could hold, headers that
+// lie.
+#include <OpenImageIO/imageio.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "io/file_error.h"
+#include "io/image/image_file.h"
+#include "io/image/image_format.h"
+#include "io/lut/lut_file.h"
+#include "io_files.h"
+
+using namespace pellucid;
+using namespace pellucid::io;
+
+namespace {
+
+// An EXR of one pixel whose header can be bent.
+struct Exr {
+    int data[4] = {0, 0, 0, 0}, display[4] = {0, 0, 0, 0};
+    std::vector<std::string> channels{"B", "G", "R"};
+    int sampling = 1;
+    uint32_t flags = 0;
+    std::vector<uint32_t> tile;
+    std::string more;  // attributes
+
+    static std::string word(uint32_t v) { return std::string(reinterpret_cast<const char*>(&v), 4); }
+    static std::string attribute(const std::string& name, const std::string& type, const std::string& value) {
+        return name + '\0' + type + '\0' + word(uint32_t(value.size())) + value;
+    }
+    std::string bytes() const {
+        std::string list, file = word(20000630) + word(2 | flags | (tile.empty() ? 0 : 0x200));
+        for (const std::string& c : channels)
+            list += c + '\0' + word(2) + word(0) + word(uint32_t(sampling)) + word(uint32_t(sampling));
+        file += attribute("channels", "chlist", list + '\0') +
+                attribute("compression", "compression", std::string(1, '\0'));
+        const auto box = [](const int(&b)[4]) {
+            return word(uint32_t(b[0])) + word(uint32_t(b[1])) + word(uint32_t(b[2])) + word(uint32_t(b[3]));
+        };
+        file +=
+            attribute("dataWindow", "box2i", box(data)) + attribute("displayWindow", "box2i", box(display));
+        file += attribute("lineOrder", "lineOrder", std::string(1, '\0'));
+        const float one = 1;
+        uint32_t bits;
+        std::memcpy(&bits, &one, 4);
+        file += attribute("pixelAspectRatio", "float", word(bits)) +
+                attribute("screenWindowCenter", "v2f", word(0) + word(0)) +
+                attribute("screenWindowWidth", "float", word(bits));
+        if (!tile.empty())
+            file += attribute("tiles", "tiledesc", word(tile[0]) + word(tile[1]) + std::string(1, '\0'));
+        file += more + '\0';
+        const uint64_t at = file.size() + 8;
+        file += word(uint32_t(at)) + word(0);
+        if (!tile.empty())
+            return file + word(0) + word(0) + word(0) + word(0) + word(uint32_t(4 * channels.size())) +
+                   std::string(4 * channels.size(), '\0');
+        return file + word(uint32_t(data[1])) + word(uint32_t(4 * channels.size())) +
+               std::string(4 * channels.size(), '\0');
+    }
+};
+
+class HostileImage : public FolderTest {
+  protected:
+    // The refusal, found out with less than `most` MiB more memory than before.
+    std::string refusal(const std::string& name, const std::string& bytes, uint64_t limit = inputLimit(),
+                        double most = 64) const {
+        const double before = peak();
+        const std::string message = messageOf<FileError>([&] { decodeImage(name, bytes, {}, limit); });
+        EXPECT_LT(peak() - before, most) << name << " took MiB";
+        return message;
+    }
+    static double peak() {
+        rusage usage{};
+        ::getrusage(RUSAGE_SELF, &usage);
+        return double(usage.ru_maxrss) / 1024;
+    }
+    // As OpenImageIO writes it, under its own extension; "" where this build of it cannot.
+    std::string written(const std::string& extension, int channels = 3, int side = 8) const {
+        const std::string file = path("w." + extension);
+        OIIO::ImageSpec spec(side, side, channels, OIIO::TypeDesc::UINT8);
+        spec.attribute("oiio:UnassociatedAlpha", 1);  // the bytes as they are
+        auto out = OIIO::ImageOutput::create(file);
+        std::vector<uint8_t> pixels(size_t(side) * size_t(side) * size_t(channels));
+        for (size_t i = 0; i < pixels.size(); ++i) pixels[i] = uint8_t(7 * i);
+        const bool ok = out && out->open(file, spec) &&
+                        out->write_image(OIIO::TypeDesc::UINT8, pixels.data()) && out->close();
+        if (!ok) return "";
+        return read(file);
+    }
+};
+
+}  // namespace
+
+TEST_F(HostileImage, TheFormatsThatAreNamedAreRead) {
+    for (const char* extension : {"png", "jpg", "jpeg", "tga", "bmp", "exr"}) {
+        const std::string bytes = written(extension);
+        const Image image = decodeImage(std::string("a.") + extension, bytes);
+        EXPECT_EQ(image.width, 8);
+        ASSERT_EQ(image.channels.size(), 3u) << extension;
+        EXPECT_NEAR(image.channels[1].pixels[1], 28 / 255.0, 0.1) << extension;
+    }
+    // Colours stay as they are stored, whatever alpha says.
+    for (const char* extension : {"png", "tga"}) {
+        const Image image = decodeImage(std::string("a.") + extension, written(extension, 4));
+        ASSERT_EQ(image.channels.size(), 4u) << extension;
+        EXPECT_NEAR(image.channel("G").pixels[1], 35 / 255.0, 1e-6) << extension;
+    }
+}
+
+TEST_F(HostileImage, OtherFormatsAreRefusedWhateverTheirName) {
+    for (const char* extension :
+         {"fits", "dpx", "hdr", "iff", "rla", "sgi", "tif", "pnm", "gif", "webp", "ico", "zfile"}) {
+        const std::string bytes = written(extension);
+        if (bytes.empty()) continue;  // not in every build of OpenImageIO
+        EXPECT_TRUE(contains(refusal(std::string("a.") + extension, bytes),
+                             "known here: .exr, .png, .jpg, .jpeg, .tga, .bmp"));
+        for (const char* name : {"a.exr", "a.png", "a.jpg", "a.bmp"})
+            EXPECT_TRUE(contains(refusal(name, bytes), "whatever its name says")) << extension;
+        EXPECT_NE(refusal("a.tga", bytes), "") << extension;
+    }
+    EXPECT_TRUE(contains(refusal("a.exr", written("png")),
+                         "is no OpenEXR, whatever its name says: its content is PNG"));
+    EXPECT_TRUE(contains(refusal("a.png", Exr().bytes()), "its content is OpenEXR"));
+    EXPECT_TRUE(contains(refusal("a.exr", ""), "its beginning is another"));
+    EXPECT_TRUE(contains(refusal("a", Exr().bytes()), "has no extension"));
+}
+
+TEST_F(HostileImage, SizesAreCheckedBeforeAnythingIsAllocated) {
+    ASSERT_EQ(refusal("a.exr", Exr().bytes()), "");
+    Exr many;
+    many.channels.clear();
+    for (int c = 0; c < 50; ++c) many.channels.push_back("c" + std::to_string(100 + c));
+    many.display[2] = many.display[3] = 4095;
+    EXPECT_TRUE(contains(refusal("a.exr", many.bytes()),
+                         "4096 x 4096 pixels (1 x 1 of them stored) of 50 channels take 3200.0 MiB, more "
+                         "than the limit of 2048 MiB"));
+}
+
+TEST_F(HostileImage, HeadersThatLie) {
+    const auto bent = [](auto change) {
+        Exr exr;
+        change(exr);
+        return exr.bytes();
+    };
+    const auto refused = [&](auto change, const char* message) {
+        EXPECT_TRUE(contains(refusal("a.exr", bent(change)), message));
+    };
+    refused([](Exr& e) { e.display[2] = e.display[3] = 19999; },
+            "20000 x 20000 pixels (1 x 1 of them stored) of 3 channels take 4577.6 MiB, more than the limit "
+            "of 2048 MiB");
+    refused([](Exr& e) { e.data[2] = e.data[3] = 29999; }, "take 10299.7 MiB");
+    refused([](Exr& e) { e.data[3] = 99999; }, "too short for 1 x 100000 pixels");
+    refused([](Exr& e) { e.data[2] = -1; }, "a window of 0 x 1");
+    refused([](Exr& e) { e.data[0] = INT32_MIN; }, "a window of");
+    refused([](Exr& e) { e.data[2] = INT32_MAX; }, "a window of");
+    refused([](Exr& e) { e.display[0] = INT32_MIN, e.display[2] = INT32_MAX; }, "a window of");
+    refused([](Exr& e) { e.channels.clear(); }, "no channels");
+    refused([](Exr& e) { e.channels.assign(2000, "c"); }, "more than 1024 channels");
+    refused([](Exr& e) { e.sampling = 2; }, "in another resolution");
+    refused([](Exr& e) { e.flags = 0x800; }, "deep pixels");
+    refused([](Exr& e) { e.tile = {0, 16}; }, "tiles are empty");
+    refused([](Exr& e) { e.tile = {1u << 31, 1u << 31}; }, "more than the limit");
+    refused([](Exr& e) { e.more = Exr::attribute("dataWindow", "box2i", "short"); }, "is no box2i");
+    refused(
+        [](Exr& e) {
+            e.more = Exr::attribute("dataWindow", "box2i",
+                                    std::string(4, '\xff') + std::string(4, '\0') + std::string(8, '\x3f'));
+        },
+        "more than the limit");
+    refused([](Exr& e) { e.more = Exr::attribute("type", "string", "deepscanline"); }, "deep pixels");
+    refused([](Exr& e) { e.more = "x"; }, "is damaged or cut off");
+    // A limit can be set.
+    Exr large;
+    large.display[2] = large.display[3] = 999;
+    EXPECT_TRUE(contains(refusal("a.exr", large.bytes(), 1 << 20),
+                         "take 11.4 MiB, more than the limit of 1 MiB (PELLUCID_INPUT_LIMIT_MIB raises it)"));
+    EXPECT_EQ(refusal("a.exr", large.bytes(), 12 << 20), "");
+    for (size_t cut = 0; cut < Exr().bytes().size(); ++cut)
+        EXPECT_NE(refusal("a.exr", Exr().bytes().substr(0, cut)), "") << cut;
+}
+
+TEST_F(HostileImage, SizesInOtherHeadersToo) {
+    const auto with = [](std::string bytes, size_t at, const std::string& what) {
+        return bytes.replace(at, what.size(), what);
+    };
+    const std::string huge("\x00\x00\xea\x60", 4);  // 60000, big-endian
+    EXPECT_TRUE(contains(refusal("a.png", with(written("png"), 16, huge + huge)),
+                         "60000 x 60000 pixels of 4 channels take"));
+    EXPECT_TRUE(
+        contains(refusal("a.tga", with(written("tga"), 12, "\x60\xea\x60\xea")), "60000 x 60000 pixels"));
+    EXPECT_TRUE(contains(refusal("a.tga", with(written("tga"), 12, std::string("\0\x10\0\x10", 4))),
+                         "too short for its pixels"))
+        << "4096 x 4096";
+    EXPECT_TRUE(
+        contains(refusal("a.bmp", with(written("bmp"), 18, std::string("\x60\xea\0\0\x60\xea\0\0", 8))),
+                 "60000 x 60000 pixels"));
+    std::string jpeg = written("jpg");
+    const size_t frame = jpeg.find("\xff\xc0");
+    ASSERT_NE(frame, std::string::npos);
+    EXPECT_TRUE(contains(refusal("a.jpg", with(jpeg, frame + 5, "\xea\x60\xea\x60")),
+                         "60000 x 60000 pixels of 3 channels"));
+    EXPECT_NE(refusal("a.png", with(written("png"), 16, std::string(8, '\0'))), "");
+    for (const char* extension : {"png", "jpg", "tga", "bmp"}) {
+        const std::string bytes = written(extension);
+        for (size_t cut = 0; cut < std::min<size_t>(bytes.size() / 2, 200); ++cut)
+            EXPECT_NE(refusal(std::string("a.") + extension, bytes.substr(0, cut)), "")
+                << extension << " of " << cut << " bytes";
+    }
+}
+
+TEST_F(HostileImage, ATableIsOneBeforeItsPixelsAreRead) {
+    Exr exr;
+    exr.display[2] = exr.display[3] = 9999;
+    const std::string large = exr.bytes();
+    EXPECT_TRUE(
+        contains(messageOf<FileError>([&] { decodeLut("t.exr", large); }), "more than the limit of 512 MiB"));
+    exr.display[2] = exr.display[3] = 4999;
+    const double before = peak();
+    EXPECT_TRUE(contains(messageOf<FileError>([&] { decodeLut("t.exr", exr.bytes()); }),
+                         "no attribute \"pellucid:format\""));
+    EXPECT_LT(peak() - before, 64);
+}
