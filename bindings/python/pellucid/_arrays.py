@@ -38,6 +38,12 @@ def as_array(value: Any, what: str) -> NDArray[Any]:
                     "protocol, is needed")
 
 
+def _check_byte_order(dtype: np.dtype[Any], what: str) -> None:
+    if not dtype.isnative:
+        raise ValueError(f"{what} has the byte order of another machine ({dtype}: {'big' if dtype.byteorder == '>' else 'little'}-endian); "
+                         "pass array.astype(array.dtype.newbyteorder('='))")
+
+
 class Span:
     """The memory from an array's first to its last byte, as a buffer.
 
@@ -52,8 +58,7 @@ class Span:
             raise ValueError(f"{what} is broadcast (a stride of 0), which the device cannot follow; pass array.copy()")
         if output and not array.flags.writeable:
             raise ValueError(f"{what} is read-only and the result goes there")
-        if array.dtype.byteorder == ">":
-            raise ValueError(f"{what} is big-endian; pass array.astype(array.dtype.newbyteorder('='))")
+        _check_byte_order(array.dtype, what)
         self.array, self.output = array, output
         self.address = array.ctypes.data
         last = sum((n - 1) * s for n, s in zip(array.shape, array.strides))
@@ -198,6 +203,7 @@ class Image:
         else:
             array = as_array(data, _slot)
             shape, strides, dtype = array.shape, array.strides, array.dtype
+        _check_byte_order(dtype, _slot)
         if len(shape) not in (2, 3):
             raise ValueError(f"{_slot} has the shape {tuple(shape)}; (height, width) or (height, width, components) is "
                              "needed")

@@ -1,4 +1,5 @@
 """Batches on a cluster of real processes, some of which are killed, stopped or lie."""
+import contextlib
 import hashlib
 import json
 import os
@@ -118,6 +119,29 @@ def misbehave(kind):
         module.make_entry = make_entry
     if kind == "damaged file":  # and is no better at reading
         module.read_entry = lambda manifest, index, store: "f" * 64
+
+
+def listening(processes):
+    """Addresses at which these processes wait for connections, as hexadecimal digits of /proc/net."""
+    sockets = set()
+    for process in processes:
+        for fd in os.listdir(f"/proc/{process}/fd"):
+            with contextlib.suppress(OSError):
+                sockets.add(os.readlink(f"/proc/{process}/fd/{fd}"))
+    found = []
+    for table in ("tcp", "tcp6"):
+        for line in open(f"/proc/net/{table}").readlines()[1:]:
+            words = line.split()
+            if words[3] == "0A" and f"socket:[{words[9]}]" in sockets:
+                found.append(words[1].split(":")[0])
+    return found
+
+
+def test_nobody_else_reaches_the_processes_of_this_machine(client):
+    processes = {os.getpid(), *client.run(os.getpid).values(), *client.run(os.getppid).values()}
+    found = listening(processes)
+    assert len(found) >= 3, "scheduler, nannies and workers listen"
+    assert set(found) == {"0100007F"}, "at 127.0.0.1 alone"
 
 
 def test_killed_workers_lose_nothing(client, manifest, device, tmp_path):

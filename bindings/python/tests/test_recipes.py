@@ -43,7 +43,7 @@ def strict(schema):
 class Pods(contextlib.ExitStack):
     status = distributed.core.Status.running
 
-    def __init__(self, custom_cluster_spec):
+    def __init__(self, namespace, custom_cluster_spec):
         super().__init__()
         crds = Path(dask_kubernetes.__file__).parent / "operator/deployment/helm/dask-kubernetes-operator/crds"
         version = yaml.safe_load((crds / "daskcluster.yaml").read_text())["spec"]["versions"][0]
@@ -64,6 +64,9 @@ class Pods(contextlib.ExitStack):
         container = part["spec"]["containers"][0]
         env = {**os.environ, **{e["name"]: e["value"] for e in container["env"]}, **given}
         args = [a.replace("$(DASK_WORKER_NAME)", given.get("DASK_WORKER_NAME", "")) for a in container["args"]]
+        args = ["127.0.0.1" if a == "0.0.0.0" else a for a in args]  # a pod has a network of its own; this machine's is not ours
+        if "--host" not in args:
+            args += ["--host", "127.0.0.1"]
         process = self.enter_context(subprocess.Popen([*args, *more], env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
         self.callback(process.terminate)
 
@@ -109,12 +112,13 @@ def run_recipe(tmp_path):
 
 def test_slurm(run_recipe, tmp_path, device):
     pytest.importorskip("dask_jobqueue", reason="dask-jobqueue is not installed")
+    pytest.importorskip("cryptography", reason="cryptography is not installed")
     for name, text in (("sbatch", SBATCH), ("scancel", SCANCEL)):
         (tmp_path / name).write_text(text.format(tmp_path))
         (tmp_path / name).chmod(0o755)
     run_recipe(recipe("Slurm", {
         "/shared/manifest.toml": str(tmp_path / "m.toml"), "/shared/tables": str(tmp_path / "tables"),
-        "/shared/venv/bin/python": sys.executable, "DEVICE=gpu": "DEVICE=" + os.environ.get("PELLUCID_DEVICE", ""),
+        "/shared/venv/bin/python": sys.executable, "/shared/home/me/dask": str(tmp_path), "DEVICE=gpu": "DEVICE=" + os.environ.get("PELLUCID_DEVICE", ""),
         "workers=100": "workers=2"}), device)
     script = (tmp_path / "job1.sh").read_text()
     subprocess.run(["bash", "-n"], input=script, text=True, check=True)
@@ -122,6 +126,7 @@ def test_slurm(run_recipe, tmp_path, device):
     assert {"-p gpu", "--gres=gpu:1", "-n 1", "--cpus-per-task=4", "-t 01:00:00"} <= set(asked)
     assert any(a.startswith("--mem=") for a in asked)
     assert "--nthreads 1" in script and "Starting worker" not in script
+    assert "tls://" in script and "--tls-key" in script, "whoever reaches a port without TLS can run anything"
     assert re.search(r"Threads:\s+1\b", (tmp_path / "job1.log").read_text()), "a worker takes one piece at a time"
 
 

@@ -27,8 +27,8 @@ def main() -> int:
     a = parser.parse_args()
     if a.scheduler and (a.workers or a.device):
         parser.error("--workers and --device are for processes of this machine; with --scheduler the cluster has its own")
-    if a.timeout <= 0 or a.patience < 0 or a.jobs < 0 or (a.workers is not None and a.workers < 1):
-        parser.error("--timeout must be above 0, --workers 1 or more, --jobs and --patience 0 or more")
+    if a.timeout <= 0 or a.patience < 0 or not 0 <= a.jobs <= 256 or (a.workers is not None and a.workers < 1):
+        parser.error("--timeout must be above 0, --workers 1 or more, --patience 0 or more, --jobs from 0 to 256")
 
     def fail(code: int, message: object) -> int:
         print(f"pellucid.batch: {message}", file=sys.stderr)

@@ -36,7 +36,7 @@ def _local_client(count: Optional[int], selectors: Sequence[str]) -> Iterator[An
         chosen = [os.environ["PELLUCID_DEVICE"]]
     with dask.config.set({"distributed.admin.system-monitor.interval": "10s"}):
         workers = {i: {"cls": distributed.Nanny,
-                       "options": {"nthreads": 1, "memory_limit": 0, "silence_logs": logging.CRITICAL,
+                       "options": {"host": "127.0.0.1", "nthreads": 1, "memory_limit": 0, "silence_logs": logging.CRITICAL,
                                    "preload": ["pellucid.batch.interrupt"],
                                    "env": {"PELLUCID_DEVICE": chosen[i % len(chosen)]}}}
                    for i in range(count or len(chosen))}

@@ -1,13 +1,15 @@
 """Where the files of a batch go: a folder that all workers see, or an object store."""
 from __future__ import annotations
 
-import itertools
+import contextlib
+import errno
+import fcntl
+import functools
 import os
+import secrets
 import socket
 from pathlib import Path
 from typing import Any, Optional
-
-_counter = itertools.count()
 
 
 class StoreError(Exception):
@@ -72,20 +74,52 @@ class Store:
 
     @staticmethod
     def _write_local(folder: Path, name: str, data: bytes) -> None:
+        target = folder / name
+        if target.exists() and not target.is_file():
+            raise OSError(errno.EINVAL, "is no file; a file must have this name")
         stem, _, extension = name.rpartition(".")
-        # Of the form that the command removes when it finds it abandoned.
-        tag = f"{_fnv(socket.gethostname().encode()):016x}"[:4]
-        temporary = folder / f".{stem}.{tag}-{os.getpid()}-{next(_counter)}.tmp.{extension}"
+        # Of the form that the command removes when it finds it abandoned, which the lock tells.
+        temporary = folder / f".{stem}.{_machine_tag()}-{secrets.token_hex(8)}.tmp.{extension}"
+        fd = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666)
         try:
-            with open(temporary, "wb", buffering=0) as file:
-                view = memoryview(data)
-                while view:
-                    view = view[file.write(view):]
-                os.fsync(file.fileno())
-            os.replace(temporary, folder / name)
+            with contextlib.suppress(OSError):  # where there are no locks, age alone tells
+                fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            view = memoryview(data)
+            while view:
+                view = view[os.write(fd, view):]
+            os.fsync(fd)
+            os.replace(temporary, target)
         except BaseException:
             temporary.unlink(missing_ok=True)
             raise
+        finally:
+            os.close(fd)
+        _flush_folder(folder)
+
+
+def _flush_folder(folder: Path) -> None:
+    """Puts names in a folder on the disk, where the file system can."""
+    try:
+        fd = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    except PermissionError:  # it may hold files and not be listed
+        return
+    try:
+        os.fsync(fd)
+    except OSError as e:
+        if e.errno not in (errno.EINVAL, errno.EBADF, errno.ENOTSUP):
+            raise
+    finally:
+        os.close(fd)
+
+
+@functools.lru_cache(maxsize=None)
+def _machine_tag() -> str:
+    """Whose locks are seen here: those under this kernel. host/io/atomic_file.cpp makes the same."""
+    try:
+        name = Path("/proc/sys/kernel/random/boot_id").read_text().strip()
+    except OSError:
+        name = socket.gethostname()
+    return f"{_fnv(name.encode()):016x}"[:8]
 
 
 def _fnv(data: bytes) -> int:

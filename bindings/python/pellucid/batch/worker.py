@@ -74,7 +74,7 @@ def read_entry(manifest: Manifest, index: int, store: Store) -> Optional[str]:
 
 def _each(indices: list[int], jobs: int, do: Callable[[int], Any]) -> list[Any]:
     """Several at a time: one integrates while another waits for the disk or the store."""
-    with ThreadPoolExecutor(min(len(indices), jobs or 4 * (os.cpu_count() or 1))) as pool:
+    with ThreadPoolExecutor(min(len(indices), jobs or 4 * (os.cpu_count() or 1), 256)) as pool:
         return list(pool.map(do, indices))
 
 
