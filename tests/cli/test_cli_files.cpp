@@ -44,7 +44,7 @@ TEST_F(Files, AFullDiskIsAnErrorOfEveryCommand) {
     NEEDS_DISK(disk);
     const std::string mesh = write("m.off", mesh_);
     const std::vector<std::vector<std::string>> commands = {
-        {"lut", "shadow", "-o", disk.path("o.png"), "--size", "64x64"},
+        {"lut", "shadow", "-o", disk.path("o.png"), "--size", "256x256"},
         {"lut", "shadow", "-o", disk.path("o.bmp"), "--size", "64x64"},
         {"lut", "shadow", "-o", disk.path("o.tga"), "--size", "64x64"},
         {"lut", "shadow", "-o", disk.path("o.exr"), "--size", "64x64"},
@@ -56,7 +56,7 @@ TEST_F(Files, AFullDiskIsAnErrorOfEveryCommand) {
         {"curvature", mesh, "-o", path("o.npy"), "--picture", disk.path("o.png")},
         {"profile", "plot", "skin", "-o", disk.path("o.png")},
         {"profile", "fit", "skin", "-o", disk.path("o.toml"), "--gaussians", "2"},
-        {"batch", write("m.toml", "[[lut]]\nsize = 16\nkind = \"shadow\"\n"), "-o", disk.path("tables")}};
+        {"batch", write("m.toml", "[[lut]]\nsize = 64\nkind = \"shadow\"\n"), "-o", disk.path("tables")}};
     for (size_t left : {size_t{0}, size_t{4096}})
         for (const auto& command : commands) {
             disk.empty();
@@ -86,10 +86,10 @@ TEST_F(Files, AFullDiskIsAnErrorOfEveryCommand) {
 
 TEST_F(Files, ALimitOnTheSizeOfFilesIsLikeAFullDisk) {
     // The driver keeps its programs in files too.
-    ASSERT_EQ(run({"lut", "shadow", "-o", path("o.npy"), "--size", "64x64"}).exitCode, 0);
+    ASSERT_EQ(run({"lut", "shadow", "-o", path("o.npy"), "--size", "512x512"}).exitCode, 0);
     std::filesystem::remove(path("o.npy"));
-    EXPECT_EQ(shell("ulimit -f 4; timeout 60 '" PELLUCID_COMMAND "' lut shadow -o '" + path("o.npy") +
-                    "' --size 64x64 2>'" + path("said") + "' >/dev/null"),
+    EXPECT_EQ(shell("ulimit -f 2048; timeout 60 '" PELLUCID_COMMAND "' lut shadow -o '" + path("o.npy") +
+                    "' --size 512x512 2>'" + path("said") + "' >/dev/null"),
               3);
     EXPECT_TRUE(contains(read(path("said")), "File too large"));
     EXPECT_FALSE(std::filesystem::exists(path("o.npy")));
