@@ -36,8 +36,11 @@ inline constexpr Tolerance sampledEnergy{
     "sampledEnergy", 1e-3, "4000 logarithmic samples of a line spread, which burley's centre leaves short"};
 inline constexpr Tolerance sixGaussians{"sixGaussians", 0.02,
                                         "six Gaussians follow a dipole's line spread to about a percent"};
-inline constexpr Tolerance fittedAgain{"fittedAgain", 0.02,
-                                       "a search by steps of 1 % stops near the optimum"};
+inline constexpr Tolerance cylinderOfSteps{"cylinderOfSteps", 2e-6,
+                                           "4096 steps round a cylinder, the corner of max(cos, 0) between two of them"};
+inline constexpr Tolerance floatWeights{"floatWeights", 1e-6, "weights and variances are written as floats"};
+inline constexpr Tolerance fittedAgain{"fittedAgain", 1e-4,
+                                       "a fit that has reached its optimum, by floats: weights of neighbours trade places"};
 inline constexpr Tolerance sphereMean{"sphereMean", 1e-5,
                                       "energy: the mean of the form sphere is exactly 1/4"};
 

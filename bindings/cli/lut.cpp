@@ -13,7 +13,8 @@ const std::map<std::string, PelLutEncoding> encodings{
 const std::map<std::string, PelCurvatureForm> forms{{"arc", PEL_FORM_ARC},
                                                     {"ring", PEL_FORM_RING},
                                                     {"half-ring", PEL_FORM_HALF_RING},
-                                                    {"sphere", PEL_FORM_SPHERE}};
+                                                    {"sphere", PEL_FORM_SPHERE},
+                                                    {"penner-ring", PEL_FORM_PENNER_RING}};
 const std::map<std::string, PelLutAxis> axes{{"linear", PEL_AXIS_LINEAR}, {"root", PEL_AXIS_ROOT}};
 
 struct Arguments {
@@ -30,9 +31,7 @@ template <class Desc>
 Profile takeProfile(const Arguments& arguments, Desc& desc) {
     const Profile profile = io::findProfile(arguments.profile).profile;
     desc.profile = profile.get();
-    if (arguments.radius->count() == 0)
-        desc.diffusionRadius = 0;
-    else if (desc.diffusionRadius == 0)
+    if (arguments.radius->count() && desc.diffusionRadius == 0)
         throw UsageError("--diffusion-radius: diffusionRadius is 0; a length above 0 is needed");
     return profile;
 }
@@ -103,7 +102,7 @@ void addLut(CLI::App& app) {
     curvature->add_option("--radius-max", a->curvature.radiusMax, "largest radius of curvature, mm")
         ->capture_default_str();
     curvature->add_option("--form", a->form, "geometry that light is integrated over")
-        ->check(CLI::IsMember({"arc", "ring", "half-ring", "sphere"}))
+        ->check(CLI::IsMember({"arc", "ring", "half-ring", "sphere", "penner-ring"}))
         ->capture_default_str();
     curvature
         ->add_option("--axis", a->axis, "spread of texels: linear, or root (small tables look up better)")

@@ -28,7 +28,7 @@ PelShadowLutDesc smallShadowLut() {
 }
 
 void lutJobs(const Ref<Device>& device, PrefillJobs& jobs) {
-    for (const PelCurvatureForm form : {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_ARC})
+    for (const PelCurvatureForm form : {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_PENNER_RING, PEL_FORM_ARC})
         jobs.push_back([device, form] { integrateCurvatureLut(device, smallCurvatureLut(form)); });
     jobs.push_back([device] { integrateShadowLut(device, smallShadowLut()); });
     jobs.push_back([device] {
@@ -45,7 +45,7 @@ void lutJobs(const Ref<Device>& device, PrefillJobs& jobs) {
 void tableLutJobs(const Ref<Device>& device, PrefillJobs& jobs) {
     const std::vector<float> radii{0, 1, 3}, values{1, 1, 1, 0.5, 0.4, 0.3, 0, 0, 0};
     const Ref<Profile> profile = Profile::table(radii.data(), values.data(), uint32_t(radii.size()));
-    for (const PelCurvatureForm form : {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_ARC})
+    for (const PelCurvatureForm form : {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_PENNER_RING, PEL_FORM_ARC})
         jobs.push_back([device, profile, form] {
             PelCurvatureLutDesc desc = smallCurvatureLut(form);
             const LentHandle<PelProfile, Profile> lent(profile);

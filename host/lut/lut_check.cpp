@@ -33,9 +33,9 @@ void checkOrder(float min, float max, const char* minField, const char* maxField
 void checkCurvatureDesc(const PelCurvatureLutDesc& desc) {
     checkSide(desc.width, "PelCurvatureLutDesc.width");
     checkSide(desc.height, "PelCurvatureLutDesc.height");
-    if (desc.form < PEL_FORM_ARC || desc.form > PEL_FORM_SPHERE)
+    if (desc.form < PEL_FORM_ARC || desc.form > PEL_FORM_PENNER_RING)
         invalidArgument("PelCurvatureLutDesc.form is ", int(desc.form),
-                        "; PEL_FORM_ARC (0), _RING (1), _HALF_RING (2) or _SPHERE (3) is needed");
+                        "; PEL_FORM_ARC (0), _RING (1), _HALF_RING (2), _SPHERE (3) or _PENNER_RING (4) is needed");
     if (desc.axis != PEL_AXIS_LINEAR && desc.axis != PEL_AXIS_ROOT)
         invalidArgument("PelCurvatureLutDesc.axis is ", int(desc.axis),
                         "; PEL_AXIS_LINEAR (0) or PEL_AXIS_ROOT (1) is needed");

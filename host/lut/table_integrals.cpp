@@ -45,14 +45,18 @@ std::vector<cl_float4> tableKnots(const Profile& profile) {
 }
 
 double tableEnd(const Profile& profile) {
-    return std::min(profile.shape().knots().back() / profile.radius(), profileCut);
+    return std::min(tableReach(profile), profileCut);
+}
+
+double tableReach(const Profile& profile) {
+    return profile.shape().knots().back() / profile.radius();
 }
 
 // From the end inwards, cell by cell: each tail takes the shorter ones along, and what P adds within the
 // cell. P is like the root of the distance before each distance where R bends or ends, so cells are split
 // there and integrated over that root.
-std::vector<cl_float4> tableTails(const Profile& profile) {
-    const double unit = profile.radius(), end = tableEnd(profile);
+std::vector<cl_float4> tableTails(const Profile& profile, double end) {
+    const double unit = profile.radius();
     const auto lineSpread = [&](double s) {
         Rgb P = profile.shape().lineSpread(s * unit);
         for (double& value : P) value *= unit;

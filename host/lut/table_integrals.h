@@ -13,8 +13,10 @@ std::vector<cl_float4> tableKnots(const Profile& profile);
 
 // Where the line spread ends: with the table, or at the cut.
 double tableEnd(const Profile& profile);
-// TAIL_VALUES float4 at each of TAIL_CELLS + 1 distances, as shared/lut_integral.h describes.
-std::vector<cl_float4> tableTails(const Profile& profile);
+// Where the table ends.
+double tableReach(const Profile& profile);
+// Within `end`, TAIL_VALUES float4 at each of TAIL_CELLS + 1 distances, as shared/lut_integral.h describes.
+std::vector<cl_float4> tableTails(const Profile& profile, double end);
 
 // Points (weight R, G, B; distance) that stand for the table of those knots on a sphere of that diameter, or
 // on any larger one where the profile ends before a quarter of the way round: the integral of R f 2 pi d over

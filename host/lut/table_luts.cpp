@@ -67,7 +67,9 @@ void integrateTableCurvature(Lut& lut, double curvatureMin, double curvatureMax)
     params.nodes = meshIntervals + 1;
     params.rowMin = float(axis.min);
     params.rowStep = float(axis.step);
-    params.end = float(tableEnd(profile));
+    const bool chord = desc.form == PEL_FORM_PENNER_RING;
+    const double end = chord ? tableReach(profile) : tableEnd(profile);
+    params.end = float(end);
 
     // What the rows of each form read.
     cl::Memory source, ofRow;
@@ -80,7 +82,7 @@ void integrateTableCurvature(Lut& lut, double curvatureMin, double curvatureMax)
         source = upload(device, sphere.points);
         ofRow = upload(device, sphere.ofRow);
     } else {
-        source = upload(device, tableTails(profile));
+        source = upload(device, tableTails(profile, end));
     }
     params.slots = params.nodes + params.knots + 1;
     if (!ring) params.slots = params.nodes;
@@ -90,6 +92,7 @@ void integrateTableCurvature(Lut& lut, double curvatureMin, double curvatureMax)
     cl::Defines options{{"PEL_GROUP", std::to_string(group)},
                         {"PEL_COLUMNS", std::to_string(columnsPerItem)}};
     if (desc.form == PEL_FORM_HALF_RING) options.emplace("PEL_HALF", "1");
+    if (chord) options.emplace("PEL_CHORD", "1");
     const cl::Program program = device.programs().get("lut/table_curvature_lut.cl", options);
     const std::vector<TableColumn> columnList = columnsOf(desc);
     const cl::Memory nodes = upload(device, meshOfNodes(meshIntervals)), columns = upload(device, columnList);
@@ -123,15 +126,16 @@ void integrateTableCurvature(Lut& lut, double curvatureMin, double curvatureMax)
 void integrateTableShadow(Lut& lut, double reciprocalMin, double reciprocalMax) {
     Device& device = lut.device();
     const PelShadowLutDesc& desc = lut.info().shadow;
+    const double end = tableEnd(*lut.profile());
     const TableShadowParams params{desc.width,           desc.height,
                                    float(reciprocalMin), float((reciprocalMax - reciprocalMin) / desc.height),
-                                   desc.sharpening,      float(tableEnd(*lut.profile()))};
+                                   desc.sharpening,      float(end)};
     const bool wide = device.info().mathWidth > 1;
     const size_t group = wide ? 1 : 64, columnsPerItem = wide ? 64 : 1;
     const cl::Program program = device.programs().get(
         "lut/table_shadow_lut.cl",
         {{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
-    const cl::Memory tails = upload(device, tableTails(*lut.profile()));
+    const cl::Memory tails = upload(device, tableTails(*lut.profile(), end));
     cl::Launch launch(program, "tableShadowTexels");
     launch.arg(params).arg(tails).arg(lut.texels());
     const size_t lit = desc.width - desc.width / 2;

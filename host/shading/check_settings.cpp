@@ -112,8 +112,8 @@ void checkMaterial(const PelMaterial& m) {
     checkFinite(name, "albedo", m.albedo, 3);
     checkFinite(name, "deepScatterColor", m.deepScatterColor, 3);
     for (float blend : m.normalBlend) within(name, {{"normalBlend", blend, 0, 1}});
-    within(name, {{"diffusionRadius", m.diffusionRadius, tiny, huge},
-                  {"shadowFilterWidth", m.shadowFilterWidth, tiny, huge},
+    if (m.diffusionRadius != 0) within(name, {{"diffusionRadius", m.diffusionRadius, tiny, huge}});  // 0: a table's or skin's
+    within(name, {{"shadowFilterWidth", m.shadowFilterWidth, tiny, huge},
                   {"deepScatterRadius", m.deepScatterRadius, tiny, huge},
                   {"deepScatterNormalOffset", m.deepScatterNormalOffset, -huge, huge},
                   {"thicknessFilterRadius", m.thicknessFilterRadius, 0, 1},

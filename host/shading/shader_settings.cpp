@@ -1,6 +1,7 @@
 // What the caller sets on a PelShader: checked and kept until the next commit.
 #include "core/struct_size.h"
 #include "shading/check_settings.h"
+#include "shading/material.h"
 #include "shading/shader.h"
 #include "shared/shade_passes.h"
 
@@ -43,9 +44,10 @@ void Shader::setMaterial(uint32_t id, const PelMaterial* material, Lut* curvatur
     check(curvatureLut, PEL_LUT_CURVATURE, "curvature");
     check(shadowLut, PEL_LUT_SHADOW, "shadow");
     ShaderMaterial& set = state_.materials[id];  // which may have a normal map already
-    set.params = *material;
+    set.given = *material;
     set.curvatureLut = Ref(curvatureLut);
     set.shadowLut = Ref(shadowLut);
+    resolveMaterial(set);
     committed_ = false;
 }
 

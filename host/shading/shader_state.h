@@ -10,7 +10,8 @@
 namespace pel {
 
 struct ShaderMaterial {
-    PelMaterial params;
+    PelMaterial given;   // by the caller
+    PelMaterial params;  // with what it leaves to defaults filled in (shading/material.h)
     Ref<Lut> curvatureLut, shadowLut;
     std::vector<ImageView> normalMap;  // its levels, the finest first
 };

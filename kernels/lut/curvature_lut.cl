@@ -1,8 +1,8 @@
-// Curvature LUT of a sum of Gaussians, forms arc, ring, half-ring and sphere (section 2 of the mathematics).
+// Curvature LUT of a sum of Gaussians, forms arc, ring, half-ring, sphere and penner-ring (section 2 of the mathematics).
 //
 // Every form is a convolution on the circle of max0(cos) with an even kernel K(t), |t| <= X:
 //   arc        K = r P(r t), X = min(pi, cut/r), not normalised
-//   ring       K = R(2r sin|t/2|) / N, X = pi; half-ring: X = pi/2
+//   ring       K = R(2r sin|t/2|) / N, X = pi; half-ring: X = pi/2; penner-ring: P in place of R
 //   sphere     K = int cos^2(h) R(chord) dh / N over the half circle across: with latitudes h from the great
 //   circle through
 //              normal and light, w.L = cos h cos(theta - t) and w.n = cos h cos t, so that the latitudes
@@ -30,6 +30,7 @@
 #define FORM_RING 1
 #define FORM_HALF_RING 2
 #define FORM_SPHERE 3
+#define FORM_PENNER_RING 4
 
 // A row's record: E, F at node 0, ... E, F at node N, back, front, scale of E.
 #define ROW_STRIDE (2 * PEL_NODES + 5)
@@ -135,6 +136,8 @@ inline Rgb kernelAt(__global const LutGaussian* gaussians, const uint first, con
             behind ? exp(-x * x) * latitudeBack(x * (versine - 1.0f) * x)
                    : exp(-(x * versine) * x) * latitudeFront(fmax(x * (1.0f - versine) * x, 0.0f));
         const floatw e = x * latitude * (x * 0.159154943f);
+#elif PEL_FORM == FORM_PENNER_RING
+        const floatw e = x * exp(-(x * versine) * x);
 #else
         const floatw e = x * exp(-(x * versine) * x) * x;
 #endif

@@ -129,7 +129,8 @@ inline void storeTexels(__global float4* line, const uint width, const uint x, c
     storew(g, 0, green);
     storew(b, 0, blue);
     for (uint lane = 0; lane < PEL_WIDTH && x + lane < width; ++lane) {
-        const float3 U = (float3)(red[lane], green[lane], blue[lane]);
+        // A tail that has all but vanished may come out below 0 by rounding: no texel may, on either side.
+        const float3 U = clamp((float3)(red[lane], green[lane], blue[lane]), (float3)(0.0f), mass);
         line[x + lane] = (float4)(mass - U, 0.0f);
         line[width - 1 - x - lane] = (float4)(U, 0.0f);
         if (x + lane == width - 1) line[width] = (float4)(mass - U, 0.0f);

@@ -1,10 +1,11 @@
-// Curvature LUT of a measured profile, R linear between distances: forms arc, ring, half-ring and sphere (section 2 of
+// Curvature LUT of a measured profile, R linear between distances: every form of curvature_lut.cl (section 2 of
 // the mathematics). As in curvature_lut.cl each row becomes nodes at angles phi behind the terminator with E and F = -E',
 //   unlit side D(-u) = E + back u,   lit side D(+u) = E + front u,   u = sin phi,
 // and texels are cubics between nodes; here a row carries the angles of its nodes, so that it may have its own.
 //   tableArcRows     E'' + E = K(phi) + K(pi - phi), K = r P(r t), swept from pi/2 to 0. P has corners, its
 //                    tail has none worse than a root's integral: what an interval adds is its mass, a difference of tails,
-//                    and the mass's moment, from K at both ends.
+//                    and the mass's moment, from K at both ends. PEL_CHORD is penner-ring, K = P(2r sin(t/2)): masses over
+//                    chords, divided by dchord/dt, and where the chord stands still, from K alone.
 //   tableRingRows    the same with K = R(2r sin(t/2)), which is smooth between the angles where R bends: they
 //                    become nodes of their row.
 //   tableSphereRows  the circle of points at chord d receives in the mean m(phi, d), a closed form: a sum over
@@ -12,7 +13,7 @@
 //
 // One work-item: tableArcRows, tableRingRows a row; tableSphereRows PEL_WIDTH nodes of a row; tableTexels PEL_COLUMNS
 // columns of the unlit half of a row, and their mirror images.
-// Variants: PEL_WIDTH; PEL_GROUP, work-items in a group; PEL_COLUMNS; PEL_HALF: the half ring.
+// Variants: PEL_WIDTH; PEL_GROUP, work-items in a group; PEL_COLUMNS; PEL_HALF: the half ring; PEL_CHORD.
 #include "lib/lut/table_tails.clh"
 #include "lib/width.clh"
 #include "shared/lut.h"
@@ -53,6 +54,15 @@ inline void turn(Sum* E, Sum* F, const float h, const float4 addE, const float4 
     add(F, addF - e * s - f * versine);
 }
 
+// Distance from the point to another at the angle, and how fast it grows.
+#ifdef PEL_CHORD
+#define DISTANCE(r, angle) (2.0f * (r) * sin(0.5f * (angle)))
+#define BEHIND(r, angle) (2.0f * (r) * cos(0.5f * (angle)))  // at pi - angle
+#else
+#define DISTANCE(r, angle) ((r) * (angle))
+#define BEHIND(r, angle) ((r) * (M_PI_F - (angle)))
+#endif
+
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableArcRows(
     const TableCurvatureParams params, __global const LutNode* nodes, __global const float4* tails,
     __global float4* rows) {
@@ -62,26 +72,38 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableArcRow
     __global float4* record = rows + get_global_id(0) * RECORD(params);
     Sum E = {0.0f, 0.0f}, F = E;
     float4 front = 0.0f, back = 0.0f;
-    float4 frontTail = tailAt(tails, TAIL_MASS, r * M_PI_2_F, end), backTail = frontTail;
-    float4 frontK = r * spreadAt(tails, r * M_PI_2_F, end), backK = frontK;
+    float4 frontTail = tailAt(tails, TAIL_MASS, DISTANCE(r, M_PI_2_F), end), backTail = frontTail;
+    float4 frontK = r * spreadAt(tails, DISTANCE(r, M_PI_2_F), end), backK = frontK;
+#ifdef PEL_CHORD
+    Sum mass = {0.0f, 0.0f};
+#endif
     for (int j = (int)params.nodes - 1; j >= 0; --j) {
         const float angle = nodes[j].angle;
         if (j + 1 < (int)params.nodes) {
             const float h = nodes[j + 1].angle - angle;
-            const float4 frontNext = tailAt(tails, TAIL_MASS, r * angle, end),
-                         backNext = tailAt(tails, TAIL_MASS, r * (M_PI_F - angle), end);
-            const float4 frontNextK = r * spreadAt(tails, r * angle, end),
-                         backNextK = r * spreadAt(tails, r * (M_PI_F - angle), end);
-            const float4 frontMass = fmax(frontNext - frontTail, 0.0f),
-                         backMass = fmax(backTail - backNext, 0.0f);
+            const float4 frontNext = tailAt(tails, TAIL_MASS, DISTANCE(r, angle), end),
+                         backNext = tailAt(tails, TAIL_MASS, BEHIND(r, angle), end);
+            const float4 frontNextK = r * spreadAt(tails, DISTANCE(r, angle), end),
+                         backNextK = r * spreadAt(tails, BEHIND(r, angle), end);
+            float4 frontMass = fmax(frontNext - frontTail, 0.0f), backMass = fmax(backTail - backNext, 0.0f);
+#ifdef PEL_CHORD
+            const float middle = angle + 0.5f * h;
+            frontMass /= cos(0.5f * middle);
+            if (middle > 0.2f)
+                backMass /= sin(0.5f * middle);
+            else
+                backMass = 0.5f * h * r * (spreadAt(tails, BEHIND(r, angle + 0.211324865f * h), end) +
+                                           spreadAt(tails, BEHIND(r, angle + 0.788675135f * h), end));
+            add(&mass, frontMass + backMass);
+#endif
             // About this node: the middle, and to which side K leans.
             const float third = h * h * (1.0f / 12.0f);
             const float4 frontMoment =
                 clamp(0.5f * h * frontMass + third * (frontK - frontNextK), 0.0f, h * frontMass);
             const float4 backMoment =
                 clamp(0.5f * h * backMass + third * (backK - backNextK), 0.0f, h * backMass);
-            const float4 mass = frontMass + backMass, moment = frontMoment + backMoment;
-            turn(&E, &F, h, moment * (1.0f - third), mass - moment * (h * (1.0f / 3.0f)));
+            const float4 all = frontMass + backMass, moment = frontMoment + backMoment;
+            turn(&E, &F, h, moment * (1.0f - third), all - moment * (h * (1.0f / 3.0f)));
             const float sine = nodes[j].sine, cosine = nodes[j].cosine;
             front += frontMass * cosine - frontMoment * (sine + cosine * (h * (1.0f / 3.0f)));
             back += backMass * cosine - backMoment * (sine + cosine * (h * (1.0f / 3.0f)));
@@ -89,10 +111,14 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableArcRow
         }
         storeNode(record, (uint)j, angle, E.value, F.value);
     }
+    float4 scale = 1.0f;
+#ifdef PEL_CHORD
+    scale = 0.5f / mass.value;
+#endif
     __global float4* last = record + 2 * params.slots;
-    last[0] = (float4)(2.0f * back.xyz, 0.0f);
-    last[1] = 2.0f * front;
-    last[2] = 1.0f;
+    last[0] = (float4)((2.0f * back * scale).xyz, 0.0f);
+    last[1] = 2.0f * front * scale;
+    last[2] = scale;
 }
 
 // R at a chord on the piece that begins at knot `piece`.

@@ -117,7 +117,7 @@ TEST(Prefill, TablesAndCurvatureFindEverythingBuilt) {
     EXPECT_TRUE(std::is_sorted(telling.fractions.begin(), telling.fractions.end()));
     pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));
     builds = 0;
-    for (const PelCurvatureForm form : {PEL_FORM_ARC, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_SPHERE}) {
+    for (const PelCurvatureForm form : {PEL_FORM_ARC, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_SPHERE, PEL_FORM_PENNER_RING}) {
         PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
         desc.form = form;
         desc.width = 40, desc.height = 24;

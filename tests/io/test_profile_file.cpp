@@ -98,6 +98,47 @@ TEST(ProfileFit, MoreGaussiansFitBetter) {
     EXPECT_THROW(io::fitGaussians(marble, 0), std::invalid_argument);
 }
 
+// What is printed is what the saved file gives: weights of 1 in each channel, and the error of the profile that loading makes.
+TEST(ProfileFit, TheSavedFileHasThePrintedError) {
+    for (const char* name : {"marble", "skin", "skin-burley", "ketchup"})
+        for (int count : {1, 2, 3, 6}) {
+            const Profile profile = io::findProfile(name).profile;
+            const io::ProfileFit fit = io::fitGaussians(profile, count);
+            for (int c = 0; c < 3; ++c) {
+                double sum = 0;
+                for (const PelGaussian& g : fit.gaussians) sum += g.weight[c];
+                EXPECT_NEAR(sum, 1, tolerance::floatWeights) << name << " " << count << " channel " << c;
+            }
+            const auto loaded = io::parseProfile("fit", io::profileText(fit, "again", "a test"));
+            const double first = 1e-3 * profile.info().radius, step = std::log(15e3) / 399;
+            std::vector<double> at;
+            for (int i = 0; i < 400; ++i) at.push_back(first * std::exp(i * step));
+            const auto P = profile.lineSpread(at), Q = loaded.profile.lineSpread(at);
+            for (size_t c = 0; c < 3; ++c) {
+                double squares = 0, norm = 0;
+                for (size_t i = 0; i < 400; ++i) {
+                    squares += at[i] * std::pow(P[3 * i + c] - Q[3 * i + c], 2);
+                    norm += at[i] * P[3 * i + c] * P[3 * i + c];
+                }
+                EXPECT_NEAR(fit.error[c], std::sqrt(squares / norm), tolerance::profileEvaluation)
+                    << name << " " << count << " channel " << c;
+            }
+        }
+}
+
+TEST(ProfileFit, SixGaussiansGiveSkinBack) {
+    const double sigma[6] = {0.080, 0.220, 0.432, 0.753, 1.411, 2.722};
+    const double weight[6][3] = {{.233, .455, .649}, {.100, .336, .344}, {.118, .198, 0},
+                                 {.113, .007, .007}, {.358, .004, 0},    {.078, 0, 0}};
+    const io::ProfileFit fit = io::fitGaussians(Profile::skin(), 6);
+    ASSERT_EQ(fit.gaussians.size(), 6u);
+    for (size_t g = 0; g < 6; ++g) {
+        EXPECT_NEAR(fit.gaussians[g].variance / (sigma[g] * sigma[g]), 1, tolerance::fittedAgain) << g;
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(fit.gaussians[g].weight[c], weight[g][c], tolerance::fittedAgain) << g;
+    }
+    EXPECT_LT(*std::max_element(fit.error, fit.error + 3), tolerance::floatWeights);
+}
+
 TEST(ProfileFit, FindsGaussiansAgain) {
     const Profile two = Profile::gaussians({{0.2f, {1, 2, 3}}, {4, {3, 2, 1}}});
     const io::ProfileFit fit = io::fitGaussians(two, 2);

@@ -19,7 +19,8 @@ namespace fixture {
 inline constexpr std::pair<PelCurvatureForm, reference::Form> forms[] = {{PEL_FORM_ARC, reference::Form::arc},
                                                                          {PEL_FORM_RING, reference::Form::ring},
                                                                          {PEL_FORM_HALF_RING, reference::Form::halfRing},
-                                                                         {PEL_FORM_SPHERE, reference::Form::sphere}};
+                                                                         {PEL_FORM_SPHERE, reference::Form::sphere},
+                                                                         {PEL_FORM_PENNER_RING, reference::Form::pennerRing}};
 
 // Of the profile as it is, on the axis of roots; `least`, `most`: radii of curvature in units of the profile's.
 inline PelCurvatureLutDesc curvatureTable(const pellucid::Profile& profile, PelCurvatureForm form, uint32_t width,

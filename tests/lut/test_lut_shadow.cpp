@@ -85,6 +85,21 @@ TEST(ShadowLut, LimitsAreFiniteAndMonotone) {
     }
 }
 
+// Light is never negative, not even by rounding, and never more than the profile has.
+TEST(ShadowLut, NoTexelIsBelowZero) {
+    const Device device("");
+    std::vector<PelShadowLutDesc> descs{sizedTable(pelShadowLutDescDefaults())};
+    for (float sharpening : {1.0f, 10.0f, 1000.0f})
+        for (auto [widthMin, widthMax] : {std::pair{0.1f, 8.0f}, {1.0f, 30.0f}, {8.0f, 30000.0f}})
+            descs.push_back(describe({256, 32, widthMin, widthMax, 2.7f, sharpening}));
+    for (const PelShadowLutDesc& desc : descs) {
+        const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+        const auto [least, most] = std::minmax_element(texels.begin(), texels.end());
+        EXPECT_GE(*least, 0) << desc.widthMin << " to " << desc.widthMax << ", sharpening " << desc.sharpening;
+        EXPECT_LE(*most, 1 + std::numeric_limits<float>::epsilon());
+    }
+}
+
 TEST(ShadowLut, EncodingRoundsTruth) {
     const int height = sized(64, 4);
     const auto desc = describe({256, uint32_t(height), 8, 100, 2.7f, 10});

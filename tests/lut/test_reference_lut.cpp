@@ -16,7 +16,7 @@ using namespace reference;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr Form allForms[] = {Form::arc, Form::ring, Form::halfRing, Form::sphere};
+constexpr Form allForms[] = {Form::arc, Form::ring, Form::halfRing, Form::sphere, Form::pennerRing};
 const double someU[] = {-1, -0.9, -0.5, -0.1, -1e-3, 0, 1e-3, 0.1, 0.3, 0.7, 0.99, 1};
 
 ProfilePtr oneGaussian(double sigma) {
@@ -189,6 +189,51 @@ TEST(ReferenceLut, EveryFormAndProfileEqualsBoostQuadrature) {
                     EXPECT_NEAR(d[c], boostCurvature(form, *profile, c, u, r), bound)
                         << name << " form " << int(form) << " u " << u << " r " << r;
             }
+        }
+}
+
+// The published listing: distances on the ring weighed by sums of one-dimensional Gaussians, 1/sqrt(2 pi v) exp(-d^2/2v), added up at
+// even angles [Penner, SIGGRAPH 2011]; trapezoids over a circle converge faster than any power.
+TEST(ReferenceLut, PennerRingIsThePublishedOne) {
+    const double sigma[6] = {0.080, 0.220, 0.432, 0.753, 1.411, 2.722}, red[6] = {.233, .100, .118, .113, .358, .078};
+    const auto skin = skinProfile();
+    for (double r : {0.5, 1.0, 5.0})
+        for (double u : someU) {
+            const double theta = std::acos(u);
+            double sum = 0, weights = 0;
+            constexpr int steps = 400000;
+            for (int i = 0; i < steps; ++i) {
+                const double x = -pi + (i + 0.5) * 2 * pi / steps, d = 2 * r * std::sin(x / 2);
+                double weight = 0;
+                for (int g = 0; g < 6; ++g)
+                    weight += red[g] / (sigma[g] * std::sqrt(2 * pi)) * std::exp(-d * d / (2 * sigma[g] * sigma[g]));
+                sum += weight * std::max(0.0, std::cos(theta + x));
+                weights += weight;
+            }
+            EXPECT_NEAR(curvatureD(Form::pennerRing, *skin, u, r).x, sum / weights, tolerance::oracleQuadrature)
+                << "u " << u << " r " << r;
+        }
+}
+
+// A long cylinder by straight-line distances: along its axis R integrates to P of the chord, so that the surface integral over it,
+// normalised, is the ring of P. Here R itself is integrated, round and along.
+TEST(ReferenceLut, PennerRingIsACylinderByChords) {
+    const auto skin = skinProfile();
+    for (double r : {1.0, 4.0})
+        for (double u : {-0.5, 0.0, 0.3, 1.0}) {
+            const double theta = std::acos(u);
+            constexpr int round = 4096;  // trapezoids: exact to double but for the corner of max(cos, 0)
+            Rgb sum{}, all{};
+            for (int i = 0; i < round; ++i) {
+                const double x = (i + 0.5) * 2 * pi / round - pi, chord = 2 * r * std::sin(x / 2);
+                const Rgb along = integrate<Rgb>([&](double t) { return skin->radial(std::hypot(chord, t)); },
+                                                 panelPoints(0, 30, skin->lengths()));
+                sum = sum + std::max(0.0, std::cos(theta + x)) * along;
+                all = all + along;
+            }
+            const Rgb ring = curvatureD(Form::pennerRing, *skin, u, r);
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(ring[c], sum[c] / all[c], tolerance::cylinderOfSteps) << "u " << u << " r " << r;
         }
 }
 

@@ -12,7 +12,7 @@ namespace reference {
 
 // --- curvature ---
 
-enum class Form { arc, ring, halfRing, sphere };
+enum class Form { arc, ring, halfRing, sphere, pennerRing };
 
 // Truncation of arc and of the shadow integral in a profile's own lengths: 10 mm for the 2.7 mm of skin
 // [FaceWorks].

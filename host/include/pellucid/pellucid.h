@@ -494,9 +494,11 @@ typedef enum PelLutKind { PEL_LUT_CURVATURE = 0, PEL_LUT_SHADOW = 1, PEL_LUT_SPE
 /* Over what geometry a curvature LUT is integrated; docs/luts.md says what each is good for. */
 typedef enum PelCurvatureForm {
     PEL_FORM_ARC = 0,       /* the line spread along the arc of a circle, cut at 10 mm * radius / 2.7 [FaceWorks] */
-    PEL_FORM_RING = 1,      /* the radial profile of the chord, round a circle, normalised [Penner 2011] */
+    PEL_FORM_RING = 1,      /* the radial profile R (energy per area) of the chord, round a circle, normalised */
     PEL_FORM_HALF_RING = 2, /* the same over the half circle about the point */
-    PEL_FORM_SPHERE = 3     /* the radial profile of the chord, over a whole sphere, normalised: exact for a sphere */
+    PEL_FORM_SPHERE = 3,    /* the radial profile of the chord, over a whole sphere, normalised: exact for a sphere */
+    PEL_FORM_PENNER_RING = 4 /* the line spread P (energy per length) of the chord, round a circle, normalised: the published
+                                table [Penner 2011], and a cylinder by straight-line distances */
 } PelCurvatureForm;
 
 /* How texels are spread over the axes of a curvature LUT. Look-ups in pellucid follow the table's own axis; a host that
@@ -512,7 +514,7 @@ typedef struct PelCurvatureLutDesc {
     uint32_t width;  /* texels along N.L from -1 to 1; 1 to 16384; typical 512 */
     uint32_t height; /* texels along curvature from 1/radiusMax to 1/radiusMin; typical 512 */
     PelCurvatureForm form;
-    float diffusionRadius; /* length, sigma of the widest Gaussian; 2.7 mm for skin; 0: the profile's own radius */
+    float diffusionRadius; /* length; stretches the profile, whose own radius is in PelProfileInfo; default 0: its own */
     float radiusMin;       /* length, smallest radius of curvature; typical 1 mm */
     float radiusMax;       /* length; typical 100 mm */
     PelLutAxis axis;
@@ -523,7 +525,7 @@ typedef struct PelShadowLutDesc {
     uint32_t structSize;
     uint32_t width;        /* texels along the wide-filtered shadow from 0 to 1; 1 to 16384; typical 512 */
     uint32_t height;       /* texels along 1/penumbra width, from widest to narrowest; typical 512 */
-    float diffusionRadius; /* length; 2.7 mm for skin; 0: the profile's own radius */
+    float diffusionRadius; /* length; default 0: the profile's own radius */
     float widthMin;        /* length, narrowest penumbra; typical 8 mm */
     float widthMax;        /* length; typical 100 mm */
     float sharpening;      /* >= 1: how much narrower the shadow gets than the wide filter; typical 10 */
@@ -706,7 +708,8 @@ typedef enum PelScattering {
 typedef struct PelMaterial {
     uint32_t structSize;
     float albedo[3];       /* used when PEL_SLOT_ALBEDO is not set */
-    float diffusionRadius; /* length; 2.7 mm for skin. Where it differs from the LUT's, look-ups are rescaled */
+    float diffusionRadius; /* length; default 0: that of the curvature LUT, else of the shadow LUT, else skin's 2.7 mm.
+                              Where it differs from a LUT's, look-ups are rescaled */
     float normalBlend[3];  /* how far the blurred normal replaces the shading normal, per channel; 1, 0.3, 0 for skin:
                               the channel that scatters widest sees the blurred normal only */
     float shadowFilterWidth;       /* length: penumbra of the wide shadow where the surface faces the light; 8 mm */

@@ -35,7 +35,6 @@ static inline PelCurvatureLutDesc pelCurvatureLutDescDefaults(void) {
     PEL_ZEROED_(PelCurvatureLutDesc, s);
     s.width = 512;
     s.height = 512;
-    s.diffusionRadius = 2.7f;
     s.radiusMin = 1.0f;
     s.radiusMax = 100.0f;
     return s;
@@ -44,7 +43,6 @@ static inline PelShadowLutDesc pelShadowLutDescDefaults(void) {
     PEL_ZEROED_(PelShadowLutDesc, s);
     s.width = 512;
     s.height = 512;
-    s.diffusionRadius = 2.7f;
     s.widthMin = 8.0f;
     s.widthMax = 100.0f;
     s.sharpening = 10.0f;
@@ -85,7 +83,6 @@ static inline PelLight pelLightDefaults(void) {
 static inline PelMaterial pelMaterialDefaults(void) {
     PEL_ZEROED_(PelMaterial, s);
     s.albedo[0] = s.albedo[1] = s.albedo[2] = 0.5f;
-    s.diffusionRadius = 2.7f;
     s.normalBlend[0] = 1.0f;
     s.normalBlend[1] = 0.3f;
     s.shadowFilterWidth = 8.0f;

@@ -1,5 +1,6 @@
 // The best sum of K Gaussians for a profile.
 #pragma once
+#include <array>
 #include <pellucid/pellucid.hpp>
 #include <string>
 #include <vector>
@@ -8,13 +9,17 @@ namespace pellucid::io {
 
 struct ProfileFit {
     std::vector<PelGaussian> gaussians;  // variances rising, mm^2
-    double error[3];  // per channel: root of int (P - fit)^2 ds / int P^2 ds, over the line spread P
+    double error[3];  // per channel of the profile that these Gaussians make when they are loaded: fitError
 };
 
-// Variances shared by the channels, weights >= 0 per channel; 1 <= count <= 12. The weights are the exact
-// least squares for the variances, and those are moved until no step improves them: a local optimum, from
-// logarithmically even ones.
+// Variances shared by the channels; weights >= 0 that add up to 1 per channel, as those of a loaded profile do; 1 <= count <=
+// 12. Gaussians join one by one where they help most; after each, variances and weights go downhill together (Levenberg,
+// Marquardt), and at last each is taken out and put where it helps more, as long as that is somewhere else. A profile that is a
+// sum of `count` Gaussians comes back as it is.
 ProfileFit fitGaussians(const Profile& profile, int count);
+
+// Per channel: root of int (P - fit)^2 ds / int P^2 ds, over the line spread P of `profile`.
+std::array<double, 3> fitError(const Profile& profile, const Profile& fit);
 
 // The fit as a profile file that parseProfile reads.
 std::string profileText(const ProfileFit& fit, const std::string& name, const std::string& source);

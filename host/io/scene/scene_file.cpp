@@ -30,8 +30,6 @@ void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind) {
         for (const char* key : {"form", "axis", "width", "height", "diffusion_radius", "radius_min",
                                 "radius_max", "width_min", "width_max", "sharpening"})
             if (reader.has(key)) lut.expected.push_back(key);
-    if (!lut.profile.empty() && !reader.has("diffusion_radius"))
-        lut.info.curvature.diffusionRadius = lut.info.shadow.diffusionRadius = 0;
     if (lut.file.empty() && kind == PEL_LUT_CURVATURE &&
         lut.info.curvature.radiusMin >= lut.info.curvature.radiusMax)
         reader.fail("radius_min", "is not below radius_max");

@@ -21,7 +21,7 @@ constexpr std::string_view specularModels[] = {PEL_EACH_SPECULAR_MODEL(PELLUCID_
 constexpr std::string_view scatterings[] = {PEL_EACH_SCATTERING(PELLUCID_KEY)};
 #undef PELLUCID_KEY
 constexpr std::string_view cascadeKeys[] = {"cascade_1", "cascade_2", "cascade_3"};
-constexpr std::string_view curvatureForms[] = {"arc", "ring", "half-ring", "sphere"};  // PelCurvatureForm
+constexpr std::string_view curvatureForms[] = {"arc", "ring", "half-ring", "sphere", "penner-ring"};  // PelCurvatureForm
 constexpr std::string_view lutAxes[] = {"linear", "root"};                             // PelLutAxis
 
 struct SlotKey {
@@ -122,7 +122,7 @@ void materialKeys(Visitor& v, Material& m) {
     v.text("curvature_lut", m.curvatureLut);
     v.text("shadow_lut", m.shadowLut);
     v.numbers("albedo", m.material.albedo, 3, Range::NotNegative);
-    v.number("diffusion_radius", m.material.diffusionRadius, Range::Positive);
+    v.number("diffusion_radius", m.material.diffusionRadius, Range::NotNegative);
     v.numbers("normal_blend", m.material.normalBlend, 3, Range::ZeroToOne);
     v.number("shadow_filter_width", m.material.shadowFilterWidth, Range::Positive);
     v.numbers("deep_scatter_color", m.material.deepScatterColor, 3, Range::NotNegative);
