@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "faceworks_material.h"
 #include "baseline_shade.h"
 #include "io/image/image_file.h"
 #include "io/scene/scene_file.h"
@@ -89,7 +90,7 @@ struct Scene {
     ShadeTable curvature, shadow;
     Lut curvatureLut, shadowLut;
     PelLight light = pelLightDefaults();
-    PelMaterial material = pelMaterialDefaults();
+    PelMaterial material = fixture::faceworksMaterial();
     PelAmbient ambient = pelAmbientDefaults();
     PelCamera camera = pelCameraDefaults();
     std::vector<float> out;

@@ -55,10 +55,10 @@ class Encoded : public Case {
         static const auto skin = reference::skinProfile();
         if (kind_)
             return reference::shadowTexel(
-                {int(s_.width), 4, s_.widthMin, s_.widthMax, s_.diffusionRadius, s_.sharpening}, *skin, x, y);
+                {int(s_.width), 4, s_.widthMin, s_.widthMax, 2.7, s_.sharpening}, *skin, x, y);
         const reference::CurvatureLutSpec spec{trueForms[c_.form], int(c_.width), 4, c_.radiusMin,
                                                c_.radiusMax};
-        return reference::curvatureTexel(spec, *reference::profileForRadius(skin, c_.diffusionRadius), x, y);
+        return reference::curvatureTexel(spec, *reference::profileForRadius(skin, 2.7), x, y);
     }
     reference::Rgb eightBits(const reference::Rgb& truth, size_t i) const {
         const int x = int(i % c_.width);

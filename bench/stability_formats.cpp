@@ -1,4 +1,5 @@
 // Packed images, read and written: each pixel has codes of its own, shown by constant ambient light.
+#include "faceworks_material.h"
 #include "stability_vectors.h"
 
 namespace stability {
@@ -103,7 +104,7 @@ class Read : public Pixels {
         Shader shader(device());
         const Buffer albedo(device(), albedo_), occlusion(device(), occlusion_), normal(device(), normal_),
             out(device(), width * 12);
-        PelMaterial m = pelMaterialDefaults();
+        PelMaterial m = fixture::faceworksMaterial();
         std::fill_n(m.normalBlend, 3, 1.0f);
         shader.set(ambient_).setMaterial(1, m, Lut(), Lut());
         shader.set(PEL_SLOT_ALBEDO, imageDesc(albedo, formats_.albedo, width, 1));

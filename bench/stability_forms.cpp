@@ -1,5 +1,6 @@
 // Wide shadow and thickness from shadow maps of every form: each pixel is a place on open ground, with a
 // normal of its own.
+#include "faceworks_material.h"
 #include "shading/shadow_form_scene.h"
 
 #include "stability_vectors.h"
@@ -17,7 +18,7 @@ const Vec3 lamp{24, 10, 70};  // of the cubes
 // Filter widths of 1 to 30 mm, disks of 0.005 to 0.05 of the map.
 const PelMaterial& materialOf(uint32_t id) {
     static const std::vector<PelMaterial> all = [] {
-        std::vector<PelMaterial> some(materials + 1, pelMaterialDefaults());
+        std::vector<PelMaterial> some(materials + 1, fixture::faceworksMaterial());
         Dice dice(5);
         for (PelMaterial& m : some) {
             for (int c = 0; c < 3; ++c) m.deepScatterColor[c] = m.albedo[c] = 1;

@@ -1,5 +1,6 @@
 // The shading kernel, one program for all: each pixel of a frame has normals, place, curvature, shadow,
 // roughness and material of its own. The outputs show the terms one by one.
+#include "faceworks_material.h"
 #include "stability_vectors.h"
 
 namespace stability {
@@ -65,7 +66,7 @@ const Frame& base() {
         f.materials.clear();
         Dice dice(3);
         for (uint32_t id = 1; id <= 2 * materials; ++id) {
-            PelMaterial m = pelMaterialDefaults();
+            PelMaterial m = fixture::faceworksMaterial();
             m.specular = m.roughness = m.roughness2 = 1;  // images give them per pixel
             m.specularModel = id % 2 ? PEL_SPECULAR_KSK : PEL_SPECULAR_GGX;
             m.diffusionRadius = float(logBetween(dice.uniform(), 0.5, 20));

@@ -106,7 +106,7 @@ std::map<size_t, Rgb> truth(const View& v) {
 
     const PelCurvatureLutDesc curvatureDesc = v.table(PEL_LUT_CURVATURE).curvature;
     const PelShadowLutDesc shadowDesc = v.table(PEL_LUT_SHADOW).shadow;
-    const auto skin = reference::skinProfile(), scaled = reference::profileForRadius(skin, curvatureDesc.diffusionRadius);
+    const auto skin = reference::skinProfile(), scaled = reference::profileForRadius(skin, 2.7);
     // One texel each: what a table of any size would say if it had no error.
     reference::ScatterTable curvature{{1, 1, {{}}}}, shadow{{1, 1, {{}}}, 1, 100, 2.7, shadowDesc.sharpening};
     reference::Material material{{}, m.diffusionRadius, rgb(m.normalBlend), m.shadowFilterWidth, rgb(m.deepScatterColor),
@@ -126,7 +126,7 @@ std::map<size_t, Rgb> truth(const View& v) {
             reference::Form::arc, *scaled, std::clamp(dot(pixel.blurred, l.toLight), -1.0, 1.0), 1 / bend);
         const double facing = std::clamp(dot(pixel.geometric, l.toLight), 0.0, 1.0) / m.shadowFilterWidth;
         shadow.table.texels[0] =
-            reference::shadowT(*skin, wide[i], shadowDesc.diffusionRadius / skin->radius() *
+            reference::shadowT(*skin, wide[i], 2.7 / skin->radius() *
                                std::clamp(facing, 1.0 / shadowDesc.widthMax, 1.0 / shadowDesc.widthMin), shadowDesc.sharpening);
         material.albedo = rgb(&albedo[3 * i]);
         result[i] = shadePixel(material, pixel, {l}, ambient).sum();

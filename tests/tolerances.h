@@ -36,6 +36,11 @@ inline constexpr Tolerance sampledEnergy{
     "sampledEnergy", 1e-3, "4000 logarithmic samples of a line spread, which burley's centre leaves short"};
 inline constexpr Tolerance sixGaussians{"sixGaussians", 0.02,
                                         "six Gaussians follow a dipole's line spread to about a percent"};
+inline constexpr Tolerance profileLookUp{"profileLookUp", 2e-3,
+                                         "a 64x64 root table from a quarter to a thousand radii, and 256 thicknesses, looked up bilinearly"};
+inline constexpr Tolerance transmissionSum{"transmissionSum", 1e-5, "20,000 midpoints; sums of Gaussians for the dipole"};
+inline constexpr Tolerance unitRoundTrip{"unitRoundTrip", 1e-5, "floats in one unit and another; the steepest row of a table"};
+inline constexpr Tolerance closedEnds{"closedEnds", 1e-5, "a difference of texels over what lies between a row's ends"};
 inline constexpr Tolerance cylinderOfSteps{"cylinderOfSteps", 2e-6,
                                            "4096 steps round a cylinder, the corner of max(cos, 0) between two of them"};
 inline constexpr Tolerance floatWeights{"floatWeights", 1e-6, "weights and variances are written as floats"};

@@ -53,8 +53,8 @@ struct Frame {
         const PelCurvatureLutDesc c = pelCurvatureLutDescDefaults();
         const PelShadowLutDesc s = pelShadowLutDescDefaults();
         curvatureLut = Lut(device, c), shadowLut = Lut(device, s);
-        curvatureTruth = {table(curvatureLut), c.radiusMin, c.radiusMax, c.diffusionRadius, 0};
-        shadowTruth = {table(shadowLut), s.widthMin, s.widthMax, s.diffusionRadius, s.sharpening};
+        curvatureTruth = {table(curvatureLut), c.radiusMin, c.radiusMax, 2.7, 0};
+        shadowTruth = {table(shadowLut), s.widthMin, s.widthMax, 2.7, s.sharpening};
     }
 
   private:
@@ -76,7 +76,14 @@ struct Variant {
 struct Pass {
     std::shared_ptr<Frame> frame;
     Variant variant;
-    PelMaterial material = pelMaterialDefaults();
+    // The oracle takes these as they are.
+    PelMaterial material = [] {
+        PelMaterial m = pelMaterialDefaults();
+        m.diffusionRadius = 2.7f;
+        m.shadowFilterWidth = 8;
+        m.normalBlend[0] = 1, m.normalBlend[1] = 0.3f, m.normalBlend[2] = 0;
+        return m;
+    }();
     PelAmbient ambient = pelAmbientDefaults();
     std::vector<PelLight> lights;
     uint32_t rows = 0;

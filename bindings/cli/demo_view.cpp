@@ -51,6 +51,7 @@ PelMaterial skin() {
     const float transmitted[3] = {0.7f, 0.16f, 0.05f};
     std::copy(transmitted, transmitted + 3, m.deepScatterColor);
     m.deepScatterRadius = 6.0f;
+    m.shadowFilterWidth = 8;
     m.specular = 0.35f;
     return m;
 }

@@ -1,6 +1,8 @@
 #include "frame.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 
 #include "io/file_error.h"
@@ -30,6 +32,23 @@ Lut make(const Device& device, const io::SceneLut& request) {
     return info.kind == PEL_LUT_CURVATURE ? Lut(device, info.curvature) : Lut(device, info.shadow);
 }
 
+std::string shown(float value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", double(value));
+    return text;
+}
+
+// The values of a slot at each pixel that may have a material.
+template <class Use>
+void eachPixel(const io::Image& gbuffer, const io::SceneFile& scene, PelImageSlot slot, Use&& use) {
+    const std::vector<float> values = gbuffer.interleaved(scene.channels[slot]);
+    const size_t components = scene.channels[slot].size();
+    std::vector<float> ids;
+    if (!scene.channels[PEL_SLOT_MATERIAL].empty()) ids = gbuffer.interleaved(scene.channels[PEL_SLOT_MATERIAL]);
+    for (size_t i = 0; i < gbuffer.pixelCount(); ++i)
+        if (ids.empty() || ids[i] > 0) use(&values[i * components]);
+}
+
 // The scene asks for curvature from the picture itself; a channel of that name would be meant instead.
 bool isScreenCurvature(const io::Image& gbuffer, const io::SceneFile& scene) {
     const std::vector<std::string>& channel = scene.channels[PEL_SLOT_CURVATURE];
@@ -50,6 +69,17 @@ std::vector<std::string> colorChannels(const std::string& file, const io::Image&
 
 }  // namespace
 
+Lut LutStore::faceworks(const Profile& profile, PelLutKind kind) {
+    PelLutInfo info = pelLutInfoDefaults();  // whose descriptions are those of FaceWorks
+    info.kind = kind;
+    info.curvature.profile = info.shadow.profile = profile.get();
+    const std::string name = profile.info().name;
+    for (const auto& [key, lut] : faceworks_)
+        if (key == std::pair(name, kind)) return lut;
+    faceworks_.emplace_back(std::pair(name, kind), kind == PEL_LUT_CURVATURE ? Lut(device_, info.curvature) : Lut(device_, info.shadow));
+    return faceworks_.back().second;
+}
+
 Lut LutStore::get(const io::SceneFile& scene, const std::string& name, PelLutKind kind) {
     if (name.empty()) return {};
     const io::SceneLut* request = scene.lut(name, kind);
@@ -69,6 +99,7 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
     all.blurNormals |= scene.blurNormals;
     all.rotateTaps |= scene.rotateTaps;
     all.targetError = scene.targetError;
+    all.millimetresPerUnit = scene.unitMm;
     shader_.set(all);
     shader_.set(PEL_SLOT_RADIANCE,
                 imageDesc(radiance_, PEL_FORMAT_RGB32F, uint32_t(gbuffer.width), uint32_t(gbuffer.height)));
@@ -84,9 +115,7 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
             shader_.set(PEL_SLOT_CURVATURE, measureCurvature(device, gbuffer, scene));
         else if (!scene.channels[slot].empty())
             shader_.set(PelImageSlot(slot), upload(device, gbuffer, scene.channels[slot]));
-    for (const io::SceneMaterial& m : scene.materials)
-        shader_.setMaterial(m.id, m.material, luts.get(scene, m.curvatureLut, PEL_LUT_CURVATURE),
-                            luts.get(scene, m.shadowLut, PEL_LUT_SHADOW));
+    for (const io::SceneMaterial& m : scene.materials) setMaterial(scene, m, luts);
     for (const io::SceneMaterial& m : scene.materials)
         if (!m.normalMap.empty()) setNormalMap(device, m.id, m.normalMap);
     std::vector<PelLight> lights;
@@ -118,6 +147,26 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
     if (!scene.ambientCube.empty()) setAmbientCube(device, scene.ambientCube);
     shader_.set(scene.camera);
     shader_.commit();
+}
+
+void Frame::setMaterial(const io::SceneFile& scene, const io::SceneMaterial& m, LutStore& luts) {
+    PelMaterial material = m.material;
+    Lut curvature = luts.get(scene, m.curvatureLut, PEL_LUT_CURVATURE), shadow = luts.get(scene, m.shadowLut, PEL_LUT_SHADOW);
+    Profile profile;
+    try {
+        if (!m.profile.empty()) profile = io::findProfile(m.profile).profile;
+    } catch (const io::FileError& e) {
+        throw io::FileError(scene.source, "the profile of material " + std::to_string(m.id) + " is refused: " + e.what(), m.line);
+    }
+    if (m.preset == io::ScenePreset::faceworks) {
+        if (!profile) profile = Profile::skin();
+        if (!curvature) curvature = luts.faceworks(profile, PEL_LUT_CURVATURE);
+        if (!shadow) shadow = luts.faceworks(profile, PEL_LUT_SHADOW);
+        if (material.diffusionRadius == 0) material.diffusionRadius = profile.info().radius / scene.unitMm;
+    } else {
+        material.profile = profile.get();
+    }
+    shader_.setMaterial(m.id, material, curvature, shadow);
 }
 
 void Frame::setAmbientCube(const Device& device, const std::string& file) {
@@ -182,6 +231,42 @@ PelImageDesc Frame::upload(const Device& device, const io::Image& image,
                      uint32_t(image.height));
 }
 
+std::vector<std::string> unlikely(const io::Image& gbuffer, const io::SceneFile& scene) {
+    std::vector<std::string> found;
+    if (!scene.channels[PEL_SLOT_DEPTH].empty() && scene.channels[PEL_SLOT_POSITION].empty()) {
+        float furthest = 0;
+        eachPixel(gbuffer, scene, PEL_SLOT_DEPTH, [&](const float* v) {
+            if (std::isfinite(v[0])) furthest = std::max(furthest, v[0]);
+        });
+        if (furthest > 1.001f)
+            found.push_back("the depth channel reaches " + shown(furthest) + ", and device depth ends at 1: it looks like a distance along the "
+                            "view; name a position channel, or write the depth that the projection gives");
+    }
+    if (scene.channels[PEL_SLOT_POSITION].empty()) return found;
+    float low[3], high[3];
+    bool any = false;
+    eachPixel(gbuffer, scene, PEL_SLOT_POSITION, [&](const float* p) {
+        if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]))) return;
+        for (int c = 0; c < 3; ++c) {
+            low[c] = any ? std::min(low[c], p[c]) : p[c];
+            high[c] = any ? std::max(high[c], p[c]) : p[c];
+        }
+        any = true;
+    });
+    if (!any) return found;
+    const float size = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}) * scene.unitMm;
+    for (const io::SceneMaterial& m : scene.materials) {
+        if (m.profile.empty()) continue;
+        const float reach = io::findProfile(m.profile).profile.info().reach;
+        // Seen whole, nothing of skin is smaller than a fingertip, nor larger than a few people.
+        if (size > 2.3f * reach && size < 500 * reach) continue;
+        found.push_back("what is seen is " + shown(size) + " mm long with unit_mm = " + shown(scene.unitMm) + ", and light reaches " +
+                        shown(reach) + " mm far in the profile of material " + std::to_string(m.id) +
+                        ": unit_mm says how many millimetres a unit of the positions is");
+    }
+    return found;
+}
+
 void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance) {
     io::Image image;
     image.width = width;
@@ -216,6 +301,7 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
         {PEL_FEATURE_AMBIENT_CUBE, "ambient_cube"},
         {PEL_FEATURE_IRRADIANCE, "irradiance"},
         {PEL_FEATURE_MAKE_IRRADIANCE, "make_irradiance"},
+        {PEL_FEATURE_TRANSMISSION, "transmission"},
         {PEL_FEATURE_SHADOW_CUBE, "shadow_cube"},
         {PEL_FEATURE_SHADOW_CASCADES, "shadow_cascades"},
         {PEL_FEATURE_SHADOW_MOMENTS, "shadow_moments"},

@@ -15,10 +15,13 @@ class LutStore {
     explicit LutStore(const Device& device) : device_(device) {}
     // An empty handle for an empty name.
     Lut get(const io::SceneFile& scene, const std::string& name, PelLutKind kind);
+    // Made by the formulas of FaceWorks.
+    Lut faceworks(const Profile& profile, PelLutKind kind);
 
   private:
     Device device_;
     std::vector<std::pair<io::SceneLut, Lut>> luts_;
+    std::vector<std::pair<std::pair<std::string, PelLutKind>, Lut>> faceworks_;  // by the profile's name
 };
 
 // Depth images of shadow maps by file, in memory or read on demand.
@@ -38,9 +41,13 @@ class Frame {
     // One of `outputs`: RGB interleaved, or a value per pixel of PEL_SLOT_OUT_THICKNESS.
     std::vector<float> output(PelImageSlot slot) const { return outputs_.at(slot).readAll<float>(); }
     PelShaderStats stats() const { return shader_.stats(); }
+    std::string warnings() const { return shader_.warnings(); }
+    // Material `id` with every default filled in.
+    PelMaterial material(uint32_t id) const { return shader_.material(id); }
     uint64_t inputBytes() const { return inputBytes_; }
 
   private:
+    void setMaterial(const io::SceneFile& scene, const io::SceneMaterial& m, LutStore& luts);
     void setNormalMap(const Device& device, uint32_t id, const std::string& file);
     // Curvature from normals and positions or depth of the G-buffer (pelScreenCurvature).
     PelImageDesc measureCurvature(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene);
@@ -54,6 +61,9 @@ class Frame {
     std::map<PelImageSlot, Buffer> outputs_;
     uint64_t inputBytes_ = 0;
 };
+
+// Sentences about sizes that can hardly be meant: depth that is no device depth, bodies that cannot be of their materials' profiles.
+std::vector<std::string> unlikely(const io::Image& gbuffer, const io::SceneFile& scene);
 
 // Writes RGB radiance as R, G, B of a float EXR, lengths as Thickness.V.
 void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance);

@@ -45,8 +45,7 @@ void print(const nlohmann::ordered_json& report, bool json) {
 
 void list(const Arguments& a) {
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    for (const io::LibraryProfile& entry : io::profileLibrary())
-        all.push_back(described(io::findProfile(std::string(entry.name))));
+    for (const std::string& name : Profile::libraryNames()) all.push_back(described(io::findProfile(name)));
     if (a.json) {
         printJson({{"profiles", all}});
         return;

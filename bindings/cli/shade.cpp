@@ -1,6 +1,7 @@
 // pellucid shade: a host's G-buffer and a scene file in, radiance out.
 #include <algorithm>
 #include <set>
+#include <sstream>
 
 #include "frame.h"
 #include "io/atomic_file.h"
@@ -85,6 +86,9 @@ void run(const Arguments& a) {
         frame.shade();
         const PelShaderStats stats = frame.stats();
         warnOfNothing(run, scene, outputs, stats.features);
+        std::istringstream warnings(frame.warnings());
+        for (std::string line; std::getline(warnings, line);) run.warn(line);
+        for (const std::string& sentence : unlikely(gbuffer, scene)) run.warn(sentence);
         warnOfInvalid(run, stats);
         writeRadiance(a.output, gbuffer.width, gbuffer.height, frame.radiance());
         for (const auto& [slot, file] : files) writeOutput(file, slot, gbuffer, frame);
@@ -94,6 +98,13 @@ void run(const Arguments& a) {
         run.report["height"] = gbuffer.height;
         run.report["pixels"] = gbuffer.pixelCount();
         run.report["pixels_invalid"] = stats.pixelsInvalid;
+        for (const io::SceneMaterial& m : scene.materials) {
+            const PelMaterial resolved = frame.material(m.id);
+            run.report["materials"].push_back({{"id", m.id},
+                                               {"diffusion_radius", resolved.diffusionRadius},
+                                               {"normal_blend", resolved.normalBlend},
+                                               {"shadow_filter_width", resolved.shadowFilterWidth}});
+        }
         if (a.stats) run.report["stats"] = toJson(stats);
     } catch (const Error& e) {
         // What the library refuses here came from the two files.

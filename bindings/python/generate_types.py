@@ -4,8 +4,8 @@
 
 OUT_PY: the enumerations and plain structures as Python classes with the header's own documentation.
 OUT_INC: for the native module, the defaults and field offsets of the same structures as the compiler sees them.
-Structures that hold pointers or handles are left out: the native module has functions for those. A handle in OPAQUE is
-kept at its default instead, and has no attribute.
+Structures that hold pointers or handles are left out: the native module has functions for those. A handle in HANDLES is an
+attribute that takes the Python object, or its name.
 """
 import re
 import sys
@@ -16,7 +16,7 @@ SCALARS = {
     "uint32_t": ("np.uint32", "int"), "uint64_t": ("np.uint64", "int"), "int32_t": ("np.int32", "int"),
     "int": ("np.intc", "int"), "float": ("np.float32", "float"), "double": ("np.float64", "float"),
 }
-OPAQUE = {"PelProfile"}
+HANDLES = {"PelProfile": "Profile"}
 
 
 def tidy(comment):
@@ -66,7 +66,7 @@ def parse_structs(text, enums):
                 raise SystemExit(f"{name}: the field '{declaration}' was not understood")
             kind, star, field, dimensions = pointer.groups()
             fields.append((field, kind + star, [int(d) for d in re.findall(r"\[(\d+)\]", dimensions)], tidy(doc)))
-        known = all(kind in SCALARS or kind in enums or kind in structs or kind == "char" or kind in OPAQUE
+        known = all(kind in SCALARS or kind in enums or kind in structs or kind == "char" or kind in HANDLES
                     for _, kind, _, _ in fields)
         if known:
             structs[name] = (comment_before(text, match.start()), fields)
@@ -107,6 +107,9 @@ def python_field(field, kind, shape, enums, structs):
     p = snake(field)
     if kind == "char":
         return f'("{p}", "S{shape[0]}")', f'TextField("{p}")', "", "str"
+    if kind in HANDLES:
+        h = HANDLES[kind]
+        return f'("{p}", np.uintp)', f'{h}Field("{p}")', f'"{h} | str"', f"{h} or its name in the library"
     if kind in enums:
         e = kind[3:]
         return f'("{p}", np.int32)', f'EnumField("{p}", {e})', f"{e} | str", f"{e} or its name"
@@ -125,9 +128,6 @@ def python_struct(name, doc, fields, enums, structs, say):
     lines, dtypes, arguments, settings, docs = [], [], [], [], []
     for field, kind, shape, comment in fields:
         p = snake(field)
-        if kind in OPAQUE:
-            dtypes.append(f'("{p}", np.uintp)')
-            continue
         dtype, descriptor, argument, hint = python_field(field, kind, shape, enums, structs)
         dtypes.append(dtype)
         if field == "structSize":
@@ -150,7 +150,8 @@ def python_module(enums, structs):
     out = ['"""Enumerations and plain structures of pellucid.h. Written by generate_types.py: do not edit."""',
            "from __future__ import annotations\n", "from enum import IntEnum, IntFlag\n", "import numpy as np",
            "from numpy.typing import ArrayLike\n",
-           "from ._struct import ArrayField, EnumField, FloatField, IntField, Struct, StructField, TextField\n"]
+           "from ._struct import ArrayField, EnumField, FloatField, IntField, ProfileField, Struct, StructField, TextField",
+           "from typing import TYPE_CHECKING\n", "if TYPE_CHECKING:\n    from .profile import Profile\n"]
     exported = []
     for name, (doc, members) in enums.items():
         python = {"PelError": "ErrorCode"}.get(name, name[3:])

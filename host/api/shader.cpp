@@ -98,6 +98,18 @@ PelError pelShaderExecute(PelShader shader, const PelSubmit* submit) {
     });
 }
 
+PelError pelShaderGetMaterial(PelShader shader, uint32_t id, PelMaterial* material) {
+    return entry([&] {
+        PelMaterial resolved = fromHandle<Shader>(shader)->material(id);
+        resolved.profile = nullptr;  // the caller's handle may be gone
+        writeStruct(material, resolved, "PelMaterial");
+    });
+}
+
+PelError pelShaderGetWarnings(PelShader shader, const char** warnings) {
+    return entry([&] { output(warnings, "warnings") = fromHandle<Shader>(shader)->warnings().c_str(); });
+}
+
 PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats) {
     return entry([&] { writeStruct(stats, fromHandle<Shader>(shader)->stats(), "PelShaderStats"); });
 }

@@ -34,7 +34,7 @@ CurvatureParams paramsOf(const PelCurvatureLutDesc& desc, double curvatureMin, d
     params.height = desc.height;
     params.gaussians = uint32_t(terms);
     params.axis = uint32_t(desc.axis);
-    const RowAxis axis = rowAxis(desc, curvatureMin, curvatureMax);
+    const RowAxis axis = rowAxis(desc.axis, desc.height, curvatureMin, curvatureMax);
     params.rowMin = float(axis.min);
     params.rowStep = float(axis.step);
     params.cut = float(profileCut);

@@ -42,6 +42,7 @@ LutLayout layoutOf(const PelLutInfo& info) {
         case PEL_LUT_SHADOW:
             layout.width = info.shadow.width;
             layout.height = info.shadow.height;
+            layout.axis = uint32_t(info.shadow.axis);
             layout.radius = info.shadow.diffusionRadius;
             longest = info.shadow.widthMax;
             shortest = info.shadow.widthMin;

@@ -45,6 +45,9 @@ void checkCurvatureDesc(const PelCurvatureLutDesc& desc) {
 }
 
 void checkShadowDesc(const PelShadowLutDesc& desc) {
+    if (desc.closedEnds > 1) invalidArgument("PelShadowLutDesc.closedEnds is ", desc.closedEnds, "; 0 or 1 is needed");
+    if (desc.axis != PEL_AXIS_LINEAR && desc.axis != PEL_AXIS_ROOT)
+        invalidArgument("PelShadowLutDesc.axis is ", int(desc.axis), "; PEL_AXIS_LINEAR (0) or PEL_AXIS_ROOT (1) is needed");
     checkSide(desc.width, "PelShadowLutDesc.width");
     checkSide(desc.height, "PelShadowLutDesc.height");
     checkDiffusionRadius(desc.diffusionRadius, "PelShadowLutDesc.diffusionRadius");

@@ -43,15 +43,14 @@ double columnElevation(uint32_t x, uint32_t width, PelLutAxis axis) {
     return axis == PEL_AXIS_ROOT ? s * s : 1 - (x + 0.5) * 2 / width;
 }
 
-RowAxis rowAxis(const PelCurvatureLutDesc& desc, double curvatureMin, double curvatureMax) {
-    const bool root = desc.axis == PEL_AXIS_ROOT;
-    const double first = root ? std::sqrt(curvatureMin) : curvatureMin;
-    const double last = root ? std::sqrt(curvatureMax) : curvatureMax;
-    if (root && desc.height > 1) {
-        const double step = (last - first) / (desc.height - 1);
+RowAxis rowAxis(PelLutAxis axis, uint32_t height, double least, double most) {
+    const bool root = axis == PEL_AXIS_ROOT;
+    const double first = root ? std::sqrt(least) : least, last = root ? std::sqrt(most) : most;
+    if (root && height > 1) {
+        const double step = (last - first) / (height - 1);
         return {first - 0.5 * step, step};
     }
-    return {first, (last - first) / desc.height};
+    return {first, (last - first) / height};
 }
 
 }  // namespace pel

@@ -25,11 +25,11 @@ double nodeAngle(int j, int nodes);
 // N.L from 0 to 1 of a column of the unlit half: |u|.
 double columnElevation(uint32_t x, uint32_t width, PelLutAxis axis);
 
-// First row's upper edge and step, of curvature in 1/diffusion radii or its root.
+// First row's upper edge and step, of the row value in 1/diffusion radii or its root.
 struct RowAxis {
     double min, step;
 };
-RowAxis rowAxis(const PelCurvatureLutDesc& desc, double curvatureMin, double curvatureMax);
+RowAxis rowAxis(PelLutAxis axis, uint32_t height, double least, double most);
 
 template <class T>
 cl::Memory upload(Device& device, const std::vector<T>& values) {

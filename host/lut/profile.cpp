@@ -55,6 +55,15 @@ Rgb GaussianShape::width() const {
     return width;
 }
 
+Rgb GaussianShape::transmission(double distance) const {
+    Rgb sum{};
+    for (const GaussianTerm& term : terms_) {
+        const double beyond = std::exp(-distance * distance / (2 * term.variance));
+        for (int c = 0; c < 3; ++c) sum[c] += term.weight[c] * beyond;
+    }
+    return sum;
+}
+
 Profile::Profile(PelProfileKind profileKind, double radius, std::unique_ptr<ProfileShape> shape)
     : Object(kind),
       profileKind_(profileKind),
@@ -113,7 +122,26 @@ PelProfileInfo Profile::info() const {
     info.gaussians = uint32_t(terms_.size());
     info.singular = shape_->singular();
     std::strncpy(info.name, name().c_str(), sizeof info.name - 1);
+    std::strncpy(info.source, source_, sizeof info.source - 1);
+    const Rgb path = shape_->meanFreePath();
+    for (int c = 0; c < 3; ++c) info.meanFreePath[c] = float(path[c]);
+    info.reach = float(reach());
     return info;
+}
+
+double Profile::reach() const {
+    const auto most = [&](double distance) {
+        const Rgb t = shape_->transmission(distance);
+        return std::max({t[0], t[1], t[2]});
+    };
+    constexpr double left = 1e-3;
+    double inside = 0, outside = radius_;
+    while (most(outside) > left) inside = outside, outside *= 2;
+    for (int i = 0; i < 40; ++i) {
+        const double middle = (inside + outside) / 2;
+        (most(middle) > left ? inside : outside) = middle;
+    }
+    return outside;
 }
 
 void Profile::setName(const char* name) {

@@ -31,6 +31,9 @@ class ProfileShape {
     // Where a table's radial bends, length, rising; empty for all others.
     virtual std::vector<double> knots() const { return {}; }
     virtual bool singular() const { return false; }  // radial grows like 1/d
+    // The share of R beyond a distance; > 0.
+    virtual Rgb transmission(double distance) const = 0;
+    virtual Rgb meanFreePath() const { return {}; }  // length; 0: not known
 };
 
 class Profile final : public Object {
@@ -40,6 +43,7 @@ class Profile final : public Object {
     static Ref<Profile> skin();
     static Ref<Profile> gaussians(const PelGaussian* gaussians, uint32_t count);
     static Ref<Profile> burley(const float* meanFreePath, const float* albedo, PelBurleyFit fit);
+    static Ref<Profile> burleyDistance(const float* distance);
     static Ref<Profile> dipole(const float* absorption, const float* reducedScattering, float eta);
     static Ref<Profile> table(const float* distances, const float* values, uint32_t count);
 
@@ -52,6 +56,9 @@ class Profile final : public Object {
         return name_;
     }
     void setName(const char* name);
+    void setSource(const char* source) { source_ = source; }  // static storage; before the profile is used
+    // Length within which all but a thousandth of the light of each channel leaves again.
+    double reach() const;
 
     Profile(PelProfileKind profileKind, double radius, std::unique_ptr<ProfileShape> shape);
 
@@ -63,6 +70,7 @@ class Profile final : public Object {
     std::vector<GaussianTerm> terms_;
     mutable std::mutex nameMutex_;  // of the name alone, which may change
     std::string name_;
+    const char* source_ = "";
 };
 
 // Sums of Gaussians, in any order and scale; weights are scaled to 1 per channel.
@@ -72,6 +80,7 @@ class GaussianShape : public ProfileShape {
     Rgb radial(double distance) const override;
     Rgb lineSpread(double distance) const override;
     Rgb width() const override;
+    Rgb transmission(double distance) const override;
     std::vector<GaussianTerm> gaussians() const override { return terms_; }
 
   protected:

@@ -37,8 +37,8 @@ std::vector<GaussianTerm> mixture(double first, double last, Weight&& weight) {
 
 class BurleyShape final : public ProfileShape {
   public:
-    explicit BurleyShape(const Rgb& decay)
-        : decay_(decay), terms_(GaussianShape(mixtureOf(decay)).gaussians()) {}
+    BurleyShape(const Rgb& decay, const Rgb& meanFreePath)
+        : decay_(decay), meanFreePath_(meanFreePath), terms_(GaussianShape(mixtureOf(decay)).gaussians()) {}
     Rgb radial(double d) const override {
         Rgb value;
         for (int c = 0; c < 3; ++c)
@@ -56,6 +56,13 @@ class BurleyShape final : public ProfileShape {
     }
     std::vector<GaussianTerm> gaussians() const override { return terms_; }
     bool singular() const override { return true; }
+    Rgb transmission(double s) const override {
+        Rgb value;
+        for (int c = 0; c < 3; ++c)
+            value[c] = 0.25 * std::exp(-s / decay_[c]) + 0.75 * std::exp(-s / (3 * decay_[c]));
+        return value;
+    }
+    Rgb meanFreePath() const override { return meanFreePath_; }
 
   private:
     static double bessel(double x) { return x > 700 ? 0 : std::cyl_bessel_k(0.0, x); }
@@ -69,7 +76,8 @@ class BurleyShape final : public ProfileShape {
             return (std::exp(-x * x) + std::exp(-x * x / 9)) * b / t;
         });
     }
-    Rgb decay_;  // length, the shorter of the two decay lengths
+    Rgb decay_;         // length, the shorter of the two decay lengths
+    Rgb meanFreePath_;  // length; 0: not known
     std::vector<GaussianTerm> terms_;
 };
 
@@ -81,8 +89,8 @@ struct Dipole {
 
 class DipoleShape final : public ProfileShape {
   public:
-    explicit DipoleShape(const std::array<Dipole, 3>& dipoles)
-        : dipoles_(dipoles), sum_(mixtureOf(dipoles)) {}
+    DipoleShape(const std::array<Dipole, 3>& dipoles, const Rgb& meanFreePath)
+        : dipoles_(dipoles), meanFreePath_(meanFreePath), sum_(mixtureOf(dipoles)) {}
     Rgb radial(double d) const override {
         Rgb value{};
         for (int c = 0; c < 3; ++c)
@@ -95,6 +103,8 @@ class DipoleShape final : public ProfileShape {
     Rgb lineSpread(double s) const override { return sum_.lineSpread(s); }
     Rgb width() const override { return sum_.width(); }
     std::vector<GaussianTerm> gaussians() const override { return sum_.gaussians(); }
+    Rgb transmission(double s) const override { return sum_.transmission(s); }
+    Rgb meanFreePath() const override { return meanFreePath_; }
 
   private:
     static std::vector<GaussianTerm> mixtureOf(const std::array<Dipole, 3>& dipoles) {
@@ -112,6 +122,7 @@ class DipoleShape final : public ProfileShape {
         });
     }
     std::array<Dipole, 3> dipoles_;
+    Rgb meanFreePath_;  // length
     GaussianShape sum_;
 };
 
@@ -142,7 +153,14 @@ Ref<Profile> Profile::burley(const float* meanFreePath, const float* albedo, Pel
             invalidArgument("the ", channelNames[c], " albedo is ", albedo[c], "; 0 to 1 is needed");
         decay[c] = meanFreePath[c] / burleyScale(fit, albedo[c]);
     }
-    auto shape = std::make_unique<BurleyShape>(decay);
+    auto shape = std::make_unique<BurleyShape>(decay, Rgb{meanFreePath[0], meanFreePath[1], meanFreePath[2]});
+    const double radius = largest(shape->width());
+    return make<Profile>(PEL_PROFILE_BURLEY, radius, std::move(shape));
+}
+
+Ref<Profile> Profile::burleyDistance(const float* distance) {
+    checkPositive(distance, "distance");
+    auto shape = std::make_unique<BurleyShape>(Rgb{distance[0], distance[1], distance[2]}, Rgb{});
     const double radius = largest(shape->width());
     return make<Profile>(PEL_PROFILE_BURLEY, radius, std::move(shape));
 }
@@ -161,15 +179,17 @@ Ref<Profile> Profile::dipole(const float* absorption, const float* reducedScatte
                         ", beyond what the fit of the Fresnel reflectance covers; below about 3 is right");
     const double mismatch = (1 + fresnel) / (1 - fresnel);
     std::array<Dipole, 3> dipoles;
+    Rgb meanFreePath;
     for (int c = 0; c < 3; ++c) {
         const double extinction = double(absorption[c]) + reducedScattering[c];
         Dipole& p = dipoles[c];
+        meanFreePath[c] = 1 / extinction;  // of the equivalent isotropic medium
         p.transport = std::sqrt(3 * absorption[c] * extinction);
         p.depth[0] = 1 / extinction;
         p.depth[1] = p.depth[0] + 4 * mismatch / (3 * extinction);
         p.energy = 0.5 * (std::exp(-p.transport * p.depth[0]) + std::exp(-p.transport * p.depth[1]));
     }
-    auto shape = std::make_unique<DipoleShape>(dipoles);
+    auto shape = std::make_unique<DipoleShape>(dipoles, meanFreePath);
     const double radius = largest(shape->width());
     return make<Profile>(PEL_PROFILE_DIPOLE, radius, std::move(shape));
 }

@@ -62,6 +62,17 @@ class TableShape final : public ProfileShape {
         return sum;
     }
     Rgb width() const override { return width_; }
+    Rgb transmission(double s) const override {
+        Rgb sum{};
+        for (const Piece& p : pieces_) {
+            if (p.end <= s) continue;
+            const double a = std::max(p.begin, s), b = p.end;
+            for (int c = 0; c < 3; ++c)
+                sum[c] += pi * (b - a) * (p.offset[c] * (a + b) + p.slope[c] * (a * a + a * b + b * b) * 2 / 3);
+        }
+        for (double& value : sum) value = std::max(0.0, value);
+        return sum;
+    }
     std::vector<double> knots() const override {
         std::vector<double> all;
         for (const Piece& p : pieces_) all.push_back(p.end);

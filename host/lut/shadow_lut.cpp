@@ -24,14 +24,9 @@ Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
         return lut;
     }
     const std::vector<LutGaussian> terms = deviceTerms(profile, reciprocalMax);
-    ShadowParams params{desc.width,
-                        desc.height,
-                        uint32_t(terms.size()),
-                        float(reciprocalMin),
-                        float((reciprocalMax - reciprocalMin) / desc.height),
-                        desc.sharpening,
-                        float(profileCut),
-                        {}};
+    const RowAxis axis = rowAxis(desc.axis, desc.height, reciprocalMin, reciprocalMax);
+    ShadowParams params{desc.width,        desc.height,     uint32_t(terms.size()), float(axis.min),     float(axis.step),
+                        desc.sharpening, float(profileCut), {},                     uint32_t(desc.axis), desc.closedEnds};
     for (int channel = 0; channel < 3; ++channel) {
         double mass = 0;
         for (const GaussianTerm& term : profile.terms())

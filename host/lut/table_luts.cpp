@@ -58,7 +58,7 @@ void integrateTableCurvature(Lut& lut, double curvatureMin, double curvatureMax)
     const Profile& profile = *lut.profile();
     const PelCurvatureLutDesc& desc = lut.info().curvature;
     const bool ring = desc.form == PEL_FORM_RING || desc.form == PEL_FORM_HALF_RING;
-    const RowAxis axis = rowAxis(desc, curvatureMin, curvatureMax);
+    const RowAxis axis = rowAxis(desc.axis, desc.height, curvatureMin, curvatureMax);
 
     TableCurvatureParams params{};
     params.width = desc.width;
@@ -127,9 +127,9 @@ void integrateTableShadow(Lut& lut, double reciprocalMin, double reciprocalMax) 
     Device& device = lut.device();
     const PelShadowLutDesc& desc = lut.info().shadow;
     const double end = tableEnd(*lut.profile());
-    const TableShadowParams params{desc.width,           desc.height,
-                                   float(reciprocalMin), float((reciprocalMax - reciprocalMin) / desc.height),
-                                   desc.sharpening,      float(end)};
+    const RowAxis axis = rowAxis(desc.axis, desc.height, reciprocalMin, reciprocalMax);
+    const TableShadowParams params{desc.width,      desc.height, float(axis.min),     float(axis.step),
+                                   desc.sharpening, float(end),  uint32_t(desc.axis), desc.closedEnds};
     const bool wide = device.info().mathWidth > 1;
     const size_t group = wide ? 1 : 64, columnsPerItem = wide ? 64 : 1;
     const cl::Program program = device.programs().get(

@@ -111,9 +111,12 @@ void checkMaterial(const PelMaterial& m) {
     const char* name = "PelMaterial";
     checkFinite(name, "albedo", m.albedo, 3);
     checkFinite(name, "deepScatterColor", m.deepScatterColor, 3);
-    for (float blend : m.normalBlend) within(name, {{"normalBlend", blend, 0, 1}});
+    for (float blend : m.normalBlend)
+        if (blend != -1) within(name, {{"normalBlend", blend, 0, 1}});  // -1: the profile's
     if (m.diffusionRadius != 0) within(name, {{"diffusionRadius", m.diffusionRadius, tiny, huge}});  // 0: a table's or skin's
-    within(name, {{"shadowFilterWidth", m.shadowFilterWidth, tiny, huge},
+    if (m.shadowFilterWidth != 0) within(name, {{"shadowFilterWidth", m.shadowFilterWidth, tiny, huge}});  // 0: from the profile
+    within(name, {{"transmission", m.transmission, 0, huge},
+                  {"curvatureGain", m.curvatureGain, 0, huge},
                   {"deepScatterRadius", m.deepScatterRadius, tiny, huge},
                   {"deepScatterNormalOffset", m.deepScatterNormalOffset, -huge, huge},
                   {"thicknessFilterRadius", m.thicknessFilterRadius, 0, 1},
@@ -192,6 +195,7 @@ void checkCamera(const PelCamera& camera) {
 void checkOptions(const PelShaderOptions& options) {
     checkFinite("PelShaderOptions", "invalidColor", options.invalidColor, 3);
     within("PelShaderOptions", {{"targetError", options.targetError, 0, 1}});
+    within("PelShaderOptions", {{"millimetresPerUnit", options.millimetresPerUnit, tiny, huge}});
     if (options.tileLists > PEL_TILES_NO_LIST)
         invalidArgument("PelShaderOptions.tileLists is ", int(options.tileLists),
                         ", which is none of PelTileLists");

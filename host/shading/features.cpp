@@ -160,6 +160,12 @@ uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material)
             else if (map && m.thicknessTaps)
                 needs |= PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS;
         }
+        if (tables && material.transmission && m.transmission > 0 && black(m.deepScatterColor)) {
+            if (images[PEL_SLOT_THICKNESS])
+                needs |= PEL_FEATURE_TRANSMISSION;
+            else if (map && m.thicknessTaps && (images[PEL_SLOT_POSITION] || images[PEL_SLOT_DEPTH]))
+                needs |= PEL_FEATURE_TRANSMISSION | PEL_FEATURE_THICKNESS_TAPS;
+        }
         if (m.specular > 0) needs |= PEL_FEATURE_SPECULAR;
         if (m.specular > 0 && m.specularModel == PEL_SPECULAR_GGX) needs |= PEL_FEATURE_GGX;
     }

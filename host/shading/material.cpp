@@ -1,15 +1,121 @@
 #include "shading/material.h"
 
-#include "lut/profile.h"
+#include <algorithm>
+#include <cmath>
+
+#include "core/handle_table.h"
+#include "lut/luts.h"
 
 namespace pel {
+namespace {
 
-void resolveMaterial(ShaderMaterial& material) {
-    PelMaterial& m = material.params = material.given;
+// The wide filter spans three standard deviations of the widest line spread: a narrower one cuts red off, a wider one makes shadows
+// of its own, which narrow channels show most (docs/shading.md, "Materials").
+constexpr double filterWidths = 3;
+constexpr double reflectionGain = 1.38;  // of a ball, per mean free path times curvature (section 12)
+constexpr float noBlend[3] = {1, 0.3f, 0};
+constexpr uint32_t transmissionTexels = 256;
+
+double widest(const Profile& profile) {
+    const Rgb width = profile.shape().width();
+    return std::max({width[0], width[1], width[2]});
+}
+
+Ref<Lut> curvatureTable(const Ref<Device>& device, Profile& profile) {
+    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    const LentHandle<PelProfile, Profile> lent{Ref<Profile>(&profile)};
+    desc.profile = lent.get();
+    desc.form = PEL_FORM_SPHERE;
+    desc.axis = PEL_AXIS_ROOT;
+    desc.width = desc.height = 64;
+    desc.radiusMin = float(0.25 * profile.radius());
+    desc.radiusMax = float(1000 * profile.radius());
+    return integrateCurvatureLut(device, desc);
+}
+
+Ref<Lut> shadowTable(const Ref<Device>& device, Profile& profile, float filterWidth) {
+    PelShadowLutDesc desc = pelShadowLutDescDefaults();
+    const LentHandle<PelProfile, Profile> lent{Ref<Profile>(&profile)};
+    desc.profile = lent.get();
+    desc.axis = PEL_AXIS_ROOT;
+    desc.closedEnds = 1;
+    desc.width = 256;
+    desc.height = 64;
+    desc.widthMin = filterWidth;
+    desc.widthMax = 1000 * filterWidth;
+    return integrateShadowLut(device, desc);
+}
+
+// Even in the root of thickness: fine where it falls steeply.
+Ref<Lut> transmissionTable(const Ref<Device>& device, const Profile& profile) {
+    PelLutInfo info = pelLutInfoDefaults();
+    info.kind = PEL_LUT_SPECULAR;
+    info.specular.width = transmissionTexels;
+    info.specular.height = 1;
+    std::vector<float> texels;
+    const double reach = transmissionReach(profile);
+    for (uint32_t i = 0; i < transmissionTexels; ++i) {
+        const double t = double(i) / (transmissionTexels - 1);
+        const Rgb through = profile.shape().transmission(reach * t * t);
+        for (double value : through) texels.push_back(i + 1 < transmissionTexels ? float(value) : 0.0f);
+    }
+    return uploadLut(device, info, texels.data(), texels.size() * sizeof(float));
+}
+
+}  // namespace
+
+double transmissionReach(const Profile& profile) {
+    return 2 * profile.reach();
+}
+
+const ProfileTables::Tables& ProfileTables::get(const Ref<Device>& device, Profile& profile, float filterWidth) {
+    for (const Tables& known : all_)
+        if (known.profile.get() == &profile && known.filterWidth == filterWidth) return known;
+    all_.push_back({Ref<Profile>(&profile), filterWidth, curvatureTable(device, profile), shadowTable(device, profile, filterWidth),
+                    transmissionTable(device, profile)});
+    return all_.back();
+}
+
+void ProfileTables::keepOnly(const std::map<uint32_t, ShaderMaterial>& materials) {
+    std::erase_if(all_, [&](const Tables& t) {
+        return std::none_of(materials.begin(), materials.end(), [&](const auto& m) {
+            return m.second.transmission.get() == t.transmission.get();
+        });
+    });
+}
+
+void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const PelShaderOptions& options, ProfileTables& tables) {
+    PelMaterial m = material.given;
+    const double unit = options.millimetresPerUnit;
+    Profile* profile = material.profile.get();
+    material.curvatureLut = material.givenCurvatureLut;
+    material.shadowLut = material.givenShadowLut;
+    material.transmission = {};
+    if (m.shadowFilterWidth == 0) m.shadowFilterWidth = float((profile ? filterWidths * widest(*profile) : 8.0) / unit);
+    if (profile) {
+        const ProfileTables::Tables& made = tables.get(device, *profile, float(m.shadowFilterWidth * unit));
+        if (!material.curvatureLut) material.curvatureLut = made.curvature;
+        if (!material.shadowLut) material.shadowLut = made.shadow;
+        material.transmission = made.transmission;
+    }
     if (m.diffusionRadius == 0)
-        m.diffusionRadius = material.curvatureLut ? material.curvatureLut->diffusionRadius()
-                            : material.shadowLut  ? material.shadowLut->diffusionRadius()
-                                                  : float(Profile::skin()->radius());
+        m.diffusionRadius = profile                 ? float(profile->radius() / unit)
+                            : material.curvatureLut ? material.curvatureLut->diffusionRadius()
+                            : material.shadowLut    ? material.shadowLut->diffusionRadius()
+                                                    : float(Profile::skin()->radius() / unit);
+    const PelProfileInfo info = profile ? profile->info() : pelProfileInfoDefaults();
+    for (int c = 0; c < 3; ++c)
+        if (m.normalBlend[c] < 0) m.normalBlend[c] = profile ? info.normalBlend[c] : noBlend[c];
+    if (!profile) m.transmission = 0;
+    for (int c = 0; c < 3; ++c) {
+        if (m.curvatureGain != 0 && !(info.meanFreePath[c] > 0))
+            invalidArgument("PelMaterial.curvatureGain is ", m.curvatureGain, ", and ",
+                            profile ? "its profile knows no mean free path: burley from mean free paths, and dipole do"
+                                    : "it has no profile, whose mean free path it needs",
+                            "; 0 would be right");
+        material.gain[c] = float(m.curvatureGain * reflectionGain * info.meanFreePath[c] / unit);
+    }
+    material.params = m;
 }
 
 }  // namespace pel

@@ -1,11 +1,38 @@
-// What a material leaves to defaults.
+// What a material leaves to defaults, and the tables that its profile gives.
 #pragma once
+#include <string>
+#include <vector>
+
+#include "lut/profile.h"
 #include "shading/shader_state.h"
 
 namespace pel {
 
-// Fills in material.params from material.given and its tables: a diffusion radius of 0 is that of the curvature table, else of
-// the shadow table, so that no table is stretched unasked; without tables skin's.
-void resolveMaterial(ShaderMaterial& material);
+// Finds or makes the tables of a profile and keeps them as long as a material has it: setting the same material again is free.
+class ProfileTables {
+  public:
+    struct Tables {
+        Ref<Profile> profile;
+        float filterWidth;  // mm, of the wide shadow
+        // Curvature and shadow; transmission: one row over the root of thickness, mm.
+        Ref<Lut> curvature, shadow, transmission;
+    };
+    const Tables& get(const Ref<Device>& device, Profile& profile, float filterWidth);
+    // Lets go what no material has.
+    void keepOnly(const std::map<uint32_t, ShaderMaterial>& materials);
+
+  private:
+    std::vector<Tables> all_;
+};
+
+// The thickness at the end of the transmission's row, mm: what comes through is nothing there.
+double transmissionReach(const Profile& profile);
+
+// Fills in material.params and its tables from material.given: see PelMaterial. Throws PEL_ERROR_INVALID_ARGUMENT for what the
+// profile cannot give.
+void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const PelShaderOptions& options, ProfileTables& tables);
+
+// Sentences, one a line, about what is set without effect or is unlikely (pelShaderGetWarnings).
+std::string warningsOf(const ShaderState& state, uint32_t features);
 
 }  // namespace pel

@@ -67,6 +67,7 @@ void Shader::finishPlan() {
     passes_.each([&](Pass& pass) { pass.build(*device_, plan_); });
     programsBuilt_ += device_->programs().counts().built - before;
     send();
+    warnings_ = warningsOf(state_, plan_.features);
     committed_ = true;
 }
 

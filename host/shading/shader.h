@@ -2,7 +2,9 @@
 #pragma once
 #include <functional>
 #include <optional>
+#include <string>
 
+#include "shading/material.h"
 #include "shading/pass_list.h"
 #include "shading/shading_constants.h"
 
@@ -24,12 +26,16 @@ class Shader final : public Object {
     void setAmbient(const PelAmbient& ambient);
     void setAmbientCube(const PelImageDesc* faces);
     void setCamera(const PelCamera& camera);
+    // As it is shaded. Throws for an id without a material.
+    const PelMaterial& material(uint32_t id) const;
 
     // shader.cpp
     void commit();
     // `blocking`: the caller waits, and may want to hear how far it is.
     void execute(bool blocking);
     PelShaderStats stats();
+    // Sentences, one a line, of the last commit.
+    const std::string& warnings() const { return warnings_; }
     // Jobs that build what a commit would, and launch each kernel on no tile. Throws what a commit would.
     void addPrefillJobs(std::vector<std::function<void()>>& jobs) const;
     Device& device() const { return *device_; }
@@ -48,6 +54,7 @@ class Shader final : public Object {
 
     Ref<Device> device_;
     std::span<const PassKind> passKinds_;
+    ProfileTables profileTables_;
     ShaderState state_;  // as the caller set it
     ShaderPlan plan_;    // as of the last commit
     PassList passes_;
@@ -55,6 +62,7 @@ class Shader final : public Object {
     cl::Memory counters_;
     std::optional<uint32_t> scratchRow_;  // at which images of passes begin, in the device's constants;
                                           // empty: it has to be written
+    std::string warnings_;
     bool committed_ = false, executed_ = false;
     uint64_t bands_ = 0, programsBuilt_ = 0, launches_ = 0, bytesUploaded_ = 0, uploadedBefore_ = 0;
     std::vector<cl::Event> events_;

@@ -1,7 +1,7 @@
 // What the caller sets on a PelShader: checked and kept until the next commit.
+#include "core/handle_table.h"
 #include "core/struct_size.h"
 #include "shading/check_settings.h"
-#include "shading/material.h"
 #include "shading/shader.h"
 #include "shared/shade_passes.h"
 
@@ -9,6 +9,8 @@ namespace pel {
 
 void Shader::setOptions(const PelShaderOptions& options) {
     checkOptions(options);
+    if (options.millimetresPerUnit != state_.options.millimetresPerUnit)
+        for (auto& [id, material] : state_.materials) resolveMaterial(material, device_, options, profileTables_);
     state_.options = options;
     committed_ = false;
 }
@@ -43,11 +45,15 @@ void Shader::setMaterial(uint32_t id, const PelMaterial* material, Lut* curvatur
     };
     check(curvatureLut, PEL_LUT_CURVATURE, "curvature");
     check(shadowLut, PEL_LUT_SHADOW, "shadow");
-    ShaderMaterial& set = state_.materials[id];  // which may have a normal map already
+    const auto known = state_.materials.find(id);
+    ShaderMaterial set = known == state_.materials.end() ? ShaderMaterial() : known->second;  // which may have a normal map
     set.given = *material;
-    set.curvatureLut = Ref(curvatureLut);
-    set.shadowLut = Ref(shadowLut);
-    resolveMaterial(set);
+    set.profile = material->profile ? fromHandle<Profile>(material->profile) : Ref<Profile>();
+    set.givenCurvatureLut = Ref(curvatureLut);
+    set.givenShadowLut = Ref(shadowLut);
+    resolveMaterial(set, device_, state_.options, profileTables_);
+    state_.materials[id] = std::move(set);
+    profileTables_.keepOnly(state_.materials);
     committed_ = false;
 }
 
@@ -116,6 +122,12 @@ void Shader::setAmbientCube(const PelImageDesc* faces) {
     }
     state_.ambientCube = view;
     committed_ = false;
+}
+
+const PelMaterial& Shader::material(uint32_t id) const {
+    const auto found = state_.materials.find(id);
+    if (found == state_.materials.end()) invalidArgument("material ", id, " is not set");
+    return found->second.params;
 }
 
 void Shader::setCamera(const PelCamera& camera) {

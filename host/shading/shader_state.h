@@ -6,13 +6,17 @@
 
 #include "core/image_view.h"
 #include "lut/lut.h"
+#include "lut/profile.h"
 
 namespace pel {
 
 struct ShaderMaterial {
-    PelMaterial given;   // by the caller
-    PelMaterial params;  // with what it leaves to defaults filled in (shading/material.h)
-    Ref<Lut> curvatureLut, shadowLut;
+    PelMaterial given;  // by the caller, with
+    Ref<Profile> profile;
+    Ref<Lut> givenCurvatureLut, givenShadowLut;
+    PelMaterial params;  // with what it leaves to defaults filled in (shading/material.h), as are
+    Ref<Lut> curvatureLut, shadowLut, transmission;
+    float gain[3];                     // length: direct light times 1 + gain * curvature
     std::vector<ImageView> normalMap;  // its levels, the finest first
 };
 

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "shading/features.h"
+#include "shading/material.h"
 
 namespace pel {
 namespace {
@@ -75,7 +76,7 @@ size_t ShadingConstants::scratchBytes() const {
 void ShadingConstants::gatherLuts(Device& device, const ShaderState& state) {
     std::vector<Ref<Lut>> wanted;
     for (const auto& [id, material] : state.materials)
-        for (const Ref<Lut>& lut : {material.curvatureLut, material.shadowLut})
+        for (const Ref<Lut>& lut : {material.curvatureLut, material.shadowLut, material.transmission})
             if (lut &&
                 std::none_of(wanted.begin(), wanted.end(), [&](auto& w) { return w.get() == lut.get(); }))
                 wanted.push_back(lut);
@@ -174,6 +175,14 @@ std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(
         to.roughness2 = m.roughness2;
         to.lobeMix = m.lobeMix;
         to.deepScatterAmbient = m.deepScatterAmbient;
+        if (materialNeeds(state, from) & PEL_FEATURE_TRANSMISSION) {
+            const double reach = transmissionReach(*from.profile) / state.options.millimetresPerUnit;
+            to.transmission = describe(from.transmission.get(), 1);
+            to.transmission.radiusRatio = 1;
+            to.transmissionPerLength = float(1 / reach);
+            to.transmissionShare = m.transmission;
+        }
+        copy(to.gain, from.gain);
         to.hasNormalMap = !from.normalMap.empty();
         to.needs = materialNeeds(state, from);
         for (size_t i = 0; i < variants.size(); ++i)

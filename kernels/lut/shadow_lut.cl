@@ -11,10 +11,14 @@
 // Between and beyond the kinks the tails are 0 or 1 and cost nothing. The part of the profile beyond the cut
 // is taken off again where it weighs anything.
 //
+// Columns are even in w, or in p on the axis of roots, where rows are even in the root of q. With closed ends T is rescaled to
+// (T - T(0)) / (T(1) - T(0)) per row.
+//
 // Variants: PEL_WIDTH; PEL_GROUP, work-items in a group; PEL_COLUMNS, columns per work-item, a multiple of
 // PEL_WIDTH.
 #include "lib/lut/normal.clh"
 #include "lib/width.clh"
+#include "shared/lut.h"
 #include "shared/lut_integral.h"
 
 // Beyond this many sigmas a normal tail is below 4e-9.
@@ -122,18 +126,48 @@ inline floatw farSide(const floatw zeta, const float b, const LutGaussian G, con
     return U - lost;
 }
 
+typedef struct Far {
+    floatw r, g, b;
+} Far;
+
+// U of the whole profile at the distance zeta behind the middle of the edge.
+inline Far farSideOfAll(__global const LutGaussian* gaussians, const uint count, const floatw zeta, const float b,
+                        const float cut) {
+    Far U = {0.0f, 0.0f, 0.0f};
+    for (uint g = 0; g < count; ++g) {
+        const LutGaussian G = gaussians[g];
+        if (!anyw(zeta - b < REACH * G.sigma)) continue;
+        const floatw u = farSide(zeta, b, G, cut);
+        U.r = fma(u, (floatw)(G.red), U.r);
+        U.g = fma(u, (floatw)(G.green), U.g);
+        U.b = fma(u, (floatw)(G.blue), U.b);
+    }
+    return U;
+}
+
+// `end`: U where the filter ends, of which every texel is relieved (closed ends); 0: of nothing. A profile so wide that next to
+// nothing is left between the ends is straight there: 1/2 - z.
 inline void storeTexels(__global float4* line, const uint width, const uint x, const floatw r, const floatw g,
-                        const floatw b, const float3 mass) {
+                        const floatw b, const floatw z, const float3 mass, const float3 end, const int closed) {
+    float across[PEL_WIDTH];
+    storew(z, 0, across);
+    const float3 between = mass - 2.0f * end;
     float red[PEL_WIDTH], green[PEL_WIDTH], blue[PEL_WIDTH];
     storew(r, 0, red);
     storew(g, 0, green);
     storew(b, 0, blue);
     for (uint lane = 0; lane < PEL_WIDTH && x + lane < width; ++lane) {
         // A tail that has all but vanished may come out below 0 by rounding: no texel may, on either side.
-        const float3 U = clamp((float3)(red[lane], green[lane], blue[lane]), (float3)(0.0f), mass);
-        line[x + lane] = (float4)(mass - U, 0.0f);
+        float3 U = clamp((float3)(red[lane], green[lane], blue[lane]), (float3)(0.0f), mass);
+        float3 lit = mass - U;
+        if (closed) {
+            U = select((float3)(0.5f - across[lane]), (U - end) / between, between > 1e-3f * mass);
+            U = clamp(U, (float3)(0.0f), (float3)(1.0f));
+            lit = 1.0f - U;
+        }
+        line[x + lane] = (float4)(lit, 0.0f);
         line[width - 1 - x - lane] = (float4)(U, 0.0f);
-        if (x + lane == width - 1) line[width] = (float4)(mass - U, 0.0f);
+        if (x + lane == width - 1) line[width] = (float4)(lit, 0.0f);
     }
 }
 
@@ -144,26 +178,29 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadowTexel
     const uint begin = params.width / 2 + get_global_id(0) * PEL_COLUMNS;
     const uint y = get_global_id(1);
     const float row = (float)min(y, params.height - 1);
-    const float q = fma(row + 0.5f, params.reciprocalStep, params.reciprocalMin);
+    const float rowValue = fma(row + 0.5f, params.reciprocalStep, params.reciprocalMin);
+    const float q = params.axis == LUT_AXIS_ROOT ? rowValue * rowValue : rowValue;
     const float b = 0.5f / (params.sharpening * q);
     const uint end = min(begin + PEL_COLUMNS, params.width);
+    const float3 mass = (float3)(params.mass[0], params.mass[1], params.mass[2]);
+    float3 endU = 0.0f;
+    if (params.closedEnds && begin < end) {
+        const Far U = farSideOfAll(gaussians, params.gaussians, (floatw)(0.5f / q), b, params.cut);
+        float r[PEL_WIDTH], g[PEL_WIDTH], b_[PEL_WIDTH];
+        storew(U.r, 0, r);
+        storew(U.g, 0, g);
+        storew(U.b, 0, b_);
+        endU = clamp((float3)(r[0], g[0], b_[0]), (float3)(0.0f), 0.5f * mass);
+    }
     for (uint x = begin; x < end; x += PEL_WIDTH) {
         const floatw column = convert_floatw((intw)((int)x) + lanesw()) + 0.5f;
         const floatw w = fmin(column / (float)params.width, 1.0f);
         // p - 1/2 = (sqrt w - sqrt(1 - w)) / 2 without its cancellation
-        const floatw z =
-            (column - 0.5f * (float)params.width) / (float)params.width / (sqrt(w) + sqrt(1.0f - w));
-        const floatw zeta = z / q;
-        floatw red = 0.0f, green = 0.0f, blue = 0.0f;
-        for (uint g = 0; g < params.gaussians; ++g) {
-            const LutGaussian G = gaussians[g];
-            if (!anyw(zeta - b < REACH * G.sigma)) continue;
-            const floatw U = farSide(zeta, b, G, params.cut);
-            red = fma(U, (floatw)(G.red), red);
-            green = fma(U, (floatw)(G.green), green);
-            blue = fma(U, (floatw)(G.blue), blue);
-        }
-        storeTexels(texels + (size_t)y * (params.width + 1), params.width, x, red, green, blue,
-                    (float3)(params.mass[0], params.mass[1], params.mass[2]));
+        floatw z = (column - 0.5f * (float)params.width) / (float)params.width / (sqrt(w) + sqrt(1.0f - w));
+        if (params.axis == LUT_AXIS_ROOT) z = (column - 0.5f * (float)params.width) / (float)(max(params.width, 2u) - 1);
+        z = fmin(z, 0.5f);
+        const Far U = farSideOfAll(gaussians, params.gaussians, z / q, b, params.cut);
+        storeTexels(texels + (size_t)y * (params.width + 1), params.width, x, U.r, U.g, U.b, z, mass, endU,
+                    params.closedEnds);
     }
 }

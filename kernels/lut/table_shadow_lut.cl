@@ -9,6 +9,7 @@
 // copy of it, and the column behind the last likewise (shared/lut.h).
 // Variants: PEL_GROUP, work-items in a group; PEL_COLUMNS.
 #include "lib/lut/table_tails.clh"
+#include "shared/lut.h"
 
 // Tails from any x: P is even, so that a tail from x < 0 is the whole less its mirror image.
 inline float4 secondFrom(__global const float4* tails, const float x, const float4 mass, const float end) {
@@ -68,18 +69,28 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableShadow
     const uint begin = params.width / 2 + get_global_id(0) * PEL_COLUMNS;
     const uint y = get_global_id(1);
     const float row = (float)min(y, params.height - 1);
-    const float q = fma(row + 0.5f, params.reciprocalStep, params.reciprocalMin);
+    const float rowValue = fma(row + 0.5f, params.reciprocalStep, params.reciprocalMin);
+    const float q = params.axis == LUT_AXIS_ROOT ? rowValue * rowValue : rowValue;
     const float b = 0.5f / (params.sharpening * q);
     const float4 mass = 2.0f * tails[TAIL_MASS];
+    // What is left of the light where the filter ends.
+    float4 end = 0.0f;
+    if (params.closedEnds && begin < params.width) end = clamp(farSide(tails, 0.5f / q, b, mass, params.end), 0.0f, 0.5f * mass);
+    const float4 between = mass - 2.0f * end;
     __global float4* line = texels + (size_t)y * (params.width + 1);
     for (uint x = begin; x < min(begin + PEL_COLUMNS, params.width); ++x) {
         const float column = (float)x + 0.5f, w = fmin(column / (float)params.width, 1.0f);
         // p - 1/2 = (sqrt w - sqrt(1 - w)) / 2 without its cancellation
-        const float z =
-            (column - 0.5f * (float)params.width) / (float)params.width / (sqrt(w) + sqrt(1.0f - w));
+        float z = (column - 0.5f * (float)params.width) / (float)params.width / (sqrt(w) + sqrt(1.0f - w));
+        if (params.axis == LUT_AXIS_ROOT) z = (column - 0.5f * (float)params.width) / (float)(max(params.width, 2u) - 1);
+        z = fmin(z, 0.5f);
         float4 U = clamp(farSide(tails, z / q, b, mass, params.end), 0.0f, mass);
-        U.w = 0.0f;
         float4 lit = mass - U;
+        if (params.closedEnds) {
+            U = clamp(select((float4)(0.5f - z), (U - end) / between, between > 1e-3f * mass), 0.0f, 1.0f);
+            lit = 1.0f - U;
+        }
+        U.w = 0.0f;
         lit.w = 0.0f;
         line[x] = lit;
         line[params.width - 1 - x] = U;

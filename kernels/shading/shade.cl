@@ -17,6 +17,7 @@
 #include "lib/shading/shadow.clh"
 #include "lib/shading/specular.clh"
 #include "lib/shading/thickness.clh"
+#include "lib/shading/transmission.clh"
 #include "shared/shade.h"
 
 #define NEEDS_POSITION HAS(PEL_READ_POSITION)
@@ -136,6 +137,30 @@ static inline floatw measureThickness(const Scene* scene, __global const PelShad
                          material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine, p->turnSine, cutoff, needed);
 }
 
+// The same for transmission, whose position does not move: the greatest thickness about each pixel of `needed`.
+static inline floatw measureGreatest(const Scene* scene, __global const PelShadeLight* light, const Pixels* p, maskw needed) {
+    if (HAS(PEL_BIT_SHADOW_CUBE) && light->projection >= PEL_MAP_CUBE)
+        return greatestInCube(PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map), light,
+                              cubePosition(light->worldToShadow, p->position));
+    if (HAS(PEL_BIT_SHADOW_CASCADES) && light->cascades) {
+        floatw thickness = INFINITY; // outside of all nothing comes through
+        maskw left = needed;
+        for (uint i = 0; i < light->cascades && anyw(left); ++i) {
+            __global const PelShadeCascade* cascade = &light->cascade[i];
+            const Vec3w uvz = shadowCoordinates(cascade->worldToShadow, p->position);
+            const maskw held = left & mapHolds(uvz, PEL_TRANSMISSION_TEXELS / (float)cascade->map.width,
+                                               PEL_TRANSMISSION_TEXELS / (float)cascade->map.height);
+            if (!anyw(held)) continue;
+            __global const uchar* map = firstTexel(scene->lightImages[cascade->mapBuffer], &cascade->map);
+            thickness = selectw(thickness, greatestInMap(PEL_FORMAT_SHADOW_MAP, map, &cascade->map, light, cascade->depthRange, uvz), held);
+            left &= notw(held);
+        }
+        return thickness;
+    }
+    return greatestInMap(PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map), &light->map, light,
+                         light->depthRange, shadowCoordinates(light->worldToShadow, p->position));
+}
+
 // Ambient light at the three normals.
 static inline Vec3w ambientOfPixels(const Scene* scene, float3 blend, const Pixels* p) {
     __global const PelShadeFrame* frame = scene->frame;
@@ -161,6 +186,13 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
         direct.x = direct.y = direct.z = 0.0f;
     } else if (HAS(PEL_BIT_DIRECT_SCATTER) && material->curvature.layout.width) {
         direct = directScatter(scene->luts, material->curvature, vload3(0, material->normalBlend), p->pair, nl, bl, p->curvature);
+        if (material->gain[0] != 0.0f) {
+            // Fitted on balls of more than ten mean free paths; beyond one it would mean nothing.
+            const Vec3w gain = loadUniform3(material->gain);
+#define PEL_GAIN_(c) fmin(max0w(fma(gain.c, p->curvature, (floatw)(1.0f))), (floatw)(2.38f))
+            direct = mul3(direct, vec3(PEL_GAIN_(x), PEL_GAIN_(y), PEL_GAIN_(z)));
+#undef PEL_GAIN_
+        }
     } else {
         direct.x = direct.y = direct.z = satw(nl);
     }
@@ -181,6 +213,25 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
     }
 
     Vec3w sum = direct;
+    if (HAS(PEL_BIT_TRANSMISSION) && material->transmission.layout.width) {
+        const bool taps = !PEL_FORMAT_THICKNESS && HAS(PEL_BIT_THICKNESS_TAPS) && material->thicknessTaps &&
+                          light->mapBuffer < PEL_LIGHT_BUFFERS;
+        const floatw behind = max0w(-dot3(p->ng, l));
+        const maskw needed = !SKIPPING || wantsThickness ? (maskw)(-1) : reached & (behind > 0.0f);
+        if ((taps || PEL_FORMAT_THICKNESS) && anyw(needed)) {
+            const floatw thickness = PEL_FORMAT_THICKNESS ? p->thickness : measureGreatest(scene, light, p, needed);
+            if (wantsThickness) {
+                parts->thickness = thickness;
+                parts->measured = true;
+            }
+            if (taps) count(counts, PEL_COUNT_THICKNESS, needed & active);
+            const Vec3w through = scale3(throughSlab(scene->luts, material->transmission, material->transmissionPerLength, thickness),
+                                         behind * material->transmissionShare);
+            // The table's dark side is light that came round or through as well: the larger of the two, never both.
+            sum = vec3(fmax(direct.x, through.x), fmax(direct.y, through.y), fmax(direct.z, through.z));
+            if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = add3(parts->deepScatter, mul3(sub3(sum, direct), color));
+        }
+    }
     if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = add3(parts->diffuse, mul3(direct, color));
     if (HAS(PEL_BIT_DEEP_SCATTER)) {
         const floatw back = backLight(bl);

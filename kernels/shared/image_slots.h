@@ -20,13 +20,13 @@
     X(MATERIAL, 1, SHADE, ID, 1, "material", "material", PEL_BITS_ALL_)                                                        \
     X(POSITION, 2, SHADE, COLOR, 3, "position", "position", PEL_BITS_POSITION_)                                                \
     X(DEPTH, 3, SHADE, SCALAR, 1, "depth", "depth", PEL_BITS_POSITION_)                                                        \
-    X(NORMAL_GEOMETRIC, 4, SHADE, NORMAL, 3, "normal_geometric", "geometric normal", PEL_BIT_SHADOW_LUT | PEL_BIT_THICKNESS_TAPS) \
+    X(NORMAL_GEOMETRIC, 4, SHADE, NORMAL, 3, "normal_geometric", "geometric normal", PEL_BIT_SHADOW_LUT | PEL_BIT_THICKNESS_TAPS | PEL_BIT_TRANSMISSION) \
     X(NORMAL_SHADING, 5, SHADE, NORMAL, 3, "normal_shading", "shading normal", PEL_BITS_ALL_)                                  \
     X(NORMAL_BLURRED, 6, SHADE, NORMAL, 3, "normal_blurred", "blurred normal", PEL_BITS_BLURRED_)                              \
     X(CURVATURE, 7, SHADE, SCALAR, 1, "curvature", "curvature", PEL_BIT_DIRECT_SCATTER)                                        \
     X(ALBEDO, 8, SHADE, COLOR, 3, "albedo", "albedo", PEL_BITS_ALL_)                                                           \
     X(AMBIENT_OCCLUSION, 9, SHADE, SCALAR, 1, "ambient_occlusion", "ambient occlusion", PEL_BIT_AMBIENT)                       \
-    X(THICKNESS, 10, SHADE, SCALAR, 1, "thickness", "thickness", PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER)               \
+    X(THICKNESS, 10, SHADE, SCALAR, 1, "thickness", "thickness", PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER | PEL_BIT_TRANSMISSION)               \
     X(ROUGHNESS, 11, SHADE, SCALAR, 1, "roughness", "roughness", PEL_BIT_SPECULAR)                                             \
     X(SPECULAR, 12, SHADE, SCALAR, 1, "specular", "specular", PEL_BIT_SPECULAR)                                                \
     X(UV, 13, PASS, UV, 2, "uv", "UV", 0)                                                                                      \

@@ -50,6 +50,8 @@ typedef struct ShadowParams {
     float sharpening;
     float cut;      // half length of the integral, diffusion radii
     float mass[3];  // of the cut profile, per channel
+    unsigned int axis;        // LUT_AXIS_...
+    unsigned int closedEnds;  // rows are rescaled to run from 0 to 1
 } ShadowParams;
 
 // --- measured profiles (kernels/table_*.cl) ---
@@ -97,6 +99,8 @@ typedef struct TableShadowParams {
     float reciprocalStep;
     float sharpening;
     float end;  // where the tails end, diffusion radii
+    unsigned int axis;        // LUT_AXIS_...
+    unsigned int closedEnds;  // rows are rescaled to run from 0 to 1
 } TableShadowParams;
 
 #endif

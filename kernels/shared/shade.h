@@ -82,6 +82,10 @@ typedef struct PelShadeMaterial {
     float roughness2;
     float lobeMix;
     float deepScatterAmbient;
+    PelShadeLut transmission;    // one row over the root of thickness: layout.width 0: none
+    float transmissionPerLength; // 1 / the thickness at its end, 1/length
+    float transmissionShare;
+    float gain[3];      // length: direct light times 1 + gain * curvature; all 0: none
     PelUint32 needs;    // PEL_BIT_...: features that this material asks for
     PelUint32 scattering; // PelScattering
     PelUint32 variants; // bit i: variant i of the shading kernel has all of them
@@ -136,7 +140,7 @@ typedef struct PelShadeLight {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelShadeImage) == 32 && sizeof(PelShadeLut) == 40);
 static_assert(sizeof(PelShadeFrame) == 4 * (8 + 8 + 3 + 16 + 27 + 3 + 1) + PEL_IMAGE_SLOTS * 32);
-static_assert(sizeof(PelShadeMaterial) == 4 * 29 + 2 * sizeof(PelShadeLut));
+static_assert(sizeof(PelShadeMaterial) == 4 * 34 + 3 * sizeof(PelShadeLut));
 static_assert(sizeof(PelShadeCascade) == 4 * (16 + 4) + 32);
 static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64 + 8 + PEL_CASCADES * sizeof(PelShadeCascade));
 #endif

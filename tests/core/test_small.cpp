@@ -89,7 +89,7 @@ TEST(Small, CurvatureTables) {
         const std::vector<float> texels = lut.read<float>(PEL_LUT_FLOAT);
         reference::CurvatureLutSpec spec;
         spec.form = other, spec.width = 5, spec.height = 3;
-        const auto skin = reference::profileForRadius(reference::skinProfile(), desc.diffusionRadius);
+        const auto skin = reference::profileForRadius(reference::skinProfile(), 2.7);
         for (int i = 0; i < 15; ++i) {
             const reference::Rgb truth = reference::curvatureTexel(spec, *skin, i % 5, i / 5);
             for (int c = 0; c < 3; ++c) EXPECT_NEAR(texels[size_t(3 * i + c)], truth[c], 1e-5) << form;
@@ -104,7 +104,7 @@ TEST(Small, ShadowAndSpecularTables) {
     shadow.width = 5, shadow.height = 3;
     const std::vector<float> texels = Lut(device(), shadow).read<float>(PEL_LUT_FLOAT);
     const reference::ShadowLutSpec spec{
-        5, 3, shadow.widthMin, shadow.widthMax, shadow.diffusionRadius, shadow.sharpening};
+        5, 3, shadow.widthMin, shadow.widthMax, 2.7, shadow.sharpening};
     const auto skin = reference::skinProfile();
     PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
     specular.width = 5, specular.height = 3;

@@ -33,7 +33,7 @@ reference::CurvatureLutSpec specOf(const PelCurvatureLutDesc& desc) {
 void compareTexels(const Device& device, const PelCurvatureLutDesc& usual, int samples) {
     const PelCurvatureLutDesc desc = sizedTable(usual);
     const std::vector<float> texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
-    const auto profile = reference::profileForRadius(reference::skinProfile(), desc.diffusionRadius);
+    const auto profile = reference::profileForRadius(reference::skinProfile(), desc.diffusionRadius ? desc.diffusionRadius : 2.7);
     const auto spec = specOf(desc);
     std::mt19937 random(7);
     for (int i = 0; i < samples; ++i) {

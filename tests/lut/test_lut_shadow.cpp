@@ -1,5 +1,7 @@
 // The shadow LUT that the device integrates, against the oracle's adaptive quadrature and against data of
 // others.
+#include <algorithm>
+#include <limits>
 #include <random>
 
 #include "lut_cases.h"
@@ -27,7 +29,7 @@ PelShadowLutDesc describe(const Case& c) {
 
 reference::ShadowLutSpec specOf(const PelShadowLutDesc& desc) {
     return {int(desc.width), int(desc.height),     desc.widthMin,
-            desc.widthMax,   desc.diffusionRadius, desc.sharpening};
+            desc.widthMax,   desc.diffusionRadius ? desc.diffusionRadius : 2.7, desc.sharpening};
 }
 
 void compareTexels(const Device& device, const PelShadowLutDesc& usual, int samples) {
@@ -80,6 +82,35 @@ TEST(ShadowLut, LimitsAreFiniteAndMonotone) {
             EXPECT_LE(texels[i], 1 + tolerance::lutTexelGaussians);
             if (i / 3 % c.width > 0) {
                 EXPECT_GE(texels[i] - texels[i - 3], -tolerance::lutTexelGaussians);
+            }
+        }
+    }
+}
+
+// Closed ends: (T - T(0)) / (T(1) - T(0)) per row of the oracle's T, 0 and 1 at the ends of the axis of roots, whose columns are even
+// in the position across the edge and whose rows are even in the root of 1/width.
+TEST(ShadowLut, ClosedEndsRunFromNoneToAll) {
+    const Device device("");
+    const auto profile = reference::skinProfile();
+    for (float sharpening : {1.0f, 10.0f}) {
+        PelShadowLutDesc desc = describe({33, 9, 4, 400, 2.7f, sharpening});
+        desc.closedEnds = 1;
+        desc.axis = PEL_AXIS_ROOT;
+        const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+        for (uint32_t y = 0; y < 9; ++y) {
+            const double root = std::sqrt(1.0 / 400) + y / 8.0 * (std::sqrt(1.0 / 4) - std::sqrt(1.0 / 400)), q = root * root;
+            const auto low = reference::shadowT(*profile, 0, q, sharpening), high = reference::shadowT(*profile, 1, q, sharpening);
+            for (uint32_t x = 0; x < 33; ++x) {
+                // w of a position p: p - 1/2 = (sqrt w - sqrt(1 - w)) / 2 = sin(asin(sqrt w) - pi/4) / sqrt 2
+                const double z = x / 32.0 - 0.5, angle = std::asin(std::clamp(z * std::sqrt(2.0), -1.0, 1.0)) + std::atan(1.0);
+                const auto t = reference::shadowT(*profile, std::pow(std::sin(angle), 2), q, sharpening);
+                for (int c = 0; c < 3; ++c)
+                    EXPECT_NEAR(texels[(y * 33 + x) * 3 + size_t(c)], (t[c] - low[c]) / (high[c] - low[c]), tolerance::closedEnds)
+                        << x << ", " << y << " channel " << c;
+            }
+            for (size_t c = 0; c < 3; ++c) {
+                EXPECT_EQ(texels[y * 33 * 3 + c], 0);
+                EXPECT_EQ(texels[(y * 33 + 32) * 3 + c], 1);
             }
         }
     }

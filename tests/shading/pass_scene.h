@@ -40,7 +40,7 @@ inline Frame reliefFrame(uint32_t seed, uint32_t width, uint32_t height, float p
             f.slots[PEL_SLOT_MATERIAL].values[i] = hole ? 0 : 3 * x + y < width ? 2 : 1;
         }
     for (uint32_t id : {1u, 2u}) {
-        PelMaterial m = pelMaterialDefaults();
+        PelMaterial m = fixture::faceworksMaterial();
         m.diffusionRadius = id == 1 ? 2.7f : 1.4f;
         for (float& c : m.albedo) c = 1;
         f.materials[id] = m;

@@ -11,6 +11,7 @@
 #include <map>
 #include <random>
 
+#include "faceworks_material.h"
 #include "reference/shade_pixel.h"
 #include "test_size.h"
 
@@ -36,6 +37,7 @@ inline reference::Table readTable(const pellucid::Lut& lut, uint32_t width, uint
 inline Tables makeTables(const pellucid::Device& device, uint32_t width = 96, uint32_t height = 64) {
     PelCurvatureLutDesc c = pelCurvatureLutDescDefaults();
     PelShadowLutDesc s = pelShadowLutDescDefaults();
+    c.diffusionRadius = s.diffusionRadius = 2.7f;  // skin's own, which the oracle wants to know
     c.width = s.width = width;
     c.height = s.height = height;
     Tables t{pellucid::Lut(device, c), pellucid::Lut(device, s), {}, {}};
@@ -141,7 +143,7 @@ inline Frame randomFrame(uint32_t seed, uint32_t width, uint32_t height, uint32_
         return float(id);
     });
     for (uint32_t known : {1u, 2u, 7u}) {
-        PelMaterial m = pelMaterialDefaults();
+        PelMaterial m = fixture::faceworksMaterial();
         m.diffusionRadius = known == 1 ? 2.7f : random.uniform(1, 5);
         for (float& c : m.deepScatterColor) c = random.uniform(0.1f, 1);
         m.deepScatterRadius = random.uniform(15, 40);  // of the order of the random thickness

@@ -147,7 +147,7 @@ TEST(ShadeBadInput, WhatCommitMisses) {
         for (uint32_t id : {1, 2, 7})
             pellucid::check(pelShaderSetMaterial(r.shader.get(), id, nullptr, nullptr, nullptr));
         expectError(invalid, {"no material"}, commit(r));
-        r.shader.setMaterial(9, pelMaterialDefaults());
+        r.shader.setMaterial(9, fixture::faceworksMaterial());
         r.shader.clear(PEL_SLOT_MATERIAL);
         expectError(invalid, {"material 1"}, commit(r));
     }
@@ -188,19 +188,19 @@ TEST(ShadeBadInput, Values) {
     Ready r;
     const auto invalid = PEL_ERROR_INVALID_ARGUMENT;
     const auto material = [&](const char* word, auto change) {
-        PelMaterial m = pelMaterialDefaults();
+        PelMaterial m = fixture::faceworksMaterial();
         change(m);
         expectError(invalid, {"PelMaterial", word}, [&] { r.shader.setMaterial(1, m); });
     };
     material("diffusionRadius", [](PelMaterial& m) { m.diffusionRadius = -2.7f; });
     material("diffusionRadius", [](PelMaterial& m) { m.diffusionRadius = nan; });
-    material("shadowFilterWidth", [](PelMaterial& m) { m.shadowFilterWidth = 0; });
+    material("shadowFilterWidth", [](PelMaterial& m) { m.shadowFilterWidth = -1; });
     material("deepScatterRadius", [](PelMaterial& m) { m.deepScatterRadius = 0; });
     material("normalBlend", [](PelMaterial& m) { m.normalBlend[2] = 1.5f; });
     material("albedo", [](PelMaterial& m) { m.albedo[1] = inf; });
     material("thicknessTaps", [](PelMaterial& m) { m.thicknessTaps = 12; });
     material("f0", [](PelMaterial& m) { m.f0 = 2; });
-    const PelMaterial good = pelMaterialDefaults();
+    const PelMaterial good = fixture::faceworksMaterial();
     expectError(invalid, {"material id 0"}, [&] { r.shader.setMaterial(0, good); });
     expectError(invalid, {"material id 256"}, [&] { r.shader.setMaterial(256, good); });
     expectError(invalid, {"curvature LUT", "other kind"},

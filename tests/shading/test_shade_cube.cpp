@@ -45,7 +45,7 @@ Frame ambientFrame(const std::vector<Vec3>& normals) {
     Image& n = f.slots[PEL_SLOT_NORMAL_SHADING];
     n.components = 3;
     for (const Vec3& v : normals) n.values.insert(n.values.end(), {float(v.x), float(v.y), float(v.z)});
-    f.materials[1] = pelMaterialDefaults();
+    f.materials[1] = fixture::faceworksMaterial();
     std::fill_n(f.materials[1].albedo, 3, 1.0f);
     return f;
 }

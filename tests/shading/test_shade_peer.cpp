@@ -33,7 +33,7 @@ class ShadePeer : public testing::Test {
         frame_.width = width;
         frame_.height = height;
         frame_.lights.resize(1);
-        frame_.materials[1] = pelMaterialDefaults();
+        frame_.materials[1] = fixture::faceworksMaterial();
         for (float& c : frame_.materials[1].albedo) c = 1;
         frame_.materials[1].shadowFilterWidth = 9;
     }

@@ -32,6 +32,17 @@ void bindProfile(py::module_& module) {
                 return pelProfileCreateBurley(path.data(), albedo.data(), PelBurleyFit(fit), out);
             });
         })
+        .def_static("burley_distance", [](const Triple& distance, const std::string& name) {
+            return named(name, [&](PelProfile* out) { return pelProfileCreateBurleyDistance(distance.data(), out); });
+        })
+        .def_static("named", [](const std::string& material) {
+            return named("", [&](PelProfile* out) { return pelProfileCreateNamed(material.c_str(), out); });
+        })
+        .def_static("library_names", [] {
+            std::vector<std::string> names;
+            for (uint32_t i = 0; const char* name = pelProfileLibraryName(i); ++i) names.push_back(name);
+            return names;
+        })
         .def_static("dipole", [](const Triple& absorption, const Triple& scattering, float eta, const std::string& name) {
             return named(name, [&](PelProfile* out) {
                 return pelProfileCreateDipole(absorption.data(), scattering.data(), eta, out);
@@ -47,6 +58,11 @@ void bindProfile(py::module_& module) {
             PelProfileInfo info = pelProfileInfoDefaults();
             call([&] { return pelProfileGetInfo(p.get(), &info); });
             return bytesOf(info);
+        })
+        .def("transmission", [](const Profile& p, uintptr_t distances, uint32_t count, uintptr_t through) {
+            const auto* first = static_cast<const double*>(pointer(distances));
+            auto* to = static_cast<double*>(pointer(through));
+            call([&] { return pelProfileTransmission(p.get(), first, count, to); });
         })
         .def("evaluate", [](const Profile& p, uintptr_t distances, uint32_t count, uintptr_t radial, uintptr_t spread) {
             struct Work {

@@ -98,6 +98,22 @@ void bindShader(py::module_& module) {
                 return pelShaderExecute(s.get(), nullptr);
             });
         })
+        .def("material", [](const Shader& s, uint32_t id) {
+            PelMaterial material = pelMaterialDefaults();
+            locked(s, [&] { return pelShaderGetMaterial(s.get(), id, &material); });
+            material.profile = nullptr;  // the shader's own
+            return bytesOf(material);
+        })
+        .def("warnings", [](const Shader& s) {
+            const char* text = "";
+            std::string copy;
+            locked(s, [&] {
+                const PelError error = pelShaderGetWarnings(s.get(), &text);
+                copy = text;
+                return error;
+            });
+            return copy;
+        })
         .def("stats", [](const Shader& s) {
             PelShaderStats stats = pelShaderStatsDefaults();
             locked(s, [&] { return pelShaderGetStats(s.get(), &stats); });

@@ -45,6 +45,7 @@ class Struct:
     _c_name: ClassVar[str]
     _dtype: ClassVar[np.dtype[Any]]
     _data: NDArray[Any]
+    _profile: Any = None  # kept alive for the handle in _data
 
     def __init__(self, **fields: Any) -> None:
         # A writable copy of the library's own defaults, structSize included.
@@ -54,7 +55,7 @@ class Struct:
                 setattr(self, name, value)
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if name != "_data" and name not in self.field_names():
+        if name not in ("_data", "_profile") and name not in self.field_names():
             raise AttributeError(f"{type(self).__name__} has no field {name!r}; it has {', '.join(self.field_names())}")
         super().__setattr__(name, value)
 
@@ -71,6 +72,8 @@ class Struct:
                 return value.to_dict()
             if isinstance(value, np.ndarray):
                 return value.tolist()
+            if hasattr(value, "evaluate"):  # a Profile
+                return value.info.name
             return value.name.lower() if isinstance(value, IntEnum) else value
 
         return {name: plain(getattr(self, name)) for name in self.field_names()}
@@ -79,6 +82,7 @@ class Struct:
         """An independent copy."""
         other = type(self)()
         other._data[...] = self._data
+        other._profile = self._profile
         return other
 
     def __repr__(self) -> str:
@@ -177,6 +181,22 @@ class TextField(_Field):
         if len(data) >= size:
             raise self._fail(owner, value, f"at most {size - 1} bytes")
         owner._data[self.name] = data
+
+
+class ProfileField(_Field):
+    """A diffusion profile, or the name of one of the library; None for none."""
+
+    def __get__(self, owner: Struct | None, kind: Any) -> Any:
+        return self if owner is None else owner._profile
+
+    def __set__(self, owner: Struct, value: Any) -> None:
+        from .profile import Profile
+
+        profile = Profile.named(value) if isinstance(value, str) else value
+        if profile is not None and not isinstance(profile, Profile):
+            raise self._fail(owner, value, "a Profile or the name of one of the library")
+        owner._profile = profile
+        owner._data[self.name] = 0 if profile is None else profile._handle.address()
 
 
 class EnumField(_Field, Generic[E]):

@@ -83,8 +83,8 @@ class Lut(OfThisProcess):
         for name, value in fields.items():
             setattr(settings, name, value)
         if profile is not None:
-            settings._data["profile"] = profile._handle.address()  # the library's table keeps it alive
-        with _flight.kept(device._handle, profile):
+            settings.profile = profile
+        with _flight.kept(device._handle, getattr(settings, "profile", None)):
             made = cls._made(device, *create(device._handle, settings._data, _handles(waits)))
         return made._waited(wait)
 

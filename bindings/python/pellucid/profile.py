@@ -22,7 +22,7 @@ def _triple(value: ArrayLike, what: str) -> list[float]:
 class Profile(OfThisProcess):
     """How much of the light that enters at one point leaves at a distance, per RGB channel.
 
-    Made by `skin`, `gaussians`, `burley`, `dipole` or `table`; belongs to no device and never changes. Lengths are in any one
+    Made by `named`, `skin`, `gaussians`, `burley`, `burley_distance`, `dipole` or `table`; belongs to no device and never changes. Lengths are in any one
     unit. Each channel is normalised. `name` is what tables and their files carry, up to 63 bytes.
     """
 
@@ -57,6 +57,21 @@ class Profile(OfThisProcess):
                                                 int(to_enum(BurleyFit, fit, "fit")), name))
 
     @classmethod
+    def burley_distance(cls, distance: ArrayLike, name: str = "") -> Profile:
+        """The same from its own length d (> 0), by which other programs know it."""
+        return cls._made(_native.Profile.burley_distance(_triple(distance, "distance"), name))
+
+    @classmethod
+    def named(cls, material: str) -> Profile:
+        """A material of the library, in mm: "skin", "marble", ...; `library_names` lists them."""
+        return cls._made(_native.Profile.named(material))
+
+    @staticmethod
+    def library_names() -> list[str]:
+        """The names of the library's materials."""
+        return list(_native.Profile.library_names())
+
+    @classmethod
     def dipole(cls, absorption: ArrayLike, reduced_scattering: ArrayLike, eta: float = 1.3, name: str = "") -> Profile:
         """The classical dipole from coefficients in 1/length (> 0) and a relative index > 1 [Jensen et al. 2001]."""
         return cls._made(_native.Profile.dipole(_triple(absorption, "absorption"),
@@ -75,6 +90,13 @@ class Profile(OfThisProcess):
     def info(self) -> ProfileInfo:
         """Radius, widths, normal blend factors."""
         return _filled(ProfileInfo, self._handle.info())
+
+    def transmission(self, distances: ArrayLike) -> NDArray[np.float64]:
+        """What comes through a slab lit evenly on its far side, (n, 3), at n thicknesses >= 0."""
+        d = np.ascontiguousarray(distances, np.float64).ravel()
+        through = np.empty((len(d), 3))
+        self._handle.transmission(d.ctypes.data, len(d), through.ctypes.data)
+        return through
 
     def evaluate(self, distances: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """R (energy per area) and P (energy per length), (n, 3) each, at n distances > 0."""

@@ -187,6 +187,14 @@ class Shader(OfThisProcess):
         images = list(self._images.values())
         return Event(submit(self.device, [i._view for i in images], _handles(waits), self._handle.execute, self, images))
 
+    def material(self, id: int) -> Material:
+        """Material `id` as it is shaded: what was left to defaults has its value. Its profile is left out."""
+        return _filled(Material, self._handle.material(id))
+
+    def warnings(self) -> list[str]:
+        """What the last commit found that was set without effect, or unlikely."""
+        return self._handle.warnings().splitlines()
+
     def stats(self) -> ShaderStats:
         """What the last execution did."""
         self.device.finish()

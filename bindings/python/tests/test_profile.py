@@ -31,6 +31,26 @@ def test_info_and_name():
     assert info.normal_blend[0] == 1
 
 
+def test_named_profiles():
+    names = pel.Profile.library_names()
+    assert names[0] == "skin" and "marble" in names
+    for name in names:
+        info = pel.Profile.named(name).info
+        assert info.name == name and info.source and info.reach > 0
+    with pytest.raises(pel.PellucidError, match="marble"):
+        pel.Profile.named("granite")
+
+
+def test_burley_by_its_own_length_and_its_transmission():
+    d = np.float32([0.9, 0.35, 0.2])
+    s = np.array([0, 0.1, 1, 3])
+    through = pel.Profile.burley_distance(d).transmission(s)
+    assert np.allclose(through, np.exp(-s[:, None] / d) / 4 + np.exp(-s[:, None] / (3 * d)) * 3 / 4, rtol=1e-6)
+    by_path = pel.Profile.burley(d * (1.9 - 0.5 + 3.5 * 0.3**2), 0.5)
+    assert np.allclose(by_path.transmission(s), through, rtol=1e-5)
+    assert by_path.info.mean_free_path.min() > 0 and not pel.Profile.burley_distance(d).info.mean_free_path.any()
+
+
 @pytest.mark.parametrize("use, error", [
     (lambda: pel.Profile.gaussians([]), pel.PellucidError), (lambda: pel.Profile.gaussians([(-1, 1)]), pel.PellucidError),
     (lambda: pel.Profile.gaussians([(1, (1, 1))]), ValueError), (lambda: pel.Profile.burley(0, 0.5), pel.PellucidError),

@@ -432,3 +432,31 @@ def test_programs_are_built_ahead_and_frames_in_bands():
         shader(banded, scratch_budget=100).commit()
     with pytest.raises(pel.PellucidError, match="PelProgramGroup"):
         pel.prefill_programs(device, 64)
+
+
+def test_a_material_may_name_its_profile(device, view):
+    curvature = np.full((HEIGHT, WIDTH), 0.1, np.float32)
+    pictures = []
+    for profile in ("marble", pel.Profile.named("marble")):
+        radiance = np.zeros((HEIGHT, WIDTH, 3), np.float32)
+        shader = shader_for(device, view, radiance, curvature=curvature)
+        material = pel.Material(profile=profile)
+        assert material.profile.info.name == "marble" and material.copy().profile is material.profile
+        shader.set_material(1, material)
+        del material
+        shader.commit().execute()
+        pictures.append(radiance)
+        resolved, info = shader.material(1), pel.Profile.named("marble").info
+        assert resolved.diffusion_radius == info.radius and np.array_equal(resolved.normal_blend, info.normal_blend)
+    assert np.array_equal(*pictures) and np.abs(pictures[0] - view.lambert).max() > 0.01
+    with pytest.raises(ValueError, match="Profile"):
+        pel.Material(profile=3)
+    with pytest.raises(pel.PellucidError, match="marble"):
+        pel.Material(profile="granite")
+
+
+def test_warnings_say_what_has_no_effect(device, view):
+    shader = shader_for(device, view, np.zeros((HEIGHT, WIDTH, 3), np.float32))
+    assert shader.warnings() == []
+    shader.set_material(1, pel.Material(deep_scatter_color=(1, 0, 0))).commit()
+    assert len(shader.warnings()) == 1 and "deepScatterColor" in shader.warnings()[0]

@@ -25,7 +25,8 @@ def test_all_plain_structures_are_there():
 
 
 def test_defaults_come_from_the_library():
-    assert pel.Material().diffusion_radius == np.float32(2.7)
+    assert pel.Material().roughness == np.float32(0.3)
+    assert pel.Material().profile is None
     assert pel.CurvatureLutDesc().width == 512
     assert pel.Light().spot_direction.tolist() == [0, 0, -1]
 
@@ -66,7 +67,7 @@ def test_array_fields_come_back_read_only():
 
 
 def test_documentation_has_units_and_python_names():
-    assert "length; 2.7 mm for skin" in pel.Material.__doc__
+    assert "share of the light that the profile lets through thin parts" in " ".join(pel.Material.__doc__.split())
     assert "Material.shadow_filter_width" in pel.LightSlot.__dict__.get("__doc__", "") + _types.__loader__.get_data(
         _types.__file__).decode()
     for name in pel.__all__:

@@ -454,6 +454,8 @@ PEL_API PelError pelProfileCreateGaussians(const PelGaussian* gaussians, uint32_
  * Source: Christensen and Burley, Approximate Reflectance Profiles for Efficient Subsurface Scattering, 2015. */
 PEL_API PelError pelProfileCreateBurley(const float meanFreePath[3], const float albedo[3], PelBurleyFit fit,
                                         PelProfile* profile);
+/* The same from b itself, length > 0: the d under which other programs know this profile (Blender's radius is 4 pi times it). */
+PEL_API PelError pelProfileCreateBurleyDistance(const float distance[3], PelProfile* profile);
 /* The classical dipole. absorption and reducedScattering > 0, 1/length; eta > 1, the medium against its outside.
  * Source: Jensen, Marschner, Levoy, Hanrahan, A Practical Model for Subsurface Light Transport, 2001. */
 PEL_API PelError pelProfileCreateDipole(const float absorption[3], const float reducedScattering[3], float eta,
@@ -462,6 +464,11 @@ PEL_API PelError pelProfileCreateDipole(const float absorption[3], const float r
  * `values`: RGB per distance, >= 0, up to a factor. Tables are integrated from it as it stands, corners and all. */
 PEL_API PelError pelProfileCreateTable(const float* distances, const float* values, uint32_t count,
                                        PelProfile* profile);
+/* A material of the library, in mm: "skin", "marble", ... Errors: PEL_ERROR_INVALID_ARGUMENT for another name; the message lists
+ * those that there are. */
+PEL_API PelError pelProfileCreateNamed(const char* name, PelProfile* profile);
+/* Name of the library's material `index`, from 0 on; NULL behind the last. Static storage. */
+PEL_API const char* pelProfileLibraryName(uint32_t index);
 PEL_API void pelProfileRetain(PelProfile profile);
 PEL_API void pelProfileRelease(PelProfile profile);
 
@@ -476,11 +483,17 @@ typedef struct PelProfileInfo {
     uint32_t gaussians;   /* terms of the sum that stands for it on the device; 0 for tables */
     uint32_t singular;    /* 1: R grows like 1/d towards 0, so that the ring forms have no finite integral (burley) */
     char name[64];        /* as tables and their files carry it; the kind's name unless pelProfileSetName was called */
+    float meanFreePath[3]; /* length; 0 where the profile does not know it: all but burley from mean free paths, and dipole */
+    float reach;           /* length within which all but a thousandth of the light of each channel leaves again */
+    char source[256];      /* where the numbers of a material of the library come from; "" for others */
 } PelProfileInfo;
 PEL_API PelError pelProfileGetInfo(PelProfile profile, PelProfileInfo* info);
 /* Names a profile, once, before it is used: up to 63 bytes. */
 PEL_API PelError pelProfileSetName(PelProfile profile, const char* name);
 
+/* What comes through a slab that is lit evenly on its far side: the share of R beyond `count` distances >= 0 (length), RGB each.
+ * (1/4) exp(-s/b) + (3/4) exp(-s/3b) for Burley's profile, the sum of w exp(-s^2/2v) for Gaussians [Jimenez et al. 2010]. */
+PEL_API PelError pelProfileTransmission(PelProfile profile, const double* distances, uint32_t count, double* transmission);
 /* R and P at `count` distances > 0 (length): RGB each, either may be NULL. R is energy per area, P energy per length. */
 PEL_API PelError pelProfileEvaluate(PelProfile profile, const double* distances, uint32_t count, double* radial,
                                     double* lineSpread);
@@ -530,6 +543,10 @@ typedef struct PelShadowLutDesc {
     float widthMax;        /* length; typical 100 mm */
     float sharpening;      /* >= 1: how much narrower the shadow gets than the wide filter; typical 10 */
     PelProfile profile;    /* NULL: skin. The table keeps it alive */
+    uint32_t closedEnds;   /* 1: each row rescaled, so that w = 0 gives 0 and w = 1 gives 1: lit skin then keeps what scatters
+                              further than the filter reaches; 0: as it is [FaceWorks] */
+    PelLutAxis axis;       /* PEL_AXIS_LINEAR: w and 1/width linear [FaceWorks]; PEL_AXIS_ROOT: the position across the edge,
+                              (sqrt(w) - sqrt(1 - w)) / 2 + 1/2, and the root of 1/width linear, from end to end */
 } PelShadowLutDesc;
 
 typedef struct PelSpecularLutDesc {
@@ -710,9 +727,10 @@ typedef struct PelMaterial {
     float albedo[3];       /* used when PEL_SLOT_ALBEDO is not set */
     float diffusionRadius; /* length; default 0: that of the curvature LUT, else of the shadow LUT, else skin's 2.7 mm.
                               Where it differs from a LUT's, look-ups are rescaled */
-    float normalBlend[3];  /* how far the blurred normal replaces the shading normal, per channel; 1, 0.3, 0 for skin:
-                              the channel that scatters widest sees the blurred normal only */
-    float shadowFilterWidth;       /* length: penumbra of the wide shadow where the surface faces the light; 8 mm */
+    float normalBlend[3];  /* how far the blurred normal replaces the shading normal, per channel: the channel that scatters
+                              widest sees the blurred normal only. Default -1: the profile's; without one 1, 0.3, 0 */
+    float shadowFilterWidth;       /* length: penumbra of the wide shadow where the surface faces the light. Default 0: three
+                                      times the profile's largest width; without a profile 8 mm */
     float deepScatterColor[3];     /* 0: no deep scatter */
     float deepScatterRadius;       /* length, sigma of the transmission through thickness; 6 mm */
     float deepScatterNormalOffset; /* length the position moves inwards before thickness is measured; 0.2 mm */
@@ -731,6 +749,15 @@ typedef struct PelMaterial {
                                       inward normal: off without it, also with shadow maps; 0 */
     PelScattering scattering;      /* PEL_SCATTERING_PREINTEGRATED. All but it take shadows from maps sharp: compared about a
                                       texel wide, whatever the filter's fields of PelLight say */
+    PelProfile profile;            /* in mm; the shader keeps it alive. Everything left to defaults follows from it: both tables
+                                      (made, and kept for the device), widths, normal blend, transmission. NULL: none */
+    float transmission;            /* share of the light that the profile lets through thin parts (pelProfileTransmission of the
+                                      thickness along the light, times max(-Ng.L, 0)): the larger of it and the table's dark
+                                      side counts. Needs a profile, and a thickness image or a shadow map with thicknessTaps;
+                                      a deepScatterColor stands in its place; 1 */
+    float curvatureGain;           /* how much more a body of curvature c reflects than a half-space of the same medium: direct
+                                      light times 1 + curvatureGain * 1.38 * meanFreePath * c. Needs a profile that knows its
+                                      mean free path; 0 */
 } PelMaterial;
 
 /* Light from everywhere: E(n) = constant + sum of sh[i] * basis_i(n) over the 9 orthonormal real spherical harmonics of
@@ -766,6 +793,7 @@ typedef enum PelFeature {
     PEL_FEATURE_AMBIENT_CUBE = 1 << 13, /* ambient light from a cube map */
     PEL_FEATURE_IRRADIANCE = 1 << 14,   /* a material whose diffuse light comes from irradiance per pixel */
     PEL_FEATURE_MAKE_IRRADIANCE = 1 << 15, /* which is made here: there is no PEL_SLOT_IRRADIANCE */
+    PEL_FEATURE_TRANSMISSION = 1 << 23, /* PelMaterial.transmission, and thickness from an image or taps */
     PEL_FEATURE_SHADOW_CUBE = 1 << 24,     /* a shadow map of a cube, for thickness or a wide shadow */
     PEL_FEATURE_SHADOW_CASCADES = 1 << 25, /* cascades, likewise */
     PEL_FEATURE_SHADOW_EXPONENTIAL = 1 << 26, /* PEL_SHADOW_CONTENT_EXPONENTIAL, likewise */
@@ -825,6 +853,7 @@ typedef struct PelShaderOptions {
     PelTileLists tileLists;
     float targetError;        /* of methods that leave out what changes little: how much of white their result may be off, 0 to 1;
                                  0.002 */
+    float millimetresPerUnit; /* of positions, > 0: profiles are in mm, every other length in the scene's unit; 1 */
 } PelShaderOptions;
 
 PEL_API PelError pelShaderCreate(PelDevice device, PelShader* shader);
@@ -833,7 +862,8 @@ PEL_API void pelShaderRelease(PelShader shader);
 PEL_API PelError pelShaderSetOptions(PelShader shader, const PelShaderOptions* options);
 /* A NULL image clears the slot. */
 PEL_API PelError pelShaderSetImage(PelShader shader, PelImageSlot slot, const PelImageDesc* image);
-/* Material `id`, 1 to 255; a NULL material removes it. Either LUT may be NULL: no direct scattering, plain shadow. */
+/* Material `id`, 1 to 255; a NULL material removes it. Either LUT may be NULL: the profile's own then, or, without a profile, no
+ * direct scattering, plain shadow. */
 PEL_API PelError pelShaderSetMaterial(PelShader shader, uint32_t id, const PelMaterial* material, PelLut curvatureLut,
                                       PelLut shadowLut);
 /* The tangent-space normal map of material `id`, which must be set: `levels` images, each half the size of the one before,
@@ -860,6 +890,11 @@ PEL_API PelError pelShaderCommit(PelShader shader);
 /* Shades. Blocking, it tells a progress callback of the device how far it is, about every million pixels; cancelled by it,
  * some pixels are shaded and others not. Errors: PEL_ERROR_CANCELLED; PEL_ERROR_INVALID_STATE when something was set after the last commit. */
 PEL_API PelError pelShaderExecute(PelShader shader, const PelSubmit* submit);
+/* Material `id` as it is shaded: every field that was left to a default has its value. profile comes back NULL. */
+PEL_API PelError pelShaderGetMaterial(PelShader shader, uint32_t id, PelMaterial* material);
+/* What the last commit found that was set without effect, or unlikely: sentences, one a line; "" if nothing. Valid until the
+ * shader's next commit or its release. */
+PEL_API PelError pelShaderGetWarnings(PelShader shader, const char** warnings);
 /* Waits for the last execution. */
 PEL_API PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats);
 

@@ -246,6 +246,22 @@ class Profile : public Handle<PelProfile, pelProfileRetain, pelProfileRelease> {
         check(pelProfileCreateBurley(meanFreePath, albedo, fit, p.out()));
         return p;
     }
+    static Profile burleyDistance(const float (&distance)[3]) {
+        Profile p;
+        check(pelProfileCreateBurleyDistance(distance, p.out()));
+        return p;
+    }
+    // A material of the library.
+    static Profile named(const std::string& name) {
+        Profile p;
+        check(pelProfileCreateNamed(name.c_str(), p.out()));
+        return p;
+    }
+    static std::vector<std::string> libraryNames() {
+        std::vector<std::string> names;
+        for (uint32_t i = 0; const char* name = pelProfileLibraryName(i); ++i) names.push_back(name);
+        return names;
+    }
     static Profile dipole(const float (&absorption)[3], const float (&reducedScattering)[3], float eta) {
         Profile p;
         check(pelProfileCreateDipole(absorption, reducedScattering, eta, p.out()));
@@ -266,6 +282,11 @@ class Profile : public Handle<PelProfile, pelProfileRetain, pelProfileRelease> {
     }
     void setName(const std::string& name) const { check(pelProfileSetName(h_, name.c_str())); }
     // RGB per distance.
+    std::vector<double> transmission(const std::vector<double>& distances) const {
+        std::vector<double> values(3 * distances.size());
+        check(pelProfileTransmission(h_, distances.data(), uint32_t(distances.size()), values.data()));
+        return values;
+    }
     std::vector<double> radial(const std::vector<double>& distances) const {
         std::vector<double> values(3 * distances.size());
         check(pelProfileEvaluate(h_, distances.data(), uint32_t(distances.size()), values.data(), nullptr));
@@ -345,6 +366,16 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
     Shader& set(const PelCamera& camera) { return done(pelShaderSetCamera(h_, &camera)); }
     Shader& commit() { return done(pelShaderCommit(h_)); }
     void execute(const PelSubmit* submit = nullptr) const { check(pelShaderExecute(h_, submit)); }
+    PelMaterial material(uint32_t id) const {
+        PelMaterial material = pelMaterialDefaults();
+        check(pelShaderGetMaterial(h_, id, &material));
+        return material;
+    }
+    std::string warnings() const {
+        const char* text = "";
+        check(pelShaderGetWarnings(h_, &text));
+        return text;
+    }
     PelShaderStats stats() const {
         PelShaderStats stats = pelShaderStatsDefaults();
         check(pelShaderGetStats(h_, &stats));

@@ -83,9 +83,8 @@ static inline PelLight pelLightDefaults(void) {
 static inline PelMaterial pelMaterialDefaults(void) {
     PEL_ZEROED_(PelMaterial, s);
     s.albedo[0] = s.albedo[1] = s.albedo[2] = 0.5f;
-    s.normalBlend[0] = 1.0f;
-    s.normalBlend[1] = 0.3f;
-    s.shadowFilterWidth = 8.0f;
+    s.normalBlend[0] = s.normalBlend[1] = s.normalBlend[2] = -1.0f;
+    s.transmission = 1.0f;
     s.deepScatterRadius = 6.0f;
     s.deepScatterNormalOffset = 0.2f;
     s.thicknessFilterRadius = 0.02f;
@@ -109,6 +108,7 @@ static inline PelShaderStats pelShaderStatsDefaults(void) { PEL_ZEROED_(PelShade
 static inline PelShaderOptions pelShaderOptionsDefaults(void) {
     PEL_ZEROED_(PelShaderOptions, s);
     s.targetError = 2e-3f;
+    s.millimetresPerUnit = 1.0f;
     return s;
 }
 static inline PelPrefill pelPrefillDefaults(void) { PEL_ZEROED_(PelPrefill, s); return s; }

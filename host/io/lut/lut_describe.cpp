@@ -25,6 +25,10 @@ std::vector<std::pair<std::string, Attribute>> describeLut(const PelLutInfo& inf
         all.emplace_back("pellucid:form", std::string(lutFormNames[info.curvature.form]));
         all.emplace_back("pellucid:axis", std::string(lutAxisNames[info.curvature.axis]));
     }
+    if (info.kind == PEL_LUT_SHADOW) {
+        all.emplace_back("pellucid:axis", std::string(lutAxisNames[info.shadow.axis]));
+        all.emplace_back("pellucid:closedEnds", int(info.shadow.closedEnds));
+    }
     visitLutNumbers(info, [&](const char* name, float value) { all.emplace_back(name, value); });
     return all;
 }

@@ -166,7 +166,8 @@ void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLut
         same("diffusion_radius", curvature ? c.diffusionRadius : s.diffusionRadius,
              curvature ? askedC.diffusionRadius : askedS.diffusionRadius);
         same("form", lutFormNames[c.form], lutFormNames[askedC.form]);
-        same("axis", lutAxisNames[c.axis], lutAxisNames[askedC.axis]);
+        same("axis", lutAxisNames[curvature ? c.axis : s.axis], lutAxisNames[curvature ? askedC.axis : askedS.axis]);
+        same("closed_ends", s.closedEnds, askedS.closedEnds);
         same("radius_min", c.radiusMin, askedC.radiusMin);
         same("radius_max", c.radiusMax, askedC.radiusMax);
         same("width_min", s.widthMin, askedS.widthMin);
@@ -206,6 +207,15 @@ PelLutInfo lutInfoOf(const Image& image) {
             PelCurvatureForm(indexOf(path, "pellucid:form", needText("pellucid:form"), lutFormNames));
         info.curvature.axis =
             PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), lutAxisNames));
+    }
+    if (info.kind == PEL_LUT_SHADOW) {
+        // Files of before these were options have neither.
+        info.shadow.axis = PEL_AXIS_LINEAR;
+        info.shadow.closedEnds = 0;
+        if (image.attribute("pellucid:axis"))
+            info.shadow.axis = PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), lutAxisNames));
+        if (image.attribute("pellucid:closedEnds"))
+            info.shadow.closedEnds = uint32_t(need("pellucid:closedEnds", static_cast<int*>(nullptr)));
     }
     info.curvature.width = info.shadow.width = info.specular.width = uint32_t(image.width);
     info.curvature.height = info.shadow.height = info.specular.height = uint32_t(image.height);

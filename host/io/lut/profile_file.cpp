@@ -41,6 +41,13 @@ Profile gaussians(TomlReader& reader, float unit) {
 }
 
 Profile burley(TomlReader& reader, float unit) {
+    if (reader.has("distance")) {
+        for (const char* key : {"mean_free_path", "albedo", "fit"})
+            if (reader.has(key)) reader.fail(key, "cannot stand beside 'distance', which is what it would give; leave one out");
+        float distance[3];
+        threeNumbers(reader, "distance", distance, Range::Positive, "burley", unit);
+        return Profile::burleyDistance(distance);
+    }
     float path[3], albedo[3];
     threeNumbers(reader, "mean_free_path", path, Range::Positive, "burley", unit);
     threeNumbers(reader, "albedo", albedo, Range::ZeroToOne, "burley", 1);
@@ -115,18 +122,17 @@ ProfileFile parseProfile(const std::string& file, const std::string& text) {
     return result;
 }
 
-std::optional<std::string_view> libraryProfile(std::string_view name) {
-    for (const LibraryProfile& entry : profileLibrary())
-        if (entry.name == name) return entry.text;
-    return {};
-}
-
 ProfileFile findProfile(const std::string& nameOrPath) {
     if (extensionOf(nameOrPath) == "toml") return parseProfile(nameOrPath, readWholeFile(nameOrPath, textLimit));
-    if (const auto text = libraryProfile(nameOrPath)) return parseProfile(nameOrPath, std::string(*text));
     std::string known;
-    for (const LibraryProfile& entry : profileLibrary())
-        known.append(known.empty() ? "" : ", ").append(entry.name);
+    for (const std::string& name : Profile::libraryNames()) {
+        if (name == nameOrPath) {
+            const Profile profile = Profile::named(name);
+            const PelProfileInfo info = profile.info();
+            return {name, std::string(kinds[info.kind]), info.source, profile};
+        }
+        known.append(known.empty() ? "" : ", ").append(name);
+    }
     throw FileError(nameOrPath, "is no material of the library (" + known + ") and no .toml file");
 }
 

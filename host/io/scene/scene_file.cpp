@@ -28,7 +28,7 @@ void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind) {
         reader.fail("profile", "cannot stand beside 'file', which was made with its own; leave one out");
     if (!lut.file.empty())
         for (const char* key : {"form", "axis", "width", "height", "diffusion_radius", "radius_min",
-                                "radius_max", "width_min", "width_max", "sharpening"})
+                                "radius_max", "width_min", "width_max", "sharpening", "closed_ends"})
             if (reader.has(key)) lut.expected.push_back(key);
     if (lut.file.empty() && kind == PEL_LUT_CURVATURE &&
         lut.info.curvature.radiusMin >= lut.info.curvature.radiusMax)
@@ -115,6 +115,7 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
     reader.integer("blur_normals", scene.blurNormals, 0, 1);
     reader.integer("rotate_taps", scene.rotateTaps, 0, 1);
     reader.number("target_error", scene.targetError, Range::ZeroToOne);
+    reader.number("unit_mm", scene.unitMm, Range::Positive);
     reader.table("camera", true, [&](TomlReader& r) { cameraKeys(r, scene.camera); });
     reader.table("ambient", true, [&](TomlReader& r) { ambientKeys(r, scene); });
     reader.table("outputs", true, [&](TomlReader& r) { outputFileKeys(r, scene); });
@@ -142,6 +143,7 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
         if (l.profile.ends_with(".toml")) l.profile = (folder / l.profile).string();
     }
     for (SceneMaterial& m : scene.materials) {
+        if (m.profile.ends_with(".toml")) m.profile = (folder / m.profile).string();
         if (!m.normalMap.empty()) m.normalMap = (folder / m.normalMap).string();
     }
     if (!scene.ambientCube.empty()) scene.ambientCube = (folder / scene.ambientCube).string();

@@ -21,12 +21,17 @@ struct SceneLut {
     int line = 0;                            // of the scene file; 0: made by a program
 };
 
+// How tables of a material that names none are made.
+enum class ScenePreset { none, faceworks };
+
 struct SceneMaterial {
     uint32_t id = 1;  // value in the material channel, 1 to 255
     PelMaterial material = pelMaterialDefaults();
-    std::string curvatureLut;  // name of a SceneLut; "": no direct scattering
+    std::string curvatureLut;  // name of a SceneLut; "": the profile's; without a profile no direct scattering
     std::string shadowLut;     // likewise; "": plain shadow
-    std::string normalMap;  // image of tangent-space normals, x, y, z from 0 to 1 as in 8-bit files; "": none
+    std::string profile;       // a material's name or a profile file: what is left to defaults follows from it; "": none
+    ScenePreset preset = ScenePreset::none;
+    std::string normalMap;     // image of tangent-space normals, x, y, z from 0 to 1 as in 8-bit files; "": none
     int line = 0;
 };
 
@@ -55,6 +60,7 @@ struct SceneFile {
     uint32_t blurNormals = 0;  // PelShaderOptions.blurNormals
     uint32_t rotateTaps = 0;   // PelShaderOptions.rotateTaps
     float targetError = pelShaderOptionsDefaults().targetError;  // PelShaderOptions.targetError
+    float unitMm = 1;  // PelShaderOptions.millimetresPerUnit
     std::string
         ambientCube;  // image of an irradiance cube map, six faces below or beside one another; "": none
     std::array<std::string, PEL_SLOT_COUNT>

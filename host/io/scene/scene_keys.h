@@ -21,6 +21,7 @@ constexpr std::string_view specularModels[] = {PEL_EACH_SPECULAR_MODEL(PELLUCID_
 constexpr std::string_view scatterings[] = {PEL_EACH_SCATTERING(PELLUCID_KEY)};
 #undef PELLUCID_KEY
 constexpr std::string_view cascadeKeys[] = {"cascade_1", "cascade_2", "cascade_3"};
+constexpr std::string_view scenePresets[] = {"none", "faceworks"};                     // ScenePreset
 constexpr std::string_view curvatureForms[] = {"arc", "ring", "half-ring", "sphere", "penner-ring"};  // PelCurvatureForm
 constexpr std::string_view lutAxes[] = {"linear", "root"};                             // PelLutAxis
 
@@ -121,10 +122,14 @@ void materialKeys(Visitor& v, Material& m) {
     v.integer("id", m.id, 1, 255);
     v.text("curvature_lut", m.curvatureLut);
     v.text("shadow_lut", m.shadowLut);
+    v.text("profile", m.profile);
+    v.choice("preset", m.preset, scenePresets);
+    v.number("transmission", m.material.transmission, Range::NotNegative);
+    v.number("curvature_gain", m.material.curvatureGain, Range::NotNegative);
     v.numbers("albedo", m.material.albedo, 3, Range::NotNegative);
     v.number("diffusion_radius", m.material.diffusionRadius, Range::NotNegative);
     v.numbers("normal_blend", m.material.normalBlend, 3, Range::ZeroToOne);
-    v.number("shadow_filter_width", m.material.shadowFilterWidth, Range::Positive);
+    v.number("shadow_filter_width", m.material.shadowFilterWidth, Range::NotNegative);
     v.numbers("deep_scatter_color", m.material.deepScatterColor, 3, Range::NotNegative);
     v.number("deep_scatter_radius", m.material.deepScatterRadius, Range::Positive);
     v.number("deep_scatter_normal_offset", m.material.deepScatterNormalOffset, Range::NotNegative);
@@ -167,6 +172,8 @@ void shadowLutKeys(Visitor& v, Lut& l) {
     v.number("width_min", l.info.shadow.widthMin, Range::Positive);
     v.number("width_max", l.info.shadow.widthMax, Range::Positive);
     v.number("sharpening", l.info.shadow.sharpening, Range::AtLeastOne);
+    v.choice("axis", l.info.shadow.axis, lutAxes);
+    v.integer("closed_ends", l.info.shadow.closedEnds, 0, 1);
 }
 
 }  // namespace pellucid::io

@@ -15,8 +15,10 @@ class TomlWriter {
     explicit TomlWriter(std::string& out, std::string name = "") : out_(out), name_(std::move(name)) {}
 
     void number(std::string_view key, float value, Range) { line(key, shown(value)); }
-    void numbers(std::string_view key, const float* values, size_t count, Range) {
-        line(key, shown(values, count));
+    // Below its range a value stands for a default that has no number of its own.
+    void numbers(std::string_view key, const float* values, size_t count, Range range) {
+        if (range == Range::Any || std::all_of(values, values + count, [](float v) { return v >= 0; }))
+            line(key, shown(values, count));
     }
     void rows(std::string_view key, const float* values, size_t rows, size_t columns) {
         std::string text = "[\n";
@@ -85,6 +87,7 @@ void writeScene(const std::string& path, const SceneFile& scene) {
     if (scene.rotateTaps) TomlWriter(out).integer("rotate_taps", scene.rotateTaps, 0, 1);
     if (scene.targetError != pelShaderOptionsDefaults().targetError)
         TomlWriter(out).number("target_error", scene.targetError, Range::ZeroToOne);
+    if (scene.unitMm != 1) TomlWriter(out).number("unit_mm", scene.unitMm, Range::Positive);
     const auto table = [&](const std::string& header, const std::string& name, auto&& function) {
         out += "\n" + header + "\n";
         TomlWriter writer(out, name);

@@ -1,0 +1,320 @@
+// A material that names its profile: tables, widths, transmission and gain that follow from it, against closed forms and the
+// oracle's tables; units; what is said about settings without effect.
+#include <gtest/gtest.h>
+
+#include <pellucid/pellucid.hpp>
+
+#include <cmath>
+#include <random>
+
+#include "reference/lut.h"
+#include "tolerances.h"
+
+using namespace pellucid;
+
+namespace {
+
+constexpr float distance[3] = {0.9f, 0.35f, 0.2f};  // mm
+constexpr uint32_t width = 64, height = 3;
+
+// Spheres of many sizes under a light from above, each pixel with a thickness, a shadow and a position of its own; lengths in mm.
+struct Scene {
+    std::vector<float> normals, curvature, thickness, shadow, position;
+    float toLight[3] = {0, 0, 1};
+
+    Scene() {
+        std::mt19937 random(4);
+        std::uniform_real_distribution<float> even(0, 1);
+        for (uint32_t i = 0; i < width * height; ++i) {
+            const float z = 2 * (float(i) + 0.5f) / float(width * height) - 1, angle = 6.28f * even(random), q = std::sqrt(1 - z * z);
+            const float n[3] = {q * std::cos(angle), q * std::sin(angle), z};
+            normals.insert(normals.end(), n, n + 3);
+            curvature.push_back(0.3f * even(random));
+            thickness.push_back(i % 5 == 0 ? 0 : 4 * even(random));
+            shadow.push_back(i % 3 == 0 ? 1 : even(random));
+            for (float c : n) position.push_back(20 * c);
+        }
+    }
+};
+
+struct Inputs {
+    bool thickness = true, shadow = false;
+    float perMillimetre = 1;  // units of the scene
+    PelShaderOptions options = pelShaderOptionsDefaults();
+};
+
+class Shading {
+  public:
+    Shading(const PelMaterial& material, const Inputs& in = {}, const Lut& curvatureLut = {}, const Lut& shadowLut = {})
+        : shader(device), out(device, width * height * 3 * sizeof(float)) {
+        const auto image = [&](PelImageSlot slot, std::vector<float> values, PelFormat format, float scale) {
+            for (float& v : values) v *= scale;
+            buffers.emplace_back(device, values);
+            shader.set(slot, imageDesc(buffers.back(), format, width, height));
+        };
+        shader.set(in.options);
+        shader.set(PEL_SLOT_RADIANCE, imageDesc(out, PEL_FORMAT_RGB32F, width, height));
+        image(PEL_SLOT_NORMAL_SHADING, scene.normals, PEL_FORMAT_RGB32F, 1);
+        image(PEL_SLOT_CURVATURE, scene.curvature, PEL_FORMAT_R32F, 1 / in.perMillimetre);
+        if (in.thickness) image(PEL_SLOT_THICKNESS, scene.thickness, PEL_FORMAT_R32F, in.perMillimetre);
+        PelLight light = pelLightDefaults();
+        std::copy(scene.toLight, scene.toLight + 3, light.toLight);
+        shader.set(std::vector<PelLight>{light});
+        if (in.shadow) {
+            buffers.emplace_back(device, scene.shadow);
+            shader.set(0, PEL_LIGHT_WIDE_SHADOW, imageDesc(buffers.back(), PEL_FORMAT_R32F, width, height));
+        }
+        shader.setMaterial(1, material, curvatureLut, shadowLut).commit();
+    }
+    std::vector<float> radiance() {
+        shader.execute();
+        return out.readAll<float>();
+    }
+    Scene scene;
+    Device device{""};
+    Shader shader;
+    Buffer out;
+    std::vector<Buffer> buffers;
+};
+
+PelMaterial materialOf(const Profile& profile) {
+    PelMaterial m = pelMaterialDefaults();
+    m.profile = profile.get();
+    for (float& a : m.albedo) a = 1;
+    return m;
+}
+
+// The oracle's D and transmission of the profile at a pixel of the scene.
+reference::ProfilePtr oracleProfile() {
+    // burley from mean free paths of s(A) times d: albedo 1 gives s = 1.9 - 1 + 3.5 * 0.04
+    const double s = 0.9 + 3.5 * 0.04;
+    return reference::burleyProfile({distance[0] * s, distance[1] * s, distance[2] * s}, {1, 1, 1});
+}
+
+}  // namespace
+
+TEST(ShadeProfile, TheProfileAloneGivesItsTablesAndWidths) {
+    const Profile profile = Profile::burleyDistance(distance);
+    const PelProfileInfo info = profile.info();
+    Inputs in;
+    in.thickness = false;
+    Shading shading(materialOf(profile), in);
+    const auto radiance = shading.radiance();
+    const auto truth = oracleProfile();
+    for (size_t i = 0; i < width * height; ++i) {
+        const auto d = reference::curvatureD(reference::Form::sphere, *truth, shading.scene.normals[3 * i + 2],
+                                             1 / std::max(double(shading.scene.curvature[i]), 1e-3 / info.radius));
+        for (size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(radiance[3 * i + c], d[int(c)], tolerance::profileLookUp) << "pixel " << i << " channel " << c;
+    }
+    const PelMaterial resolved = shading.shader.material(1);
+    EXPECT_EQ(resolved.diffusionRadius, info.radius);
+    EXPECT_FLOAT_EQ(resolved.shadowFilterWidth, 3 * info.width[0]);
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(resolved.normalBlend[c], info.normalBlend[c]);
+}
+
+TEST(ShadeProfile, WithoutAProfileNothingChanges) {
+    PelMaterial plain = pelMaterialDefaults();
+    const PelMaterial resolved = Shading(plain).shader.material(1);
+    const float blend[3] = {1, 0.3f, 0};
+    EXPECT_EQ(resolved.diffusionRadius, 2.7f);
+    EXPECT_EQ(resolved.shadowFilterWidth, 8);
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(resolved.normalBlend[c], blend[c]);
+}
+
+// A table of another profile than skin, read by a material that says nothing of a radius, is not stretched.
+TEST(ShadeProfile, ARadiusOfZeroIsTheTablesOwn) {
+    const Profile marble = Profile::named("marble");
+    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    desc.width = desc.height = 32;
+    desc.profile = marble.get();
+    const Lut lut(Device(""), desc);
+    EXPECT_EQ(lut.info().curvature.diffusionRadius, marble.info().radius);
+    PelMaterial silent = pelMaterialDefaults(), spoken = silent;
+    spoken.diffusionRadius = marble.info().radius;
+    EXPECT_EQ(Shading(silent).shader.material(1).diffusionRadius, 2.7f);
+    Shading a(silent), b(spoken);
+    const Lut own(a.device, desc), other(b.device, desc);
+    a.shader.setMaterial(1, silent, own).commit();
+    b.shader.setMaterial(1, spoken, other).commit();
+    EXPECT_EQ(a.shader.material(1).diffusionRadius, marble.info().radius);
+    EXPECT_EQ(a.radiance(), b.radiance());
+}
+
+// Section 11: the slab's transmission takes the place of the table's dark side where it is the larger, and is never added.
+TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
+    const Profile profile = Profile::burleyDistance(distance);
+    const auto truth = oracleProfile();
+    Shading shading(materialOf(profile));
+    const auto radiance = shading.radiance();
+    PelMaterial off = materialOf(profile);
+    off.transmission = 0;
+    const auto without = Shading(off).radiance();
+    int through = 0;
+    for (size_t i = 0; i < width * height; ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            const double s = shading.scene.thickness[i], d = distance[c], back = std::max(0.0f, -shading.scene.normals[3 * i + 2]);
+            const double slab = back * (0.25 * std::exp(-s / d) + 0.75 * std::exp(-s / (3 * d)));
+            EXPECT_NEAR(radiance[3 * i + c], std::max(double(without[3 * i + c]), slab), tolerance::profileLookUp)
+                << "pixel " << i << " channel " << c << " thickness " << s;
+            through += slab > without[3 * i + c] + tolerance::profileLookUp;
+        }
+    EXPECT_GT(through, 100);
+    PelMaterial half = materialOf(profile);
+    half.transmission = 0.5f;
+    const auto less = Shading(half).radiance();
+    for (size_t i = 0; i < less.size(); ++i) EXPECT_LE(less[i], radiance[i]);
+}
+
+TEST(ShadeProfile, TransmissionOfEveryKindIsWhatLiesBeyond) {
+    const std::vector<Profile> all{Profile::skin(), Profile::named("marble"), Profile::burleyDistance(distance),
+                                   Profile::table({0, 1, 2.5f}, {3, 2, 1, 1, 1, 2, 0, 0.5f, 0})};
+    for (const Profile& profile : all) {
+        const double radius = profile.info().radius;
+        for (double s : {0.0, 0.2, 1.0, 2.0}) {
+            // 1 less the integral of R 2 pi d dd up to s, by midpoints in the root of d: R may grow like 1/d.
+            constexpr int steps = 20000;
+            std::vector<double> at;
+            for (int i = 0; i < steps; ++i) at.push_back(std::max(1e-12, s * radius * std::pow((i + 0.5) / steps, 2)));
+            const auto R = profile.radial(at);
+            const auto through = profile.transmission({s * radius});
+            for (size_t c = 0; c < 3; ++c) {
+                double within = 0;
+                for (size_t i = 0; i < steps; ++i)
+                    within += R[3 * i + c] * 2 * M_PI * at[i] * s * radius * 2 * (double(i) + 0.5) / steps / steps;
+                EXPECT_NEAR(through[c], 1 - within, tolerance::transmissionSum) << profile.info().name << " s " << s << " channel " << c;
+            }
+        }
+        EXPECT_LE(profile.transmission({profile.info().reach})[0], 1.001e-3);
+    }
+}
+
+// Closed ends: where the filter is lit to its end the shadow takes nothing, and leaves nothing at the other end.
+TEST(ShadeProfile, LitSkinLosesNothingToTheShadow) {
+    const Profile profile = Profile::burleyDistance(distance);
+    Inputs in;
+    in.thickness = false;
+    const auto lit = Shading(materialOf(profile), in).radiance();
+    in.shadow = true;
+    Shading shading(materialOf(profile), in);
+    const auto shadowed = shading.radiance();
+    for (size_t i = 0; i < width * height; ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            if (shading.scene.shadow[i] == 1) EXPECT_NEAR(shadowed[3 * i + c], lit[3 * i + c], tolerance::unitRoundTrip);
+            EXPECT_LE(shadowed[3 * i + c], lit[3 * i + c] + tolerance::unitRoundTrip);
+        }
+}
+
+// The same scene in millimetres, centimetres and metres.
+TEST(ShadeProfile, UnitsOfTheSceneDoNotMatter) {
+    const Profile profile = Profile::named("skin-burley");
+    Inputs in;
+    in.shadow = true;
+    PelMaterial material = materialOf(profile);
+    material.curvatureGain = 1;
+    const auto expected = Shading(material, in).radiance();
+    for (float unit : {10.0f, 1000.0f, 0.001f}) {
+        in.perMillimetre = 1 / unit;
+        in.options.millimetresPerUnit = unit;
+        Shading shading(material, in);
+        const auto radiance = shading.radiance();
+        for (size_t i = 0; i < radiance.size(); ++i) EXPECT_NEAR(radiance[i], expected[i], tolerance::unitRoundTrip) << "unit " << unit;
+        EXPECT_NEAR(shading.shader.material(1).diffusionRadius * unit / profile.info().radius, 1, tolerance::unitRoundTrip);
+    }
+}
+
+TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
+    const float path[3] = {1, 0.5f, 0.25f}, albedo[3] = {0.8f, 0.8f, 0.8f};
+    const Profile profile = Profile::burley(path, albedo);
+    Inputs in;
+    in.thickness = false;
+    const auto plain = Shading(materialOf(profile), in).radiance();
+    PelMaterial material = materialOf(profile);
+    material.curvatureGain = 1;
+    Shading shading(material, in);
+    const auto gained = shading.radiance();
+    for (size_t i = 0; i < width * height; ++i)
+        for (size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(gained[3 * i + c], plain[3 * i + c] * (1 + 1.38 * path[c] * shading.scene.curvature[i]), tolerance::unitRoundTrip);
+    // d alone says nothing of the mean free path.
+    const Profile kept = Profile::burleyDistance(distance);
+    PelMaterial unknown = materialOf(kept);
+    unknown.curvatureGain = 1;
+    EXPECT_THROW(Shading(unknown, in), Error);
+    EXPECT_NE(std::string(pelGetErrorMessage()).find("mean free path"), std::string::npos);
+}
+
+TEST(ShadeProfile, WhatHasNoEffectIsSaid) {
+    PelMaterial m = pelMaterialDefaults();
+    Inputs in;
+    in.thickness = false;
+    EXPECT_EQ(Shading(m, in).shader.warnings(), "");
+    m.deepScatterColor[0] = 1;
+    EXPECT_NE(Shading(m, in).shader.warnings().find("deepScatterColor without effect"), std::string::npos);
+    in.thickness = true;
+    EXPECT_EQ(Shading(m, in).shader.warnings(), "");
+}
+
+TEST(ShadeProfile, TexelsLongerThanTheReachAreSaid) {
+    const Profile profile = Profile::burleyDistance(distance);
+    Inputs in;
+    in.thickness = false;
+    Shading shading(materialOf(profile), in);
+    const std::vector<float> depth(4 * 4, 0.5f);
+    shading.buffers.emplace_back(shading.device, depth);
+    const PelImageDesc map = imageDesc(shading.buffers.back(), PEL_FORMAT_R32F, 4, 4);
+    shading.buffers.emplace_back(shading.device, shading.scene.position);
+    shading.shader.set(PEL_SLOT_POSITION, imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
+    for (float extent : {4.0f, 400.0f}) {  // texels of 1 and of 100 mm
+        PelLight light = pelLightDefaults();
+        light.worldToShadow[0] = light.worldToShadow[5] = 1 / extent;
+        light.worldToShadow[3] = light.worldToShadow[7] = 0.5f;
+        light.worldToShadow[10] = -1 / extent;
+        light.shadowDepthRange = extent;
+        shading.shader.set(std::vector<PelLight>{light}).set(0, PEL_LIGHT_SHADOW_MAP, map).commit();
+        EXPECT_EQ(shading.shader.warnings().find("texel") != std::string::npos, extent > 100) << shading.shader.warnings();
+    }
+}
+
+// The greatest thickness about a point: a step in the map makes nothing thin that stands behind its nearer side.
+TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
+    const Profile profile = Profile::burleyDistance(distance);
+    PelMaterial material = materialOf(profile);
+    Inputs in;
+    in.thickness = false;
+    Shading shading(material, in);
+    constexpr uint32_t side = 32;
+    constexpr float extent = 64;  // mm, 2 a texel; the light looks down from z = 32
+    std::vector<float> depth(side * side);
+    for (uint32_t i = 0; i < depth.size(); ++i) depth[i] = i % side < side / 2 ? 0.25f : 0.5f;  // z = 16 and z = 0
+    shading.buffers.emplace_back(shading.device, depth);
+    const PelImageDesc map = imageDesc(shading.buffers.back(), PEL_FORMAT_R32F, side, side);
+    std::vector<float> position(width * height * 3), normals;
+    for (uint32_t i = 0; i < width * height; ++i) {
+        position[3 * i] = -30 + 60 * (float(i % width) + 0.5f) / float(width);
+        position[3 * i + 2] = -1;
+        const float n[3] = {0, 0, -1};
+        normals.insert(normals.end(), n, n + 3);
+    }
+    shading.buffers.emplace_back(shading.device, position);
+    shading.shader.set(PEL_SLOT_POSITION, imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
+    shading.buffers.emplace_back(shading.device, normals);
+    shading.shader.set(PEL_SLOT_NORMAL_SHADING, imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
+    shading.buffers.emplace_back(shading.device, std::vector<float>(width * height, 0.0f));  // flat: the table's dark side is 0
+    shading.shader.set(PEL_SLOT_CURVATURE, imageDesc(shading.buffers.back(), PEL_FORMAT_R32F, width, height));
+    PelLight light = pelLightDefaults();
+    light.worldToShadow[0] = 1 / extent, light.worldToShadow[5] = -1 / extent, light.worldToShadow[10] = -1 / extent;
+    light.worldToShadow[3] = light.worldToShadow[7] = light.worldToShadow[11] = 0.5f;
+    light.shadowDepthRange = extent;
+    shading.shader.set(std::vector<PelLight>{light}).set(0, PEL_LIGHT_SHADOW_MAP, map).commit();
+    const auto radiance = shading.radiance();
+    for (uint32_t x = 0; x < width; ++x) {
+        const float at = position[3 * x];
+        if (at > -1 && at < 6) continue;  // within two texels and a half of the step: one or the other
+        const double s = at < 0 ? 17 : 1;
+        for (size_t c = 0; c < 3; ++c) {
+            const double slab = 0.25 * std::exp(-s / distance[c]) + 0.75 * std::exp(-s / (3 * distance[c]));
+            EXPECT_NEAR(radiance[3 * x + c], slab, tolerance::profileLookUp) << "x " << at;
+        }
+    }
+}
