@@ -89,7 +89,7 @@ ShadedView shadeView(Run& run, Stages& stages, LutStore& luts, const sample::Sce
     ShadedView shaded;
     const io::SceneFile variants[] = {withoutScattering(view.scene), withoutDeepScatter(view.scene),
                                       view.scene};
-    const char* names[] = {"Lambert", "scattering", "scattering + deep scatter"};
+    const char* names[] = {"Lambert", "scattering", "scattering + transmission"};
     for (int i = 0; i < 3; ++i) {
         Frame frame(run.device(), view.gbuffer, variants[i], luts, view.shadowMaps);
         stages.measure(view.name + ": shade, " + names[i], pixels, "pixels",

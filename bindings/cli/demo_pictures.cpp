@@ -98,7 +98,7 @@ std::string writeParts(const std::string& folder, const DemoView& view, const Fr
     };
     add("sum", developed(view, frame.radiance()));
     add("diffuse", developed(view, frame.output(PEL_SLOT_OUT_DIFFUSE)));
-    add("deep scatter", developed(view, frame.output(PEL_SLOT_OUT_DEEP_SCATTER)));
+    add("transmission", developed(view, frame.output(PEL_SLOT_OUT_DEEP_SCATTER)));
     add("specular", developed(view, frame.output(PEL_SLOT_OUT_SPECULAR)));
     add("thickness",
         io::colored(view.gbuffer.width, view.gbuffer.height, frame.output(PEL_SLOT_OUT_THICKNESS), 0, longest,

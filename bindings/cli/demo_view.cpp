@@ -11,7 +11,7 @@
 namespace pellucid::cli {
 namespace {
 
-constexpr const char *curvatureLutName = "skin", *shadowLutName = "skin edges";
+constexpr const char *profileName = "skin", *curvatureLutName = "skin", *shadowLutName = "skin edges";
 constexpr int shadowMapSize = 2048;  // texels a side: 0.15 mm each for a head
 
 template <class Work>
@@ -47,11 +47,9 @@ PelMaterial glossy(float specular, float roughness) {
 
 PelMaterial skin() {
     PelMaterial m = pelMaterialDefaults();
-    // Blood and tissue let red through furthest.
-    const float transmitted[3] = {0.7f, 0.16f, 0.05f};
-    std::copy(transmitted, transmitted + 3, m.deepScatterColor);
-    m.deepScatterRadius = 6.0f;
-    m.shadowFilterWidth = 8;
+    // What the library would choose; the sample host's own filter wants to know it.
+    const PelProfileInfo info = Profile::named(profileName).info();
+    m.shadowFilterWidth = 3 * std::max({info.width[0], info.width[1], info.width[2]});
     m.specular = 0.35f;
     return m;
 }
@@ -100,8 +98,7 @@ std::vector<io::SceneMaterial> materialsOf(const DemoHead& head) {
     std::vector<io::SceneMaterial> materials(std::max<size_t>(1, head.looks.size()));
     for (size_t i = 0; i < materials.size(); ++i) materials[i].id = uint32_t(i + 1);
     materials[0].material = skin();
-    materials[0].curvatureLut = curvatureLutName;
-    materials[0].shadowLut = shadowLutName;
+    materials[0].profile = profileName;
     if (materials.size() > 1) {
         materials[DEMO_EYES - 1].material = glossy(0.6f, 0.08f);
         materials[DEMO_TEETH - 1].material = glossy(0.5f, 0.15f);
@@ -118,7 +115,9 @@ io::SceneFile standardLuts() {
     scene.luts.resize(2);
     scene.luts[0].name = curvatureLutName;
     scene.luts[1].name = shadowLutName;
+    scene.luts[0].info.curvature.form = PEL_FORM_SPHERE;
     scene.luts[1].info.kind = PEL_LUT_SHADOW;
+    scene.luts[1].info.shadow.closedEnds = 1;
     return scene;
 }
 
@@ -174,15 +173,14 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
 }
 
 io::SceneFile withoutDeepScatter(io::SceneFile scene) {
-    for (io::SceneMaterial& m : scene.materials) std::fill_n(m.material.deepScatterColor, 3, 0.0f);
+    for (io::SceneMaterial& m : scene.materials) m.material.transmission = 0;
     return scene;
 }
 
 io::SceneFile withoutScattering(io::SceneFile scene) {
     scene = withoutDeepScatter(std::move(scene));
     for (io::SceneMaterial& m : scene.materials) {
-        m.curvatureLut.clear();
-        m.shadowLut.clear();
+        m.profile.clear();
     }
     // One normal for all channels, as a renderer without scattering has.
     scene.channels[PEL_SLOT_NORMAL_BLURRED].clear();

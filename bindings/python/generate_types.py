@@ -109,7 +109,7 @@ def python_field(field, kind, shape, enums, structs):
         return f'("{p}", "S{shape[0]}")', f'TextField("{p}")', "", "str"
     if kind in HANDLES:
         h = HANDLES[kind]
-        return f'("{p}", np.uintp)', f'{h}Field("{p}")', f'"{h} | str"', f"{h} or its name in the library"
+        return f'("{p}", np.uintp)', f'{h}Field("{p}")', f"{h} | str", f"{h} or its name in the library"
     if kind in enums:
         e = kind[3:]
         return f'("{p}", np.int32)', f'EnumField("{p}", {e})', f"{e} | str", f"{e} or its name"

@@ -33,7 +33,8 @@ const char* pelProfileLibraryName(uint32_t index) {
     return index < profileLibrary().size() ? profileLibrary()[index].name : nullptr;
 }
 
-PelError pelProfileTransmission(PelProfile profile, const double* distances, uint32_t count, double* transmission) {
+PelError pelProfileTransmission(PelProfile profile, const double* distances, uint32_t count,
+                                double* transmission) {
     return entry([&] {
         const Ref<Profile> held = fromHandle<Profile>(profile);
         const ProfileShape& shape = held->shape();
@@ -41,7 +42,8 @@ PelError pelProfileTransmission(PelProfile profile, const double* distances, uin
         if (count > 0 && !transmission) invalidArgument("a transmission to fill is needed, not NULL");
         for (uint32_t i = 0; i < count; ++i)
             if (!std::isfinite(distances[i]) || distances[i] < 0)
-                invalidArgument("distance ", i, " is ", distances[i], "; a finite length of 0 or more is needed");
+                invalidArgument("distance ", i, " is ", distances[i],
+                                "; a finite length of 0 or more is needed");
         for (uint32_t i = 0; i < count; ++i) {
             const Rgb t = shape.transmission(distances[i]);
             std::copy(t.begin(), t.end(), transmission + 3 * i);

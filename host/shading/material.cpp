@@ -9,8 +9,8 @@
 namespace pel {
 namespace {
 
-// The wide filter spans three standard deviations of the widest line spread: a narrower one cuts red off, a wider one makes shadows
-// of its own, which narrow channels show most (docs/shading.md, "Materials").
+// The wide filter spans three standard deviations of the widest line spread: a narrower one cuts red off, a
+// wider one makes shadows of its own, which narrow channels show most (docs/shading.md, "Materials").
 constexpr double filterWidths = 3;
 constexpr double reflectionGain = 1.38;  // of a ball, per mean free path times curvature (section 12)
 constexpr float noBlend[3] = {1, 0.3f, 0};
@@ -68,11 +68,12 @@ double transmissionReach(const Profile& profile) {
     return 2 * profile.reach();
 }
 
-const ProfileTables::Tables& ProfileTables::get(const Ref<Device>& device, Profile& profile, float filterWidth) {
+const ProfileTables::Tables& ProfileTables::get(const Ref<Device>& device, Profile& profile,
+                                                float filterWidth) {
     for (const Tables& known : all_)
         if (known.profile.get() == &profile && known.filterWidth == filterWidth) return known;
-    all_.push_back({Ref<Profile>(&profile), filterWidth, curvatureTable(device, profile), shadowTable(device, profile, filterWidth),
-                    transmissionTable(device, profile)});
+    all_.push_back({Ref<Profile>(&profile), filterWidth, curvatureTable(device, profile),
+                    shadowTable(device, profile, filterWidth), transmissionTable(device, profile)});
     return all_.back();
 }
 
@@ -84,14 +85,16 @@ void ProfileTables::keepOnly(const std::map<uint32_t, ShaderMaterial>& materials
     });
 }
 
-void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const PelShaderOptions& options, ProfileTables& tables) {
+void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const PelShaderOptions& options,
+                     ProfileTables& tables) {
     PelMaterial m = material.given;
     const double unit = options.millimetresPerUnit;
     Profile* profile = material.profile.get();
     material.curvatureLut = material.givenCurvatureLut;
     material.shadowLut = material.givenShadowLut;
     material.transmission = {};
-    if (m.shadowFilterWidth == 0) m.shadowFilterWidth = float((profile ? filterWidths * widest(*profile) : 8.0) / unit);
+    if (m.shadowFilterWidth == 0)
+        m.shadowFilterWidth = float((profile ? filterWidths * widest(*profile) : 8.0) / unit);
     if (profile) {
         const ProfileTables::Tables& made = tables.get(device, *profile, float(m.shadowFilterWidth * unit));
         if (!material.curvatureLut) material.curvatureLut = made.curvature;
@@ -109,10 +112,11 @@ void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const 
     if (!profile) m.transmission = 0;
     for (int c = 0; c < 3; ++c) {
         if (m.curvatureGain != 0 && !(info.meanFreePath[c] > 0))
-            invalidArgument("PelMaterial.curvatureGain is ", m.curvatureGain, ", and ",
-                            profile ? "its profile knows no mean free path: burley from mean free paths, and dipole do"
-                                    : "it has no profile, whose mean free path it needs",
-                            "; 0 would be right");
+            invalidArgument(
+                "PelMaterial.curvatureGain is ", m.curvatureGain, ", and ",
+                profile ? "its profile knows no mean free path: burley from mean free paths, and dipole do"
+                        : "it has no profile, whose mean free path it needs",
+                "; 0 would be right");
         material.gain[c] = float(m.curvatureGain * reflectionGain * info.meanFreePath[c] / unit);
     }
     material.params = m;

@@ -8,7 +8,8 @@
 
 namespace pel {
 
-// Finds or makes the tables of a profile and keeps them as long as a material has it: setting the same material again is free.
+// Finds or makes the tables of a profile and keeps them as long as a material has it: setting the same
+// material again is free.
 class ProfileTables {
   public:
     struct Tables {
@@ -28,9 +29,10 @@ class ProfileTables {
 // The thickness at the end of the transmission's row, mm: what comes through is nothing there.
 double transmissionReach(const Profile& profile);
 
-// Fills in material.params and its tables from material.given: see PelMaterial. Throws PEL_ERROR_INVALID_ARGUMENT for what the
-// profile cannot give.
-void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const PelShaderOptions& options, ProfileTables& tables);
+// Fills in material.params and its tables from material.given: see PelMaterial. Throws
+// PEL_ERROR_INVALID_ARGUMENT for what the profile cannot give.
+void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const PelShaderOptions& options,
+                     ProfileTables& tables);
 
 // Sentences, one a line, about what is set without effect or is unlikely (pelShaderGetWarnings).
 std::string warningsOf(const ShaderState& state, uint32_t features);

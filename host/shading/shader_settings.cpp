@@ -10,7 +10,8 @@ namespace pel {
 void Shader::setOptions(const PelShaderOptions& options) {
     checkOptions(options);
     if (options.millimetresPerUnit != state_.options.millimetresPerUnit)
-        for (auto& [id, material] : state_.materials) resolveMaterial(material, device_, options, profileTables_);
+        for (auto& [id, material] : state_.materials)
+            resolveMaterial(material, device_, options, profileTables_);
     state_.options = options;
     committed_ = false;
 }
@@ -46,7 +47,8 @@ void Shader::setMaterial(uint32_t id, const PelMaterial* material, Lut* curvatur
     check(curvatureLut, PEL_LUT_CURVATURE, "curvature");
     check(shadowLut, PEL_LUT_SHADOW, "shadow");
     const auto known = state_.materials.find(id);
-    ShaderMaterial set = known == state_.materials.end() ? ShaderMaterial() : known->second;  // which may have a normal map
+    ShaderMaterial set =
+        known == state_.materials.end() ? ShaderMaterial() : known->second;  // which may have a normal map
     set.given = *material;
     set.profile = material->profile ? fromHandle<Profile>(material->profile) : Ref<Profile>();
     set.givenCurvatureLut = Ref(curvatureLut);

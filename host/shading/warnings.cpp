@@ -13,7 +13,8 @@ double texelLength(const PelLight& l, const ImageView& map) {
     double longest = 0;
     for (int row = 0; row < 2; ++row) {
         const float* m = l.worldToShadow + 4 * row;
-        const double perLength = std::hypot(double(m[0]), double(m[1]), double(m[2])) / std::abs(double(l.worldToShadow[15]));
+        const double perLength =
+            std::hypot(double(m[0]), double(m[1]), double(m[2])) / std::abs(double(l.worldToShadow[15]));
         if (perLength > 0) longest = std::max(longest, 1 / (perLength * (row ? map.height : map.width)));
     }
     return longest;
@@ -28,24 +29,30 @@ bool isBlackColor(const float (&c)[3]) {
 std::string warningsOf(const ShaderState& state, uint32_t features) {
     std::string all;
     const auto warn = [&](auto&&... parts) { all += (all.empty() ? "" : "\n") + text(parts...); };
-    const bool map = std::any_of(state.lights.begin(), state.lights.end(), [](const ShaderLight& l) {
-        return bool(l.images[PEL_LIGHT_SHADOW_MAP]);
-    });
+    const bool map = std::any_of(state.lights.begin(), state.lights.end(),
+                                 [](const ShaderLight& l) { return bool(l.images[PEL_LIGHT_SHADOW_MAP]); });
     const bool thickness = bool(state.images[PEL_SLOT_THICKNESS]);
     for (const auto& [id, material] : state.materials) {
         const PelMaterial& m = material.params;
-        if (!isBlackColor(m.deepScatterColor) && !state.lights.empty() && !thickness && !(map && m.thicknessTaps))
-            warn("material ", id, " has a deepScatterColor without effect: there is neither a thickness image nor a light with a "
+        if (!isBlackColor(m.deepScatterColor) && !state.lights.empty() && !thickness &&
+            !(map && m.thicknessTaps))
+            warn("material ", id,
+                 " has a deepScatterColor without effect: there is neither a thickness image nor a light "
+                 "with a "
                  "shadow map and thicknessTaps above 0");
         if (material.curvatureLut && !state.lights.empty() && !state.images[PEL_SLOT_CURVATURE])
             warn("material ", id, " has a curvature table without effect: there is no curvature image");
-        if (!(features & PEL_FEATURE_TRANSMISSION) || thickness || !material.profile || m.transmission == 0) continue;
+        if (!(features & PEL_FEATURE_TRANSMISSION) || thickness || !material.profile || m.transmission == 0)
+            continue;
         const double reach = material.profile->reach() / state.options.millimetresPerUnit;
         for (size_t i = 0; i < state.lights.size(); ++i) {
-            const double texel = texelLength(state.lights[i].params, state.lights[i].images[PEL_LIGHT_SHADOW_MAP]);
+            const double texel =
+                texelLength(state.lights[i].params, state.lights[i].images[PEL_LIGHT_SHADOW_MAP]);
             if (texel > reach)
-                warn("a texel of the shadow map of light ", i, " is ", texel, " long, and light reaches ", reach, " far in material ", id,
-                     ": what comes through thin parts is guessed; a finer map is needed, or millimetresPerUnit is not ",
+                warn("a texel of the shadow map of light ", i, " is ", texel, " long, and light reaches ",
+                     reach, " far in material ", id,
+                     ": what comes through thin parts is guessed; a finer map is needed, or "
+                     "millimetresPerUnit is not ",
                      state.options.millimetresPerUnit);
         }
     }

@@ -64,6 +64,20 @@ TEST_F(SceneFileTest, TheDocumentedExampleIsRead) {
     EXPECT_EQ(scene.lut("skin", PEL_LUT_SHADOW)->file, path("shadow_lut.exr"));
 }
 
+// What a material leaves to its profile is not written, and a profile file lies relative to the scene.
+TEST_F(SceneFileTest, DefaultsOfAMaterialStayDefaults) {
+    SceneFile scene = readScene(write("s.toml", example()));
+    scene.materials[0] = SceneMaterial();
+    scene.materials[0].profile = "marble";
+    writeScene(path("out.toml"), scene);
+    const SceneFile again = readScene(path("out.toml"));
+    EXPECT_EQ(again.materials[0].profile, "marble");
+    EXPECT_EQ(again.materials[0].material.normalBlend[0], -1);
+    EXPECT_EQ(again.materials[0].material.shadowFilterWidth, 0);
+    EXPECT_EQ(again.materials[0].material.diffusionRadius, 0);
+    EXPECT_EQ(again.unitMm, 1);
+}
+
 TEST_F(SceneFileTest, WrittenIsRead) {
     SceneFile scene = readScene(write("s.toml", example()));
     std::mt19937 random(7);
@@ -71,7 +85,8 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     for (float* f :
          {&scene.camera.position[0], &scene.camera.position[1], &scene.camera.inverseViewProjection[5],
           &scene.lights[0].light.worldToShadow[7], &scene.materials[0].material.roughness,
-          &scene.materials[0].material.normalBlend[1], &scene.ambient.sh[8][2], &scene.ambient.constant[0]}) {
+          &scene.materials[0].material.normalBlend[0], &scene.materials[0].material.normalBlend[1],
+          &scene.materials[0].material.normalBlend[2], &scene.ambient.sh[8][2], &scene.ambient.constant[0]}) {
         *f = any(random);
     }
     scene.ambient.sh[3][1] = 1.17549435e-38f;
@@ -89,6 +104,13 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     scene.channels[PEL_SLOT_TANGENT] = {"T.X", "T.Y", "T.Z", "T.W"};
     scene.materials[0].normalMap = path("normals.png");
     scene.materials[0].material.uvScale = 12.5f;
+    scene.materials[0].material.transmission = 0.25f;
+    scene.materials[0].material.curvatureGain = 1;
+    scene.materials[0].profile = path("of/mine.toml");
+    scene.materials[0].preset = ScenePreset::faceworks;
+    scene.unitMm = 10;
+    scene.luts[1].info.shadow.closedEnds = 1;
+    scene.luts[1].info.shadow.axis = PEL_AXIS_ROOT;
     scene.lights[0].light.shadowFilterTexels = 48;
     scene.lights[0].light.shadowSoftness = 0.125f;
     PelLight& shadow = scene.lights[0].light;
@@ -131,6 +153,9 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     ASSERT_EQ(again.materials.size(), 1u);
     EXPECT_TRUE(same(again.materials[0].material, scene.materials[0].material));
     EXPECT_EQ(again.materials[0].curvatureLut, "skin");
+    EXPECT_EQ(again.materials[0].profile, scene.materials[0].profile);
+    EXPECT_EQ(again.materials[0].preset, ScenePreset::faceworks);
+    EXPECT_EQ(again.unitMm, 10);
     ASSERT_EQ(again.luts.size(), 2u);
     EXPECT_TRUE(same(again.luts[1].info.shadow, scene.luts[1].info.shadow));
 }

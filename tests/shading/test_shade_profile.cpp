@@ -1,5 +1,5 @@
-// A material that names its profile: tables, widths, transmission and gain that follow from it, against closed forms and the
-// oracle's tables; units; what is said about settings without effect.
+// A material that names its profile: tables, widths, transmission and gain that follow from it, against
+// closed forms and the oracle's tables; units; what is said about settings without effect.
 #include <gtest/gtest.h>
 
 #include <pellucid/pellucid.hpp>
@@ -17,7 +17,8 @@ namespace {
 constexpr float distance[3] = {0.9f, 0.35f, 0.2f};  // mm
 constexpr uint32_t width = 64, height = 3;
 
-// Spheres of many sizes under a light from above, each pixel with a thickness, a shadow and a position of its own; lengths in mm.
+// Spheres of many sizes under a light from above, each pixel with a thickness, a shadow and a position of its
+// own; lengths in mm.
 struct Scene {
     std::vector<float> normals, curvature, thickness, shadow, position;
     float toLight[3] = {0, 0, 1};
@@ -26,7 +27,8 @@ struct Scene {
         std::mt19937 random(4);
         std::uniform_real_distribution<float> even(0, 1);
         for (uint32_t i = 0; i < width * height; ++i) {
-            const float z = 2 * (float(i) + 0.5f) / float(width * height) - 1, angle = 6.28f * even(random), q = std::sqrt(1 - z * z);
+            const float z = 2 * (float(i) + 0.5f) / float(width * height) - 1, angle = 6.28f * even(random),
+                        q = std::sqrt(1 - z * z);
             const float n[3] = {q * std::cos(angle), q * std::sin(angle), z};
             normals.insert(normals.end(), n, n + 3);
             curvature.push_back(0.3f * even(random));
@@ -45,7 +47,8 @@ struct Inputs {
 
 class Shading {
   public:
-    Shading(const PelMaterial& material, const Inputs& in = {}, const Lut& curvatureLut = {}, const Lut& shadowLut = {})
+    Shading(const PelMaterial& material, const Inputs& in = {}, const Lut& curvatureLut = {},
+            const Lut& shadowLut = {})
         : shader(device), out(device, width * height * 3 * sizeof(float)) {
         const auto image = [&](PelImageSlot slot, std::vector<float> values, PelFormat format, float scale) {
             for (float& v : values) v *= scale;
@@ -102,10 +105,12 @@ TEST(ShadeProfile, TheProfileAloneGivesItsTablesAndWidths) {
     const auto radiance = shading.radiance();
     const auto truth = oracleProfile();
     for (size_t i = 0; i < width * height; ++i) {
-        const auto d = reference::curvatureD(reference::Form::sphere, *truth, shading.scene.normals[3 * i + 2],
-                                             1 / std::max(double(shading.scene.curvature[i]), 1e-3 / info.radius));
+        const auto d =
+            reference::curvatureD(reference::Form::sphere, *truth, shading.scene.normals[3 * i + 2],
+                                  1 / std::max(double(shading.scene.curvature[i]), 1e-3 / info.radius));
         for (size_t c = 0; c < 3; ++c)
-            EXPECT_NEAR(radiance[3 * i + c], d[int(c)], tolerance::profileLookUp) << "pixel " << i << " channel " << c;
+            EXPECT_NEAR(radiance[3 * i + c], d[int(c)], tolerance::profileLookUp)
+                << "pixel " << i << " channel " << c;
     }
     const PelMaterial resolved = shading.shader.material(1);
     EXPECT_EQ(resolved.diffusionRadius, info.radius);
@@ -141,7 +146,8 @@ TEST(ShadeProfile, ARadiusOfZeroIsTheTablesOwn) {
     EXPECT_EQ(a.radiance(), b.radiance());
 }
 
-// Section 11: the slab's transmission takes the place of the table's dark side where it is the larger, and is never added.
+// Section 11: the slab's transmission takes the place of the table's dark side where it is the larger, and is
+// never added.
 TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
     const Profile profile = Profile::burleyDistance(distance);
     const auto truth = oracleProfile();
@@ -153,9 +159,11 @@ TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
     int through = 0;
     for (size_t i = 0; i < width * height; ++i)
         for (size_t c = 0; c < 3; ++c) {
-            const double s = shading.scene.thickness[i], d = distance[c], back = std::max(0.0f, -shading.scene.normals[3 * i + 2]);
+            const double s = shading.scene.thickness[i], d = distance[c],
+                         back = std::max(0.0f, -shading.scene.normals[3 * i + 2]);
             const double slab = back * (0.25 * std::exp(-s / d) + 0.75 * std::exp(-s / (3 * d)));
-            EXPECT_NEAR(radiance[3 * i + c], std::max(double(without[3 * i + c]), slab), tolerance::profileLookUp)
+            EXPECT_NEAR(radiance[3 * i + c], std::max(double(without[3 * i + c]), slab),
+                        tolerance::profileLookUp)
                 << "pixel " << i << " channel " << c << " thickness " << s;
             through += slab > without[3 * i + c] + tolerance::profileLookUp;
         }
@@ -167,7 +175,8 @@ TEST(ShadeProfile, TransmissionIsTheSlabsAndNeverAdded) {
 }
 
 TEST(ShadeProfile, TransmissionOfEveryKindIsWhatLiesBeyond) {
-    const std::vector<Profile> all{Profile::skin(), Profile::named("marble"), Profile::burleyDistance(distance),
+    const std::vector<Profile> all{Profile::skin(), Profile::named("marble"),
+                                   Profile::burleyDistance(distance),
                                    Profile::table({0, 1, 2.5f}, {3, 2, 1, 1, 1, 2, 0, 0.5f, 0})};
     for (const Profile& profile : all) {
         const double radius = profile.info().radius;
@@ -175,21 +184,25 @@ TEST(ShadeProfile, TransmissionOfEveryKindIsWhatLiesBeyond) {
             // 1 less the integral of R 2 pi d dd up to s, by midpoints in the root of d: R may grow like 1/d.
             constexpr int steps = 20000;
             std::vector<double> at;
-            for (int i = 0; i < steps; ++i) at.push_back(std::max(1e-12, s * radius * std::pow((i + 0.5) / steps, 2)));
+            for (int i = 0; i < steps; ++i)
+                at.push_back(std::max(1e-12, s * radius * std::pow((i + 0.5) / steps, 2)));
             const auto R = profile.radial(at);
             const auto through = profile.transmission({s * radius});
             for (size_t c = 0; c < 3; ++c) {
                 double within = 0;
                 for (size_t i = 0; i < steps; ++i)
-                    within += R[3 * i + c] * 2 * M_PI * at[i] * s * radius * 2 * (double(i) + 0.5) / steps / steps;
-                EXPECT_NEAR(through[c], 1 - within, tolerance::transmissionSum) << profile.info().name << " s " << s << " channel " << c;
+                    within +=
+                        R[3 * i + c] * 2 * M_PI * at[i] * s * radius * 2 * (double(i) + 0.5) / steps / steps;
+                EXPECT_NEAR(through[c], 1 - within, tolerance::transmissionSum)
+                    << profile.info().name << " s " << s << " channel " << c;
             }
         }
         EXPECT_LE(profile.transmission({profile.info().reach})[0], 1.001e-3);
     }
 }
 
-// Closed ends: where the filter is lit to its end the shadow takes nothing, and leaves nothing at the other end.
+// Closed ends: where the filter is lit to its end the shadow takes nothing, and leaves nothing at the other
+// end.
 TEST(ShadeProfile, LitSkinLosesNothingToTheShadow) {
     const Profile profile = Profile::burleyDistance(distance);
     Inputs in;
@@ -200,7 +213,8 @@ TEST(ShadeProfile, LitSkinLosesNothingToTheShadow) {
     const auto shadowed = shading.radiance();
     for (size_t i = 0; i < width * height; ++i)
         for (size_t c = 0; c < 3; ++c) {
-            if (shading.scene.shadow[i] == 1) EXPECT_NEAR(shadowed[3 * i + c], lit[3 * i + c], tolerance::unitRoundTrip);
+            if (shading.scene.shadow[i] == 1)
+                EXPECT_NEAR(shadowed[3 * i + c], lit[3 * i + c], tolerance::unitRoundTrip);
             EXPECT_LE(shadowed[3 * i + c], lit[3 * i + c] + tolerance::unitRoundTrip);
         }
 }
@@ -218,8 +232,10 @@ TEST(ShadeProfile, UnitsOfTheSceneDoNotMatter) {
         in.options.millimetresPerUnit = unit;
         Shading shading(material, in);
         const auto radiance = shading.radiance();
-        for (size_t i = 0; i < radiance.size(); ++i) EXPECT_NEAR(radiance[i], expected[i], tolerance::unitRoundTrip) << "unit " << unit;
-        EXPECT_NEAR(shading.shader.material(1).diffusionRadius * unit / profile.info().radius, 1, tolerance::unitRoundTrip);
+        for (size_t i = 0; i < radiance.size(); ++i)
+            EXPECT_NEAR(radiance[i], expected[i], tolerance::unitRoundTrip) << "unit " << unit;
+        EXPECT_NEAR(shading.shader.material(1).diffusionRadius * unit / profile.info().radius, 1,
+                    tolerance::unitRoundTrip);
     }
 }
 
@@ -235,7 +251,9 @@ TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
     const auto gained = shading.radiance();
     for (size_t i = 0; i < width * height; ++i)
         for (size_t c = 0; c < 3; ++c)
-            EXPECT_NEAR(gained[3 * i + c], plain[3 * i + c] * (1 + 1.38 * path[c] * shading.scene.curvature[i]), tolerance::unitRoundTrip);
+            EXPECT_NEAR(gained[3 * i + c],
+                        plain[3 * i + c] * (1 + 1.38 * path[c] * shading.scene.curvature[i]),
+                        tolerance::unitRoundTrip);
     // d alone says nothing of the mean free path.
     const Profile kept = Profile::burleyDistance(distance);
     PelMaterial unknown = materialOf(kept);
@@ -264,7 +282,8 @@ TEST(ShadeProfile, TexelsLongerThanTheReachAreSaid) {
     shading.buffers.emplace_back(shading.device, depth);
     const PelImageDesc map = imageDesc(shading.buffers.back(), PEL_FORMAT_R32F, 4, 4);
     shading.buffers.emplace_back(shading.device, shading.scene.position);
-    shading.shader.set(PEL_SLOT_POSITION, imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
+    shading.shader.set(PEL_SLOT_POSITION,
+                       imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
     for (float extent : {4.0f, 400.0f}) {  // texels of 1 and of 100 mm
         PelLight light = pelLightDefaults();
         light.worldToShadow[0] = light.worldToShadow[5] = 1 / extent;
@@ -272,11 +291,13 @@ TEST(ShadeProfile, TexelsLongerThanTheReachAreSaid) {
         light.worldToShadow[10] = -1 / extent;
         light.shadowDepthRange = extent;
         shading.shader.set(std::vector<PelLight>{light}).set(0, PEL_LIGHT_SHADOW_MAP, map).commit();
-        EXPECT_EQ(shading.shader.warnings().find("texel") != std::string::npos, extent > 100) << shading.shader.warnings();
+        EXPECT_EQ(shading.shader.warnings().find("texel") != std::string::npos, extent > 100)
+            << shading.shader.warnings();
     }
 }
 
-// The greatest thickness about a point: a step in the map makes nothing thin that stands behind its nearer side.
+// The greatest thickness about a point: a step in the map makes nothing thin that stands behind its nearer
+// side.
 TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
     const Profile profile = Profile::burleyDistance(distance);
     PelMaterial material = materialOf(profile);
@@ -286,7 +307,8 @@ TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
     constexpr uint32_t side = 32;
     constexpr float extent = 64;  // mm, 2 a texel; the light looks down from z = 32
     std::vector<float> depth(side * side);
-    for (uint32_t i = 0; i < depth.size(); ++i) depth[i] = i % side < side / 2 ? 0.25f : 0.5f;  // z = 16 and z = 0
+    for (uint32_t i = 0; i < depth.size(); ++i)
+        depth[i] = i % side < side / 2 ? 0.25f : 0.5f;  // z = 16 and z = 0
     shading.buffers.emplace_back(shading.device, depth);
     const PelImageDesc map = imageDesc(shading.buffers.back(), PEL_FORMAT_R32F, side, side);
     std::vector<float> position(width * height * 3), normals;
@@ -297,13 +319,17 @@ TEST(ShadeProfile, ThicknessFromAMapIsTheGreatestNearby) {
         normals.insert(normals.end(), n, n + 3);
     }
     shading.buffers.emplace_back(shading.device, position);
-    shading.shader.set(PEL_SLOT_POSITION, imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
+    shading.shader.set(PEL_SLOT_POSITION,
+                       imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
     shading.buffers.emplace_back(shading.device, normals);
-    shading.shader.set(PEL_SLOT_NORMAL_SHADING, imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
-    shading.buffers.emplace_back(shading.device, std::vector<float>(width * height, 0.0f));  // flat: the table's dark side is 0
+    shading.shader.set(PEL_SLOT_NORMAL_SHADING,
+                       imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
+    shading.buffers.emplace_back(
+        shading.device, std::vector<float>(width * height, 0.0f));  // flat: the table's dark side is 0
     shading.shader.set(PEL_SLOT_CURVATURE, imageDesc(shading.buffers.back(), PEL_FORMAT_R32F, width, height));
     PelLight light = pelLightDefaults();
-    light.worldToShadow[0] = 1 / extent, light.worldToShadow[5] = -1 / extent, light.worldToShadow[10] = -1 / extent;
+    light.worldToShadow[0] = 1 / extent, light.worldToShadow[5] = -1 / extent,
+    light.worldToShadow[10] = -1 / extent;
     light.worldToShadow[3] = light.worldToShadow[7] = light.worldToShadow[11] = 0.5f;
     light.shadowDepthRange = extent;
     shading.shader.set(std::vector<PelLight>{light}).set(0, PEL_LIGHT_SHADOW_MAP, map).commit();

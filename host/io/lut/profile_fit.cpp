@@ -13,7 +13,8 @@ namespace {
 constexpr size_t sampleCount = 400;
 constexpr int candidates = 96;  // variances that a joining Gaussian is tried with
 
-// The line spread at logarithmic steps; root of the weight times a value, so that sums of squares are integrals over s.
+// The line spread at logarithmic steps; root of the weight times a value, so that sums of squares are
+// integrals over s.
 struct Samples {
     std::vector<double> at, root;
     std::vector<double> value[3];  // of a channel, times root, of norm 1
@@ -67,8 +68,8 @@ Mixture weighted(const Samples& s, std::vector<double> logVariance) {
     return m;
 }
 
-// One step of Levenberg and Marquardt over all variances and those weights that are not 0, whose sum stays: where the variances
-// shall be.
+// One step of Levenberg and Marquardt over all variances and those weights that are not 0, whose sum stays:
+// where the variances shall be.
 std::vector<double> stepOf(const Samples& s, const Mixture& m, double damping) {
     const size_t n = m.logVariance.size();
     std::vector<size_t> free[3];
@@ -92,7 +93,8 @@ std::vector<double> stepOf(const Samples& s, const Mixture& m, double damping) {
         for (size_t i = 0; i < sampleCount; ++i) {
             double r = s.value[c][i];
             for (size_t g = 0; g < n; ++g) {
-                const double part = m.weights[c][g] * a.column(g)[i], x = s.at[i] * s.at[i] / std::exp(m.logVariance[g]);
+                const double part = m.weights[c][g] * a.column(g)[i],
+                             x = s.at[i] * s.at[i] / std::exp(m.logVariance[g]);
                 r -= part;
                 jacobian.column(firstVariance + g)[c * sampleCount + i] = part * 0.5 * (x - 1);
             }

@@ -12,10 +12,11 @@ struct ProfileFit {
     double error[3];  // per channel of the profile that these Gaussians make when they are loaded: fitError
 };
 
-// Variances shared by the channels; weights >= 0 that add up to 1 per channel, as those of a loaded profile do; 1 <= count <=
-// 12. Gaussians join one by one where they help most; after each, variances and weights go downhill together (Levenberg,
-// Marquardt), and at last each is taken out and put where it helps more, as long as that is somewhere else. A profile that is a
-// sum of `count` Gaussians comes back as it is.
+// Variances shared by the channels; weights >= 0 that add up to 1 per channel, as those of a loaded profile
+// do; 1 <= count <=
+// 12. Gaussians join one by one where they help most; after each, variances and weights go downhill together
+// (Levenberg, Marquardt), and at last each is taken out and put where it helps more, as long as that is
+// somewhere else. A profile that is a sum of `count` Gaussians comes back as it is.
 ProfileFit fitGaussians(const Profile& profile, int count);
 
 // Per channel: root of int (P - fit)^2 ds / int P^2 ds, over the line spread P of `profile`.

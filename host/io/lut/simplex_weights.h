@@ -13,11 +13,12 @@ struct Columns {
     const double* column(size_t i) const { return values.data() + i * rows; }
 };
 
-// The x with the least |A x - b|, by Householder reflections; a column that depends on others gets 0. `a` and `b` are spoiled.
+// The x with the least |A x - b|, by Householder reflections; a column that depends on others gets 0. `a` and
+// `b` are spoiled.
 std::vector<double> leastSquares(Columns& a, std::vector<double>& b);
 
-// The weights w >= 0 with sum 1 and the least |A w - b|: the active sets of Lawson and Hanson (Solving Least Squares Problems,
-// 1974, chapter 23), on the simplex.
+// The weights w >= 0 with sum 1 and the least |A w - b|: the active sets of Lawson and Hanson (Solving Least
+// Squares Problems, 1974, chapter 23), on the simplex.
 std::vector<double> simplexWeights(const Columns& a, std::span<const double> b);
 
 // The sum of squares of A w - b.

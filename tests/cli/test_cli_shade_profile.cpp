@@ -1,0 +1,91 @@
+// `pellucid shade` with materials that name their profile: files beside the scene, units, the preset, and
+// what is said about sizes that can hardly be meant.
+#include <nlohmann/json.hpp>
+
+#include "cli_shade.h"
+#include "io/file_error.h"
+
+using namespace pellucid;
+using shade_files::Shade;
+
+namespace {
+
+class ShadeProfile : public Shade {
+  protected:
+    // Points of a sphere of that radius, and its curvature.
+    void addSphere(float radius) {
+        const std::vector<float> normals = gbuffer_.interleaved(shade_files::normalNames);
+        std::vector<float> positions, curvature(normals.size() / 3, 1 / radius);
+        for (float n : normals) positions.push_back(radius * n);
+        gbuffer_.addInterleaved(std::vector<std::string>{"P.X", "P.Y", "P.Z"}, positions);
+        gbuffer_.addInterleaved(std::vector<std::string>{"C.V"}, curvature);
+        io::writeExr(path("g.exr"), gbuffer_);
+        scene_.channels[PEL_SLOT_POSITION] = {"P.X", "P.Y", "P.Z"};
+        scene_.channels[PEL_SLOT_CURVATURE] = {"C.V"};
+    }
+    std::vector<float> shaded(const std::string& scene) {
+        const Result result = run(command(scene));
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        warnings_ = result.err;
+        return io::readImage(path("o.exr")).interleaved(std::vector<std::string>{"R", "G", "B"});
+    }
+    std::string warnings_;
+};
+
+}  // namespace
+
+TEST_F(ShadeProfile, AProfileIsEnough) {
+    addSphere(30);
+    write("mine.toml",
+          "name = \"mine\"\nkind = \"burley\"\nunit = \"mm\"\nsource = \"a test\"\ndistance = [0.8, 0.4, "
+          "0.2]\n");
+    scene_.materials[0].profile = "mine.toml";
+    io::writeScene(path("s.toml"), scene_);
+    const auto scattered = shaded("s.toml");
+    EXPECT_EQ(warnings_.find("unit_mm"), std::string::npos) << warnings_;
+    scene_.materials[0].profile.clear();
+    io::writeScene(path("plain.toml"), scene_);
+    const auto plain = shaded("plain.toml");
+    double most = 0;
+    for (size_t i = 0; i < plain.size(); ++i)
+        most = std::max(most, double(std::abs(plain[i] - scattered[i])));
+    EXPECT_GT(most, 0.005);
+    scene_.materials[0].profile = "granite";
+    io::writeScene(path("s.toml"), scene_);
+    expectRefused(command("s.toml"), 3, "granite");
+}
+
+TEST_F(ShadeProfile, SizesThatCannotBeTheProfilesAreSaid) {
+    addSphere(90);
+    scene_.materials[0].profile = "skin";
+    for (const auto& [unit, likely] : {std::pair{1.0f, true}, {0.1f, false}, {100.0f, false}}) {
+        scene_.unitMm = unit;
+        io::writeScene(path("s.toml"), scene_);
+        shaded("s.toml");
+        EXPECT_EQ(warnings_.find("unit_mm") == std::string::npos, likely) << unit << ": " << warnings_;
+    }
+}
+
+TEST_F(ShadeProfile, ThePresetIsWhatItsTablesAre) {
+    addSphere(30);
+    scene_.materials[0].preset = io::ScenePreset::faceworks;
+    io::writeScene(path("preset.toml"), scene_);
+    const auto preset = shaded("preset.toml");
+    scene_.materials[0].preset = io::ScenePreset::none;
+    scene_.luts.resize(2);
+    scene_.luts[0].name = scene_.luts[1].name = "t";
+    scene_.luts[1].info.kind = PEL_LUT_SHADOW;
+    scene_.materials[0].curvatureLut = scene_.materials[0].shadowLut = "t";
+    io::writeScene(path("tables.toml"), scene_);
+    EXPECT_EQ(shaded("tables.toml"), preset);
+}
+
+TEST_F(ShadeProfile, ADistanceIsNoDeviceDepth) {
+    std::vector<float> depth(gbuffer_.pixelCount(), 250);
+    gbuffer_.addInterleaved(std::vector<std::string>{"D.Z"}, depth);
+    io::writeExr(path("g.exr"), gbuffer_);
+    scene_.channels[PEL_SLOT_DEPTH] = {"D.Z"};
+    io::writeScene(path("s.toml"), scene_);
+    shaded("s.toml");
+    EXPECT_NE(warnings_.find("depth channel reaches 250"), std::string::npos) << warnings_;
+}
