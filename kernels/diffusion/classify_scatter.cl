@@ -1,0 +1,65 @@
+// Which tiles of the screen need taps, and from which level of the pyramid on (docs/mathematics.md, section 10, "Error-driven
+// choice").
+//
+// Where irradiance is linear across the profile's reach, what flows in is what flows out: only the second differences of irradiance
+// matter. Those at a step of 2^k pixels, times the light that comes from further away than that, are what the rings from level k on
+// can change; their sum over all levels is held against the tolerance. Input: the pyramid. Output: a word per tile, 0: the
+// irradiance is right as it is; 1 + first level | levels << 8. One work-item is one tile.
+#undef PEL_WIDTH
+#define PEL_WIDTH 1
+#include "lib/diffusion/profile_table.clh"
+#include "lib/diffusion/pyramid.clh"
+
+// The greatest second difference from block to block of level k in and round a tile.
+static inline float bendNear(__global const PelDiffusionFrame* frame, __global const float* pyramid, uint tileX, uint tileY, int k) {
+    __global const PelPyramidLevel* level = &frame->level[k + 1];
+    const int shift = PEL_TILE_LEVEL - (k + 1), dilate = k > 0;
+    const int x0 = (shift >= 0 ? (int)tileX << shift : (int)(tileX >> -shift)), side = shift >= 0 ? 1 << shift : 1;
+    const int y0 = (shift >= 0 ? (int)tileY << shift : (int)(tileY >> -shift));
+    float bend = 0.0f;
+    for (int y = max(y0 - dilate, 0); y < min(y0 + side + dilate, (int)level->height); ++y) {
+        __global const float* row = pyramid + pyramidRow(level, y);
+        for (int x = max(x0 - dilate, 0); x < min(x0 + side + dilate, (int)level->width); ++x)
+            if (row[x + PEL_PLANE_AREA * level->stride] > 0.0f) bend = fmax(bend, row[x + PEL_PLANE_BEND * level->stride]);
+    }
+    return bend;
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void classify_scatter(
+    __global const PelDiffusionFrame* frame, __global const float* pyramid, __global const PelProfileTable* tables,
+    __global const float* nodes, __global uint* tiles, __global uint* counters) {
+    const uint tile = get_global_id(0);
+    if (tile >= frame->tilesX * frame->tilesY) return;
+    const uint tileX = tile % frame->tilesX, tileY = tile / frame->tilesX;
+    __global const PelPyramidLevel* own = &frame->level[PEL_TILE_LEVEL];
+    __global const float* block = pyramid + pyramidRow(own, (int)tileY) + tileX;
+    tiles[tile] = 0;
+    if (!(block[PEL_PLANE_AREA * own->stride] > 0.0f)) return;
+    atomic_inc(&counters[PEL_COUNT_TILES_COVERED]);
+    const float size = block[PEL_PLANE_SIZE * own->stride];
+    float bends[PEL_PYRAMID_LEVELS];
+    for (uint k = 0; k + 1 < frame->levels; ++k) bends[k] = bendNear(frame, pyramid, tileX, tileY, (int)k);
+    uint first = PEL_PYRAMID_LEVELS, levels = 0;
+    for (uint t = 0; t < frame->tables; ++t) {
+        const PelProfileTable table = tables[t];
+        float error = 0.0f;
+        uint start = 0, end = 1;
+        for (uint k = 0; k + 1 < frame->levels; ++k) {
+            // Beyond the centre, or beyond the six blocks on a side of the level below.
+            const float half_ = k ? 1.5f * (float)(1 << k) : 0.56f;
+            const Vec3w within = profileShare(nodes, table, half_ * half_ * size);
+            const float beyond = 1.0f - fmin(within.x, fmin(within.y, within.z));
+            if (beyond < 0.004f) break;
+            end = k + 1;
+            error += 0.25f * beyond * bends[k];
+            if (error <= 0.5f * frame->tolerance) start = k + 1;
+        }
+        if (error > frame->tolerance || frame->everyTile) {
+            first = min(first, frame->everyTile ? 0 : min(start, end - 1));
+            levels = max(levels, end);
+        }
+    }
+    if (!levels) return;
+    tiles[tile] = (1 + first) | levels << 8;
+    atomic_inc(&counters[PEL_COUNT_TILES_TAPPED]);
+}

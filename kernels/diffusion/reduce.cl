@@ -1,0 +1,141 @@
+// One level of the pyramid (shared/diffusion.h) from the next finer one: blocks of 2 x 2.
+//
+// A block is of one object: of the child with the largest area, and of those others that have its id and lie near it. So nothing
+// bleeds from one object to another, or from a surface to one behind it. One work-item: PEL_WIDTH blocks of a row.
+#include "lib/diffusion/pyramid.clh"
+
+// Children further apart than this many times the width of the largest are of another surface.
+#define FARTHEST_CHILD 5.0f
+
+typedef struct Child {
+    floatw area;
+    uintw id;
+    Vec3w p, e;
+    floatw size;
+} Child;
+
+typedef struct Pair {
+    Child left, right;
+} Pair;
+
+static inline Pair loadPair(__global const float* at, uint stride) {
+    Pair pair;
+    floatw left, right;
+    loadEvenOdd(at + PEL_PLANE_ID * stride, &left, &right);
+    pair.left.id = as_uintw(left), pair.right.id = as_uintw(right);
+    loadEvenOdd(at + PEL_PLANE_AREA * stride, &pair.left.area, &pair.right.area);
+    loadEvenOdd(at + PEL_PLANE_SIZE * stride, &pair.left.size, &pair.right.size);
+    loadEvenOdd(at + PEL_PLANE_X * stride, &pair.left.p.x, &pair.right.p.x);
+    loadEvenOdd(at + PEL_PLANE_Y * stride, &pair.left.p.y, &pair.right.p.y);
+    loadEvenOdd(at + PEL_PLANE_Z * stride, &pair.left.p.z, &pair.right.p.z);
+    loadEvenOdd(at + PEL_PLANE_RED * stride, &pair.left.e.x, &pair.right.e.x);
+    loadEvenOdd(at + PEL_PLANE_GREEN * stride, &pair.left.e.y, &pair.right.e.y);
+    loadEvenOdd(at + PEL_PLANE_BLUE * stride, &pair.left.e.z, &pair.right.e.z);
+    return pair;
+}
+
+// Children of one row, from the one before the block's on: four columns.
+typedef struct Row {
+    floatw area[4], e[3][4];
+    uintw id[4];
+} Row;
+
+static inline Row loadRow(__global const float* at, uint stride) {
+    Row row;
+    for (int pair = 0; pair < 2; ++pair) {
+        __global const float* from = at + 2 * pair - 1;
+        const int k = 2 * pair;
+        floatw left, right;
+        loadEvenOdd(from + PEL_PLANE_ID * stride, &left, &right);
+        row.id[k] = as_uintw(left), row.id[k + 1] = as_uintw(right);
+        loadEvenOdd(from + PEL_PLANE_AREA * stride, &row.area[k], &row.area[k + 1]);
+        for (int c = 0; c < 3; ++c) loadEvenOdd(from + (PEL_PLANE_RED + c) * stride, &row.e[c][k], &row.e[c][k + 1]);
+    }
+    return row;
+}
+
+// |before + after - 2 here|; a neighbour that is not there or another object's is as this one.
+static inline floatw bendOf(floatw here, floatw before, maskw hasBefore, floatw after, maskw hasAfter) {
+    const floatw zero = 0.0f;
+    return fabs(selectw(zero, before - here, hasBefore) + selectw(zero, after - here, hasAfter));
+}
+
+static inline floatw bendOfRows(const Row* up, const Row* row, const Row* down) {
+    floatw bend = 0.0f;
+    for (int k = 1; k <= 2; ++k) {
+        const maskw there = row->area[k] > 0.0f;
+#define THERE(r, i) (((r)->area[i] > 0.0f) & ((r)->id[i] == row->id[k]))
+        const maskw left = THERE(row, k - 1), right = THERE(row, k + 1), above = THERE(up, k), below = THERE(down, k);
+#undef THERE
+        for (int c = 0; c < 3; ++c) {
+            const floatw here = row->e[c][k];
+            const floatw sum = bendOf(here, row->e[c][k - 1], left, row->e[c][k + 1], right) +
+                               bendOf(here, up->e[c][k], above, down->e[c][k], below);
+            bend = fmax(bend, selectw((floatw)(0.0f), sum, there));
+        }
+    }
+    return bend;
+}
+
+static inline void addChild(Child* block, const Child* child, const Child* largest) {
+    const Vec3w between = sub3(child->p, largest->p);
+    const maskw near = (child->id == largest->id) & (child->area > 0.0f) &
+                       (dot3(between, between) <= FARTHEST_CHILD * FARTHEST_CHILD * largest->area);
+    const floatw area = selectw((floatw)(0.0f), child->area, near);
+    block->area += area;
+    const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    block->p = add3(block->p, scale3(select3(none, between, near), area));
+    block->e = add3(block->e, scale3(select3(none, child->e, near), area));
+    block->size += selectw((floatw)(0.0f), child->size, near) * area;
+}
+
+static inline Child largerChild(Child a, Child b) {
+    const maskw other = b.area > a.area;
+    a.area = selectw(a.area, b.area, other);
+    a.id = as_uintw(selectw(as_intw(a.id), as_intw(b.id), other));
+    a.p = select3(a.p, b.p, other);
+    return a;
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void reduce_surface(
+    __global const PelDiffusionFrame* frame, __global float* pyramid, uint to) {
+    __global const PelPyramidLevel *fine = &frame->level[to - 1], *coarse = &frame->level[to];
+    const uint across = (coarse->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
+    if (y >= coarse->height) return;
+    const uint x = get_global_id(0) % across * PEL_WIDTH, stride = fine->stride;
+    __global const float* upper = pyramid + pyramidRow(fine, 2 * (int)y) + 2 * x;
+    const size_t rowValues = (size_t)stride * PEL_PYRAMID_PLANES;
+    const Pair a = loadPair(upper, stride), b = loadPair(upper + rowValues, stride);
+    const size_t at = pyramidRow(coarse, (int)y) + x;
+    const uint out = coarse->stride;
+    const Child largest = largerChild(largerChild(a.left, a.right), largerChild(b.left, b.right));
+    if (!anyw(largest.area > 0.0f)) {
+        storew((floatw)(0.0f), at + PEL_PLANE_AREA * out, pyramid);
+        storew((floatw)(0.0f), at + PEL_PLANE_BEND * out, pyramid);
+        return;
+    }
+    Child block;
+    block.area = 0.0f, block.size = 0.0f;
+    block.p = block.e = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    addChild(&block, &a.left, &largest);
+    addChild(&block, &a.right, &largest);
+    addChild(&block, &b.left, &largest);
+    addChild(&block, &b.right, &largest);
+    const maskw any = block.area > 0.0f;
+    const floatw share = 1.0f / selectw((floatw)(1.0f), block.area, any);
+    block.p = add3(largest.p, scale3(block.p, share));
+    block.e = scale3(block.e, share);
+    const Row before = loadRow(upper - rowValues, stride), first = loadRow(upper, stride),
+              second = loadRow(upper + rowValues, stride), after = loadRow(upper + 2 * rowValues, stride);
+    const floatw bend = fmax(bendOfRows(&before, &first, &second), bendOfRows(&first, &second, &after));
+    storew(block.area, at + PEL_PLANE_AREA * out, pyramid);
+    storew(as_floatw(largest.id), at + PEL_PLANE_ID * out, pyramid);
+    storew(block.p.x, at + PEL_PLANE_X * out, pyramid);
+    storew(block.p.y, at + PEL_PLANE_Y * out, pyramid);
+    storew(block.p.z, at + PEL_PLANE_Z * out, pyramid);
+    storew(block.e.x, at + PEL_PLANE_RED * out, pyramid);
+    storew(block.e.y, at + PEL_PLANE_GREEN * out, pyramid);
+    storew(block.e.z, at + PEL_PLANE_BLUE * out, pyramid);
+    storew(bend, at + PEL_PLANE_BEND * out, pyramid);
+    storew(block.size * share, at + PEL_PLANE_SIZE * out, pyramid);
+}
