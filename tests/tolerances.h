@@ -297,6 +297,15 @@ inline constexpr Tolerance blenderTerminator{
 inline constexpr Tolerance blenderCurve{
     "blenderCurve", 0.25, "times Lambert's error, of means over equal N.L: the path tracer's noise left in means of 1,000 pixels"};
 
+// --- scattering on the screen ---
+inline constexpr Tolerance scatterBlocksRms{"scatterBlocksRms", 3e-3, "blocks half as wide as their distance stand for their pixels"};
+inline constexpr Tolerance scatterBlocksMax{"scatterBlocksMax", 5e-2, "the same, where the edge of a hard shadow meets the limb"};
+inline constexpr Tolerance scatterLeastError{"scatterLeastError", 2e-3, "of 99 % of the pixels, where anything is left out"};
+inline constexpr Tolerance scatterBall{"scatterBall", 1.3e-3, "RMS against the closed form, in units of white"};
+inline constexpr Tolerance scatterEnergy{"scatterEnergy", 5e-3, "relative: blocks, and what is left out"};
+inline constexpr Tolerance scatterOneMissing{"scatterOneMissing", 2e-2, "neighbours of a pixel that counts no more"};
+inline constexpr Tolerance scatterUnits{"scatterUnits", 1e-3, "RMS, a tenth of the maximum: a ring of blocks with 0.4 % of the light may count or not"};
+
 // --- tables as BC6H ---
 inline constexpr Tolerance bc6hMax{
     "bc6hMax", 0.016, "64x64: one byte per texel cannot follow three channels that part at the terminator"};

@@ -25,6 +25,8 @@ const char* kindName(Kind kind) {
             return "PelShader";
         case Kind::profile:
             return "PelProfile";
+        case Kind::scatter:
+            return "PelScatter";
     }
     return "object";
 }

@@ -9,7 +9,7 @@
 
 namespace pel {
 
-enum class Kind { device, event, buffer, meshTopology, liveMesh, lut, shader, profile };
+enum class Kind { device, event, buffer, meshTopology, liveMesh, lut, shader, profile, scatter };
 const char* kindName(Kind kind);
 
 class Object {

@@ -54,10 +54,9 @@ static inline Row loadRow(__global const float* at, uint stride) {
     return row;
 }
 
-// |before + after - 2 here|; a neighbour that is not there or another object's is as this one.
+// |before + after - 2 here|; where a neighbour is not there or another object's, light goes on as on the other side.
 static inline floatw bendOf(floatw here, floatw before, maskw hasBefore, floatw after, maskw hasAfter) {
-    const floatw zero = 0.0f;
-    return fabs(selectw(zero, before - here, hasBefore) + selectw(zero, after - here, hasAfter));
+    return selectw((floatw)(0.0f), fabs(before + after - 2.0f * here), hasBefore & hasAfter);
 }
 
 static inline floatw bendOfRows(const Row* up, const Row* row, const Row* down) {
@@ -91,10 +90,11 @@ static inline void addChild(Child* block, const Child* child, const Child* large
 
 static inline Child largerChild(Child a, Child b) {
     const maskw other = b.area > a.area;
-    a.area = selectw(a.area, b.area, other);
-    a.id = as_uintw(selectw(as_intw(a.id), as_intw(b.id), other));
-    a.p = select3(a.p, b.p, other);
-    return a;
+    Child larger = a;
+    larger.area = selectw(a.area, b.area, other);
+    larger.id = as_uintw(selectw(as_intw(a.id), as_intw(b.id), other));
+    larger.p = select3(a.p, b.p, other);
+    return larger;
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void reduce_surface(

@@ -3,8 +3,7 @@
 //
 // The blocks that a pixel sums over are those of 2 x 2 parents round its own parent, six on a side; from level 1 on without those that
 // the level below has taken apart. So every pixel of the neighbourhood is in one block, whose width is at most about half of its
-// distance. The sum is divided by what the weights add up to: what the screen does not show counts like the rest. Where more surface
-// lies within reach than a plane has (in creases), the surplus beyond the finest level is gain.
+// distance. The sum is divided by what the weights add up to: what the screen does not show counts like the rest.
 //
 // Input: the pyramid, the words of classify_scatter. Output: an image like the irradiance's; pixels of the same value where nothing
 // was to be done. One work-group takes tiles, one work-item PEL_WIDTH pixels of a row at a time. Variants: PEL_FORMAT_IRRADIANCE,
@@ -85,57 +84,42 @@ static inline __attribute__((always_inline)) uint addLevel(__global const PelDif
     return taps;
 }
 
-// Surplus of surface below this counts as an error of the sums.
-#ifndef LEAST_GAIN
-#define LEAST_GAIN 0.05f
-#define GAIN 1
-#endif
-
-static inline floatw finished(floatw light, floatw weight, floatw e, floatw skipped, floatw far, floatw farOnPlane, float tolerance) {
-    // Levels that were left out, and a pixel that has nothing round it, keep the pixel's own.
-    const floatw total = weight + skipped;
-    const floatw change = (light - weight * e) / selectw((floatw)(1.0f), total, total > 0.0f);
-    const floatw gain = GAIN * max0w(far - farOnPlane - LEAST_GAIN);
-    return (e + change) * (1.0f + gain);
-}
-
-// The share of the light that comes from within the blocks of a level, six on a side, on the pixel's plane: of an ellipse of their
-// area as slender as the pixel's view of the plane, by its radii at every eighth of a turn.
-static inline Vec3w shareOfBlocks(__global const float* nodes, const PelProfileTable table, const Pixels* here, uint level) {
-    const float scale = 36.0f / 3.14159265f * (float)(1u << 2 * level);
-    const floatw minor = here->size, major = here->area * here->area / fmax(here->size, (floatw)(FLT_MIN));
+// The share of the light that comes from within three blocks on a side, the block's own and those round it, on its plane: of an
+// ellipse of their area as slender as the view of the plane, by its radii at every eighth of a turn.
+static inline Vec3w shareWithin(__global const float* nodes, const PelProfileTable table, const Pixels* here, uint level) {
+    const floatw area = here->area * (9.0f / 3.14159265f), size = here->size * (9.0f / 3.14159265f * (float)(1u << 2 * level));
+    const floatw minor = fmin(size, area), major = area * area / fmax(minor, (floatw)(FLT_MIN));
     const floatw oblique = 2.0f * minor * major / fmax(minor + major, (floatw)(FLT_MIN));
-    const Vec3w ends = add3(profileShare(nodes, table, scale * minor), profileShare(nodes, table, scale * major));
-    return add3(scale3(ends, (floatw)(0.25f)), scale3(profileShare(nodes, table, scale * oblique), (floatw)(0.5f)));
+    const Vec3w ends = add3(profileShare(nodes, table, minor), profileShare(nodes, table, major));
+    return add3(scale3(ends, (floatw)(0.25f)), scale3(profileShare(nodes, table, oblique), (floatw)(0.5f)));
 }
 
-// One table's pixels among PEL_WIDTH of a row.
+// What scattering changes in one channel. Levels that were left out, and a pixel that has nothing round it, keep the pixel's own.
+static inline floatw changeOf(floatw light, floatw weight, floatw e, floatw skipped) {
+    const floatw total = weight + skipped;
+    return (light - weight * e) / selectw((floatw)(1.0f), total, total > 0.0f);
+}
+
+// One table's pixels among PEL_WIDTH of a row: by how much their irradiance changes.
 static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __global const float* pyramid, const PelProfileTable table,
                                   __global const float* nodes, uint x, uint y, uint first, uint levels, const Pixels* here,
                                   maskw active, uint* taps) {
-    Sums sums, far;
-    sums.light = sums.weight = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
-    far = sums;
-    Vec3w skipped = sums.light, near = shareOfBlocks(nodes, table, here, 0);
+    const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    Sums sums;
+    sums.light = sums.weight = none;
+    Vec3w skipped = none;
     if (first == 0) {
         sums.weight = shareOfArea(nodes, table, here->area);
         sums.light = mul3(sums.weight, here->e);
         *taps += addLevel(frame, pyramid, table, nodes, x, y, 0, here, active, &sums);
     } else {
-        skipped = shareOfBlocks(nodes, table, here, first - 1);
+        skipped = shareWithin(nodes, table, here, first);
     }
-#define LEVEL(k) \
-    if (first <= k && k < levels) *taps += addLevel(frame, pyramid, table, nodes, x, y, k, here, active, &far);
-    LEVEL(1)
-    LEVEL(2)
-    for (uint k = max(first, 3u); k < levels; ++k) *taps += addLevel(frame, pyramid, table, nodes, x, y, k, here, active, &far);
-#undef LEVEL
-    const Vec3w beyond = first > 0 ? vec3((floatw)(1.0f), (floatw)(1.0f), (floatw)(1.0f))
-                                   : sub3(shareOfBlocks(nodes, table, here, levels - 1), near);
-    const Vec3w light = add3(sums.light, far.light), weight = add3(sums.weight, far.weight);
-    return vec3(finished(light.x, weight.x, here->e.x, skipped.x, far.weight.x, beyond.x, frame->tolerance),
-                finished(light.y, weight.y, here->e.y, skipped.y, far.weight.y, beyond.y, frame->tolerance),
-                finished(light.z, weight.z, here->e.z, skipped.z, far.weight.z, beyond.z, frame->tolerance));
+    if (first <= 1 && levels > 1) *taps += addLevel(frame, pyramid, table, nodes, x, y, 1, here, active, &sums);
+    if (first <= 2 && levels > 2) *taps += addLevel(frame, pyramid, table, nodes, x, y, 2, here, active, &sums);
+    for (uint k = max(first, 3u); k < levels; ++k) *taps += addLevel(frame, pyramid, table, nodes, x, y, k, here, active, &sums);
+    return vec3(changeOf(sums.light.x, sums.weight.x, here->e.x, skipped.x), changeOf(sums.light.y, sums.weight.y, here->e.y, skipped.y),
+                changeOf(sums.light.z, sums.weight.z, here->e.z, skipped.z));
 }
 
 // The table of each lane, 1 + its number; 0: none.
@@ -143,6 +127,60 @@ static inline intw tablesOf(__global const PelDiffusionFrame* frame, uintw id) {
 #define TABLE(i, s) (int)frame->tableOf[id s]
     return (intw)(PEL_LIST_LANES_(TABLE));
 #undef TABLE
+}
+
+static inline Pixels loadPixels(__global const PelDiffusionFrame* frame, __global const float* pyramid, uint x, uint y) {
+    const uint stride = frame->level[0].stride;
+    __global const float* at = pyramid + pyramidRow(&frame->level[0], (int)y) + x;
+    Pixels here;
+    here.area = loadw(PEL_PLANE_AREA * stride, at);
+    here.size = loadw(PEL_PLANE_SIZE * stride, at);
+    here.id = as_uintw(loadw(PEL_PLANE_ID * stride, at));
+    here.p = vec3(loadw(PEL_PLANE_X * stride, at), loadw(PEL_PLANE_Y * stride, at), loadw(PEL_PLANE_Z * stride, at));
+    here.e = vec3(loadw(PEL_PLANE_RED * stride, at), loadw(PEL_PLANE_GREEN * stride, at), loadw(PEL_PLANE_BLUE * stride, at));
+    return here;
+}
+
+// The blocks of a level that hold the pixels from (x, y) on.
+static inline Pixels loadOwnBlocks(__global const PelDiffusionFrame* frame, __global const float* pyramid, uint level, uint x, uint y) {
+    const uint stride = frame->level[level].stride;
+    __global const float* at = pyramid + pyramidRow(&frame->level[level], (int)(y >> level));
+    Pixels here;
+#define OWN(plane)                                                                   \
+    {                                                                                \
+        __global const float* values = at + (plane)*stride;                          \
+        own = PEL_LANES(VALUE);                                                      \
+    }
+#define VALUE(i, s) values[(x + (i)) >> level]
+    floatw own;
+    OWN(PEL_PLANE_AREA) here.area = own;
+    OWN(PEL_PLANE_SIZE) here.size = own;
+    OWN(PEL_PLANE_ID) here.id = as_uintw(own);
+    OWN(PEL_PLANE_X) here.p.x = own;
+    OWN(PEL_PLANE_Y) here.p.y = own;
+    OWN(PEL_PLANE_Z) here.p.z = own;
+    OWN(PEL_PLANE_RED) here.e.x = own;
+    OWN(PEL_PLANE_GREEN) here.e.y = own;
+    OWN(PEL_PLANE_BLUE) here.e.z = own;
+#undef VALUE
+#undef OWN
+    return here;
+}
+
+// By how much the irradiance of the lanes in `active` changes.
+static inline Vec3w changeOfPixels(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                                   __global const PelProfileTable* tables, __global const float* nodes, uint x, uint y, uint first,
+                                   uint levels, const Pixels* here, maskw active, uint* pixels, uint* taps) {
+    const intw table = selectw((intw)(0), tablesOf(frame, here->id), active);
+    Vec3w change = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+    *pixels += countw(active);
+    for (uint t = 1; t <= frame->tables; ++t) {
+        const maskw mine = table == (intw)((int)t);
+        if (!anyw(mine)) continue;
+        const Vec3w one = scatterPixels(frame, pyramid, tables[t - 1], nodes, x, y, first, levels, here, mine, taps);
+        change = select3(change, one, mine);
+    }
+    return change;
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_screen(
@@ -154,41 +192,44 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
         const uint word = tiles[tile];
         if (!word && frame->inPlace) continue;
-        const uint first = (word & 255) - 1, levels = word >> 8;
-        for (uint item = get_local_id(0); item < PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE / PEL_WIDTH; item += PEL_DIFFUSION_GROUP) {
+        const uint first = word ? (word & 255) - 1 : 0, levels = word >> 8;
+        // What levels from `first` on change is nearly the same all over a block of that level, and what is nearer flows both ways.
+        const uint rows = 1u << min(first, (uint)PEL_TILE_LEVEL);
+        const uint items = PEL_DIFFUSION_TILE / PEL_WIDTH * (PEL_DIFFUSION_TILE / rows);
+        for (uint item = get_local_id(0); item < items; item += PEL_DIFFUSION_GROUP) {
             const uint x = tile % frame->tilesX * PEL_DIFFUSION_TILE + item % (PEL_DIFFUSION_TILE / PEL_WIDTH) * PEL_WIDTH;
-            const uint y = tile / frame->tilesX * PEL_DIFFUSION_TILE + item / (PEL_DIFFUSION_TILE / PEL_WIDTH);
-            if (x >= frame->width || y >= frame->height) continue;
+            const uint top = tile / frame->tilesX * PEL_DIFFUSION_TILE + item / (PEL_DIFFUSION_TILE / PEL_WIDTH) * rows;
+            if (x >= frame->width || top >= frame->height) continue;
             const uint start = vectorStart(x, frame->width); // of the images' vectors
-            const intw column = lanesw() + (int)x;
+            const intw column = lanesw() + (int)x, imageColumn = lanesw() + (int)start;
             const maskw inside = column < (int)frame->width;
-            if (!frame->inPlace) {
-                const intw imageColumn = lanesw() + (int)start;
-                const Vec3w as = loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, start, y));
-                storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, start, y), as,
-                           (imageColumn >= (int)x) & (imageColumn < (int)frame->width));
-                if (!word) continue;
+            Vec3w shared = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+            uintw sharedId = (uintw)(0);
+            if (word && rows > 1) {
+                const Pixels here = loadOwnBlocks(frame, pyramid, first, x, top);
+                const maskw active = inside & (here.area > 0.0f);
+                sharedId = as_uintw(selectw((intw)(0), as_intw(here.id), active));
+                if (anyw(active))
+                    shared = changeOfPixels(frame, pyramid, tables, nodes, x, top, first, levels, &here, active, &pixels, &taps);
             }
-            __global const PelPyramidLevel* level = &frame->level[0];
-            __global const float* at = pyramid + pyramidRow(level, (int)y) + x;
-            Pixels here;
-            here.area = loadw(PEL_PLANE_AREA * level->stride, at);
-            here.size = loadw(PEL_PLANE_SIZE * level->stride, at);
-            here.id = as_uintw(loadw(PEL_PLANE_ID * level->stride, at));
-            const maskw active = inside & (here.area > 0.0f);
-            if (!anyw(active)) continue;
-            here.p = vec3(loadw(PEL_PLANE_X * level->stride, at), loadw(PEL_PLANE_Y * level->stride, at),
-                          loadw(PEL_PLANE_Z * level->stride, at));
-            here.e = vec3(loadw(PEL_PLANE_RED * level->stride, at), loadw(PEL_PLANE_GREEN * level->stride, at),
-                          loadw(PEL_PLANE_BLUE * level->stride, at));
-            const intw table = selectw((intw)(0), tablesOf(frame, here.id), active);
-            pixels += countw(active);
-            for (uint t = 1; t <= frame->tables; ++t) {
-                const maskw mine = table == (intw)((int)t);
-                if (!anyw(mine)) continue;
-                const Vec3w s = scatterPixels(frame, pyramid, tables[t - 1], nodes, x, y, first, levels, &here, mine, &taps);
-                // Stored from the tile's own first column on, lane by lane where the row ends.
-                storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, x, y), s, mine);
+            for (uint y = top; y < min(top + rows, frame->height); ++y) {
+                if (!frame->inPlace) {
+                    const Vec3w as = loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, start, y));
+                    storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, start, y), as,
+                               (imageColumn >= (int)x) & (imageColumn < (int)frame->width));
+                    if (!word) continue;
+                }
+                const Pixels here = loadPixels(frame, pyramid, x, y);
+                const maskw active = inside & (here.area > 0.0f);
+                if (!anyw(active)) continue;
+                const maskw known = active & (here.id == sharedId), unknown = active & notw(known);
+                Vec3w change = shared;
+                if (anyw(unknown))
+                    change = select3(shared, changeOfPixels(frame, pyramid, tables, nodes, x, y, 0, levels, &here, unknown, &pixels, &taps),
+                                     unknown);
+                // Less than nothing is an error of the sums.
+                const Vec3w s = add3(here.e, change);
+                storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, x, y), vec3(max0w(s.x), max0w(s.y), max0w(s.z)), active);
             }
         }
     }

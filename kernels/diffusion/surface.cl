@@ -2,7 +2,7 @@
 // sections 9 and 10. Two launches: surface_points copies what the caller's images hold, surface_areas measures from pixel to pixel.
 //
 // Inputs: images of irradiance, of positions (length) or depth, of ids (0 is background). Output: level 0 of the pyramid. One
-// work-item: PEL_WIDTH pixels of a row. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL
+// work-item: a part of a row (surface_points), PEL_WIDTH pixels of one (surface_areas). Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL
 // (0: everything is id 1).
 #include "lib/diffusion/pyramid.clh"
 #include "lib/image/image.clh"
@@ -13,12 +13,10 @@
 // whole area is wrong where the surface turns away inside of the pixel.
 #define LEAST_COSINE 0.25f
 
-__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void surface_points(
-    __global const PelDiffusionFrame* frame, __global uchar* irradiance, __global uchar* position, __global uchar* ids,
-    __global float* pyramid, __global uint* counters) {
-    const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
-    if (y >= frame->height) return;
-    const uint from = get_global_id(0) % across * PEL_WIDTH, x = vectorStart(from, frame->width);
+// PEL_WIDTH pixels from (`from`, y) on.
+static inline void copyPoints(__global const PelDiffusionFrame* frame, __global uchar* irradiance, __global uchar* position,
+                              __global uchar* ids, __global float* pyramid, uint from, uint y, uint* covered, uint* invalid) {
+    const uint x = vectorStart(from, frame->width);
     const intw column = lanesw() + (int)x;
     const maskw mine = (column >= (int)from) & (column < (int)frame->width);
     __global const PelPyramidLevel* level = &frame->level[0];
@@ -42,10 +40,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
         p = sub3(p, vec3((floatw)(frame->origin[0]), (floatw)(frame->origin[1]), (floatw)(frame->origin[2])));
         Vec3w e = loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y));
         const maskw there = id != (uintw)(0), sound = finite3(e) & finite3(p);
-        const uint invalid = countw(mine & there & notw(sound));
-        if (invalid) atomic_add(&counters[PEL_COUNT_IRRADIANCE_INVALID], invalid);
-        const uint covered = countw(mine & there);
-        if (covered) atomic_add(&counters[PEL_COUNT_PIXELS_COVERED], covered);
+        *covered += countw(mine & there);
+        *invalid += countw(mine & there & notw(sound));
         id = as_uintw(selectw((intw)(0), as_intw(id), there & sound));
         // What is no number stays out of all sums: its place holds zeros.
         const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
@@ -58,6 +54,19 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
         storePlane(pyramid, row + PEL_PLANE_BLUE * stride, e.z, mine);
     }
     storePlane(pyramid, row + PEL_PLANE_ID * stride, as_floatw(id), mine);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void surface_points(
+    __global const PelDiffusionFrame* frame, __global uchar* irradiance, __global uchar* position, __global uchar* ids,
+    __global float* pyramid, __global uint* counters) {
+    const uint y = get_global_id(0) / PEL_ROW_PARTS, part = get_global_id(0) % PEL_ROW_PARTS;
+    if (y >= frame->height) return;
+    const uint vectors = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH;
+    uint covered = 0, invalid = 0;
+    for (uint v = vectors * part / PEL_ROW_PARTS; v < vectors * (part + 1) / PEL_ROW_PARTS; ++v)
+        copyPoints(frame, irradiance, position, ids, pyramid, v * PEL_WIDTH, y, &covered, &invalid);
+    if (covered) atomic_add(&counters[PEL_COUNT_PIXELS_COVERED], covered);
+    if (invalid) atomic_add(&counters[PEL_COUNT_IRRADIANCE_INVALID], invalid);
 }
 
 typedef struct Step {

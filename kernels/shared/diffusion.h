@@ -24,6 +24,7 @@
 #define PEL_DIFFUSION_TILE 16 // pixels along a side: blocks of level 4
 #define PEL_TILE_LEVEL 4
 #define PEL_DIFFUSION_GROUP 16 // work-items
+#define PEL_ROW_PARTS 4        // that different work-items copy
 #define PEL_DIFFUSION_IDS 256
 
 // A profile as two tables over the squared distance, four floats a node: R (1/length^2), then the share of the light that stays within.

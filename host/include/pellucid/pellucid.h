@@ -900,6 +900,56 @@ PEL_API PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats);
 
 /* ---- Programs ahead of their first use ---------------------------------------------------------------------- */
 
+/* ---- Scattering alone --------------------------------------------------------------------------------------- */
+
+/* For hosts that light their own frames: takes the irradiance of a picture and returns it scattered under the surface. Keeps memory
+ * between frames: 54 bytes a pixel. One thread at a time. */
+typedef struct PelScatterObject* PelScatter;
+
+typedef struct PelScatterParams {
+    uint32_t structSize;
+    float targetError; /* share of white by which 99 % of the pixels may differ from what `everywhere` gives, so that pixels and
+                          blocks that change little are left out; below 0.002 it is an aim, not a promise; 0.002 */
+    float white;       /* irradiance that counts as white; 1 */
+    uint32_t everywhere;             /* 1: leave nothing out anywhere; 0 */
+    float inverseViewProjection[16]; /* clip to world, as in PelCamera. Needed with depth; with positions it tells surface seen at a
+                                        grazing angle, and may be all zero; default */
+} PelScatterParams;
+
+typedef struct PelScatterStats {
+    uint32_t structSize;
+    uint32_t launches;
+    uint64_t pixelsTotal;
+    uint64_t pixelsCovered; /* with a material */
+    uint64_t pixelsTapped;  /* that were gathered; the others kept their irradiance */
+    uint64_t pixelsInvalid; /* NaN or Inf in irradiance or position: kept as they are, and counted by no neighbour */
+    uint64_t tilesCovered;  /* of 16 x 16 pixels */
+    uint64_t tilesTapped;
+    uint64_t taps;          /* pixels and blocks of pixels that were looked at, modulo 2^32 */
+    uint64_t scratchBytes;
+    double deviceMilliseconds; /* of devices that measure */
+} PelScatterStats;
+
+PEL_API PelError pelScatterCreate(PelDevice device, PelScatter* scatter);
+PEL_API void pelScatterRetain(PelScatter scatter);
+PEL_API void pelScatterRelease(PelScatter scatter);
+
+/* Pixels of id 1 to 255 scatter by `profile`, whose lengths count `scale` units of positions each: 1 where positions are in mm, as
+ * profiles are, 0.1 for cm; twice that for twice the radius; 0 or a NULL profile: not at all. The object keeps the profile alive. */
+PEL_API PelError pelScatterSetMaterial(PelScatter scatter, uint32_t id, PelProfile profile, float scale);
+
+/* `irradiance`: linear RGB, all lights together, shadows sharp, without or with albedo; `positions`: world, or `depth` with
+ * params.inverseViewProjection and positions NULL; `ids`: of materials, 0 is background; NULL: everything is id 1. `out`: a float or
+ * half image of 3 or 4 components, written; may be the irradiance itself. Nothing flows between ids, or over a gap in depth wider
+ * than the profile reaches. All images have one size. `params` may be NULL. Sources: d'Eon and Luebke, GPU Gems 3 (the sum);
+ * docs/mathematics.md, sections 9 and 10. */
+PEL_API PelError pelScatterExecute(PelScatter scatter, const PelScatterParams* params, const PelImageDesc* irradiance,
+                                   const PelImageDesc* positions, const PelImageDesc* depth, const PelImageDesc* ids,
+                                   const PelImageDesc* out, const PelSubmit* submit);
+
+/* Of the last execution; waits for it. */
+PEL_API PelError pelScatterGetStats(PelScatter scatter, PelScatterStats* stats);
+
 /* Groups of programs that do not depend on a G-buffer; bits of PelPrefill.groups. */
 typedef enum PelProgramGroup {
     PEL_PROGRAMS_LUTS = 1 << 0,       /* curvature, shadow and specular tables of sums of Gaussians, and their encodings */

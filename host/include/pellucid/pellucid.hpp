@@ -299,6 +299,24 @@ class Profile : public Handle<PelProfile, pelProfileRetain, pelProfileRelease> {
     }
 };
 
+// Scattering alone: irradiance in, scattered irradiance out.
+class Scatter : public Handle<PelScatter, pelScatterRetain, pelScatterRelease> {
+  public:
+    using Handle::Handle;
+    explicit Scatter(const Device& device) { check(pelScatterCreate(device.get(), out())); }
+    void setMaterial(uint32_t id, const Profile& profile, float scale = 1) { check(pelScatterSetMaterial(h_, id, profile.get(), scale)); }
+    // Any of positions, depth and ids may be NULL, but not both of the first two.
+    void execute(const PelScatterParams& params, const PelImageDesc& irradiance, const PelImageDesc* positions, const PelImageDesc* depth,
+                 const PelImageDesc* ids, const PelImageDesc& scattered, const PelSubmit* submit = nullptr) {
+        check(pelScatterExecute(h_, &params, &irradiance, positions, depth, ids, &scattered, submit));
+    }
+    PelScatterStats stats() const {
+        PelScatterStats stats = pelScatterStatsDefaults();
+        check(pelScatterGetStats(h_, &stats));
+        return stats;
+    }
+};
+
 class Lut : public Handle<PelLut, pelLutRetain, pelLutRelease> {
   public:
     using Handle::Handle;

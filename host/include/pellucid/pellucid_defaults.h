@@ -54,6 +54,13 @@ static inline PelSpecularLutDesc pelSpecularLutDescDefaults(void) {
     s.height = 512;
     return s;
 }
+static inline PelScatterParams pelScatterParamsDefaults(void) {
+    PEL_ZEROED_(PelScatterParams, s);
+    s.targetError = 2e-3f;
+    s.white = 1.0f;
+    return s;
+}
+static inline PelScatterStats pelScatterStatsDefaults(void) { PEL_ZEROED_(PelScatterStats, s); return s; }
 static inline PelProfileInfo pelProfileInfoDefaults(void) { PEL_ZEROED_(PelProfileInfo, s); return s; }
 static inline PelLutInfo pelLutInfoDefaults(void) {
     PEL_ZEROED_(PelLutInfo, s);

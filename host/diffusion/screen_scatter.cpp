@@ -1,0 +1,157 @@
+#include "diffusion/screen_scatter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "shading/launch_ranges.h"
+#include "shading/shading_constants.h"
+
+namespace pel {
+namespace {
+
+// The point that a perspective matrix maps to infinite depth. Returns false for parallel views and where there is no matrix.
+bool eyeOf(const float inverse[16], float eye[3]) {
+    const float w = inverse[14];
+    if (!(std::abs(w) > 1e-20f)) return false;
+    for (int k = 0; k < 3; ++k) eye[k] = inverse[4 * k + 2] / w;
+    return std::isfinite(eye[0]) && std::isfinite(eye[1]) && std::isfinite(eye[2]);
+}
+
+bool samePixels(const ImageView& a, const ImageView& b) {
+    return a.buffer->memory().get() == b.buffer->memory().get() && a.byteOffset == b.byteOffset && a.format == b.format &&
+           a.pixelStride == b.pixelStride && a.rowStride == b.rowStride && a.planeStride == b.planeStride;
+}
+
+enum Program { SURFACE, REDUCE, CLASSIFY, SCATTER };
+
+}  // namespace
+
+void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
+    std::fill_n(frame_.tableOf, PEL_DIFFUSION_IDS, 0);
+    std::vector<Material> distinct;
+    for (const auto& [id, material] : materials) {
+        auto found = std::find(distinct.begin(), distinct.end(), material);
+        if (found == distinct.end()) found = distinct.insert(found, material);
+        frame_.tableOf[id] = uint32_t(found - distinct.begin()) + 1;
+    }
+    frame_.tables = uint32_t(distinct.size());
+    if (materials == materials_ && tables_) return;
+    std::vector<PelProfileTable> tables;
+    std::vector<float> values;
+    for (const Material& material : distinct) {
+        ProfileNodes nodes = profileNodes(material.profile->shape(), material.scale);
+        nodes.table.offset = uint32_t(values.size() / 4);
+        tables.push_back(nodes.table);
+        values.insert(values.end(), nodes.values.begin(), nodes.values.end());
+    }
+    if (tables.empty()) tables.emplace_back(), values.resize(8);
+    tables_ = device_->allocate(tables.size() * sizeof tables[0], tables.data());
+    nodes_ = device_->allocate(values.size() * sizeof(float), values.data());
+    nodeBytes_ = tables.size() * sizeof tables[0] + values.size() * sizeof(float);
+    materials_ = materials;
+}
+
+void ScreenScatter::describeLevels(uint32_t width, uint32_t height) {
+    uint64_t floats = 0;
+    for (PelPyramidLevel& level : frame_.level) {
+        const uint32_t stride = (width + 15) / 16 * 16 + 3 * PEL_PYRAMID_GUARD;
+        if (floats > UINT32_MAX) fail(PEL_ERROR_OUT_OF_MEMORY, "a picture of ", frame_.width, " x ", frame_.height, " is too large to scatter");
+        level = {uint32_t(floats), stride, width, height};
+        floats += uint64_t(height + 2 * PEL_PYRAMID_ROWS) * PEL_PYRAMID_PLANES * stride;
+        width = (width + 1) / 2, height = (height + 1) / 2;
+    }
+    const size_t bytes = (floats + 2 * PEL_PYRAMID_GUARD) * sizeof(float);
+    if (bytes == pyramidBytes_ && !std::memcmp(frame_.level, sent_.level, sizeof frame_.level)) return;
+    pyramid_ = cl::Memory();
+    pyramidBytes_ = 0;
+    pyramid_ = device_->allocate(bytes);
+    pyramidBytes_ = bytes;
+    device_->fill(pyramid_.get(), 0, bytes, 0);  // no area outside of the picture
+}
+
+void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const ScatterImages& images, const ScatterView& view) {
+    frame_.width = images.irradiance.width, frame_.height = images.irradiance.height;
+    frame_.tilesX = (frame_.width + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
+    frame_.tilesY = (frame_.height + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
+    frame_.levels = PEL_PYRAMID_LEVELS;
+    frame_.everyTile = view.everywhere;
+    frame_.inPlace = samePixels(images.irradiance, images.out);
+    frame_.facing = eyeOf(view.inverseViewProjection, frame_.origin);
+    if (!frame_.facing) std::fill_n(frame_.origin, 3, 0.0f);
+    frame_.tolerance = view.tolerance;
+    std::copy_n(view.inverseViewProjection, 16, frame_.inverseViewProjection);
+    frame_.irradiance = describeImage(images.irradiance);
+    frame_.position = describeImage(images.positions ? images.positions : images.depth);
+    frame_.ids = images.ids ? describeImage(images.ids) : PelShadeImage{};
+    frame_.out = describeImage(images.out);
+    sendTables(materials);
+    describeLevels(frame_.width, frame_.height);
+    const size_t tileBytes = size_t(frame_.tilesX) * frame_.tilesY * sizeof(cl_uint);
+    if (tileBytes != tileBytes_) tiles_ = device_->allocate(tileBytes), tileBytes_ = tileBytes;
+    if (!counters_) counters_ = device_->allocate(PEL_DIFFUSION_COUNTERS * sizeof(cl_uint));
+    if (!frameMemory_)
+        frameMemory_ = device_->allocate(sizeof frame_, &frame_);
+    else if (std::memcmp(&frame_, &sent_, sizeof frame_))
+        device_->write(frameMemory_.get(), 0, sizeof frame_, &frame_, true);
+    sent_ = frame_;
+}
+
+std::vector<cl::ProgramKey> ScreenScatter::programs(const ScatterImages& images) const {
+    const uint32_t lanes = device_->info().mathWidth;
+    const auto code = [&](const ImageView& view) { return text(formatCode(view, lanes)); };
+    const cl::Defines inputs{{"PEL_FORMAT_IRRADIANCE", code(images.irradiance)},
+                             {"PEL_FORMAT_POSITION", code(images.positions)},
+                             {"PEL_FORMAT_DEPTH", images.positions ? text(0) : code(images.depth)},
+                             {"PEL_FORMAT_MATERIAL", code(images.ids)}};
+    const cl::Defines outputs{{"PEL_FORMAT_IRRADIANCE", code(images.irradiance)}, {"PEL_FORMAT_OUT", code(images.out)}};
+    return {{{"diffusion/surface.cl"}, inputs},
+            {{"diffusion/reduce.cl"}, {}},
+            {{"diffusion/classify_scatter.cl"}, {{"PEL_WIDTH", text(1)}}},
+            {{"diffusion/scatter_screen.cl"}, outputs}};
+}
+
+// Work-items of a vector of pixels each.
+cl::Range ScreenScatter::rows(uint32_t width, uint32_t height) const {
+    const uint32_t lanes = device_->info().mathWidth;
+    return {{size_t((width + lanes - 1) / lanes) * height, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}};
+}
+
+void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>& events) {
+    std::vector<cl::Program> programs;
+    for (const cl::ProgramKey& key : this->programs(images)) programs.push_back(device_->programs().get(key));
+    const auto memory = [](const ImageView& view) { return view ? view.buffer->memory() : cl::Memory(); };
+    const auto launch = [&](cl::Launch& launch, const cl::Range& range) { events.push_back(device_->launch(launch, range)); };
+    device_->fill(counters_.get(), 0, PEL_DIFFUSION_COUNTERS * sizeof(cl_uint), 0);
+    {
+        cl::Launch points(programs[SURFACE], "surface_points");
+        points.arg(frameMemory_).arg(memory(images.irradiance)).arg(memory(images.positions ? images.positions : images.depth));
+        points.arg(memory(images.ids)).arg(pyramid_).arg(counters_);
+        launch(points, {{size_t(PEL_ROW_PARTS) * frame_.height, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
+        cl::Launch areas(programs[SURFACE], "surface_areas");
+        areas.arg(frameMemory_).arg(pyramid_);
+        launch(areas, rows(frame_.width, frame_.height));
+    }
+    for (uint32_t k = 1; k < frame_.levels; ++k) {
+        cl::Launch reduce(programs[REDUCE], "reduce_surface");
+        reduce.arg(frameMemory_).arg(pyramid_).arg(cl_uint(k));
+        launch(reduce, rows(frame_.level[k].width, frame_.level[k].height));
+    }
+    const size_t tiles = size_t(frame_.tilesX) * frame_.tilesY;
+    cl::Launch classify(programs[CLASSIFY], "classify_scatter");
+    classify.arg(frameMemory_).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_).arg(counters_);
+    launch(classify, {{tiles, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
+    cl::Launch scatter(programs[SCATTER], "scatter_screen");
+    scatter.arg(frameMemory_).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_);
+    scatter.arg(memory(images.irradiance)).arg(memory(images.out)).arg(counters_);
+    const size_t groups = std::min<size_t>(tiles, 64 * size_t(device_->info().computeUnits));
+    launch(scatter, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
+}
+
+ScatterCounts ScreenScatter::counts() {
+    ScatterCounts counts{};
+    if (counters_) device_->read(counters_.get(), 0, sizeof counts, &counts, true);
+    return counts;
+}
+
+}  // namespace pel

@@ -1,0 +1,57 @@
+// Irradiance of a picture scattered under the surface: the kernels of kernels/diffusion over plain inputs, for the shader's passes and
+// for hosts that light their own frames.
+#pragma once
+#include <map>
+#include <vector>
+
+#include "core/image_view.h"
+#include "diffusion/profile_table.h"
+
+namespace pel {
+
+// Images of one size. Views that are not there are empty; either positions or depth is.
+struct ScatterImages {
+    ImageView irradiance, positions, depth, ids, out;
+};
+
+struct ScatterView {
+    float inverseViewProjection[16] = {};  // clip to world; all zero: not known, with positions
+    float tolerance = 0;                   // of irradiance
+    bool everywhere = false;               // leave nothing out
+};
+
+struct ScatterCounts {
+    uint32_t tilesCovered, tilesTapped, pixelsCovered, pixelsTapped, taps, invalid;
+};
+
+class ScreenScatter {
+  public:
+    explicit ScreenScatter(Ref<Device> device) : device_(std::move(device)) {}
+
+    // The profile of pixels with each id, 1 to 255, and its lengths in the unit of positions.
+    struct Material {
+        Ref<Profile> profile;
+        double scale;
+        bool operator==(const Material& other) const { return profile.get() == other.profile.get() && scale == other.scale; }
+    };
+    // Makes memory and sends constants where they changed.
+    void prepare(const std::map<uint32_t, Material>& materials, const ScatterImages& images, const ScatterView& view);
+    std::vector<cl::ProgramKey> programs(const ScatterImages& images) const;
+    // Programs come from the device's cache.
+    void enqueue(const ScatterImages& images, std::vector<cl::Event>& events);
+    ScatterCounts counts();
+    size_t bytes() const { return pyramidBytes_ + nodeBytes_ + tileBytes_; }
+
+  private:
+    void sendTables(const std::map<uint32_t, Material>& materials);
+    void describeLevels(uint32_t width, uint32_t height);
+    cl::Range rows(uint32_t width, uint32_t height) const;
+
+    Ref<Device> device_;
+    std::map<uint32_t, Material> materials_;
+    PelDiffusionFrame frame_{}, sent_{};
+    cl::Memory frameMemory_, tables_, nodes_, pyramid_, tiles_, counters_;
+    size_t pyramidBytes_ = 0, nodeBytes_ = 0, tileBytes_ = 0;
+};
+
+}  // namespace pel

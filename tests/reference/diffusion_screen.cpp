@@ -1,0 +1,77 @@
+#include "reference/diffusion_screen.h"
+
+#include <numbers>
+
+namespace reference {
+namespace {
+
+bool finite(Vec3 v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool sound(const ScatterPicture& p, size_t i) {
+    return p.ids[i] != 0 && finite(p.positions[i]) && finite(p.irradiance[i]);
+}
+
+// The shorter of the two steps along (dx, dy); empty where neither neighbour belongs.
+std::optional<Vec3> shorterStep(const ScatterPicture& p, int x, int y, int dx, int dy) {
+    std::optional<Vec3> shortest;
+    for (int side : {-1, 1}) {
+        const int u = x + side * dx, v = y + side * dy;
+        if (u < 0 || v < 0 || u >= p.width || v >= p.height || !sound(p, p.at(u, v)) || p.ids[p.at(u, v)] != p.ids[p.at(x, y)])
+            continue;
+        const Vec3 step = side * (p.positions[p.at(u, v)] - p.positions[p.at(x, y)]);
+        if (!shortest || length(step) < length(*shortest)) shortest = step;
+    }
+    return shortest;
+}
+
+}  // namespace
+
+double scatterReach(const Profile& profile) {
+    double low = 0, high = 64 * magnitude(rmsWidth(profile));
+    for (int k = 0; k < 40; ++k) {
+        const double middle = (low + high) / 2;
+        const Rgb within = enclosedEnergy(profile, middle);
+        (std::min({within.x, within.y, within.z}) < 1 - 4e-3 ? low : high) = middle;
+    }
+    return high;
+}
+
+double surfaceArea(const ScatterPicture& p, int x, int y) {
+    const auto right = shorterStep(p, x, y, 1, 0), down = shorterStep(p, x, y, 0, 1);
+    if (!right && !down) return 0;
+    if (!right) return dot(*down, *down);
+    if (!down) return dot(*right, *right);
+    const Vec3 normal = cross(*right, *down);
+    if (!p.camera || length(normal) == 0) return length(normal);
+    const Vec3 view = p.positions[p.at(x, y)] - *p.camera;
+    const double cosine = std::abs(dot(normal, view)) / (length(normal) * length(view));
+    return length(normal) * std::min(1.0, 4 * cosine);
+}
+
+std::vector<Rgb> scatterOnScreen(const ScatterPicture& p, const Profile& profile) {
+    const double reach = scatterReach(profile);
+    std::vector<double> areas(p.positions.size());
+    for (int y = 0; y < p.height; ++y)
+        for (int x = 0; x < p.width; ++x)
+            if (sound(p, p.at(x, y))) areas[p.at(x, y)] = surfaceArea(p, x, y);
+    std::vector<Rgb> result = p.irradiance;
+    for (size_t i = 0; i < result.size(); ++i) {
+        if (!(areas[i] > 0)) continue;
+        // The pixel itself: the share of a disk of its area.
+        Rgb weights = enclosedEnergy(profile, std::min(reach, std::sqrt(areas[i] / std::numbers::pi))), light = weights * p.irradiance[i];
+        for (size_t j = 0; j < result.size(); ++j) {
+            if (i == j || !(areas[j] > 0) || p.ids[j] != p.ids[i]) continue;
+            const double distance = length(p.positions[j] - p.positions[i]);
+            if (distance >= reach) continue;
+            const Rgb weight = areas[j] * profile.radial(distance);
+            weights = weights + weight;
+            light = light + weight * p.irradiance[j];
+        }
+        for (int c = 0; c < 3; ++c) result[i][c] = light[c] / weights[c];
+    }
+    return result;
+}
+
+}  // namespace reference
