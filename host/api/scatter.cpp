@@ -1,47 +1,52 @@
+#include "diffusion/scatter.h"
+
 #include "api/entry.h"
 #include "core/submission.h"
-#include "diffusion/scatter.h"
 
 using namespace pel;
 
 PelError pelScatterCreate(PelDevice device, PelScatter* scatter) {
-    return entry([&] {
-        output(scatter, "scatter");
-        *scatter = toHandle<PelScatter>(make<Scatter>(Ref<Device>(&fromHandle<Device>(device))));
-    });
+    return entry(
+        [&] { handOut(scatter, "scatter", [&] { return make<Scatter>(fromHandle<Device>(device)); }); });
 }
 
 void pelScatterRetain(PelScatter scatter) {
-    retainHandle(scatter);
+    retainEntry<Scatter>(scatter);
 }
 void pelScatterRelease(PelScatter scatter) {
-    releaseHandle(scatter);
+    releaseEntry<Scatter>(scatter);
 }
 
 PelError pelScatterSetMaterial(PelScatter scatter, uint32_t id, PelProfile profile, float scale) {
-    return entry([&] { fromHandle<Scatter>(scatter).setMaterial(id, profile ? &fromHandle<Profile>(profile) : nullptr, scale); });
+    return entry([&] {
+        const Ref<Scatter> object = fromHandle<Scatter>(scatter);
+        object->setMaterial(id, profile ? fromHandle<Profile>(profile) : Ref<Profile>(), scale);
+    });
 }
 
 PelError pelScatterExecute(PelScatter scatter, const PelScatterParams* params, const PelImageDesc* irradiance,
-                           const PelImageDesc* positions, const PelImageDesc* depth, const PelImageDesc* ids, const PelImageDesc* out,
-                           const PelSubmit* submit) {
+                           const PelImageDesc* positions, const PelImageDesc* depth, const PelImageDesc* ids,
+                           const PelImageDesc* out, const PelSubmit* submit) {
     return entry([&] {
-        Scatter& object = fromHandle<Scatter>(scatter);
+        const Ref<Scatter> object = fromHandle<Scatter>(scatter);
         const auto defaults = pelScatterParamsDefaults();
         const auto full = params ? readStruct(params, defaults, "PelScatterParams") : defaults;
         const auto view = [&](const PelImageDesc* desc, const char* name, bool needed) {
-            if (desc) return makeImageView(readStruct(desc, pelImageDescDefaults(), "PelImageDesc"), object.device(), name);
+            if (desc)
+                return makeImageView(readStruct(desc, pelImageDescDefaults(), "PelImageDesc"),
+                                     object->device(), name);
             if (needed) invalidArgument("`", name, "` is needed, not NULL");
             return ImageView();
         };
         const ScatterImages images{view(irradiance, "irradiance", true), view(positions, "positions", false),
-                                   view(depth, "depth", false), view(ids, "ids", false), view(out, "out", true)};
-        Submission submission(object.device(), submit);
-        object.execute(full, images);
+                                   view(depth, "depth", false), view(ids, "ids", false),
+                                   view(out, "out", true)};
+        Submission submission(object->device(), submit);
+        object->execute(full, images);
         submission.finish();
     });
 }
 
 PelError pelScatterGetStats(PelScatter scatter, PelScatterStats* stats) {
-    return entry([&] { writeStruct(stats, fromHandle<Scatter>(scatter).stats(), "PelScatterStats"); });
+    return entry([&] { writeStruct(stats, fromHandle<Scatter>(scatter)->stats(), "PelScatterStats"); });
 }

@@ -8,11 +8,13 @@
 namespace pel {
 namespace {
 
-// 2 pi r R dr over [begin, end] on the logarithm of r: Gauss-Legendre with four points, exact for what a sixteenth of an octave of a
-// profile differs from a polynomial to far below a float.
+// 2 pi r R dr over [begin, end] on the logarithm of r: Gauss-Legendre with four points, exact for what a
+// sixteenth of an octave of a profile differs from a polynomial to far below a float.
 Rgb lightBetween(const ProfileShape& shape, double begin, double end) {
-    constexpr double points[] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526};
-    constexpr double weights[] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461, 0.3478548451374538};
+    constexpr double points[] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
+                                 0.8611363115940526};
+    constexpr double weights[] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
+                                  0.3478548451374538};
     const double middle = std::log(begin * end) / 2, half = std::log(end / begin) / 2;
     Rgb sum{};
     for (int k = 0; k < 4; ++k) {
@@ -32,18 +34,21 @@ double radiusOfNode(uint32_t bits) {
 
 ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
     const Rgb width = shape.width();
-    const double narrowest = std::min({width[0], width[1], width[2]}), widest = std::max({width[0], width[1], width[2]});
+    const double narrowest = std::min({width[0], width[1], width[2]}),
+                 widest = std::max({width[0], width[1], width[2]});
     // A thousandth of the narrowest width: what lies within belongs to the pixel itself.
     const double first = 1e-3 * narrowest * scale, farthest = 64 * widest * scale;
     if (!(first * first > 1e-30) || !(farthest * farthest < 1e30))
-        invalidArgument("a profile ", widest * scale, " wide in the unit of positions cannot be tabulated; 1e-9 to 1e12 can");
+        invalidArgument("a profile ", widest * scale,
+                        " wide in the unit of positions cannot be tabulated; 1e-9 to 1e12 can");
     const auto nodeOf = [](double r) {
         return std::bit_cast<uint32_t>(float(r * r)) >> PEL_PROFILE_NODE_BITS << PEL_PROFILE_NODE_BITS;
     };
     constexpr uint32_t step = 1u << PEL_PROFILE_NODE_BITS;
     const uint32_t firstBits = nodeOf(first), lastBits = nodeOf(farthest) + step;
     Rgb within{};
-    for (uint32_t octave = 24 * PEL_PROFILE_NODES; octave > 0; --octave) {  // 12 octaves of r below the first node
+    for (uint32_t octave = 24 * PEL_PROFILE_NODES; octave > 0;
+         --octave) {  // 12 octaves of r below the first node
         const Rgb light = lightBetween(shape, radiusOfNode(firstBits - octave * step) / scale,
                                        radiusOfNode(firstBits - (octave - 1) * step) / scale);
         for (int c = 0; c < 3; ++c) within[c] += light[c];
@@ -64,7 +69,8 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
     ++nodes;  // the last one, where nothing is left
 
     ProfileNodes result;
-    result.table = {0, uint32_t(nodes), firstBits, float(radiusOfNode(firstBits + uint32_t(nodes - 1) * step))};
+    result.table = {0, uint32_t(nodes), firstBits,
+                    float(radiusOfNode(firstBits + uint32_t(nodes - 1) * step))};
     result.values.resize(8 * nodes);
     const Rgb all = shares[nodes - 1];
     for (size_t k = 0; k < nodes; ++k) {

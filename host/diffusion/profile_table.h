@@ -7,8 +7,8 @@
 
 namespace pel {
 
-// What is further away than this share of the light reaches is left out, and the rest scaled up for it: where Burley's profile is cut
-// by others too, at 16 d.
+// What is further away than this share of the light reaches is left out, and the rest scaled up for it: where
+// Burley's profile is cut by others too, at 16 d.
 constexpr double lightBeyondReach = 4e-3;
 
 struct ProfileNodes {
@@ -16,7 +16,8 @@ struct ProfileNodes {
     std::vector<float> values;  // R of all nodes, then the shares within
 };
 
-// `scale`: lengths of the tables per length of the profile, > 0. Throws where squares of such lengths are no floats.
+// `scale`: lengths of the tables per length of the profile, > 0. Throws where squares of such lengths are no
+// floats.
 ProfileNodes profileNodes(const ProfileShape& shape, double scale);
 
 }  // namespace pel

@@ -4,21 +4,25 @@
 #include <cmath>
 
 #include "shading/check_settings.h"
+#include "shading/image_slots.h"
 
 namespace pel {
 namespace {
 
 void checkParams(const PelScatterParams& params) {
     if (!(params.targetError >= 0) || !std::isfinite(params.targetError))
-        invalidArgument("PelScatterParams.targetError is ", params.targetError, "; a finite number of at least 0 is needed, typical is 0.002");
+        invalidArgument("PelScatterParams.targetError is ", params.targetError,
+                        "; a finite number of at least 0 is needed, typical is 0.002");
     if (!(params.white > 0) || !std::isfinite(params.white))
-        invalidArgument("PelScatterParams.white is ", params.white, "; a finite irradiance above 0 is needed");
+        invalidArgument("PelScatterParams.white is ", params.white,
+                        "; a finite irradiance above 0 is needed");
     checkFinite("PelScatterParams", "inverseViewProjection", params.inverseViewProjection, 16);
 }
 
 void checkImages(const ScatterImages& images) {
     if (bool(images.positions) == bool(images.depth))
-        invalidArgument("either `positions` or `depth` is needed, ", images.depth ? "not both" : "and both are NULL");
+        invalidArgument("either `positions` or `depth` is needed, ",
+                        images.depth ? "not both" : "and both are NULL");
     checkImage(PEL_SLOT_RADIANCE, images.out);
     const std::pair<PelImageSlot, const ImageView*> inputs[] = {{PEL_SLOT_ALBEDO, &images.irradiance},
                                                                 {PEL_SLOT_POSITION, &images.positions},
@@ -29,31 +33,37 @@ void checkImages(const ScatterImages& images) {
         checkImage(slot, *view);
         const char* name = slot == PEL_SLOT_ALBEDO ? "irradiance" : slotName(slot);
         if (view->width != images.out.width || view->height != images.out.height)
-            invalidArgument("the ", name, " image is ", view->width, " x ", view->height, ", the output ", images.out.width, " x ",
-                            images.out.height, "; all must have one size");
+            invalidArgument("the ", name, " image is ", view->width, " x ", view->height, ", the output ",
+                            images.out.width, " x ", images.out.height, "; all must have one size");
         // The irradiance may be written over pixel on pixel.
         const bool touches = view->buffer->memory().get() == images.out.buffer->memory().get() &&
-                             view->byteOffset < images.out.byteEnd() && images.out.byteOffset < view->byteEnd();
-        if (touches && (slot != PEL_SLOT_ALBEDO || view->format != images.out.format || overlapsElsewhere(images.out, *view)))
+                             view->byteOffset < images.out.byteEnd() &&
+                             images.out.byteOffset < view->byteEnd();
+        if (touches && (slot != PEL_SLOT_ALBEDO || view->format != images.out.format ||
+                        overlapsElsewhere(images.out, *view)))
             invalidArgument("the output overlaps the ", name, " image, which is read",
-                            slot == PEL_SLOT_ALBEDO ? "; only the same pixels in the same format may be written over" : "");
+                            slot == PEL_SLOT_ALBEDO
+                                ? "; only the same pixels in the same format may be written over"
+                                : "");
     }
 }
 
 }  // namespace
 
-void Scatter::setMaterial(uint32_t id, Profile* profile, float scale) {
-    if (id < 1 || id >= PEL_DIFFUSION_IDS) invalidArgument("material ids are 1 to ", PEL_DIFFUSION_IDS - 1, ", not ", id);
+void Scatter::setMaterial(uint32_t id, const Ref<Profile>& profile, float scale) {
+    if (id < 1 || id >= PEL_DIFFUSION_IDS)
+        invalidArgument("material ids are 1 to ", PEL_DIFFUSION_IDS - 1, ", not ", id);
     if (!profile) {
         materials_.erase(id);
         return;
     }
     if (!(scale >= 0) || !std::isfinite(scale))
-        invalidArgument("the scale of material ", id, "'s profile is ", scale,
-                        "; a finite length of at least 0 is needed, in the unit of positions per unit of the profile");
+        invalidArgument(
+            "the scale of material ", id, "'s profile is ", scale,
+            "; a finite length of at least 0 is needed, in the unit of positions per unit of the profile");
     if (scale > 0) profileNodes(profile->shape(), scale);  // throws where the lengths are out of range
     if (scale > 0)
-        materials_[id] = {Ref<Profile>(profile), scale};
+        materials_[id] = {profile, scale};
     else
         materials_.erase(id);  // nothing is scattered
 }

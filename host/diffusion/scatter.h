@@ -10,7 +10,7 @@ class Scatter final : public Object {
     explicit Scatter(Ref<Device> device) : Object(kind), device_(device), screen_(std::move(device)) {}
 
     // A null profile removes the material.
-    void setMaterial(uint32_t id, Profile* profile, float scale);
+    void setMaterial(uint32_t id, const Ref<Profile>& profile, float scale);
     // Enqueues everything.
     void execute(const PelScatterParams& params, const ScatterImages& images);
     PelScatterStats stats();

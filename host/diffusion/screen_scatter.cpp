@@ -10,7 +10,8 @@
 namespace pel {
 namespace {
 
-// The point that a perspective matrix maps to infinite depth. Returns false for parallel views and where there is no matrix.
+// The point that a perspective matrix maps to infinite depth. Returns false for parallel views and where
+// there is no matrix.
 bool eyeOf(const float inverse[16], float eye[3]) {
     const float w = inverse[14];
     if (!(std::abs(w) > 1e-20f)) return false;
@@ -19,8 +20,9 @@ bool eyeOf(const float inverse[16], float eye[3]) {
 }
 
 bool samePixels(const ImageView& a, const ImageView& b) {
-    return a.buffer->memory().get() == b.buffer->memory().get() && a.byteOffset == b.byteOffset && a.format == b.format &&
-           a.pixelStride == b.pixelStride && a.rowStride == b.rowStride && a.planeStride == b.planeStride;
+    return a.buffer->memory().get() == b.buffer->memory().get() && a.byteOffset == b.byteOffset &&
+           a.format == b.format && a.pixelStride == b.pixelStride && a.rowStride == b.rowStride &&
+           a.planeStride == b.planeStride;
 }
 
 enum Program { SURFACE, REDUCE, CLASSIFY, SCATTER };
@@ -56,7 +58,9 @@ void ScreenScatter::describeLevels(uint32_t width, uint32_t height) {
     uint64_t floats = 0;
     for (PelPyramidLevel& level : frame_.level) {
         const uint32_t stride = (width + 15) / 16 * 16 + 3 * PEL_PYRAMID_GUARD;
-        if (floats > UINT32_MAX) fail(PEL_ERROR_OUT_OF_MEMORY, "a picture of ", frame_.width, " x ", frame_.height, " is too large to scatter");
+        if (floats > UINT32_MAX)
+            fail(PEL_ERROR_OUT_OF_MEMORY, "a picture of ", frame_.width, " x ", frame_.height,
+                 " is too large to scatter");
         level = {uint32_t(floats), stride, width, height};
         floats += uint64_t(height + 2 * PEL_PYRAMID_ROWS) * PEL_PYRAMID_PLANES * stride;
         width = (width + 1) / 2, height = (height + 1) / 2;
@@ -70,7 +74,8 @@ void ScreenScatter::describeLevels(uint32_t width, uint32_t height) {
     device_->fill(pyramid_.get(), 0, bytes, 0);  // no area outside of the picture
 }
 
-void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const ScatterImages& images, const ScatterView& view) {
+void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const ScatterImages& images,
+                            const ScatterView& view) {
     frame_.width = images.irradiance.width, frame_.height = images.irradiance.height;
     frame_.tilesX = (frame_.width + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
     frame_.tilesY = (frame_.height + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
@@ -104,7 +109,8 @@ std::vector<cl::ProgramKey> ScreenScatter::programs(const ScatterImages& images)
                              {"PEL_FORMAT_POSITION", code(images.positions)},
                              {"PEL_FORMAT_DEPTH", images.positions ? text(0) : code(images.depth)},
                              {"PEL_FORMAT_MATERIAL", code(images.ids)}};
-    const cl::Defines outputs{{"PEL_FORMAT_IRRADIANCE", code(images.irradiance)}, {"PEL_FORMAT_OUT", code(images.out)}};
+    const cl::Defines outputs{{"PEL_FORMAT_IRRADIANCE", code(images.irradiance)},
+                              {"PEL_FORMAT_OUT", code(images.out)}};
     return {{{"diffusion/surface.cl"}, inputs},
             {{"diffusion/reduce.cl"}, {}},
             {{"diffusion/classify_scatter.cl"}, {{"PEL_WIDTH", text(1)}}},
@@ -121,11 +127,15 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
     std::vector<cl::Program> programs;
     for (const cl::ProgramKey& key : this->programs(images)) programs.push_back(device_->programs().get(key));
     const auto memory = [](const ImageView& view) { return view ? view.buffer->memory() : cl::Memory(); };
-    const auto launch = [&](cl::Launch& launch, const cl::Range& range) { events.push_back(device_->launch(launch, range)); };
+    const auto launch = [&](cl::Launch& launch, const cl::Range& range) {
+        events.push_back(device_->launch(launch, range));
+    };
     device_->fill(counters_.get(), 0, PEL_DIFFUSION_COUNTERS * sizeof(cl_uint), 0);
     {
         cl::Launch points(programs[SURFACE], "surface_points");
-        points.arg(frameMemory_).arg(memory(images.irradiance)).arg(memory(images.positions ? images.positions : images.depth));
+        points.arg(frameMemory_)
+            .arg(memory(images.irradiance))
+            .arg(memory(images.positions ? images.positions : images.depth));
         points.arg(memory(images.ids)).arg(pyramid_).arg(counters_);
         launch(points, {{size_t(PEL_ROW_PARTS) * frame_.height, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
         cl::Launch areas(programs[SURFACE], "surface_areas");

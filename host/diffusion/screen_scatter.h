@@ -1,5 +1,5 @@
-// Irradiance of a picture scattered under the surface: the kernels of kernels/diffusion over plain inputs, for the shader's passes and
-// for hosts that light their own frames.
+// Irradiance of a picture scattered under the surface: the kernels of kernels/diffusion over plain inputs,
+// for the shader's passes and for hosts that light their own frames.
 #pragma once
 #include <map>
 #include <vector>
@@ -32,10 +32,13 @@ class ScreenScatter {
     struct Material {
         Ref<Profile> profile;
         double scale;
-        bool operator==(const Material& other) const { return profile.get() == other.profile.get() && scale == other.scale; }
+        bool operator==(const Material& other) const {
+            return profile.get() == other.profile.get() && scale == other.scale;
+        }
     };
     // Makes memory and sends constants where they changed.
-    void prepare(const std::map<uint32_t, Material>& materials, const ScatterImages& images, const ScatterView& view);
+    void prepare(const std::map<uint32_t, Material>& materials, const ScatterImages& images,
+                 const ScatterView& view);
     std::vector<cl::ProgramKey> programs(const ScatterImages& images) const;
     // Programs come from the device's cache.
     void enqueue(const ScatterImages& images, std::vector<cl::Event>& events);

@@ -55,7 +55,8 @@ TEST(Scatter, EqualsTheSumOverEveryPixel) {
     const float meanFreePath[] = {1.2f, 0.6f, 0.3f}, albedo[] = {0.8f, 0.8f, 0.8f};
     const std::pair<Profile, reference::ProfilePtr> profiles[] = {
         {Profile::skin(), reference::skinProfile()},
-        {Profile::burley(meanFreePath, albedo), reference::burleyProfile({1.2f, 0.6f, 0.3f}, {0.8f, 0.8f, 0.8f})}};
+        {Profile::burley(meanFreePath, albedo),
+         reference::burleyProfile({1.2f, 0.6f, 0.3f}, {0.8f, 0.8f, 0.8f})}};
     for (const auto& [profile, exact] : profiles) {
         const auto expected = reference::scatterOnScreen(p.exact(), *exact);
         const Result result = run(p, profile);
@@ -79,7 +80,8 @@ TEST(Scatter, LeavesOutNoMoreThanTheTargetErrorSays) {
         std::vector<double> errors;
         for (size_t i = 0; i < p.pixels(); ++i)
             if (p.ids[i])
-                for (int c = 0; c < 3; ++c) errors.push_back(std::abs(result.scattered[3 * i + c] - all.scattered[3 * i + c]));
+                for (int c = 0; c < 3; ++c)
+                    errors.push_back(std::abs(result.scattered[3 * i + c] - all.scattered[3 * i + c]));
         std::sort(errors.begin(), errors.end());
         EXPECT_LE(errors[errors.size() * 99 / 100], std::max<double>(target, tolerance::scatterLeastError));
         EXPECT_LE(result.stats.taps, before);
@@ -150,7 +152,8 @@ TEST(Scatter, NothingFlowsBetweenIds) {
     }
     p.params.everywhere = 1;
     const Result result = run(p, {{1, Profile::skin(), 1}, {2, narrow(), 1}});
-    for (size_t i = 0; i < p.pixels(); ++i) EXPECT_NEAR(result.scattered[3 * i], p.irradiance[3 * i], 1e-5) << i % 64;
+    for (size_t i = 0; i < p.pixels(); ++i)
+        EXPECT_NEAR(result.scattered[3 * i], p.irradiance[3 * i], 1e-5) << i % 64;
 }
 
 TEST(Scatter, NothingComesFromBeyondTheReach) {
@@ -181,7 +184,8 @@ TEST(Scatter, NoNumberSpreadsNoFurtherThanItself) {
         for (int c = 0; c < 3; ++c) {
             if (i == bad && c == 1) continue;
             const bool kept = i == bad || i == worse;
-            ASSERT_NEAR(result.scattered[3 * i + c], kept ? p.irradiance[3 * i + c] : clean.scattered[3 * i + c],
+            ASSERT_NEAR(result.scattered[3 * i + c],
+                        kept ? p.irradiance[3 * i + c] : clean.scattered[3 * i + c],
                         tolerance::scatterOneMissing)
                 << i << " " << c;
         }
@@ -189,13 +193,15 @@ TEST(Scatter, NoNumberSpreadsNoFurtherThanItself) {
 
 TEST(Scatter, SizesAndRadiiAtTheirEnds) {
     const auto light = [](double x, double) { return x < 3 ? Vec3{1, 0.5, 0.25} : Vec3{}; };
-    for (const auto& [width, height] : {std::pair{1u, 1u}, {1u, 40u}, {40u, 1u}, {3u, 2u}, {17u, 33u}, {130u, 20u}})
+    for (const auto& [width, height] :
+         {std::pair{1u, 1u}, {1u, 40u}, {40u, 1u}, {3u, 2u}, {17u, 33u}, {130u, 20u}})
         for (float scale : {1e-6f, 1e-3f, 1.0f, 1e3f, 1e6f}) {
             Picture p = plane(width, height, 0.2, light);
             p.params.everywhere = 1;
             const Result result = run(p, Profile::skin(), scale);
             for (size_t i = 0; i < result.scattered.size(); ++i) {
-                ASSERT_TRUE(result.scattered[i] >= 0 && result.scattered[i] <= 1.00001f) << width << " x " << height << ", " << scale;
+                ASSERT_TRUE(result.scattered[i] >= 0 && result.scattered[i] <= 1.00001f)
+                    << width << " x " << height << ", " << scale;
                 // Far narrower than a pixel: nothing changes.
                 if (scale < 1e-4f) {
                     ASSERT_NEAR(result.scattered[i], p.irradiance[i], 1e-4);
@@ -222,7 +228,9 @@ TEST(Scatter, WithoutMaterialsThePictureStays) {
 }
 
 TEST(Scatter, FlatLightTakesNoTaps) {
-    Picture p = plane(160, 90, 0.3, [](double x, double y) { return Vec3{0.3 + 0.01 * x, 0.4 + 0.004 * y, 0.5}; });
+    Picture p = plane(160, 90, 0.3, [](double x, double y) {
+        return Vec3{0.3 + 0.01 * x, 0.4 + 0.004 * y, 0.5};
+    });
     const Result result = run(p, Profile::skin());
     EXPECT_EQ(result.stats.pixelsTapped, 0u);
     EXPECT_EQ(result.stats.taps, 0u);
@@ -256,7 +264,8 @@ TEST(Scatter, DepthIsAsGoodAsPositions) {
     const float near = 20, far = 60, a = far / (near - far), b = near * far / (near - far);
     for (uint32_t y = 0; y < side; ++y)
         for (uint32_t x = 0; x < side; ++x) {
-            const Vec3 d = normalized(Vec3{((x + 0.5) / side * 2 - 1) / 3, (1 - (y + 0.5) / side * 2) / 3, -1});
+            const Vec3 d =
+                normalized(Vec3{((x + 0.5) / side * 2 - 1) / 3, (1 - (y + 0.5) / side * 2) / 3, -1});
             const double along = dot(d, Vec3{0, 0, 40}), rest = along * along - 1600 + 100;
             if (rest <= 0) continue;
             const Vec3 world = Vec3{0, 0, 40} + (-along - std::sqrt(rest)) * d;
@@ -294,19 +303,29 @@ TEST(Scatter, SaysWhatIsWrong) {
         EXPECT_EQ(call(), PEL_ERROR_INVALID_ARGUMENT);
         return std::string(pelGetErrorMessage());
     };
-    const auto execute = [&](const PelImageDesc* positions, const PelImageDesc* depth, const PelImageDesc* out) {
+    const auto execute = [&](const PelImageDesc* positions, const PelImageDesc* depth,
+                             const PelImageDesc* out) {
         return pelScatterExecute(scatter.get(), nullptr, &image, positions, depth, nullptr, out, nullptr);
     };
-    EXPECT_NE(message([&] { return execute(nullptr, nullptr, &image); }).find("either `positions` or `depth`"), std::string::npos);
+    EXPECT_NE(
+        message([&] { return execute(nullptr, nullptr, &image); }).find("either `positions` or `depth`"),
+        std::string::npos);
     EXPECT_NE(message([&] { return execute(&other, nullptr, &image); }).find("4 x 4"), std::string::npos);
     EXPECT_NE(message([&] { return execute(&image, nullptr, &image); }).find("overlaps"), std::string::npos);
     PelScatterParams params = pelScatterParamsDefaults();
     params.targetError = notANumber;
-    EXPECT_NE(message([&] { return pelScatterExecute(scatter.get(), &params, &image, &other, nullptr, nullptr, &image, nullptr); })
-                  .find("targetError"),
+    EXPECT_NE(message([&] {
+                  return pelScatterExecute(scatter.get(), &params, &image, &other, nullptr, nullptr, &image,
+                                           nullptr);
+              }).find("targetError"),
               std::string::npos);
     const Profile skin = Profile::skin();
     for (float scale : {-1.0f, infinity, notANumber, 1e20f})
-        EXPECT_NE(message([&] { return pelScatterSetMaterial(scatter.get(), 1, skin.get(), scale); }).find("profile"), std::string::npos);
-    EXPECT_NE(message([&] { return pelScatterSetMaterial(scatter.get(), 256, skin.get(), 1); }).find("1 to 255"), std::string::npos);
+        EXPECT_NE(message([&] {
+                      return pelScatterSetMaterial(scatter.get(), 1, skin.get(), scale);
+                  }).find("profile"),
+                  std::string::npos);
+    EXPECT_NE(
+        message([&] { return pelScatterSetMaterial(scatter.get(), 256, skin.get(), 1); }).find("1 to 255"),
+        std::string::npos);
 }

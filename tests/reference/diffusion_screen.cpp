@@ -18,7 +18,8 @@ std::optional<Vec3> shorterStep(const ScatterPicture& p, int x, int y, int dx, i
     std::optional<Vec3> shortest;
     for (int side : {-1, 1}) {
         const int u = x + side * dx, v = y + side * dy;
-        if (u < 0 || v < 0 || u >= p.width || v >= p.height || !sound(p, p.at(u, v)) || p.ids[p.at(u, v)] != p.ids[p.at(x, y)])
+        if (u < 0 || v < 0 || u >= p.width || v >= p.height || !sound(p, p.at(u, v)) ||
+            p.ids[p.at(u, v)] != p.ids[p.at(x, y)])
             continue;
         const Vec3 step = side * (p.positions[p.at(u, v)] - p.positions[p.at(x, y)]);
         if (!shortest || length(step) < length(*shortest)) shortest = step;
@@ -60,7 +61,8 @@ std::vector<Rgb> scatterOnScreen(const ScatterPicture& p, const Profile& profile
     for (size_t i = 0; i < result.size(); ++i) {
         if (!(areas[i] > 0)) continue;
         // The pixel itself: the share of a disk of its area.
-        Rgb weights = enclosedEnergy(profile, std::min(reach, std::sqrt(areas[i] / std::numbers::pi))), light = weights * p.irradiance[i];
+        Rgb weights = enclosedEnergy(profile, std::min(reach, std::sqrt(areas[i] / std::numbers::pi))),
+            light = weights * p.irradiance[i];
         for (size_t j = 0; j < result.size(); ++j) {
             if (i == j || !(areas[j] > 0) || p.ids[j] != p.ids[i]) continue;
             const double distance = length(p.positions[j] - p.positions[i]);

@@ -1,4 +1,5 @@
-// Scattering on the screen (sections 9 and 10 of the mathematics) in double precision: every pixel sums over every other one.
+// Scattering on the screen (sections 9 and 10 of the mathematics) in double precision: every pixel sums over
+// every other one.
 #pragma once
 
 #include <optional>
@@ -10,21 +11,23 @@ namespace reference {
 
 struct ScatterPicture {
     int width = 0, height = 0;
-    std::vector<Vec3> positions;   // length
+    std::vector<Vec3> positions;  // length
     std::vector<Rgb> irradiance;
-    std::vector<int> ids;          // 0 is background
-    std::optional<Vec3> camera;    // surface seen at less than a quarter of its area counts as if it were a quarter
+    std::vector<int> ids;  // 0 is background
+    std::optional<Vec3>
+        camera;  // surface seen at less than a quarter of its area counts as if it were a quarter
     size_t at(int x, int y) const { return size_t(y) * width + x; }
 };
 
 // The distance beyond which the profile's light is left out: where no channel has more than 0.4 % left.
 double scatterReach(const Profile& profile);
 
-// Surface under a pixel: the cross product of the shorter steps to neighbours of its id; squares where there is one step, 0 where
-// there is none.
+// Surface under a pixel: the cross product of the shorter steps to neighbours of its id; squares where there
+// is one step, 0 where there is none.
 double surfaceArea(const ScatterPicture& picture, int x, int y);
 
-// The sum divided by that of the weights. Pixels whose irradiance or position is not finite count for nobody and keep theirs.
+// The sum divided by that of the weights. Pixels whose irradiance or position is not finite count for nobody
+// and keep theirs.
 std::vector<Rgb> scatterOnScreen(const ScatterPicture& picture, const Profile& profile);
 
 }  // namespace reference

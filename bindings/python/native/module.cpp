@@ -20,6 +20,7 @@ PYBIND11_MODULE(_native, module) {
     bindBuffer(module);
     bindMesh(module);
     bindProfile(module);
+    bindScatter(module);
     bindLut(module);
     bindShader(module);
     bindBatch(module);

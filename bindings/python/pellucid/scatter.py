@@ -1,0 +1,75 @@
+"""Scattering alone, for hosts that light their own frames."""
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _native
+from ._arrays import Image, submit
+from ._struct import OfThisProcess
+from ._types import ScatterParams, ScatterStats
+from .device import Device, Event, _filled, _handles
+from .profile import Profile
+
+
+class Scatter(OfThisProcess):
+    """Takes the irradiance of a picture and returns it scattered under the surface; see pelScatterExecute. Keeps memory between
+    frames."""
+
+    _instead = "make one there"
+
+    def __init__(self, device: Device) -> None:
+        self.device = device
+        self._handle = _native.Scatter.create(device._handle)
+
+    def set_material(self, id: int, profile: Optional[Profile], scale: float = 1.0) -> None:
+        """Pixels of `id`, 1 to 255, scatter by `profile`, whose lengths count `scale` units of positions each; None: not at all."""
+        self._handle.set_material(id, None if profile is None else profile._handle, scale)
+
+    def execute(self, irradiance: Any, positions: Any = None, *, depth: Any = None, ids: Any = None,
+                out: Optional[NDArray[np.float32]] = None, params: Optional[ScatterParams] = None) -> NDArray[np.float32]:
+        """Scattered irradiance.
+
+        Parameters
+        ----------
+        irradiance : (height, width, 3)
+            All lights together, shadows sharp, in any layout that Image takes.
+        positions : (height, width, 3)
+            World.
+        depth : (height, width), optional
+            Instead of positions, with params.inverse_view_projection.
+        ids : (height, width) unsigned integers, optional
+            Of materials; nothing flows from one to another; 0 is background. None: everything is 1.
+        out : (height, width, 3) float32, optional
+            A new array without it; may be the irradiance.
+        params : ScatterParams, optional
+        """
+        result = np.empty(np.shape(irradiance), np.float32) if out is None else out
+        self.submit_execute(irradiance, positions, result, depth=depth, ids=ids, params=params).wait()
+        return result
+
+    def submit_execute(self, irradiance: Any, positions: Any, out: Any, *, depth: Any = None, ids: Any = None,
+                       params: Optional[ScatterParams] = None, waits: Iterable[Event] = ()) -> Event:
+        """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
+        def image(value: Any, what: str, output: bool = False, ids: bool = False) -> Optional[Image]:
+            if value is None or isinstance(value, Image):
+                return value
+            return Image(self.device, value, _slot=what, _output=output, _ids=ids)
+
+        settings = ScatterParams() if params is None else params
+        in_place = out is irradiance
+        target = image(out, "out", output=True)
+        images = [target if in_place else image(irradiance, "irradiance"), image(positions, "positions"), image(depth, "depth"),
+                  image(ids, "ids", ids=True), target]
+        natives: list[Any] = [None if x is None else x._view.native for x in images]
+        e, p, d, i, o = natives
+        views = [x._view for k, x in enumerate(images) if x is not None and not (in_place and k == 0)]
+        return Event(submit(self.device, views, _handles(waits),
+                            lambda w: self._handle.execute(settings._data, e, p, d, i, o, w)), self)
+
+    def stats(self) -> ScatterStats:
+        """What the last execution did."""
+        return _filled(ScatterStats, self._handle.stats())

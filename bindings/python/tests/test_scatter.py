@@ -1,0 +1,47 @@
+"""Scattering alone."""
+import numpy as np
+import pytest
+
+import pellucid as pel
+
+
+def ball(radius=10.0, size=0.25):
+    y, x = (np.mgrid[0:80, 0:80] - 39.5) * size
+    inside = x**2 + y**2 < radius**2
+    z = np.sqrt(np.where(inside, radius**2 - x**2 - y**2, 0))
+    positions = np.stack([x, y, z], -1).astype(np.float32)
+    irradiance = np.repeat(np.clip(positions[..., :1] / radius, 0, 1) * inside[..., None], 3, -1).astype(np.float32)
+    return irradiance, positions, inside.astype(np.uint8)
+
+
+def test_light_flows_over_the_terminator_and_nowhere_else(device):
+    irradiance, positions, ids = ball()
+    scatter = pel.Scatter(device)
+    scatter.set_material(1, pel.Profile.skin())
+    result = scatter.execute(irradiance, positions, ids=ids)
+    assert np.array_equal(result[ids == 0], irradiance[ids == 0])
+    dark = (ids == 1) & (positions[..., 0] > -1) & (positions[..., 0] < 0)
+    assert (result[dark, 0] > result[dark, 2]).all() and result[dark, 0].min() > 0.01  # red reaches furthest
+    stats = scatter.stats()
+    assert 0 < stats.pixels_tapped <= stats.pixels_covered == ids.sum()
+    later = np.empty_like(irradiance)
+    scatter.submit_execute(irradiance, positions, later, ids=ids).wait()
+    assert np.array_equal(later, result)
+    scatter.execute(irradiance, positions, ids=ids, out=irradiance)
+    assert np.array_equal(irradiance, result)
+
+
+def test_scales_and_materials(device):
+    irradiance, positions, ids = ball()
+    scatter = pel.Scatter(device)
+    assert np.array_equal(scatter.execute(irradiance, positions, ids=ids), irradiance)
+    scatter.set_material(1, pel.Profile.skin(), 0.1)
+    narrow = np.abs(scatter.execute(irradiance, positions, ids=ids) - irradiance).max()
+    scatter.set_material(1, pel.Profile.skin())
+    assert np.abs(scatter.execute(irradiance, positions, ids=ids) - irradiance).max() > 2 * narrow
+    scatter.set_material(1, None)
+    assert np.array_equal(scatter.execute(irradiance, positions, ids=ids), irradiance)
+    with pytest.raises(pel.PellucidError, match="1 to 255"):
+        scatter.set_material(300, pel.Profile.skin())
+    with pytest.raises(pel.PellucidError, match="targetError"):
+        scatter.execute(irradiance, positions, ids=ids, params=pel.ScatterParams(target_error=-1))
