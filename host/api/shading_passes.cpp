@@ -1,13 +1,15 @@
 #include "api/shading_passes.h"
 
+#include "diffusion/passes.h"
 #include "shading/passes.h"
 
 namespace pel {
 
 // A pass reads what those before it made.
 std::span<const PassKind> shadingPasses() {
-    static const PassKind passes[] = {ambientCubePass,  classifyTilesPass, blurNormalsPass, normalMapPass,
-                                      shadowBoundsPass, wideShadowPass,    irradiancePass,  shadePass};
+    static const PassKind passes[] = {ambientCubePass, classifyTilesPass, blurNormalsPass,
+                                      normalMapPass,   shadowBoundsPass,  wideShadowPass,
+                                      irradiancePass,  scatterPass,       shadePass};
     return passes;
 }
 

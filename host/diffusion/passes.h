@@ -1,0 +1,9 @@
+// The passes of this room.
+#pragma once
+#include "shading/pass.h"
+
+namespace pel {
+
+extern const PassKind scatterPass;
+
+}  // namespace pel
