@@ -17,9 +17,11 @@ bool scatters(const ShaderMaterial& material) {
     return methods >> material.params.scattering & 1;
 }
 
-// By the profile of its curvature table, or skin's, stretched to its diffusion radius.
+// By its profile, that of its curvature table, or skin's, stretched to its diffusion radius.
 ScreenScatter::Material profileOf(const ShaderMaterial& material) {
-    Ref<Profile> profile = material.curvatureLut ? material.curvatureLut->profile() : Profile::skin();
+    Ref<Profile> profile = material.profile        ? material.profile
+                           : material.curvatureLut ? material.curvatureLut->profile()
+                                                   : Profile::skin();
     const double radius = profile->radius();
     return {std::move(profile), material.params.diffusionRadius / radius};
 }
