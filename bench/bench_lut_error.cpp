@@ -13,7 +13,7 @@
 #include <cmath>
 #include <random>
 
-#include "color_difference.h"
+#include "io/image/color_difference.h"
 #include "reference/lut.h"
 
 using namespace pellucid;
@@ -121,7 +121,7 @@ void lookUpError(benchmark::State& state) {
                 exact[k] = albedo[k] * p.truth[k];
             }
             color =
-                std::max(color, bench::deltaE2000(bench::labFromLinear(lit), bench::labFromLinear(exact)));
+                std::max(color, pellucid::io::deltaE2000(pellucid::io::labFromLinear(lit), pellucid::io::labFromLinear(exact)));
         }
     state.counters["max"] = worst;
     state.counters["rms"] = std::sqrt(squares / double(points().size() * 3 * state.iterations()));

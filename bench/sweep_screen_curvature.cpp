@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "color_difference.h"
+#include "io/image/color_difference.h"
 #include "demo_files.h"
 #include "io/image/image_file.h"
 #include "io/image/picture.h"
@@ -144,8 +144,8 @@ void run(const std::string& meshFile, const std::string& folder, const std::stri
     for (size_t i = 0; i < mask.size(); ++i) {
         if (mask[i] == 0) continue;
         for (size_t c = 3 * i; c < 3 * i + 3; ++c) error += std::pow(one[c] - two[c], 2), total += double(one[c]) * one[c];
-        deltaE[i] = float(bench::deltaE2000(bench::labFromLinear({one[3 * i], one[3 * i + 1], one[3 * i + 2]}),
-                                            bench::labFromLinear({two[3 * i], two[3 * i + 1], two[3 * i + 2]})));
+        deltaE[i] = float(pellucid::io::deltaE2000(pellucid::io::labFromLinear({one[3 * i], one[3 * i + 1], one[3 * i + 2]}),
+                                            pellucid::io::labFromLinear({two[3 * i], two[3 * i + 1], two[3 * i + 2]})));
         seen.push_back(deltaE[i]);
     }
     std::printf("\nshaded: RMS difference %.2f %% of the RMS radiance; CIEDE2000 median %.2f, 95 %% %.2f, 99 %% %.2f, largest %.1f\n",

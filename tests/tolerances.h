@@ -49,6 +49,23 @@ inline constexpr Tolerance fittedAgain{"fittedAgain", 1e-4,
 inline constexpr Tolerance sphereMean{"sphereMean", 1e-5,
                                       "energy: the mean of the form sphere is exactly 1/4"};
 
+// --- the surface integral, of the largest irradiance ---
+inline constexpr Tolerance surfaceNear{"surfaceNear", 3e-5, "float sums round borders of triangles, which cancel; a table of 64 rows an octave"};
+inline constexpr Tolerance surfaceStep{"surfaceStep", 2e-4, "a measured profile that ends at a step: the rule along edges meets it between its points"};
+inline constexpr Tolerance surfaceFar{"surfaceFar", 1e-4, "what a hierarchy of that tolerance may leave out"};
+inline constexpr Tolerance surfaceSphere{"surfaceSphere", 1e-4, "a sphere of 200,000 facets against the closed form"};
+
+inline constexpr Tolerance walkReflected{"walkReflected", 3e-3, "three standard errors of 200,000 photons"};
+inline constexpr Tolerance walkErrors{"walkErrors", 4.5, "standard errors of a bin, of 60 bins"};
+inline constexpr Tolerance walkTheirs{"walkTheirs", 5e-4, "of the other walk, smoothed over N.L"};
+
+inline constexpr Tolerance publishedDeltaE{"publishedDeltaE", 1e-4, "published to four decimals"};
+
+inline constexpr Tolerance litFacets{"litFacets", 0.02, "a cosine from interpolated normals, at a point of a facet beside that of the ball"};
+inline constexpr Tolerance referenceRms{"referenceRms", 1e-3, "RMS on a ball of 57,600 facets at pixels that were brought to it"};
+
+inline constexpr Tolerance neverWorse{"neverWorse", 2e-4, "of white: what the reference itself may be off on facets"};
+
 // --- curvature, relative to the mesh's largest value ---
 inline constexpr Tolerance edgeCurvature{"edgeCurvature", 1e-5,
                                          "differences of float positions and normals, then a mean per pass"};

@@ -1,16 +1,12 @@
-// Colour differences as eyes see them.
-#pragma once
+#include "io/image/color_difference.h"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
-namespace bench {
+namespace pellucid::io {
 
-using Lab = std::array<double, 3>;
-
-// CIE L*a*b* of linear sRGB, D65 white.
-inline Lab labFromLinear(const std::array<double, 3>& rgb) {
+Lab labFromLinear(const std::array<double, 3>& rgb) {
     const double r = std::max(0.0, rgb[0]), g = std::max(0.0, rgb[1]), b = std::max(0.0, rgb[2]);
     auto f = [](double t) { return t > 216.0 / 24389 ? std::cbrt(t) : (24389.0 / 27 * t + 16) / 116; };
     const double x = f((0.4124564 * r + 0.3575761 * g + 0.1804375 * b) / 0.95047);
@@ -19,8 +15,7 @@ inline Lab labFromLinear(const std::array<double, 3>& rgb) {
     return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
 }
 
-// CIE 142-2001, with all parametric factors 1.
-inline double deltaE2000(const Lab& one, const Lab& two) {
+double deltaE2000(const Lab& one, const Lab& two) {
     constexpr double degree = std::numbers::pi / 180, pow25to7 = 6103515625.0;
     const double c1 = std::hypot(one[1], one[2]), c2 = std::hypot(two[1], two[2]);
     const double mean7 = std::pow((c1 + c2) / 2, 7), g = 0.5 * (1 - std::sqrt(mean7 / (mean7 + pow25to7)));
@@ -52,4 +47,4 @@ inline double deltaE2000(const Lab& one, const Lab& two) {
                      rT * dC / sC * dH / sH);
 }
 
-}  // namespace bench
+}  // namespace pellucid::io

@@ -1,0 +1,48 @@
+// How far two pictures are apart, as numbers.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace pellucid::io {
+
+struct ImageDifference {
+    size_t pixels = 0;             // that were compared
+    std::array<double, 3> rmse{};  // per channel
+    std::array<double, 3> mean{};  // of a - b, signed
+    std::array<double, 3> p99{};   // of |a - b|, per channel
+    std::array<double, 3> most{};  // likewise
+    double rmseAll = 0;            // over all channels
+    double psnr = 0;               // dB, of a white of 1 over rmseAll; infinite for equal pictures
+    double deltaEMean = 0, deltaE99 = 0, deltaEMost = 0;  // CIEDE2000, values as linear sRGB
+};
+
+// `a`, `b`: RGB per pixel, interleaved, as many values. Only pixels whose `mask` is not 0 count (empty: all);
+// those with a NaN or Inf in either picture do not, and are added to `invalid`. Throws std::invalid_argument
+// for lengths that do not fit.
+ImageDifference compareImages(std::span<const float> a, std::span<const float> b,
+                              std::span<const uint8_t> mask = {}, size_t* invalid = nullptr);
+
+// Sub-sets of a picture of a lit surface, bits that may stand together. Errors of scattering live in the
+// first three.
+enum Subset : uint8_t { SUBSET_UNLIT = 1, SUBSET_TERMINATOR = 2, SUBSET_PENUMBRA = 4, SUBSET_REST = 8 };
+
+struct SubsetInputs {
+    int width = 0, height = 0;
+    std::span<const float> positions;  // xyz per pixel
+    std::span<const float> normals;    // unit xyz per pixel
+    std::span<const float> toLight;    // unit xyz per pixel
+    std::span<const float>
+        visible;  // 1 lit, 0 in a cast shadow; anything where N.L <= 0. Empty: no penumbra is known
+    std::span<const uint8_t> covered;  // 0: background
+    float reach = 1;  // length, 1 mm: how far from the edge of a cast shadow its penumbra goes
+};
+
+// Unlit: N.L < 0. Terminator: |N.L| < 0.2. Penumbra: within `reach` of an edge between neighbouring pixels
+// that both face the light, one lit and one not. Rest: covered and none of them.
+std::vector<uint8_t> subsetsOf(const SubsetInputs& in);
+
+}  // namespace pellucid::io

@@ -1,0 +1,180 @@
+// Numbers of `pellucid compare`: colour differences against published pairs, errors against sums by hand,
+// sub-sets on a made picture.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "io/file_error.h"
+#include "io/image/color_difference.h"
+#include "io/image/image_compare.h"
+#include "io/image/image_file.h"
+#include "io/image/npy_read.h"
+#include "io_files.h"
+#include "tolerances.h"
+
+namespace io = pellucid::io;
+
+// Sharma, Wu & Dalal, The CIEDE2000 Color-Difference Formula: Implementation Notes, Supplementary Test Data,
+// and Mathematical Observations, Color Research and Application 30 (2005), table 1.
+TEST(ColorDifference, PublishedPairs) {
+    const struct {
+        io::Lab one, two;
+        double difference;
+    } pairs[] = {
+        {{50, 2.6772, -79.7751}, {50, 0, -82.7485}, 2.0425},
+        {{50, 3.1571, -77.2803}, {50, 0, -82.7485}, 2.8615},
+        {{50, 2.8361, -74.0200}, {50, 0, -82.7485}, 3.4412},
+        {{50, -1.3802, -84.2814}, {50, 0, -82.7485}, 1.0000},
+        {{50, -1.1848, -84.8006}, {50, 0, -82.7485}, 1.0000},
+        {{50, -0.9009, -85.5211}, {50, 0, -82.7485}, 1.0000},
+        {{50, 0, 0}, {50, -1, 2}, 2.3669},
+        {{50, -1, 2}, {50, 0, 0}, 2.3669},
+        {{50, 2.4900, -0.0010}, {50, -2.4900, 0.0009}, 7.1792},
+        {{50, 2.4900, -0.0010}, {50, -2.4900, 0.0010}, 7.1792},
+        {{50, 2.4900, -0.0010}, {50, -2.4900, 0.0011}, 7.2195},
+        {{50, 2.4900, -0.0010}, {50, -2.4900, 0.0012}, 7.2195},
+        {{50, -0.0010, 2.4900}, {50, 0.0009, -2.4900}, 4.8045},
+        {{50, -0.0010, 2.4900}, {50, 0.0010, -2.4900}, 4.8045},
+        {{50, -0.0010, 2.4900}, {50, 0.0011, -2.4900}, 4.7461},
+        {{50, 2.5, 0}, {50, 0, -2.5}, 4.3065},
+        {{50, 2.5, 0}, {73, 25, -18}, 27.1492},
+        {{50, 2.5, 0}, {61, -5, 29}, 22.8977},
+        {{50, 2.5, 0}, {56, -27, -3}, 31.9030},
+        {{50, 2.5, 0}, {58, 24, 15}, 19.4535},
+        {{50, 2.5, 0}, {50, 3.1736, 0.5854}, 1.0000},
+        {{50, 2.5, 0}, {50, 3.2972, 0}, 1.0000},
+        {{50, 2.5, 0}, {50, 1.8634, 0.5757}, 1.0000},
+        {{50, 2.5, 0}, {50, 3.2592, 0.3350}, 1.0000},
+        {{60.2574, -34.0099, 36.2677}, {60.4626, -34.1751, 39.4387}, 1.2644},
+        {{63.0109, -31.0961, -5.8663}, {62.8187, -29.7946, -4.0864}, 1.2630},
+        {{61.2901, 3.7196, -5.3901}, {61.4292, 2.2480, -4.9620}, 1.8731},
+        {{35.0831, -44.1164, 3.7933}, {35.0232, -40.0716, 1.5901}, 1.8645},
+        {{22.7233, 20.0904, -46.6940}, {23.0331, 14.9730, -42.5619}, 2.0373},
+        {{36.4612, 47.8580, 18.3852}, {36.2715, 50.5065, 21.2231}, 1.4146},
+        {{90.8027, -2.0831, 1.4410}, {91.1528, -1.6435, 0.0447}, 1.4441},
+        {{90.9257, -0.5406, -0.9208}, {88.6381, -0.8985, -0.7239}, 1.5381},
+        {{6.7747, -0.2908, -2.4247}, {5.8714, -0.0985, -2.2286}, 0.6377},
+        {{2.0776, 0.0795, -1.1350}, {0.9033, -0.0636, -0.5514}, 0.9082},
+    };
+    int number = 0;
+    for (const auto& p : pairs)
+        EXPECT_NEAR(io::deltaE2000(p.one, p.two), p.difference, tolerance::publishedDeltaE)
+            << "pair " << ++number;
+}
+
+TEST(ColorDifference, WhiteBlackAndGrey) {
+    const io::Lab white = io::labFromLinear({1, 1, 1}), black = io::labFromLinear({0, -1, 0}),
+                  grey = io::labFromLinear({0.18, 0.18, 0.18});
+    EXPECT_NEAR(white[0], 100, 1e-3);
+    EXPECT_NEAR(std::hypot(white[1], white[2]), 0, 0.02);
+    EXPECT_NEAR(black[0], 0, 1e-9);
+    EXPECT_NEAR(grey[0], 49.5, 0.05);  // CIE 15: 116 cbrt(0.18) - 16
+}
+
+TEST(CompareImages, SumsByHand) {
+    std::vector<float> a(300, 0.5f), b = a;
+    a[0] += 0.3f, a[4] -= 0.4f;
+    const io::ImageDifference d = io::compareImages(a, b);
+    EXPECT_EQ(d.pixels, 100u);
+    EXPECT_NEAR(d.rmse[0], 0.03, 1e-7);
+    EXPECT_NEAR(d.rmse[1], 0.04, 1e-7);
+    EXPECT_EQ(d.rmse[2], 0);
+    EXPECT_NEAR(d.rmseAll, 0.05 / std::sqrt(3), 1e-7);
+    EXPECT_NEAR(d.psnr, -20 * std::log10(0.05 / std::sqrt(3)), 1e-5);
+    EXPECT_NEAR(d.mean[0], 0.003, 1e-7);
+    EXPECT_NEAR(d.mean[1], -0.004, 1e-7);
+    EXPECT_NEAR(d.most[0], 0.3, 1e-6);
+    EXPECT_EQ(d.p99[0], 0) << "99 of 100 have none";
+    a[3] += 0.1f;
+    EXPECT_NEAR(io::compareImages(a, b).p99[0], 0.1, 1e-6);
+    EXPECT_EQ(io::compareImages(b, b).psnr, std::numeric_limits<double>::infinity());
+}
+
+TEST(CompareImages, MaskAndPixelsThatAreNoNumbers) {
+    std::vector<float> a(12, 1.0f), b = a;
+    a[0] = std::numeric_limits<float>::quiet_NaN();
+    b[5] = -std::numeric_limits<float>::infinity();
+    a[11] = 2;
+    size_t invalid = 0;
+    io::ImageDifference d = io::compareImages(a, b, {}, &invalid);
+    EXPECT_EQ(invalid, 2u);
+    EXPECT_EQ(d.pixels, 2u);
+    EXPECT_NEAR(d.rmse[2], std::sqrt(0.5), 1e-7);
+    const std::vector<uint8_t> mask{1, 1, 1, 0};
+    d = io::compareImages(a, b, mask);
+    EXPECT_EQ(d.pixels, 1u);
+    EXPECT_EQ(d.rmseAll, 0);
+    EXPECT_EQ(io::compareImages({}, {}).pixels, 0u);
+    EXPECT_THROW(io::compareImages(a, std::vector<float>(9)), std::invalid_argument);
+    EXPECT_THROW(io::compareImages(a, b, std::vector<uint8_t>(3)), std::invalid_argument);
+}
+
+// A row that turns away from the light, with a cast shadow over two pixels of its lit part.
+TEST(Subsets, OfARow) {
+    const int width = 40;
+    std::vector<float> positions, normals, light, visible;
+    for (int i = 0; i < width; ++i) {
+        const float cosine = 1.01f - 0.05f * float(i);  // below 0 from pixel 21 on
+        positions.insert(positions.end(), {0.1f * float(i), 0, 0});
+        normals.insert(normals.end(), {std::sqrt(std::max(0.0f, 1 - cosine * cosine)), 0, cosine});
+        light.insert(light.end(), {0, 0, 1});
+        visible.push_back(i != 5 && i != 6);
+    }
+    std::vector<uint8_t> covered(width, 1);
+    covered[39] = 0;
+    const auto subsets = io::subsetsOf({width, 1, positions, normals, light, visible, covered, 0.25f});
+    for (int i = 0; i < width; ++i) {
+        const bool unlit = i > 20, terminator = i > 16 && i < 25, penumbra = i >= 2 && i <= 9;
+        const int expected = i == 39
+                                 ? 0
+                                 : (unlit ? io::SUBSET_UNLIT : 0) | (terminator ? io::SUBSET_TERMINATOR : 0) |
+                                       (penumbra ? io::SUBSET_PENUMBRA : 0);
+        EXPECT_EQ(subsets[size_t(i)], expected || i == 39 ? expected : io::SUBSET_REST) << i;
+    }
+    EXPECT_FALSE(io::subsetsOf({width, 1, positions, normals, light, {}, covered, 0.25f})[5] &
+                 io::SUBSET_PENUMBRA);
+}
+
+using NpyRead = FolderTest;
+
+TEST_F(NpyRead, WhatWasWritten) {
+    const std::vector<float> values{0, 0.5f, -2, 1024, 3, 0.25f};
+    const size_t shape[] = {2, 3};
+    io::writeNpy(path("f.npy"), shape, values);
+    io::writeNpy(path("h.npy"), shape, values, io::ChannelType::Half);
+    io::writeNpy(path("b.npy"), shape, std::vector<uint8_t>{0, 1, 2, 3, 254, 255});
+    for (const char* name : {"f.npy", "h.npy"}) {
+        EXPECT_EQ(io::readNpy(path(name)).values, values);
+        EXPECT_EQ(io::readNpy(path(name)).shape, (std::vector<size_t>{2, 3}));
+    }
+    EXPECT_EQ(io::readNpy(path("b.npy")).values, (std::vector<float>{0, 1, 2, 3, 254, 255}));
+}
+
+TEST_F(NpyRead, DamagedFilesAreRefused) {
+    const size_t shape[] = {4};
+    io::writeNpy(path("f.npy"), shape, std::vector<float>{1, 2, 3, 4});
+    const std::string good = read(path("f.npy"));
+    const auto refused = [&](std::string bytes, const char* message) {
+        write(path("bad.npy"), bytes);
+        try {
+            io::readNpy(path("bad.npy"));
+            ADD_FAILURE() << "accepted: " << message;
+        } catch (const io::FileError& e) {
+            EXPECT_NE(std::string(e.what()).find(message), std::string::npos) << e.what();
+        }
+    };
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string text = good;
+        return text.replace(text.find(from), from.size(), to);
+    };
+    refused("", "is no .npy file");
+    refused(good.substr(0, 40), "cut off in its header");
+    refused(good.substr(0, good.size() - 1), "holds 15 bytes");
+    refused(good + "x", "holds 17 bytes");
+    refused(with("<f4", ">f4"), "type '>f4'");
+    refused(with("False", "True "), "not in C order");
+    refused(with("(4, ", "(-4,"), "shape");
+    refused(with("\x01\x00", "\x07\x00"), "version 7");
+    EXPECT_THROW(io::readNpy(path("none.npy")), io::FileError);
+}
