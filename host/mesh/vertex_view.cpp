@@ -5,15 +5,15 @@
 namespace pel {
 
 VertexView checkedView(const PelVertexView* view, const char* name, const Device& device, uint32_t count,
-                       uint32_t components) {
+                       uint32_t components, const char* owner) {
     if (!view) invalidArgument("`", name, "` is needed, not NULL");
     if (view->count != count)
-        invalidArgument("`", name, "` has ", view->count, " vertices, the topology has ", count);
+        invalidArgument("`", name, "` has ", view->count, " vertices, ", owner, " has ", count);
     if (count == 0) return {};
     const Ref<Buffer> held = fromHandle<Buffer>(view->buffer);
     const Buffer& buffer = *held;
     if (&buffer.device() != &device)
-        invalidArgument("the buffer of `", name, "` belongs to another device than the topology");
+        invalidArgument("the buffer of `", name, "` belongs to another device than ", owner);
     const uint64_t element = components * sizeof(float);
     const uint64_t stride = view->byteStride ? view->byteStride : element;
     if (view->byteOffset % 4 != 0 || stride % 4 != 0)

@@ -57,6 +57,45 @@ void bindScreen(py::module_& module) {
     });
 }
 
+void bindSurfaceIntegral(py::module_& module) {
+    module.def("surface_integral", [](const Device& d, uintptr_t positions, uint32_t vertices, uintptr_t indices, uint64_t count,
+                                      uintptr_t irradiance, uint64_t lights, uint32_t at, const pellucid::Profile* profile, float radius,
+                                      float unit, const std::array<float, 3>& cut, float tolerance, const VertexView& points,
+                                      const VertexView& result, const Waits& waits) {
+        // Copies: a call that was left behind goes on reading them.
+        struct Mesh {
+            std::vector<float> positions, irradiance;
+            std::vector<uint32_t> indices;
+            pellucid::Profile profile;
+        };
+        const auto mesh = std::make_shared<Mesh>();
+        const auto floats = [](uintptr_t from, uint64_t n) { return std::vector<float>(static_cast<const float*>(pointer(from)), static_cast<const float*>(pointer(from)) + n); };
+        mesh->positions = floats(positions, 3 * uint64_t(vertices));
+        mesh->irradiance = floats(irradiance, 3 * lights);
+        mesh->indices.assign(static_cast<const uint32_t*>(pointer(indices)), static_cast<const uint32_t*>(pointer(indices)) + count);
+        if (profile) mesh->profile = *profile;
+        PelSurfaceIntegralDesc desc = pelSurfaceIntegralDescDefaults();
+        desc.numVertices = vertices;
+        desc.positions = mesh->positions.data();
+        desc.indices = mesh->indices.data();
+        desc.numIndices = count;
+        desc.irradiance = mesh->irradiance.data();
+        desc.irradianceAt = PelIrradianceAt(at);
+        desc.profile = mesh->profile.get();
+        desc.diffusionRadius = radius;
+        desc.millimetresPerUnit = unit;
+        std::copy(cut.begin(), cut.end(), desc.cut);
+        desc.tolerance = tolerance;
+        return submitInterruptibly(waits, [=, device = d.handle](const PelSubmit* submit) {
+            PelSurfaceIntegralDesc full = desc;
+            full.points = vertexView(points);
+            full.result = vertexView(result);
+            (void)mesh;
+            return pelSurfaceIntegral(device.get(), &full, submit);
+        });
+    });
+}
+
 // A topology, and the report in Python's memory once it is made.
 pellucid::MeshTopology topologyFrom(const py::object& report,
                                     std::function<PelError(PelMeshTopology*, PelMeshReport*)> create) {
@@ -79,6 +118,7 @@ pellucid::MeshTopology topologyFrom(const py::object& report,
 void bindMesh(py::module_& module) {
     bindLiveMesh(module);
     bindScreen(module);
+    bindSurfaceIntegral(module);
     using pellucid::MeshTopology;
     py::class_<MeshTopology, Owner<MeshTopology>>(module, "MeshTopology")
         .def_static(

@@ -23,5 +23,6 @@ PYBIND11_MODULE(_native, module) {
     bindScatter(module);
     bindLut(module);
     bindShader(module);
+    bindCompare(module);
     bindBatch(module);
 }

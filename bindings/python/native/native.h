@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <pellucid/pellucid.hpp>
 #include <string>
 #include <tuple>
@@ -162,5 +163,6 @@ void bindScatter(py::module_& module);
 void bindLut(py::module_& module);
 void bindShader(py::module_& module);
 void bindBatch(py::module_& module);
+void bindCompare(py::module_& module);
 
 }  // namespace pel::python

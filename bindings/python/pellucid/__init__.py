@@ -17,6 +17,7 @@ from .live import LiveMesh, screen_curvature, submit_screen_curvature
 from .lut import Lut
 from .mesh import MeshTopology
 from .profile import Profile
+from .reference import compare, submit_surface_integral, surface_integral
 from .scatter import Scatter
 from .shader import Shader, prefill_programs
 
@@ -24,4 +25,5 @@ _number = _native.version()
 __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
 
 __all__ = ["Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile", "Scatter", "Shader",
-           "Vertices", "devices", "prefill_programs", "screen_curvature", "set_error_callback", "submit_screen_curvature", *_type_names]
+           "Vertices", "compare", "devices", "prefill_programs", "screen_curvature", "set_error_callback", "submit_screen_curvature",
+           "submit_surface_integral", "surface_integral", *_type_names]

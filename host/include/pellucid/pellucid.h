@@ -898,6 +898,47 @@ PEL_API PelError pelShaderGetWarnings(PelShader shader, const char** warnings);
 /* Waits for the last execution. */
 PEL_API PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats);
 
+/* ---- Reference ---------------------------------------------------------------------------------------------- */
+
+/* What PelSurfaceIntegralDesc.irradiance belongs to. */
+typedef enum PelIrradianceAt {
+    PEL_IRRADIANCE_VERTEX = 0,   /* one per vertex, linear on triangles */
+    PEL_IRRADIANCE_TRIANGLE = 1, /* one per triangle, constant on it */
+    PEL_IRRADIANCE_CORNER = 2    /* one per index: linear on triangles, with steps at edges */
+} PelIrradianceAt;
+
+/* A lit mesh, and where its light is wanted again. Arrays are the host's, read during the call. */
+typedef struct PelSurfaceIntegralDesc {
+    uint32_t structSize;
+    uint32_t numVertices;
+    const float* positions;   /* xyz per vertex, units of positions */
+    const uint32_t* indices;  /* numIndices, three per triangle; either order */
+    uint64_t numIndices;
+    const float* irradiance;  /* RGB, 0 or more, visibility in it: pi times the radiance of a white Lambertian surface, or
+                                 whatever the result is to be in */
+    PelIrradianceAt irradianceAt;
+    PelProfile profile;       /* NULL: skin */
+    float diffusionRadius;    /* unit of the profile, millimetres for skin; 0: the profile's own */
+    float millimetresPerUnit; /* units of the profile per unit of positions: 10 for a mesh in centimetres; 1 */
+    float cut[3];             /* unit of the profile; from this distance on R is 0, and what is left of it is scaled to 1 on a
+                                 plane; per channel; 0: R as it is */
+    float tolerance;          /* error of the hierarchy, part of the largest irradiance, 1e-7 to 1; 1e-3, which in practice
+                                 leaves 1e-5 */
+    PelVertexView points;     /* xyz float32 each, units of positions; on the triangles: a point above them gets less */
+    PelVertexView result;     /* RGB float32 each, written, in units of irradiance; 0 for a point that is not finite */
+} PelSurfaceIntegralDesc;
+
+/* Light that leaves a surface after diffusing under it: the sum over all of the surface of R(distance) times irradiance, by
+ * straight-line distance, not renormalised: what every diffusion method here approximates. Times the albedo it compares with
+ * diffuse radiance. Near triangles are integrated exactly for irradiance that is linear on them, however steep R is; far sets
+ * of triangles count as points, with an error of at most `tolerance` on a plane, and in proportion to the area in reach
+ * elsewhere. What is left is the mesh: facets, and irradiance that is not linear on them (a shadow's edge wants triangles of a
+ * quarter of the narrowest channel's width). Work grows with the number of points and the logarithm of that of triangles.
+ * The mesh is sorted on the host before the first point is; blocking calls tell a progress callback of the device how far they
+ * are. Same input, same bits. Errors: PEL_ERROR_INVALID_ARGUMENT for numbers that are not finite or negative (the message
+ * names the vertex), indices beyond the vertices, points and result of different length. Source: mathematics, section 9. */
+PEL_API PelError pelSurfaceIntegral(PelDevice device, const PelSurfaceIntegralDesc* desc, const PelSubmit* submit);
+
 /* ---- Programs ahead of their first use ---------------------------------------------------------------------- */
 
 /* ---- Scattering alone --------------------------------------------------------------------------------------- */

@@ -227,6 +227,11 @@ inline void screenCurvature(const Device& device, const PelScreenCurvatureParams
     check(pelScreenCurvature(device.get(), &params, &normals, positions, depth, ids, &curvature, submit));
 }
 
+// RGB per point: pelSurfaceIntegral.
+inline void surfaceIntegral(const Device& device, const PelSurfaceIntegralDesc& desc, const PelSubmit* submit = nullptr) {
+    check(pelSurfaceIntegral(device.get(), &desc, submit));
+}
+
 class Profile : public Handle<PelProfile, pelProfileRetain, pelProfileRelease> {
   public:
     using Handle::Handle;

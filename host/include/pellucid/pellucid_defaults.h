@@ -118,6 +118,12 @@ static inline PelShaderOptions pelShaderOptionsDefaults(void) {
     s.millimetresPerUnit = 1.0f;
     return s;
 }
+static inline PelSurfaceIntegralDesc pelSurfaceIntegralDescDefaults(void) {
+    PEL_ZEROED_(PelSurfaceIntegralDesc, s);
+    s.millimetresPerUnit = 1.0f;
+    s.tolerance = 1e-3f;
+    return s;
+}
 static inline PelPrefill pelPrefillDefaults(void) { PEL_ZEROED_(PelPrefill, s); return s; }
 /* clang-format on */
 

@@ -1,0 +1,27 @@
+// The surface integral (mathematics, section 9) by brute force: every triangle, split until nothing changes.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "reference/profile.h"
+
+namespace reference {
+
+struct LitTriangle {
+    std::array<Vec3, 3> corner;     // length
+    std::array<Rgb, 3> irradiance;  // at the corners; linear between
+};
+
+// Sum of the integrals of R(|x - y|) E(y) dA. R ends at `cut` (per channel, length; 0: nowhere) and is scaled
+// to 1 on a plane within. Error about 1e-7 times the largest irradiance.
+Rgb surfaceIntegral(const Profile& profile, const std::vector<LitTriangle>& mesh, Vec3 x, Rgb cut = {});
+
+// On a sphere of that radius round the origin, lit by a parallel light of irradiance 1 that makes the angle
+// with x's normal: the closed form `sphere` of section 2, not renormalised.
+Rgb surfaceIntegralOfSphere(const Profile& profile, double radius, double angle, Rgb cut = {});
+
+// Part of a profile's energy within a distance on a plane.
+Rgb energyWithin(const Profile& profile, double distance);
+
+}  // namespace reference
