@@ -75,6 +75,8 @@ void addLut(CLI::App& app);
 void addProfile(CLI::App& app);
 void addBatch(CLI::App& app);
 void addShade(CLI::App& app);
+void addReference(CLI::App& app);
+void addCompare(CLI::App& app);
 void addPrefill(CLI::App& app);
 void addDemo(CLI::App& app);
 void addBench(CLI::App& app);

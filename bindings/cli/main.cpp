@@ -61,6 +61,8 @@ int main(int argc, char** argv) {
     addProfile(app);
     addBatch(app);
     addShade(app);
+    addReference(app);
+    addCompare(app);
     addPrefill(app);
     addDemo(app);
     addBench(app);

@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -99,6 +100,69 @@ void Scene::intersect(const Ray* rays, Hit* hits, int count) const {
         hits[i].weights[2] = packet.hit.v[i];
         refine(rays[i], hits[i]);
     }
+}
+
+namespace {
+
+// Barycentric weights of the point of a triangle next to p.
+void nearestOfTriangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c, double (&weights)[3]) {
+    const Vec3 edges[3] = {b - a, c - b, a - c}, corners[3] = {a, b, c}, normal = cross(b - a, c - a);
+    const double area2 = dot(normal, normal);
+    double best = INFINITY;
+    if (area2 > 0) {
+        const double u = dot(cross(c - b, p - b), normal) / area2, v = dot(cross(a - c, p - c), normal) / area2, w = 1 - u - v;
+        if (u >= 0 && v >= 0 && w >= 0) {
+            weights[0] = u, weights[1] = v, weights[2] = w;
+            return;
+        }
+    }
+    for (int k = 0; k < 3; ++k) {
+        const double along2 = dot(edges[k], edges[k]);
+        const double t = along2 > 0 ? std::clamp(dot(p - corners[k], edges[k]) / along2, 0.0, 1.0) : 0;
+        const Vec3 d = corners[k] + edges[k] * t - p;
+        if (dot(d, d) >= best) continue;
+        best = dot(d, d);
+        weights[k] = 1 - t, weights[(k + 1) % 3] = t, weights[(k + 2) % 3] = 0;
+    }
+}
+
+struct NearestQuery {
+    const Mesh* mesh;
+    Vec3 p;
+    Hit* best;
+};
+
+bool visitTriangle(RTCPointQueryFunctionArguments* arguments) {
+    auto& query = *static_cast<NearestQuery*>(arguments->userPtr);
+    const auto corner = [&](int k) {
+        const float* v = &query.mesh->positions[3 * size_t(query.mesh->triangles[3 * size_t(arguments->primID) + k])];
+        return Vec3{v[0], v[1], v[2]};
+    };
+    const Vec3 a = corner(0), b = corner(1), c = corner(2);
+    Hit hit;
+    nearestOfTriangle(query.p, a, b, c, hit.weights);
+    hit.triangle = arguments->primID;
+    hit.distance = length(a * hit.weights[0] + b * hit.weights[1] + c * hit.weights[2] - query.p);
+    // Of equally near ones the first, whatever the order of the walk.
+    if (hit.distance > query.best->distance || (hit.distance == query.best->distance && hit.triangle > query.best->triangle)) return false;
+    *query.best = hit;
+    arguments->query->radius = std::nextafter(float(hit.distance), INFINITY);
+    return true;
+}
+
+}  // namespace
+
+Hit Scene::nearest(Vec3 p, double within) const {
+    Hit hit;
+    hit.distance = within;
+    NearestQuery own{&mesh_, p, &hit};
+    RTCPointQuery query{};
+    query.x = float(p.x), query.y = float(p.y), query.z = float(p.z);
+    query.radius = float(within);
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(device_->scene, &query, &context, visitTriangle, &own);
+    return hit;
 }
 
 void Scene::refine(const Ray& ray, Hit& hit) const {

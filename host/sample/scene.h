@@ -36,6 +36,10 @@ class Scene {
     // on the triangle and distance are then solved in double. May be called from several threads.
     void intersect(const Ray* rays, Hit* hits, int count) const;
 
+    // The point of the mesh next to `p`, no further than `within` away. Weights and distance as for rays. May be called from
+    // several threads.
+    Hit nearest(Vec3 p, double within = INFINITY) const;
+
   private:
     struct Device;
     void refine(const Ray& ray, Hit& hit) const;

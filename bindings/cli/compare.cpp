@@ -1,0 +1,242 @@
+// pellucid compare: how far two pictures are apart. Needs no device.
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+
+#include "command.h"
+#include "io/atomic_file.h"
+#include "io/file_error.h"
+#include "io/image/image_compare.h"
+#include "io/image/image_file.h"
+#include "io/image/npy_read.h"
+#include "io/image/picture.h"
+#include "io/image/tone_map.h"
+#include "io/input_file.h"
+#include "io/scene/scene_file.h"
+
+namespace pellucid::cli {
+namespace {
+
+struct Arguments {
+    std::string a, b, channelsA, channelsB, gbuffer, scene, picture;
+    float scaleA = 1, scaleB = 1, exposure = 1, maxRmse = INFINITY, unit = 0;
+    uint32_t light = 0;
+    bool json = false;
+};
+
+// RGB per pixel, linear.
+struct Rgb {
+    int width = 0, height = 0;
+    std::vector<float> values, alpha, irradiance;  // the last two empty when the file has none
+};
+
+std::vector<std::string> layerOf(const std::string& layer) {
+    if (layer.empty()) return {"R", "G", "B"};
+    return {layer + ".R", layer + ".G", layer + ".B"};
+}
+
+Rgb readRgb(const std::string& path, const std::string& layer, float scale) {
+    Rgb out;
+    const std::string extension = io::extensionOf(path);
+    if (extension == "npy") {
+        const io::NpyArray array = io::readNpy(path);
+        const auto& s = array.shape;
+        if (!(s.size() == 2 || (s.size() == 3 && (s[2] == 1 || s[2] == 3))) || s[0] * s[1] == 0)
+            throw io::FileError(
+                path, "is no picture: an array of height x width, or with 1 or 3 channels, is needed");
+        out.height = int(s[0]), out.width = int(s[1]);
+        const size_t channels = s.size() == 3 ? s[2] : 1;
+        for (size_t i = 0; i < s[0] * s[1]; ++i)
+            for (size_t c = 0; c < 3; ++c)
+                out.values.push_back(array.values[i * channels + (channels == 3 ? c : 0)]);
+    } else {
+        const io::Image image = io::readImage(path);
+        out.width = image.width, out.height = image.height;
+        std::vector<std::string> names = layerOf(layer);
+        if (layer.empty() && !image.has("R"))
+            names.assign(3, image.channels.size() == 1 ? image.channels[0].name : "R");
+        out.values = image.interleaved(names);
+        if (image.has("A")) out.alpha = image.channel("A").pixels;
+        if (image.has("Irradiance.R")) out.irradiance = image.interleaved(layerOf("Irradiance"));
+        if (extension != "exr")  // 8-bit files hold what a screen shows
+            for (float& v : out.values) v = io::decodeSrgb(v);
+    }
+    for (float& v : out.values) v *= scale;
+    return out;
+}
+
+// Which pixels belong to what, by the light named.
+std::vector<uint8_t> subsets(const Arguments& a, const Rgb& one, const Rgb& two, std::vector<uint8_t>& mask) {
+    const io::SceneFile scene = io::readScene(a.scene);
+    const io::Image gbuffer = io::readImage(a.gbuffer);
+    if (gbuffer.width != one.width || gbuffer.height != one.height)
+        throw io::FileError(a.gbuffer, "is " + std::to_string(gbuffer.width) + " x " +
+                                           std::to_string(gbuffer.height) + ", the pictures are " +
+                                           std::to_string(one.width) + " x " + std::to_string(one.height));
+    if (scene.channels[PEL_SLOT_POSITION].empty())
+        throw io::FileError(a.scene, "[channels] position is missing; sub-sets need it");
+    if (a.light >= scene.lights.size())
+        throw UsageError("--light " + std::to_string(a.light) + ": the scene has " +
+                         std::to_string(scene.lights.size()) + " lights, counted from 0");
+    const io::SceneLight& light = scene.lights[a.light];
+    const std::vector<float> positions = gbuffer.interleaved(scene.channels[PEL_SLOT_POSITION]);
+    const auto& geometric = scene.channels[PEL_SLOT_NORMAL_GEOMETRIC];
+    const std::vector<float> normals =
+        gbuffer.interleaved(geometric.empty() ? scene.channels[PEL_SLOT_NORMAL_SHADING] : geometric);
+    if (!scene.channels[PEL_SLOT_MATERIAL].empty()) {
+        const std::vector<float> ids = gbuffer.interleaved(scene.channels[PEL_SLOT_MATERIAL]);
+        for (size_t i = 0; i < mask.size(); ++i) mask[i] = mask[i] && ids[i] > 0;
+    }
+    std::vector<float> toLight(normals.size()), visible;
+    for (size_t i = 0; i < mask.size(); ++i) {
+        float d[3];
+        for (int c = 0; c < 3; ++c)
+            d[c] = light.light.type == PEL_LIGHT_DIRECTIONAL ? light.light.toLight[c]
+                                                             : light.light.position[c] - positions[3 * i + c];
+        const float length = std::hypot(d[0], d[1], d[2]);
+        for (int c = 0; c < 3; ++c) toLight[3 * i + c] = length > 0 ? d[c] / length : 0;
+    }
+    // A reference knows what is lit; else the host's own shadow may say so.
+    const std::vector<float>& irradiance = two.irradiance.empty() ? one.irradiance : two.irradiance;
+    if (!irradiance.empty() && scene.lights.size() == 1)
+        for (size_t i = 0; i < mask.size(); ++i)
+            visible.push_back(irradiance[3 * i] + irradiance[3 * i + 1] + irradiance[3 * i + 2] > 0);
+    else if (!light.wideShadow.empty())
+        visible = gbuffer.interleaved(std::vector<std::string>{light.wideShadow});
+    return io::subsetsOf({one.width, one.height, positions, normals, toLight, visible, mask,
+                          1 / (a.unit > 0 ? a.unit : scene.unitMm)});
+}
+
+nlohmann::ordered_json toJson(const io::ImageDifference& d) {
+    nlohmann::ordered_json psnr;
+    if (std::isfinite(d.psnr)) psnr = d.psnr;
+    return {{"pixels", d.pixels},
+            {"rmse", d.rmse},
+            {"rmse_all", d.rmseAll},
+            {"psnr", psnr},
+            {"mean", d.mean},
+            {"p99", d.p99},
+            {"max", d.most},
+            {"delta_e_mean", d.deltaEMean},
+            {"delta_e_p99", d.deltaE99},
+            {"delta_e_max", d.deltaEMost}};
+}
+
+void print(const std::string& name, const io::ImageDifference& d) {
+    std::printf(
+        "%-11s %8zu pixels   RMSE %.6f %.6f %.6f   P99 %.5f %.5f %.5f   PSNR %.1f dB   CIEDE2000 mean %.3f, "
+        "P99 %.2f\n",
+        name.c_str(), d.pixels, d.rmse[0], d.rmse[1], d.rmse[2], d.p99[0], d.p99[1], d.p99[2], d.psnr,
+        d.deltaEMean, d.deltaE99);
+}
+
+// Both pictures, and the largest difference of a pixel's channels on a scale.
+void writePicture(const Arguments& a, const Rgb& one, const Rgb& two, const std::vector<uint8_t>& mask,
+                  double p99) {
+    std::vector<float> error(mask.size()), shown(mask.begin(), mask.end());
+    for (size_t i = 0; i < mask.size(); ++i)
+        for (size_t c = 0; c < 3; ++c)
+            error[i] = std::max(error[i], std::abs(one.values[3 * i + c] - two.values[3 * i + c]));
+    const float high = float(p99 > 0 ? p99 : 1e-3);
+    const io::ToneMap tone{a.exposure};
+    const auto rgb = [&](const Rgb& p) {
+        return io::Picture(p.width, p.height, io::toSrgb8(p.values, tone));
+    };
+    io::Picture difference(one.width, one.height + 40, io::Srgb8{20, 20, 20});
+    difference.paste(0, 0, io::colored(one.width, one.height, error, 0, high, shown));
+    if (one.width >= 160)
+        difference.paste(0, one.height, io::colorBar(one.width, 0, high, "largest channel", 1));
+    const io::Tile tiles[] = {{"A", rgb(one)}, {"B", rgb(two)}, {"|A - B|", difference}};
+    const io::Picture sheet = io::contactSheet(tiles, 3);
+    io::writeImage8(a.picture, sheet.width, sheet.height, 3, sheet.rgb);
+}
+
+void run(const Arguments& a) {
+    if (a.gbuffer.empty() != a.scene.empty())
+        throw UsageError(
+            "--gbuffer and --scene go together: one has the pixels, the other says what they are");
+    if (!a.picture.empty()) {
+        try {
+            io::requireExtension(a.picture, {"png"});
+            io::checkWritable(a.picture);
+        } catch (const io::FileError& e) {
+            throw UsageError(e.what());
+        }
+    }
+    const Rgb one = readRgb(a.a, a.channelsA, a.scaleA), two = readRgb(a.b, a.channelsB, a.scaleB);
+    if (one.width != two.width || one.height != two.height)
+        throw InputError(a.a + " is " + std::to_string(one.width) + " x " + std::to_string(one.height) +
+                         ", " + a.b + " is " + std::to_string(two.width) + " x " +
+                         std::to_string(two.height) + "; pictures of one size can be compared");
+    std::vector<uint8_t> mask(one.values.size() / 3, 1);
+    // Where a pixel is not wholly covered, two renderers filter the edge in their own ways.
+    for (const auto* alpha : {&one.alpha, &two.alpha})
+        for (size_t i = 0; i < alpha->size(); ++i) mask[i] = mask[i] && (*alpha)[i] >= 0.999f;
+    std::vector<uint8_t> parts;
+    if (!a.scene.empty()) parts = subsets(a, one, two, mask);
+    size_t invalid = 0;
+    const io::ImageDifference all = io::compareImages(one.values, two.values, mask, &invalid);
+    nlohmann::ordered_json report{{"a", a.a}, {"b", a.b}, {"width", one.width}, {"height", one.height}};
+    report["all"] = toJson(all);
+    if (!a.json) print("all", all);
+    if (!parts.empty()) {
+        const std::pair<const char*, uint8_t> names[] = {{"unlit", io::SUBSET_UNLIT},
+                                                         {"terminator", io::SUBSET_TERMINATOR},
+                                                         {"penumbra", io::SUBSET_PENUMBRA},
+                                                         {"rest", io::SUBSET_REST}};
+        for (const auto& [name, bit] : names) {
+            std::vector<uint8_t> within(mask.size());
+            for (size_t i = 0; i < mask.size(); ++i) within[i] = mask[i] && (parts[i] & bit);
+            const io::ImageDifference d = io::compareImages(one.values, two.values, within);
+            report["subsets"][name] = toJson(d);
+            if (!a.json) print(name, d);
+        }
+    }
+    report["invalid_pixels"] = invalid;
+    if (invalid > 0) std::fprintf(stderr, "warning: %zu pixels with NaN or Inf were left out\n", invalid);
+    if (!a.picture.empty()) {
+        writePicture(a, one, two, mask, std::max({all.p99[0], all.p99[1], all.p99[2]}));
+        report["picture"] = a.picture;
+    }
+    const bool bound = std::isfinite(a.maxRmse),
+               worse = bound && (invalid > 0 || all.pixels == 0 || !(all.rmseAll <= a.maxRmse));
+    if (bound) report["within"] = !worse;
+    if (a.json) std::cout << report.dump(2) << std::endl;
+    if (!worse) return;
+    std::fprintf(stderr, "pellucid: the RMSE is %.6g over %zu pixels, more than --max-rmse %.6g allows\n",
+                 all.rmseAll, all.pixels, double(a.maxRmse));
+    throw CLI::RuntimeError(exitWorse);
+}
+
+}  // namespace
+
+void addCompare(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("compare", "How far two pictures are apart: RMSE, PSNR, P99, CIEDE2000");
+    auto a = std::make_shared<Arguments>();
+    command->add_option("a", a->a, "EXR, NPY, or an 8-bit picture, which is decoded from sRGB")->required();
+    command->add_option("b", a->b, "what it is compared with")->required();
+    command->add_option("--layer-a", a->channelsA, "layer of A: its .R, .G and .B instead of R, G, B");
+    command->add_option("--layer-b", a->channelsB, "likewise of B, such as Surface");
+    command->add_option("--scale-a", a->scaleA, "multiplies A")->capture_default_str();
+    command->add_option("--scale-b", a->scaleB, "multiplies B, such as by an albedo")->capture_default_str();
+    command->add_option("--gbuffer", a->gbuffer,
+                        "multi-layer EXR: only pixels of a material count, and sub-sets are told apart");
+    command->add_option("--scene", a->scene, "its scene file (TOML)");
+    command->add_option("--light", a->light, "number of the light that sub-sets go by")
+        ->capture_default_str();
+    command
+        ->add_option("--unit-mm", a->unit, "millimetres per unit of positions (default: the scene's unit_mm)")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--picture", a->picture,
+                        "PNG to write: both pictures, and their difference in colours");
+    command->add_option("--exposure", a->exposure, "multiplies both pictures in it")->capture_default_str();
+    command
+        ->add_option("--max-rmse", a->maxRmse,
+                     "exit with 1 if the RMSE over all channels is larger, or a value is NaN or Inf")
+        ->check(CLI::NonNegativeNumber);
+    command->add_flag("--json", a->json, "print one JSON object on standard output");
+    command->callback([a] { run(*a); });
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,242 @@
+#include "sample/lit_mesh.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace pellucid::sample {
+namespace {
+
+constexpr double liftPart = 3e-6;  // of the scene's extent: more than float leaves of a place
+
+Vec3 vectorAt(const std::vector<float>& values, uint32_t vertex) {
+    return {values[3 * size_t(vertex)], values[3 * size_t(vertex) + 1], values[3 * size_t(vertex) + 2]};
+}
+
+struct Place {
+    Vec3 origin, normal;
+};
+
+Place placeOf(const Mesh& mesh, const SurfacePoint& point, double lift) {
+    const uint32_t* v = &mesh.triangles[3 * size_t(point.triangle)];
+    Vec3 corners[3], p, normal;
+    for (int k = 0; k < 3; ++k) {
+        corners[k] = vectorAt(mesh.positions, v[k]);
+        p = p + corners[k] * point.weights[k];
+    }
+    const Vec3 flat = normalize(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    if (mesh.normals.empty()) return {p + flat * lift, flat};
+    Vec3 lifted;
+    for (int k = 0; k < 3; ++k) {
+        const Vec3 n = vectorAt(mesh.normals, v[k]);
+        normal = normal + n * point.weights[k];
+        // Onto the plane across the corner's normal, where p lies below it.
+        lifted = lifted + (p - n * std::min(0.0, dot(p - corners[k], n))) * point.weights[k];
+    }
+    normal = normalize(normal, flat);
+    return {lifted + normal * lift, normal};
+}
+
+struct Sample {
+    Vec3 direction;
+    double distance = INFINITY, strength = 0;  // strength: cosine included
+};
+
+Sample sampleLight(const SurfaceLight& light, const Place& place) {
+    Sample s;
+    if (light.type == SurfaceLight::Type::Directional) {
+        s.direction = light.toLight;
+        s.strength = 1;
+    } else {
+        const Vec3 delta = light.position - place.origin;
+        s.distance = length(delta);
+        s.direction = normalize(delta);
+        if (light.range > 0 && s.distance > light.range) return s;
+        s.strength = 1 / std::max(s.distance * s.distance, 1e-12);
+        if (light.type == SurfaceLight::Type::Spot) {
+            const double t = std::clamp((-dot(s.direction, light.spotDirection) - light.spotCosOuter) /
+                                            (light.spotCosInner - light.spotCosOuter),
+                                        0.0, 1.0);
+            s.strength *= t * t * (3 - 2 * t);
+        }
+    }
+    s.strength *= std::max(0.0, dot(place.normal, s.direction));
+    return s;
+}
+
+// Of up to a packet of points.
+void lightPacket(const Scene& scene, const Lighting& lighting, const SurfacePoint* points, int count,
+                 double lift, float* out) {
+    Place places[Scene::packetSize];
+    std::array<double, 3> sums[Scene::packetSize]{};
+    for (int i = 0; i < count; ++i) {
+        places[i] = placeOf(scene.mesh(), points[i], lift);
+        if (lighting.ambient) sums[i] = lighting.ambient(places[i].normal);
+    }
+    for (const SurfaceLight& light : lighting.lights) {
+        Ray rays[Scene::packetSize];
+        Hit hits[Scene::packetSize];
+        Sample samples[Scene::packetSize];
+        int who[Scene::packetSize], towards = 0;
+        for (int i = 0; i < count; ++i) {
+            samples[i] = sampleLight(light, places[i]);
+            if (!(samples[i].strength > 0)) continue;
+            rays[towards] = {places[i].origin, samples[i].direction};
+            who[towards++] = i;
+        }
+        if (towards == 0) continue;
+        scene.intersect(rays, hits, towards);
+        for (int k = 0; k < towards; ++k) {
+            const int i = who[k];
+            if (hits[k].triangle != Hit::none && hits[k].distance < samples[i].distance) continue;
+            for (int c = 0; c < 3; ++c) sums[i][c] += samples[i].strength * light.color[c];
+        }
+    }
+    for (int i = 0; i < count; ++i)
+        for (int c = 0; c < 3; ++c) out[3 * i + c] = float(sums[i][c]);
+}
+
+// A part of a triangle of the mesh.
+struct Piece {
+    uint32_t triangle;
+    std::array<std::array<double, 3>, 3> weights;  // of its corners
+    std::array<std::array<float, 3>, 3> light;
+};
+
+std::array<double, 3> middle(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+    return {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
+}
+
+class Refiner {
+  public:
+    Refiner(const Scene& scene, const Lighting& lighting, const LitMeshOptions& options)
+        : scene_(scene), lighting_(lighting), options_(options) {}
+
+    void take(uint32_t first, uint32_t end) {
+        std::vector<Piece> pieces;
+        for (uint32_t t = first; t < end; ++t)
+            if (options_.material == 0 || materialOf(t) == options_.material)
+                pieces.push_back({t, {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {}});
+        lightPoints(
+            pieces, [](const Piece& p, int k) { return p.weights[k]; },
+            [](Piece & p, int k) -> auto& { return p.light[k]; });
+        while (!pieces.empty()) {
+            std::vector<Halves> halves;
+            for (const Piece& p : pieces) halves.push_back({p, {}});
+            lightPoints(
+                halves,
+                [](const Halves& h, int k) {
+                    return middle(h.piece.weights[k], h.piece.weights[(k + 1) % 3]);
+                },
+                [](Halves & h, int k) -> auto& { return h.light[k]; });
+            pieces.clear();
+            for (const Halves& h : halves) split(h, pieces);
+        }
+    }
+    LitMesh result;
+    float brightest = 0;
+
+  private:
+    struct Halves {
+        Piece piece;
+        std::array<std::array<float, 3>, 3> light;  // in the middle of each side
+    };
+    uint32_t materialOf(uint32_t t) const {
+        return scene_.mesh().materials.empty() ? 1 : scene_.mesh().materials[t];
+    }
+
+    template <class Item, class Where, class Light>
+    void lightPoints(std::vector<Item>& items, const Where& where, const Light& light) {
+        std::vector<SurfacePoint> points;
+        for (const Item& item : items)
+            for (int k = 0; k < 3; ++k) points.push_back({pieceOf(item).triangle, where(item, k)});
+        const std::vector<float> values = irradianceAt(scene_, lighting_, points);
+        for (size_t i = 0; i < values.size(); ++i) {
+            light(items[i / 9], int(i / 3 % 3))[i % 3] = values[i];
+            brightest = std::max(brightest, values[i]);
+        }
+    }
+    static const Piece& pieceOf(const Piece& p) { return p; }
+    static const Piece& pieceOf(const Halves& h) { return h.piece; }
+
+    Vec3 positionOf(uint32_t triangle, const std::array<double, 3>& weights) const {
+        Vec3 p;
+        for (int k = 0; k < 3; ++k)
+            p = p + vectorAt(scene_.mesh().positions, scene_.mesh().triangles[3 * size_t(triangle) + k]) *
+                        weights[k];
+        return p;
+    }
+    void split(const Halves& h, std::vector<Piece>& pieces) {
+        const Piece& p = h.piece;
+        double longest = 0, deviation = 0;
+        Vec3 corners[3];
+        for (int k = 0; k < 3; ++k) corners[k] = positionOf(p.triangle, p.weights[k]);
+        for (int k = 0; k < 3; ++k) {
+            const int next = (k + 1) % 3;
+            longest = std::max(longest, length(corners[next] - corners[k]));
+            for (int c = 0; c < 3; ++c)
+                deviation = std::max(
+                    deviation, std::abs(double(h.light[k][c]) - (p.light[k][c] + p.light[next][c]) / 2));
+        }
+        if (longest <= options_.coarsest &&
+            (longest <= options_.finest || deviation <= options_.deviation * brightest)) {
+            if (result.triangles.size() / 3 >= options_.mostTriangles)
+                throw std::runtime_error("the lit mesh would have more than " +
+                                         std::to_string(options_.mostTriangles) +
+                                         " triangles; let it be less fine");
+            for (int k = 0; k < 3; ++k) {
+                result.triangles.push_back(uint32_t(result.triangles.size()));
+                for (double x : {corners[k].x, corners[k].y, corners[k].z})
+                    result.positions.push_back(float(x));
+                result.irradiance.insert(result.irradiance.end(), p.light[k].begin(), p.light[k].end());
+            }
+            return;
+        }
+        std::array<std::array<double, 3>, 3> m;
+        for (int k = 0; k < 3; ++k) m[k] = middle(p.weights[k], p.weights[(k + 1) % 3]);
+        const auto& E = h.light;
+        pieces.push_back({p.triangle, {p.weights[0], m[0], m[2]}, {p.light[0], E[0], E[2]}});
+        pieces.push_back({p.triangle, {m[0], p.weights[1], m[1]}, {E[0], p.light[1], E[1]}});
+        pieces.push_back({p.triangle, {m[2], m[1], p.weights[2]}, {E[2], E[1], p.light[2]}});
+        pieces.push_back({p.triangle, {m[0], m[1], m[2]}, {E[0], E[1], E[2]}});
+    }
+
+    const Scene& scene_;
+    const Lighting& lighting_;
+    const LitMeshOptions& options_;
+};
+
+}  // namespace
+
+std::vector<float> irradianceAt(const Scene& scene, const Lighting& lighting,
+                                std::span<const SurfacePoint> points) {
+    const Vec3 extent = scene.bounds().high - scene.bounds().low;
+    const double lift = scene.bounds().empty() ? 0 : liftPart * std::max({extent.x, extent.y, extent.z});
+    std::vector<float> result(3 * points.size());
+    const auto packets = int64_t((points.size() + Scene::packetSize - 1) / Scene::packetSize);
+#pragma omp parallel for schedule(dynamic, 64)
+    for (int64_t i = 0; i < packets; ++i) {
+        const size_t first = size_t(i) * Scene::packetSize,
+                     count = std::min(size_t(Scene::packetSize), points.size() - first);
+        lightPacket(scene, lighting, &points[first], int(count), lift, &result[3 * first]);
+    }
+    return result;
+}
+
+LitMesh lightMesh(const Scene& scene, const Lighting& lighting, const LitMeshOptions& options,
+                  const std::function<void(double)>& progress) {
+    Refiner refiner(scene, lighting, options);
+    // What is bright is known from the start, so that the order of triangles does not matter.
+    std::vector<SurfacePoint> corners;
+    const auto count = uint32_t(scene.mesh().triangles.size() / 3);
+    for (uint32_t t = 0; t < count; ++t) corners.push_back({t, {1 / 3., 1 / 3., 1 / 3.}});
+    for (float E : irradianceAt(scene, lighting, corners)) refiner.brightest = std::max(refiner.brightest, E);
+    constexpr uint32_t batch = 16384;
+    for (uint32_t first = 0; first < count; first += batch) {
+        if (progress) progress(double(first) / count);
+        refiner.take(first, std::min(count, first + batch));
+    }
+    return std::move(refiner.result);
+}
+
+}  // namespace pellucid::sample

@@ -1,0 +1,62 @@
+// Irradiance on a mesh, with ray-traced shadows, and triangles split until it is linear on each: what
+// pelSurfaceIntegral takes.
+#pragma once
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "sample/scene.h"
+
+namespace pellucid::sample {
+
+// As PelLight says it, hard: a point, or infinitely far.
+struct SurfaceLight {
+    enum class Type { Directional, Point, Spot };
+    Type type = Type::Directional;
+    Vec3 toLight{0, 0, 1};         // unit; directional
+    Vec3 position;                 // point, spot
+    Vec3 spotDirection{0, 0, -1};  // unit
+    double spotCosInner = 0.9, spotCosOuter = 0.8;
+    double range = 0;                      // 0: no limit
+    std::array<double, 3> color{1, 1, 1};  // irradiance at right angles; of point and spot times distance^2
+};
+
+struct Lighting {
+    std::vector<SurfaceLight> lights;
+    // Light from all around, unoccluded, of a unit normal; may be empty.
+    std::function<std::array<double, 3>(Vec3)> ambient;
+};
+
+// A place on the mesh.
+struct SurfacePoint {
+    uint32_t triangle;
+    std::array<double, 3> weights;
+};
+
+// RGB per point. The cosine is that of the interpolated normals. Shadow rays begin at a point lifted to the
+// surface that these normals mean, so that facets throw no shadows on each other [Hanika 2021, "Hacking the
+// shadow terminator"].
+std::vector<float> irradianceAt(const Scene& scene, const Lighting& lighting,
+                                std::span<const SurfacePoint> points);
+
+struct LitMesh {
+    std::vector<float> positions;     // xyz of each corner: three corners per triangle, none shared
+    std::vector<float> irradiance;    // RGB of each corner
+    std::vector<uint32_t> triangles;  // 0, 1, 2, ...
+};
+
+struct LitMeshOptions {
+    double coarsest = INFINITY;  // length; longer edges are split whatever the light
+    double finest = 0;           // length; shorter edges are not
+    double deviation =
+        0.003;  // of the brightest: how far the middle of an edge may be off the mean of its ends
+    size_t mostTriangles = 40'000'000;
+    uint32_t material = 0;  // only triangles of this id give light; 0: all
+};
+
+// `progress`: told a fraction, and may throw. Throws std::runtime_error beyond mostTriangles.
+LitMesh lightMesh(const Scene& scene, const Lighting& lighting, const LitMeshOptions& options,
+                  const std::function<void(double)>& progress = {});
+
+}  // namespace pellucid::sample
