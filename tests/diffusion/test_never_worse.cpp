@@ -1,0 +1,132 @@
+// With default settings no method is further from light than Lambert with a ray-traced shadow, in no channel
+// and no sub-set. A method is held to it when `holds` says so; of the others the table of errors is printed,
+// and whoever mends one sets it.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "lit_scenes.h"
+#include "reference/surface_integral.h"
+#include "test_size.h"
+#include "tolerances.h"
+
+namespace {
+
+using namespace lit_scenes;
+
+struct Contender {
+    const char* name;
+    Method shade;
+    bool holds;
+};
+
+const Contender contenders[] = {
+    {"lambert", shadeLambert, true},
+    {"preintegrated",
+     [](const Device& d, const LitScene& s, const Profile& p, double k, double* t) {
+         return shadePreintegrated(d, s, p, k, t);
+     },
+     false},
+};
+
+const std::pair<const char*, uint8_t> parts[] = {{"unlit", io::SUBSET_UNLIT},
+                                                 {"terminator", io::SUBSET_TERMINATOR},
+                                                 {"penumbra", io::SUBSET_PENUMBRA},
+                                                 {"rest", io::SUBSET_REST}};
+
+io::ImageDifference within(const LitScene& s, const std::vector<float>& picture, uint8_t part) {
+    std::vector<uint8_t> mask(s.covered.size());
+    for (size_t i = 0; i < mask.size(); ++i) mask[i] = s.covered[i] && (s.subsets[i] & part);
+    return io::compareImages(picture, s.truth, mask);
+}
+
+void hold(const LitScene& s, const Profile& profile, const std::string& where) {
+    const Device device("");
+    for (const Contender& c : contenders) {
+        const std::vector<float> picture = c.shade(device, s, profile, 1, nullptr);
+        for (const auto& [name, part] : parts) {
+            const io::ImageDifference lambert = within(s, s.irradiance, part), own = within(s, picture, part);
+            if (lambert.pixels == 0) continue;
+            if (&c != contenders)
+                std::printf("%-34s %-14s %-10s %6zu   1e-4: %5.0f %5.0f %5.0f   Lambert %5.0f %5.0f %5.0f\n",
+                            where.c_str(), c.name, name, own.pixels, 1e4 * own.rmse[0], 1e4 * own.rmse[1],
+                            1e4 * own.rmse[2], 1e4 * lambert.rmse[0], 1e4 * lambert.rmse[1],
+                            1e4 * lambert.rmse[2]);
+            for (int channel = 0; c.holds && channel < 3; ++channel)
+                EXPECT_LE(own.rmse[channel], lambert.rmse[channel] + tolerance::neverWorse)
+                    << c.name << ", " << where << ", " << name << ", channel " << channel;
+        }
+    }
+}
+
+struct Light {
+    const char* name;
+    double azimuth, elevation;
+};
+constexpr Light lights[] = {{"side", 80, 20}, {"behind", 150, 15}};
+
+std::string headFile(const char* name) {
+    const char* folder = std::getenv("PELLUCID_HEADS_DIR");
+    return (folder ? std::string(folder) : std::string(PELLUCID_SOURCE_DIR) + "/data/heads") + "/" + name +
+           ".obj";
+}
+
+void holdBody(const Body& body, int size, double fill = 0.94) {
+    const Device device("");
+    const Profile skin = Profile::skin();
+    for (const Light& light : lights)
+        for (double unit : {1.0, 10.0, 1000.0}) {
+            if (unit != 1 && &light != lights) continue;  // the unit is no matter of the light
+            SceneRequest request;
+            request.lightAzimuth = light.azimuth;
+            request.lightElevation = light.elevation;
+            request.unit = unit;
+            request.size = size;
+            request.fill = fill;
+            const LitScene s = make(device, body, request, skin);
+            hold(s, skin,
+                 body.name + ", " + light.name + ", " +
+                     (unit == 1    ? "mm"
+                      : unit == 10 ? "cm"
+                                   : "m"));
+        }
+}
+
+}  // namespace
+
+TEST(NeverWorse, Ball) {
+    holdBody(ball(10, sized(96, 8)), sized(96, 12));
+}
+TEST(NeverWorse, Relief) {
+    holdBody(relief(sized(160, 10)), sized(96, 12));
+}
+TEST(NeverWorse, FemaleHead) {
+    holdBody(head(headFile("head_female"), "female", sized(2, 0)), sized(128, 12));
+}
+TEST(NeverWorse, MaleHead) {
+    holdBody(head(headFile("head_male"), "male", sized(2, 0)), sized(128, 12));
+}
+
+// The references of these scenes are right: a ball's has a closed form, whatever the unit.
+TEST(NeverWorse, ReferenceOfTheBallIsTheClosedForm) {
+    const Device device("");
+    const Profile skin = Profile::skin();
+    for (double unit : {1.0, 1000.0}) {
+        SceneRequest request;
+        request.size = sized(48, 10);
+        request.unit = unit;
+        const LitScene s = make(device, ball(10, sized(160, 8)), request, skin);
+        const auto truth = reference::skinProfile();
+        double square = 0;
+        size_t count = 0;
+        for (size_t i = 0; i < s.covered.size(); ++i) {
+            if (!s.covered[i]) continue;
+            const Vec3 p{s.positions[3 * i], s.positions[3 * i + 1], s.positions[3 * i + 2]};
+            const reference::Rgb S = reference::surfaceIntegralOfSphere(
+                *truth, 10, std::acos(std::clamp(dot(normalize(p), s.toLight), -1.0, 1.0)));
+            for (int c = 0; c < 3; ++c) square += std::pow(s.truth[3 * i + c] - S[c], 2), ++count;
+        }
+        EXPECT_LT(std::sqrt(square / double(count)), testsAreSmall() ? 0.1 : tolerance::referenceRms)
+            << "unit " << unit;
+    }
+}
