@@ -68,7 +68,7 @@ class Scatter(OfThisProcess):
         e, p, d, i, o = natives
         views = [x._view for k, x in enumerate(images) if x is not None and not (in_place and k == 0)]
         return Event(submit(self.device, views, _handles(waits),
-                            lambda w: self._handle.execute(settings._data, e, p, d, i, o, w)), self)
+                            lambda w: self._handle.execute(settings._data, e, p, d, i, o, w), self))
 
     def stats(self) -> ScatterStats:
         """What the last execution did."""
