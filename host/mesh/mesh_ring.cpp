@@ -31,7 +31,6 @@ RingBuilder::Edges RingBuilder::build(uint32_t slot, Corner* corners, uint32_t c
             ++edges.all;
             edges.border += triangles == 1;
             edges.nonManifold += triangles > 2;
-            edges.inconsistent += triangles == 2 && ends_[node.end - 1].backward == ends_[node.end - 2].backward;
         }
         return edges;
     }

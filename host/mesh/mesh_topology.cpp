@@ -1,7 +1,6 @@
 #include "mesh/mesh_topology.h"
 
 #include "mesh/mesh_adjacency.h"
-#include "mesh/mesh_orient.h"
 #include "mesh/mesh_weld.h"
 
 namespace pel {
@@ -63,11 +62,6 @@ Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopology
     report.unreferencedVertices = uint32_t(std::count(used.begin(), used.end(), false));
     MeshAdjacency adjacency =
         buildAdjacency(triangles, weld.slots, [&](double fraction) { progress(0.3 + 0.4 * fraction); });
-    if (adjacency.inconsistentEdges > 0) {
-        // Normals that are made would point to both sides.
-        orientTriangles(triangles);
-        adjacency = buildAdjacency(triangles, weld.slots, [](double) {});
-    }
     if (isScattered(triangles, weld.slots)) {
         // Passes then work in an order of their own; only the first and the last one know the caller's.
         const std::vector<uint32_t> numbers = breadthFirstNumbers(adjacency);

@@ -22,6 +22,36 @@ std::vector<std::set<int>> rings(const reference::Mesh& mesh) {
     return all;
 }
 
+// Orders all triangles as the first of their surface: tessellate() turns those that jitter folded over, and
+// which of two neighbours counts a vertex is a matter of order.
+void orient(reference::Mesh& mesh) {
+    std::map<std::pair<int, int>, std::vector<int>> trianglesAt;
+    for (int t = 0; t < int(mesh.triangles.size()); ++t)
+        for (int i = 0; i < 3; ++i)
+            trianglesAt[std::minmax(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3])].push_back(t);
+    std::vector<bool> reached(mesh.triangles.size());
+    std::vector<int> open{0};
+    reached[0] = true;
+    while (!open.empty()) {
+        const reference::Triangle triangle = mesh.triangles[open.back()];
+        open.pop_back();
+        for (int i = 0; i < 3; ++i) {
+            const int a = triangle[i], b = triangle[(i + 1) % 3];
+            for (int other : trianglesAt[std::minmax(a, b)]) {
+                if (reached[other]) continue;
+                reached[other] = true;
+                open.push_back(other);
+                reference::Triangle& o = mesh.triangles[other];
+                for (int k = 0; k < 3; ++k)
+                    if (o[k] == a && o[(k + 1) % 3] == b) {
+                        std::swap(o[k], o[(k + 1) % 3]);
+                        break;
+                    }
+            }
+        }
+    }
+}
+
 // Replaces the edge between two triangles drawn at random by the other diagonal, again and again; vertices
 // keep 3 to 12 neighbours, and no edge comes to stand twice.
 void flipEdges(reference::Mesh& mesh, int flips, uint32_t seed) {

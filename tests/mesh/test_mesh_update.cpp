@@ -138,20 +138,6 @@ TEST(LiveMesh, WorksOnNoMoreRowsThanTheChangeReaches) {
     EXPECT_EQ(after.bytesAllocated, before.bytesAllocated);
 }
 
-TEST(LiveMesh, RangesThatBeginAlikeAndEndElsewhereAreOthers) {
-    Pose pose(torus(sized(64, 32), sized(48, 24)), true, 1);
-    const MeshTopology topology(device(), topologyDesc(pose.mesh));
-    const PelCurvatureParams params = paramsOf(PEL_CURVATURE_QUADRIC, PEL_QUANTITY_ABSOLUTE);
-    const LiveMesh live(topology, params);
-    pose.update(live, nullptr);
-    for (uint32_t count : {1u, 90u, 3u}) {
-        const std::vector<PelVertexRange> changed{{200, count}};
-        pose.move(changed[0], 0.02f);
-        pose.update(live, &changed);
-        EXPECT_EQ(pose.result.readAll<float>(), pose.anew(topology, params)) << count;
-    }
-}
-
 TEST(LiveMesh, NothingChangedCostsNothing) {
     Pose pose(torus(sized(64, 32), sized(48, 24)), false, 1);
     const MeshTopology topology(device(), topologyDesc(pose.mesh));

@@ -53,9 +53,6 @@ AnalyticMesh tessellate(const Surface& surface, int columns, int rows, Tessellat
 // UVs.
 AnalyticMesh icosphere(double a, double b, double c, int splits);
 
-// Orders all triangles as the first of their surface: tessellate() turns those that jitter folded over.
-void orient(Mesh& mesh);
-
 // Moves every vertex by a Gaussian of `fraction` of its mean edge length in each direction, and estimates the
 // normals from the moved mesh.
 void addNoise(Mesh& mesh, double fraction, uint32_t seed);

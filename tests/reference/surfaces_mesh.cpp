@@ -91,34 +91,6 @@ AnalyticMesh icosphere(double a, double b, double c, int splits) {
     return out;
 }
 
-void orient(Mesh& mesh) {
-    std::map<std::pair<int, int>, std::vector<int>> trianglesAt;
-    for (int t = 0; t < int(mesh.triangles.size()); ++t)
-        for (int i = 0; i < 3; ++i)
-            trianglesAt[std::minmax(mesh.triangles[t][i], mesh.triangles[t][(i + 1) % 3])].push_back(t);
-    std::vector<bool> reached(mesh.triangles.size());
-    std::vector<int> open{0};
-    reached[0] = true;
-    while (!open.empty()) {
-        const Triangle triangle = mesh.triangles[open.back()];
-        open.pop_back();
-        for (int i = 0; i < 3; ++i) {
-            const int a = triangle[i], b = triangle[(i + 1) % 3];
-            for (int other : trianglesAt[std::minmax(a, b)]) {
-                if (reached[other]) continue;
-                reached[other] = true;
-                open.push_back(other);
-                Triangle& o = mesh.triangles[other];
-                for (int k = 0; k < 3; ++k)
-                    if (o[k] == a && o[(k + 1) % 3] == b) {
-                        std::swap(o[k], o[(k + 1) % 3]);
-                        break;
-                    }
-            }
-        }
-    }
-}
-
 void addNoise(Mesh& mesh, double fraction, uint32_t seed) {
     std::vector<double> total(mesh.positions.size(), 0.0);
     std::vector<int> count(mesh.positions.size(), 0);
