@@ -16,6 +16,8 @@ inline constexpr Tolerance lutTexel{"lutTexel", 1e-5, "any float LUT texel: well
 inline constexpr Tolerance lutTexelGaussians{
     "lutTexelGaussians", 2e-6,
     "Gaussian sums have closed forms; a few float roundings of values near 1 remain"};
+inline constexpr Tolerance oracleListing{"oracleListing", 1e-9, "400,000 even steps over the kinks of max(cos, 0)"};
+inline constexpr Tolerance lutTexelPennerTable{"lutTexelPennerTable", 3e-5, "where R jumps, its line spread has the root's infinite slope; 1.4e-5 seen"};
 inline constexpr Tolerance lutTexelOther{"lutTexelOther", 1e-5,
                                          "profiles that need a quadrature on the device"};
 inline constexpr Tolerance lutRoundingBoundary{
@@ -289,7 +291,7 @@ inline constexpr Tolerance sampleSky{"sampleSky", 0.02,
 inline constexpr Tolerance byteBoundary{"byteBoundary", 0.01, "of an 8-bit step: 255 times 13 (the slope of sRGB at 0) times 2e-6"};
 inline constexpr Tolerance stretchedNormals{"stretchedNormals", 5e-5, "as normalComponent, triangles 50 times longer than wide"};
 inline constexpr Tolerance finePixels{"finePixels", 1e-4, "of the largest: normals of neighbours differ by 1/300, float leaves 1e-7 of each"};
-inline constexpr Tolerance radiusSmoothing{"radiusSmoothing", 2e-5, "of the largest: 64 stages of float sums, weights of slivers"};
+inline constexpr Tolerance radiusSmoothing{"radiusSmoothing", 1.5e-3, "of the largest, against the flow itself: what a series of 4 to 64 stages leaves of it"};
 inline constexpr Tolerance wideShadowAnywhere{
     "wideShadowAnywhere", 5e-4, "as wideShadow, bias 0.1 mm and softness 0.1 of filters of 1 mm: float depth of 1e-7 is 4e-5 mm of that 0.1 mm"};
 inline constexpr Tolerance placeFromDepth{"placeFromDepth", 2e-3, "mm, up to 900 away: an inverse projection in float; what float depth lost is not in it"};

@@ -326,12 +326,13 @@ inline void add_moments(Moments* m, uintw slot, maskw counts, const Chart* chart
 }
 
 // All points of the two-ring into the fit or, without one, into the moments; of the lanes in `wanted`.
-__attribute__((always_inline)) inline void walk_points(Fit* fit, Moments* moments, const Chart* chart, RingCursor ring,
+__attribute__((always_inline)) inline void walk_points(Fit* fit, Moments* moments, const Chart* chart, const RingCursor first,
                                                        maskw wanted, __global const uint* slices,
                                                        __global const uint* rings, __global const uint* runs,
                                                        __global const uint* links, __global const uint* rounds,
                                                        __global const float* positions) {
     const uintw none = (uintw)(0), one = (uintw)(1), near_steps = (uintw)(NEAR_STEPS);
+    RingCursor ring = first;
     for (; ring.row < ring.end; ++ring.row) {
         const uintw near_ = ring_entry(&ring, rings, runs).slots.each;
         const maskw real = (near_ != ring.self.each) & wanted;

@@ -228,7 +228,7 @@ COMPILE = textwrap.dedent("""
     import pellucid as pel
     device = pel.Device()
     image = np.ones((8, 8, 3), np.float32)
-    shader = pel.Shader(device).set_image("radiance", image).set_image("normal_shading", image)
+    shader = pel.Shader(device).set_image("radiance", np.empty_like(image)).set_image("normal_shading", image)
     shader.set_image("position", image).set_camera(pel.Camera()).set_ambient(pel.Ambient(constant=(1, 1, 1)))
     shader.set_material(1, pel.Material(specular=1, deep_scatter_color=(1, 1, 1), thickness_taps=32), pel.Lut.curvature(
         device, width=8, height=8)).set_lights([pel.Light(shadow_filter_texels=48, shadow_depth_range=1)])

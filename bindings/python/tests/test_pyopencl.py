@@ -107,7 +107,7 @@ def test_nothing_of_the_hosts_is_kept(queue, sphere):
         pel.LiveMesh(topology).update(sphere.positions, sphere.normals, np.empty(len(sphere.positions), np.float32))
         lut = pel.Lut.curvature(device, width=8, height=8)
         image = np.ones((4, 16, 3), np.float32)
-        shader = pel.Shader(device).set_image("radiance", image).set_image("normal_shading", image)
+        shader = pel.Shader(device).set_image("radiance", np.empty_like(image)).set_image("normal_shading", image)
         shader.set_image("curvature", image[..., 0]).set_material(1, pel.Material(), lut).set_ambient(pel.Ambient(constant=(1, 1, 1)))
         shader.commit().submit()
         shader.execute()

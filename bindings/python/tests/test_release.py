@@ -120,7 +120,7 @@ def test_work_may_be_submitted_from_finalizers(device):
 def test_two_threads_prefill_the_same_shaders(device):
     """In opposite order; each keeps both from other threads meanwhile."""
     image = np.zeros((2, 16, 3), np.float32)
-    shaders = [pel.Shader(device).set_image("radiance", image).set_image("normal_shading", image) for _ in range(2)]
+    shaders = [pel.Shader(device).set_image("radiance", np.empty_like(image)).set_image("normal_shading", image) for _ in range(2)]
     for shader in shaders:
         shader.set_material(1, pel.Material()).set_ambient(pel.Ambient(constant=(1, 1, 1)))
     pel.prefill_programs(device, shaders=shaders)
