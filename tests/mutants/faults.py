@@ -204,7 +204,7 @@ def faults(path, text):
     for found in sorted(set(candidates(path, text, m))):
         while starts[row + 1] <= found[0]:
             row += 1
-        if not NOTHING_CHANGES.search(lines[row]):
+        if not NOTHING_CHANGES.search(lines[row]) and text[found[0]:found[1]] != found[2]:
             by_line.setdefault(row, []).append(found)
     for row, several in by_line.items():
         around = "\n".join(line.strip() for line in lines[max(0, row - 1):row + 2])
