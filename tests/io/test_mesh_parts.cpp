@@ -1,4 +1,5 @@
 // host/io: meshes with parts, their subdivision and the cut of a neck; the heads that come with the project.
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -107,6 +108,9 @@ TEST_F(MeshParts, ACutIsStraightAndClosed) {
         }
     }
     EXPECT_NEAR(lowest, 0, 1e-6);
+    std::vector<bool> used(mesh.mesh.vertexCount());
+    for (uint32_t v : mesh.mesh.triangles) used[v] = true;
+    EXPECT_EQ(std::count(used.begin(), used.end(), false), 0);
     EXPECT_GT(capArea, 1);
     // The left cube is closed: half of its volume. The right one is cut without a cap, in the plane through
     // the origin, which an open rim in that plane does not change.

@@ -69,6 +69,23 @@ void closeRim(PartedMesh& mesh, const std::vector<std::array<uint32_t, 2>>& rim,
     }
 }
 
+// Vertices that no triangle uses any more go.
+void dropUnused(MeshData& mesh) {
+    std::vector<uint32_t> place(mesh.vertexCount(), UINT32_MAX);
+    std::vector<float> positions, normals;
+    for (uint32_t& v : mesh.triangles) {
+        if (place[v] == UINT32_MAX) {
+            place[v] = uint32_t(positions.size() / 3);
+            positions.insert(positions.end(), &mesh.positions[3 * size_t(v)],
+                             &mesh.positions[3 * size_t(v)] + 3);
+            normals.insert(normals.end(), &mesh.normals[3 * size_t(v)], &mesh.normals[3 * size_t(v)] + 3);
+        }
+        v = place[v];
+    }
+    mesh.positions = std::move(positions);
+    mesh.normals = std::move(normals);
+}
+
 }  // namespace
 
 void cutAndClose(PartedMesh& mesh, const std::string& part, const float (&normal)[3], float offset,
@@ -109,10 +126,13 @@ void cutAndClose(PartedMesh& mesh, const std::string& part, const float (&normal
     mesh.partOf = std::move(partOf);
     std::map<uint32_t, int> ends;
     for (const auto& edge : rim) ++ends[edge[0]], --ends[edge[1]];
-    if (rim.empty() || std::any_of(ends.begin(), ends.end(), [](const auto& end) { return end.second != 0; }))
-        return;
-    mesh.parts.push_back(cap);
-    closeRim(mesh, rim, normal, uint32_t(mesh.parts.size() - 1));
+    const bool closed =
+        std::all_of(ends.begin(), ends.end(), [](const auto& end) { return end.second == 0; });
+    if (!rim.empty() && closed) {
+        mesh.parts.push_back(cap);
+        closeRim(mesh, rim, normal, uint32_t(mesh.parts.size() - 1));
+    }
+    dropUnused(data);
 }
 
 }  // namespace pellucid::io
