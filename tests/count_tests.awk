@@ -31,6 +31,7 @@ after_skipped { reason = $0; after_skipped = 0 }
 }
 /^[^ ]+::.* (FAILED|ERROR)( |$)/ { bad++ }
 /^Test Passed\./ { good = 1 }
+/^Test Pass Reason:/ { good = 1 }  # ended with 77: skipped
 END {
     close_test()
     printf "%s", list
