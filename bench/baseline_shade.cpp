@@ -43,8 +43,7 @@ V from(const float (&v)[3]) {
 V sample(const ShadeTable& t, float s, float v) {
     const float x = std::clamp(s * t.width - 0.5f, 0.0f, t.width - 1.0f);
     const float y = std::clamp(v * t.height - 0.5f, 0.0f, t.height - 1.0f);
-    const int x0 = int(x), y0 = int(y), x1 = std::min(x0 + 1, t.width - 1),
-              y1 = std::min(y0 + 1, t.height - 1);
+    const int x0 = int(x), y0 = int(y), x1 = std::min(x0 + 1, t.width - 1), y1 = std::min(y0 + 1, t.height - 1);
     const auto texel = [&](int i, int j) { return load(t.texels, size_t(j) * t.width + i); };
     return mix(mix(texel(x0, y0), texel(x1, y0), x - x0), mix(texel(x0, y1), texel(x1, y1), x - x0), y - y0);
 }
@@ -111,7 +110,8 @@ V shadePixel(const ShadeFrame& f, const ShadeSettings& s, const ShadeTable& curv
             const float fresnel = s.f0 + (1 - s.f0) * std::pow(1 - dot(v, unit), 5.0f);
             const float k = sat(w * s.sharpening + 0.5f * (1 - s.sharpening));
             result =
-                result + (k * k * (3 - 2 * k) * s.specular * std::max(nl, 0.0f) * lobe * fresnel / dot(h, h)) * from(s.light);
+                result + (k * k * (3 - 2 * k) * s.specular * std::max(nl, 0.0f) * lobe * fresnel / dot(h, h)) *
+                             from(s.light);
         }
     }
     return result;

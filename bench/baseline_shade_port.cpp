@@ -173,8 +173,7 @@ ShadePort::~ShadePort() = default;
 void ShadePort::run() {
     const size_t group[2] = {16, 4};
     const size_t global[2] = {(state_->width + 15) / 16 * 16, (state_->height + 3) / 4 * 4};
-    check(clEnqueueNDRangeKernel(state_->queue, state_->kernel, 2, nullptr, global, group, 0, nullptr,
-                                 nullptr));
+    check(clEnqueueNDRangeKernel(state_->queue, state_->kernel, 2, nullptr, global, group, 0, nullptr, nullptr));
     check(clFinish(state_->queue));
 }
 

@@ -83,8 +83,7 @@ void writeAlone(benchmark::State& state, bool flushed) {
                     if (flushed) {
                         io::writeWholeFile(path.string(), bytes);
                     } else {
-                        std::ofstream(path, std::ios::binary)
-                            .write(bytes.data(), std::streamsize(bytes.size()));
+                        std::ofstream(path, std::ios::binary).write(bytes.data(), std::streamsize(bytes.size()));
                     }
                 }
             });
@@ -101,11 +100,7 @@ BENCHMARK_CAPTURE(writeAlone, flushed, true)
     ->UseRealTime()
     ->Unit(benchmark::kMillisecond)
     ->Iterations(1);
-BENCHMARK_CAPTURE(writeAlone, unflushed, false)
-    ->Arg(1000)
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond)
-    ->Iterations(1);
+BENCHMARK_CAPTURE(writeAlone, unflushed, false)->Arg(1000)->UseRealTime()->Unit(benchmark::kMillisecond)->Iterations(1);
 
 // The whole batch: integration, read-back, encoding, writing.
 void makeBatch(benchmark::State& state) {

@@ -28,8 +28,10 @@ struct Stages {
 Stages inNewProcess() {
     FILE* pipe = popen(("'" + program + "' '" + scratch + "'").c_str(), "r");
     Stages s;
-    const bool read = pipe && std::fscanf(pipe, "%lf %lf %lf %lf %lf", &s.device, &s.tables, &s.commit, &s.execute, &s.frame) == 5;
-    if (!pipe || pclose(pipe) != 0 || !read) throw std::runtime_error("the process that measures a first frame failed");
+    const bool read = pipe && std::fscanf(pipe, "%lf %lf %lf %lf %lf", &s.device, &s.tables, &s.commit,
+                                          &s.execute, &s.frame) == 5;
+    if (!pipe || pclose(pipe) != 0 || !read)
+        throw std::runtime_error("the process that measures a first frame failed");
     return s;
 }
 
@@ -42,16 +44,21 @@ void firstFrame(benchmark::State& state, bool emptyCache) {
     for (auto _ : state) {
         if (emptyCache) {
             const std::string cache = scratch + "/cache" + std::to_string(run++);
-            if (std::system(("mkdir '" + cache + "'").c_str()) != 0) return state.SkipWithError("no room for a cache");
+            if (std::system(("mkdir '" + cache + "'").c_str()) != 0)
+                return state.SkipWithError("no room for a cache");
             setenv("POCL_CACHE_DIR", cache.c_str(), 1);
         }
         const Stages s = inNewProcess();
         state.SetIterationTime(s.start() * 1e-3);
-        sum.device += s.device, sum.tables += s.tables, sum.commit += s.commit, sum.execute += s.execute, sum.frame += s.frame;
+        sum.device += s.device, sum.tables += s.tables, sum.commit += s.commit, sum.execute += s.execute,
+            sum.frame += s.frame;
     }
     before ? setenv("POCL_CACHE_DIR", old.c_str(), 1) : unsetenv("POCL_CACHE_DIR");
-    for (auto [name, value] : {std::pair{"device_ms", sum.device}, {"tables_ms", sum.tables}, {"commit_ms", sum.commit},
-                               {"execute_ms", sum.execute}, {"frame_ms", sum.frame}})
+    for (auto [name, value] : {std::pair{"device_ms", sum.device},
+                               {"tables_ms", sum.tables},
+                               {"commit_ms", sum.commit},
+                               {"execute_ms", sum.execute},
+                               {"frame_ms", sum.frame}})
         state.counters[name] = benchmark::Counter(value, benchmark::Counter::kAvgIterations);
 }
 
@@ -72,7 +79,8 @@ void writeFrame() {
     const io::SceneFile scene = io::readScene(demo::directory() + "/key.toml");
     const io::Image g = io::readImage(demo::directory() + "/key_gbuffer.exr");
     for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot)
-        if (!scene.channels[slot].empty()) write("slot" + std::to_string(slot), g.interleaved(scene.channels[slot]));
+        if (!scene.channels[slot].empty())
+            write("slot" + std::to_string(slot), g.interleaved(scene.channels[slot]));
     const io::SceneLight& light = scene.lights.at(0);
     write("wide", g.interleaved(std::vector{light.wideShadow}));
     const io::Image map = io::readImage(light.shadowMapFile);

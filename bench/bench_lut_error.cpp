@@ -78,8 +78,7 @@ std::vector<float> texelsOf(const Lut& lut, PelLutEncoding encoding) {
 Rgb lookUp(const std::vector<float>& texels, int width, int height, double column, double row) {
     column = std::clamp(column, 0.0, width - 1.0);
     row = std::clamp(row, 0.0, height - 1.0);
-    const int x = std::min(int(column), std::max(0, width - 2)),
-              y = std::min(int(row), std::max(0, height - 2));
+    const int x = std::min(int(column), std::max(0, width - 2)), y = std::min(int(row), std::max(0, height - 2));
     const int x1 = std::min(x + 1, width - 1), y1 = std::min(y + 1, height - 1);
     const double fx = column - x, fy = row - y;
     Rgb value;
@@ -120,8 +119,8 @@ void lookUpError(benchmark::State& state) {
                 lit[k] = albedo[k] * value[k];
                 exact[k] = albedo[k] * p.truth[k];
             }
-            color =
-                std::max(color, pellucid::io::deltaE2000(pellucid::io::labFromLinear(lit), pellucid::io::labFromLinear(exact)));
+            color = std::max(color, pellucid::io::deltaE2000(pellucid::io::labFromLinear(lit),
+                                                             pellucid::io::labFromLinear(exact)));
         }
     state.counters["max"] = worst;
     state.counters["rms"] = std::sqrt(squares / double(points().size() * 3 * state.iterations()));
@@ -148,8 +147,7 @@ void energy(benchmark::State& state) {
         std::fill(mean, mean + 3, 0.0);
         for (int x = 0; x < 2049; ++x)
             for (int k = 0; k < 3; ++k)
-                mean[k] +=
-                    texels[size_t(x) * 3 + k] * std::abs(-1 + x / 1024.0) / 1024 * (x % 2048 ? 1 : 0.5);
+                mean[k] += texels[size_t(x) * 3 + k] * std::abs(-1 + x / 1024.0) / 1024 * (x % 2048 ? 1 : 0.5);
     }
     state.counters["red"] = mean[0] - 0.25;
     state.counters["green"] = mean[1] - 0.25;
@@ -239,22 +237,10 @@ BENCHMARK(lookUpError)
     ->ArgNames({"side", "axis", "encoding"})
     ->ArgsProduct({{32, 63, 64, 89, 127, 128, 256, 512, 1024}, {0, 1}, {0, 1, 2}})
     ->Iterations(1);
-BENCHMARK(energy)
-    ->ArgNames({"form", "radius_mm"})
-    ->ArgsProduct({{0, 1, 2, 3}, {1, 3, 10, 100}})
-    ->Iterations(1);
-BENCHMARK(fromCylinder)
-    ->ArgNames({"form", "radius_mm"})
-    ->ArgsProduct({{0, 1, 2, 3}, {1, 3, 10, 100}})
-    ->Iterations(1);
-BENCHMARK(runtimeRadius)
-    ->ArgNames({"form", "percent"})
-    ->ArgsProduct({{0, 3}, {37, 50, 100, 150, 200}})
-    ->Iterations(1);
-BENCHMARK(fromSphere)
-    ->ArgNames({"form", "radius_mm"})
-    ->ArgsProduct({{0, 1, 2}, {1, 3, 10, 100}})
-    ->Iterations(1);
+BENCHMARK(energy)->ArgNames({"form", "radius_mm"})->ArgsProduct({{0, 1, 2, 3}, {1, 3, 10, 100}})->Iterations(1);
+BENCHMARK(fromCylinder)->ArgNames({"form", "radius_mm"})->ArgsProduct({{0, 1, 2, 3}, {1, 3, 10, 100}})->Iterations(1);
+BENCHMARK(runtimeRadius)->ArgNames({"form", "percent"})->ArgsProduct({{0, 3}, {37, 50, 100, 150, 200}})->Iterations(1);
+BENCHMARK(fromSphere)->ArgNames({"form", "radius_mm"})->ArgsProduct({{0, 1, 2}, {1, 3, 10, 100}})->Iterations(1);
 
 }  // namespace
 

@@ -119,8 +119,7 @@ void sampled(benchmark::State& state) {
     const bool perRow = state.range(1) != 0;
     bench::ArcTable table;
     const std::string file = own + "sampled_luts.cl";
-    const cl_mem gaussians = runner().upload(table.gaussians),
-                 out = runner().memory(size_t(side) * side * 12),
+    const cl_mem gaussians = runner().upload(table.gaussians), out = runner().memory(size_t(side) * side * 12),
                  spread = runner().memory(size_t(side) * samples * 16);
     cl_kernel first = nullptr, second = runner().kernel(file, perRow ? "sampledFromRow" : "sampledTexels");
     if (perRow) {
@@ -190,13 +189,7 @@ BENCHMARK(sampled)
     ->Iterations(1)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(peakExponentials)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
-BENCHMARK(copyBandwidth)
-    ->ArgName("MiB")
-    ->Arg(4)
-    ->Arg(256)
-    ->UseManualTime()
-    ->Iterations(5)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(copyBandwidth)->ArgName("MiB")->Arg(4)->Arg(256)->UseManualTime()->Iterations(5)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

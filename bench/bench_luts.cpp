@@ -135,18 +135,8 @@ BENCHMARK(measured)
     ->ArgsProduct({{512}, {0, 1, 2, 3, 4}})
     ->UseManualTime()
     ->Unit(benchmark::kMillisecond);
-BENCHMARK(curvatureSampled)
-    ->ArgName("side")
-    ->Arg(512)
-    ->UseManualTime()
-    ->Iterations(1)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK(shadowSampled)
-    ->ArgName("side")
-    ->Arg(512)
-    ->UseManualTime()
-    ->Iterations(1)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK(curvatureSampled)->ArgName("side")->Arg(512)->UseManualTime()->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(shadowSampled)->ArgName("side")->Arg(512)->UseManualTime()->Iterations(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

@@ -59,7 +59,8 @@ enum class Terms { scattering, lit, plain };
 enum class Storage { float32, packed };
 enum class Given { all, noBlurredNormal, noWideShadow };  // what the host does not give, the library makes
 
-Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage = Storage::float32, Given given = Given::all) {
+Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage = Storage::float32,
+                 Given given = Given::all) {
     const auto w = uint32_t(s.frame.width), h = uint32_t(s.frame.height);
     const bool packed = storage == Storage::packed;
     Prepared p{Shader(device()), Buffer(device(), size_t(w) * h * 12)};
@@ -67,13 +68,15 @@ Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage =
         p.shader.set(slot, imageDesc(Buffer(device(), image), format, w, h));
     };
     const auto setNormal = [&](PelImageSlot slot, const std::vector<float>& image) {
-        packed ? set(slot, packing::octahedral(image), PEL_FORMAT_OCT16X2_SNORM) : set(slot, image, PEL_FORMAT_RGB32F);
+        packed ? set(slot, packing::octahedral(image), PEL_FORMAT_OCT16X2_SNORM)
+               : set(slot, image, PEL_FORMAT_RGB32F);
     };
     p.shader.set(PEL_SLOT_RADIANCE, imageDesc(p.target, packed ? PEL_FORMAT_RGBA16F : PEL_FORMAT_RGB32F, w, h));
     set(PEL_SLOT_MATERIAL, s.frame.id, PEL_FORMAT_R8_UINT);
     setNormal(PEL_SLOT_NORMAL_SHADING, s.frame.shading);
     if (packed) {
-        set(PEL_SLOT_DEPTH, packing::depths(s.frame.position, s.camera, s.frame.width, s.frame.height), PEL_FORMAT_R32F);
+        set(PEL_SLOT_DEPTH, packing::depths(s.frame.position, s.camera, s.frame.width, s.frame.height),
+            PEL_FORMAT_R32F);
         set(PEL_SLOT_ALBEDO, packing::srgb8(s.frame.albedo), PEL_FORMAT_RGBA8_SRGB);
     } else {
         set(PEL_SLOT_POSITION, s.frame.position, PEL_FORMAT_RGB32F);
@@ -85,9 +88,11 @@ Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage =
     p.shader.set(all).set(s.camera);
     if (terms != Terms::plain) {
         p.shader.set(s.ambient);
-        const Buffer wide = packed ? Buffer(device(), packing::unorm8(s.frame.wide)) : Buffer(device(), s.frame.wide);
+        const Buffer wide =
+            packed ? Buffer(device(), packing::unorm8(s.frame.wide)) : Buffer(device(), s.frame.wide);
         for (uint32_t i = 0; i < lights; ++i)
-            p.shader.set(i, PEL_LIGHT_WIDE_SHADOW, imageDesc(wide, packed ? PEL_FORMAT_R8_UNORM : PEL_FORMAT_R32F, w, h));
+            p.shader.set(i, PEL_LIGHT_WIDE_SHADOW,
+                         imageDesc(wide, packed ? PEL_FORMAT_R8_UNORM : PEL_FORMAT_R32F, w, h));
     }
     PelMaterial material = s.material;
     if (terms != Terms::scattering) {
@@ -109,7 +114,8 @@ Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage =
         options.blurNormals = 1;
         p.shader.set(options).clear(PEL_SLOT_NORMAL_BLURRED);
     }
-    if (given == Given::noWideShadow) check(pelShaderSetLightImage(p.shader.get(), 0, PEL_LIGHT_WIDE_SHADOW, nullptr));
+    if (given == Given::noWideShadow)
+        check(pelShaderSetLightImage(p.shader.get(), 0, PEL_LIGHT_WIDE_SHADOW, nullptr));
     p.shader.commit().execute();
     return p;
 }
@@ -169,8 +175,8 @@ void port(benchmark::State& state, View view, int taps) {
 #define CASE(function, name, ...) \
     BENCHMARK_CAPTURE(function, name, __VA_ARGS__)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime()
 
-#define OPEN_MP(name, ...)                                   \
-    CASE(openMp, name, __VA_ARGS__, Effort::Straight);        \
+#define OPEN_MP(name, ...)                             \
+    CASE(openMp, name, __VA_ARGS__, Effort::Straight); \
     CASE(openMp, name##_skipping, __VA_ARGS__, Effort::Skipping)
 
 CASE(library, full_surface, full, 0, 100, 1u, Terms::scattering);
@@ -202,27 +208,34 @@ CASE(port, head_32taps, head, 32);
 int main(int argc, char** argv) {
     if (std::ifstream(demo::directory() + "/key.toml")) {
         const auto add = [](const std::string& name, auto function, auto... arguments) {
-            benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) { function(state, arguments...); })
+            benchmark::RegisterBenchmark(name.c_str(),
+                                         [=](benchmark::State& state) { function(state, arguments...); })
                 ->Unit(benchmark::kMillisecond)
                 ->MeasureProcessCPUTime()
                 ->UseRealTime();
         };
-        const auto shadeLibrary = [](benchmark::State& state, auto... arguments) { library(state, arguments...); };
+        const auto shadeLibrary = [](benchmark::State& state, auto... arguments) {
+            library(state, arguments...);
+        };
         for (const View view : {key, backlit}) {
             const std::string name = view == key ? "demo_key" : "demo_backlit";
             add("library/" + name, shadeLibrary, view, 32, 100, 1u, Terms::scattering);
             add("library/" + name + "_lit", shadeLibrary, view, 32, 100, 1u, Terms::lit);
             add("library/" + name + "_plain", shadeLibrary, view, 32, 100, 1u, Terms::plain);
-            add("library/" + name + "_packed", shadeLibrary, view, 32, 100, 1u, Terms::scattering, Storage::packed);
+            add("library/" + name + "_packed", shadeLibrary, view, 32, 100, 1u, Terms::scattering,
+                Storage::packed);
             add("library/" + name + "_lit_packed", shadeLibrary, view, 32, 100, 1u, Terms::lit, Storage::packed);
-            add("library/" + name + "_blur", shadeLibrary, view, 32, 100, 1u, Terms::scattering, Storage::float32, Given::noBlurredNormal);
-            add("library/" + name + "_filter", shadeLibrary, view, 32, 100, 1u, Terms::scattering, Storage::float32, Given::noWideShadow);
+            add("library/" + name + "_blur", shadeLibrary, view, 32, 100, 1u, Terms::scattering,
+                Storage::float32, Given::noBlurredNormal);
+            add("library/" + name + "_filter", shadeLibrary, view, 32, 100, 1u, Terms::scattering,
+                Storage::float32, Given::noWideShadow);
             add("openMp/" + name, openMp, view, 32, Effort::Straight);
             add("openMp/" + name + "_skipping", openMp, view, 32, Effort::Skipping);
             add("port/" + name, port, view, 32);
         }
     } else {
-        std::fprintf(stderr, "no demo views in %s: run ./run demo first to have them measured\n", demo::directory().c_str());
+        std::fprintf(stderr, "no demo views in %s: run ./run demo first to have them measured\n",
+                     demo::directory().c_str());
     }
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;

@@ -15,8 +15,8 @@
 #include "demo_files.h"
 #include "io/image/image_file.h"
 #include "io/image/picture.h"
-#include "io/scene/scene_file.h"
 #include "io/image/tone_map.h"
+#include "io/scene/scene_file.h"
 #include "sample/shadow_forms.h"
 
 using namespace pellucid;
@@ -32,7 +32,7 @@ struct Form {
     std::string name;
     PelLight light;
     std::vector<Map> maps;
-    int reference;         // index of the form that it is compared with
+    int reference;          // index of the form that it is compared with
     float radiusScale = 1;  // of the disk of taps in UV of its first map, against the reference's
 };
 
@@ -55,7 +55,8 @@ Prepared prepare(const View& v, const Form& form, bool outputs) {
     const size_t pixels = size_t(v.width) * v.height;
     Prepared p{Shader(v.device), Buffer(v.device, pixels * 12), Buffer(v.device, pixels * 4), {}};
     p.shader.set(PEL_SLOT_RADIANCE, imageDesc(p.radiance, PEL_FORMAT_RGB32F, v.width, v.height));
-    if (outputs) p.shader.set(PEL_SLOT_OUT_THICKNESS, imageDesc(p.thickness, PEL_FORMAT_R32F, v.width, v.height));
+    if (outputs)
+        p.shader.set(PEL_SLOT_OUT_THICKNESS, imageDesc(p.thickness, PEL_FORMAT_R32F, v.width, v.height));
     const PelFormat formats[] = {PEL_FORMAT_UNDEFINED, PEL_FORMAT_R32F, PEL_FORMAT_RG32F, PEL_FORMAT_RGB32F};
     for (size_t slot = 0; slot < v.scene.channels.size(); ++slot) {
         const auto& names = v.scene.channels[slot];
@@ -102,7 +103,8 @@ void addParallelForms(View& v, const io::Image& image, const std::string& channe
     cascades.shadowCascades = 2;
     Map middle{PEL_LIGHT_SHADOW_MAP, size / 2, size / 2, 1, {}};
     for (uint32_t y = 0; y < size / 2; ++y)
-        for (uint32_t x = 0; x < size / 2; ++x) middle.texels.push_back(depth.texels[(y + size / 4) * size + x + size / 4]);
+        for (uint32_t x = 0; x < size / 2; ++x)
+            middle.texels.push_back(depth.texels[(y + size / 4) * size + x + size / 4]);
     Map all = reduced(depth, 1, 1, [](double z, uint32_t) { return z; });
     all.slot = PEL_LIGHT_CASCADE_1;
     all.texels.clear();
@@ -121,8 +123,12 @@ void addParallelForms(View& v, const io::Image& image, const std::string& channe
 
     PelLight moments = light;
     moments.shadowContent = PEL_SHADOW_CONTENT_MOMENTS;
-    v.forms.push_back({"moments", moments, {reduced(depth, 1, 2, [](double z, uint32_t c) { return c ? z * z : z; })}, 0});
-    v.forms.push_back({"moments of 2 x 2", moments, {reduced(depth, 2, 2, [](double z, uint32_t c) { return c ? z * z : z; })}, 0});
+    v.forms.push_back(
+        {"moments", moments, {reduced(depth, 1, 2, [](double z, uint32_t c) { return c ? z * z : z; })}, 0});
+    v.forms.push_back({"moments of 2 x 2",
+                       moments,
+                       {reduced(depth, 2, 2, [](double z, uint32_t c) { return c ? z * z : z; })},
+                       0});
     PelLight exponential = light;
     exponential.shadowContent = PEL_SHADOW_CONTENT_EXPONENTIAL;
     exponential.shadowExponent = 80;
@@ -148,7 +154,8 @@ void addLampForms(View& v, const sample::Scene& scene) {
     std::copy(matrix.begin(), matrix.end(), perspective.worldToShadow);
     perspective.shadowDepthA = float(map.depthA), perspective.shadowDepthB = float(map.depthB);
     const int reference = int(v.forms.size());
-    v.forms.push_back({"lamp, perspective", perspective, {{PEL_LIGHT_SHADOW_MAP, 1024, 1024, 1, map.depth}}, reference});
+    v.forms.push_back(
+        {"lamp, perspective", perspective, {{PEL_LIGHT_SHADOW_MAP, 1024, 1024, 1, map.depth}}, reference});
 
     const sample::CubeShadowMap cube = sample::renderCubeShadowMap(scene, lamp, 1024);
     PelLight faces = light;
@@ -176,7 +183,8 @@ std::optional<View> readView() {
 
 // Differences from the form of reference, over pixels of skin.
 void measure(benchmark::State& state, const View& v, const Form& form) {
-    const Prepared p = prepare(v, form, false), seen = prepare(v, form, true), truth = prepare(v, v.forms[size_t(form.reference)], true);
+    const Prepared p = prepare(v, form, false), seen = prepare(v, form, true),
+                   truth = prepare(v, v.forms[size_t(form.reference)], true);
     for (auto _ : state) p.shader.execute();
     const auto a = seen.radiance.readAll<float>(), b = truth.radiance.readAll<float>();
     const auto ta = seen.thickness.readAll<float>(), tb = truth.thickness.readAll<float>();
@@ -197,14 +205,16 @@ void measure(benchmark::State& state, const View& v, const Form& form) {
 
 void writePicture(const View& v, const std::string& path) {
     std::vector<io::Tile> tiles;
-    for (const char* name : {"depth", "2 cascades", "moments of 2 x 2", "exponential of 2 x 2", "lamp, perspective", "lamp, cube"})
+    for (const char* name : {"depth", "2 cascades", "moments of 2 x 2", "exponential of 2 x 2",
+                             "lamp, perspective", "lamp, cube"})
         for (const Form& form : v.forms) {
             if (form.name != name) continue;
             const auto bytes = io::toSrgb8(prepare(v, form, false).radiance.readAll<float>());
             const int left = int(v.width) / 4, width = int(v.width) / 2, height = int(v.height);
             io::Picture part(width, height);
             for (int y = 0; y < height; ++y)
-                std::copy_n(&bytes[3 * (size_t(y) * v.width + size_t(left))], 3 * width, &part.rgb[3 * size_t(y) * size_t(width)]);
+                std::copy_n(&bytes[3 * (size_t(y) * v.width + size_t(left))], 3 * width,
+                            &part.rgb[3 * size_t(y) * size_t(width)]);
             tiles.push_back({form.name, io::shrunk(part, 2)});
         }
     const io::Picture sheet = io::contactSheet(tiles, 3);
@@ -224,12 +234,15 @@ int main(int argc, char** argv) {
         }
     std::optional<View> view = readView();
     if (!view) {
-        std::fprintf(stderr, "no demo views or mesh: run ./run demo first, or set PELLUCID_DEMO_DIR and PELLUCID_DEMO_MESH\n");
+        std::fprintf(
+            stderr,
+            "no demo views or mesh: run ./run demo first, or set PELLUCID_DEMO_DIR and PELLUCID_DEMO_MESH\n");
         return 0;
     }
     if (!picture.empty()) writePicture(*view, picture);
     for (const Form& form : view->forms)
-        benchmark::RegisterBenchmark(("forms/" + form.name).c_str(), [&](benchmark::State& state) { measure(state, *view, form); })
+        benchmark::RegisterBenchmark(("forms/" + form.name).c_str(),
+                                     [&](benchmark::State& state) { measure(state, *view, form); })
             ->Unit(benchmark::kMillisecond)
             ->MeasureProcessCPUTime()
             ->UseRealTime();

@@ -30,7 +30,8 @@ const Device& device() {
 }
 
 void require(cl_int code, const char* what) {
-    if (code != CL_SUCCESS) throw std::runtime_error(std::string(what) + ": OpenCL error " + std::to_string(code));
+    if (code != CL_SUCCESS)
+        throw std::runtime_error(std::string(what) + ": OpenCL error " + std::to_string(code));
 }
 
 struct Pixels {
@@ -46,12 +47,15 @@ const Pixels& randomPixels() {
         std::mt19937 engine(3);
         std::normal_distribution<double> normal;
         std::uniform_real_distribution<double> uniform(0, 1);
-        const auto unit = [&] { return reference::normalized(Vec3{normal(engine), normal(engine), normal(engine)}); };
+        const auto unit = [&] {
+            return reference::normalized(Vec3{normal(engine), normal(engine), normal(engine)});
+        };
         for (size_t i = 0; i < pixels;) {
             const double m = 0.1 + 0.5 * uniform(engine);
             const Vec3 n = unit(), bend = unit(), view = unit();
             // Slopes of Beckmann's distribution are normal with a variance of m^2 / 2 each.
-            const Vec3 half = reference::normalized(n + m * 0.7071 * std::abs(normal(engine)) * (bend - dot(bend, n) * n));
+            const Vec3 half =
+                reference::normalized(n + m * 0.7071 * std::abs(normal(engine)) * (bend - dot(bend, n) * n));
             const Vec3 light = 2 * dot(view, half) * half - view;
             if (dot(n, view) < 0.1 || dot(n, light) < 0.05) continue;
             const Vec3 vectors[3] = {n, light, view};
@@ -90,8 +94,9 @@ cl_kernel makeKernel(const char* name, int term, int lanes) {
     cl_int code;
     cl_program program = clCreateProgramWithSource(cl_context(context), 1, &pointer, nullptr, &code);
     require(code, "clCreateProgramWithSource");
-    const std::string options = "-cl-std=CL1.2 -I" PELLUCID_SOURCE_DIR "/kernels -DPEL_WIDTH=" + std::to_string(lanes) +
-                                " -DPEL_TERM=" + std::to_string(term);
+    const std::string options =
+        "-cl-std=CL1.2 -I" PELLUCID_SOURCE_DIR "/kernels -DPEL_WIDTH=" + std::to_string(lanes) +
+        " -DPEL_TERM=" + std::to_string(term);
     const auto device = cl_device_id(id);
     require(clBuildProgram(program, 1, &device, options.c_str(), nullptr, nullptr), "clBuildProgram");
     cl_kernel kernel = clCreateKernel(program, name, &code);
@@ -100,9 +105,12 @@ cl_kernel makeKernel(const char* name, int term, int lanes) {
     return kernel;
 }
 
-void setArguments(cl_kernel kernel, const Buffer& pixel, const Buffer& table, cl_uint size, const cl_uint* turns, const Buffer& out) {
+void setArguments(cl_kernel kernel, const Buffer& pixel, const Buffer& table, cl_uint size,
+                  const cl_uint* turns, const Buffer& out) {
     cl_uint next = 0;
-    const auto set = [&](size_t bytes, const void* value) { require(clSetKernelArg(kernel, next++, bytes, value), "clSetKernelArg"); };
+    const auto set = [&](size_t bytes, const void* value) {
+        require(clSetKernelArg(kernel, next++, bytes, value), "clSetKernelArg");
+    };
     const auto buffer = [&](const Buffer& b) {
         void* memory;
         check(pelBufferGetCl(b.get(), &memory));
@@ -120,7 +128,9 @@ void setArguments(cl_kernel kernel, const Buffer& pixel, const Buffer& table, cl
 void run(cl_kernel kernel, size_t count) {
     void* queue;
     check(pelDeviceGetCl(device().get(), nullptr, nullptr, &queue));
-    require(clEnqueueNDRangeKernel(cl_command_queue(queue), kernel, 1, nullptr, &count, nullptr, 0, nullptr, nullptr), "launch");
+    require(clEnqueueNDRangeKernel(cl_command_queue(queue), kernel, 1, nullptr, &count, nullptr, 0, nullptr,
+                                   nullptr),
+            "launch");
     require(clFinish(cl_command_queue(queue)), "clFinish");
 }
 
@@ -156,7 +166,8 @@ void specular(benchmark::State& state, int term, int lanes, uint32_t size) {
     clReleaseKernel(each);
 }
 
-#define CASE(name, ...) BENCHMARK_CAPTURE(specular, name, __VA_ARGS__)->Unit(benchmark::kMillisecond)->UseRealTime()
+#define CASE(name, ...) \
+    BENCHMARK_CAPTURE(specular, name, __VA_ARGS__)->Unit(benchmark::kMillisecond)->UseRealTime()
 
 CASE(read_1lane, 0, 1, 0u);
 CASE(direct_1lane, 1, 1, 0u);

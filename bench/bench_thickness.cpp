@@ -27,11 +27,13 @@ int main(int argc, char** argv) try {
         return 0;
     }
     const io::SceneFile scene = io::readScene(base + ".toml");
-    const io::Image image = io::readImage(base + "_gbuffer.exr"), map = io::readImage(scene.lights.at(0).shadowMapFile);
+    const io::Image image = io::readImage(base + "_gbuffer.exr"),
+                    map = io::readImage(scene.lights.at(0).shadowMapFile);
     const Device device("");
     const uint32_t width = uint32_t(image.width), height = uint32_t(image.height);
     std::vector<Buffer> buffers;
-    const auto upload = [&](const io::Image& from, const std::vector<std::string>& channels, uint32_t w, uint32_t h) {
+    const auto upload = [&](const io::Image& from, const std::vector<std::string>& channels, uint32_t w,
+                            uint32_t h) {
         buffers.emplace_back(device, from.interleaved(channels));
         return imageDesc(buffers.back(), channels.size() == 1 ? PEL_FORMAT_R32F : PEL_FORMAT_RGB32F, w, h);
     };
@@ -41,7 +43,8 @@ int main(int argc, char** argv) try {
             shader.set(PelImageSlot(slot), upload(image, scene.channels[slot], width, height));
     const PelLight& light = scene.lights[0].light;
     shader.set(std::vector<PelLight>{light});
-    shader.set(0, PEL_LIGHT_SHADOW_MAP, upload(map, {map.channels[0].name}, uint32_t(map.width), uint32_t(map.height)));
+    shader.set(0, PEL_LIGHT_SHADOW_MAP,
+               upload(map, {map.channels[0].name}, uint32_t(map.width), uint32_t(map.height)));
     const Buffer radiance(device, image.pixelCount() * 12), lengths(device, image.pixelCount() * 4);
     shader.set(PEL_SLOT_RADIANCE, imageDesc(radiance, PEL_FORMAT_RGB32F, width, height));
     shader.set(scene.camera);
@@ -65,7 +68,9 @@ int main(int argc, char** argv) try {
     const auto position = image.interleaved(scene.channels[PEL_SLOT_POSITION]),
                normal = image.interleaved(scene.channels[PEL_SLOT_NORMAL_GEOMETRIC]);
     const auto id = image.interleaved(scene.channels[PEL_SLOT_MATERIAL]);
-    const auto at = [](const std::vector<float>& v, size_t i) { return Vec3{v[3 * i], v[3 * i + 1], v[3 * i + 2]}; };
+    const auto at = [](const std::vector<float>& v, size_t i) {
+        return Vec3{v[3 * i], v[3 * i + 1], v[3 * i + 2]};
+    };
     const Vec3 l{light.toLight[0], light.toLight[1], light.toLight[2]};
     const auto behind = [&](size_t i) { return id[i] != 0 && dot(at(normal, i), l) < 0.3; };
     std::vector<std::pair<size_t, double>> truth;  // pixels, 16 of each block
@@ -79,11 +84,13 @@ int main(int argc, char** argv) try {
             for (size_t i : block) truth.emplace_back(i, manyTaps.at(at(position, i), at(normal, i)));
         }
 
-    const std::pair<uint32_t, bool> cases[] = {{0, false}, {8, false}, {8, true}, {16, false}, {16, true}, {32, false}, {32, true}};
+    const std::pair<uint32_t, bool> cases[] = {{0, false}, {8, false},  {8, true}, {16, false},
+                                               {16, true}, {32, false}, {32, true}};
     std::map<std::pair<uint32_t, bool>, std::vector<double>> times;
     for (int round = 0; round < 40; ++round)
         for (const auto& [taps, turned] : cases)
-            if (const double time = run(taps, turned, false); round > 0) times[{taps, turned}].push_back(time);
+            if (const double time = run(taps, turned, false); round > 0)
+                times[{taps, turned}].push_back(time);
     std::printf("%s, %u x %u, %zu pixels compared\n", device.info().name, width, height, truth.size());
     const double radius = material.deepScatterRadius, count = double(truth.size());
     const auto through = [&](double t) { return std::exp(-t * t / (2 * radius * radius)); };
@@ -103,8 +110,11 @@ int main(int argc, char** argv) try {
                 sum += e;
                 if (k % 16 == 15) blocks += 16 * (sum / 16) * (sum / 16), sum = 0;
             }
-            std::printf("   thickness RMS %.3f mm, largest %.2f; transmittance RMS %.4f, largest %.3f; means of 4 x 4 RMS %.4f",
-                        std::sqrt(error / count), worst, std::sqrt(light2 / count), worstLight, std::sqrt(blocks / count));
+            std::printf(
+                "   thickness RMS %.3f mm, largest %.2f; transmittance RMS %.4f, largest %.3f; means of 4 x "
+                "4 RMS %.4f",
+                std::sqrt(error / count), worst, std::sqrt(light2 / count), worstLight,
+                std::sqrt(blocks / count));
         }
         std::printf("\n");
     }

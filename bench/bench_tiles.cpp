@@ -28,7 +28,8 @@ struct Images {
         for (int y = 0; y < int(height); ++y)
             for (int x = 0; x < int(width); ++x) {
                 const float a = 1.6f * std::sin(float(x) / 110), b = 1.2f * std::cos(float(y) / 85);
-                position.insert(position.end(), {0.1f * float(x - 960), 0.1f * float(540 - y), 12 * std::sin(float(x + y) / 150)});
+                position.insert(position.end(), {0.1f * float(x - 960), 0.1f * float(540 - y),
+                                                 12 * std::sin(float(x + y) / 150)});
                 unit(geometric, a, b, 1);
                 unit(shading, a + 0.1f * std::sin(float(x) / 3), b + 0.1f * std::sin(float(y) / 4), 1);
                 unit(blurred, 0.9f * a, 0.9f * b, 1);
@@ -53,7 +54,9 @@ std::vector<uint8_t> discs(double share, uint8_t inside, uint8_t outside) {
     const double cell = 540, radius = share >= 1 ? cell : cell * std::sqrt(share / 3.14159265358979323846);
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x)
-            ids.push_back(std::hypot(std::fmod(x, cell) - cell / 2, std::fmod(y, cell) - cell / 2) < radius ? inside : outside);
+            ids.push_back(std::hypot(std::fmod(x, cell) - cell / 2, std::fmod(y, cell) - cell / 2) < radius
+                              ? inside
+                              : outside);
     return ids;
 }
 
@@ -99,7 +102,8 @@ Shader prepare(const std::vector<uint8_t>& ids, bool skin, bool plain, PelTileLi
     PelShaderOptions options = pelShaderOptionsDefaults();
     options.tileLists = lists;
     shader.set(options);
-    static const Lut curvature(device(), pelCurvatureLutDescDefaults()), shadow(device(), pelShadowLutDescDefaults());
+    static const Lut curvature(device(), pelCurvatureLutDescDefaults()),
+        shadow(device(), pelShadowLutDescDefaults());
     PelMaterial material = pelMaterialDefaults();
     material.specular = 0.8f;
     if (plain) shader.setMaterial(2, material);
@@ -137,7 +141,10 @@ void coverage(benchmark::State& state, double share, PelTileLists lists) {
 
 int main(int argc, char** argv) {
     const auto add = [](const std::string& name, auto function, auto... arguments) {
-        benchmark::RegisterBenchmark(name.c_str(), function, arguments...)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+        benchmark::RegisterBenchmark(name.c_str(), function, arguments...)
+            ->Unit(benchmark::kMillisecond)
+            ->MeasureProcessCPUTime()
+            ->UseRealTime();
     };
     for (const int percent : {0, 10, 50, 90, 100}) {
         const std::string share = "/" + std::to_string(percent) + "_percent_skin";

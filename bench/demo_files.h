@@ -37,7 +37,8 @@ inline std::vector<float> curvature(const pellucid::Device& device, const pelluc
     desc.indices = mesh.triangles.data();
     desc.numIndices = mesh.triangles.size();
     const MeshTopology topology(device, desc);
-    const Buffer positions(device, mesh.positions), normals(device, mesh.normals), out(device, n * sizeof(float));
+    const Buffer positions(device, mesh.positions), normals(device, mesh.normals),
+        out(device, n * sizeof(float));
     topology.curvature(params, vertexView(positions, n), vertexView(normals, n), vertexView(out, n));
     return out.readAll<float>();
 }

@@ -36,7 +36,8 @@ int main(int argc, char** argv) {
     const std::string folder = std::string(argv[1]) + "/";
     const auto size = read<uint32_t>(folder + "size");
     std::array<std::vector<float>, PEL_SLOT_COUNT> images;
-    for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot) images[slot] = read<float>(folder + "slot" + std::to_string(slot));
+    for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot)
+        images[slot] = read<float>(folder + "slot" + std::to_string(slot));
     images[PEL_SLOT_RADIANCE].assign(size_t(size[0]) * size[1] * 3, 0);
     auto wide = read<float>(folder + "wide"), map = read<float>(folder + "map");
     const auto curvature = read<float>(folder + "curvature"), shadow = read<float>(folder + "shadow");
@@ -58,7 +59,8 @@ int main(int argc, char** argv) {
     const double tableTime = lap();
     Shader shader(device);
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
-        if (!images[slot].empty()) shader.set(PelImageSlot(slot), image(device, images[slot], size[0], size[1]));
+        if (!images[slot].empty())
+            shader.set(PelImageSlot(slot), image(device, images[slot], size[0], size[1]));
     shader.set(std::vector{light}).set(camera).set(ambient).setMaterial(1, material, curvatureLut, shadowLut);
     shader.set(0, PEL_LIGHT_WIDE_SHADOW, image(device, wide, size[0], size[1]));
     shader.set(0, PEL_LIGHT_SHADOW_MAP, image(device, map, size[2], size[2]));

@@ -24,7 +24,8 @@ int main(int argc, char** argv) {
     for (uint32_t y = 0; y < size; ++y)
         for (uint32_t x = 0; x < size; ++x) {  // a ball in an orthographic view, 200 mm across the frame
             const size_t i = size_t(y) * size + x;
-            const double u = (x + 0.5 - 0.5 * size) / radius, v = (0.5 * size - y - 0.5) / radius, r2 = u * u + v * v;
+            const double u = (x + 0.5 - 0.5 * size) / radius, v = (0.5 * size - y - 0.5) / radius,
+                         r2 = u * u + v * v;
             if (r2 >= 1) continue;
             id[i] = 1;
             const double z = std::sqrt(1 - r2), sum = std::fabs(u) + std::fabs(v) + z;
@@ -74,11 +75,13 @@ int main(int argc, char** argv) {
         rusage usage{};
         getrusage(RUSAGE_SELF, &usage);
         const PelShaderStats stats = shader.stats();
-        std::printf("%u x %u, budget %llu MiB: %.1f s, %llu bands, %.0f MiB scratch, peak %.0f MiB, %llu of %llu tiles, checksum %016llx\n",
-                    size, size, static_cast<unsigned long long>(options.scratchBudget >> 20), seconds,
-                    static_cast<unsigned long long>(stats.bands), double(stats.scratchBytes) / (1 << 20), double(usage.ru_maxrss) / 1024,
-                    static_cast<unsigned long long>(stats.tilesShaded), static_cast<unsigned long long>(stats.tilesTotal),
-                    static_cast<unsigned long long>(sum));
+        std::printf(
+            "%u x %u, budget %llu MiB: %.1f s, %llu bands, %.0f MiB scratch, peak %.0f MiB, %llu of %llu "
+            "tiles, checksum %016llx\n",
+            size, size, static_cast<unsigned long long>(options.scratchBudget >> 20), seconds,
+            static_cast<unsigned long long>(stats.bands), double(stats.scratchBytes) / (1 << 20),
+            double(usage.ru_maxrss) / 1024, static_cast<unsigned long long>(stats.tilesShaded),
+            static_cast<unsigned long long>(stats.tilesTotal), static_cast<unsigned long long>(sum));
         std::fflush(stdout);
     }
     return 0;

@@ -62,11 +62,13 @@ inline std::vector<int16_t> octahedral(const std::vector<float>& normals) {
 
 // Device depths of positions seen by a camera, by PelCamera.inverseViewProjection: where the pixel's ray comes nearest in the
 // coordinate that depth moves most.
-inline std::vector<float> depths(const std::vector<float>& positions, const PelCamera& camera, int width, int height) {
+inline std::vector<float> depths(const std::vector<float>& positions, const PelCamera& camera, int width,
+                                 int height) {
     const float* m = camera.inverseViewProjection;
     std::vector<float> out(positions.size() / 3);
     for (size_t i = 0; i < out.size(); ++i) {
-        const double cx = (double(i % size_t(width)) + 0.5) * 2 / width - 1, cy = 1 - (double(i / size_t(width)) + 0.5) * 2 / height;
+        const double cx = (double(i % size_t(width)) + 0.5) * 2 / width - 1,
+                     cy = 1 - (double(i / size_t(width)) + 0.5) * 2 / height;
         double best = 0;
         for (int r = 0; r < 3; ++r) {
             const auto atZero = [&](int row) { return m[4 * row] * cx + m[4 * row + 1] * cy + m[4 * row + 3]; };

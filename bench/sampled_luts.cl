@@ -18,8 +18,8 @@ inline floatw columnAngle(const CurvatureParams params, const uint x) {
     return acos(clamp(fma(column, 2.0f / (float)params.width, (floatw)(-1.0f)), -1.0f, 1.0f));
 }
 
-inline void storeRow(__global float* texels, const CurvatureParams params, const uint x, const uint y, const floatw r,
-                     const floatw g, const floatw b) {
+inline void storeRow(__global float* texels, const CurvatureParams params, const uint x, const uint y,
+                     const floatw r, const floatw g, const floatw b) {
     float red[PEL_WIDTH], green[PEL_WIDTH], blue[PEL_WIDTH];
     storew(r, 0, red);
     storew(g, 0, green);
@@ -28,8 +28,8 @@ inline void storeRow(__global float* texels, const CurvatureParams params, const
         vstore3((float3)(red[lane], green[lane], blue[lane]), (size_t)y * params.width + x + lane, texels);
 }
 
-__kernel void sampledTexels(const CurvatureParams params, __global const LutGaussian* gaussians, const uint samples,
-                            __global float* texels) {
+__kernel void sampledTexels(const CurvatureParams params, __global const LutGaussian* gaussians,
+                            const uint samples, __global float* texels) {
     const uint x = get_global_id(0) * PEL_WIDTH, y = get_global_id(1);
     float curvature;
     const float reach = sampleReach(params, y, &curvature), step = 2.0f * reach / (float)samples;
@@ -50,8 +50,8 @@ __kernel void sampledTexels(const CurvatureParams params, __global const LutGaus
     storeRow(texels, params, x, y, r * step, g * step, b * step);
 }
 
-__kernel void sampledSpread(const CurvatureParams params, __global const LutGaussian* gaussians, const uint samples,
-                            __global float4* spread) {
+__kernel void sampledSpread(const CurvatureParams params, __global const LutGaussian* gaussians,
+                            const uint samples, __global float4* spread) {
     const uint i = get_global_id(0), y = get_global_id(1);
     float curvature;
     const float reach = sampleReach(params, y, &curvature), step = 2.0f * reach / (float)samples;

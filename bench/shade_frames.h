@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "faceworks_material.h"
 #include "baseline_shade.h"
+#include "faceworks_material.h"
 #include "io/image/image_file.h"
 #include "io/scene/scene_file.h"
 
@@ -128,8 +128,8 @@ inline void describeScene(Scene& s, int taps) {
 // A parallel camera along -z that sees `scale` of length a pixel, to the depth of `reach` on either side of the origin.
 inline void describeCamera(Scene& s, float scale, float reach) {
     const float w = float(s.frame.width), h = float(s.frame.height);
-    const float rows[16] = {0.5f * scale * w, 0, 0, -0.5f * scale, 0, 0.5f * scale * h, 0, 0.5f * scale,
-                            0, 0, 2 * reach, -reach, 0, 0, 0, 1};
+    const float rows[16] = {
+        0.5f * scale * w, 0, 0, -0.5f * scale, 0, 0.5f * scale * h, 0, 0.5f * scale, 0, 0, 2 * reach, -reach, 0, 0, 0, 1};
     std::copy_n(rows, 16, s.camera.inverseViewProjection);
 }
 
@@ -183,7 +183,8 @@ inline std::unique_ptr<Scene> makeScene(const Device& device, ShadeFrame frame, 
 }
 
 // A view as `pellucid demo` wrote it.
-inline std::unique_ptr<Scene> readDemoView(const Device& device, const std::string& directory, const std::string& view) {
+inline std::unique_ptr<Scene> readDemoView(const Device& device, const std::string& directory,
+                                           const std::string& view) {
     const io::SceneFile file = io::readScene(directory + "/" + view + ".toml");
     const io::Image g = io::readImage(directory + "/" + view + "_gbuffer.exr");
     auto s = std::make_unique<Scene>();

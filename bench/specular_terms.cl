@@ -7,8 +7,8 @@ static inline Vec3w loadVec(__global const float* p, uint pixels, uint at) {
     return vec3(loadw(at, p), loadw(at, p + pixels), loadw(at, p + 2 * pixels));
 }
 
-static inline floatw term(__global const float* pixel, uint pixels, uint at, __global const float* table, uint width,
-                          uint height) {
+static inline floatw term(__global const float* pixel, uint pixels, uint at, __global const float* table,
+                          uint width, uint height) {
     const Vec3w n = loadVec(pixel, pixels, at), l = loadVec(pixel + 3 * pixels, pixels, at),
                 v = loadVec(pixel + 6 * pixels, pixels, at);
     const floatw m = loadw(at, pixel + 9 * pixels), nl = dot3(n, l);
@@ -18,16 +18,17 @@ static inline floatw term(__global const float* pixel, uint pixels, uint at, __g
 }
 
 // One work-item: `rounds` times PEL_WIDTH pixels, one block after another. pixels: a multiple of PEL_WIDTH.
-__kernel void repeat_term(__global const float* pixel, uint pixels, __global const float* table, uint width, uint height,
-                          uint rounds, __global float* out) {
+__kernel void repeat_term(__global const float* pixel, uint pixels, __global const float* table, uint width,
+                          uint height, uint rounds, __global float* out) {
     const uint blocks = pixels / PEL_WIDTH, item = get_global_id(0);
     floatw sum = 0.0f;
-    for (uint r = 0; r < rounds; ++r) sum += term(pixel, pixels, (item + r) % blocks * PEL_WIDTH, table, width, height);
+    for (uint r = 0; r < rounds; ++r)
+        sum += term(pixel, pixels, (item + r) % blocks * PEL_WIDTH, table, width, height);
     storew(sum, item * PEL_WIDTH, out);
 }
 
-__kernel void each_term(__global const float* pixel, uint pixels, __global const float* table, uint width, uint height,
-                        __global float* out) {
+__kernel void each_term(__global const float* pixel, uint pixels, __global const float* table, uint width,
+                        uint height, __global float* out) {
     const uint at = get_global_id(0) * PEL_WIDTH;
     storew(term(pixel, pixels, at, table, width, height), at, out);
 }

@@ -51,8 +51,7 @@ std::string record(const Operation& o, const Found& f) {
         ", \"where\": " + quoted(f.where);
     if (o.axis) {
         json += ",\n     \"axis\": {\"label\": " + quoted(o.axis->label) +
-                ", \"low\": " + number(o.axis->low) + ", \"high\": " + number(o.axis->high) +
-                ", \"worst\": [";
+                ", \"low\": " + number(o.axis->low) + ", \"high\": " + number(o.axis->high) + ", \"worst\": [";
         for (size_t i = 0; i < f.alongAxis.size(); ++i) json += (i ? ", " : "") + number(f.alongAxis[i]);
         json += "]}";
     }
@@ -104,8 +103,7 @@ int main(int argc, char** argv) try {
             }
             const auto start = std::chrono::steady_clock::now();
             const Found f = search(o, share, seconds);
-            const double took =
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
             const bool fine = f.worst <= o.header.limit;
             within &= fine;
             std::printf(

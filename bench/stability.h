@@ -111,8 +111,7 @@ inline double between(double t, double low, double high) {
     return low + t * (high - low);
 }
 
-inline std::string text(const char* format, double a, double b = 0, double c = 0, double d = 0,
-                        double e = 0) {
+inline std::string text(const char* format, double a, double b = 0, double c = 0, double d = 0, double e = 0) {
     char buffer[256];
     std::snprintf(buffer, sizeof buffer, format, a, b, c, d, e);
     return buffer;
@@ -138,8 +137,7 @@ void inParallel(size_t count, const std::function<void(size_t)>& body);
 
 struct Found {
     double drawn = 0, worst = 0;  // of the points drawn blindly; of all
-    double inherent =
-        0;  // change of the oracle at the worst point when its inputs move by a unit in the last place
+    double inherent = 0;  // change of the oracle at the worst point when its inputs move by a unit in the last place
     size_t points = 0;
     bool stopped = false;  // by the cap on time
     std::string where;

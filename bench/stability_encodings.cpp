@@ -23,8 +23,7 @@ class Encoded : public Case {
     // Differences are made here; the truth is 0.
     std::vector<float> measured() override {
         const Lut lut = kind_ ? Lut(device(), s_) : Lut(device(), c_);
-        const auto halves =
-            encoding_ == PEL_LUT_HALF ? lut.read<uint16_t>(encoding_) : std::vector<uint16_t>();
+        const auto halves = encoding_ == PEL_LUT_HALF ? lut.read<uint16_t>(encoding_) : std::vector<uint16_t>();
         const auto bytes = encoding_ == PEL_LUT_HALF ? std::vector<uint8_t>() : lut.read<uint8_t>(encoding_);
         std::vector<float> beyond(3 * texels());
         inParallel(texels(), [&](size_t i) {
@@ -33,8 +32,7 @@ class Encoded : public Case {
                 if (encoding_ == PEL_LUT_HALF) {
                     beyond[3 * i + c] = float(beyondHalf(halves[3 * i + c], truth[int(c)]));
                 } else {
-                    beyond[3 * i + c] =
-                        float(std::max(0.0, std::abs(bytes[4 * i + c] - steps[int(c)]) - 0.5));
+                    beyond[3 * i + c] = float(std::max(0.0, std::abs(bytes[4 * i + c] - steps[int(c)]) - 0.5));
                 }
             }
         });
@@ -54,10 +52,9 @@ class Encoded : public Case {
         const int x = int(i % c_.width), y = int(i / c_.width);
         static const auto skin = reference::skinProfile();
         if (kind_)
-            return reference::shadowTexel(
-                {int(s_.width), 4, s_.widthMin, s_.widthMax, 2.7, s_.sharpening}, *skin, x, y);
-        const reference::CurvatureLutSpec spec{trueForms[c_.form], int(c_.width), 4, c_.radiusMin,
-                                               c_.radiusMax};
+            return reference::shadowTexel({int(s_.width), 4, s_.widthMin, s_.widthMax, 2.7, s_.sharpening},
+                                          *skin, x, y);
+        const reference::CurvatureLutSpec spec{trueForms[c_.form], int(c_.width), 4, c_.radiusMin, c_.radiusMax};
         return reference::curvatureTexel(spec, *reference::profileForRadius(skin, 2.7), x, y);
     }
     reference::Rgb eightBits(const reference::Rgb& truth, size_t i) const {

@@ -38,12 +38,10 @@ uint32_t code(double t, uint32_t most) {
 const Formats all[] = {
     {"sRGB8, unorm16 and octahedral 16x2, read", "all codes", PEL_FORMAT_RGBA8_SRGB, PEL_FORMAT_R16_UNORM,
      PEL_FORMAT_OCT16X2_SNORM,
-     [](const Point& p, std::vector<uint8_t>& albedo, std::vector<uint8_t>& occlusion,
-        std::vector<uint8_t>& normal) {
+     [](const Point& p, std::vector<uint8_t>& albedo, std::vector<uint8_t>& occlusion, std::vector<uint8_t>& normal) {
          Packed out;
          for (int c = 0; c < 3; ++c)
-             append(albedo, uint8_t(code(p[size_t(c)], 255))),
-                 out.albedo[c] = fromSrgb(albedo.back() / 255.0);
+             append(albedo, uint8_t(code(p[size_t(c)], 255))), out.albedo[c] = fromSrgb(albedo.back() / 255.0);
          append(albedo, uint8_t(9));
          append(occlusion, uint16_t(code(p[3], 65535)));
          out.occlusion = code(p[3], 65535) / 65535.0;
@@ -56,8 +54,7 @@ const Formats all[] = {
      }},
     {"half floats, unorm8 and 10-10-10, read", "all codes up to 1", PEL_FORMAT_RGB16F, PEL_FORMAT_R8_UNORM,
      PEL_FORMAT_A2B10G10R10_UNORM,
-     [](const Point& p, std::vector<uint8_t>& albedo, std::vector<uint8_t>& occlusion,
-        std::vector<uint8_t>& normal) {
+     [](const Point& p, std::vector<uint8_t>& albedo, std::vector<uint8_t>& occlusion, std::vector<uint8_t>& normal) {
          Packed out;
          for (int c = 0; c < 3; ++c) {
              const uint16_t h = uint16_t(code(p[size_t(c)], 0x3c00));
@@ -74,16 +71,14 @@ const Formats all[] = {
      }},
     {"unorm8 colours, half scalars and unorm8 normals, read", "all codes", PEL_FORMAT_RGBA8_UNORM,
      PEL_FORMAT_R16F, PEL_FORMAT_RGBA8_UNORM,
-     [](const Point& p, std::vector<uint8_t>& albedo, std::vector<uint8_t>& occlusion,
-        std::vector<uint8_t>& normal) {
+     [](const Point& p, std::vector<uint8_t>& albedo, std::vector<uint8_t>& occlusion, std::vector<uint8_t>& normal) {
          Packed out;
          for (int c = 0; c < 3; ++c)
              append(albedo, uint8_t(code(p[size_t(c)], 255))), out.albedo[c] = albedo.back() / 255.0;
          append(albedo, uint8_t(9));
          append(occlusion, uint16_t(code(p[3], 0x3c00)));
          out.occlusion = fromHalf(uint16_t(code(p[3], 0x3c00)));
-         const uint32_t n[3] = {code(p[4], 255), code(p[5], 255),
-                                code(std::fmod(7 * p[4] + 3 * p[5], 1.0), 255)};
+         const uint32_t n[3] = {code(p[4], 255), code(p[5], 255), code(std::fmod(7 * p[4] + 3 * p[5], 1.0), 255)};
          for (int c = 0; c < 3; ++c) append(normal, uint8_t(n[c])), out.normal[c] = 2 * (n[c] / 255.0) - 1;
          append(normal, uint8_t(9));
          return out;
@@ -110,8 +105,7 @@ class Read : public Pixels {
         shader.set(PEL_SLOT_ALBEDO, imageDesc(albedo, formats_.albedo, width, 1));
         shader.set(PEL_SLOT_AMBIENT_OCCLUSION, imageDesc(occlusion, formats_.occlusion, width, 1));
         shader.set(PEL_SLOT_NORMAL_SHADING, imageDesc(normal, formats_.normal, width, 1));
-        shader.set(PEL_SLOT_RADIANCE,
-                   imageDesc(out, half_ ? PEL_FORMAT_RGB16F : PEL_FORMAT_RGB32F, width, 1));
+        shader.set(PEL_SLOT_RADIANCE, imageDesc(out, half_ ? PEL_FORMAT_RGB16F : PEL_FORMAT_RGB32F, width, 1));
         shader.commit().execute();
         if (!half_) return out.readAll<float>();
         std::vector<uint16_t> halves = out.readAll<uint16_t>();
@@ -154,8 +148,7 @@ Operation read(const Formats& f, bool half) {
         [&f](size_t, const Point& p) {
             std::vector<uint8_t> a, b, c;
             const Packed k = f.pack(p, a, b, c);
-            return text("albedo %.3g %.3g %.3g, occlusion %.3g", k.albedo.x, k.albedo.y, k.albedo.z,
-                        k.occlusion);
+            return text("albedo %.3g %.3g %.3g, occlusion %.3g", k.albedo.x, k.albedo.y, k.albedo.z, k.occlusion);
         });
 }
 

@@ -39,8 +39,7 @@ struct Scene {
 };
 
 reference::WideFilterParams filterOf(const PelLight& l, const PelMaterial& m) {
-    return {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope,
-            int(l.shadowFilterTexels)};
+    return {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope, int(l.shadowFilterTexels)};
 }
 
 void setLight(PelLight& l, size_t number) {
@@ -57,8 +56,7 @@ Scene planeScene(bool perspective, size_t number) {
     setLight(from->light.params, number);
     Scene s;
     s.light.params = from->light.params;
-    s.light.maps = {
-        {PEL_LIGHT_SHADOW_MAP, from->light.mapSize, from->light.mapSize, 1, from->light.map.values}};
+    s.light.maps = {{PEL_LIGHT_SHADOW_MAP, from->light.mapSize, from->light.mapSize, 1, from->light.map.values}};
     s.wide = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
         return reference::wideShadow(from->map, from->view, p, n, filterOf(from->light.params, m));
     };
@@ -89,16 +87,16 @@ Scene cubeScene(bool radial, size_t number) {
                                          filterOf(from->light.params, m));
     };
     s.thickness = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
-        return reference::cubeThickness(
-            from->map, from->turn(p - double(m.deepScatterNormalOffset) * n - from->position),
-            diskTaps(m.thicknessTaps), m.thicknessFilterRadius);
+        return reference::cubeThickness(from->map,
+                                        from->turn(p - double(m.deepScatterNormalOffset) * n - from->position),
+                                        diskTaps(m.thicknessTaps), m.thicknessFilterRadius);
     };
     return s;
 }
 
 Scene cascadeScene(size_t number) {
-    auto from = std::make_shared<CascadeLight>(
-        cascadeLight({14, 24, 36, 52}, number % 2, 60 + 30 * uint32_t(number)));
+    auto from =
+        std::make_shared<CascadeLight>(cascadeLight({14, 24, 36, 52}, number % 2, 60 + 30 * uint32_t(number)));
     setLight(from->light.params, number);
     Scene s;
     s.light = from->light;
@@ -115,11 +113,10 @@ Scene cascadeScene(size_t number) {
         const double radius = m.thicknessFilterRadius / reference::uvPerLength(matrices[0], 0);
         const int k = reference::cascadeOf(matrices, inside, radius);
         if (k < 0) return 0.0;
-        return reference::thickness(from->maps[size_t(k)].map,
-                                    reference::shadowCoordinates(matrices[size_t(k)], inside, {0, 0, 0}, 0),
-                                    diskTaps(m.thicknessTaps),
-                                    radius * reference::uvPerLength(matrices[size_t(k)], 0),
-                                    from->maps[size_t(k)].view.decoding, reference::MapFilter::bilinear);
+        return reference::thickness(
+            from->maps[size_t(k)].map, reference::shadowCoordinates(matrices[size_t(k)], inside, {0, 0, 0}, 0),
+            diskTaps(m.thicknessTaps), radius * reference::uvPerLength(matrices[size_t(k)], 0),
+            from->maps[size_t(k)].view.decoding, reference::MapFilter::bilinear);
     };
     return s;
 }
@@ -191,9 +188,8 @@ class Mapped : public Pixels {
         for (uint32_t id = 1; id <= materials; ++id) frame_.materials[id] = materialOf(id);
         std::fill(frame_.slots[PEL_SLOT_MATERIAL].values.begin(),
                   frame_.slots[PEL_SLOT_MATERIAL].values.end(), 0.0f);
-        const Vec3 up = scene_.light.params.type == PEL_LIGHT_DIRECTIONAL
-                            ? vector(scene_.light.params.toLight)
-                            : Vec3{0, 0, 1};
+        const Vec3 up = scene_.light.params.type == PEL_LIGHT_DIRECTIONAL ? vector(scene_.light.params.toLight)
+                                                                          : Vec3{0, 0, 1};
         for (size_t i = 0; i < points.size(); ++i) {
             const Point& p = points[i];
             const Vec3 at{between(p[placeX], -2, 50), between(p[placeY], -2, 22), between(p[placeZ], -5, 35)},
@@ -243,8 +239,7 @@ class Mapped : public Pixels {
     size_t count_ = 0;
 };
 
-Operation form(const char* name, Form kind, bool thickness, const tolerance::Tolerance& limit,
-               size_t points) {
+Operation form(const char* name, Form kind, bool thickness, const tolerance::Tolerance& limit, size_t points) {
     return operation(
         {std::string(thickness ? "thickness, " : "wide shadow, ") + name,
          thickness ? "8 to 32 taps within 0.005 to 0.05 of the map; 32 to 180 texels a side; depth either "

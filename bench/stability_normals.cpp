@@ -101,9 +101,8 @@ class NormalMap : public Pixels {
         const Vec3 texel =
             reference::trilinear(normalMap().levels, s[PEL_SLOT_UV].at(i, 0), s[PEL_SLOT_UV].at(i, 1), level);
         const Image& t = s[PEL_SLOT_TANGENT];
-        const Vec3 n =
-            reference::fromTangentSpace(texel, {t.at(i, 0), t.at(i, 1), t.at(i, 2)},
-                                        s[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), t.at(i, 3) < 0 ? -1 : 1);
+        const Vec3 n = reference::fromTangentSpace(texel, {t.at(i, 0), t.at(i, 1), t.at(i, 2)},
+                                                   s[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), t.at(i, 3) < 0 ? -1 : 1);
         return {n.x, n.y, n.z};
     }
 

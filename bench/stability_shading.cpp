@@ -156,8 +156,7 @@ class Shading : public Pixels {
         if (kind_.output == PEL_SLOT_OUT_THICKNESS)
             return {truthLight(frame_, m, frame_.lights[0], i).thickness};
         for (const Light& l : frame_.lights)  // nothing beyond the range
-            if (l.params.range > 0 &&
-                std::abs(length(vector(lamp.position) - place(i)) / lamp.range - 1) < 1e-5)
+            if (l.params.range > 0 && std::abs(length(vector(lamp.position) - place(i)) / lamp.range - 1) < 1e-5)
                 return {NAN, NAN, NAN};
         if (kind_.focus == Focus::half &&
             length(toLight(i) + normalized(vector(frame_.camera.position) - place(i))) < leastHalf)
@@ -174,8 +173,7 @@ class Shading : public Pixels {
     Vec3 place(size_t i) const { return frame_.slots[PEL_SLOT_POSITION].vec(i); }
     Vec3 toLight(size_t i) const {
         const PelLight& l = frame_.lights[0].params;
-        return l.type == PEL_LIGHT_DIRECTIONAL ? vector(l.toLight)
-                                               : normalized(vector(l.position) - place(i));
+        return l.type == PEL_LIGHT_DIRECTIONAL ? vector(l.toLight) : normalized(vector(l.position) - place(i));
     }
     void put(PelImageSlot slot, size_t i, Vec3 v) {
         for (int c = 0; c < 3; ++c) frame_.slots[slot].values[3 * i + size_t(c)] = float(v[c]);
@@ -210,8 +208,7 @@ Operation shading(const char* name, const char* range, Kind kind, const toleranc
     return operation(
         {name, range, kind.output == PEL_SLOT_OUT_THICKNESS ? Unit::length : Unit::absolute, limit,
          dimensions, points},
-        1,
-        [kind](size_t, const std::vector<Point>& points) { return std::make_unique<Shading>(kind, points); },
+        1, [kind](size_t, const std::vector<Point>& points) { return std::make_unique<Shading>(kind, points); },
         [kind](size_t, const Point& p) {
             const PelMaterial& m = base().materials.at(1 + uint32_t(p[material] * (materials - 1e-6)) * 2);
             std::string s = text("normal %.3g degrees from the ", turnOf(kind, p) / degree) +
@@ -265,10 +262,8 @@ std::vector<Operation> shadingOperations() {
                 tolerance::shadeSum, 200000),
         shading("specular, GGX", shine, kind(directional, PEL_SLOT_OUT_SPECULAR, Focus::half, true),
                 tolerance::shadeSum, 200000),
-        shading("ambient, constant", white, kind(constant, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm,
-                50000),
-        shading("ambient, harmonics", white, kind(harmonics, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm,
-                50000),
+        shading("ambient, constant", white, kind(constant, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm, 50000),
+        shading("ambient, harmonics", white, kind(harmonics, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm, 50000),
         shading("ambient, cube map", white, kind(cube, PEL_SLOT_OUT_DIFFUSE), tolerance::shadeTerm, 50000),
         shading("radiance, all terms", shine, kind(Lit::all, PEL_SLOT_RADIANCE, Focus::half),
                 tolerance::shadeSum, 200000)};

@@ -11,8 +11,8 @@
 #include <cstdlib>
 
 #include "mesh/mesh_calls.h"
-#include "reference/surfaces.h"
 #include "mesh/reference_meshes.h"
+#include "reference/surfaces.h"
 
 using namespace pellucid;
 using reference::Tessellation;
@@ -76,8 +76,7 @@ int main(int argc, char** argv) {
         for (auto [kind, name] :
              {std::pair(Tessellation::regular, "regular"), {Tessellation::irregular, "irregular"}})
             for (const char* normals : {"exact", "made", "noisy"}) {
-                reference::AnalyticMesh torus =
-                    tessellate(reference::torusSurface(3, 1), 2 * side, side, kind);
+                reference::AnalyticMesh torus = tessellate(reference::torusSurface(3, 1), 2 * side, side, kind);
                 if (*normals == 'm') torus.mesh.normals = reference::estimatedNormals(torus.mesh);
                 if (*normals == 'n') addNoise(torus.mesh, 0.02, 11);
                 const fixture::Mesh mesh = fixture::pairOf(torus.mesh).mesh;

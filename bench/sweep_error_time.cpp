@@ -56,9 +56,8 @@ void measure(std::ofstream& out, const Device& device, const LitScene& s, const 
         out << "\n";
         std::printf(
             "%-10s x%g  %-16s %-12s %8.3f ms   RMSE 1e-4 %5.0f %5.0f %5.0f   unlit %5.0f %5.0f %5.0f\n",
-            name.c_str(), scale, setting.method.c_str(), setting.setting.c_str(), seconds * 1e3,
-            1e4 * d.rmse[0], 1e4 * d.rmse[1], 1e4 * d.rmse[2], 1e4 * unlit.rmse[0], 1e4 * unlit.rmse[1],
-            1e4 * unlit.rmse[2]);
+            name.c_str(), scale, setting.method.c_str(), setting.setting.c_str(), seconds * 1e3, 1e4 * d.rmse[0],
+            1e4 * d.rmse[1], 1e4 * d.rmse[2], 1e4 * unlit.rmse[0], 1e4 * unlit.rmse[1], 1e4 * unlit.rmse[2]);
         std::fflush(stdout);
     }
 }

@@ -22,11 +22,13 @@ constexpr io::Srgb8 background{20, 20, 20};
 // Darkened where the surface turns away, so that its shape can be read.
 io::Picture seen(const io::MeshData& mesh, const std::vector<float>& values, float low, float high) {
     const int width = viewWidth * supersampling, height = viewHeight * supersampling;
-    const sample::Scene scene(sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, values, mesh.triangles, {}});
+    const sample::Scene scene(
+        sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, values, mesh.triangles, {}});
     sample::Framing framing;
     framing.azimuth = 20;
     framing.fill = 1.15;  // the box is deeper than the head is wide
-    const sample::Camera camera = frameHead(scene.bounds(), {{0, 1, 0}, {0, 0, 1}}, framing, double(width) / height);
+    const sample::Camera camera =
+        frameHead(scene.bounds(), {{0, 1, 0}, {0, 0, 1}}, framing, double(width) / height);
     sample::GBufferOptions options;
     options.detail.enabled = false;
     const sample::GBuffer g = renderGBuffer(scene, camera, width, height, options);
@@ -35,11 +37,13 @@ io::Picture seen(const io::MeshData& mesh, const std::vector<float>& values, flo
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             if (g.coverage.at(0, x, y) == 0) continue;
-            const sample::Vec3 n{g.geometricNormal.at(0, x, y), g.geometricNormal.at(1, x, y), g.geometricNormal.at(2, x, y)};
+            const sample::Vec3 n{g.geometricNormal.at(0, x, y), g.geometricNormal.at(1, x, y),
+                                 g.geometricNormal.at(2, x, y)};
             const float facing = float(0.55 + 0.45 * std::abs(dot(n, toEye)));
             uint8_t* rgb = &picture.rgb[3 * (size_t(y) * size_t(width) + size_t(x))];
             for (int c = 0; c < 3; ++c)
-                rgb[c] = uint8_t(255.0f * io::encodeSrgb(facing * io::decodeSrgb(float(rgb[c]) / 255.0f)) + 0.5f);
+                rgb[c] =
+                    uint8_t(255.0f * io::encodeSrgb(facing * io::decodeSrgb(float(rgb[c]) / 255.0f)) + 0.5f);
         }
     return io::shrunk(picture, supersampling);
 }
@@ -63,9 +67,11 @@ void run(const std::string& figure, const std::string& meshFile) {
             square += double(values[e][v]) * values[e][v], away += double(difference[v]) * difference[v];
         }
         const double n = double(difference.size());
-        std::printf("%-8s RMS %.4f 1/mm, from quadric %.4f\n", names[e], std::sqrt(square / n), std::sqrt(away / n));
+        std::printf("%-8s RMS %.4f 1/mm, from quadric %.4f\n", names[e], std::sqrt(square / n),
+                    std::sqrt(away / n));
         above.push_back({names[e], seen(mesh, values[e], 0, high)});
-        if (e < 2) below.push_back({std::string(names[e]) + " - quadric", seen(mesh, difference, -high, high)});
+        if (e < 2)
+            below.push_back({std::string(names[e]) + " - quadric", seen(mesh, difference, -high, high)});
     }
     // In the last place of the second row: both scales.
     io::Picture bars(viewWidth, viewHeight, background);

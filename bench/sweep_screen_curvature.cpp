@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "io/image/color_difference.h"
 #include "demo_files.h"
+#include "io/image/color_difference.h"
 #include "io/image/image_file.h"
 #include "io/image/picture.h"
 #include "io/image/tone_map.h"
@@ -25,18 +25,20 @@ const Device& device() {
 }
 
 // A quantity at the vertices, seen through the demo's camera.
-std::vector<float> vertexCurvature(const io::MeshData& mesh, PelCurvatureQuantity quantity, uint32_t passes, int width,
-                                   int height) {
+std::vector<float> vertexCurvature(const io::MeshData& mesh, PelCurvatureQuantity quantity, uint32_t passes,
+                                   int width, int height) {
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     params.quantity = quantity;
     params.smoothingPasses = passes;
     const std::vector<float> values = demo::curvature(device(), mesh, params);
-    const sample::Scene scene(sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, values, mesh.triangles, {}});
+    const sample::Scene scene(
+        sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, values, mesh.triangles, {}});
     sample::Framing framing;
     framing.azimuth = 25;
     sample::GBufferOptions plain;
     plain.detail.enabled = false;
-    return renderGBuffer(scene, frameHead(scene.bounds(), {}, framing, double(width) / height), width, height, plain)
+    return renderGBuffer(scene, frameHead(scene.bounds(), {}, framing, double(width) / height), width, height,
+                         plain)
         .curvature.data;
 }
 
@@ -47,14 +49,16 @@ std::vector<float> measuredOnScreen(const io::Image& g, const char* normalName) 
         return all;
     };
     const auto w = uint32_t(g.width), h = uint32_t(g.height);
-    const Buffer n(device(), g.interleaved(names(normalName, "XYZ"))), p(device(), g.interleaved(names("Position", "XYZ")));
+    const Buffer n(device(), g.interleaved(names(normalName, "XYZ"))),
+        p(device(), g.interleaved(names("Position", "XYZ")));
     const Buffer out(device(), g.pixelCount() * sizeof(float));
     std::vector<uint8_t> bytes(g.pixelCount());
     std::ranges::transform(g.channel("Material.I").pixels, bytes.begin(), [](float id) { return uint8_t(id); });
     const Buffer idBytes(device(), bytes);
-    const PelImageDesc position = imageDesc(p, PEL_FORMAT_RGB32F, w, h), id = imageDesc(idBytes, PEL_FORMAT_R8_UINT, w, h);
-    screenCurvature(device(), pelScreenCurvatureParamsDefaults(), imageDesc(n, PEL_FORMAT_RGB32F, w, h), &position, nullptr,
-                    &id, imageDesc(out, PEL_FORMAT_R32F, w, h));
+    const PelImageDesc position = imageDesc(p, PEL_FORMAT_RGB32F, w, h),
+                       id = imageDesc(idBytes, PEL_FORMAT_R8_UINT, w, h);
+    screenCurvature(device(), pelScreenCurvatureParamsDefaults(), imageDesc(n, PEL_FORMAT_RGB32F, w, h),
+                    &position, nullptr, &id, imageDesc(out, PEL_FORMAT_R32F, w, h));
     return out.readAll<float>();
 }
 
@@ -75,8 +79,10 @@ void report(const char* what, const std::vector<float>& screen, const std::vecto
         differences.push_back(float(d));
         if (vertex[i] > 1e-4f) ratios.push_back(screen[i] / vertex[i]);
     }
-    std::printf("| %s | %.4f | %.0f %% | %+.4f |", what, std::sqrt(total / count), 100 * std::sqrt(error / total), bias / count);
-    for (double share : {0.05, 0.25, 0.5, 0.75, 0.95}) std::printf(" %+.4f |", percentile(differences, share));
+    std::printf("| %s | %.4f | %.0f %% | %+.4f |", what, std::sqrt(total / count),
+                100 * std::sqrt(error / total), bias / count);
+    for (double share : {0.05, 0.25, 0.5, 0.75, 0.95})
+        std::printf(" %+.4f |", percentile(differences, share));
     std::printf(" %.2f |\n", percentile(ratios, 0.5));
 }
 
@@ -90,7 +96,8 @@ Crop headOf(const std::vector<float>& mask, int width, int height) {
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             if (mask[size_t(y) * size_t(width) + size_t(x)] > 0)
-                left = std::min(left, x), top = std::min(top, y), right = std::max(right, x + 1), bottom = std::max(bottom, y + 1);
+                left = std::min(left, x), top = std::min(top, y), right = std::max(right, x + 1),
+                bottom = std::max(bottom, y + 1);
     left = std::max(left - 8, 0), top = std::max(top - 8, 0);
     return {left, top, std::min(right + 8, width) - left, (bottom - top) * 9 / 10};  // less of the neck: a smaller file
 }
@@ -121,8 +128,10 @@ void run(const std::string& meshFile, const std::string& folder, const std::stri
     for (size_t i = 0; i < mask.size(); ++i)
         if (mask[i] > 0) ++head, unmeasured += screen[i] == 0;
     std::printf("%zu pixels of the head, %zu of them without a value\n\n", head, unmeasured);
-    std::printf("| per-vertex quantity | its RMS, 1/mm | RMS difference | mean | 5 %% | 25 %% | median | 75 %% | 95 %% | median ratio |\n"
-                "|---|---|---|---|---|---|---|---|---|---|\n");
+    std::printf(
+        "| per-vertex quantity | its RMS, 1/mm | RMS difference | mean | 5 %% | 25 %% | median | 75 %% | 95 "
+        "%% | median ratio |\n"
+        "|---|---|---|---|---|---|---|---|---|---|\n");
     report("`absolute`, 4 passes (the demo's)", screen, vertex, mask);
     const struct {
         const char* name;
@@ -133,24 +142,30 @@ void run(const std::string& meshFile, const std::string& folder, const std::stri
                   {"`curvedness`, not smoothed", PEL_QUANTITY_CURVEDNESS, 0}};
     for (const auto& [name, quantity, passes] : others)
         report(name, screen, vertexCurvature(mesh, quantity, passes, g.width, g.height), mask);
-    report("`absolute`, 4 passes; on screen from the normal map's normals", measuredOnScreen(g, "NormalShading"), vertex, mask);
-    report("`absolute`, not smoothed, against 4 passes", vertexCurvature(mesh, PEL_QUANTITY_ABSOLUTE, 0, g.width, g.height),
-           vertex, mask);
+    report("`absolute`, 4 passes; on screen from the normal map's normals",
+           measuredOnScreen(g, "NormalShading"), vertex, mask);
+    report("`absolute`, not smoothed, against 4 passes",
+           vertexCurvature(mesh, PEL_QUANTITY_ABSOLUTE, 0, g.width, g.height), vertex, mask);
 
     const std::vector<std::string> rgb = {"R", "G", "B"};
-    const std::vector<float> one = io::readImage(vertexFile).interleaved(rgb), two = io::readImage(screenFile).interleaved(rgb);
+    const std::vector<float> one = io::readImage(vertexFile).interleaved(rgb),
+                             two = io::readImage(screenFile).interleaved(rgb);
     double error = 0, total = 0;
     std::vector<float> deltaE(mask.size()), seen;
     for (size_t i = 0; i < mask.size(); ++i) {
         if (mask[i] == 0) continue;
-        for (size_t c = 3 * i; c < 3 * i + 3; ++c) error += std::pow(one[c] - two[c], 2), total += double(one[c]) * one[c];
-        deltaE[i] = float(pellucid::io::deltaE2000(pellucid::io::labFromLinear({one[3 * i], one[3 * i + 1], one[3 * i + 2]}),
-                                            pellucid::io::labFromLinear({two[3 * i], two[3 * i + 1], two[3 * i + 2]})));
+        for (size_t c = 3 * i; c < 3 * i + 3; ++c)
+            error += std::pow(one[c] - two[c], 2), total += double(one[c]) * one[c];
+        deltaE[i] = float(pellucid::io::deltaE2000(
+            pellucid::io::labFromLinear({one[3 * i], one[3 * i + 1], one[3 * i + 2]}),
+            pellucid::io::labFromLinear({two[3 * i], two[3 * i + 1], two[3 * i + 2]})));
         seen.push_back(deltaE[i]);
     }
-    std::printf("\nshaded: RMS difference %.2f %% of the RMS radiance; CIEDE2000 median %.2f, 95 %% %.2f, 99 %% %.2f, largest %.1f\n",
-                100 * std::sqrt(error / total), percentile(seen, 0.5), percentile(seen, 0.95), percentile(seen, 0.99),
-                percentile(seen, 1));
+    std::printf(
+        "\nshaded: RMS difference %.2f %% of the RMS radiance; CIEDE2000 median %.2f, 95 %% %.2f, 99 %% "
+        "%.2f, largest %.1f\n",
+        100 * std::sqrt(error / total), percentile(seen, 0.5), percentile(seen, 0.95), percentile(seen, 0.99),
+        percentile(seen, 1));
 
     std::vector<float> onHead, difference(mask.size());
     for (size_t i = 0; i < mask.size(); ++i) {
@@ -179,7 +194,8 @@ void run(const std::string& meshFile, const std::string& folder, const std::stri
 
 int main(int argc, char** argv) {
     if (argc != 6) {
-        std::fprintf(stderr, "usage: %s MESH DEMO_FOLDER SHADED_VERTEX.exr SHADED_SCREEN.exr FIGURE.png\n", argv[0]);
+        std::fprintf(stderr, "usage: %s MESH DEMO_FOLDER SHADED_VERTEX.exr SHADED_SCREEN.exr FIGURE.png\n",
+                     argv[0]);
         return 2;
     }
     try {

@@ -82,7 +82,9 @@ struct View {
         return scene.lut(kind == PEL_LUT_CURVATURE ? m.curvatureLut : m.shadowLut, kind)->info;
     }
     std::vector<float> slot(PelImageSlot s) const { return image.interleaved(scene.channels[s]); }
-    std::vector<float> wideShadow() const { return image.interleaved(std::vector{scene.lights[0].wideShadow}); }
+    std::vector<float> wideShadow() const {
+        return image.interleaved(std::vector{scene.lights[0].wideShadow});
+    }
 };
 
 View readView(const std::string& base) {
@@ -94,8 +96,9 @@ View readView(const std::string& base) {
 std::map<size_t, Rgb> truth(const View& v) {
     const PelLight& light = v.light();
     const PelMaterial& m = v.material();
-    const auto position = v.slot(PEL_SLOT_POSITION), ng = v.slot(PEL_SLOT_NORMAL_GEOMETRIC), n = v.slot(PEL_SLOT_NORMAL_SHADING),
-               nb = v.slot(PEL_SLOT_NORMAL_BLURRED), c = v.slot(PEL_SLOT_CURVATURE), albedo = v.slot(PEL_SLOT_ALBEDO),
+    const auto position = v.slot(PEL_SLOT_POSITION), ng = v.slot(PEL_SLOT_NORMAL_GEOMETRIC),
+               n = v.slot(PEL_SLOT_NORMAL_SHADING), nb = v.slot(PEL_SLOT_NORMAL_BLURRED),
+               c = v.slot(PEL_SLOT_CURVATURE), albedo = v.slot(PEL_SLOT_ALBEDO),
                id = v.slot(PEL_SLOT_MATERIAL), wide = v.wideShadow();
     const auto vec = [](const float* p) { return Vec3{p[0], p[1], p[2]}; };
     const auto rgb = [](const float* p) { return Rgb{p[0], p[1], p[2]}; };
@@ -109,8 +112,15 @@ std::map<size_t, Rgb> truth(const View& v) {
     const auto skin = reference::skinProfile(), scaled = reference::profileForRadius(skin, 2.7);
     // One texel each: what a table of any size would say if it had no error.
     reference::ScatterTable curvature{{1, 1, {{}}}}, shadow{{1, 1, {{}}}, 1, 100, 2.7, shadowDesc.sharpening};
-    reference::Material material{{}, m.diffusionRadius, rgb(m.normalBlend), m.shadowFilterWidth, rgb(m.deepScatterColor),
-                                 m.deepScatterRadius, m.specular, m.roughness, m.f0};
+    reference::Material material{{},
+                                 m.diffusionRadius,
+                                 rgb(m.normalBlend),
+                                 m.shadowFilterWidth,
+                                 rgb(m.deepScatterColor),
+                                 m.deepScatterRadius,
+                                 m.specular,
+                                 m.roughness,
+                                 m.f0};
     material.curvatureLut = &curvature;
     material.shadowLut = &shadow;
 
@@ -118,16 +128,19 @@ std::map<size_t, Rgb> truth(const View& v) {
     for (size_t i = 0, seen = 0; i < v.image.pixelCount(); ++i) {
         if (id[i] == 0 || seen++ % 61) continue;
         reference::Pixel pixel{vec(&ng[3 * i]), vec(&n[3 * i]), vec(&nb[3 * i]),
-                               reference::normalized(vec(v.scene.camera.position) - vec(&position[3 * i])), c[i]};
+                               reference::normalized(vec(v.scene.camera.position) - vec(&position[3 * i])),
+                               c[i]};
         reference::PixelLight l{vec(light.toLight), rgb(light.color), wide[i], true, 0};
         l.thickness = manyTaps.at(vec(&position[3 * i]), pixel.geometric);
-        const double bend = std::clamp(double(c[i]), 1.0 / curvatureDesc.radiusMax, 1.0 / curvatureDesc.radiusMin);
+        const double bend =
+            std::clamp(double(c[i]), 1.0 / curvatureDesc.radiusMax, 1.0 / curvatureDesc.radiusMin);
         curvature.table.texels[0] = reference::curvatureD(
             reference::Form::arc, *scaled, std::clamp(dot(pixel.blurred, l.toLight), -1.0, 1.0), 1 / bend);
         const double facing = std::clamp(dot(pixel.geometric, l.toLight), 0.0, 1.0) / m.shadowFilterWidth;
-        shadow.table.texels[0] =
-            reference::shadowT(*skin, wide[i], 2.7 / skin->radius() *
-                               std::clamp(facing, 1.0 / shadowDesc.widthMax, 1.0 / shadowDesc.widthMin), shadowDesc.sharpening);
+        shadow.table.texels[0] = reference::shadowT(
+            *skin, wide[i],
+            2.7 / skin->radius() * std::clamp(facing, 1.0 / shadowDesc.widthMax, 1.0 / shadowDesc.widthMin),
+            shadowDesc.sharpening);
         material.albedo = rgb(&albedo[3 * i]);
         result[i] = shadePixel(material, pixel, {l}, ambient).sum();
     }
@@ -149,7 +162,8 @@ Run prepare(const Device& device, const View& v, const Setting& s) {
         shader.set(slot, imageDesc(Buffer(device, image), format, w, h));
     };
     const auto setScalar = [&](PelImageSlot slot) {
-        smaller ? set(slot, packing::halves(v.slot(slot)), PEL_FORMAT_R16F) : set(slot, v.slot(slot), PEL_FORMAT_R32F);
+        smaller ? set(slot, packing::halves(v.slot(slot)), PEL_FORMAT_R16F)
+                : set(slot, v.slot(slot), PEL_FORMAT_R32F);
     };
     shader.set(PEL_SLOT_RADIANCE, imageDesc(run.target, smaller ? PEL_FORMAT_RGBA16F : PEL_FORMAT_RGB32F, w, h));
     std::vector<uint8_t> ids;
@@ -163,18 +177,21 @@ Run prepare(const Device& device, const View& v, const Setting& s) {
     packed    ? set(PEL_SLOT_ALBEDO, packing::srgb8(v.slot(PEL_SLOT_ALBEDO)), PEL_FORMAT_RGBA8_SRGB)
     : smaller ? set(PEL_SLOT_ALBEDO, packing::halvesOfFour(v.slot(PEL_SLOT_ALBEDO)), PEL_FORMAT_RGBA16F)
               : set(PEL_SLOT_ALBEDO, v.slot(PEL_SLOT_ALBEDO), PEL_FORMAT_RGB32F);
-    packed ? set(PEL_SLOT_DEPTH, packing::depths(v.slot(PEL_SLOT_POSITION), v.scene.camera, v.image.width, v.image.height),
+    packed ? set(PEL_SLOT_DEPTH,
+                 packing::depths(v.slot(PEL_SLOT_POSITION), v.scene.camera, v.image.width, v.image.height),
                  PEL_FORMAT_R32F)
            : set(PEL_SLOT_POSITION, v.slot(PEL_SLOT_POSITION), PEL_FORMAT_RGB32F);
 
     shader.set(std::vector<PelLight>{v.light()}).set(v.scene.camera).set(v.scene.ambient);
-    const auto setLight = [&](PelLightSlot slot, const auto& image, PelFormat format, uint32_t width, uint32_t height) {
+    const auto setLight = [&](PelLightSlot slot, const auto& image, PelFormat format, uint32_t width,
+                              uint32_t height) {
         shader.set(0, slot, imageDesc(Buffer(device, image), format, width, height));
     };
     packed    ? setLight(PEL_LIGHT_WIDE_SHADOW, packing::unorm8(v.wideShadow()), PEL_FORMAT_R8_UNORM, w, h)
     : smaller ? setLight(PEL_LIGHT_WIDE_SHADOW, packing::halves(v.wideShadow()), PEL_FORMAT_R16F, w, h)
               : setLight(PEL_LIGHT_WIDE_SHADOW, v.wideShadow(), PEL_FORMAT_R32F, w, h);
-    setLight(PEL_LIGHT_SHADOW_MAP, v.map.channels[0].pixels, PEL_FORMAT_R32F, uint32_t(v.map.width), uint32_t(v.map.height));
+    setLight(PEL_LIGHT_SHADOW_MAP, v.map.channels[0].pixels, PEL_FORMAT_R32F, uint32_t(v.map.width),
+             uint32_t(v.map.height));
 
     PelCurvatureLutDesc curvature = v.table(PEL_LUT_CURVATURE).curvature;
     curvature.width = curvature.height = s.size;
@@ -183,7 +200,8 @@ Run prepare(const Device& device, const View& v, const Setting& s) {
     shadow.width = shadow.height = s.size;
     PelMaterial material = v.material();
     material.thicknessTaps = s.taps;
-    shader.setMaterial(v.scene.materials[0].id, material, through(device, Lut(device, curvature), s.type, s.size),
+    shader.setMaterial(v.scene.materials[0].id, material,
+                       through(device, Lut(device, curvature), s.type, s.size),
                        through(device, Lut(device, shadow), s.type, s.size));
     shader.commit().execute();
     return run;
@@ -216,8 +234,12 @@ void sweep(const Device& device, const std::string& directory, const char* name)
             }
         auto& t = runs[k].times;
         std::nth_element(t.begin(), t.begin() + 4, t.end());
-        std::printf("{\"view\": \"%s\", \"series\": \"%s\", \"label\": \"%s\", \"taps\": %u, \"ms\": %.4f, \"error\": %.4g, \"largest\": %.4g, "
-                    "\"pixels\": %zu}\n", name, s.series, s.label, s.taps, t[4], std::sqrt(squares / double(3 * exact.size())), largest, exact.size());
+        std::printf(
+            "{\"view\": \"%s\", \"series\": \"%s\", \"label\": \"%s\", \"taps\": %u, \"ms\": %.4f, "
+            "\"error\": %.4g, \"largest\": %.4g, "
+            "\"pixels\": %zu}\n",
+            name, s.series, s.label, s.taps, t[4], std::sqrt(squares / double(3 * exact.size())), largest,
+            exact.size());
     }
 }
 

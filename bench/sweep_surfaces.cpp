@@ -12,8 +12,8 @@
 #include <map>
 
 #include "mesh/mesh_calls.h"
-#include "reference/surfaces.h"
 #include "mesh/reference_meshes.h"
+#include "reference/surfaces.h"
 
 using namespace pellucid;
 using reference::Tessellation;
@@ -30,7 +30,8 @@ double meanEdge(const fixture::Mesh& mesh) {
     for (size_t i = 0; i < mesh.indices.size(); i += 3) {
         double square = 0;
         for (size_t k = 0; k < 3; ++k)
-            square += std::pow(mesh.positions[3 * mesh.indices[i] + k] - mesh.positions[3 * mesh.indices[i + 1] + k], 2);
+            square += std::pow(
+                mesh.positions[3 * mesh.indices[i] + k] - mesh.positions[3 * mesh.indices[i + 1] + k], 2);
         sum += std::sqrt(square);
     }
     return sum / double(mesh.indices.size() / 3);
@@ -61,9 +62,10 @@ std::vector<float> meanCurvature(const fixture::Mesh& mesh, PelCurvatureEstimato
                                  PelSmoothingWeights weights) {
     const uint32_t n = mesh.vertices();
     const MeshTopology topology(device(), fixture::topologyDesc(mesh));
-    const Buffer positions(device(), mesh.positions), normals(device(), mesh.normals), out(device(), n * sizeof(float));
-    topology.curvature(fixture::meanParams(estimator, radius, weights), vertexView(positions, n), vertexView(normals, n),
-                       vertexView(out, n));
+    const Buffer positions(device(), mesh.positions), normals(device(), mesh.normals),
+        out(device(), n * sizeof(float));
+    topology.curvature(fixture::meanParams(estimator, radius, weights), vertexView(positions, n),
+                       vertexView(normals, n), vertexView(out, n));
     return out.readAll<float>();
 }
 
@@ -99,7 +101,8 @@ constexpr PelCurvatureEstimator estimators[] = {PEL_CURVATURE_EDGE, PEL_CURVATUR
 
 // Relative RMS errors of an irregular sphere of that radius, moved by `distance` along all three axes; normals are exact.
 void measureSphere(double radius, double distance, int cells) {
-    reference::AnalyticMesh sphere = tessellate(reference::sphereSurface(radius), cells, cells, Tessellation::irregular);
+    reference::AnalyticMesh sphere =
+        tessellate(reference::sphereSurface(radius), cells, cells, Tessellation::irregular);
     for (reference::Vec3& p : sphere.mesh.positions) p = p + reference::Vec3{distance, distance, distance};
     const fixture::Mesh mesh = fixture::pairOf(sphere.mesh).mesh;
     const std::vector<bool> border = nearBorder(mesh);
@@ -119,9 +122,9 @@ int main(int argc, char** argv) {
     const int cells = argc > 1 ? std::atoi(argv[1]) : 140;
     const double pi = 3.14159265358979;
     const std::pair<const char*, reference::Surface> surfaces[] = {
-        {"plane", reference::planeSurface(1)},           {"sphere", reference::sphereSurface(1)},
-        {"cylinder", reference::cylinderSurface(1, 6)},  {"cone", reference::coneSurface(pi / 6, 1, 4)},
-        {"torus", reference::torusSurface(3, 1)},        {"ellipsoid", reference::ellipsoidSurface(3, 2, 1.5)},
+        {"plane", reference::planeSurface(1)},          {"sphere", reference::sphereSurface(1)},
+        {"cylinder", reference::cylinderSurface(1, 6)}, {"cone", reference::coneSurface(pi / 6, 1, 4)},
+        {"torus", reference::torusSurface(3, 1)},       {"ellipsoid", reference::ellipsoidSurface(3, 2, 1.5)},
         {"monkey saddle", reference::monkeySaddle(1)},
     };
     const std::pair<const char*, Tessellation> kinds[] = {{"regular", Tessellation::regular},
@@ -144,7 +147,9 @@ int main(int argc, char** argv) {
         std::printf("| %g |", radius);
         measureSphere(radius, 0, cells);
     }
-    std::printf("\n| distance of a sphere of radius 1, along each axis | `edge` | `tensor` | `quadric` |\n|---|---|---|---|\n");
+    std::printf(
+        "\n| distance of a sphere of radius 1, along each axis | `edge` | `tensor` | `quadric` "
+        "|\n|---|---|---|---|\n");
     for (double distance : {0.0, 1.0, 10.0, 100.0, 1000.0}) {
         std::printf("| %g |", distance);
         measureSphere(1, distance, cells);

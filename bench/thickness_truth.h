@@ -25,8 +25,8 @@ class ThicknessTruth {
     }
     // At a world position with that geometric normal, length.
     double at(const reference::Vec3& position, const reference::Vec3& normal) const {
-        return thickness(map_, shadowCoordinates(worldToShadow_, position, normal, normalOffset_), taps_, radius_, depth_,
-                         reference::MapFilter::bilinear);
+        return thickness(map_, shadowCoordinates(worldToShadow_, position, normal, normalOffset_), taps_,
+                         radius_, depth_, reference::MapFilter::bilinear);
     }
 
   private:

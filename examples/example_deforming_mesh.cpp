@@ -65,8 +65,8 @@ int main() try {
             const PelSubmit queued{nullptr, 0, nullptr};  // in order: no events needed between the three
             f.input.write(f.vertices.data(), f.vertices.size() * sizeof(float), 0, &queued);
             topology.curvature(params, pellucid::vertexView(f.input, count, 0, 24),
-                               pellucid::vertexView(f.input, count, 12, 24), pellucid::vertexView(f.output, count), nullptr,
-                               &queued);
+                               pellucid::vertexView(f.input, count, 12, 24),
+                               pellucid::vertexView(f.output, count), nullptr, &queued);
             PelEvent done = nullptr;
             const PelSubmit last{nullptr, 0, &done};
             f.output.read(f.curvature.data(), count * sizeof(float), 0, &last);
@@ -97,13 +97,14 @@ int main() try {
         const std::vector<PelVertexRange> changed{{(dented - 1) * columns, 2 * columns}};
         const size_t offset = changed[0].first * 24;
         const PelSubmit queued{nullptr, 0, nullptr};
-        input.write(reinterpret_cast<const char*>(vertices.data()) + offset, changed[0].count * 24, offset, &queued);
+        input.write(reinterpret_cast<const char*>(vertices.data()) + offset, changed[0].count * 24, offset,
+                    &queued);
         live.update(positions, &normals, pellucid::vertexView(output, count), changed, &queued);
         device.finish();
     }
     const PelLiveMeshStats stats = live.stats();
-    std::printf("a moving dent: %llu of %u rows measured, %llu written\n", (unsigned long long)stats.rowsEstimated, count,
-                (unsigned long long)stats.rowsStored);
+    std::printf("a moving dent: %llu of %u rows measured, %llu written\n",
+                (unsigned long long)stats.rowsEstimated, count, (unsigned long long)stats.rowsStored);
     return worst > 0.01 || stats.rowsStored > count / 8;
 } catch (const pellucid::Error& e) {
     std::fprintf(stderr, "%s\n", e.what());

@@ -39,7 +39,8 @@ int main(void) {
     light.toLight[0] = -1.0f, light.toLight[2] = 0.0f;
     check(pelDeviceCreate(NULL, &device));
     check(pelCurvatureLutCreate(device, &lutDesc, &lut, NULL));
-    const PelImageSlot slots[4] = {PEL_SLOT_RADIANCE, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_CURVATURE, PEL_SLOT_MATERIAL};
+    const PelImageSlot slots[4] = {PEL_SLOT_RADIANCE, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_CURVATURE,
+                                   PEL_SLOT_MATERIAL};
     const PelImageDesc images[4] = {image(device, PEL_FORMAT_RGB32F, radiance, sizeof radiance),
                                     image(device, PEL_FORMAT_RGB32F, normals, sizeof normals),
                                     image(device, PEL_FORMAT_R32F, curvature, sizeof curvature),

@@ -25,7 +25,8 @@ int main(void) {
     cl_mem result = clCreateBuffer(context, CL_MEM_READ_WRITE, 6 * sizeof(float), NULL, NULL);
     cl_event uploaded;
     clEnqueueWriteBuffer(queue, vertices, CL_FALSE, 0, sizeof positions, positions, 0, NULL, NULL);
-    clEnqueueWriteBuffer(queue, vertices, CL_FALSE, sizeof positions, sizeof normals, normals, 0, NULL, &uploaded);
+    clEnqueueWriteBuffer(queue, vertices, CL_FALSE, sizeof positions, sizeof normals, normals, 0, NULL,
+                         &uploaded);
 
     /* Pellucid on the same objects; it retains what it keeps. */
     PelDevice pel;

@@ -60,7 +60,8 @@ int main(void) {
     CHECK(pelDeviceGetStats(device, &before));
     CHECK(pelMeshCurvature(topology, &params, &p, &n, &c, NULL, NULL));
     CHECK(pelDeviceGetStats(device, &after));
-    const unsigned long moved = (unsigned long)(after.bytesToDevice + after.bytesToHost - before.bytesToDevice - before.bytesToHost);
+    const unsigned long moved =
+        (unsigned long)(after.bytesToDevice + after.bytesToHost - before.bytesToDevice - before.bytesToHost);
 
     /* The memory belongs to the device until it is mapped. */
     void* mapped;

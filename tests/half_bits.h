@@ -18,6 +18,7 @@ inline uint16_t toHalf(float value) {
 
 inline float fromHalf(uint16_t h) {
     const int exponent = h >> 10 & 31, mantissa = h & 1023;
-    const float m = exponent ? std::ldexp(1024.0f + float(mantissa), exponent - 25) : std::ldexp(float(mantissa), -24);
+    const float m =
+        exponent ? std::ldexp(1024.0f + float(mantissa), exponent - 25) : std::ldexp(float(mantissa), -24);
     return h & 0x8000 ? -m : m;
 }

@@ -16,8 +16,10 @@ inline constexpr Tolerance lutTexel{"lutTexel", 1e-5, "any float LUT texel: well
 inline constexpr Tolerance lutTexelGaussians{
     "lutTexelGaussians", 2e-6,
     "Gaussian sums have closed forms; a few float roundings of values near 1 remain"};
-inline constexpr Tolerance oracleListing{"oracleListing", 1e-9, "400,000 even steps over the kinks of max(cos, 0)"};
-inline constexpr Tolerance lutTexelPennerTable{"lutTexelPennerTable", 3e-5, "where R jumps, its line spread has the root's infinite slope; 1.4e-5 seen"};
+inline constexpr Tolerance oracleListing{"oracleListing", 1e-9,
+                                         "400,000 even steps over the kinks of max(cos, 0)"};
+inline constexpr Tolerance lutTexelPennerTable{
+    "lutTexelPennerTable", 3e-5, "where R jumps, its line spread has the root's infinite slope; 1.4e-5 seen"};
 inline constexpr Tolerance lutTexelOther{"lutTexelOther", 1e-5,
                                          "profiles that need a quadrature on the device"};
 inline constexpr Tolerance lutRoundingBoundary{
@@ -31,31 +33,40 @@ inline constexpr Tolerance profileEvaluation{
     "profileEvaluation", 3e-6,
     "relative; the mixtures of Gaussians that stand for burley and dipole leave 1e-6"};
 inline constexpr Tolerance lineIntegral{
-    "lineIntegral", 2e-5, "of P near the centre: panels over a table's corners, and what lies beyond 20 radii"};
+    "lineIntegral", 2e-5,
+    "of P near the centre: panels over a table's corners, and what lies beyond 20 radii"};
 inline constexpr Tolerance normalBlend{"normalBlend", 0.05,
                                        "of the factors 1, 0.3, 0 that were chosen by eye for skin"};
 inline constexpr Tolerance sampledEnergy{
     "sampledEnergy", 1e-3, "4000 logarithmic samples of a line spread, which burley's centre leaves short"};
 inline constexpr Tolerance sixGaussians{"sixGaussians", 0.02,
                                         "six Gaussians follow a dipole's line spread to about a percent"};
-inline constexpr Tolerance profileLookUp{"profileLookUp", 2e-3,
-                                         "a 64x64 root table from a quarter to a thousand radii, and 256 thicknesses, looked up bilinearly"};
-inline constexpr Tolerance transmissionSum{"transmissionSum", 1e-5, "20,000 midpoints; sums of Gaussians for the dipole"};
-inline constexpr Tolerance unitRoundTrip{"unitRoundTrip", 1e-5, "floats in one unit and another; the steepest row of a table"};
-inline constexpr Tolerance closedEnds{"closedEnds", 1e-5, "a difference of texels over what lies between a row's ends"};
-inline constexpr Tolerance cylinderOfSteps{"cylinderOfSteps", 2e-6,
-                                           "4096 steps round a cylinder, the corner of max(cos, 0) between two of them"};
+inline constexpr Tolerance profileLookUp{
+    "profileLookUp", 2e-3,
+    "a 64x64 root table from a quarter to a thousand radii, and 256 thicknesses, looked up bilinearly"};
+inline constexpr Tolerance transmissionSum{"transmissionSum", 1e-5,
+                                           "20,000 midpoints; sums of Gaussians for the dipole"};
+inline constexpr Tolerance unitRoundTrip{"unitRoundTrip", 1e-5,
+                                         "floats in one unit and another; the steepest row of a table"};
+inline constexpr Tolerance closedEnds{"closedEnds", 1e-5,
+                                      "a difference of texels over what lies between a row's ends"};
+inline constexpr Tolerance cylinderOfSteps{
+    "cylinderOfSteps", 2e-6, "4096 steps round a cylinder, the corner of max(cos, 0) between two of them"};
 inline constexpr Tolerance floatWeights{"floatWeights", 1e-6, "weights and variances are written as floats"};
-inline constexpr Tolerance fittedAgain{"fittedAgain", 1e-4,
-                                       "a fit that has reached its optimum, by floats: weights of neighbours trade places"};
+inline constexpr Tolerance fittedAgain{
+    "fittedAgain", 1e-4, "a fit that has reached its optimum, by floats: weights of neighbours trade places"};
 inline constexpr Tolerance sphereMean{"sphereMean", 1e-5,
                                       "energy: the mean of the form sphere is exactly 1/4"};
 
 // --- the surface integral, of the largest irradiance ---
-inline constexpr Tolerance surfaceNear{"surfaceNear", 3e-5, "float sums round borders of triangles, which cancel; a table of 64 rows an octave"};
-inline constexpr Tolerance surfaceStep{"surfaceStep", 2e-4, "a measured profile that ends at a step: the rule along edges meets it between its points"};
+inline constexpr Tolerance surfaceNear{
+    "surfaceNear", 3e-5, "float sums round borders of triangles, which cancel; a table of 64 rows an octave"};
+inline constexpr Tolerance surfaceStep{
+    "surfaceStep", 2e-4,
+    "a measured profile that ends at a step: the rule along edges meets it between its points"};
 inline constexpr Tolerance surfaceFar{"surfaceFar", 1e-4, "what a hierarchy of that tolerance may leave out"};
-inline constexpr Tolerance surfaceSphere{"surfaceSphere", 1e-4, "a sphere of 200,000 facets against the closed form"};
+inline constexpr Tolerance surfaceSphere{"surfaceSphere", 1e-4,
+                                         "a sphere of 200,000 facets against the closed form"};
 
 inline constexpr Tolerance walkReflected{"walkReflected", 3e-3, "three standard errors of 200,000 photons"};
 inline constexpr Tolerance walkErrors{"walkErrors", 4.5, "standard errors of a bin, of 60 bins"};
@@ -63,10 +74,13 @@ inline constexpr Tolerance walkTheirs{"walkTheirs", 5e-4, "of the other walk, sm
 
 inline constexpr Tolerance publishedDeltaE{"publishedDeltaE", 1e-4, "published to four decimals"};
 
-inline constexpr Tolerance litFacets{"litFacets", 0.02, "a cosine from interpolated normals, at a point of a facet beside that of the ball"};
-inline constexpr Tolerance referenceRms{"referenceRms", 1e-3, "RMS on a ball of 57,600 facets at pixels that were brought to it"};
+inline constexpr Tolerance litFacets{
+    "litFacets", 0.02, "a cosine from interpolated normals, at a point of a facet beside that of the ball"};
+inline constexpr Tolerance referenceRms{"referenceRms", 1e-3,
+                                        "RMS on a ball of 57,600 facets at pixels that were brought to it"};
 
-inline constexpr Tolerance neverWorse{"neverWorse", 2e-4, "of white: what the reference itself may be off on facets"};
+inline constexpr Tolerance neverWorse{"neverWorse", 2e-4,
+                                      "of white: what the reference itself may be off on facets"};
 
 // --- curvature, relative to the mesh's largest value ---
 inline constexpr Tolerance edgeCurvature{"edgeCurvature", 1e-5,
@@ -77,10 +91,12 @@ inline constexpr Tolerance tensorCurvature{
 inline constexpr Tolerance quadricCurvature{
     "quadricCurvature", 3e-4,
     "float normal equations of nine terms; 1e-5 on most meshes, 7e-5 where flipped edges leave slivers"};
-inline constexpr Tolerance quadricTurned{
-    "quadricTurned", 1e-2, "where flipped edges or noise leave rings so thin that a moment is held up, which depends on the axes; 3e-4 elsewhere"};
+inline constexpr Tolerance quadricTurned{"quadricTurned", 1e-2,
+                                         "where flipped edges or noise leave rings so thin that a moment is "
+                                         "held up, which depends on the axes; 3e-4 elsewhere"};
 inline constexpr Tolerance quadricDecision{
-    "quadricDecision", 1e-4, "relative: nearer to a threshold float may decide the other way; such vertices are not compared"};
+    "quadricDecision", 1e-4,
+    "relative: nearer to a threshold float may decide the other way; such vertices are not compared"};
 inline constexpr Tolerance torusExactNormals{"torusExactNormals", 0.005,
                                              "RMS, 20,000 vertices: what the estimators are chosen for"};
 inline constexpr Tolerance torusEstimatedNormals{
@@ -97,40 +113,49 @@ inline constexpr Tolerance orderTensorIrregular{"orderTensorIrregular", 0.8,
 inline constexpr Tolerance diffusionAmplitude{
     "diffusionAmplitude", 0.01, "part of a wave left by a blur, on meshes of 30 and 60 vertices a wave"};
 inline constexpr Tolerance diffusionAmplitudeArea{
-    "diffusionAmplitudeArea", 0.04, "the same by areas, which spread a tenth less along than across where vertices are moved"};
+    "diffusionAmplitudeArea", 0.04,
+    "the same by areas, which spread a tenth less along than across where vertices are moved"};
 inline constexpr Tolerance densityIndependence{"densityIndependence", 0.01,
                                                "RMS between a mesh and one of four times its triangles"};
 inline constexpr Tolerance noisyTorus{"noisyTorus", 0.1,
                                       "RMS, noise of 2 % of the edges, smoothed to three edges"};
-inline constexpr Tolerance heatKernel{"heatKernel", 0.02, "of the peak, at any distance and radius from two edges on"};
+inline constexpr Tolerance heatKernel{"heatKernel", 0.02,
+                                      "of the peak, at any distance and radius from two edges on"};
 inline constexpr Tolerance heatMass{"heatMass", 1e-5, "relative: float sums of hundreds of stages"};
 inline constexpr Tolerance heatHarmonic{
-    "heatHarmonic", 0.03, "relative, the eighth, of which 0.039 is left: a stage's 2e-4 and the mesh's second order"};
+    "heatHarmonic", 0.03,
+    "relative, the eighth, of which 0.039 is left: a stage's 2e-4 and the mesh's second order"};
 inline constexpr Tolerance diffusionRange{
     "diffusionRange", 1e-4, "relative: rounding of hundreds of stages; means never leave the range"};
 inline constexpr Tolerance normalComponent{
     "normalComponent", 1e-5, "float angles and cross products; slivers of irregular meshes lose a digit"};
 inline constexpr Tolerance sliverSphere{
-    "sliverSphere", 0.01, "largest relative error of the quadric fit, triangles up to 60 times longer than wide"};
+    "sliverSphere", 0.01,
+    "largest relative error of the quadric fit, triangles up to 60 times longer than wide"};
 inline constexpr Tolerance torusQuadric{
     "torusQuadric", 0.002, "RMS, 20,000 vertices: twice what bent heights leave, half of what others would"};
 inline constexpr Tolerance longCells{
     "longCells", 0.005, "largest relative error of the quadric fit, cells up to 16 times longer than wide"};
 inline constexpr Tolerance scatteredRms{
-    "scatteredRms", 0.01, "of the local curvedness, RMS: what is wanted of 20,000 scattered vertices; 0.02 to 0.15 % measured"};
-inline constexpr Tolerance scatteredWorst{"scatteredWorst", 0.1, "the largest of them: what is wanted; 0.2 to 6 % measured"};
+    "scatteredRms", 0.01,
+    "of the local curvedness, RMS: what is wanted of 20,000 scattered vertices; 0.02 to 0.15 % measured"};
+inline constexpr Tolerance scatteredWorst{"scatteredWorst", 0.1,
+                                          "the largest of them: what is wanted; 0.2 to 6 % measured"};
 inline constexpr Tolerance slenderTorus{
-    "slenderTorus", 0.02, "largest, cells 1 : 25: float positions over the square of the shorter edge, 0.0039 at distance 4"};
+    "slenderTorus", 0.02,
+    "largest, cells 1 : 25: float positions over the square of the shorter edge, 0.0039 at distance 4"};
 inline constexpr Tolerance tiltedNormals{"tiltedNormals", 0.01,
                                          "RMS, torus of 13,000 vertices whose normals are off by 10 degrees"};
-inline constexpr Tolerance foldedNormals{
-    "foldedNormals", 0.004, "RMS, 10,000 vertices: hardly more than with exact normals"};
+inline constexpr Tolerance foldedNormals{"foldedNormals", 0.004,
+                                         "RMS, 10,000 vertices: hardly more than with exact normals"};
 inline constexpr Tolerance replacedNormal{
     "replacedNormal", 0.02, "1/length, curvatures up to 1: another frame of the same fit, 5 degrees off"};
 inline constexpr Tolerance noisySphere{
-    "noisySphere", 0.05, "RMS, noise of 2 % of the edges, smoothed to three: what is left where the noise is as long"};
+    "noisySphere", 0.05,
+    "RMS, noise of 2 % of the edges, smoothed to three: what is left where the noise is as long"};
 inline constexpr Tolerance noisySurface{
-    "noisySurface", 0.1, "RMS, the same on surfaces that are flatter for their edges, whose borders spread by the radius"};
+    "noisySurface", 0.1,
+    "RMS, the same on surfaces that are flatter for their edges, whose borders spread by the radius"};
 inline constexpr Tolerance noisyBorder{"noisyBorder", 0.15,
                                        "the same in the outermost two rows, whose two-rings lie on one side"};
 inline constexpr Tolerance screenOracle{
@@ -163,8 +188,7 @@ inline constexpr Tolerance tensorOnAnalytic{
     "tensorOnAnalytic", 0.05, "relative RMS on 96 x 48 cells, worst of all surfaces and tessellations"};
 inline constexpr Tolerance edgeOnTorus{"edgeOnTorus", 0.2,
                                        "the edge estimator misses by at least this, at any density"};
-inline constexpr Tolerance sampledDeviation{"sampledDeviation", 0.03,
-                                            "a standard deviation from 1e4 samples"};
+inline constexpr Tolerance sampledDeviation{"sampledDeviation", 0.03, "a standard deviation from 1e4 samples"};
 
 // --- shading, absolute per channel, from the same inputs and tables ---
 inline constexpr Tolerance shadeTerm{"shadeTerm", 5e-5,
@@ -172,54 +196,70 @@ inline constexpr Tolerance shadeTerm{"shadeTerm", 5e-5,
 inline constexpr Tolerance shadeSum{"shadeSum", 2e-4, "all terms added and multiplied by light and albedo"};
 
 inline constexpr Tolerance cubeOfHarmonics{
-    "cubeOfHarmonics", 6e-4, "32 texels along an edge: bilinear between directions up to 3.6 degrees apart, 3.5e-4 measured"};
-inline constexpr Tolerance cubeSeam{
-    "cubeSeam", 1e-4, "directions 4e-6 apart over texels of white noise, 1/3 apart and less"};
+    "cubeOfHarmonics", 6e-4,
+    "32 texels along an edge: bilinear between directions up to 3.6 degrees apart, 3.5e-4 measured"};
+inline constexpr Tolerance cubeSeam{"cubeSeam", 1e-4,
+                                    "directions 4e-6 apart over texels of white noise, 1/3 apart and less"};
 inline constexpr Tolerance specularTable{
     "specularTable", 2e-4, "relative: the tenth power of a float value read at float coordinates up to 300"};
-inline constexpr Tolerance shadeThickness{"shadeThickness", 2e-3,
-                                          "length: depths of a map that spans 200 to 700, through one float division"};
+inline constexpr Tolerance shadeThickness{
+    "shadeThickness", 2e-3, "length: depths of a map that spans 200 to 700, through one float division"};
 inline constexpr Tolerance ggxEnergy{"ggxEnergy", 3e-3, "against a mean of 100,000 random half vectors"};
 inline constexpr Tolerance peerDirect{
-    "peerDirect", 2e-3, "half a texel of N.L: its table holds D less Lambert, ours D, which is clamped at the last centre"};
-inline constexpr Tolerance peerPass{"peerPass", 2e-5, "the peer's float arithmetic and ours, vectors turned in float"};
+    "peerDirect", 2e-3,
+    "half a texel of N.L: its table holds D less Lambert, ours D, which is clamped at the last centre"};
+inline constexpr Tolerance peerPass{"peerPass", 2e-5,
+                                    "the peer's float arithmetic and ours, vectors turned in float"};
 inline constexpr Tolerance diskMoment{"diskMoment", 0.02, "mean squared radius of a disk, 1/2, from 8 points"};
 inline constexpr Tolerance diskSpacing{
-    "diskSpacing", 0.65, "least distance over that of a hexagonal packing: 0.7 to 0.75 is called blue noise, 0 is white"};
-inline constexpr Tolerance diskEdge{
-    "diskEdge", 0.55, "RMS error over straight edges, relative to as many random points"};
-inline constexpr Tolerance peerTapsMean{"peerTapsMean", 0.002, "relative: means over 20,000 pixels, other taps"};
+    "diskSpacing", 0.65,
+    "least distance over that of a hexagonal packing: 0.7 to 0.75 is called blue noise, 0 is white"};
+inline constexpr Tolerance diskEdge{"diskEdge", 0.55,
+                                    "RMS error over straight edges, relative to as many random points"};
+inline constexpr Tolerance peerTapsMean{"peerTapsMean", 0.002,
+                                        "relative: means over 20,000 pixels, other taps"};
 inline constexpr Tolerance peerTapsRms{"peerTapsRms", 0.08, "of the mean: pixel by pixel with 8 other taps"};
 inline constexpr Tolerance blurResponse{
     "blurResponse", 0.02, "share of a wave that is left: 13 taps stand for an integral over the kernel"};
 inline constexpr Tolerance mappedNormal{
-    "mappedNormal", 2e-4, "float UV times map size: 1e-5 of a texel between random normals; levels by float log2"};
-inline constexpr Tolerance mappedLevel{"mappedLevel", 1e-3, "a level of detail from the slope between two levels"};
+    "mappedNormal", 2e-4,
+    "float UV times map size: 1e-5 of a texel between random normals; levels by float log2"};
+inline constexpr Tolerance mappedLevel{"mappedLevel", 1e-3,
+                                       "a level of detail from the slope between two levels"};
 inline constexpr Tolerance wideShadow{
-    "wideShadow", 2e-4, "the kernel's polynomial for the weights is 5e-5 off; float sums over a thousand texels"};
+    "wideShadow", 2e-4,
+    "the kernel's polynomial for the weights is 5e-5 off; float sums over a thousand texels"};
 inline constexpr Tolerance wideShadowEdge{
     "wideShadowEdge", 0.01, "texels of 1/80 of the filter: where the edge falls between two of them"};
 inline constexpr Tolerance contentShadow{
-    "contentShadow", 2e-3, "variance is a difference of float squares: 1e-7 of z^2 is 0.1 mm in a map 300 mm deep"};
+    "contentShadow", 2e-3,
+    "variance is a difference of float squares: 1e-7 of z^2 is 0.1 mm in a map 300 mm deep"};
 inline constexpr Tolerance contentThickness{
-    "contentThickness", 0.02, "mm: between texels whose exponentials differ 10,000 times a float weight near 0 or 1 shows"};
+    "contentThickness", 0.02,
+    "mm: between texels whose exponentials differ 10,000 times a float weight near 0 or 1 shows"};
 inline constexpr Tolerance mapThickness{
-    "mapThickness", 1e-3, "mm in a map 300 mm deep: float depths of 1e-7, and where a tap falls between texels"};
+    "mapThickness", 1e-3,
+    "mm in a map 300 mm deep: float depths of 1e-7, and where a tap falls between texels"};
 inline constexpr Tolerance cubeThickness{
-    "cubeThickness", 0.01, "mm at 100 mm from the light: float depths with a near plane at 5 mm leave 2e-3 each"};
+    "cubeThickness", 0.01,
+    "mm at 100 mm from the light: float depths with a near plane at 5 mm leave 2e-3 each"};
 inline constexpr Tolerance cubeAsPerspective{
-    "cubeAsPerspective", 0.02, "within 4 degrees of the axis, where disks across axis and direction differ by 0.25 %"};
-inline constexpr Tolerance contentBehind{
-    "contentBehind", 0.02, "light that moments and exponentials let through at least 15 mm behind an occluder: exp(-c dz), Chebyshev's bound"};
-inline constexpr Tolerance contentInCube{
-    "contentInCube", 0.04, "mean over pixels: exp(-c dz) where 50 mm are a tenth of a radial map's range; a hundredth at twice the distance"};
+    "cubeAsPerspective", 0.02,
+    "within 4 degrees of the axis, where disks across axis and direction differ by 0.25 %"};
+inline constexpr Tolerance contentBehind{"contentBehind", 0.02,
+                                         "light that moments and exponentials let through at least 15 mm "
+                                         "behind an occluder: exp(-c dz), Chebyshev's bound"};
+inline constexpr Tolerance contentInCube{"contentInCube", 0.04,
+                                         "mean over pixels: exp(-c dz) where 50 mm are a tenth of a radial "
+                                         "map's range; a hundredth at twice the distance"};
 inline constexpr Tolerance contentInCubeThickness{
-    "contentInCubeThickness", 0.05, "mm, and 2 % of the thickness: depths of neighbours are weighed as exponentials, not as they are"};
+    "contentInCubeThickness", 0.05,
+    "mm, and 2 % of the thickness: depths of neighbours are weighed as exponentials, not as they are"};
 inline constexpr Tolerance cubeTurnedThickness{
     "cubeTurnedThickness", 0.1, "mm, mean over pixels: disks of 32 taps that lie elsewhere on the map"};
-inline constexpr Tolerance cubeTurned{"cubeTurned", 0.03, "filters of 16 texels across that lie elsewhere on the map"};
-inline constexpr Tolerance peerTerm{"peerTerm", 1e-6,
-                                    "the peer's float arithmetic and float LUT coordinates"};
+inline constexpr Tolerance cubeTurned{"cubeTurned", 0.03,
+                                      "filters of 16 texels across that lie elsewhere on the map"};
+inline constexpr Tolerance peerTerm{"peerTerm", 1e-6, "the peer's float arithmetic and float LUT coordinates"};
 inline constexpr Tolerance peerSharpened{"peerSharpened", 1e-6, "the same, steeper by the sharpening"};
 inline constexpr Tolerance peerThicknessMean{"peerThicknessMean", 1e-3,
                                              "relative: means over 20,000 pixels, other taps"};
@@ -268,8 +308,7 @@ inline constexpr Tolerance sampleFacetNormal{
     "sampleFacetNormal", 1e-4,
     "the ray meets a facet, whose interpolated normal is the sphere's to 2nd order"};
 inline constexpr Tolerance sampleUnit{"sampleUnit", 1e-6, "float rounding of values up to 1"};
-inline constexpr Tolerance samplePixel{"samplePixel", 1e-4,
-                                       "pixels: float rounding of a position, projected"};
+inline constexpr Tolerance samplePixel{"samplePixel", 1e-4, "pixels: float rounding of a position, projected"};
 inline constexpr Tolerance sampleMatrix{"sampleMatrix", 1e-9, "double-precision matrices and closed forms"};
 inline constexpr Tolerance sampleDerivative{"sampleDerivative", 1e-6,
                                             "relative: a central difference of step 1e-5"};
@@ -277,25 +316,32 @@ inline constexpr Tolerance sampleRandomField{"sampleRandomField", 0.15,
                                              "relative: a sum of 100 waves over a few hundred wavelengths"};
 inline constexpr Tolerance sampleMeanSquare{"sampleMeanSquare", 0.03,
                                             "the mean over 20000 points of a random field"};
-inline constexpr Tolerance sampleAlbedoMean{"sampleAlbedoMean", 0.03,
-                                            "the mean of few, wide random blotches"};
+inline constexpr Tolerance sampleAlbedoMean{"sampleAlbedoMean", 0.03, "the mean of few, wide random blotches"};
 inline constexpr Tolerance sampleWaves{"sampleWaves", 1e-4, "single-precision sines with phases up to 100"};
 inline constexpr Tolerance sampleQuadrature{"sampleQuadrature", 1e-5,
                                             "a midpoint rule of 4000 steps over a square root's end"};
 inline constexpr Tolerance sampleWideShadow{
     "sampleWideShadow", 0.003, "texels of 1/200 of the filter: where the edge falls between two of them"};
-inline constexpr Tolerance sampleSky{"sampleSky", 0.02,
-                                     "what orders above 2 carry of a sky with a soft lamp"};
+inline constexpr Tolerance sampleSky{"sampleSky", 0.02, "what orders above 2 carry of a sky with a soft lamp"};
 
 // --- what the search of bench/stability may find beyond the ranges of the tests ---
-inline constexpr Tolerance byteBoundary{"byteBoundary", 0.01, "of an 8-bit step: 255 times 13 (the slope of sRGB at 0) times 2e-6"};
-inline constexpr Tolerance stretchedNormals{"stretchedNormals", 5e-5, "as normalComponent, triangles 50 times longer than wide"};
-inline constexpr Tolerance finePixels{"finePixels", 1e-4, "of the largest: normals of neighbours differ by 1/300, float leaves 1e-7 of each"};
-inline constexpr Tolerance radiusSmoothing{"radiusSmoothing", 1.5e-3, "of the largest, against the flow itself: what a series of 4 to 64 stages leaves of it"};
-inline constexpr Tolerance wideShadowAnywhere{
-    "wideShadowAnywhere", 5e-4, "as wideShadow, bias 0.1 mm and softness 0.1 of filters of 1 mm: float depth of 1e-7 is 4e-5 mm of that 0.1 mm"};
-inline constexpr Tolerance placeFromDepth{"placeFromDepth", 2e-3, "mm, up to 900 away: an inverse projection in float; what float depth lost is not in it"};
-inline constexpr Tolerance decodedImage{"decodedImage", 2e-6, "radiance up to 1 from decoded values: a few float roundings"};
+inline constexpr Tolerance byteBoundary{"byteBoundary", 0.01,
+                                        "of an 8-bit step: 255 times 13 (the slope of sRGB at 0) times 2e-6"};
+inline constexpr Tolerance stretchedNormals{"stretchedNormals", 5e-5,
+                                            "as normalComponent, triangles 50 times longer than wide"};
+inline constexpr Tolerance finePixels{
+    "finePixels", 1e-4, "of the largest: normals of neighbours differ by 1/300, float leaves 1e-7 of each"};
+inline constexpr Tolerance radiusSmoothing{
+    "radiusSmoothing", 1.5e-3,
+    "of the largest, against the flow itself: what a series of 4 to 64 stages leaves of it"};
+inline constexpr Tolerance wideShadowAnywhere{"wideShadowAnywhere", 5e-4,
+                                              "as wideShadow, bias 0.1 mm and softness 0.1 of filters of 1 "
+                                              "mm: float depth of 1e-7 is 4e-5 mm of that 0.1 mm"};
+inline constexpr Tolerance placeFromDepth{
+    "placeFromDepth", 2e-3,
+    "mm, up to 900 away: an inverse projection in float; what float depth lost is not in it"};
+inline constexpr Tolerance decodedImage{"decodedImage", 2e-6,
+                                        "radiance up to 1 from decoded values: a few float roundings"};
 
 // --- a real host's pictures ---
 inline constexpr Tolerance realHostLambert{
@@ -306,24 +352,33 @@ inline constexpr Tolerance blenderLambert{
     "blenderLambert", 5e-4, "RMS: some dozen pixels where a shadow's edge crosses the pixel centre differ"};
 inline constexpr Tolerance blenderScriptLambert{
     "blenderScriptLambert", 5e-4, "RMS against Cycles, which fades smooth normals out at grazing light"};
-inline constexpr Tolerance blenderSky{"blenderSky", 1e-3,
-                                      "spherical harmonics from 64 x 32 pixels of Blender's sky, 16 jittered samples each"};
+inline constexpr Tolerance blenderSky{
+    "blenderSky", 1e-3, "spherical harmonics from 64 x 32 pixels of Blender's sky, 16 jittered samples each"};
 inline constexpr Tolerance blenderCurvature{
-    "blenderCurvature", 0.03, "relative: a subdivided and smoothed ball of 48 x 24 faces is not quite a sphere"};
+    "blenderCurvature", 0.03,
+    "relative: a subdivided and smoothed ball of 48 x 24 faces is not quite a sphere"};
 inline constexpr Tolerance blenderTerminator{
     "blenderTerminator", 0.5, "times Lambert's error in red: what the path tracer's noise leaves room for"};
 
 inline constexpr Tolerance blenderCurve{
-    "blenderCurve", 0.25, "times Lambert's error, of means over equal N.L: the path tracer's noise left in means of 1,000 pixels"};
+    "blenderCurve", 0.25,
+    "times Lambert's error, of means over equal N.L: the path tracer's noise left in means of 1,000 pixels"};
 
 // --- scattering on the screen ---
-inline constexpr Tolerance scatterBlocksRms{"scatterBlocksRms", 3e-3, "blocks half as wide as their distance stand for their pixels"};
-inline constexpr Tolerance scatterBlocksMax{"scatterBlocksMax", 5e-2, "the same, where the edge of a hard shadow meets the limb"};
-inline constexpr Tolerance scatterLeastError{"scatterLeastError", 2e-3, "of 99 % of the pixels, where anything is left out"};
-inline constexpr Tolerance scatterBall{"scatterBall", 1.3e-3, "RMS against the closed form, in units of white"};
+inline constexpr Tolerance scatterBlocksRms{"scatterBlocksRms", 3e-3,
+                                            "blocks half as wide as their distance stand for their pixels"};
+inline constexpr Tolerance scatterBlocksMax{"scatterBlocksMax", 5e-2,
+                                            "the same, where the edge of a hard shadow meets the limb"};
+inline constexpr Tolerance scatterLeastError{"scatterLeastError", 2e-3,
+                                             "of 99 % of the pixels, where anything is left out"};
+inline constexpr Tolerance scatterBall{"scatterBall", 1.3e-3,
+                                       "RMS against the closed form, in units of white"};
 inline constexpr Tolerance scatterEnergy{"scatterEnergy", 5e-3, "relative: blocks, and what is left out"};
-inline constexpr Tolerance scatterOneMissing{"scatterOneMissing", 2e-2, "neighbours of a pixel that counts no more"};
-inline constexpr Tolerance scatterUnits{"scatterUnits", 1e-3, "RMS, a tenth of the maximum: a ring of blocks with 0.4 % of the light may count or not"};
+inline constexpr Tolerance scatterOneMissing{"scatterOneMissing", 2e-2,
+                                             "neighbours of a pixel that counts no more"};
+inline constexpr Tolerance scatterUnits{
+    "scatterUnits", 1e-3,
+    "RMS, a tenth of the maximum: a ring of blocks with 0.4 % of the light may count or not"};
 
 // --- against the surface integral of a head, RMSE in 1e-4 of radiance, albedo 0.8; 32.9, 12.8 and 8.3 measured ---
 inline constexpr Tolerance rulerHeadRed{"rulerHeadRed", 40, "Lambert with ray-traced shadows: 85"};

@@ -35,7 +35,8 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
 ChildProcess::ChildProcess(std::vector<std::string> command,
                            const std::vector<std::pair<std::string, std::string>>& environment, bool loud) {
     int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
+    if (::pipe2(ends, O_CLOEXEC) != 0)
+        throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
     // Everything that takes memory before the fork: this process has the driver's threads, which may hold locks.
     std::vector<std::string> variables;
     for (char** entry = environ; *entry; ++entry) {
@@ -43,7 +44,8 @@ ChildProcess::ChildProcess(std::vector<std::string> command,
         if (std::none_of(environment.begin(), environment.end(), [&](const auto& e) { return e.first == name; }))
             variables.push_back(*entry);
     }
-    for (const auto& [name, value] : environment) variables.push_back(std::string(name).append("=").append(value));
+    for (const auto& [name, value] : environment)
+        variables.push_back(std::string(name).append("=").append(value));
     const std::vector<char*> arguments = pointers(command), values = pointers(variables);
     const pid_t parent = ::getpid();
     process_ = ::fork();
@@ -70,12 +72,14 @@ ChildProcess::ChildProcess(std::vector<std::string> command,
 ChildProcess::~ChildProcess() {
     if (process_ > 0) {
         ::kill(process_, SIGKILL);
-        while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {}
+        while (::waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+        }
     }
     ::close(pipe_);
 }
 
-ChildProcess::Answer ChildProcess::next(std::string& line, double seconds, const std::function<bool()>& cancelled) {
+ChildProcess::Answer ChildProcess::next(std::string& line, double seconds,
+                                        const std::function<bool()>& cancelled) {
     const double end = now() + seconds;
     for (;;) {
         if (const size_t at = heard_.find('\n'); at != std::string::npos) {
@@ -98,10 +102,12 @@ ChildProcess::Answer ChildProcess::next(std::string& line, double seconds, const
 std::string ChildProcess::ending() {
     if (process_ < 0) return "";
     int status = 0;
-    while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {}
+    while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+    }
     process_ = -1;
     if (WIFSIGNALED(status))
-        return "was ended by signal " + std::to_string(WTERMSIG(status)) + " (" + ::strsignal(WTERMSIG(status)) + ")";
+        return "was ended by signal " + std::to_string(WTERMSIG(status)) + " (" +
+               ::strsignal(WTERMSIG(status)) + ")";
     return WEXITSTATUS(status) ? "ended with exit code " + std::to_string(WEXITSTATUS(status)) : "";
 }
 

@@ -12,8 +12,8 @@ namespace pellucid::bench {
 class ChildProcess {
   public:
     // `environment`: set there beside this process's own. Not `loud`: what it says on standard error is thrown away.
-    ChildProcess(std::vector<std::string> command, const std::vector<std::pair<std::string, std::string>>& environment,
-                 bool loud);
+    ChildProcess(std::vector<std::string> command,
+                 const std::vector<std::pair<std::string, std::string>>& environment, bool loud);
     ~ChildProcess();  // ends it
     ChildProcess(const ChildProcess&) = delete;
 

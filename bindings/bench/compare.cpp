@@ -62,7 +62,8 @@ nlohmann::ordered_json parseReport(const std::string& text) {
             return depth <= deepest;  // else it is left out
         },
         false);
-    const bool sound = !deep && !report.is_discarded() && report.is_object() && report.contains("devices") && report["devices"].is_array();
+    const bool sound = !deep && !report.is_discarded() && report.is_object() && report.contains("devices") &&
+                       report["devices"].is_array();
     return sound ? report : Json(Json::value_t::discarded);
 }
 
@@ -142,8 +143,7 @@ std::string describeComparison(const Json& comparison) {
     }
     const auto number = [&](const char* key) { return comparison.at(key).get<int>(); };
     line("%d same, %d faster, %d slower, %d less accurate, %d fail, %d not compared\n", number("same"),
-         number("faster"), number("slower"), number("less_accurate"), number("fails"),
-         number("not_compared"));
+         number("faster"), number("slower"), number("less_accurate"), number("fails"), number("not_compared"));
     return text;
 }
 

@@ -16,8 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 double milliseconds() {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 struct Running {
@@ -109,7 +108,8 @@ Json measureCases(const Request& request) {
         if (f.group != "device" && !request.only.empty() &&
             std::none_of(request.only.begin(), request.only.end(), named))
             continue;
-        if (std::find(request.without.begin(), request.without.end(), f.name) != request.without.end()) continue;
+        if (std::find(request.without.begin(), request.without.end(), f.name) != request.without.end())
+            continue;
         Running r;
         r.entry = {{"name", f.name}, {"group", f.group}};
         tell({{"say", f.name + ": prepared, compared with the truth"}});

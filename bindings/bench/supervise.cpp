@@ -36,7 +36,12 @@ struct Outcome {
 };
 
 Outcome runApart(const Request& request, const std::set<std::string>& without, bool trying) {
-    std::vector<std::string> command{request.command, "bench", "--events", "--device", request.device, "--limit",
+    std::vector<std::string> command{request.command,
+                                     "bench",
+                                     "--events",
+                                     "--device",
+                                     request.device,
+                                     "--limit",
                                      std::to_string(request.limitSeconds)};
     if (request.quick) command.push_back("--quick");
     if (trying) command.push_back("--try");
@@ -47,7 +52,8 @@ Outcome runApart(const Request& request, const std::set<std::string>& without, b
     std::string line;
     for (;;) {
         // To start and open the device is no case.
-        const double limit = outcome.at.is_null() ? std::max(request.limitSeconds, startSeconds) : request.limitSeconds;
+        const double limit =
+            outcome.at.is_null() ? std::max(request.limitSeconds, startSeconds) : request.limitSeconds;
         const Answer answer = child.next(line, limit, request.cancelled);
         if (cancelled(request)) throw pellucid::Error(PEL_ERROR_CANCELLED, "the benchmark was cancelled");
         if (answer == Answer::silent) {
@@ -105,13 +111,13 @@ void measureFirstUse(const Request& request, Json& report) {
     const std::filesystem::path cache =
         std::filesystem::temp_directory_path() / ("pellucid-bench-" + std::to_string(::getpid()));
     std::vector<std::pair<std::string, std::string>> environment;
-    for (const char* variable :
-         {"POCL_CACHE_DIR", "CUDA_CACHE_PATH", "MESA_SHADER_CACHE_DIR", "NEO_CACHE_DIR", "cl_cache_dir",
-          "AMD_COMGR_CACHE_DIR", "PELLUCID_CACHE_DIR"})
+    for (const char* variable : {"POCL_CACHE_DIR", "CUDA_CACHE_PATH", "MESA_SHADER_CACHE_DIR",
+                                 "NEO_CACHE_DIR", "cl_cache_dir", "AMD_COMGR_CACHE_DIR", "PELLUCID_CACHE_DIR"})
         environment.emplace_back(variable, cache.string());
     for (const char* key : {"first_use", "warm_start"}) {
         std::filesystem::create_directories(cache);
-        ChildProcess child({request.command, "bench", "--first-use", "--device", request.device}, environment, false);
+        ChildProcess child({request.command, "bench", "--first-use", "--device", request.device}, environment,
+                           false);
         std::string line;
         const Answer answer = child.next(line, request.limitSeconds, request.cancelled);
         const Json parsed = answer == Answer::heard ? Json::parse(line, nullptr, false) : Json();
@@ -120,7 +126,8 @@ void measureFirstUse(const Request& request, Json& report) {
         if (parsed.is_object())
             report[key] = parsed;
         else
-            report[key] = {{"failed", answer == Answer::silent ? noResult(request) : "its process " + child.ending()}};
+            report[key] = {
+                {"failed", answer == Answer::silent ? noResult(request) : "its process " + child.ending()}};
         if (cancelled(request)) break;
     }
     std::error_code ignored;

@@ -145,8 +145,7 @@ void runBatch(const Arguments& arguments) {
         fatal = std::current_exception();
     }
     display.show(run.counts().done, true);
-    const nlohmann::ordered_json report =
-        reportOf(manifest, run, options.devices, seconds() - start, failures);
+    const nlohmann::ordered_json report = reportOf(manifest, run, options.devices, seconds() - start, failures);
     if (arguments.json)
         printJson(report);
     else

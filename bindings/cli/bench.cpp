@@ -92,7 +92,10 @@ void measure(const Arguments& a) {
         std::signal(signal, SIG_DFL);
     });
     const auto start = std::chrono::steady_clock::now();
-    Json report = {{"host", bench::describeHost()}, {"quick", a.quick}, {"limit_s", requestOf(a, "").limitSeconds}, {"devices", Json::array()}};
+    Json report = {{"host", bench::describeHost()},
+                   {"quick", a.quick},
+                   {"limit_s", requestOf(a, "").limitSeconds},
+                   {"devices", Json::array()}};
     std::string names;
     double deviceMilliseconds = 0;
     for (const std::string& selector : chosen) {
@@ -183,7 +186,8 @@ void addBench(CLI::App& app) {
     command->add_flag("--quick", a->quick, "small sizes and few repetitions: some seconds");
     command
         ->add_option("--limit", a->limitSeconds,
-                     "seconds that an operation may take to be prepared, and again to be measured, before it is given up (120; "
+                     "seconds that an operation may take to be prepared, and again to be measured, before it "
+                     "is given up (120; "
                      "with --quick 60)")
         ->check(CLI::PositiveNumber);
     command->add_flag("--events", a->events)->group("");

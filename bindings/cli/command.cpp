@@ -73,8 +73,7 @@ void Run::finish() {
     for (const auto& [key, value] : report.items()) {
         // Tables are for programs: people saw theirs on the way.
         if (value.is_array() && (value.empty() || value[0].is_object())) continue;
-        std::cout << key << ": " << (value.is_string() ? value.get<std::string>() : jsonText(value, -1))
-                  << "\n";
+        std::cout << key << ": " << (value.is_string() ? value.get<std::string>() : jsonText(value, -1)) << "\n";
     }
     std::cout << std::flush;
 }
@@ -91,7 +90,8 @@ void addRunOptions(CLI::App& command, Run::Options& options) {
     command.add_option("--device", options.device,
                        "OpenCL device: number, name or type (default: PELLUCID_DEVICE, best GPU, CPU)");
     command.add_flag("--json", options.json, "print one JSON object on standard output");
-    command.add_flag("--strict", options.strict, "what would be a warning is an error: exit code 3, and nothing is written");
+    command.add_flag("--strict", options.strict,
+                     "what would be a warning is an error: exit code 3, and nothing is written");
 }
 
 void parseSize(const std::string& text, uint32_t& width, uint32_t& height) {

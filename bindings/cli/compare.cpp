@@ -139,9 +139,7 @@ void writePicture(const Arguments& a, const Rgb& one, const Rgb& two, const std:
             error[i] = std::max(error[i], std::abs(one.values[3 * i + c] - two.values[3 * i + c]));
     const float high = float(p99 > 0 ? p99 : 1e-3);
     const io::ToneMap tone{a.exposure};
-    const auto rgb = [&](const Rgb& p) {
-        return io::Picture(p.width, p.height, io::toSrgb8(p.values, tone));
-    };
+    const auto rgb = [&](const Rgb& p) { return io::Picture(p.width, p.height, io::toSrgb8(p.values, tone)); };
     io::Picture difference(one.width, one.height + 40, io::Srgb8{20, 20, 20});
     difference.paste(0, 0, io::colored(one.width, one.height, error, 0, high, shown));
     if (one.width >= 160)
@@ -223,8 +221,7 @@ void addCompare(CLI::App& app) {
     command->add_option("--gbuffer", a->gbuffer,
                         "multi-layer EXR: only pixels of a material count, and sub-sets are told apart");
     command->add_option("--scene", a->scene, "its scene file (TOML)");
-    command->add_option("--light", a->light, "number of the light that sub-sets go by")
-        ->capture_default_str();
+    command->add_option("--light", a->light, "number of the light that sub-sets go by")->capture_default_str();
     command
         ->add_option("--unit-mm", a->unit, "millimetres per unit of positions (default: the scene's unit_mm)")
         ->check(CLI::PositiveNumber);

@@ -17,7 +17,8 @@ namespace {
 
 struct Arguments {
     Run::Options run;
-    std::string mesh, output, picture, weld = "none", up = "z", estimator = "quadric", quantity = "absolute", smoothingWeights = "cotangent";
+    std::string mesh, output, picture, weld = "none", up = "z", estimator = "quadric", quantity = "absolute",
+                                       smoothingWeights = "cotangent";
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     double creaseDegrees = 0;
     std::vector<float> range;  // of colours: low, high; empty: from the values
@@ -93,7 +94,8 @@ void run(const Arguments& a) {
     // `share`: of the values beyond either end of the colours.
     const auto scale = [&](double share) -> std::pair<float, float> {
         if (!a.range.empty()) return {a.range[0], a.range[1]};
-        return {isSigned(params.quantity) ? percentile(result.values, share) : 0.0f, percentile(result.values, 1 - share)};
+        return {isSigned(params.quantity) ? percentile(result.values, share) : 0.0f,
+                percentile(result.values, 1 - share)};
     };
     if (io::extensionOf(a.output) == "npy") {
         const size_t shape[] = {result.values.size()};
@@ -106,7 +108,8 @@ void run(const Arguments& a) {
         const bool squared = params.quantity == PEL_QUANTITY_GAUSSIAN;
         // The few sharpest places would leave one colour for all the others.
         const auto [low, high] = scale(0.1);
-        writeCurvaturePicture(a.picture, mesh, result.values, low, high, a.up[0], squared ? "1/length^2" : "1/length");
+        writeCurvaturePicture(a.picture, mesh, result.values, low, high, a.up[0],
+                              squared ? "1/length^2" : "1/length");
         run.report["picture"] = a.picture;
     }
     run.report["output"] = a.output;
@@ -144,14 +147,16 @@ void addCurvature(CLI::App& app) {
                      "with --smooth-radius: degrees between normals that stop it")
         ->check(CLI::Range(0.0, 180.0));
     command
-        ->add_option("--smooth-weights", a->smoothingWeights, "with --smooth-radius: how neighbours are weighed")
+        ->add_option("--smooth-weights", a->smoothingWeights,
+                     "with --smooth-radius: how neighbours are weighed")
         ->check(CLI::IsMember(namesOf(weights)))
         ->capture_default_str();
     command->add_option("--picture", a->picture,
                         "PNG to write as well: the mesh coloured by the values, with a colour bar");
     command
         ->add_option("--range", a->range,
-                     "LOW HIGH: what the colours of --picture and of a .ply stand for, so that several compare; default: "
+                     "LOW HIGH: what the colours of --picture and of a .ply stand for, so that several "
+                     "compare; default: "
                      "from the values, the sharpest places left out")
         ->expected(2);
     command

@@ -12,8 +12,7 @@ constexpr int supersampling = 2;
 constexpr io::Srgb8 background{20, 20, 20};
 
 // Values as colours, darkened a little where the surface turns away, so that its shape can be read.
-io::Picture view(const sample::Scene& scene, const sample::HeadPose& pose, double azimuth, float low,
-                 float high) {
+io::Picture view(const sample::Scene& scene, const sample::HeadPose& pose, double azimuth, float low, float high) {
     const int width = viewWidth * supersampling, height = viewHeight * supersampling;
     sample::Framing framing;
     framing.azimuth = azimuth;
@@ -40,9 +39,8 @@ io::Picture view(const sample::Scene& scene, const sample::HeadPose& pose, doubl
 
 }  // namespace
 
-void writeCurvaturePicture(const std::string& path, const io::MeshData& mesh,
-                           const std::vector<float>& values, float low, float high, char up,
-                           const std::string& unit) {
+void writeCurvaturePicture(const std::string& path, const io::MeshData& mesh, const std::vector<float>& values,
+                           float low, float high, char up, const std::string& unit) {
     sample::MeshView viewed;
     viewed.positions = mesh.positions;
     viewed.normals = mesh.normals;

@@ -87,8 +87,7 @@ ShadedView shadeView(Run& run, Stages& stages, LutStore& luts, const sample::Sce
                pixels * sizeof(float));
 
     ShadedView shaded;
-    const io::SceneFile variants[] = {withoutScattering(view.scene), withoutDeepScatter(view.scene),
-                                      view.scene};
+    const io::SceneFile variants[] = {withoutScattering(view.scene), withoutDeepScatter(view.scene), view.scene};
     const char* names[] = {"Lambert", "scattering", "scattering + transmission"};
     for (int i = 0; i < 3; ++i) {
         Frame frame(run.device(), view.gbuffer, variants[i], luts, view.shadowMaps);

@@ -77,8 +77,7 @@ io::Picture curvatureMap(const DemoView& view) {
     for (size_t i = 0; i < curvature.size(); ++i)
         if (material[i] > 0) seen.push_back(curvature[i]);
     const float high = std::max(percentile(seen, 0.98), 1e-6f);
-    const io::Picture whole =
-        io::colored(view.gbuffer.width, view.gbuffer.height, curvature, 0, high, material);
+    const io::Picture whole = io::colored(view.gbuffer.width, view.gbuffer.height, curvature, 0, high, material);
     const io::Picture map = io::shrunk(cropped(whole, coveredPart(view)), sheetShrink);
     const io::Picture bar = io::colorBar(map.width, 0, high, "1/mm");
     io::Picture both(map.width, map.height + bar.height);
@@ -100,9 +99,8 @@ std::string writeParts(const std::string& folder, const DemoView& view, const Fr
     add("diffuse", developed(view, frame.output(PEL_SLOT_OUT_DIFFUSE)));
     add("transmission", developed(view, frame.output(PEL_SLOT_OUT_DEEP_SCATTER)));
     add("specular", developed(view, frame.output(PEL_SLOT_OUT_SPECULAR)));
-    add("thickness",
-        io::colored(view.gbuffer.width, view.gbuffer.height, frame.output(PEL_SLOT_OUT_THICKNESS), 0, longest,
-                    view.gbuffer.channel("Material.I").pixels));
+    add("thickness", io::colored(view.gbuffer.width, view.gbuffer.height, frame.output(PEL_SLOT_OUT_THICKNESS),
+                                 0, longest, view.gbuffer.channel("Material.I").pixels));
     const io::Picture bar = io::colorBar(tiles.back().picture.width, 0, longest, "mm", 1);
     io::Picture both(bar.width, tiles.back().picture.height + bar.height);
     both.paste(0, 0, tiles.back().picture);

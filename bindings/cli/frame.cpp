@@ -44,7 +44,8 @@ void eachPixel(const io::Image& gbuffer, const io::SceneFile& scene, PelImageSlo
     const std::vector<float> values = gbuffer.interleaved(scene.channels[slot]);
     const size_t components = scene.channels[slot].size();
     std::vector<float> ids;
-    if (!scene.channels[PEL_SLOT_MATERIAL].empty()) ids = gbuffer.interleaved(scene.channels[PEL_SLOT_MATERIAL]);
+    if (!scene.channels[PEL_SLOT_MATERIAL].empty())
+        ids = gbuffer.interleaved(scene.channels[PEL_SLOT_MATERIAL]);
     for (size_t i = 0; i < gbuffer.pixelCount(); ++i)
         if (ids.empty() || ids[i] > 0) use(&values[i * components]);
 }
@@ -76,7 +77,8 @@ Lut LutStore::faceworks(const Profile& profile, PelLutKind kind) {
     const std::string name = profile.info().name;
     for (const auto& [key, lut] : faceworks_)
         if (key == std::pair(name, kind)) return lut;
-    faceworks_.emplace_back(std::pair(name, kind), kind == PEL_LUT_CURVATURE ? Lut(device_, info.curvature) : Lut(device_, info.shadow));
+    faceworks_.emplace_back(std::pair(name, kind), kind == PEL_LUT_CURVATURE ? Lut(device_, info.curvature)
+                                                                             : Lut(device_, info.shadow));
     return faceworks_.back().second;
 }
 
@@ -131,8 +133,8 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
             const auto known = shadowMaps.find(file);
             const io::Image read = known == shadowMaps.end() ? io::readImage(file) : io::Image();
             const io::Image& map = known == shadowMaps.end() ? read : known->second;
-            std::vector<std::string> channels{
-                channel.empty() && map.channels.size() == 1 ? map.channels[0].name : channel};
+            std::vector<std::string> channels{channel.empty() && map.channels.size() == 1 ? map.channels[0].name
+                                                                                          : channel};
             if (!second.empty()) channels.push_back(second);
             shader_.set(i, slot, upload(device, map, channels));
         };
@@ -151,12 +153,15 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
 
 void Frame::setMaterial(const io::SceneFile& scene, const io::SceneMaterial& m, LutStore& luts) {
     PelMaterial material = m.material;
-    Lut curvature = luts.get(scene, m.curvatureLut, PEL_LUT_CURVATURE), shadow = luts.get(scene, m.shadowLut, PEL_LUT_SHADOW);
+    Lut curvature = luts.get(scene, m.curvatureLut, PEL_LUT_CURVATURE),
+        shadow = luts.get(scene, m.shadowLut, PEL_LUT_SHADOW);
     Profile profile;
     try {
         if (!m.profile.empty()) profile = io::findProfile(m.profile).profile;
     } catch (const io::FileError& e) {
-        throw io::FileError(scene.source, "the profile of material " + std::to_string(m.id) + " is refused: " + e.what(), m.line);
+        throw io::FileError(scene.source,
+                            "the profile of material " + std::to_string(m.id) + " is refused: " + e.what(),
+                            m.line);
     }
     if (m.preset == io::ScenePreset::faceworks) {
         if (!profile) profile = Profile::skin();
@@ -195,8 +200,7 @@ void Frame::setNormalMap(const Device& device, uint32_t id, const std::string& f
     shader_.setNormalMap(id, levels);
 }
 
-PelImageDesc Frame::measureCurvature(const Device& device, const io::Image& gbuffer,
-                                     const io::SceneFile& scene) {
+PelImageDesc Frame::measureCurvature(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene) {
     const auto image = [&](PelImageSlot slot) {
         return scene.channels[slot].empty() ? pelImageDescDefaults()
                                             : upload(device, gbuffer, scene.channels[slot]);
@@ -227,8 +231,7 @@ PelImageDesc Frame::upload(const Device& device, const io::Image& image,
                                             PEL_FORMAT_RGBA32F};
     inputs_.emplace_back(device, image.interleaved(channels));
     inputBytes_ += inputs_.back().bytes();
-    return imageDesc(inputs_.back(), formats[channels.size() - 1], uint32_t(image.width),
-                     uint32_t(image.height));
+    return imageDesc(inputs_.back(), formats[channels.size() - 1], uint32_t(image.width), uint32_t(image.height));
 }
 
 std::vector<std::string> unlikely(const io::Image& gbuffer, const io::SceneFile& scene) {
@@ -239,7 +242,8 @@ std::vector<std::string> unlikely(const io::Image& gbuffer, const io::SceneFile&
             if (std::isfinite(v[0])) furthest = std::max(furthest, v[0]);
         });
         if (furthest > 1.001f)
-            found.push_back("the depth channel reaches " + shown(furthest) + ", and device depth ends at 1: it looks like a distance along the "
+            found.push_back("the depth channel reaches " + shown(furthest) +
+                            ", and device depth ends at 1: it looks like a distance along the "
                             "view; name a position channel, or write the depth that the projection gives");
     }
     if (scene.channels[PEL_SLOT_POSITION].empty()) return found;
@@ -260,8 +264,9 @@ std::vector<std::string> unlikely(const io::Image& gbuffer, const io::SceneFile&
         const float reach = io::findProfile(m.profile).profile.info().reach;
         // Seen whole, nothing of skin is smaller than a fingertip, nor larger than a few people.
         if (size > 2.3f * reach && size < 500 * reach) continue;
-        found.push_back("what is seen is " + shown(size) + " mm long with unit_mm = " + shown(scene.unitMm) + ", and light reaches " +
-                        shown(reach) + " mm far in the profile of material " + std::to_string(m.id) +
+        found.push_back("what is seen is " + shown(size) + " mm long with unit_mm = " + shown(scene.unitMm) +
+                        ", and light reaches " + shown(reach) + " mm far in the profile of material " +
+                        std::to_string(m.id) +
                         ": unit_mm says how many millimetres a unit of the positions is");
     }
     return found;

@@ -52,8 +52,7 @@ class Frame {
     // Curvature from normals and positions or depth of the G-buffer (pelScreenCurvature).
     PelImageDesc measureCurvature(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene);
     void setAmbientCube(const Device& device, const std::string& file);
-    PelImageDesc upload(const Device& device, const io::Image& image,
-                        const std::vector<std::string>& channels);
+    PelImageDesc upload(const Device& device, const io::Image& image, const std::vector<std::string>& channels);
 
     Shader shader_;
     Buffer radiance_;

@@ -24,7 +24,8 @@ void checkSubcommand(const CLI::App& app, int argc, char** argv, const std::stri
     if (argc < 2 || argv[1][0] == '-' || app.get_require_subcommand_min() == 0) return;
     std::string names;
     for (const CLI::App* known : app.get_subcommands({})) {
-        if (known->get_name() == argv[1]) return checkSubcommand(*known, argc - 1, argv + 1, path + argv[1] + " ");
+        if (known->get_name() == argv[1])
+            return checkSubcommand(*known, argc - 1, argv + 1, path + argv[1] + " ");
         names += (names.empty() ? "" : ", ") + known->get_name();
     }
     throw UsageError("there is no subcommand '" + path + argv[1] + "'; there are " + names);
@@ -52,9 +53,8 @@ int main(int argc, char** argv) {
     std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error like a full disk
     CLI::App app("Subsurface scattering for deferred renderers on OpenCL", "pellucid");
     app.require_subcommand(1);
-    app.set_version_flag("--version", std::to_string(PEL_VERSION_MAJOR) + "." +
-                                          std::to_string(PEL_VERSION_MINOR) + "." +
-                                          std::to_string(PEL_VERSION_PATCH));
+    app.set_version_flag("--version", std::to_string(PEL_VERSION_MAJOR) + "." + std::to_string(PEL_VERSION_MINOR) +
+                                          "." + std::to_string(PEL_VERSION_PATCH));
     addDevices(app);
     addCurvature(app);
     addLut(app);

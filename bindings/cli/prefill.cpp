@@ -59,7 +59,8 @@ void run(const Arguments& a) {
     };
     uint32_t groups = (a.luts ? PEL_PROGRAMS_LUTS : 0) | (a.tableLuts ? PEL_PROGRAMS_TABLE_LUTS : 0) |
                       (a.curvature ? PEL_PROGRAMS_CURVATURE : 0);
-    if (!groups && a.scenes.empty()) groups = PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABLE_LUTS | PEL_PROGRAMS_CURVATURE;
+    if (!groups && a.scenes.empty())
+        groups = PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABLE_LUTS | PEL_PROGRAMS_CURVATURE;
     const PelDeviceStats before = stats();
     if (groups) prefillPrograms(run.device(), groups, {}, a.threads);
     for (const std::string& scene : a.scenes) {
@@ -82,13 +83,15 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addPrefill(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("prefill", "Build OpenCL programs ahead of their first use, for the driver's cache");
+    CLI::App* command = app.add_subcommand(
+        "prefill", "Build OpenCL programs ahead of their first use, for the driver's cache");
     auto a = std::make_shared<Arguments>();
     command->add_option("scene", a->scenes, "scene files (TOML) that `pellucid shade` will be given");
     command->add_flag("--luts", a->luts, "look-up tables of sums of Gaussians");
     command->add_flag("--table-luts", a->tableLuts, "look-up tables of measured profiles");
     command->add_flag("--curvature", a->curvature, "curvature of meshes");
-    command->add_option("--threads", a->threads, "that build at a time; 0: one per core. PoCL builds one by one")
+    command
+        ->add_option("--threads", a->threads, "that build at a time; 0: one per core. PoCL builds one by one")
         ->capture_default_str();
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });

@@ -183,8 +183,7 @@ class Reference {
                     const size_t to = 3 * points.pixels[k] + c;
                     irradiance[to] = E[3 * k + c];
                     surface[to] = S[3 * k + c];
-                    radiance[to] =
-                        S[3 * k + c] * (albedos.empty() ? material.material.albedo[c] : albedos[to]);
+                    radiance[to] = S[3 * k + c] * (albedos.empty() ? material.material.albedo[c] : albedos[to]);
                 }
             count += points.pixels.size();
         }

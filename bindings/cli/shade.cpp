@@ -36,24 +36,30 @@ std::vector<std::pair<PelImageSlot, std::string>> outputFiles(const Arguments& a
 }
 
 void writeOutput(const std::string& path, PelImageSlot slot, const io::Image& gbuffer, const Frame& frame) {
-    (slot == PEL_SLOT_OUT_THICKNESS ? writeThickness : writeRadiance)(path, gbuffer.width, gbuffer.height, frame.output(slot));
+    (slot == PEL_SLOT_OUT_THICKNESS ? writeThickness : writeRadiance)(path, gbuffer.width, gbuffer.height,
+                                                                      frame.output(slot));
 }
 
 // What the scene asks for and will not get.
-void warnOfNothing(Run& run, const io::SceneFile& scene, const std::vector<PelImageSlot>& outputs, uint32_t features) {
+void warnOfNothing(Run& run, const io::SceneFile& scene, const std::vector<PelImageSlot>& outputs,
+                   uint32_t features) {
     for (const io::SceneMaterial& m : scene.materials)
         if (m.material.deepScatterAmbient > 0 && scene.channels[PEL_SLOT_THICKNESS].empty())
             run.warn("deep_scatter_ambient of material " + std::to_string(m.id) +
-                     " does nothing without a thickness channel: shadow maps tell how thick a body is along their light alone");
+                     " does nothing without a thickness channel: shadow maps tell how thick a body is along "
+                     "their light alone");
     const bool wanted = std::find(outputs.begin(), outputs.end(), PEL_SLOT_OUT_THICKNESS) != outputs.end();
     if (wanted && scene.channels[PEL_SLOT_THICKNESS].empty() && !(features & PEL_FEATURE_THICKNESS_TAPS))
-        run.warn("the thickness output is 0 everywhere: there is neither a thickness channel, nor a light with a shadow map and a "
-                 "material with thickness_taps and a deep_scatter_color");
+        run.warn(
+            "the thickness output is 0 everywhere: there is neither a thickness channel, nor a light with a "
+            "shadow map and a "
+            "material with thickness_taps and a deep_scatter_color");
 }
 
 void warnOfInvalid(Run& run, const PelShaderStats& stats) {
     if (stats.pixelsInvalid == 0) return;
-    const std::string share = stats.pixelsInvalid == stats.pixelsShaded ? "all " : std::to_string(stats.pixelsInvalid) + " of ";
+    const std::string share =
+        stats.pixelsInvalid == stats.pixelsShaded ? "all " : std::to_string(stats.pixelsInvalid) + " of ";
     run.warn(share + std::to_string(stats.pixelsShaded) +
              " pixels of a material have NaN or Inf in an input or in their result; they are black");
 }
@@ -74,7 +80,8 @@ void run(const Arguments& a) {
     for (const auto& [slot, file] : files) {
         if (outputs.empty() || outputs.back() != slot) outputs.push_back(slot);
         io::requireExtension(file, {"exr"});
-        if (!distinct.insert(file).second) throw io::FileError(file, "would be written twice; give each output a name of its own");
+        if (!distinct.insert(file).second)
+            throw io::FileError(file, "would be written twice; give each output a name of its own");
         io::checkWritable(file);
     }
     LutStore luts(run.device());
@@ -121,15 +128,18 @@ void addShade(CLI::App& app) {
     CLI::App* command = app.add_subcommand("shade", "Shade a G-buffer");
     auto a = std::make_shared<Arguments>();
     command->add_option("gbuffer", a->gbuffer, "multi-layer EXR")->required();
-    command->add_option("--scene", a->scene, "scene file (TOML): lights, materials, which channel is what")
-        ->required();
+    command->add_option("--scene", a->scene, "scene file (TOML): lights, materials, which channel is what")->required();
     command->add_option("-o,--output", a->output, "EXR to write: radiance R, G, B")->required();
-    command->add_option("--outputs", a->parts, "parts of the picture to write beside it, as OUT_diffuse.exr and so on")
+    command
+        ->add_option("--outputs", a->parts,
+                     "parts of the picture to write beside it, as OUT_diffuse.exr and so on")
         ->delimiter(',')
         ->check(CLI::IsMember({"diffuse", "deep_scatter", "specular", "thickness", "all"}));
     command->add_flag("--stats", a->stats, "count tiles and pixels per feature");
-    command->add_option("--scratch-mib", a->scratchMib,
-                        "most MiB for blurred normals and filtered shadows; larger frames are shaded in bands. 0: no limit")
+    command
+        ->add_option("--scratch-mib", a->scratchMib,
+                     "most MiB for blurred normals and filtered shadows; larger frames are shaded in bands. "
+                     "0: no limit")
         ->check(CLI::Range(0, 1 << 30))
         ->capture_default_str();
     addRunOptions(*command, a->run);

@@ -9,8 +9,7 @@ void Stages::add(const std::string& name, double wallMilliseconds, double device
     if (stages_.empty())
         std::fprintf(stderr, "%-38s %9s %10s %8s %8s  %s\n", "stage", "wall ms", "device ms", "MB", "M/s",
                      "of");
-    const Stage& s =
-        stages_.emplace_back(Stage{name, unit, wallMilliseconds, deviceMilliseconds, count, bytes});
+    const Stage& s = stages_.emplace_back(Stage{name, unit, wallMilliseconds, deviceMilliseconds, count, bytes});
     std::fprintf(stderr, "%-38s %9.1f", name.c_str(), s.wall);
     // Nothing rather than 0 where a stage has no such thing.
     s.device > 0 ? std::fprintf(stderr, " %10.2f", s.device) : std::fprintf(stderr, " %10s", "");

@@ -32,8 +32,7 @@ PelError pelCurvatureLutCreate(PelDevice device, const PelCurvatureLutDesc* desc
         });
 }
 
-PelError pelShadowLutCreate(PelDevice device, const PelShadowLutDesc* desc, PelLut* lut,
-                            const PelSubmit* submit) {
+PelError pelShadowLutCreate(PelDevice device, const PelShadowLutDesc* desc, PelLut* lut, const PelSubmit* submit) {
     return createLut(device, desc, pelShadowLutDescDefaults(), "PelShadowLutDesc", lut, submit,
                      integrateShadowLut);
 }

@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "core/handle_table.h"
-#include "mesh/curvature.h"
 #include "lut/luts.h"
+#include "mesh/curvature.h"
 #include "mesh/uv_scale.h"
 
 namespace pel {
@@ -28,7 +28,8 @@ PelShadowLutDesc smallShadowLut() {
 }
 
 void lutJobs(const Ref<Device>& device, PrefillJobs& jobs) {
-    for (const PelCurvatureForm form : {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_PENNER_RING, PEL_FORM_ARC})
+    for (const PelCurvatureForm form :
+         {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_PENNER_RING, PEL_FORM_ARC})
         jobs.push_back([device, form] { integrateCurvatureLut(device, smallCurvatureLut(form)); });
     jobs.push_back([device] { integrateShadowLut(device, smallShadowLut()); });
     jobs.push_back([device] {
@@ -45,7 +46,8 @@ void lutJobs(const Ref<Device>& device, PrefillJobs& jobs) {
 void tableLutJobs(const Ref<Device>& device, PrefillJobs& jobs) {
     const std::vector<float> radii{0, 1, 3}, values{1, 1, 1, 0.5, 0.4, 0.3, 0, 0, 0};
     const Ref<Profile> profile = Profile::table(radii.data(), values.data(), uint32_t(radii.size()));
-    for (const PelCurvatureForm form : {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_PENNER_RING, PEL_FORM_ARC})
+    for (const PelCurvatureForm form :
+         {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_PENNER_RING, PEL_FORM_ARC})
         jobs.push_back([device, profile, form] {
             PelCurvatureLutDesc desc = smallCurvatureLut(form);
             const LentHandle<PelProfile, Profile> lent(profile);
@@ -84,7 +86,8 @@ struct SmallMesh {
 
 void curvatureJobs(const Ref<Device>& device, PrefillJobs& jobs) {
     for (const bool welded : {false, true})
-        for (const PelCurvatureEstimator estimator : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC})
+        for (const PelCurvatureEstimator estimator :
+             {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC})
             jobs.push_back([device, welded, estimator] {
                 const SmallMesh mesh(device, welded);
                 PelCurvatureParams params = pelCurvatureParamsDefaults();
@@ -93,7 +96,8 @@ void curvatureJobs(const Ref<Device>& device, PrefillJobs& jobs) {
                 const VertexView out{device->allocate(4 * sizeof(float)), {4, 0, 1, 0}};
                 MeshCounts counts;
                 for (const bool given : {true, false})
-                    meshCurvature(*mesh.topology, params, mesh.view(3), given ? mesh.view(3) : VertexView{}, out, &counts);
+                    meshCurvature(*mesh.topology, params, mesh.view(3), given ? mesh.view(3) : VertexView{},
+                                  out, &counts);
             });
     jobs.push_back([device] {
         const SmallMesh mesh(device, false);

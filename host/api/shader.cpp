@@ -55,8 +55,7 @@ PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t c
     return entry([&] { fromHandle<Shader>(shader)->setLights(lights, count); });
 }
 
-PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot,
-                                const PelImageDesc* image) {
+PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot, const PelImageDesc* image) {
     return entry([&] {
         const Ref<Shader> s = fromHandle<Shader>(shader);
         if (!image) return s->setLightImage(light, slot, nullptr);

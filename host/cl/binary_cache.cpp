@@ -48,7 +48,8 @@ std::string settings() {
     for (char** entry = environ; entry && *entry; ++entry) {
         const std::string text = *entry;
         const std::string name = text.substr(0, text.find('='));
-        const bool theirs = std::any_of(std::begin(prefixes), std::end(prefixes), [&](const char* prefix) { return name.starts_with(prefix); });
+        const bool theirs = std::any_of(std::begin(prefixes), std::end(prefixes),
+                                        [&](const char* prefix) { return name.starts_with(prefix); });
         if (theirs && name.find("CACHE") == std::string::npos) found.push_back(text);
     }
     std::sort(found.begin(), found.end());
@@ -60,7 +61,8 @@ std::string settings() {
 std::string describeBuilder(cl_device_id device) {
     Digest all;
     all.addPart(text(pelVersion()));
-    for (const cl_device_info what : {CL_DEVICE_NAME, CL_DEVICE_VENDOR, CL_DEVICE_VERSION, CL_DRIVER_VERSION, CL_DEVICE_EXTENSIONS})
+    for (const cl_device_info what :
+         {CL_DEVICE_NAME, CL_DEVICE_VENDOR, CL_DEVICE_VERSION, CL_DRIVER_VERSION, CL_DEVICE_EXTENSIONS})
         all.addPart(infoString(device, what));
     all.addPart(platformName(device)).addPart(instructionSet()).addPart(settings());
     return all.text();
@@ -90,7 +92,8 @@ Program BinaryCache::load(const std::string& source, const std::string& options)
     cl_int status = CL_SUCCESS, code = CL_SUCCESS;
     Program program(clCreateProgramWithBinary(context_, 1, &device_, &size, &bytes, &status, &code));
     if (code != CL_SUCCESS || status != CL_SUCCESS) return {};
-    if (clBuildProgram(program.get(), 1, &device_, options.c_str(), nullptr, nullptr) != CL_SUCCESS) return {};
+    if (clBuildProgram(program.get(), 1, &device_, options.c_str(), nullptr, nullptr) != CL_SUCCESS)
+        return {};
     return program;
 }
 
@@ -98,18 +101,23 @@ bool BinaryCache::store(const Program& program, const std::string& source, const
     if (!files_) return false;
     // A program of a context of several devices has a place for each.
     cl_uint count = 0;
-    if (clGetProgramInfo(program.get(), CL_PROGRAM_NUM_DEVICES, sizeof count, &count, nullptr) != CL_SUCCESS || !count) return false;
+    if (clGetProgramInfo(program.get(), CL_PROGRAM_NUM_DEVICES, sizeof count, &count, nullptr) != CL_SUCCESS ||
+        !count)
+        return false;
     std::vector<cl_device_id> devices(count);
     std::vector<size_t> sizes(count);
-    if (clGetProgramInfo(program.get(), CL_PROGRAM_DEVICES, count * sizeof devices[0], devices.data(), nullptr) != CL_SUCCESS ||
-        clGetProgramInfo(program.get(), CL_PROGRAM_BINARY_SIZES, count * sizeof sizes[0], sizes.data(), nullptr) != CL_SUCCESS)
+    if (clGetProgramInfo(program.get(), CL_PROGRAM_DEVICES, count * sizeof devices[0], devices.data(),
+                         nullptr) != CL_SUCCESS ||
+        clGetProgramInfo(program.get(), CL_PROGRAM_BINARY_SIZES, count * sizeof sizes[0], sizes.data(),
+                         nullptr) != CL_SUCCESS)
         return false;
     const size_t mine = size_t(std::find(devices.begin(), devices.end(), device_) - devices.begin());
     if (mine == count || sizes[mine] == 0) return false;
     std::string binary(sizes[mine], '\0');
     std::vector<unsigned char*> places(count);  // NULL: not wanted
     places[mine] = reinterpret_cast<unsigned char*>(binary.data());
-    if (clGetProgramInfo(program.get(), CL_PROGRAM_BINARIES, count * sizeof places[0], places.data(), nullptr) != CL_SUCCESS)
+    if (clGetProgramInfo(program.get(), CL_PROGRAM_BINARIES, count * sizeof places[0], places.data(),
+                         nullptr) != CL_SUCCESS)
         return false;
     return files_->store(name(source, options), binary);
 }

@@ -48,10 +48,13 @@ class File {
     explicit operator bool() const { return fd_ >= 0; }
 
     bool read(void* to, size_t bytes) const {
-        return whole(bytes, [&](size_t done) { return ::read(fd_, static_cast<char*>(to) + done, bytes - done); });
+        return whole(bytes,
+                     [&](size_t done) { return ::read(fd_, static_cast<char*>(to) + done, bytes - done); });
     }
     bool write(const void* from, size_t bytes) const {
-        return whole(bytes, [&](size_t done) { return ::write(fd_, static_cast<const char*>(from) + done, bytes - done); });
+        return whole(bytes, [&](size_t done) {
+            return ::write(fd_, static_cast<const char*>(from) + done, bytes - done);
+        });
     }
 
   private:
@@ -75,7 +78,8 @@ bool isBinary(const std::string& name) {
 }
 
 bool isTemporary(const std::string& name) {
-    return name.size() > nameLength && name[0] == '.' && name.ends_with(".tmp") && name.compare(33, 5, ".bin.") == 0;
+    return name.size() > nameLength && name[0] == '.' && name.ends_with(".tmp") &&
+           name.compare(33, 5, ".bin.") == 0;
 }
 
 }  // namespace
@@ -94,7 +98,9 @@ std::optional<std::string> BinaryFiles::load(const Digest& name) const {
     const File file(pathOf(name), O_RDONLY | O_NONBLOCK);  // a pipe of that name would have us wait
     struct stat status {};
     Header header;
-    if (!file || ::fstat(file.fd(), &status) != 0 || !S_ISREG(status.st_mode) || !file.read(&header, sizeof header)) return {};
+    if (!file || ::fstat(file.fd(), &status) != 0 || !S_ISREG(status.st_mode) ||
+        !file.read(&header, sizeof header))
+        return {};
     if (status.st_uid != ::geteuid() && status.st_uid != 0) return {};
     if (uint64_t(status.st_size) != sizeof header + header.bytes || header.bytes > limit_) return {};
     std::string binary(header.bytes, '\0');
@@ -108,8 +114,8 @@ bool BinaryFiles::store(const Digest& name, const std::string& binary) const {
     if (!makePrivateFolder(folder_) || !whyNotPrivate(folder_).empty()) return false;
     // Under a name of its own until it is whole: other processes write and read the same programs.
     static std::atomic<unsigned> counter{0};
-    const fs::path path = pathOf(name),
-                   temporary = folder_ / text(".", path.filename().string(), ".", ::getpid(), "-", counter++, ".tmp");
+    const fs::path path = pathOf(name), temporary = folder_ / text(".", path.filename().string(), ".",
+                                                                   ::getpid(), "-", counter++, ".tmp");
     {
         const File file(temporary, O_WRONLY | O_CREAT | O_EXCL);
         const Header header = headerOf(name, binary);
@@ -136,7 +142,8 @@ void BinaryFiles::trim() const {
     std::vector<Kept> files;
     uint64_t total = 0;
     std::error_code error;
-    for (auto at = fs::directory_iterator(folder_, error); !error && at != fs::directory_iterator(); at.increment(error)) {
+    for (auto at = fs::directory_iterator(folder_, error); !error && at != fs::directory_iterator();
+         at.increment(error)) {
         const std::string name = at->path().filename().string();
         if (!isBinary(name) && !isTemporary(name)) continue;
         std::error_code gone;  // by another process
@@ -144,7 +151,8 @@ void BinaryFiles::trim() const {
         if (gone) continue;
         // What a process that was killed left behind.
         if (isTemporary(name)) {
-            if (fs::file_time_type::clock::now() - file.used > std::chrono::hours(1)) fs::remove(file.path, gone);
+            if (fs::file_time_type::clock::now() - file.used > std::chrono::hours(1))
+                fs::remove(file.path, gone);
             continue;
         }
         total += file.bytes;

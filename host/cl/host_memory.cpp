@@ -14,8 +14,7 @@ namespace {
 
 constexpr size_t page = 4096, cacheLine = 128;
 constexpr size_t mapped = 32 << 20;  // from here on memory of its own: zero already, and given back at once
-constexpr size_t unasked =
-    16 << 20;  // how much may be allocated without asking what is left, which takes 100 us
+constexpr size_t unasked = 16 << 20;  // how much may be allocated without asking what is left, which takes 100 us
 
 std::atomic<uint64_t> inUse{0};
 
@@ -78,8 +77,7 @@ Memory createInHostMemory(cl_context context, size_t bytes, const void* initial,
     auto block = std::make_unique<Block>(bytes, zeros && !initial);
     if (initial) std::memcpy(block->at(), initial, bytes);
     cl_int code = CL_SUCCESS;
-    Memory memory(
-        clCreateBuffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, block->at(), &code));
+    Memory memory(clCreateBuffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, block->at(), &code));
     if (code != CL_SUCCESS) check(code, text("clCreateBuffer(", bytes, " bytes)").c_str());
     const auto giveBack = [](cl_mem, void* user) { delete static_cast<Block*>(user); };
     check(clSetMemObjectDestructorCallback(memory.get(), +giveBack, block.get()),

@@ -13,8 +13,7 @@ namespace {
 
 constexpr uint64_t unlimited = UINT64_MAX;
 constexpr uint64_t restOfMachine = 128 << 20;  // for drivers, the host and other programs
-constexpr uint64_t restOfAddressSpace =
-    256 << 20;  // LLVM takes up to 200 MB to compile the largest shading variant
+constexpr uint64_t restOfAddressSpace = 256 << 20;  // LLVM takes up to 200 MB to compile the largest shading variant
 
 uint64_t number(const std::string& path, uint64_t otherwise) {
     std::ifstream file(path);
@@ -62,8 +61,7 @@ uint64_t leftInGroups() {
             const uint64_t limit =
                 number(at + (old ? "memory.limit_in_bytes" : "memory.max"), unlimited);  // "max": no number
             const uint64_t used = number(at + (old ? "memory.usage_in_bytes" : "memory.current"), 0);
-            const uint64_t cached =
-                field(at + "memory.stat", old ? "total_inactive_file" : "inactive_file", 0);
+            const uint64_t cached = field(at + "memory.stat", old ? "total_inactive_file" : "inactive_file", 0);
             if (limit != unlimited) left = std::min(left, leftOf(limit, leftOf(used, cached)));
             if (group.empty()) break;
         }

@@ -32,8 +32,8 @@ std::string poclFolderTrouble() {
     fs::create_directories(folder, error);
     if (!error && ::access(folder, W_OK | X_OK) != 0) error.assign(errno, std::generic_category());
     if (!error) return {};
-    return text("; PoCL, where it is installed, says so too when POCL_CACHE_DIR, ", folder, ", cannot be written to (", error.message(),
-                "): name another folder, or none");
+    return text("; PoCL, where it is installed, says so too when POCL_CACHE_DIR, ", folder,
+                ", cannot be written to (", error.message(), "): name another folder, or none");
 }
 
 template <class T>

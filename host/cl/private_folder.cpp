@@ -57,8 +57,7 @@ bool makePrivateFolder(const fs::path& folder) {
 
 std::string whyNotPrivate(const fs::path& folder) {
     std::error_code error;
-    const fs::path named = fs::absolute(folder, error).lexically_normal(),
-                   real = fs::canonical(folder, error);
+    const fs::path named = fs::absolute(folder, error).lexically_normal(), real = fs::canonical(folder, error);
     if (error) return text(folder.string(), " cannot be looked at");
     // Links may lead elsewhere: who may exchange a link matters as much as who may write where it leads.
     for (const fs::path& whole : {named, real}) {

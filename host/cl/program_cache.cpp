@@ -10,10 +10,7 @@
 namespace pel::cl {
 
 ProgramCache::ProgramCache(Context context, cl_device_id device, uint32_t mathWidth)
-    : context_(std::move(context)),
-      device_(device),
-      mathWidth_(mathWidth),
-      binaries_(context_.get(), device) {}
+    : context_(std::move(context)), device_(device), mathWidth_(mathWidth), binaries_(context_.get(), device) {}
 
 Program ProgramCache::get(const ProgramKey& wanted) {
     Defines all = wanted.defines;

@@ -45,7 +45,8 @@ class ProgramCache {
         Program program;
     };
     Program build(const std::vector<std::string>& files, const std::string& options, Counts& counts) const;
-    Program compile(const std::string& source, const std::vector<std::string>& files, const std::string& options) const;
+    Program compile(const std::string& source, const std::vector<std::string>& files,
+                    const std::string& options) const;
 
     Context context_;
     cl_device_id device_;

@@ -116,9 +116,8 @@ void Device::read(cl_mem memory, size_t offset, size_t bytes, void* destination,
 }
 
 void Device::write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking) {
-    cl::check(
-        clEnqueueWriteBuffer(queue_.get(), memory, blocking, offset, bytes, source, 0, nullptr, nullptr),
-        "clEnqueueWriteBuffer");
+    cl::check(clEnqueueWriteBuffer(queue_.get(), memory, blocking, offset, bytes, source, 0, nullptr, nullptr),
+              "clEnqueueWriteBuffer");
     countTransfer(bytes, 0);
 }
 
@@ -186,8 +185,7 @@ double eventMilliseconds(const cl::Event& event) {
     if (!event ||
         clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_START, sizeof start, &start, nullptr) !=
             CL_SUCCESS ||
-        clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr) !=
-            CL_SUCCESS ||
+        clGetEventProfilingInfo(event.get(), CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr) != CL_SUCCESS ||
         end < start)
         return 0;
     return double(end - start) * 1e-6;

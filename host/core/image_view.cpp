@@ -93,9 +93,8 @@ bool overlapsElsewhere(const ImageView& a, const ImageView& b) {
     const uint64_t width = std::max(a.byteOffset + a.info().pixelBytes, b.byteOffset + b.info().pixelBytes) -
                            std::min(a.byteOffset, b.byteOffset);
     if (samePixels && width <= a.pixelStride) return false;
-    const bool samePlanes = a.info().planar && b.info().planar && apart == 0 &&
-                            a.pixelStride == b.pixelStride && a.rowStride == b.rowStride &&
-                            a.planeStride == b.planeStride;
+    const bool samePlanes = a.info().planar && b.info().planar && apart == 0 && a.pixelStride == b.pixelStride &&
+                            a.rowStride == b.rowStride && a.planeStride == b.planeStride;
     return !samePlanes;
 }
 

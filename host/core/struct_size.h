@@ -32,9 +32,8 @@ bool isWholeStruct(uint32_t size);
 template <class T>
 void checkStructSize(uint32_t size, const char* name) {
     if (size > 1u << 16 || !isWholeStruct<T>(size))
-        invalidArgument(name, ".structSize is ", size, ", which is no size that ", name,
-                        " has or had; it is ", sizeof(T),
-                        " in this version: start from the pel...Defaults() function of ", name);
+        invalidArgument(name, ".structSize is ", size, ", which is no size that ", name, " has or had; it is ",
+                        sizeof(T), " in this version: start from the pel...Defaults() function of ", name);
 }
 
 // The caller's structure over `defaults`; fields that its header did not have keep their defaults.

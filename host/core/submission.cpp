@@ -14,9 +14,8 @@ void Event::wait() const {
 
 bool Event::isDone() const {
     cl_int status = CL_QUEUED;
-    cl::check(
-        clGetEventInfo(event_.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr),
-        "clGetEventInfo");
+    cl::check(clGetEventInfo(event_.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr),
+              "clGetEventInfo");
     if (status < 0) cl::check(status, "the submitted work");
     return status == CL_COMPLETE;
 }

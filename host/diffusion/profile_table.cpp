@@ -13,8 +13,7 @@ namespace {
 Rgb lightBetween(const ProfileShape& shape, double begin, double end) {
     constexpr double points[] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
                                  0.8611363115940526};
-    constexpr double weights[] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
-                                  0.3478548451374538};
+    constexpr double weights[] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461, 0.3478548451374538};
     const double middle = std::log(begin * end) / 2, half = std::log(end / begin) / 2;
     Rgb sum{};
     for (int k = 0; k < 4; ++k) {
@@ -47,8 +46,7 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
     constexpr uint32_t step = 1u << PEL_PROFILE_NODE_BITS;
     const uint32_t firstBits = nodeOf(first), lastBits = nodeOf(farthest) + step;
     Rgb within{};
-    for (uint32_t octave = 24 * PEL_PROFILE_NODES; octave > 0;
-         --octave) {  // 12 octaves of r below the first node
+    for (uint32_t octave = 24 * PEL_PROFILE_NODES; octave > 0; --octave) {  // 12 octaves of r below the first node
         const Rgb light = lightBetween(shape, radiusOfNode(firstBits - octave * step) / scale,
                                        radiusOfNode(firstBits - (octave - 1) * step) / scale);
         for (int c = 0; c < 3; ++c) within[c] += light[c];
@@ -69,8 +67,7 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
     ++nodes;  // the last one, where nothing is left
 
     ProfileNodes result;
-    result.table = {0, uint32_t(nodes), firstBits,
-                    float(radiusOfNode(firstBits + uint32_t(nodes - 1) * step))};
+    result.table = {0, uint32_t(nodes), firstBits, float(radiusOfNode(firstBits + uint32_t(nodes - 1) * step))};
     result.values.resize(8 * nodes);
     const Rgb all = shares[nodes - 1];
     for (size_t k = 0; k < nodes; ++k) {

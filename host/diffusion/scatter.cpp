@@ -14,8 +14,7 @@ void checkParams(const PelScatterParams& params) {
         invalidArgument("PelScatterParams.targetError is ", params.targetError,
                         "; a finite number of at least 0 is needed, typical is 0.002");
     if (!(params.white > 0) || !std::isfinite(params.white))
-        invalidArgument("PelScatterParams.white is ", params.white,
-                        "; a finite irradiance above 0 is needed");
+        invalidArgument("PelScatterParams.white is ", params.white, "; a finite irradiance above 0 is needed");
     checkFinite("PelScatterParams", "inverseViewProjection", params.inverseViewProjection, 16);
 }
 
@@ -37,14 +36,12 @@ void checkImages(const ScatterImages& images) {
                             images.out.width, " x ", images.out.height, "; all must have one size");
         // The irradiance may be written over pixel on pixel.
         const bool touches = view->buffer->memory().get() == images.out.buffer->memory().get() &&
-                             view->byteOffset < images.out.byteEnd() &&
-                             images.out.byteOffset < view->byteEnd();
+                             view->byteOffset < images.out.byteEnd() && images.out.byteOffset < view->byteEnd();
         if (touches && (slot != PEL_SLOT_ALBEDO || view->format != images.out.format ||
                         overlapsElsewhere(images.out, *view)))
-            invalidArgument("the output overlaps the ", name, " image, which is read",
-                            slot == PEL_SLOT_ALBEDO
-                                ? "; only the same pixels in the same format may be written over"
-                                : "");
+            invalidArgument(
+                "the output overlaps the ", name, " image, which is read",
+                slot == PEL_SLOT_ALBEDO ? "; only the same pixels in the same format may be written over" : "");
     }
 }
 

@@ -163,7 +163,8 @@ void flushFolder(const std::string& path) {
     const bool done = folder >= 0 && flushed(folder);
     const int why = errno;
     if (folder >= 0) ::close(folder);
-    if (!done) throw FileError(path, std::string("names in it may not outlive a power cut: ") + std::strerror(why));
+    if (!done)
+        throw FileError(path, std::string("names in it may not outlive a power cut: ") + std::strerror(why));
 }
 
 size_t removeAbandonedFiles(const std::string& path) {
@@ -180,8 +181,7 @@ size_t removeAbandonedFiles(const std::string& path) {
         struct stat status {};
         if (::fstat(fd, &status) == 0 && S_ISREG(status.st_mode)) {
             const double age = std::difftime(std::time(nullptr), status.st_mtime);
-            if (age > (machine == machineTag() ? lockedAge : foreignAge) &&
-                ::flock(fd, LOCK_EX | LOCK_NB) == 0)
+            if (age > (machine == machineTag() ? lockedAge : foreignAge) && ::flock(fd, LOCK_EX | LOCK_NB) == 0)
                 removed += ::unlinkat(folder, name.c_str(), 0) == 0;
         }
         ::close(fd);

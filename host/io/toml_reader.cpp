@@ -78,8 +78,8 @@ bool inRange(float x, Range range) {
 
 toml::table parseToml(const std::string& file, const std::string& text) {
     if (text.size() > textLimit)
-        throw FileError(file, "has " + std::to_string(text.size()) + " bytes; TOML may have " +
-                                  std::to_string(textLimit));
+        throw FileError(
+            file, "has " + std::to_string(text.size()) + " bytes; TOML may have " + std::to_string(textLimit));
     checkTomlDepth(file, text);
     try {
         return toml::parse(text, file);
@@ -277,9 +277,9 @@ void TomlReader::finish() const {
     for (const auto& [key, node] : table_) {
         const std::string_view given = key.str();
         if (std::find(known_.begin(), known_.end(), given) != known_.end()) continue;
-        const auto nearest = std::min_element(
-            known_.begin(), known_.end(),
-            [&](const auto& a, const auto& b) { return distance(a, given) < distance(b, given); });
+        const auto nearest = std::min_element(known_.begin(), known_.end(), [&](const auto& a, const auto& b) {
+            return distance(a, given) < distance(b, given);
+        });
         std::string list;
         for (const std::string& k : known_) list += (list.empty() ? "" : ", ") + k;
         const bool close = nearest != known_.end() && distance(*nearest, given) <= 1 + given.size() / 3;

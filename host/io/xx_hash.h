@@ -25,8 +25,7 @@ inline uint64_t xxHash64(std::string_view bytes) {
         uint64_t lane[4] = {p1 + p2, p2, 0, 0 - p1};
         while (left() >= 32)
             for (uint64_t& l : lane) l = round(l, take(uint64_t{}));
-        hash =
-            std::rotl(lane[0], 1) + std::rotl(lane[1], 7) + std::rotl(lane[2], 12) + std::rotl(lane[3], 18);
+        hash = std::rotl(lane[0], 1) + std::rotl(lane[1], 7) + std::rotl(lane[2], 12) + std::rotl(lane[3], 18);
         for (uint64_t l : lane) hash = (hash ^ round(0, l)) * p1 + p4;
     }
     hash += bytes.size();

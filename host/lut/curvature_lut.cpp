@@ -19,16 +19,14 @@ std::vector<LutColumn> columnsOf(uint32_t width, PelLutAxis axis, int nodes) {
         const double angle = std::asin(elevation);
         int j = std::min(nodes - 1, int(nodes * std::pow(angle / (std::numbers::pi / 2), 0.25)));
         while (j > 0 && nodeAngle(j, nodes) > angle) --j;
-        const double low = nodeAngle(j, nodes), step = nodeAngle(j + 1, nodes) - low,
-                     t = (angle - low) / step;
+        const double low = nodeAngle(j, nodes), step = nodeAngle(j + 1, nodes) - low, t = (angle - low) / step;
         columns.push_back({float((1 + 2 * t) * (1 - t) * (1 - t)), float(-step * t * (1 - t) * (1 - t)),
                            float(t * t * (3 - 2 * t)), float(step * t * t * (1 - t)), float(elevation), j});
     }
     return columns;
 }
 
-CurvatureParams paramsOf(const PelCurvatureLutDesc& desc, double curvatureMin, double curvatureMax,
-                         size_t terms) {
+CurvatureParams paramsOf(const PelCurvatureLutDesc& desc, double curvatureMin, double curvatureMax, size_t terms) {
     CurvatureParams params{};
     params.width = desc.width;
     params.height = desc.height;
@@ -69,10 +67,10 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
     const size_t group = wide ? 1 : 64, columnsPerItem = wide ? 256 : 1;
     const cl::Program program =
         device->programs().get("lut/curvature_lut.cl", {{"PEL_FORM", std::to_string(int(desc.form))},
-                                                    {"PEL_GROUP", std::to_string(group)},
-                                                    {"PEL_NODES", std::to_string(quality.nodes)},
-                                                    {"PEL_POINTS", std::to_string(quality.points)},
-                                                    {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
+                                                        {"PEL_GROUP", std::to_string(group)},
+                                                        {"PEL_NODES", std::to_string(quality.nodes)},
+                                                        {"PEL_POINTS", std::to_string(quality.points)},
+                                                        {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
     const std::vector<LutColumn> columnWeights = columnsOf(desc.width, desc.axis, quality.nodes);
     const cl::Memory gaussians = upload(*device, terms), nodes = upload(*device, meshOfNodes(quality.nodes)),
                      columns = upload(*device, columnWeights);

@@ -34,8 +34,9 @@ void checkCurvatureDesc(const PelCurvatureLutDesc& desc) {
     checkSide(desc.width, "PelCurvatureLutDesc.width");
     checkSide(desc.height, "PelCurvatureLutDesc.height");
     if (desc.form < PEL_FORM_ARC || desc.form > PEL_FORM_PENNER_RING)
-        invalidArgument("PelCurvatureLutDesc.form is ", int(desc.form),
-                        "; PEL_FORM_ARC (0), _RING (1), _HALF_RING (2), _SPHERE (3) or _PENNER_RING (4) is needed");
+        invalidArgument(
+            "PelCurvatureLutDesc.form is ", int(desc.form),
+            "; PEL_FORM_ARC (0), _RING (1), _HALF_RING (2), _SPHERE (3) or _PENNER_RING (4) is needed");
     if (desc.axis != PEL_AXIS_LINEAR && desc.axis != PEL_AXIS_ROOT)
         invalidArgument("PelCurvatureLutDesc.axis is ", int(desc.axis),
                         "; PEL_AXIS_LINEAR (0) or PEL_AXIS_ROOT (1) is needed");
@@ -45,9 +46,11 @@ void checkCurvatureDesc(const PelCurvatureLutDesc& desc) {
 }
 
 void checkShadowDesc(const PelShadowLutDesc& desc) {
-    if (desc.closedEnds > 1) invalidArgument("PelShadowLutDesc.closedEnds is ", desc.closedEnds, "; 0 or 1 is needed");
+    if (desc.closedEnds > 1)
+        invalidArgument("PelShadowLutDesc.closedEnds is ", desc.closedEnds, "; 0 or 1 is needed");
     if (desc.axis != PEL_AXIS_LINEAR && desc.axis != PEL_AXIS_ROOT)
-        invalidArgument("PelShadowLutDesc.axis is ", int(desc.axis), "; PEL_AXIS_LINEAR (0) or PEL_AXIS_ROOT (1) is needed");
+        invalidArgument("PelShadowLutDesc.axis is ", int(desc.axis),
+                        "; PEL_AXIS_LINEAR (0) or PEL_AXIS_ROOT (1) is needed");
     checkSide(desc.width, "PelShadowLutDesc.width");
     checkSide(desc.height, "PelShadowLutDesc.height");
     checkDiffusionRadius(desc.diffusionRadius, "PelShadowLutDesc.diffusionRadius");

@@ -30,8 +30,7 @@ GaussianShape::GaussianShape(std::vector<GaussianTerm> terms) : terms_(std::move
 Rgb GaussianShape::radial(double distance) const {
     Rgb sum{};
     for (const GaussianTerm& term : terms_) {
-        const double density =
-            std::exp(-distance * distance / (2 * term.variance)) / (2 * pi * term.variance);
+        const double density = std::exp(-distance * distance / (2 * term.variance)) / (2 * pi * term.variance);
         for (int c = 0; c < 3; ++c) sum[c] += term.weight[c] * density;
     }
     return sum;

@@ -66,11 +66,10 @@ Ref<Profile> namedProfile(const char* name) {
     for (const LibraryProfile& entry : library) {
         known.append(known.empty() ? "" : ", ").append(entry.name);
         if (std::string_view(entry.name) != name) continue;
-        Ref<Profile> profile =
-            entry.kind == PEL_PROFILE_SKIN ? Profile::skin()
-            : entry.kind == PEL_PROFILE_DIPOLE
-                ? Profile::dipole(entry.first, entry.second, entry.eta)
-                : Profile::burley(entry.first, entry.second, PEL_BURLEY_DIFFUSE_TRANSMISSION);
+        Ref<Profile> profile = entry.kind == PEL_PROFILE_SKIN ? Profile::skin()
+                               : entry.kind == PEL_PROFILE_DIPOLE
+                                   ? Profile::dipole(entry.first, entry.second, entry.eta)
+                                   : Profile::burley(entry.first, entry.second, PEL_BURLEY_DIFFUSE_TRANSMISSION);
         profile->setName(entry.name);
         profile->setSource(entry.source);
         return profile;

@@ -25,8 +25,9 @@ Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
     }
     const std::vector<LutGaussian> terms = deviceTerms(profile, reciprocalMax);
     const RowAxis axis = rowAxis(desc.axis, desc.height, reciprocalMin, reciprocalMax);
-    ShadowParams params{desc.width,        desc.height,     uint32_t(terms.size()), float(axis.min),     float(axis.step),
-                        desc.sharpening, float(profileCut), {},                     uint32_t(desc.axis), desc.closedEnds};
+    ShadowParams params{desc.width,          desc.height,     uint32_t(terms.size()), float(axis.min),
+                        float(axis.step),    desc.sharpening, float(profileCut),      {},
+                        uint32_t(desc.axis), desc.closedEnds};
     for (int channel = 0; channel < 3; ++channel) {
         double mass = 0;
         for (const GaussianTerm& term : profile.terms())
@@ -44,8 +45,7 @@ Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
     cl::Launch launch(program, "shadowTexels");
     launch.arg(params).arg(gaussians).arg(lut->texels());
     const size_t lit = desc.width - desc.width / 2;
-    device->launch(launch,
-                   {{(lit + columnsPerItem - 1) / columnsPerItem, desc.height + 1, 1}, {group, 1, 1}});
+    device->launch(launch, {{(lit + columnsPerItem - 1) / columnsPerItem, desc.height + 1, 1}, {group, 1, 1}});
     return lut;
 }
 

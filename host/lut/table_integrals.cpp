@@ -8,8 +8,7 @@ namespace pel {
 namespace {
 
 // Gauss-Legendre on [-1, 1], 4 points.
-constexpr double gaussAt[4] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
-                               0.8611363115940526};
+constexpr double gaussAt[4] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526};
 constexpr double gaussWeight[4] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
                                    0.3478548451374538};
 constexpr size_t knotsWorthCells = 128;  // a table of more is finer than the meshes here

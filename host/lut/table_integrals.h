@@ -3,8 +3,8 @@
 #pragma once
 #include <vector>
 
-#include "lut/profile.h"
 #include "lut/lut_terms.h"
+#include "lut/profile.h"
 
 namespace pel {
 

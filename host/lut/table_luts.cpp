@@ -89,8 +89,7 @@ void integrateTableCurvature(Lut& lut, double curvatureMin, double curvatureMax)
 
     const uint32_t lanes = device.info().mathWidth;
     const size_t group = lanes > 1 ? 1 : 64, columnsPerItem = lanes > 1 ? 256 : 1;
-    cl::Defines options{{"PEL_GROUP", std::to_string(group)},
-                        {"PEL_COLUMNS", std::to_string(columnsPerItem)}};
+    cl::Defines options{{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}};
     if (desc.form == PEL_FORM_HALF_RING) options.emplace("PEL_HALF", "1");
     if (chord) options.emplace("PEL_CHORD", "1");
     const cl::Program program = device.programs().get("lut/table_curvature_lut.cl", options);

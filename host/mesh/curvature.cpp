@@ -116,14 +116,10 @@ void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params,
         defines.erase("MESH_QUANTITY");
     }
     cl::Launch estimate(
-        topology.device().programs().get(text("mesh/", edge ? "curvature" : kernel, ".cl"), defines),
-        kernel);
+        topology.device().programs().get(text("mesh/", edge ? "curvature" : kernel, ".cl"), defines), kernel);
     ringArguments(topology, estimate, rows);
     estimate.arg(data.positions.memory).arg(data.positions.layout.offset);
-    estimate.arg(data.normals.memory)
-        .arg(data.normals.layout.offset)
-        .arg(planeStrideOf(topology))
-        .arg(planes);
+    estimate.arg(data.normals.memory).arg(data.normals.layout.offset).arg(planeStrideOf(topology)).arg(planes);
     if (params.estimator == PEL_CURVATURE_QUADRIC) {
         linkRings(topology);
         estimate.arg(topology.scratch(MeshTopology::scratchLinks, 0));

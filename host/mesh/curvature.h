@@ -7,8 +7,8 @@ namespace pel {
 
 void checkCurvatureParams(const PelCurvatureParams& params);
 uint32_t quantityFloats(PelCurvatureQuantity quantity);  // per vertex
-uint32_t planesOf(PelCurvatureQuantity quantity);        // that the passes carry (kernels/lib/mesh/principal.clh)
-uint32_t planeStrideOf(const MeshTopology& topology);    // floats
+uint32_t planesOf(PelCurvatureQuantity quantity);  // that the passes carry (kernels/lib/mesh/principal.clh)
+uint32_t planeStrideOf(const MeshTopology& topology);  // floats
 
 // The steps of a curvature, for those who do not take all of them (mesh/live_mesh.cpp).
 cl::Defines passDefines(const MeshTopology& topology, const PelCurvatureParams& params, uint32_t stride);

@@ -65,8 +65,7 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
                       const PelVertexRange* changed, uint32_t numChanged) {
     MeshTopology& topology = *topology_;
     const std::unique_lock guard(mutex_);
-    stats_.launches = stats_.rowsEstimated = stats_.rowsSmoothed = stats_.rowsStored = stats_.bytesUploaded =
-        0;
+    stats_.launches = stats_.rowsEstimated = stats_.rowsSmoothed = stats_.rowsStored = stats_.bytesUploaded = 0;
     if (topology.vertices() == 0) return;
     std::vector<PelVertexRange> ranges;
     for (uint32_t i = 0; changed && i < numChanged; ++i)
@@ -116,7 +115,8 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
     if (stored.list) {
         cl::Defines defines = passDefines(topology, params_, data.stride);
         defines["MESH_LISTED"] = "1";
-        cl::Launch store(topology.device().programs().get("mesh/curvature.cl", defines), "curvature_store_listed");
+        cl::Launch store(topology.device().programs().get("mesh/curvature.cl", defines),
+                         "curvature_store_listed");
         rowArguments(topology, store, stored);
         store.arg(lanes_).arg(topology.memberOffsets()).arg(topology.members());
         store.arg(planeStride).arg(values.from).arg(estimated);

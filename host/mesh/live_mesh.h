@@ -2,8 +2,8 @@
 #pragma once
 #include <memory>
 
-#include "mesh/mesh_reach.h"
 #include "mesh/curvature.h"
+#include "mesh/mesh_reach.h"
 
 namespace pel {
 

@@ -18,8 +18,7 @@ bool RingBuilder::End::operator<(const End& b) const {
     return std::tie(node, backward, other, triangle) < std::tie(b.node, b.backward, b.other, b.triangle);
 }
 
-RingBuilder::Edges RingBuilder::build(uint32_t slot, Corner* corners, uint32_t count,
-                                      std::vector<uint32_t>& out) {
+RingBuilder::Edges RingBuilder::build(uint32_t slot, Corner* corners, uint32_t count, std::vector<uint32_t>& out) {
     const size_t begin = out.size();
     Edges edges;
     if (count > 0 && !(count <= largestFan && buildFan(corners, count, out))) {
@@ -86,8 +85,7 @@ void RingBuilder::buildTrails(const Corner* corners, uint32_t count, std::vector
     ends_.clear();
     nodes_.clear();
     used_.assign(count, 0);
-    std::vector<uint32_t> order(
-        count);  // the triangles sorted, so that their order in the mesh does not matter
+    std::vector<uint32_t> order(count);  // the triangles sorted, so that their order in the mesh does not matter
     for (uint32_t t = 0; t < count; ++t) order[t] = t;
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         return std::tie(corners[a].from, corners[a].to) < std::tie(corners[b].from, corners[b].to);

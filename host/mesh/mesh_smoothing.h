@@ -25,9 +25,8 @@ void smoothUniform(MeshTopology& topology, const cl::Defines& defines, uint32_t 
 
 // Passes of a smoothing to a radius, and how they go. Waits the first time if params say nothing of stages.
 struct Diffusion {
-    float limit = 0, turn2 = 0;  // of rates, 1/length^2; square of the normal's change at a crease
-    std::vector<float>
-        coefficients;  // of the Chebyshev polynomials from degree 0 on; none: nothing is to be done
+    float limit = 0, turn2 = 0;       // of rates, 1/length^2; square of the normal's change at a crease
+    std::vector<float> coefficients;  // of the Chebyshev polynomials from degree 0 on; none: nothing is to be done
     PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT;
     uint32_t passes() const { return coefficients.empty() ? 0 : uint32_t(coefficients.size()) - 1; }
     // How many edges farther than themselves changed positions reach into the weights.
@@ -39,8 +38,7 @@ Diffusion planDiffusion(MeshTopology& topology, const SlotData& data, const PelC
                         const Scratch& scratch);
 
 // `weighed`: rows whose weights are to be made.
-void smoothToRadius(MeshTopology& topology, const SlotData& data, const Diffusion& diffusion,
-                    SlotPlanes& values, const Scratch& scratch, const Rows& weighed = {},
-                    const RowsOfPass& rows = {});
+void smoothToRadius(MeshTopology& topology, const SlotData& data, const Diffusion& diffusion, SlotPlanes& values,
+                    const Scratch& scratch, const Rows& weighed = {}, const RowsOfPass& rows = {});
 
 }  // namespace pel

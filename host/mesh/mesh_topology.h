@@ -12,8 +12,8 @@ class MeshTopology final : public Object {
   public:
     static constexpr Kind kind = Kind::meshTopology;
     // `progress` is told a fraction in [0, 1].
-    static Ref<MeshTopology> create(Ref<Device> device, const PelMeshTopologyDesc& desc, PelMeshReport& report,
-                                    const std::function<void(double)>& progress);
+    static Ref<MeshTopology> create(Ref<Device> device, const PelMeshTopologyDesc& desc,
+                                    PelMeshReport& report, const std::function<void(double)>& progress);
 
     // Everything that was analysed, as bytes of this machine's order; load() checks all of it.
     std::vector<char> save() const;

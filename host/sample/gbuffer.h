@@ -25,10 +25,10 @@ struct SkinDetail {
 
 struct GBufferOptions {
     SkinDetail detail;
-    double diffusionRadius = 2.7;                      // mm: what the blurred normal is blurred over
-    std::vector<Look> looks;     // of material ids 1, 2, ...; ids beyond are skin
-    std::vector<Tint> tints;     // on skin
-    std::vector<EyeLook> eyes;   // an eye's pixel belongs to the nearest
+    double diffusionRadius = 2.7;  // mm: what the blurred normal is blurred over
+    std::vector<Look> looks;       // of material ids 1, 2, ...; ids beyond are skin
+    std::vector<Tint> tints;       // on skin
+    std::vector<EyeLook> eyes;     // an eye's pixel belongs to the nearest
 };
 
 constexpr float backgroundDepth = 1e10f;  // mm, of viewDepth where nothing was hit

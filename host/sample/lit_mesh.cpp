@@ -125,9 +125,7 @@ class Refiner {
             for (const Piece& p : pieces) halves.push_back({p, {}});
             lightPoints(
                 halves,
-                [](const Halves& h, int k) {
-                    return middle(h.piece.weights[k], h.piece.weights[(k + 1) % 3]);
-                },
+                [](const Halves& h, int k) { return middle(h.piece.weights[k], h.piece.weights[(k + 1) % 3]); },
                 [](Halves & h, int k) -> auto& { return h.light[k]; });
             pieces.clear();
             for (const Halves& h : halves) split(h, pieces);

@@ -49,8 +49,7 @@ struct LitMesh {
 struct LitMeshOptions {
     double coarsest = INFINITY;  // length; longer edges are split whatever the light
     double finest = 0;           // length; shorter edges are not
-    double deviation =
-        0.003;  // of the brightest: how far the middle of an edge may be off the mean of its ends
+    double deviation = 0.003;  // of the brightest: how far the middle of an edge may be off the mean of its ends
     size_t mostTriangles = 40'000'000;
     uint32_t material = 0;  // only triangles of this id give light; 0: all
 };

@@ -110,7 +110,8 @@ void nearestOfTriangle(Vec3 p, Vec3 a, Vec3 b, Vec3 c, double (&weights)[3]) {
     const double area2 = dot(normal, normal);
     double best = INFINITY;
     if (area2 > 0) {
-        const double u = dot(cross(c - b, p - b), normal) / area2, v = dot(cross(a - c, p - c), normal) / area2, w = 1 - u - v;
+        const double u = dot(cross(c - b, p - b), normal) / area2,
+                     v = dot(cross(a - c, p - c), normal) / area2, w = 1 - u - v;
         if (u >= 0 && v >= 0 && w >= 0) {
             weights[0] = u, weights[1] = v, weights[2] = w;
             return;
@@ -135,7 +136,8 @@ struct NearestQuery {
 bool visitTriangle(RTCPointQueryFunctionArguments* arguments) {
     auto& query = *static_cast<NearestQuery*>(arguments->userPtr);
     const auto corner = [&](int k) {
-        const float* v = &query.mesh->positions[3 * size_t(query.mesh->triangles[3 * size_t(arguments->primID) + k])];
+        const float* v =
+            &query.mesh->positions[3 * size_t(query.mesh->triangles[3 * size_t(arguments->primID) + k])];
         return Vec3{v[0], v[1], v[2]};
     };
     const Vec3 a = corner(0), b = corner(1), c = corner(2);
@@ -144,7 +146,9 @@ bool visitTriangle(RTCPointQueryFunctionArguments* arguments) {
     hit.triangle = arguments->primID;
     hit.distance = length(a * hit.weights[0] + b * hit.weights[1] + c * hit.weights[2] - query.p);
     // Of equally near ones the first, whatever the order of the walk.
-    if (hit.distance > query.best->distance || (hit.distance == query.best->distance && hit.triangle > query.best->triangle)) return false;
+    if (hit.distance > query.best->distance ||
+        (hit.distance == query.best->distance && hit.triangle > query.best->triangle))
+        return false;
     *query.best = hit;
     arguments->query->radius = std::nextafter(float(hit.distance), INFINITY);
     return true;

@@ -32,7 +32,8 @@ void traceRows(const Scene& scene, int width, int height, RayAt rayAt, Put put) 
 
 CubeShadowMap renderCubeShadowMap(const Scene& scene, Vec3 light, int size) {
     if (size < 0)
-        throw std::invalid_argument("cube shadow map: a size of " + std::to_string(size) + "; it must be 0 or more");
+        throw std::invalid_argument("cube shadow map: a size of " + std::to_string(size) +
+                                    "; it must be 0 or more");
     CubeShadowMap map;
     map.size = size;
     map.depth.assign(size_t(6) * size_t(size) * size_t(size), 1.0f);
@@ -53,7 +54,8 @@ CubeShadowMap renderCubeShadowMap(const Scene& scene, Vec3 light, int size) {
         scene, size, 6 * size,
         [&](int x, int y) {
             const auto& [axis, u, v] = faces[y / size];
-            const Vec3 direction = axis + u * ((2 * x + 1.0) / size - 1) + v * ((2 * (y % size) + 1.0) / size - 1);
+            const Vec3 direction =
+                axis + u * ((2 * x + 1.0) / size - 1) + v * ((2 * (y % size) + 1.0) / size - 1);
             return Ray{light + direction * nearPlane, normalize(direction)};
         },
         [&](int x, int y, const Ray& ray, const Hit& hit) {
@@ -73,17 +75,19 @@ std::vector<ShadowMap> renderCascades(const Scene& scene, const DirectionalLight
         map.depth.assign(size_t(size) * size_t(size), 1.0f);
         map.extent = extent;
         const double u = dot(focus, map.right), v = dot(focus, map.down);
-        map.worldToUvz = Matrix4::fromRows(map.right * (1 / extent), 0.5 - u / extent, map.down * (1 / extent), 0.5 - v / extent,
-                                           map.forward * (1 / map.depthRange), -map.nearDistance / map.depthRange);
+        map.worldToUvz = Matrix4::fromRows(map.right * (1 / extent), 0.5 - u / extent, map.down * (1 / extent),
+                                           0.5 - v / extent, map.forward * (1 / map.depthRange),
+                                           -map.nearDistance / map.depthRange);
         traceRows(
             scene, size, size,
             [&](int x, int y) {
-                return Ray{map.right * (u + ((x + 0.5) / size - 0.5) * extent) + map.down * (v + ((y + 0.5) / size - 0.5) * extent) +
-                               map.forward * map.nearDistance,
+                return Ray{map.right * (u + ((x + 0.5) / size - 0.5) * extent) +
+                               map.down * (v + ((y + 0.5) / size - 0.5) * extent) + map.forward * map.nearDistance,
                            map.forward};
             },
             [&](int x, int y, const Ray&, const Hit& hit) {
-                map.depth[size_t(y) * size_t(size) + size_t(x)] = float(std::clamp(hit.distance / map.depthRange, 0.0, 1.0));
+                map.depth[size_t(y) * size_t(size) + size_t(x)] =
+                    float(std::clamp(hit.distance / map.depthRange, 0.0, 1.0));
             });
         maps.push_back(std::move(map));
     }

@@ -14,8 +14,7 @@ class BlurNormals final : public Pass {
     static bool needed(const ShaderPlan& plan) { return plan.features & PEL_FEATURE_BLUR_NORMALS; }
 
     PassScratch scratch(const ShaderPlan&) const override {
-        return {10 * sizeof(float), 10 * planeGuardBytes,
-                PEL_BLUR_TAPS * PEL_BLUR_STEP_MAX / PEL_TILE_HEIGHT};
+        return {10 * sizeof(float), 10 * planeGuardBytes, PEL_BLUR_TAPS * PEL_BLUR_STEP_MAX / PEL_TILE_HEIGHT};
     }
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
         const size_t plane = scratchPlaneBytes(plan);
@@ -48,15 +47,10 @@ class BlurNormals final : public Pass {
     void enqueueAround(PassWork& work) override {
         const auto& images = work.plan.state.images;
         cl::Launch launch(program(), "prepare_normals");
-        launch.arg(work.constants.frameMemory())
-            .arg(work.plan.tileLists)
-            .arg(memoryOf(images[PEL_SLOT_MATERIAL]));
+        launch.arg(work.constants.frameMemory()).arg(work.plan.tileLists).arg(memoryOf(images[PEL_SLOT_MATERIAL]));
         launch.arg(memoryOf(images[PEL_SLOT_NORMAL_SHADING]));
         launch.arg(memoryOf(images[PEL_SLOT_POSITION])).arg(memoryOf(images[PEL_SLOT_DEPTH]));
-        launch.arg(normals_.memory())
-            .arg(positions_->memory())
-            .arg(tags_->memory())
-            .arg(cl_uint(work.plan.scratchPlane));
+        launch.arg(normals_.memory()).arg(positions_->memory()).arg(tags_->memory()).arg(cl_uint(work.plan.scratchPlane));
         work.launch(launch, tileRange(work.device, work.tiles()));
         blur(work, false);
     }

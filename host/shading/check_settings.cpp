@@ -113,8 +113,10 @@ void checkMaterial(const PelMaterial& m) {
     checkFinite(name, "deepScatterColor", m.deepScatterColor, 3);
     for (float blend : m.normalBlend)
         if (blend != -1) within(name, {{"normalBlend", blend, 0, 1}});  // -1: the profile's
-    if (m.diffusionRadius != 0) within(name, {{"diffusionRadius", m.diffusionRadius, tiny, huge}});  // 0: a table's or skin's
-    if (m.shadowFilterWidth != 0) within(name, {{"shadowFilterWidth", m.shadowFilterWidth, tiny, huge}});  // 0: from the profile
+    if (m.diffusionRadius != 0)
+        within(name, {{"diffusionRadius", m.diffusionRadius, tiny, huge}});  // 0: a table's or skin's
+    if (m.shadowFilterWidth != 0)
+        within(name, {{"shadowFilterWidth", m.shadowFilterWidth, tiny, huge}});  // 0: from the profile
     within(name, {{"transmission", m.transmission, 0, huge},
                   {"curvatureGain", m.curvatureGain, 0, huge},
                   {"deepScatterRadius", m.deepScatterRadius, tiny, huge},

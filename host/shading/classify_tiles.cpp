@@ -14,8 +14,7 @@ class ClassifyTiles final : public Pass {
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
         const size_t lists = plan.variants.size() > 1 ? 1 + plan.variants.size() : 1;
-        const size_t bytes =
-            (PEL_TILE_LISTS + lists * size_t(plan.listRows()) * plan.tilesX) * sizeof(cl_uint);
+        const size_t bytes = (PEL_TILE_LISTS + lists * size_t(plan.listRows()) * plan.tilesX) * sizeof(cl_uint);
         if (bytes != listBytes_) {
             listBytes_ = 0;
             lists_ = cl::Memory();
@@ -37,8 +36,7 @@ class ClassifyTiles final : public Pass {
         if (work.plan.bandRows < work.plan.tileRows) keepCounts(work);
     }
 
-    void addStats(Device& device, const ShaderPlan& plan, uint64_t bands,
-                  PelShaderStats& stats) const override {
+    void addStats(Device& device, const ShaderPlan& plan, uint64_t bands, PelShaderStats& stats) const override {
         if (!listsTiles(plan)) return;
         std::vector<cl_uint> counts(std::max<size_t>(bands, 1) * PEL_TILE_LISTS);
         device.read(bands > 1 ? bandCounts_.get() : lists_.get(), 0, counts.size() * sizeof(cl_uint),

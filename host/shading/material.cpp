@@ -68,8 +68,7 @@ double transmissionReach(const Profile& profile) {
     return 2 * profile.reach();
 }
 
-const ProfileTables::Tables& ProfileTables::get(const Ref<Device>& device, Profile& profile,
-                                                float filterWidth) {
+const ProfileTables::Tables& ProfileTables::get(const Ref<Device>& device, Profile& profile, float filterWidth) {
     for (const Tables& known : all_)
         if (known.profile.get() == &profile && known.filterWidth == filterWidth) return known;
     all_.push_back({Ref<Profile>(&profile), filterWidth, curvatureTable(device, profile),
@@ -79,9 +78,8 @@ const ProfileTables::Tables& ProfileTables::get(const Ref<Device>& device, Profi
 
 void ProfileTables::keepOnly(const std::map<uint32_t, ShaderMaterial>& materials) {
     std::erase_if(all_, [&](const Tables& t) {
-        return std::none_of(materials.begin(), materials.end(), [&](const auto& m) {
-            return m.second.transmission.get() == t.transmission.get();
-        });
+        return std::none_of(materials.begin(), materials.end(),
+                            [&](const auto& m) { return m.second.transmission.get() == t.transmission.get(); });
     });
 }
 

@@ -8,10 +8,7 @@ namespace pel {
 
 void sceneArguments(cl::Launch& launch, const PassWork& work) {
     const ShadingConstants& constants = work.constants;
-    launch.arg(constants.frameMemory())
-        .arg(constants.materials())
-        .arg(constants.lights())
-        .arg(constants.luts());
+    launch.arg(constants.frameMemory()).arg(constants.materials()).arg(constants.lights()).arg(constants.luts());
     launch.arg(work.plan.tileLists).arg(work.plan.counters).arg(work.plan.ambientNodes);
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
         if (imageSlot(slot).role != SlotRole::PASS) launch.arg(memoryOf(work.plan.state.images[slot]));

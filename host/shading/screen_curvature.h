@@ -12,7 +12,6 @@ struct ScreenCurvatureImages {
 // Throws where parameters or images are wrong or do not fit together.
 void checkScreenCurvature(const PelScreenCurvatureParams& params, const ScreenCurvatureImages& images);
 // Enqueues everything.
-void screenCurvature(Device& device, const PelScreenCurvatureParams& params,
-                     const ScreenCurvatureImages& images);
+void screenCurvature(Device& device, const PelScreenCurvatureParams& params, const ScreenCurvatureImages& images);
 
 }  // namespace pel

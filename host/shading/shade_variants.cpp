@@ -16,13 +16,11 @@ namespace {
 static_assert(PEL_BIT_DIRECT_SCATTER == PEL_FEATURE_DIRECT_SCATTER && PEL_BIT_SHADOW == PEL_FEATURE_SHADOW &&
               PEL_BIT_SHADOW_LUT == PEL_FEATURE_SHADOW_LUT && PEL_BIT_AMBIENT == PEL_FEATURE_AMBIENT &&
               PEL_BIT_DEEP_SCATTER == PEL_FEATURE_DEEP_SCATTER &&
-              PEL_BIT_THICKNESS_TAPS == PEL_FEATURE_THICKNESS_TAPS &&
-              PEL_BIT_SPECULAR == PEL_FEATURE_SPECULAR);
+              PEL_BIT_THICKNESS_TAPS == PEL_FEATURE_THICKNESS_TAPS && PEL_BIT_SPECULAR == PEL_FEATURE_SPECULAR);
 // What the passes before it do does not make another variant of the shading kernel.
 constexpr uint32_t shadeFeatures =
-    (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER |
-    PEL_FEATURE_AMBIENT_CUBE | PEL_FEATURE_IRRADIANCE | PEL_FEATURE_TRANSMISSION |
-    PEL_FEATURE_SHADOW_CUBE | PEL_FEATURE_SHADOW_CASCADES;
+    (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER | PEL_FEATURE_AMBIENT_CUBE |
+    PEL_FEATURE_IRRADIANCE | PEL_FEATURE_TRANSMISSION | PEL_FEATURE_SHADOW_CUBE | PEL_FEATURE_SHADOW_CASCADES;
 // Those that a material asks for (materialNeeds); the others hold for all of a frame.
 constexpr uint32_t materialFeatures = PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SHADOW_LUT |
                                       PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS |
@@ -31,8 +29,7 @@ constexpr uint32_t materialFeatures = PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_S
 static_assert(PEL_BIT_IRRADIANCE == PEL_FEATURE_IRRADIANCE);
 static_assert(PEL_BIT_TRANSMISSION == PEL_FEATURE_TRANSMISSION);
 static_assert(PEL_BIT_GGX == PEL_FEATURE_GGX && PEL_BIT_AMBIENT_SCATTER == PEL_FEATURE_AMBIENT_SCATTER &&
-              PEL_BIT_AMBIENT_CUBE == PEL_FEATURE_AMBIENT_CUBE &&
-              PEL_BIT_SHADOW_CUBE == PEL_FEATURE_SHADOW_CUBE &&
+              PEL_BIT_AMBIENT_CUBE == PEL_FEATURE_AMBIENT_CUBE && PEL_BIT_SHADOW_CUBE == PEL_FEATURE_SHADOW_CUBE &&
               PEL_BIT_SHADOW_CASCADES == PEL_FEATURE_SHADOW_CASCADES);
 // Tiles that a work-item of the classification takes: runs on a CPU, one each on a GPU, which has thousands
 // of work-items.
@@ -114,8 +111,8 @@ std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t feature
     for (const uint32_t needs : needed) {
         const uint32_t left = (features & ~materialFeatures) | needs;
         // Another variant pays where it spares a term of its own (docs/shading.md, "Tiles").
-        if ((features & ~left) &
-            (PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SPECULAR | PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_TRANSMISSION))
+        if ((features & ~left) & (PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SPECULAR |
+                                  PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_TRANSMISSION))
             partial.push_back(left);
     }
     std::ranges::stable_sort(partial, std::greater{}, [](uint32_t f) { return std::popcount(f); });

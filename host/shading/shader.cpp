@@ -44,8 +44,7 @@ void Shader::allocate(uint32_t mostRows) {
     PassList passes = std::exchange(passes_, PassList());
     if (passes.empty()) passes = PassList(passKinds_);
     passes.allocate(device_, plan, mostRows);
-    if (!counters_)
-        counters_ = device_->allocate(PEL_COUNTERS * sizeof(cl_uint));
+    if (!counters_) counters_ = device_->allocate(PEL_COUNTERS * sizeof(cl_uint));
     plan.counters = counters_;
     plan_ = std::move(plan);
     passes_ = std::move(passes);
@@ -74,8 +73,7 @@ void Shader::finishPlan() {
 // The plan's constants.
 void Shader::send() {
     scratchRow_.reset();
-    bytesUploaded_ +=
-        constants_.update(*device_, plan_.state, plan_.variants, plan_.tilesX * plan_.listRows());
+    bytesUploaded_ += constants_.update(*device_, plan_.state, plan_.variants, plan_.tilesX * plan_.listRows());
     passes_.each([&](Pass& pass) { bytesUploaded_ += pass.upload(*device_, plan_); });
 }
 

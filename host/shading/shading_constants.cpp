@@ -19,8 +19,7 @@ void copy(float (&to)[N], const float (&from)[N]) {
 // How far u (row 0) or v (row 1) of a parallel map goes per length.
 double uvPerLength(const float (&m)[16], int row) {
     const float* r = m + 4 * row;
-    return std::sqrt(double(r[0]) * r[0] + double(r[1]) * r[1] + double(r[2]) * r[2]) /
-           std::abs(double(m[15]));
+    return std::sqrt(double(r[0]) * r[0] + double(r[1]) * r[1] + double(r[2]) * r[2]) / std::abs(double(m[15]));
 }
 
 // Texels of a table with its copied last column and row (shared/lut.h).
@@ -77,8 +76,7 @@ void ShadingConstants::gatherLuts(Device& device, const ShaderState& state) {
     std::vector<Ref<Lut>> wanted;
     for (const auto& [id, material] : state.materials)
         for (const Ref<Lut>& lut : {material.curvatureLut, material.shadowLut, material.transmission})
-            if (lut &&
-                std::none_of(wanted.begin(), wanted.end(), [&](auto& w) { return w.get() == lut.get(); }))
+            if (lut && std::none_of(wanted.begin(), wanted.end(), [&](auto& w) { return w.get() == lut.get(); }))
                 wanted.push_back(lut);
     const bool same = std::equal(wanted.begin(), wanted.end(), gathered_.begin(), gathered_.end(),
                                  [](auto& a, auto& b) { return a.get() == b.get(); });
@@ -141,13 +139,13 @@ void ShadingConstants::fillFrame(const ShaderState& state) {
                                std::sqrt(5 / (16 * pi)), two, 0.5 * two};
     for (int i = 0; i < 9; ++i)
         for (int c = 0; c < 3; ++c)
-            frame_.ambient[i][c] = float(factors[i] * state.ambient.sh[i][c] +
-                                         (i == 0 ? double(state.ambient.constant[c]) : 0.0));
+            frame_.ambient[i][c] =
+                float(factors[i] * state.ambient.sh[i][c] + (i == 0 ? double(state.ambient.constant[c]) : 0.0));
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) frame_.images[slot] = describeImage(state.images[slot]);
 }
 
-std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(
-    const ShaderState& state, const std::vector<uint32_t>& variants) const {
+std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(const ShaderState& state,
+                                                                  const std::vector<uint32_t>& variants) const {
     std::vector<PelShadeMaterial> table(state.materials.empty() ? 1 : state.materials.rbegin()->first + 1);
     for (const auto& [id, from] : state.materials) {
         const PelMaterial& m = from.params;

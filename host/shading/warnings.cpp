@@ -34,8 +34,7 @@ std::string warningsOf(const ShaderState& state, uint32_t features) {
     const bool thickness = bool(state.images[PEL_SLOT_THICKNESS]);
     for (const auto& [id, material] : state.materials) {
         const PelMaterial& m = material.params;
-        if (!isBlackColor(m.deepScatterColor) && !state.lights.empty() && !thickness &&
-            !(map && m.thicknessTaps))
+        if (!isBlackColor(m.deepScatterColor) && !state.lights.empty() && !thickness && !(map && m.thicknessTaps))
             warn("material ", id,
                  " has a deepScatterColor without effect: there is neither a thickness image nor a light "
                  "with a "

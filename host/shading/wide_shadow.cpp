@@ -102,9 +102,7 @@ class WideShadow final : public Pass {
         for (const FilteredLight& filtered : plan.filteredLights) {
             const ShaderLight& light = plan.state.lights[filtered.index];
             cl::Launch launch(program(), "wide_shadow");
-            launch.arg(work.constants.frameMemory())
-                .arg(work.constants.materials())
-                .arg(work.constants.lights());
+            launch.arg(work.constants.frameMemory()).arg(work.constants.materials()).arg(work.constants.lights());
             launch.arg(plan.tileLists).arg(plan.counters);
             for (PelImageSlot slot :
                  {PEL_SLOT_MATERIAL, geometricNormalSlot(plan.state), PEL_SLOT_POSITION, PEL_SLOT_DEPTH})

@@ -14,26 +14,30 @@
 #define ERROR_PER_BEND 0.15f
 // Of the tolerance: what a tile may keep without being looked at. Smooth change costs few taps and covers many pixels.
 #define LEFT_ALONE 0.5f
-#define LEAST_LIGHT 0.004f // that a level has to bring
+#define LEAST_LIGHT 0.004f  // that a level has to bring
 
 // The greatest second difference from block to block of level k in and round a tile.
-static inline float bendNear(__global const PelDiffusionFrame* frame, __global const float* pyramid, uint tileX, uint tileY, int k) {
+static inline float bendNear(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                             uint tileX, uint tileY, int k) {
     __global const PelPyramidLevel* level = &frame->level[k + 1];
-    const int shift = PEL_TILE_LEVEL - (k + 1), dilate = 2; // as far as the ring of level k reaches
-    const int x0 = (shift >= 0 ? (int)tileX << shift : (int)(tileX >> -shift)), side = shift >= 0 ? 1 << shift : 1;
+    const int shift = PEL_TILE_LEVEL - (k + 1), dilate = 2;  // as far as the ring of level k reaches
+    const int x0 = (shift >= 0 ? (int)tileX << shift : (int)(tileX >> -shift)),
+              side = shift >= 0 ? 1 << shift : 1;
     const int y0 = (shift >= 0 ? (int)tileY << shift : (int)(tileY >> -shift));
     float bend = 0.0f;
     for (int y = max(y0 - dilate, 0); y < min(y0 + side + dilate, (int)level->height); ++y) {
         __global const float* row = pyramid + pyramidRow(level, y);
         for (int x = max(x0 - dilate, 0); x < min(x0 + side + dilate, (int)level->width); ++x)
-            if (row[x + PEL_PLANE_AREA * level->stride] > 0.0f) bend = fmax(bend, row[x + PEL_PLANE_BEND * level->stride]);
+            if (row[x + PEL_PLANE_AREA * level->stride] > 0.0f)
+                bend = fmax(bend, row[x + PEL_PLANE_BEND * level->stride]);
     }
     return bend;
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void classify_scatter(
-    __global const PelDiffusionFrame* frame, __global const float* pyramid, __global const PelProfileTable* tables,
-    __global const float* nodes, __global uint* tiles, __global uint* counters) {
+    __global const PelDiffusionFrame* frame, __global const float* pyramid,
+    __global const PelProfileTable* tables, __global const float* nodes, __global uint* tiles,
+    __global uint* counters) {
     const uint tile = get_global_id(0);
     if (tile >= frame->tilesX * frame->tilesY) return;
     const uint tileX = tile % frame->tilesX, tileY = tile / frame->tilesX;
@@ -64,7 +68,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void c
         // Levels are left out as long as they make up little of the whole, too.
         const float most = frame->everyTile ? -1.0f : fmin(0.25f * frame->tolerance, 0.5f * error);
         uint start = 0;
-        for (float sum = error > 0.0f ? errors[0] : 0.0f; sum <= most && start + 1 < end; sum += errors[start]) ++start;
+        for (float sum = error > 0.0f ? errors[0] : 0.0f; sum <= most && start + 1 < end; sum += errors[start])
+            ++start;
         first = min(first, start);
         levels = max(levels, end);
     }

@@ -49,7 +49,8 @@ static inline Row loadRow(__global const float* at, uint stride) {
         loadEvenOdd(from + PEL_PLANE_ID * stride, &left, &right);
         row.id[k] = as_uintw(left), row.id[k + 1] = as_uintw(right);
         loadEvenOdd(from + PEL_PLANE_AREA * stride, &row.area[k], &row.area[k + 1]);
-        for (int c = 0; c < 3; ++c) loadEvenOdd(from + (PEL_PLANE_RED + c) * stride, &row.e[c][k], &row.e[c][k + 1]);
+        for (int c = 0; c < 3; ++c)
+            loadEvenOdd(from + (PEL_PLANE_RED + c) * stride, &row.e[c][k], &row.e[c][k + 1]);
     }
     return row;
 }
@@ -64,7 +65,8 @@ static inline floatw bendOfRows(const Row* up, const Row* row, const Row* down) 
     for (int k = 1; k <= 2; ++k) {
         const maskw there = row->area[k] > 0.0f;
 #define THERE(r, i) (((r)->area[i] > 0.0f) & ((r)->id[i] == row->id[k]))
-        const maskw left = THERE(row, k - 1), right = THERE(row, k + 1), above = THERE(up, k), below = THERE(down, k);
+        const maskw left = THERE(row, k - 1), right = THERE(row, k + 1), above = THERE(up, k),
+                    below = THERE(down, k);
 #undef THERE
         for (int c = 0; c < 3; ++c) {
             const floatw here = row->e[c][k];

@@ -13,7 +13,7 @@
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 
-#define REACH_FIRST -2 // of the six blocks on a side, from the parent's first child on
+#define REACH_FIRST -2  // of the six blocks on a side, from the parent's first child on
 #define REACH_LAST 3
 
 typedef struct Pixels {
@@ -44,13 +44,16 @@ static inline __attribute__((always_inline)) floatw loadBlocks(__global const fl
 }
 
 // Adds the blocks of one level. Returns how many lanes were taken.
-static inline __attribute__((always_inline)) uint addLevel(__global const PelDiffusionFrame* frame, __global const float* pyramid, const PelProfileTable table,
-                            __global const float* nodes, uint x, uint y, const uint level, const Pixels* here, maskw active,
-                            Sums* sums) {
+static inline __attribute__((always_inline)) uint addLevel(__global const PelDiffusionFrame* frame,
+                                                           __global const float* pyramid,
+                                                           const PelProfileTable table,
+                                                           __global const float* nodes, uint x, uint y,
+                                                           const uint level, const Pixels* here, maskw active,
+                                                           Sums* sums) {
     __global const PelPyramidLevel* blocks = &frame->level[level];
     const uint stride = blocks->stride;
     const int parentX = (int)(x >> (level + 1)) * 2, parentY = (int)(y >> (level + 1)) * 2;
-    const intw own = ((lanesw() + (int)x) >> (int)level) & 1; // which child of its parent
+    const intw own = ((lanesw() + (int)x) >> (int)level) & 1;  // which child of its parent
     const int ownY = (int)(y >> level) & 1;
     const float reach2 = table.reach * table.reach;
     uint taps = 0;
@@ -64,16 +67,19 @@ static inline __attribute__((always_inline)) uint addLevel(__global const PelDif
             maskw taken = active & (area > 0.0f);
             taken &= as_uintw(loadBlocks(at + PEL_PLANE_ID * stride, level)) == here->id;
             if (innerRow) taken &= (own - i > 1) | (i - own > 1);
-            if (level == 0 && j == ownY) taken &= own != i; // the pixel itself
-            const Vec3w q = vec3(loadBlocks(at + PEL_PLANE_X * stride, level), loadBlocks(at + PEL_PLANE_Y * stride, level),
+            if (level == 0 && j == ownY) taken &= own != i;  // the pixel itself
+            const Vec3w q = vec3(loadBlocks(at + PEL_PLANE_X * stride, level),
+                                 loadBlocks(at + PEL_PLANE_Y * stride, level),
                                  loadBlocks(at + PEL_PLANE_Z * stride, level));
             const Vec3w d = sub3(q, here->p);
             const floatw distance2 = dot3(d, d);
             taken &= distance2 < reach2;
             if (!anyw(taken)) continue;
-            const Vec3w e = vec3(loadBlocks(at + PEL_PLANE_RED * stride, level), loadBlocks(at + PEL_PLANE_GREEN * stride, level),
+            const Vec3w e = vec3(loadBlocks(at + PEL_PLANE_RED * stride, level),
+                                 loadBlocks(at + PEL_PLANE_GREEN * stride, level),
                                  loadBlocks(at + PEL_PLANE_BLUE * stride, level));
-            const Vec3w weight = scale3(profileDensity(nodes, table, distance2), selectw((floatw)(0.0f), area, taken));
+            const Vec3w weight =
+                scale3(profileDensity(nodes, table, distance2), selectw((floatw)(0.0f), area, taken));
             sums->weight = add3(sums->weight, weight);
             sums->light.x = fma(weight.x, e.x, sums->light.x);
             sums->light.y = fma(weight.y, e.y, sums->light.y);
@@ -86,8 +92,10 @@ static inline __attribute__((always_inline)) uint addLevel(__global const PelDif
 
 // The share of the light that comes from within three blocks on a side, the block's own and those round it, on its plane: of an
 // ellipse of their area as slender as the view of the plane, by its radii at every eighth of a turn.
-static inline Vec3w shareWithin(__global const float* nodes, const PelProfileTable table, const Pixels* here, uint level) {
-    const floatw area = here->area * (9.0f / 3.14159265f), size = here->size * (9.0f / 3.14159265f * (float)(1u << 2 * level));
+static inline Vec3w shareWithin(__global const float* nodes, const PelProfileTable table, const Pixels* here,
+                                uint level) {
+    const floatw area = here->area * (9.0f / 3.14159265f),
+                 size = here->size * (9.0f / 3.14159265f * (float)(1u << 2 * level));
     const floatw minor = fmin(size, area), major = area * area / fmax(minor, (floatw)(FLT_MIN));
     const floatw oblique = 2.0f * minor * major / fmax(minor + major, (floatw)(FLT_MIN));
     const Vec3w ends = add3(profileShare(nodes, table, minor), profileShare(nodes, table, major));
@@ -101,9 +109,9 @@ static inline floatw changeOf(floatw light, floatw weight, floatw e, floatw skip
 }
 
 // One table's pixels among PEL_WIDTH of a row: by how much their irradiance changes.
-static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __global const float* pyramid, const PelProfileTable table,
-                                  __global const float* nodes, uint x, uint y, uint first, uint levels, const Pixels* here,
-                                  maskw active, uint* taps) {
+static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                                  const PelProfileTable table, __global const float* nodes, uint x, uint y,
+                                  uint first, uint levels, const Pixels* here, maskw active, uint* taps) {
     const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
     Sums sums;
     sums.light = sums.weight = none;
@@ -115,10 +123,14 @@ static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __glo
     } else {
         skipped = shareWithin(nodes, table, here, first);
     }
-    if (first <= 1 && levels > 1) *taps += addLevel(frame, pyramid, table, nodes, x, y, 1, here, active, &sums);
-    if (first <= 2 && levels > 2) *taps += addLevel(frame, pyramid, table, nodes, x, y, 2, here, active, &sums);
-    for (uint k = max(first, 3u); k < levels; ++k) *taps += addLevel(frame, pyramid, table, nodes, x, y, k, here, active, &sums);
-    return vec3(changeOf(sums.light.x, sums.weight.x, here->e.x, skipped.x), changeOf(sums.light.y, sums.weight.y, here->e.y, skipped.y),
+    if (first <= 1 && levels > 1)
+        *taps += addLevel(frame, pyramid, table, nodes, x, y, 1, here, active, &sums);
+    if (first <= 2 && levels > 2)
+        *taps += addLevel(frame, pyramid, table, nodes, x, y, 2, here, active, &sums);
+    for (uint k = max(first, 3u); k < levels; ++k)
+        *taps += addLevel(frame, pyramid, table, nodes, x, y, k, here, active, &sums);
+    return vec3(changeOf(sums.light.x, sums.weight.x, here->e.x, skipped.x),
+                changeOf(sums.light.y, sums.weight.y, here->e.y, skipped.y),
                 changeOf(sums.light.z, sums.weight.z, here->e.z, skipped.z));
 }
 
@@ -129,27 +141,31 @@ static inline intw tablesOf(__global const PelDiffusionFrame* frame, uintw id) {
 #undef TABLE
 }
 
-static inline Pixels loadPixels(__global const PelDiffusionFrame* frame, __global const float* pyramid, uint x, uint y) {
+static inline Pixels loadPixels(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                                uint x, uint y) {
     const uint stride = frame->level[0].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[0], (int)y) + x;
     Pixels here;
     here.area = loadw(PEL_PLANE_AREA * stride, at);
     here.size = loadw(PEL_PLANE_SIZE * stride, at);
     here.id = as_uintw(loadw(PEL_PLANE_ID * stride, at));
-    here.p = vec3(loadw(PEL_PLANE_X * stride, at), loadw(PEL_PLANE_Y * stride, at), loadw(PEL_PLANE_Z * stride, at));
-    here.e = vec3(loadw(PEL_PLANE_RED * stride, at), loadw(PEL_PLANE_GREEN * stride, at), loadw(PEL_PLANE_BLUE * stride, at));
+    here.p =
+        vec3(loadw(PEL_PLANE_X * stride, at), loadw(PEL_PLANE_Y * stride, at), loadw(PEL_PLANE_Z * stride, at));
+    here.e = vec3(loadw(PEL_PLANE_RED * stride, at), loadw(PEL_PLANE_GREEN * stride, at),
+                  loadw(PEL_PLANE_BLUE * stride, at));
     return here;
 }
 
 // The blocks of a level that hold the pixels from (x, y) on.
-static inline Pixels loadOwnBlocks(__global const PelDiffusionFrame* frame, __global const float* pyramid, uint level, uint x, uint y) {
+static inline Pixels loadOwnBlocks(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                                   uint level, uint x, uint y) {
     const uint stride = frame->level[level].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[level], (int)(y >> level));
     Pixels here;
-#define OWN(plane)                                                                   \
-    {                                                                                \
-        __global const float* values = at + (plane)*stride;                          \
-        own = PEL_LANES(VALUE);                                                      \
+#define OWN(plane)                                          \
+    {                                                       \
+        __global const float* values = at + (plane)*stride; \
+        own = PEL_LANES(VALUE);                             \
     }
 #define VALUE(i, s) values[(x + (i)) >> level]
     floatw own;
@@ -169,24 +185,26 @@ static inline Pixels loadOwnBlocks(__global const PelDiffusionFrame* frame, __gl
 
 // By how much the irradiance of the lanes in `active` changes.
 static inline Vec3w changeOfPixels(__global const PelDiffusionFrame* frame, __global const float* pyramid,
-                                   __global const PelProfileTable* tables, __global const float* nodes, uint x, uint y, uint first,
-                                   uint levels, const Pixels* here, maskw active, uint* pixels, uint* taps) {
+                                   __global const PelProfileTable* tables, __global const float* nodes,
+                                   uint x, uint y, uint first, uint levels, const Pixels* here, maskw active,
+                                   uint* pixels, uint* taps) {
     const intw table = selectw((intw)(0), tablesOf(frame, here->id), active);
     Vec3w change = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
     *pixels += countw(active);
     for (uint t = 1; t <= frame->tables; ++t) {
         const maskw mine = table == (intw)((int)t);
         if (!anyw(mine)) continue;
-        const Vec3w one = scatterPixels(frame, pyramid, tables[t - 1], nodes, x, y, first, levels, here, mine, taps);
+        const Vec3w one =
+            scatterPixels(frame, pyramid, tables[t - 1], nodes, x, y, first, levels, here, mine, taps);
         change = select3(change, one, mine);
     }
     return change;
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_screen(
-    __global const PelDiffusionFrame* frame, __global const float* pyramid, __global const PelProfileTable* tables,
-    __global const float* nodes, __global const uint* tiles, __global uchar* irradiance, __global uchar* out,
-    __global uint* counters) {
+    __global const PelDiffusionFrame* frame, __global const float* pyramid,
+    __global const PelProfileTable* tables, __global const float* nodes, __global const uint* tiles,
+    __global uchar* irradiance, __global uchar* out, __global uint* counters) {
     const uint count = frame->tilesX * frame->tilesY;
     uint pixels = 0, taps = 0;
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
@@ -197,10 +215,12 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
         const uint rows = 1u << min(first, (uint)PEL_TILE_LEVEL);
         const uint items = PEL_DIFFUSION_TILE / PEL_WIDTH * (PEL_DIFFUSION_TILE / rows);
         for (uint item = get_local_id(0); item < items; item += PEL_DIFFUSION_GROUP) {
-            const uint x = tile % frame->tilesX * PEL_DIFFUSION_TILE + item % (PEL_DIFFUSION_TILE / PEL_WIDTH) * PEL_WIDTH;
-            const uint top = tile / frame->tilesX * PEL_DIFFUSION_TILE + item / (PEL_DIFFUSION_TILE / PEL_WIDTH) * rows;
+            const uint x = tile % frame->tilesX * PEL_DIFFUSION_TILE +
+                           item % (PEL_DIFFUSION_TILE / PEL_WIDTH) * PEL_WIDTH;
+            const uint top =
+                tile / frame->tilesX * PEL_DIFFUSION_TILE + item / (PEL_DIFFUSION_TILE / PEL_WIDTH) * rows;
             if (x >= frame->width || top >= frame->height) continue;
-            const uint start = vectorStart(x, frame->width); // of the images' vectors
+            const uint start = vectorStart(x, frame->width);  // of the images' vectors
             const intw column = lanesw() + (int)x, imageColumn = lanesw() + (int)start;
             const maskw inside = column < (int)frame->width;
             Vec3w shared = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
@@ -210,11 +230,13 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
                 const maskw active = inside & (here.area > 0.0f);
                 sharedId = as_uintw(selectw((intw)(0), as_intw(here.id), active));
                 if (anyw(active))
-                    shared = changeOfPixels(frame, pyramid, tables, nodes, x, top, first, levels, &here, active, &pixels, &taps);
+                    shared = changeOfPixels(frame, pyramid, tables, nodes, x, top, first, levels, &here,
+                                            active, &pixels, &taps);
             }
             for (uint y = top; y < min(top + rows, frame->height); ++y) {
                 if (!frame->inPlace) {
-                    const Vec3w as = loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, start, y));
+                    const Vec3w as =
+                        loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, start, y));
                     storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, start, y), as,
                                (imageColumn >= (int)x) & (imageColumn < (int)frame->width));
                     if (!word) continue;
@@ -225,11 +247,14 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
                 const maskw known = active & (here.id == sharedId), unknown = active & notw(known);
                 Vec3w change = shared;
                 if (anyw(unknown))
-                    change = select3(shared, changeOfPixels(frame, pyramid, tables, nodes, x, y, 0, levels, &here, unknown, &pixels, &taps),
+                    change = select3(shared,
+                                     changeOfPixels(frame, pyramid, tables, nodes, x, y, 0, levels, &here,
+                                                    unknown, &pixels, &taps),
                                      unknown);
                 // Less than nothing is an error of the sums.
                 const Vec3w s = add3(here.e, change);
-                storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, x, y), vec3(max0w(s.x), max0w(s.y), max0w(s.z)), active);
+                storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, x, y),
+                           vec3(max0w(s.x), max0w(s.y), max0w(s.z)), active);
             }
         }
     }

@@ -14,8 +14,9 @@
 #define LEAST_COSINE 0.25f
 
 // PEL_WIDTH pixels from (`from`, y) on.
-static inline void copyPoints(__global const PelDiffusionFrame* frame, __global uchar* irradiance, __global uchar* position,
-                              __global uchar* ids, __global float* pyramid, uint from, uint y, uint* covered, uint* invalid) {
+static inline void copyPoints(__global const PelDiffusionFrame* frame, __global uchar* irradiance,
+                              __global uchar* position, __global uchar* ids, __global float* pyramid,
+                              uint from, uint y, uint* covered, uint* invalid) {
     const uint x = vectorStart(from, frame->width);
     const intw column = lanesw() + (int)x;
     const maskw mine = (column >= (int)from) & (column < (int)frame->width);
@@ -57,8 +58,8 @@ static inline void copyPoints(__global const PelDiffusionFrame* frame, __global 
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void surface_points(
-    __global const PelDiffusionFrame* frame, __global uchar* irradiance, __global uchar* position, __global uchar* ids,
-    __global float* pyramid, __global uint* counters) {
+    __global const PelDiffusionFrame* frame, __global uchar* irradiance, __global uchar* position,
+    __global uchar* ids, __global float* pyramid, __global uint* counters) {
     const uint y = get_global_id(0) / PEL_ROW_PARTS, part = get_global_id(0) % PEL_ROW_PARTS;
     if (y >= frame->height) return;
     const uint vectors = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH;
@@ -71,19 +72,21 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
 
 typedef struct Step {
     Vec3w v;
-    floatw length2; // FLT_MAX: there is none
+    floatw length2;  // FLT_MAX: there is none
 } Step;
 
 // The shorter of the steps to the neighbours that are of the same object: the longer one may lead off the surface.
-static inline Step shorterStep(__global const float* pyramid, size_t here, long to, uint stride, Vec3w p, uintw id) {
+static inline Step shorterStep(__global const float* pyramid, size_t here, long to, uint stride, Vec3w p,
+                               uintw id) {
     Step step;
     step.v = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
     step.length2 = FLT_MAX;
     for (int side = -1; side <= 1; side += 2) {
         const size_t at = here + (size_t)(to * side);
         const maskw same = as_uintw(loadw(at + PEL_PLANE_ID * stride, pyramid)) == id;
-        const Vec3w q = vec3(loadw(at + PEL_PLANE_X * stride, pyramid), loadw(at + PEL_PLANE_Y * stride, pyramid),
-                             loadw(at + PEL_PLANE_Z * stride, pyramid));
+        const Vec3w q =
+            vec3(loadw(at + PEL_PLANE_X * stride, pyramid), loadw(at + PEL_PLANE_Y * stride, pyramid),
+                 loadw(at + PEL_PLANE_Z * stride, pyramid));
         const Vec3w v = scale3(sub3(q, p), (floatw)((float)side));
         const floatw length2 = dot3(v, v);
         const maskw better = same & (length2 < step.length2);
@@ -97,7 +100,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
     __global const PelDiffusionFrame* frame, __global float* pyramid) {
     const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
     if (y >= frame->height) return;
-    const uint x = get_global_id(0) % across * PEL_WIDTH; // beyond the last column lies the guard
+    const uint x = get_global_id(0) % across * PEL_WIDTH;  // beyond the last column lies the guard
     __global const PelPyramidLevel* level = &frame->level[0];
     const size_t row = pyramidRow(level, (int)y) + x;
     const uint stride = level->stride;
@@ -105,8 +108,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
     const maskw there = id != (uintw)(0);
     floatw area = 0.0f, size = 0.0f;
     if (anyw(there)) {
-        const Vec3w p = vec3(loadw(row + PEL_PLANE_X * stride, pyramid), loadw(row + PEL_PLANE_Y * stride, pyramid),
-                             loadw(row + PEL_PLANE_Z * stride, pyramid));
+        const Vec3w p =
+            vec3(loadw(row + PEL_PLANE_X * stride, pyramid), loadw(row + PEL_PLANE_Y * stride, pyramid),
+                 loadw(row + PEL_PLANE_Z * stride, pyramid));
         const Step right = shorterStep(pyramid, row, 1, stride, p, id);
         const Step down = shorterStep(pyramid, row, (long)stride * PEL_PYRAMID_PLANES, stride, p, id);
         const Vec3w cross = cross3(right.v, down.v);

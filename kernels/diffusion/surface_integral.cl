@@ -27,13 +27,14 @@ static inline Vec3w surface_enclosed(SurfaceSum sum, __global const float4* tabl
     const floatw below = fmin(r * exp2(-sum.firstLog2), (floatw)(1.0f));
     const intw i = convert_intw(row);
     const floatw f = row - convert_floatw(i);
-    const floatw g = 1.0f - f, v1 = f * f * fma((floatw)(-2.0f), f, (floatw)(3.0f)), s0 = f * g * g, s1 = -f * f * g;
+    const floatw g = 1.0f - f, v1 = f * f * fma((floatw)(-2.0f), f, (floatw)(3.0f)), s0 = f * g * g,
+                 s1 = -f * f * g;
     Vec3w m;
-#define SURFACE_LANE_(k, s)                                                                              \
-    {                                                                                                    \
-        __global const float4* at = table + 2 * (i s);                                                   \
-        const float4 value = at[0] + (v1 s) * (at[2] - at[0]) + (s0 s) * at[1] + (s1 s) * at[3];         \
-        m.x s = value.x, m.y s = value.y, m.z s = value.z;                                               \
+#define SURFACE_LANE_(k, s)                                                                  \
+    {                                                                                        \
+        __global const float4* at = table + 2 * (i s);                                       \
+        const float4 value = at[0] + (v1 s) * (at[2] - at[0]) + (s0 s)*at[1] + (s1 s)*at[3]; \
+        m.x s = value.x, m.y s = value.y, m.z s = value.z;                                   \
     }
     PEL_EACH_LANE(SURFACE_LANE_)
 #undef SURFACE_LANE_
@@ -47,11 +48,11 @@ static inline Vec3w surface_radial(SurfaceSum sum, __global const float4* table,
     const intw i = convert_intw(row);
     const floatw f = row - convert_floatw(i);
     Vec3w slope;
-#define SURFACE_LANE_(k, s)                                                \
-    {                                                                      \
-        __global const float4* at = table + 2 * (i s);                     \
-        const float4 value = at[1] + (f s) * (at[3] - at[1]);              \
-        slope.x s = value.x, slope.y s = value.y, slope.z s = value.z;     \
+#define SURFACE_LANE_(k, s)                                            \
+    {                                                                  \
+        __global const float4* at = table + 2 * (i s);                 \
+        const float4 value = at[1] + (f s) * (at[3] - at[1]);          \
+        slope.x s = value.x, slope.y s = value.y, slope.z s = value.z; \
     }
     PEL_EACH_LANE(SURFACE_LANE_)
 #undef SURFACE_LANE_
@@ -80,13 +81,13 @@ __constant float surface_at[4] = {0.0694318442f, 0.3300094782f, 0.6699905218f, 0
 __constant float surface_part[4] = {0.1739274226f, 0.3260725774f, 0.3260725774f, 0.1739274226f};
 // Edges that span less, as the tangent of half the hyperbolic angle, take one rule in t.
 #define SURFACE_SHORT 0.125f
-#define SURFACE_PIECES 512 // of an edge, at most
+#define SURFACE_PIECES 512  // of an edge, at most
 // Narrowest D, part of an edge: nearer lines are passed at this distance.
 #define SURFACE_NARROW 1e-6f
 
 // What one triangle adds.
-static inline Vec3w surface_triangle(SurfaceSum sum, __global const float4* table, __global const SurfaceTriangle* triangle,
-                                     Vec3w x) {
+static inline Vec3w surface_triangle(SurfaceSum sum, __global const float4* table,
+                                     __global const SurfaceTriangle* triangle, Vec3w x) {
     float3 corner[3], light[3];
     for (int k = 0; k < 3; ++k) {
         corner[k] = vload3(k, triangle->corner);
@@ -116,10 +117,12 @@ static inline Vec3w surface_triangle(SurfaceSum sum, __global const float4* tabl
         const floatw distance = fmax(fabs(D), (floatw)(SURFACE_NARROW * edge));
         Vec3w angle = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), length = angle;
         // Seen from afar an edge spans 2 artanh of this; the difference of two asinh would leave nothing of small triangles.
-        const floatw root0 = sqrt(fma(t0, t0, distance * distance)), root1 = sqrt(fma(t1, t1, distance * distance));
+        const floatw root0 = sqrt(fma(t0, t0, distance * distance)),
+                     root1 = sqrt(fma(t1, t1, distance * distance));
         const bool isShort = largest_lane(edge / (root0 + root1)) < SURFACE_SHORT && sum.piecesPerU < 1.0f;
         const floatw u0 = surface_asinh(t0 / distance), range = surface_asinh(t1 / distance) - u0;
-        const int pieces = isShort ? 1 : clamp((int)ceil(largest_lane(range) * sum.piecesPerU), 1, SURFACE_PIECES);
+        const int pieces =
+            isShort ? 1 : clamp((int)ceil(largest_lane(range) * sum.piecesPerU), 1, SURFACE_PIECES);
         const floatw step = range / (floatw)((float)pieces);
         for (int i = 0; i < pieces; ++i)
             for (int q = 0; q < 4; ++q) {
@@ -142,7 +145,8 @@ static inline Vec3w surface_triangle(SurfaceSum sum, __global const float4* tabl
             }
         const float mb = dot(m, towardsB), mc = dot(m, towardsC);
         // An edge whose line the point is on turns by nothing.
-        const floatw sign = selectw(copysign((floatw)(1.0f), D), (floatw)(0.0f), fabs(D) < (floatw)(SURFACE_NARROW * edge));
+        const floatw sign =
+            selectw(copysign((floatw)(1.0f), D), (floatw)(0.0f), fabs(D) < (floatw)(SURFACE_NARROW * edge));
         result = add3(result, add3(mul3(there, scale3(angle, sign)), mul3(all3(mb * b + mc * c), length)));
     }
     return result;
@@ -161,14 +165,17 @@ static inline Vec3w surface_ended(SurfaceSum sum, __global const float4* table, 
 
 // The same by 7 points, exact to degree 5 [Radon 1948], for a triangle that is small beside its distance: there the borders'
 // shares cancel to less than their rounding.
-__constant float surface_corner[7][3] = {{0.333333333f, 0.333333333f, 0.333333333f}, {0.059715872f, 0.470142064f, 0.470142064f},
-                                         {0.470142064f, 0.059715872f, 0.470142064f}, {0.470142064f, 0.470142064f, 0.059715872f},
-                                         {0.797426985f, 0.101286507f, 0.101286507f}, {0.101286507f, 0.797426985f, 0.101286507f},
-                                         {0.101286507f, 0.101286507f, 0.797426985f}};
-__constant float surface_weight[7] = {0.225f, 0.132394153f, 0.132394153f, 0.132394153f, 0.125939181f, 0.125939181f, 0.125939181f};
-#define SURFACE_SMALL 5.0f // distances in radii from which on this is done: 1e-5 of the energy are left
+__constant float surface_corner[7][3] = {
+    {0.333333333f, 0.333333333f, 0.333333333f}, {0.059715872f, 0.470142064f, 0.470142064f},
+    {0.470142064f, 0.059715872f, 0.470142064f}, {0.470142064f, 0.470142064f, 0.059715872f},
+    {0.797426985f, 0.101286507f, 0.101286507f}, {0.101286507f, 0.797426985f, 0.101286507f},
+    {0.101286507f, 0.101286507f, 0.797426985f}};
+__constant float surface_weight[7] = {0.225f,       0.132394153f, 0.132394153f, 0.132394153f,
+                                      0.125939181f, 0.125939181f, 0.125939181f};
+#define SURFACE_SMALL 5.0f  // distances in radii from which on this is done: 1e-5 of the energy are left
 
-static inline Vec3w surface_sampled(SurfaceSum sum, __global const float4* table, __global const SurfaceTriangle* triangle, Vec3w x) {
+static inline Vec3w surface_sampled(SurfaceSum sum, __global const float4* table,
+                                    __global const SurfaceTriangle* triangle, Vec3w x) {
     float3 corner[3], light[3];
     for (int k = 0; k < 3; ++k) {
         corner[k] = vload3(k, triangle->corner);
@@ -195,16 +202,17 @@ static inline void surface_add(Vec3w* total, Vec3w* lost, Vec3w term) {
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_integral(
     SurfaceSum sum, __global const SurfaceNode* nodes, __global const SurfaceTriangle* triangles,
-    __global const float4* table, __global const float* points, VertexLayout pointLayout, __global float* result,
-    VertexLayout resultLayout, uint first, uint end) {
+    __global const float4* table, __global const float* points, VertexLayout pointLayout,
+    __global float* result, VertexLayout resultLayout, uint first, uint end) {
     const uint begin = first + get_global_id(0) * PEL_WIDTH;
     if (begin >= end) return;
     Vec3w x;
     // Lanes behind the last point repeat it.
-#define SURFACE_LANE_(k, s)                                                                                            \
-    {                                                                                                                  \
-        const float3 p = vload3(0, points + pointLayout.offset + (size_t)min(begin + k, end - 1) * pointLayout.stride); \
-        x.x s = p.x, x.y s = p.y, x.z s = p.z;                                                                         \
+#define SURFACE_LANE_(k, s)                                                                                \
+    {                                                                                                      \
+        const float3 p =                                                                                   \
+            vload3(0, points + pointLayout.offset + (size_t)min(begin + k, end - 1) * pointLayout.stride); \
+        x.x s = p.x, x.y s = p.y, x.z s = p.z;                                                             \
     }
     PEL_EACH_LANE(SURFACE_LANE_)
 #undef SURFACE_LANE_
@@ -214,7 +222,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_int
     uint i = 0;
     while (i < sum.nodes) {
         __global const SurfaceNode* node = nodes + i;
-        const Vec3w d = sub3(vec3((floatw)(node->centre[0]), (floatw)(node->centre[1]), (floatw)(node->centre[2])), x);
+        const Vec3w d =
+            sub3(vec3((floatw)(node->centre[0]), (floatw)(node->centre[1]), (floatw)(node->centre[2])), x);
         const floatw r2 = dot3(d, d);
         const float reach = sum.reach + node->radius;
         const maskw beyond = (r2 >= (floatw)(reach * reach));
@@ -227,7 +236,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_int
             if (sum.cut[c] > 0.0f) near |= (fabs(sqrt(r2) - sum.cut[c]) < (floatw)(node->radius));
         if (!anyw(near)) {
             const Vec3w R = surface_ended(sum, table, r2);
-            surface_add(&total, &lost, mul3(R, vec3((floatw)(node->weight[0]), (floatw)(node->weight[1]), (floatw)(node->weight[2]))));
+            surface_add(
+                &total, &lost,
+                mul3(R, vec3((floatw)(node->weight[0]), (floatw)(node->weight[1]), (floatw)(node->weight[2]))));
             i = node->skip;
         } else if (node->triangle != SURFACE_NONE) {
             const float small = SURFACE_SMALL * node->radius;
@@ -241,9 +252,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_int
         }
     }
     total = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), total, usable);
-#define SURFACE_LANE_(k, s)                                                                                          \
-    if (begin + k < end)                                                                                             \
-        vstore3((float3)(total.x s, total.y s, total.z s), 0,                                                        \
+#define SURFACE_LANE_(k, s)                                   \
+    if (begin + k < end)                                      \
+        vstore3((float3)(total.x s, total.y s, total.z s), 0, \
                 result + resultLayout.offset + (size_t)(begin + k) * resultLayout.stride);
     PEL_EACH_LANE(SURFACE_LANE_)
 #undef SURFACE_LANE_

@@ -203,8 +203,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvatureRo
                 const floatw weight = frontHalf * gaussWeight[q];
                 // versine of the sum of two angles
                 const floatw versine = node.versine + node.cosine * vd + node.sine * sd;
-                const Rgb k =
-                    kernelAt(gaussians, front, params.gaussians, radius, node.angle + d, versine, 0);
+                const Rgb k = kernelAt(gaussians, front, params.gaussians, radius, node.angle + d, versine, 0);
                 E = rgbFma(k, weight * sd, E);
                 F = rgbFma(k, weight * (1.0f - vd), F);
                 missing = rgbFma(k, weight * versine, missing);
@@ -264,8 +263,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvatureRo
     }
     scale = (Rgb){1.0f / all.r, 1.0f / all.g, 1.0f / all.b};
     back = (Rgb){2.0f * back.r * scale.r, 2.0f * back.g * scale.g, 2.0f * back.b * scale.b};
-    frontTotal =
-        (Rgb){fma(mean.r, scale.r, back.r), fma(mean.g, scale.g, back.g), fma(mean.b, scale.b, back.b)};
+    frontTotal = (Rgb){fma(mean.r, scale.r, back.r), fma(mean.g, scale.g, back.g), fma(mean.b, scale.b, back.b)};
 #else
     // A kernel too narrow for the mesh has no mass on it: it is a point, and E is 0.
     scale = (Rgb){0.5f / fmax(mass.r, 1e-30f), 0.5f / fmax(mass.g, 1e-30f), 0.5f / fmax(mass.b, 1e-30f)};

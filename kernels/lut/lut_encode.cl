@@ -4,8 +4,9 @@
 // One work-item: one texel, but for countClipped. Variants: PEL_GROUP, work-items in a group.
 #include "lib/lut/lut_lookup.clh"
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeFloat(
-    const LutLayout lut, __global const float4* texels, __global float* packed) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeFloat(const LutLayout lut,
+                                                                                 __global const float4* texels,
+                                                                                 __global float* packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x >= lut.width) return;
     vstore3(texels[(size_t)y * lut.rowTexels + x].xyz, (size_t)y * lut.width + x, packed);
@@ -31,8 +32,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeCurva
 }
 
 // One work-item: one row. Texels that the above clips in some channel.
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void countClipped(
-    const LutLayout lut, __global const float4* texels, __global uint* clipped) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void countClipped(const LutLayout lut,
+                                                                                  __global const float4* texels,
+                                                                                  __global uint* clipped) {
     const uint y = get_global_id(0);
     if (y >= lut.height) return;
     uint found = 0;
@@ -58,8 +60,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeShado
 }
 
 // Specular tables are kept as they are, like those of d'Eon and Luebke.
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeBytes(
-    const LutLayout lut, __global const float4* texels, __global uchar* packed) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeBytes(const LutLayout lut,
+                                                                                 __global const float4* texels,
+                                                                                 __global uchar* packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x >= lut.width) return;
     float4 value = texels[(size_t)y * lut.rowTexels + x];

@@ -131,8 +131,8 @@ typedef struct Far {
 } Far;
 
 // U of the whole profile at the distance zeta behind the middle of the edge.
-inline Far farSideOfAll(__global const LutGaussian* gaussians, const uint count, const floatw zeta, const float b,
-                        const float cut) {
+inline Far farSideOfAll(__global const LutGaussian* gaussians, const uint count, const floatw zeta,
+                        const float b, const float cut) {
     Far U = {0.0f, 0.0f, 0.0f};
     for (uint g = 0; g < count; ++g) {
         const LutGaussian G = gaussians[g];
@@ -197,7 +197,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadowTexel
         const floatw w = fmin(column / (float)params.width, 1.0f);
         // p - 1/2 = (sqrt w - sqrt(1 - w)) / 2 without its cancellation
         floatw z = (column - 0.5f * (float)params.width) / (float)params.width / (sqrt(w) + sqrt(1.0f - w));
-        if (params.axis == LUT_AXIS_ROOT) z = (column - 0.5f * (float)params.width) / (float)(max(params.width, 2u) - 1);
+        if (params.axis == LUT_AXIS_ROOT)
+            z = (column - 0.5f * (float)params.width) / (float)(max(params.width, 2u) - 1);
         z = fmin(z, 0.5f);
         const Far U = farSideOfAll(gaussians, params.gaussians, z / q, b, params.cut);
         storeTexels(texels + (size_t)y * (params.width + 1), params.width, x, U.r, U.g, U.b, z, mass, endU,

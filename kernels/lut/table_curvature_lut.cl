@@ -56,8 +56,8 @@ inline void turn(Sum* E, Sum* F, const float h, const float4 addE, const float4 
 
 // Distance from the point to another at the angle, and how fast it grows.
 #ifdef PEL_CHORD
-#define DISTANCE(r, angle) (2.0f * (r) * sin(0.5f * (angle)))
-#define BEHIND(r, angle) (2.0f * (r) * cos(0.5f * (angle)))  // at pi - angle
+#define DISTANCE(r, angle) (2.0f * (r)*sin(0.5f * (angle)))
+#define BEHIND(r, angle) (2.0f * (r)*cos(0.5f * (angle)))  // at pi - angle
 #else
 #define DISTANCE(r, angle) ((r) * (angle))
 #define BEHIND(r, angle) ((r) * (M_PI_F - (angle)))
@@ -92,8 +92,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableArcRow
             if (middle > 0.2f)
                 backMass /= sin(0.5f * middle);
             else
-                backMass = 0.5f * h * r * (spreadAt(tails, BEHIND(r, angle + 0.211324865f * h), end) +
-                                           spreadAt(tails, BEHIND(r, angle + 0.788675135f * h), end));
+                backMass = 0.5f * h * r *
+                           (spreadAt(tails, BEHIND(r, angle + 0.211324865f * h), end) +
+                            spreadAt(tails, BEHIND(r, angle + 0.788675135f * h), end));
             add(&mass, frontMass + backMass);
 #endif
             // About this node: the middle, and to which side K leans.
@@ -155,8 +156,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableRingRo
         const float frontKnot = frontPiece > 0 ? knotAngle(knots[frontPiece].w, diameter) : 0.0f;
         float backKnot = 0.0f;
 #ifndef PEL_HALF
-        if (backPiece < (int)params.knots)
-            backKnot = M_PI_F - knotAngle(knots[backPiece + 1].w, diameter);
+        if (backPiece < (int)params.knots) backKnot = M_PI_F - knotAngle(knots[backPiece + 1].w, diameter);
 #endif
         const float next = fmax(lower, fmax(frontKnot, backKnot));
         const float h = angle - next;

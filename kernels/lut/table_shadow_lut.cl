@@ -38,8 +38,7 @@ inline float4 rampOnSide(__global const float4* tails, const float zeta, const f
     const float yEnd = clamp((end - sign * zeta) / b, -1.0f, 1.0f);
     float4 sum = 0.0f;
     for (int i = first; i <= last; ++i) {
-        const float next =
-            i == last ? yEnd : clamp((tailDistance(i + 1, end) - sign * zeta) / b, -1.0f, 1.0f);
+        const float next = i == last ? yEnd : clamp((tailDistance(i + 1, end) - sign * zeta) / b, -1.0f, 1.0f);
         const float half_ = 0.5f * (next - y), middle = 0.5f * (next + y);
         for (int q = 0; q < 2; ++q) {
             const float at = middle + half_ * (q ? 0.577350269f : -0.577350269f);
@@ -75,14 +74,16 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableShadow
     const float4 mass = 2.0f * tails[TAIL_MASS];
     // What is left of the light where the filter ends.
     float4 end = 0.0f;
-    if (params.closedEnds && begin < params.width) end = clamp(farSide(tails, 0.5f / q, b, mass, params.end), 0.0f, 0.5f * mass);
+    if (params.closedEnds && begin < params.width)
+        end = clamp(farSide(tails, 0.5f / q, b, mass, params.end), 0.0f, 0.5f * mass);
     const float4 between = mass - 2.0f * end;
     __global float4* line = texels + (size_t)y * (params.width + 1);
     for (uint x = begin; x < min(begin + PEL_COLUMNS, params.width); ++x) {
         const float column = (float)x + 0.5f, w = fmin(column / (float)params.width, 1.0f);
         // p - 1/2 = (sqrt w - sqrt(1 - w)) / 2 without its cancellation
         float z = (column - 0.5f * (float)params.width) / (float)params.width / (sqrt(w) + sqrt(1.0f - w));
-        if (params.axis == LUT_AXIS_ROOT) z = (column - 0.5f * (float)params.width) / (float)(max(params.width, 2u) - 1);
+        if (params.axis == LUT_AXIS_ROOT)
+            z = (column - 0.5f * (float)params.width) / (float)(max(params.width, 2u) - 1);
         z = fmin(z, 0.5f);
         float4 U = clamp(farSide(tails, z / q, b, mass, params.end), 0.0f, mass);
         float4 lit = mass - U;

@@ -12,10 +12,9 @@
 
 // (min + max) / 2 of |dn| / |dp| over the edges of a slot [FaceWorks 1.0].
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_edge(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
-    __global const uint* runs, __global const float* positions,
-    uint positionOffset, __global const float* normals, uint normalOffset, uint planeStride,
-    __global float* curvature) {
+    uint slots, uint listed, __global const uint* list, __global const uint* slices,
+    __global const uint* rings, __global const uint* runs, __global const float* positions, uint positionOffset,
+    __global const float* normals, uint normalOffset, uint planeStride, __global float* curvature) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ring_begin(first, slots, slices);
@@ -48,8 +47,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
 // The mean over a slot's triangles of their other two slots' values, itself not included.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_smooth(
     uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
-    __global const uint* runs, uint planeStride,
-    __global const float* from, __global float* to) {
+    __global const uint* runs, uint planeStride, __global const float* from, __global float* to) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     from += (size_t)get_global_id(1) * planeStride;
@@ -73,8 +71,8 @@ inline float finite_or_zero(float value) {
 }
 
 // `planes` after smoothing, `estimated` as the estimator left them (for the directions).
-inline void store_quantity(uint slot, uint planeStride, __global const float* planes, __global const float* estimated,
-                           float scale, __global float* result) {
+inline void store_quantity(uint slot, uint planeStride, __global const float* planes,
+                           __global const float* estimated, float scale, __global float* result) {
     const float first = planes[slot] * scale;
 #if MESH_PLANES > 1
     const float second = planes[(size_t)planeStride + slot] * scale;
@@ -110,14 +108,16 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
 #else
     const uint slot = vertex;
 #endif
-    store_quantity(slot, planeStride, planes, estimated, scale, result + layout.offset + (size_t)vertex * layout.stride);
+    store_quantity(slot, planeStride, planes, estimated, scale,
+                   result + layout.offset + (size_t)vertex * layout.stride);
 }
 
 // The same for the vertices of some slots: those of the listed slices whose bit is set in lanes[].
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_store_listed(
     uint slots, uint listed, __global const uint* list, __global const uint* lanes,
-    __global const uint* memberOffsets, __global const uint* members, uint planeStride, __global const float* planes,
-    __global const float* estimated, float scale, __global float* result, VertexLayout layout) {
+    __global const uint* memberOffsets, __global const uint* members, uint planeStride,
+    __global const float* planes, __global const float* estimated, float scale, __global float* result,
+    VertexLayout layout) {
     const uint item = get_global_id(0), slot = mesh_slot(item, slots, listed, list);
     if (slot >= slots || !(lanes[item / MESH_LANES] >> (item % MESH_LANES) & 1)) return;
     result += layout.offset;

@@ -21,8 +21,8 @@
 // slivers (with DIFFUSE_AREA by diffuse_limit, from weight / area). crease2: square of the change of normal at which weights
 // fall to 1/e; 0: none do.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_weights(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
-    __global const uint* runs, __global const float* positions,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices,
+    __global const uint* rings, __global const uint* runs, __global const float* positions,
     uint positionOffset, __global const float* normals, uint normalOffset, float limit, float crease2,
     __global float* weights, __global float* rates) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
@@ -132,10 +132,10 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_li
 // next = gain (current + L current / limit) - before, where gain is 2, or 1 for the first stage, which has nothing before;
 // sum += coefficient next, where the first stage begins with `begin` current. next may be before.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_stage(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
-    __global const uint* runs, __global const float* weights,
-    uint planeStride, __global const float* current, __global const float* before, __global float* next,
-    __global float* sum, int isFirst, float begin, float coefficient) {
+    uint slots, uint listed, __global const uint* list, __global const uint* slices,
+    __global const uint* rings, __global const uint* runs, __global const float* weights, uint planeStride,
+    __global const float* current, __global const float* before, __global float* next, __global float* sum,
+    int isFirst, float begin, float coefficient) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     const size_t plane = (size_t)get_global_id(1) * planeStride;

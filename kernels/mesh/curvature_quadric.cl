@@ -111,7 +111,7 @@ typedef struct Chart {
     floatw scale, xx, xy, yy;
     floatw round, farthest2;
     maskw replaced;  // the normal is the ring's mean
-    uint last;  // slot of the mesh
+    uint last;       // slot of the mesh
 } Chart;
 
 typedef struct Fit {
@@ -127,7 +127,8 @@ inline void add_point(Fit* fit, uintw slot, maskw counts, const Chart* chart, __
     p = scale3(sub3(p, chart->origin), chart->scale);
     const floatw zero = 0.0f;
     const floatw along = dot3(p, chart->u), across = dot3(p, chart->v), q = dot3(p, chart->height);
-    const floatw flat2 = fma(along, along, across * across), softened = fma(chart->round, (floatw)(WEIGHT_SOFTENING), dot3(p, p));
+    const floatw flat2 = fma(along, along, across * across),
+                 softened = fma(chart->round, (floatw)(WEIGHT_SOFTENING), dot3(p, p));
     const floatw bent = fma(chart->bend * q, q, flat2) + 1e-30f;
     counts &= finitew(softened * bent);
     const floatw inverse = 1.0f / (softened * bent);  // of both in one division
@@ -198,7 +199,8 @@ inline maskw solve(Fit* fit, floatw ridge) {
     floatw inverse[TERMS], quadratic = 1.0f, cubic = 1.0f;
 #pragma unroll
     for (int i = 0; i < TERMS; ++i)
-        fit->products[PRODUCT(i, i)] += fit->weight * (float)ridgeShares[i] * (i < 5 ? (floatw)(RIDGE_QUADRATIC) : ridge);
+        fit->products[PRODUCT(i, i)] +=
+            fit->weight * (float)ridgeShares[i] * (i < 5 ? (floatw)(RIDGE_QUADRATIC) : ridge);
     const floatw quadraticAlone = block_determinant(fit, 2, 3), cubicAlone = block_determinant(fit, 5, 4);
 #pragma unroll
     for (int i = 0; i < TERMS; ++i) {
@@ -215,8 +217,10 @@ inline maskw solve(Fit* fit, floatw ridge) {
             pivot = fma(-sum * inverse[j], sum, pivot);
             fit->right[i] = fma(-sum * inverse[j], fit->right[j], fit->right[i]);
         }
-        if (i >= 5) cubic *= pivot;
-        else if (i >= 2) quadratic *= pivot;
+        if (i >= 5)
+            cubic *= pivot;
+        else if (i >= 2)
+            quadratic *= pivot;
         inverse[i] = selectw((floatw)(0.0f), 1.0f / pivot, pivot > 1e-7f * whole);
     }
 #pragma unroll
@@ -243,8 +247,8 @@ inline void shape_chart(Chart* chart, floatw suu, floatw suv, floatw svv, floatw
 }
 
 // The chart's scales from the ring's second moments in the tangent plane; false for a ring without extent.
-inline maskw scale_chart(Chart* chart, const RingCursor start, __global const uint* rings, __global const uint* runs,
-                         __global const float* positions) {
+inline maskw scale_chart(Chart* chart, const RingCursor start, __global const uint* rings,
+                         __global const uint* runs, __global const float* positions) {
     RingCursor ring = start;
     const floatw zero = 0.0f, one = 1.0f;
     floatw reach2 = zero, suu = zero, suv = zero, svv = zero, sun = zero, svn = zero, snn = zero, count = zero;
@@ -258,7 +262,8 @@ inline maskw scale_chart(Chart* chart, const RingCursor start, __global const ui
         const floatw length2 = dot3(p, p);
         const maskw counts = finitew(length2);
         reach2 = selectw(reach2, fmax(reach2, length2), counts);
-        const floatw along = selectw(zero, dot3(p, chart->u), counts), across = selectw(zero, dot3(p, chart->v), counts);
+        const floatw along = selectw(zero, dot3(p, chart->u), counts),
+                     across = selectw(zero, dot3(p, chart->v), counts);
         const floatw height = selectw(zero, dot3(p, chart->n), counts);
         suu = fma(along, along, suu), suv = fma(along, across, suv), svv = fma(across, across, svv);
         sun = fma(along, height, sun), svn = fma(across, height, svn), snn = fma(height, height, snn);
@@ -311,14 +316,16 @@ typedef struct Moments {
     floatw uu, uv, vv, nn, weight;
 } Moments;
 
-inline void add_moments(Moments* m, uintw slot, maskw counts, const Chart* chart, __global const float* positions) {
+inline void add_moments(Moments* m, uintw slot, maskw counts, const Chart* chart,
+                        __global const float* positions) {
     Vec3w p;
     gather3(positions, chart->last, slots_anywhere(slot), &p.x, &p.y, &p.z);
     p = scale3(sub3(p, chart->origin), chart->scale);
     const floatw length2 = dot3(p, p), zero = 0.0f;
     counts &= finitew(length2);
     const floatw weight = selectw(zero, 1.0f / (WEIGHT_SOFTENING + length2), counts);
-    const floatw along = selectw(zero, dot3(p, chart->u), counts), across = selectw(zero, dot3(p, chart->v), counts);
+    const floatw along = selectw(zero, dot3(p, chart->u), counts),
+                 across = selectw(zero, dot3(p, chart->v), counts);
     const floatw height = selectw(zero, dot3(p, chart->height), counts);
     m->uu = fma(weight * along, along, m->uu), m->uv = fma(weight * along, across, m->uv);
     m->vv = fma(weight * across, across, m->vv), m->nn = fma(weight * height, height, m->nn);
@@ -326,8 +333,9 @@ inline void add_moments(Moments* m, uintw slot, maskw counts, const Chart* chart
 }
 
 // All points of the two-ring into the fit or, without one, into the moments; of the lanes in `wanted`.
-__attribute__((always_inline)) inline void walk_points(Fit* fit, Moments* moments, const Chart* chart, const RingCursor first,
-                                                       maskw wanted, __global const uint* slices,
+__attribute__((always_inline)) inline void walk_points(Fit* fit, Moments* moments, const Chart* chart,
+                                                       const RingCursor first, maskw wanted,
+                                                       __global const uint* slices,
                                                        __global const uint* rings, __global const uint* runs,
                                                        __global const uint* links, __global const uint* rounds,
                                                        __global const float* positions) {
@@ -336,8 +344,10 @@ __attribute__((always_inline)) inline void walk_points(Fit* fit, Moments* moment
     for (; ring.row < ring.end; ++ring.row) {
         const uintw near_ = ring_entry(&ring, rings, runs).slots.each;
         const maskw real = (near_ != ring.self.each) & wanted;
-        if (fit) add_point(fit, near_, real, chart, positions);
-        else add_moments(moments, near_, real, chart, positions);
+        if (fit)
+            add_point(fit, near_, real, chart, positions);
+        else
+            add_moments(moments, near_, real, chart, positions);
         // Each lane walks the ring of its own neighbour, in that one's slice, in which this slot stands `here`.
         const uintw begin = gather_uint(slices, near_ / MESH_LANES), round = gather_uint(rounds, near_);
         const uintw here = loadw((size_t)ring.row * MESH_LANES + ring.lane, links);
@@ -354,7 +364,8 @@ __attribute__((always_inline)) inline void walk_points(Fit* fit, Moments* moment
             const uintw before = here - min(here, near_steps);
             const uintw wrapped = selectw(none, length, here < NEAR_STEPS + 1);
             from = selectw(from, selectw(before, here + wrapped - 1 - NEAR_STEPS, closed), long_);
-            steps = selectw(steps, selectw(min(2 * near_steps + 1, length - before), 2 * near_steps, closed), long_);
+            steps = selectw(steps, selectw(min(2 * near_steps + 1, length - before), 2 * near_steps, closed),
+                            long_);
             middle = selectw(steps, near_steps, long_ & closed);
         }
         const uint longest = largest_lane(steps);
@@ -362,18 +373,21 @@ __attribute__((always_inline)) inline void walk_points(Fit* fit, Moments* moment
             const maskw inside = step < steps;
             uintw row = selectw(none, from + step + selectw((uintw)(3), none, step < middle), inside);
             row -= selectw(none, length, row >= length);
-            const uintw entry = gather_uint(rings, (begin + selectw(none, row, inside)) * MESH_LANES + near_ % MESH_LANES);
+            const uintw entry =
+                gather_uint(rings, (begin + selectw(none, row, inside)) * MESH_LANES + near_ % MESH_LANES);
             const uintw far_ = selectw(ring.self.each, RING_SLOT(entry), inside);
             const maskw counts = inside & (far_ != ring.self.each);
-            if (fit) add_point(fit, far_, counts, chart, positions);
-            else add_moments(moments, far_, counts, chart, positions);
+            if (fit)
+                add_point(fit, far_, counts, chart, positions);
+            else
+                add_moments(moments, far_, counts, chart, positions);
         }
     }
 }
 
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_quadric(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
-    __global const uint* runs, __global const float* positions,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices,
+    __global const uint* rings, __global const uint* runs, __global const float* positions,
     uint positionOffset, __global const float* normals, uint normalOffset, uint planeStride,
     __global float* planes, __global const uint* links, __global const uint* rounds) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
@@ -421,8 +435,8 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
         poor &= finitew(spread2) & (spread2 > 0.0f);
         const floatw unit2 = WIDE_SPREAD2 / selectw((floatw)(1.0f), spread2, poor), part = unit2 / m.weight;
         Chart other = chart;
-        shape_chart(&other, m.uu * part, m.uv * part, m.vv * part, selectw((floatw)(0.0f), m.nn * part, chart.replaced),
-                    WIDE_SIZE);
+        shape_chart(&other, m.uu * part, m.uv * part, m.vv * part,
+                    selectw((floatw)(0.0f), m.nn * part, chart.replaced), WIDE_SIZE);
         chart.xx = selectw(chart.xx, other.xx, poor), chart.xy = selectw(chart.xy, other.xy, poor);
         chart.yy = selectw(chart.yy, other.yy, poor), chart.round = selectw(chart.round, other.round, poor);
         chart.scale = selectw(chart.scale, chart.scale * sqrt(unit2), poor);

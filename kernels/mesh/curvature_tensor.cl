@@ -92,10 +92,9 @@ __attribute__((always_inline)) inline void add_triangle(Form* form, Vec3w n, Vec
 }
 
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_tensor(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
-    __global const uint* runs, __global const float* positions,
-    uint positionOffset, __global const float* normals, uint normalOffset, uint planeStride,
-    __global float* planes) {
+    uint slots, uint listed, __global const uint* list, __global const uint* slices,
+    __global const uint* rings, __global const uint* runs, __global const float* positions, uint positionOffset,
+    __global const float* normals, uint normalOffset, uint planeStride, __global float* planes) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ring_begin(first, slots, slices);

@@ -22,8 +22,11 @@ inline uint list_length(__global const uint* slices, __global const uint* rings,
     return length;
 }
 
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_links(
-    uint slots, __global const uint* slices, __global const uint* rings, __global uint* links, __global uint* rounds) {
+__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_links(uint slots,
+                                                                                 __global const uint* slices,
+                                                                                 __global const uint* rings,
+                                                                                 __global uint* links,
+                                                                                 __global uint* rounds) {
     const uint slot = get_global_id(0);
     if (slot >= slots) return;
     const uint length = list_length(slices, rings, slot, 0xffffffffu);

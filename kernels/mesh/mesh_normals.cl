@@ -12,8 +12,8 @@
 #include "lib/mesh/mesh_triangle.clh"
 
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_normals(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
-    __global const uint* runs, __global const float* positions,
+    uint slots, uint listed, __global const uint* list, __global const uint* slices,
+    __global const uint* rings, __global const uint* runs, __global const float* positions,
     uint positionOffset, __global float* normals, uint normalOffset) {
     const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
@@ -40,7 +40,8 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_norma
         const Vec3w other = select3(current, start, step.ends);
         const Vec3w across = crossExact3(previous, other);
         const floatw doubled2 = dot3(across, across);
-        const maskw plane = step.triangle & (doubled2 > TRIANGLE_FLAT * dot3(previous, previous) * dot3(other, other));
+        const maskw plane =
+            step.triangle & (doubled2 > TRIANGLE_FLAT * dot3(previous, previous) * dot3(other, other));
         const floatw doubled = sqrt(selectw((floatw)(1.0f), doubled2, plane));
         floatw weight = atan2(doubled, dot3(previous, other)) / doubled;
         weight = selectw(weight, -weight, flipped);

@@ -14,9 +14,9 @@
 #define MEMBERS_AHEAD 64
 
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_rows(
-    uint slots, uint listed, __global const uint* list, __global const uint* memberOffsets, __global const uint* members,
-    __global const float* positions, VertexLayout positionLayout, __global const float* normals,
-    VertexLayout normalLayout, __global float* rows) {
+    uint slots, uint listed, __global const uint* list, __global const uint* memberOffsets,
+    __global const uint* members, __global const float* positions, VertexLayout positionLayout,
+    __global const float* normals, VertexLayout normalLayout, __global float* rows) {
     const uint slot = mesh_slot(get_global_id(0), slots, listed, list);
     if (slot >= slots) return;
 #if MESH_MAPPED
@@ -45,10 +45,9 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_rows(
 
 // Whole numbers only, so that the order of the additions does not show.
 __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_count(
-    uint vertices, __global const float* positions, VertexLayout positionLayout,
-    __global const float* normals, VertexLayout normalLayout, uint slots, __global const uint* slices,
-    __global const uint* rings, __global const float* slotPositions, VertexLayout slotLayout,
-    __global MeshCounts* counts) {
+    uint vertices, __global const float* positions, VertexLayout positionLayout, __global const float* normals,
+    VertexLayout normalLayout, uint slots, __global const uint* slices, __global const uint* rings,
+    __global const float* slotPositions, VertexLayout slotLayout, __global MeshCounts* counts) {
     const uint i = get_global_id(0);
     if (i < vertices) {
         const float3 p = mesh_usable_position(vertex_load3(positions, positionLayout, i));

@@ -14,8 +14,7 @@ inline float edge_longest2(float3 a, float3 b, float3 c) {
 
 // Squared longest edge and squared longest UV edge of a triangle; NaN or Inf if it has such vertices.
 inline float2 triangle_longest2(uint triangle, __global const uint* indices, __global const float* positions,
-                                VertexLayout positionLayout, __global const float* uvs,
-                                VertexLayout uvLayout) {
+                                VertexLayout positionLayout, __global const float* uvs, VertexLayout uvLayout) {
     const uint3 v = vload3(triangle, indices);
     const float2 length2 = (float2)(edge_longest2(vertex_load3(positions, positionLayout, v.x),
                                                   vertex_load3(positions, positionLayout, v.y),
@@ -29,7 +28,8 @@ inline float2 triangle_longest2(uint triangle, __global const uint* indices, __g
     const float3 total = vertex_load3(positions, positionLayout, v.x) +
                          vertex_load3(positions, positionLayout, v.y) +
                          vertex_load3(positions, positionLayout, v.z);
-    if (!isfinite(total.x + total.y + total.z + a.x + a.y + b.x + b.y + c.x + c.y)) return (float2)(mesh_nan3().x);
+    if (!isfinite(total.x + total.y + total.z + a.x + a.y + b.x + b.y + c.x + c.y))
+        return (float2)(mesh_nan3().x);
     return (float2)(length2.x, edge_longest2((float3)(a, 0.0f), (float3)(b, 0.0f), (float3)(c, 0.0f)));
 }
 

@@ -9,14 +9,15 @@
 
 typedef struct Faces {
     __global const uchar* first;
-    ulong step, row, plane; // bytes from face to face, from row to row, from plane to plane
-    uint pixel;             // bytes from pixel to pixel
-    uint size;              // texels along an edge
+    ulong step, row, plane;  // bytes from face to face, from row to row, from plane to plane
+    uint pixel;              // bytes from pixel to pixel
+    uint size;               // texels along an edge
 } Faces;
 
 static inline float4 cubeTexel(const Faces* f, uint face, int x, int y) {
     __global const uchar* p = f->first + face * f->step + (ulong)y * f->row + (ulong)x * f->pixel;
-    const float4 texel = (float4)(pixelComponent(PEL_FORMAT_CUBE, p, f->plane, 0), pixelComponent(PEL_FORMAT_CUBE, p, f->plane, 1),
+    const float4 texel = (float4)(pixelComponent(PEL_FORMAT_CUBE, p, f->plane, 0),
+                                  pixelComponent(PEL_FORMAT_CUBE, p, f->plane, 1),
                                   pixelComponent(PEL_FORMAT_CUBE, p, f->plane, 2), 0.0f);
     return select(texel, (float4)(0.0f), texel < 0.0f);
 }
@@ -38,10 +39,13 @@ static inline float4 cubeSample(const Faces* f, uint face, float s, float t) {
     return mix(upper, lower, fy);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void ambient_cube(
-    __global const uchar* image, ulong offset, ulong step, ulong row, ulong planeStep, uint pixel, uint size,
-    __global float* nodes) {
-    const uint i = get_global_id(0), across = size + 2, face = get_global_id(1) / across, j = get_global_id(1) % across;
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void ambient_cube(__global const uchar* image,
+                                                                                  ulong offset, ulong step,
+                                                                                  ulong row, ulong planeStep,
+                                                                                  uint pixel, uint size,
+                                                                                  __global float* nodes) {
+    const uint i = get_global_id(0), across = size + 2, face = get_global_id(1) / across,
+               j = get_global_id(1) % across;
     if (i >= across || face >= 6) return;
     const Faces f = {image + offset, step, row, planeStep, pixel, size};
     const bool edgeS = i == 0 || i > size, edgeT = j == 0 || j > size;

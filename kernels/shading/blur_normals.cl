@@ -16,7 +16,8 @@
 #include "shared/shade_passes.h"
 
 // Ids of PEL_WIDTH pixels from `first` on that this work-item takes: those from x on which have a material; others are 0.
-static inline uintw ownIds(__global const PelShadeFrame* frame, __global uchar* material, uint x, uint y, uint first) {
+static inline uintw ownIds(__global const PelShadeFrame* frame, __global uchar* material, uint x, uint y,
+                           uint first) {
     const intw column = lanesw() + (int)first;
     const uintw id = loadIds(frame, material, first, y);
     return selectw((uintw)(0), id, (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id));
@@ -25,16 +26,18 @@ static inline uintw ownIds(__global const PelShadeFrame* frame, __global uchar* 
 // tags: the id where normal and position are numbers, its negative where not, 0 where there is no material: of every pixel,
 // since taps go beyond the tiles of the list.
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void prepare_normals(
-    __global const PelShadeFrame* frame, __global const uint* list, __global uchar* material, __global uchar* normal,
-    __global uchar* position, __global uchar* depth, __global float* normals, __global float* positions, __global float* tags,
-    uint plane) {
+    __global const PelShadeFrame* frame, __global const uint* list, __global uchar* material,
+    __global uchar* normal, __global uchar* position, __global uchar* depth, __global float* normals,
+    __global float* positions, __global float* tags, uint plane) {
     if (PEL_FORMAT_MATERIAL && list[0] == 0) return;
     const uint groups = get_num_groups(0), group = get_group_id(0);
     const uint end = (uint)((ulong)frame->tiles * (group + 1) / groups);
     for (uint i = (uint)((ulong)frame->tiles * group / groups); i < end; ++i) {
         const uint tile = frame->firstTile + i;
-        const uint2 origin = (uint2)(tile % frame->tilesX * PEL_TILE_WIDTH, tile / frame->tilesX * PEL_TILE_HEIGHT);
-        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP * PEL_WIDTH) {
+        const uint2 origin =
+            (uint2)(tile % frame->tilesX * PEL_TILE_WIDTH, tile / frame->tilesX * PEL_TILE_HEIGHT);
+        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS;
+             pixel += PEL_PASS_GROUP * PEL_WIDTH) {
             const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
             if (x >= frame->width || y >= frame->height) continue;
             const uint first = vectorStart(x, frame->width);
@@ -44,8 +47,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void prepar
             const size_t at = scratchIndex(frame, first, y);
             floatw tag = 0.0f;
             if (anyw(held)) {
-                const Vec3w n = loadNormal(PEL_FORMAT_NORMAL_SHADING,
-                                           imageSpan(normal, &frame->images[PEL_IMAGE_NORMAL_SHADING], first, y));
+                const Vec3w n =
+                    loadNormal(PEL_FORMAT_NORMAL_SHADING,
+                               imageSpan(normal, &frame->images[PEL_IMAGE_NORMAL_SHADING], first, y));
                 const Vec3w p = loadPosition(frame, position, depth, first, y);
                 tag = convert_floatw(id);
                 tag = selectw(-tag, tag, finite3(n) & finite3(p));
@@ -76,7 +80,8 @@ static inline maskw sameMaterial(const Field* f, int x, int y, int offset, size_
 }
 
 // Distance to a direct neighbour; Inf where there is none to compare with.
-static inline floatw neighbourDistance(const Field* f, int x, int y, int offset, size_t at, Vec3w p, floatw id, maskw mask) {
+static inline floatw neighbourDistance(const Field* f, int x, int y, int offset, size_t at, Vec3w p,
+                                       floatw id, maskw mask) {
     mask = sameMaterial(f, x, y, offset, at, id, mask);
     if (!anyw(mask)) return (floatw)(INFINITY);
     mask &= loadw(at, f->tags) > 0.0f;
@@ -92,13 +97,13 @@ static inline int greatest(intw value, maskw mask) {
 // The sum of a pixel's normal and of those along the axis, of the lanes of `mask`.
 static inline Vec3w blurAlong(const Field* f, int x, int y, floatw id, floatw radius, maskw mask) {
     const size_t centre = scratchIndex(f->frame, (uint)x, (uint)y);
-    const long pixel = f->alongY ? (long)f->frame->width : 1; // from one pixel to the next along the axis
+    const long pixel = f->alongY ? (long)f->frame->width : 1;  // from one pixel to the next along the axis
     const Vec3w p = loadPlanes(f->positions, f->plane, centre);
     Vec3w sum = loadPlanes(f->normals, f->plane, centre);
     floatw total = 1.0f;
     const floatw s = fmin(neighbourDistance(f, x, y, -1, centre - pixel, p, id, mask),
                           neighbourDistance(f, x, y, 1, centre + pixel, p, id, mask));
-    const floatw taps = ceil(radius / (s * (float)PEL_BLUR_TAPS)); // Inf or NaN where two pixels lie in one place
+    const floatw taps = ceil(radius / (s * (float)PEL_BLUR_TAPS));  // Inf or NaN where two pixels lie in one place
     const intw steps = convert_intw(fmin(fmax(taps, (floatw)(1.0f)), (floatw)((float)PEL_BLUR_STEP_MAX)));
     const floatw perRadius2 = 1.0f / (radius * radius);
     maskw left = mask & (s < INFINITY);
@@ -119,7 +124,8 @@ static inline Vec3w blurAlong(const Field* f, int x, int y, floatw id, floatw ra
                 const Vec3w q = loadPlanes(f->positions, f->plane, at), away = sub3(q, p);
                 const Vec3w hop = sub3(q, before);
                 const floatw gap2 = dot3(hop, hop), d2 = dot3(away, away) * perRadius2;
-                const maskw end = valid & ((gap2 > (float)(PEL_BLUR_GAP * PEL_BLUR_GAP) * longest2) | (d2 >= 1.0f));
+                const maskw end =
+                    valid & ((gap2 > (float)(PEL_BLUR_GAP * PEL_BLUR_GAP) * longest2) | (d2 >= 1.0f));
                 const maskw take = valid & notw(end);
                 const floatw weight = (1.0f - d2) * (1.0f - d2);
                 const Vec3w n = loadPlanes(f->normals, f->plane, at);
@@ -136,14 +142,15 @@ static inline Vec3w blurAlong(const Field* f, int x, int y, floatw id, floatw ra
 
 // `from` and `to` differ; along y `to` holds the unblurred normals, which stay where the mean vanishes.
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void blur_normals(
-    __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials, __global const uint* list,
-    __global uchar* material, __global const float* from, __global const float* positions, __global const float* tags,
-    __global float* to, uint plane, uint alongY) {
+    __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials,
+    __global const uint* list, __global uchar* material, __global const float* from,
+    __global const float* positions, __global const float* tags, __global float* to, uint plane, uint alongY) {
     const TileRun run = tileRun(frame, list);
     const Field field = {frame, from, positions, tags, plane, alongY != 0};
     for (uint i = run.begin; i < run.end; ++i) {
         const uint2 origin = tileOrigin(frame, list, i);
-        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP * PEL_WIDTH) {
+        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS;
+             pixel += PEL_PASS_GROUP * PEL_WIDTH) {
             const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
             if (x >= frame->width || y >= frame->height) continue;
             const uint first = vectorStart(x, frame->width);
@@ -161,7 +168,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void blur_n
                 const maskw vanished = valid & notw(length2 > 1e-12f);
                 n = scale3(n, 1.0f / sqrt(length2));
                 if (anyw(vanished)) n = select3(n, loadPlanesOf(to, plane, at, vanished), vanished);
-                const floatw none = NAN; // the shading pass makes it the invalid colour
+                const floatw none = NAN;  // the shading pass makes it the invalid colour
                 n = select3(vec3(none, none, none), n, valid);
             }
             storePlanes(to, plane, at, n, wanted);

@@ -30,10 +30,12 @@ static inline uint classOfTile(__global const PelShadeFrame* frame, __global con
         for (uint x = x0; x < x1; x += PEL_WIDTH) {
             if (found && able == 1u) return 1u;
             const uint first = vectorStart(x, frame->width);
-            const uintw id = loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[PEL_IMAGE_MATERIAL], first, y));
-            if (!anyw(id != known)) continue; // nearly always
+            const uintw id =
+                loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[PEL_IMAGE_MATERIAL], first, y));
+            if (!anyw(id != known)) continue;  // nearly always
             const maskw has = hasMaterial(frame, id);
-            known = greatestId(id, (maskw)(-1)); // nothing more to learn from it; in mixed vectors of what follows, likewise
+            known = greatestId(
+                id, (maskw)(-1));  // nothing more to learn from it; in mixed vectors of what follows, likewise
             if (!anyw(has)) continue;
             found = 1;
             if (able != 1u) able &= commonVariants(materials, id, has);

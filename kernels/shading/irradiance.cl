@@ -18,14 +18,16 @@ static inline Vec3w arrivingLight(const Scene* scene, uint x, uint y) {
     Vec3w e = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
     if (HAS(PEL_BIT_AMBIENT)) {
         e = ambientAlong(scene, n);
-        if (PEL_FORMAT_AMBIENT_OCCLUSION) e = scale3(e, loadScalar(PEL_FORMAT_AMBIENT_OCCLUSION, SPAN(AMBIENT_OCCLUSION)));
+        if (PEL_FORMAT_AMBIENT_OCCLUSION)
+            e = scale3(e, loadScalar(PEL_FORMAT_AMBIENT_OCCLUSION, SPAN(AMBIENT_OCCLUSION)));
     }
     for (uint i = 0; i < frame->lights; ++i) {
         __global const PelShadeLight* light = &scene->lights[i];
         const LightSample sample = sampleLight(light, p);
         const floatw w = loadWideShadow(scene, light, x, y);
         valid &= finitew(w);
-        e = add3(e, scale3(loadUniform3(light->color), sample.strength * satw(dot3(n, sample.direction)) * satw(w)));
+        e = add3(
+            e, scale3(loadUniform3(light->color), sample.strength * satw(dot3(n, sample.direction)) * satw(w)));
     }
     const floatw none = NAN;
     return select3(vec3(none, none, none), e, valid);
@@ -38,7 +40,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void make_i
     uint lit = 0;
     for (uint i = run.begin; i < run.end; ++i) {
         const uint2 origin = tileOrigin(frame, list, i);
-        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP * PEL_WIDTH) {
+        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS;
+             pixel += PEL_PASS_GROUP * PEL_WIDTH) {
             const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
             if (x >= frame->width || y >= frame->height) continue;
             const uint first = vectorStart(x, frame->width);
@@ -46,7 +49,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void make_i
             const uintw id = loadIds(frame, MATERIAL, first, y);
             const maskw active = (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id);
             if (!anyw(active)) continue;
-#define PEL_SCATTERS_(k, s) (active s && materials[id s].scattering != PEL_SCATTER_PREINTEGRATED ? 1.0f : 0.0f)
+#define PEL_SCATTERS_(k, s) \
+    (active s && materials[id s].scattering != PEL_SCATTER_PREINTEGRATED ? 1.0f : 0.0f)
             const maskw wanted = PEL_LANES(PEL_SCATTERS_) > 0.0f;
 #undef PEL_SCATTERS_
             if (!anyw(wanted)) continue;

@@ -4,15 +4,15 @@
 // Inputs: UV, their gradients (or none), tangents, geometric normals, ids, one material's map. Output: planes of Nb per pixel of
 // that material, and the geometric normal where PelNormalMap.fallback asks for it; NaN where an input is. One work-group: a
 // run of tiles; one work-item: one pixel at a time (PEL_WIDTH 1). PEL_NORMAL_SLOT: where the geometric normals are.
-#include "lib/shading/normal_map.clh"
 #include "lib/image/planes.clh"
+#include "lib/shading/normal_map.clh"
 #include "lib/shading/tiles.clh"
 
 #define PEL_AT(buffer, slot) imageSpan(buffer, &frame->images[slot], x, y)
 
-static inline Vec3w mappedNormal(__global const PelShadeFrame* frame, __global const PelNormalMap* chain, __global uchar* map,
-                                  __global uchar* uv, __global uchar* gradient, __global uchar* tangent, Vec3w ng, uint x,
-                                  uint y) {
+static inline Vec3w mappedNormal(__global const PelShadeFrame* frame, __global const PelNormalMap* chain,
+                                 __global uchar* map, __global uchar* uv, __global uchar* gradient,
+                                 __global uchar* tangent, Vec3w ng, uint x, uint y) {
     const Span uvSpan = PEL_AT(uv, PEL_IMAGE_UV), tangentSpan = PEL_AT(tangent, PEL_IMAGE_TANGENT);
     const float u = gatherComponent(PEL_FORMAT_UV, uvSpan, 0), v = gatherComponent(PEL_FORMAT_UV, uvSpan, 1);
     const Vec3w t = loadNormal(PEL_FORMAT_TANGENT, tangentSpan);
@@ -25,10 +25,14 @@ static inline Vec3w mappedNormal(__global const PelShadeFrame* frame, __global c
     float level = chain->baseLevel;
     if (PEL_FORMAT_UV_GRADIENT) {
         const Span span = PEL_AT(gradient, PEL_IMAGE_UV_GRADIENT);
-        const float4 g = (float4)(gatherComponent(PEL_FORMAT_UV_GRADIENT, span, 0), gatherComponent(PEL_FORMAT_UV_GRADIENT, span, 1),
-                                  gatherComponent(PEL_FORMAT_UV_GRADIENT, span, 2), gatherComponent(PEL_FORMAT_UV_GRADIENT, span, 3));
+        const float4 g = (float4)(gatherComponent(PEL_FORMAT_UV_GRADIENT, span, 0),
+                                  gatherComponent(PEL_FORMAT_UV_GRADIENT, span, 1),
+                                  gatherComponent(PEL_FORMAT_UV_GRADIENT, span, 2),
+                                  gatherComponent(PEL_FORMAT_UV_GRADIENT, span, 3));
         valid = valid && finitew(g.x) && finitew(g.y) && finitew(g.z) && finitew(g.w);
-        if (valid) level = fmax(level, footprintLevel(g, (float)chain->levels[0].width, (float)chain->levels[0].height));
+        if (valid)
+            level =
+                fmax(level, footprintLevel(g, (float)chain->levels[0].width, (float)chain->levels[0].height));
     }
     if (!valid) return vec3(NAN, NAN, NAN);
     const float3 m = sampleNormalMap(PEL_FORMAT_NORMAL_MAP, map, chain, u, v, level);
@@ -37,9 +41,10 @@ static inline Vec3w mappedNormal(__global const PelShadeFrame* frame, __global c
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void normal_map(
-    __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials, __global const uint* list,
-    __global uchar* material, __global uchar* normal, __global uchar* uv, __global uchar* gradient, __global uchar* tangent,
-    __global const PelNormalMap* chain, __global uchar* map, __global float* to, uint plane) {
+    __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials,
+    __global const uint* list, __global uchar* material, __global uchar* normal, __global uchar* uv,
+    __global uchar* gradient, __global uchar* tangent, __global const PelNormalMap* chain,
+    __global uchar* map, __global float* to, uint plane) {
     const TileRun run = tileRun(frame, list);
     for (uint i = run.begin; i < run.end; ++i) {
         const uint2 origin = tileOrigin(frame, list, i);

@@ -36,7 +36,7 @@ inline void store_float(Span s, floatw value) {
     }
 #endif
 #define PUT(i, suffix) \
-    if ((i) <= s.last) *(__global float*)(s.first + (i) * s.stride) = value suffix;
+    if ((i) <= s.last) *(__global float*)(s.first + (i)*s.stride) = value suffix;
     PEL_EACH_LANE(PUT)
 #undef PUT
 }
@@ -58,8 +58,8 @@ inline Pixel load_pixel(const Inputs* in, uint x, uint y) {
 #if PEL_FORMAT_POSITION
     const Vec3w position = loadColor(PEL_FORMAT_POSITION, span);
 #else
-    const Vec3w position = positionFromDepth(in->frame->inverseViewProjection, in->frame->width, in->frame->height, x, y,
-                                             loadScalar(PEL_FORMAT_DEPTH, span));
+    const Vec3w position = positionFromDepth(in->frame->inverseViewProjection, in->frame->width,
+                                             in->frame->height, x, y, loadScalar(PEL_FORMAT_DEPTH, span));
 #endif
     pixel.point = screenPoint(normal, position);
     pixel.id = (uintw)(1);
@@ -81,10 +81,11 @@ inline Pixel load_pixel(const Inputs* in, uint x, uint y) {
 #define LANES_UP(v) ((v).s00123456789abcde)
 #define LANES_DOWN(v) ((v).s123456789abcdeff)
 #endif
-#define MOVE_LANES(pixel, MOVE)                                                                               \
-    pixel.point.normal = vec3(MOVE(pixel.point.normal.x), MOVE(pixel.point.normal.y), MOVE(pixel.point.normal.z)), \
-    pixel.point.position =                                                                                    \
-        vec3(MOVE(pixel.point.position.x), MOVE(pixel.point.position.y), MOVE(pixel.point.position.z)),       \
+#define MOVE_LANES(pixel, MOVE)                                                                         \
+    pixel.point.normal =                                                                                \
+        vec3(MOVE(pixel.point.normal.x), MOVE(pixel.point.normal.y), MOVE(pixel.point.normal.z)),       \
+    pixel.point.position =                                                                              \
+        vec3(MOVE(pixel.point.position.x), MOVE(pixel.point.position.y), MOVE(pixel.point.position.z)), \
     pixel.point.usable = MOVE(pixel.point.usable), pixel.id = MOVE(pixel.id)
 
 inline ScreenPoint neighbour(const Pixel there, const Pixel here, maskw inside) {
@@ -94,8 +95,8 @@ inline ScreenPoint neighbour(const Pixel there, const Pixel here, maskw inside) 
 }
 
 __kernel __attribute__((reqd_work_group_size(SCREEN_GROUP, 1, 1))) void screen_curvature(
-    __global const ScreenCurvatureFrame* frame, __global uchar* normal, __global uchar* position, __global uchar* ids,
-    __global uchar* curvature) {
+    __global const ScreenCurvatureFrame* frame, __global uchar* normal, __global uchar* position,
+    __global uchar* ids, __global uchar* curvature) {
     const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
     if (y >= frame->height) return;
     const uint x = vectorStart(get_global_id(0) % across * PEL_WIDTH, frame->width);
@@ -111,7 +112,8 @@ __kernel __attribute__((reqd_work_group_size(SCREEN_GROUP, 1, 1))) void screen_c
             right = load_pixel(&in, x + 1, y);
         else
             MOVE_LANES(right, LANES_DOWN);
-        const Pixel up = load_pixel(&in, x, max(y, 1u) - 1), down = load_pixel(&in, x, min(y + 1, frame->height - 1));
+        const Pixel up = load_pixel(&in, x, max(y, 1u) - 1),
+                    down = load_pixel(&in, x, min(y + 1, frame->height - 1));
         const intw column = lanesw() + (int)x;
         const maskw yes = (maskw)(-1);
         value = frame->scale * screenCurvature(here.point, neighbour(left, here, column > 0),

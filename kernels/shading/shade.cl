@@ -6,11 +6,11 @@
 // One work-group takes one tile after another from the list; one work-item PEL_WIDTH pixels of a row at a time.
 // Variants: PEL_FEATURES (shared/features.h) and the format of each image, PEL_FORMAT_<SLOT>, 0 where there is none;
 // all wide shadows have one format, and all shadow maps one and the same PEL_SHADOW_CONTENT. Unused buffers are NULL.
+#include "lib/image/image.clh"
 #include "lib/shading/cube_thickness.clh"
 #include "lib/shading/deep_scatter.clh"
 #include "lib/shading/direct.clh"
 #include "lib/shading/ggx.clh"
-#include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 #include "lib/shading/position.clh"
 #include "lib/shading/scene.clh"
@@ -28,16 +28,16 @@ typedef struct Pixels {
     NormalPair pair;
     Vec3w albedo, irradiance;
     floatw curvature, occlusion, thickness, roughness, specular;
-    floatw turnCosine, turnSine; // of the disk of taps; PEL_BIT_ROTATE_TAPS only
-    maskw valid;                 // no input that every material reads is NaN or Inf
-    uintw spoiled;               // PEL_BIT_... whose inputs are
+    floatw turnCosine, turnSine;  // of the disk of taps; PEL_BIT_ROTATE_TAPS only
+    maskw valid;                  // no input that every material reads is NaN or Inf
+    uintw spoiled;                // PEL_BIT_... whose inputs are
 } Pixels;
 
 // The parts that outputs beside radiance take (PEL_FORMAT_OUT_...); not computed where there is none.
 typedef struct Parts {
-    Vec3w diffuse, deepScatter; // to be multiplied by albedo
+    Vec3w diffuse, deepScatter;  // to be multiplied by albedo
     floatw thickness;
-    bool measured; // thickness is
+    bool measured;  // thickness is
 } Parts;
 
 // Notes where an input of these features is no number. What ambient light and positional lights read, every material reads.
@@ -57,7 +57,8 @@ static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
     p.ng = p.n;
     if (PEL_FORMAT_NORMAL_GEOMETRIC) {
         p.ng = loadNormal(PEL_FORMAT_NORMAL_GEOMETRIC, SPAN(NORMAL_GEOMETRIC));
-        spoil(&p, PEL_READ_NORMAL_GEOMETRIC | (PEL_FORMAT_NORMAL_BLURRED ? 0 : PEL_READ_NORMAL_BLURRED), finite3(p.ng));
+        spoil(&p, PEL_READ_NORMAL_GEOMETRIC | (PEL_FORMAT_NORMAL_BLURRED ? 0 : PEL_READ_NORMAL_BLURRED),
+              finite3(p.ng));
     }
     p.nb = p.ng;
     if (PEL_FORMAT_NORMAL_BLURRED) {
@@ -83,10 +84,10 @@ static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
         p.irradiance = loadColor(PEL_FORMAT_IRRADIANCE, SPAN(IRRADIANCE));
         spoil(&p, PEL_READ_IRRADIANCE, finite3(p.irradiance));
     }
-#define LOAD_SCALAR(slot, name)                              \
-    if (HAS(PEL_READ_##slot) && PEL_FORMAT_##slot) {         \
-        p.name = loadScalar(PEL_FORMAT_##slot, SPAN(slot));  \
-        spoil(&p, PEL_READ_##slot, finitew(p.name));         \
+#define LOAD_SCALAR(slot, name)                             \
+    if (HAS(PEL_READ_##slot) && PEL_FORMAT_##slot) {        \
+        p.name = loadScalar(PEL_FORMAT_##slot, SPAN(slot)); \
+        spoil(&p, PEL_READ_##slot, finitew(p.name));        \
     }
     LOAD_SCALAR(CURVATURE, curvature)
     LOAD_SCALAR(AMBIENT_OCCLUSION, occlusion)
@@ -99,8 +100,8 @@ static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
 
 // Thickness along a light with cascades: the finest that holds the point with its taps; 0 outside of all.
 static inline floatw measureInCascades(const Scene* scene, __global const PelShadeMaterial* material,
-                                       __global const PelShadeLight* light, const Pixels* p, Vec3w inside, float cutoff,
-                                       maskw needed) {
+                                       __global const PelShadeLight* light, const Pixels* p, Vec3w inside,
+                                       float cutoff, maskw needed) {
     floatw thickness = 0.0f;
     maskw left = needed;
     for (uint i = 0; i < light->cascades && anyw(left); ++i) {
@@ -111,9 +112,9 @@ static inline floatw measureInCascades(const Scene* scene, __global const PelSha
         const maskw held = left & mapHolds(uvz, radiusU, radiusV);
         if (!anyw(held)) continue;
         __global const uchar* map = firstTexel(scene->lightImages[cascade->mapBuffer], &cascade->map);
-        const floatw some = thicknessOfMap(PEL_FORMAT_SHADOW_MAP, map, &cascade->map, light, cascade->depthRange, uvz, radiusU,
-                                           radiusV, material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine,
-                                           p->turnSine, cutoff, held);
+        const floatw some = thicknessOfMap(PEL_FORMAT_SHADOW_MAP, map, &cascade->map, light,
+                                           cascade->depthRange, uvz, radiusU, radiusV, material->thicknessTaps,
+                                           HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine, p->turnSine, cutoff, held);
         thickness = selectw(thickness, some, held);
         left &= notw(held);
     }
@@ -127,23 +128,27 @@ static inline floatw measureThickness(const Scene* scene, __global const PelShad
     const Vec3w inside = sub3(p->position, scale3(p->ng, (floatw)(material->deepScatterNormalOffset)));
     const float cutoff = beyondCutoff ? INFINITY : material->thicknessCutoff;
     if (HAS(PEL_BIT_SHADOW_CUBE) && light->projection >= PEL_MAP_CUBE)
-        return cubeThickness(PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map), light,
-                             cubePosition(light->worldToShadow, inside), material->thicknessFilterRadius,
-                             material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine, p->turnSine, cutoff, needed);
+        return cubeThickness(
+            PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map), light,
+            cubePosition(light->worldToShadow, inside), material->thicknessFilterRadius,
+            material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine, p->turnSine, cutoff, needed);
     if (HAS(PEL_BIT_SHADOW_CASCADES) && light->cascades)
         return measureInCascades(scene, material, light, p, inside, cutoff, needed);
-    return thicknessTaps(PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map), light,
-                         shadowCoordinates(light->worldToShadow, inside), material->thicknessFilterRadius,
-                         material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine, p->turnSine, cutoff, needed);
+    return thicknessTaps(PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map),
+                         light, shadowCoordinates(light->worldToShadow, inside),
+                         material->thicknessFilterRadius, material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS),
+                         p->turnCosine, p->turnSine, cutoff, needed);
 }
 
 // The same for transmission, whose position does not move: the greatest thickness about each pixel of `needed`.
-static inline floatw measureGreatest(const Scene* scene, __global const PelShadeLight* light, const Pixels* p, maskw needed) {
+static inline floatw measureGreatest(const Scene* scene, __global const PelShadeLight* light, const Pixels* p,
+                                     maskw needed) {
     if (HAS(PEL_BIT_SHADOW_CUBE) && light->projection >= PEL_MAP_CUBE)
-        return greatestInCube(PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map), light,
+        return greatestInCube(PEL_FORMAT_SHADOW_MAP,
+                              firstTexel(scene->lightImages[light->mapBuffer], &light->map), light,
                               cubePosition(light->worldToShadow, p->position));
     if (HAS(PEL_BIT_SHADOW_CASCADES) && light->cascades) {
-        floatw thickness = INFINITY; // outside of all nothing comes through
+        floatw thickness = INFINITY;  // outside of all nothing comes through
         maskw left = needed;
         for (uint i = 0; i < light->cascades && anyw(left); ++i) {
             __global const PelShadeCascade* cascade = &light->cascade[i];
@@ -152,13 +157,16 @@ static inline floatw measureGreatest(const Scene* scene, __global const PelShade
                                                PEL_TRANSMISSION_TEXELS / (float)cascade->map.height);
             if (!anyw(held)) continue;
             __global const uchar* map = firstTexel(scene->lightImages[cascade->mapBuffer], &cascade->map);
-            thickness = selectw(thickness, greatestInMap(PEL_FORMAT_SHADOW_MAP, map, &cascade->map, light, cascade->depthRange, uvz), held);
+            thickness = selectw(
+                thickness,
+                greatestInMap(PEL_FORMAT_SHADOW_MAP, map, &cascade->map, light, cascade->depthRange, uvz), held);
             left &= notw(held);
         }
         return thickness;
     }
-    return greatestInMap(PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map), &light->map, light,
-                         light->depthRange, shadowCoordinates(light->worldToShadow, p->position));
+    return greatestInMap(PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map),
+                         &light->map, light, light->depthRange,
+                         shadowCoordinates(light->worldToShadow, p->position));
 }
 
 // Ambient light at the three normals.
@@ -171,8 +179,8 @@ static inline Vec3w ambientOfPixels(const Scene* scene, float3 blend, const Pixe
 
 // What one light adds to pixels of one material: diffuse and deep scatter are multiplied by albedo later.
 static inline void addLight(const Scene* scene, __global const PelShadeMaterial* material,
-                            __global const PelShadeLight* light, const Pixels* p, floatw w, maskw active, bool scattered,
-                            Vec3w* diffuse, Vec3w* specular, Parts* parts, Counts* counts) {
+                            __global const PelShadeLight* light, const Pixels* p, floatw w, maskw active,
+                            bool scattered, Vec3w* diffuse, Vec3w* specular, Parts* parts, Counts* counts) {
     const LightSample sample = sampleLight(light, p->position);
     const maskw reached = active & (sample.strength > 0.0f);
     const bool wantsThickness = PEL_FORMAT_OUT_THICKNESS && !parts->measured;
@@ -185,7 +193,8 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
     if (scattered) {
         direct.x = direct.y = direct.z = 0.0f;
     } else if (HAS(PEL_BIT_DIRECT_SCATTER) && material->curvature.layout.width) {
-        direct = directScatter(scene->luts, material->curvature, vload3(0, material->normalBlend), p->pair, nl, bl, p->curvature);
+        direct = directScatter(scene->luts, material->curvature, vload3(0, material->normalBlend), p->pair,
+                               nl, bl, p->curvature);
         if (material->gain[0] != 0.0f) {
             // Fitted on balls of more than ten mean free paths; beyond one it would mean nothing.
             const Vec3w gain = loadUniform3(material->gain);
@@ -204,9 +213,11 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
             const floatw gl = dot3(p->ng, l);
             count(counts, PEL_COUNT_SHADOW_LUT, penumbra);
             if (!SKIPPING || anyw(penumbra))
-                direct = mul3(direct, shadowScatter(scene->luts, material->shadow, material->penumbraPerCosine, w, gl));
+                direct = mul3(
+                    direct, shadowScatter(scene->luts, material->shadow, material->penumbraPerCosine, w, gl));
             else if (anyw(lit))
-                direct = mul3(direct, shadowOutside(scene->luts, material->shadow, material->penumbraPerCosine, w, gl));
+                direct = mul3(
+                    direct, shadowOutside(scene->luts, material->shadow, material->penumbraPerCosine, w, gl));
         } else {
             direct = scale3(direct, satw(w));
         }
@@ -219,17 +230,20 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
         const floatw behind = max0w(-dot3(p->ng, l));
         const maskw needed = !SKIPPING || wantsThickness ? (maskw)(-1) : reached & (behind > 0.0f);
         if ((taps || PEL_FORMAT_THICKNESS) && anyw(needed)) {
-            const floatw thickness = PEL_FORMAT_THICKNESS ? p->thickness : measureGreatest(scene, light, p, needed);
+            const floatw thickness =
+                PEL_FORMAT_THICKNESS ? p->thickness : measureGreatest(scene, light, p, needed);
             if (wantsThickness) {
                 parts->thickness = thickness;
                 parts->measured = true;
             }
             if (taps) count(counts, PEL_COUNT_THICKNESS, needed & active);
-            const Vec3w through = scale3(throughSlab(scene->luts, material->transmission, material->transmissionPerLength, thickness),
-                                         behind * material->transmissionShare);
+            const Vec3w through = scale3(
+                throughSlab(scene->luts, material->transmission, material->transmissionPerLength, thickness),
+                behind * material->transmissionShare);
             // The table's dark side is light that came round or through as well: the larger of the two, never both.
             sum = vec3(fmax(direct.x, through.x), fmax(direct.y, through.y), fmax(direct.z, through.z));
-            if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = add3(parts->deepScatter, mul3(sub3(sum, direct), color));
+            if (PEL_FORMAT_OUT_DEEP_SCATTER)
+                parts->deepScatter = add3(parts->deepScatter, mul3(sub3(sum, direct), color));
         }
     }
     if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = add3(parts->diffuse, mul3(direct, color));
@@ -253,7 +267,8 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
                 const floatw through =
                     back * transmittance(thickness, material->deepScatterFalloff, material->thicknessCutoff);
                 const Vec3w deep = scale3(loadUniform3(material->deepScatterColor), through);
-                if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = add3(parts->deepScatter, mul3(deep, color));
+                if (PEL_FORMAT_OUT_DEEP_SCATTER)
+                    parts->deepScatter = add3(parts->deepScatter, mul3(deep, color));
                 sum = add3(sum, deep);
             }
         }
@@ -285,8 +300,9 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
 }
 
 // Pixels of one material, `active`.
-static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMaterial* material, Pixels* p, uint x,
-                                  uint y, maskw active, Parts* parts, Vec3w* specularPart, Counts* counts) {
+static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMaterial* material, Pixels* p,
+                                  uint x, uint y, maskw active, Parts* parts, Vec3w* specularPart,
+                                  Counts* counts) {
     __global const PelShadeFrame* frame = scene->frame;
     // Whether its diffuse light is the image's: that of the lights and of the ambient, scattered already.
     const bool scattered = HAS(PEL_BIT_IRRADIANCE) && material->scattering != PEL_SCATTER_PREINTEGRATED;
@@ -307,18 +323,21 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
         if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = diffuse;
     }
     if (HAS(PEL_BIT_AMBIENT_SCATTER) && (material->needs & PEL_BIT_AMBIENT_SCATTER)) {
-        const floatw through = material->deepScatterAmbient * transmittance(p->thickness, material->deepScatterFalloff,
-                                                                            material->thicknessCutoff);
+        const floatw through =
+            material->deepScatterAmbient *
+            transmittance(p->thickness, material->deepScatterFalloff, material->thicknessCutoff);
         if (!SKIPPING || anyw(active & (through > 0.0f))) {
             const Vec3w e = ambientAlong(scene, scale3(p->nb, (floatw)(-1.0f)));
             Vec3w deep = scale3(mul3(loadUniform3(material->deepScatterColor), e), through);
             // A cube may hold NaN, which must not matter where nothing comes through.
-            if (HAS(PEL_BIT_AMBIENT_CUBE)) deep = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), deep, through > 0.0f);
+            if (HAS(PEL_BIT_AMBIENT_CUBE))
+                deep = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), deep, through > 0.0f);
             diffuse = add3(diffuse, deep);
             if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = deep;
         }
     }
-    const bool lit = !SKIPPING || !scattered || PEL_FORMAT_OUT_THICKNESS || (material->needs & (PEL_BIT_SPECULAR | PEL_BIT_DEEP_SCATTER));
+    const bool lit = !SKIPPING || !scattered || PEL_FORMAT_OUT_THICKNESS ||
+                     (material->needs & (PEL_BIT_SPECULAR | PEL_BIT_DEEP_SCATTER));
     for (uint i = 0; lit && i < frame->lights; ++i) {
         __global const PelShadeLight* light = &scene->lights[i];
         const floatw w = loadWideShadow(scene, light, x, y);
@@ -333,9 +352,9 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
 }
 
 // Writes one colour beside radiance.
-#define STORE_PART(slot, part)                    \
-    if (PEL_FORMAT_##slot)                        \
-        storeColor(PEL_FORMAT_##slot, SPAN(slot), select3(invalid, part, valid & finite3(part)), active);
+#define STORE_PART(slot, part) \
+    if (PEL_FORMAT_##slot)     \
+        storeColor(PEL_FORMAT_##slot, SPAN(slot), select3(invalid, part, valid& finite3(part)), active);
 
 // PEL_WIDTH pixels from (x, y) on, of which those of `active` are wanted.
 static inline void shadePixels(const Scene* scene, uint x, uint y, uintw id, maskw active, Counts* counts) {
@@ -355,7 +374,8 @@ static inline void shadePixels(const Scene* scene, uint x, uint y, uintw id, mas
                 shadeMaterial(scene, &scene->materials[current], &p, x, y, mask, &some, &someSpecular, counts);
             result = select3(result, color, mask);
             if (PEL_FORMAT_OUT_DIFFUSE) parts.diffuse = select3(parts.diffuse, some.diffuse, mask);
-            if (PEL_FORMAT_OUT_DEEP_SCATTER) parts.deepScatter = select3(parts.deepScatter, some.deepScatter, mask);
+            if (PEL_FORMAT_OUT_DEEP_SCATTER)
+                parts.deepScatter = select3(parts.deepScatter, some.deepScatter, mask);
             if (PEL_FORMAT_OUT_SPECULAR) specular = select3(specular, someSpecular, mask);
             if (PEL_FORMAT_OUT_THICKNESS) parts.thickness = selectw(parts.thickness, some.thickness, mask);
             left &= notw(mask);
@@ -370,7 +390,7 @@ static inline void shadePixels(const Scene* scene, uint x, uint y, uintw id, mas
     result = select3(invalid, result, valid);
     if (HAS(PEL_BIT_ACCUMULATE)) {
         result = add3(result, loadColorOf(PEL_FORMAT_RADIANCE, target, active));
-        shown &= finite3(result); // what stood there may be NaN or Inf
+        shown &= finite3(result);  // what stood there may be NaN or Inf
         result = select3(invalid, result, finite3(result));
     }
     count(counts, PEL_COUNT_SHADED, active);
@@ -384,8 +404,8 @@ static inline void shadePixels(const Scene* scene, uint x, uint y, uintw id, mas
                     selectw((floatw)(0.0f), parts.thickness, valid & finitew(parts.thickness)), active);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade(
-    SCENE_ARGUMENTS uint part, uint parts, uint which) {
+__kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade(SCENE_ARGUMENTS uint part,
+                                                                                 uint parts, uint which) {
     const Scene scene = SCENE_VALUE;
     Counts counts = {{0}};
     const bool listed = PEL_FORMAT_MATERIAL && which != PEL_EVERY_TILE;
@@ -398,7 +418,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
     for (uint i = (uint)((ulong)tiles * group / groups); i < end; ++i) {
         const uint tile = listed ? list[listStart + i] : frame->firstTile + i;
         const uint tileX = tile % frame->tilesX * PEL_TILE_WIDTH, tileY = tile / frame->tilesX * PEL_TILE_HEIGHT;
-        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_SHADE_GROUP * PEL_WIDTH) {
+        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS;
+             pixel += PEL_SHADE_GROUP * PEL_WIDTH) {
             const uint x = tileX + pixel % PEL_TILE_WIDTH, y = tileY + pixel / PEL_TILE_WIDTH;
             if (x >= frame->width || y >= frame->height) continue;
             // At the right edge vectors begin earlier; the lanes before x belong to the tile or vector before.
@@ -407,7 +428,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
             maskw active = (column >= (int)x) & (column < (int)frame->width);
             uintw id = 1;
             if (PEL_FORMAT_MATERIAL) {
-                id = loadId(PEL_FORMAT_MATERIAL, imageSpan(MATERIAL, &frame->images[PEL_IMAGE_MATERIAL], first, y));
+                id = loadId(PEL_FORMAT_MATERIAL,
+                            imageSpan(MATERIAL, &frame->images[PEL_IMAGE_MATERIAL], first, y));
                 active &= hasMaterial(frame, id);
             }
             if (anyw(active)) shadePixels(&scene, first, y, id, active, &counts);

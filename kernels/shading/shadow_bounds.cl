@@ -10,8 +10,11 @@
 static inline float8 boundsTexels(__global const uchar* row, __global const PelShadeImage* map, uint column) {
     if (PEL_FORMAT_SHADOW_MAP == PEL_FMT_R32F && column + PEL_BOUNDS_BLOCK <= map->width)
         return vload8(0, (__global const float*)row + column);
-#define PEL_AT_(k) pixelComponent(PEL_FORMAT_SHADOW_MAP, row + (size_t)min(column + k, map->width - 1) * map->pixelStride, 0, 0)
-    return (float8)(PEL_AT_(0), PEL_AT_(1), PEL_AT_(2), PEL_AT_(3), PEL_AT_(4), PEL_AT_(5), PEL_AT_(6), PEL_AT_(7));
+#define PEL_AT_(k)                                                                                          \
+    pixelComponent(PEL_FORMAT_SHADOW_MAP, row + (size_t)min(column + k, map->width - 1) * map->pixelStride, \
+                   0, 0)
+    return (float8)(PEL_AT_(0), PEL_AT_(1), PEL_AT_(2), PEL_AT_(3), PEL_AT_(4), PEL_AT_(5), PEL_AT_(6),
+                    PEL_AT_(7));
 #undef PEL_AT_
 }
 
@@ -20,8 +23,8 @@ static inline float sum4(float4 v) {
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_BOUNDS_GROUP, 1, 1))) void shadow_bounds(
-    __global const PelShadeFrame* frame, __global const uint* list, __global const PelWideShadow* cascades, uint cascade,
-    __global uchar* mapBuffer, __global float* bounds) {
+    __global const PelShadeFrame* frame, __global const uint* list, __global const PelWideShadow* cascades,
+    uint cascade, __global uchar* mapBuffer, __global float* bounds) {
     __global const PelWideShadow* light = cascades + cascade;
     __global const PelShadeImage* map = &light->map;
     const uint columns = boundsBlocks(map->width), plane = boundsPlane(map), block = get_global_id(0);

@@ -33,11 +33,11 @@ typedef struct Filters {
 // Where a point lies in a map, and the tangent plane there.
 typedef struct Receiver {
     floatw u, v, z, w;
-    floatw zPerLength;       // depth per length along the light
-    floatw extentU, extentV; // length that u, v from 0 to 1 span
-    floatw texelU, texelV;   // length
-    floatw cosine;           // of the normal to the light
-    floatw x, y;             // texels from the middle of texel (0, 0)
+    floatw zPerLength;        // depth per length along the light
+    floatw extentU, extentV;  // length that u, v from 0 to 1 span
+    floatw texelU, texelV;    // length
+    floatw cosine;            // of the normal to the light
+    floatw x, y;              // texels from the middle of texel (0, 0)
 } Receiver;
 
 static inline Receiver receiverInMap(__global const PelWideShadow* light, Vec3w p, Vec3w n) {
@@ -67,7 +67,8 @@ static inline Receiver receiverInMap(__global const PelWideShadow* light, Vec3w 
 // Whether depths round the receiver can be compared: it is before the light, near the map, and all is numbers.
 static inline maskw comparable(const Receiver* r, Vec3w p, Vec3w n) {
     // Far outside of the map, where integers would overflow, everything is lit.
-    return (r->w > 0.0f) & finite3(p) & finite3(n) & (fabs(r->x) < 1e6f) & (fabs(r->y) < 1e6f) & finitew(r->zPerLength);
+    return (r->w > 0.0f) & finite3(p) & finite3(n) & (fabs(r->x) < 1e6f) & (fabs(r->y) < 1e6f) &
+           finitew(r->zPerLength);
 }
 
 // Returns the lanes whose filter can be run; the others are behind the light, or no numbers.
@@ -111,8 +112,8 @@ static inline floatw sharpTolerance(floatw texel, floatw tilt) {
 }
 
 // The sharp shadow of the lanes of `left` that this map holds; those are taken out of `left`.
-static inline floatw sharpInMap(__global const PelWideShadow* light, __global const uchar* map, Vec3w p, Vec3w n, float perExponent,
-                                floatw shown, maskw* left) {
+static inline floatw sharpInMap(__global const PelWideShadow* light, __global const uchar* map, Vec3w p,
+                                Vec3w n, float perExponent, floatw shown, maskw* left) {
     const Receiver r = receiverInMap(light, p, n);
     maskw held = *left & comparable(&r, p, n);
     if ((PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) && light->cascades)
@@ -132,19 +133,20 @@ static inline floatw sharpInMap(__global const PelWideShadow* light, __global co
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_shadow(
-    __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials, __global const PelShadeLight* lights,
-    __global const uint* list, __global uint* counters, __global uchar* material, __global uchar* normal,
-    __global uchar* position, __global uchar* depth, __global const PelWideShadow* wideShadow, uint lightIndex,
-    __global uchar* map0, __global uchar* map1, __global uchar* map2, __global uchar* map3,
-    __global const float* bounds, __global uchar* out) {
+    __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials,
+    __global const PelShadeLight* lights, __global const uint* list, __global uint* counters,
+    __global uchar* material, __global uchar* normal, __global uchar* position, __global uchar* depth,
+    __global const PelWideShadow* wideShadow, uint lightIndex, __global uchar* map0, __global uchar* map1,
+    __global uchar* map2, __global uchar* map3, __global const float* bounds, __global uchar* out) {
     const TileRun run = tileRun(frame, list);
     const WideContent content = {wideShadow->perExponent, wideShadow->minDeviation * wideShadow->minDeviation,
                                  wideShadow->bleeding};
     const uint maps = (PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) ? max(wideShadow->cascades, 1u) : 1;
-    uint filtered = 0, texels = 0; // pixels whose shadow was filtered, and whose filter read the map
+    uint filtered = 0, texels = 0;  // pixels whose shadow was filtered, and whose filter read the map
     for (uint i = run.begin; i < run.end; ++i) {
         const uint2 origin = tileOrigin(frame, list, i);
-        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS; pixel += PEL_PASS_GROUP * PEL_WIDTH) {
+        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS;
+             pixel += PEL_PASS_GROUP * PEL_WIDTH) {
             const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
             if (x >= frame->width || y >= frame->height) continue;
             const uint first = vectorStart(x, frame->width);
@@ -153,17 +155,19 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
             const maskw active = (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id);
             if (!anyw(active)) continue;
             const Vec3w p = loadPosition(frame, position, depth, first, y);
-            const Vec3w n = loadNormal(PEL_FORMAT_NORMAL, imageSpan(normal, &frame->images[PEL_NORMAL_SLOT], first, y));
+            const Vec3w n =
+                loadNormal(PEL_FORMAT_NORMAL, imageSpan(normal, &frame->images[PEL_NORMAL_SLOT], first, y));
             // Ids without a material may lie beyond the table.
 #define PEL_WIDTH_(k, s) (active s ? materials[id s].shadowFilterWidth : 1.0f)
             floatw width = PEL_LANES(PEL_WIDTH_);
 #undef PEL_WIDTH_
             maskw left = active;
-            if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING)) left &= sampleLight(&lights[lightIndex], p).strength > 0.0f;
+            if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING))
+                left &= sampleLight(&lights[lightIndex], p).strength > 0.0f;
             maskw sharp = left & (width == 0.0f);
             float shown[PEL_WIDTH];
             storew((floatw)(1.0f), 0, shown);
-            if (!(wideShadow->maxTexels > 0.0f)) left = sharp; // only sharp shadows are made of this light
+            if (!(wideShadow->maxTexels > 0.0f)) left = sharp;  // only sharp shadows are made of this light
             if ((PEL_FEATURES & PEL_BIT_SHADOW_CUBE) && wideShadow->projection >= PEL_MAP_CUBE) {
                 CubeFilters f;
                 __global const uchar* map = firstTexel(map0, &wideShadow->map);
@@ -182,27 +186,32 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                 for (uint cascade = 0; cascade < maps && anyw(left | sharp); ++cascade) {
                     Filters f;
                     __global const PelWideShadow* light = wideShadow + cascade;
-                    __global uchar* map = cascade == 0 ? map0 : cascade == 1 ? map1 : cascade == 2 ? map2 : map3;
+                    __global uchar* map = cascade == 0   ? map0
+                                          : cascade == 1 ? map1
+                                          : cascade == 2 ? map2
+                                                         : map3;
                     if (anyw(sharp)) {
                         const maskw before = sharp;
-                        storew(sharpInMap(light, firstTexel(map, &light->map), p, n, content.perExponent, loadw(0, shown), &sharp), 0,
-                               shown);
-                        if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(before & notw(sharp)), texels += countw(before & notw(sharp));
+                        storew(sharpInMap(light, firstTexel(map, &light->map), p, n, content.perExponent,
+                                          loadw(0, shown), &sharp),
+                               0, shown);
+                        if (PEL_FEATURES & PEL_BIT_COUNT)
+                            filtered += countw(before & notw(sharp)), texels += countw(before & notw(sharp));
                         if (!anyw(left)) continue;
                     }
                     const maskw held = makeFilters(light, p, n, width, &f) & left;
                     if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(held);
                     left &= notw(held);
                     const bool bounded = PEL_BOUNDS && boundsPay(frame, list, &light->map);
-#define PEL_FILTER_(k, s)                                                                                        \
-    if (held s) {                                                                                                \
-        const WideFilter one = {f.x[k], f.y[k], f.z[k], f.dzdx[k], f.dzdy[k], f.radiusX[k], f.radiusY[k],        \
-                                f.cone[k], f.scale[k], (int)f.step[k]};                                          \
-        shown[k] = bounded ? uniformShadow(bounds + light->bounds, &light->map, &one) : -1.0f;                   \
-        if (shown[k] < 0.0f) {                                                                                   \
-            ++texels;                                                                                            \
-            shown[k] = wideShadowOfPixel(PEL_FORMAT_SHADOW_MAP, map, &light->map, &one, &content);               \
-        }                                                                                                        \
+#define PEL_FILTER_(k, s)                                                                           \
+    if (held s) {                                                                                   \
+        const WideFilter one = {f.x[k],       f.y[k],       f.z[k],    f.dzdx[k],  f.dzdy[k],       \
+                                f.radiusX[k], f.radiusY[k], f.cone[k], f.scale[k], (int)f.step[k]}; \
+        shown[k] = bounded ? uniformShadow(bounds + light->bounds, &light->map, &one) : -1.0f;      \
+        if (shown[k] < 0.0f) {                                                                      \
+            ++texels;                                                                               \
+            shown[k] = wideShadowOfPixel(PEL_FORMAT_SHADOW_MAP, map, &light->map, &one, &content);  \
+        }                                                                                           \
     }
                     PEL_EACH_LANE(PEL_FILTER_)
 #undef PEL_FILTER_
@@ -210,7 +219,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
             }
             const Span target = imageSpan(out, &wideShadow->out, first, y);
 #define PEL_STORE_(k, s) \
-    if (active s) *(__global float*)(target.first + (k) * target.stride) = shown[k];
+    if (active s) *(__global float*)(target.first + (k)*target.stride) = shown[k];
             PEL_EACH_LANE(PEL_STORE_)
 #undef PEL_STORE_
         }

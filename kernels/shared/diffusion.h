@@ -7,64 +7,64 @@
 // The surface as a pyramid of blocks of 2^l x 2^l pixels. A level is rows of planes: row y of plane p begins at
 // offset + ((y + PEL_PYRAMID_ROWS) PEL_PYRAMID_PLANES + p) stride + PEL_PYRAMID_GUARD. Blocks outside of the image have no area.
 #define PEL_PYRAMID_LEVELS 8
-#define PEL_PYRAMID_GUARD 16 // blocks before and after a row
-#define PEL_PYRAMID_ROWS 4   // rows before the first and after the last
-#define PEL_PLANE_AREA 0     // length^2 of surface
-#define PEL_PLANE_ID 1       // the bits of an id, 0: nothing
-#define PEL_PLANE_X 2        // length, from PelDiffusionFrame.origin: the mean over the block's surface
+#define PEL_PYRAMID_GUARD 16  // blocks before and after a row
+#define PEL_PYRAMID_ROWS 4    // rows before the first and after the last
+#define PEL_PLANE_AREA 0      // length^2 of surface
+#define PEL_PLANE_ID 1        // the bits of an id, 0: nothing
+#define PEL_PLANE_X 2         // length, from PelDiffusionFrame.origin: the mean over the block's surface
 #define PEL_PLANE_Y 3
 #define PEL_PLANE_Z 4
-#define PEL_PLANE_RED 5 // irradiance, likewise
+#define PEL_PLANE_RED 5  // irradiance, likewise
 #define PEL_PLANE_GREEN 6
 #define PEL_PLANE_BLUE 7
-#define PEL_PLANE_BEND 8 // greatest second difference of irradiance, from block to block one level finer
-#define PEL_PLANE_SIZE 9 // length^2: the smaller of the squared steps to the next pixel; of a pixel
+#define PEL_PLANE_BEND 8  // greatest second difference of irradiance, from block to block one level finer
+#define PEL_PLANE_SIZE 9  // length^2: the smaller of the squared steps to the next pixel; of a pixel
 #define PEL_PYRAMID_PLANES 10
 
-#define PEL_DIFFUSION_TILE 16 // pixels along a side: blocks of level 4
+#define PEL_DIFFUSION_TILE 16  // pixels along a side: blocks of level 4
 #define PEL_TILE_LEVEL 4
-#define PEL_DIFFUSION_GROUP 16 // work-items
-#define PEL_ROW_PARTS 4        // that different work-items copy
+#define PEL_DIFFUSION_GROUP 16  // work-items
+#define PEL_ROW_PARTS 4         // that different work-items copy
 #define PEL_DIFFUSION_IDS 256
 
 // A profile as two tables over the squared distance, four floats a node: R (1/length^2), then the share of the light that stays within.
 // Nodes are equally spaced in the bits of a float, PEL_PROFILE_NODES to the octave. From the last node on R is 0 and the share 1.
 #define PEL_PROFILE_NODES 16
-#define PEL_PROFILE_NODE_BITS 19 // 23 bits of mantissa, less those of a node
+#define PEL_PROFILE_NODE_BITS 19  // 23 bits of mantissa, less those of a node
 typedef struct PelProfileTable {
-    PelUint32 offset;    // of the first node, nodes
+    PelUint32 offset;  // of the first node, nodes
     PelUint32 nodes;
-    PelUint32 firstBits; // of the first node's squared distance
-    float reach;         // length beyond which nothing is left
+    PelUint32 firstBits;  // of the first node's squared distance
+    float reach;          // length beyond which nothing is left
 } PelProfileTable;
 
 typedef struct PelPyramidLevel {
-    PelUint32 offset; // floats
-    PelUint32 stride; // floats, a multiple of 16
-    PelUint32 width;  // blocks
+    PelUint32 offset;  // floats
+    PelUint32 stride;  // floats, a multiple of 16
+    PelUint32 width;   // blocks
     PelUint32 height;
 } PelPyramidLevel;
 
 typedef struct PelDiffusionFrame {
-    PelUint32 width; // pixels
+    PelUint32 width;  // pixels
     PelUint32 height;
     PelUint32 tilesX;
     PelUint32 tilesY;
-    PelUint32 levels;    // that the pyramid has, 0 included
-    PelUint32 everyTile; // 1: no tile and no level is left out
-    PelUint32 inPlace;   // 1: `out` is `irradiance`
+    PelUint32 levels;     // that the pyramid has, 0 included
+    PelUint32 everyTile;  // 1: no tile and no level is left out
+    PelUint32 inPlace;    // 1: `out` is `irradiance`
     PelUint32 tables;
-    PelUint32 facing;    // 1: `origin` is the camera, so that grazing surface can be told
-    float tolerance;     // of irradiance
-    float origin[3];     // length, world; of the pyramid's positions
+    PelUint32 facing;  // 1: `origin` is the camera, so that grazing surface can be told
+    float tolerance;   // of irradiance
+    float origin[3];   // length, world; of the pyramid's positions
     float inverseViewProjection[16];
-    PelShadeImage irradiance, position, ids, out; // position: or depth
+    PelShadeImage irradiance, position, ids, out;  // position: or depth
     PelPyramidLevel level[PEL_PYRAMID_LEVELS];
-    PelUint32 tableOf[PEL_DIFFUSION_IDS]; // 1 + the table of an id; 0: none, it does not scatter
+    PelUint32 tableOf[PEL_DIFFUSION_IDS];  // 1 + the table of an id; 0: none, it does not scatter
 } PelDiffusionFrame;
 
 // Counters.
-#define PEL_COUNT_TILES_COVERED 0 // with something that scatters
+#define PEL_COUNT_TILES_COVERED 0  // with something that scatters
 #define PEL_COUNT_TILES_TAPPED 1
 #define PEL_COUNT_PIXELS_COVERED 2
 #define PEL_COUNT_PIXELS_TAPPED 3
@@ -74,6 +74,7 @@ typedef struct PelDiffusionFrame {
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelProfileTable) == 16 && sizeof(PelPyramidLevel) == 16);
-static_assert(sizeof(PelDiffusionFrame) == 4 * (10 + 3 + 16 + PEL_DIFFUSION_IDS) + 4 * 32 + PEL_PYRAMID_LEVELS * 16);
+static_assert(sizeof(PelDiffusionFrame) ==
+              4 * (10 + 3 + 16 + PEL_DIFFUSION_IDS) + 4 * 32 + PEL_PYRAMID_LEVELS * 16);
 #endif
 #endif

@@ -19,11 +19,12 @@
 #define PEL_BIT_SHADOW_CUBE 0x1000000
 #define PEL_BIT_SHADOW_CASCADES 0x2000000
 // How the kernel goes about it.
-#define PEL_BIT_POSITIONAL 0x10000  // a point or spot light
-#define PEL_BIT_ACCUMULATE 0x20000  // add to the output
-#define PEL_BIT_NO_SKIPPING 0x40000 // evaluate every term of every pixel
-#define PEL_BIT_COUNT 0x80000       // count pixels per feature; those of a material, and invalid ones, are counted without it
-#define PEL_BIT_CUBE_ALONE 0x100000  // ambient light has no other part than the cube map
-#define PEL_BIT_ROTATE_TAPS 0x200000 // thickness taps are turned from pixel to pixel
+#define PEL_BIT_POSITIONAL 0x10000   // a point or spot light
+#define PEL_BIT_ACCUMULATE 0x20000   // add to the output
+#define PEL_BIT_NO_SKIPPING 0x40000  // evaluate every term of every pixel
+#define PEL_BIT_COUNT \
+    0x80000  // count pixels per feature; those of a material, and invalid ones, are counted without it
+#define PEL_BIT_CUBE_ALONE 0x100000   // ambient light has no other part than the cube map
+#define PEL_BIT_ROTATE_TAPS 0x200000  // thickness taps are turned from pixel to pixel
 
 #endif

@@ -26,7 +26,8 @@
     X(PLANAR_RGB32F, 18, PLANAR, 3, 4, 4)
 // clang-format on
 
-#define PEL_FORMAT_NUMBER_(name, number, kind, components, componentBytes, pixelBytes) PEL_FMT_##name = number,
+#define PEL_FORMAT_NUMBER_(name, number, kind, components, componentBytes, pixelBytes) \
+    PEL_FMT_##name = number,
 enum { PEL_EACH_FORMAT(PEL_FORMAT_NUMBER_) PEL_FMT_NONE = 0 };
 
 // Added to a format whose pixels are not tightly packed, not aligned, or fewer in a row than the math width:

@@ -5,7 +5,8 @@
 #include "shared/features.h"
 
 // Features whose terms read the blurred normal, or the geometric one where it is not there.
-#define PEL_BITS_BLURRED_ (PEL_BIT_DIRECT_SCATTER | PEL_BIT_AMBIENT | PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER)
+#define PEL_BITS_BLURRED_ \
+    (PEL_BIT_DIRECT_SCATTER | PEL_BIT_AMBIENT | PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER)
 #define PEL_BITS_POSITION_ (PEL_BIT_SPECULAR | PEL_BIT_THICKNESS_TAPS | PEL_BIT_POSITIONAL)
 #define PEL_BITS_ALL_ 0x7fffffff
 
@@ -40,7 +41,8 @@
 // clang-format on
 
 // PEL_IMAGE_<NAME>, their count, and PEL_READ_<NAME>: the bits.
-#define PEL_IMAGE_NUMBER_(name, number, role, content, components, key, words, bits) PEL_IMAGE_##name = number,
+#define PEL_IMAGE_NUMBER_(name, number, role, content, components, key, words, bits) \
+    PEL_IMAGE_##name = number,
 #define PEL_IMAGE_BITS_(name, number, role, content, components, key, words, bits) PEL_READ_##name = bits,
 #define PEL_IMAGE_ONE_(name, number, role, content, components, key, words, bits) +1
 enum { PEL_EACH_IMAGE(PEL_IMAGE_NUMBER_) PEL_IMAGE_SLOTS = 0 PEL_EACH_IMAGE(PEL_IMAGE_ONE_) };

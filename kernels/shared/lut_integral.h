@@ -48,8 +48,8 @@ typedef struct ShadowParams {
     float reciprocalMin;   // 1/penumbra width at the upper edge of row 0, 1/diffusion radii
     float reciprocalStep;  // per row
     float sharpening;
-    float cut;      // half length of the integral, diffusion radii
-    float mass[3];  // of the cut profile, per channel
+    float cut;                // half length of the integral, diffusion radii
+    float mass[3];            // of the cut profile, per channel
     unsigned int axis;        // LUT_AXIS_...
     unsigned int closedEnds;  // rows are rescaled to run from 0 to 1
 } ShadowParams;
@@ -98,7 +98,7 @@ typedef struct TableShadowParams {
     float reciprocalMin;  // as in ShadowParams
     float reciprocalStep;
     float sharpening;
-    float end;  // where the tails end, diffusion radii
+    float end;                // where the tails end, diffusion radii
     unsigned int axis;        // LUT_AXIS_...
     unsigned int closedEnds;  // rows are rescaled to run from 0 to 1
 } TableShadowParams;

@@ -3,15 +3,15 @@
 #define PEL_SHARED_SCREEN
 #include "shared/shade.h"
 
-#define SCREEN_GROUP 16 // work-items in a work-group, each of PEL_WIDTH pixels
+#define SCREEN_GROUP 16  // work-items in a work-group, each of PEL_WIDTH pixels
 
 typedef struct ScreenCurvatureFrame {
-    PelUint32 width; // pixels
+    PelUint32 width;  // pixels
     PelUint32 height;
-    float scale; // multiplies the result
-    float edge;  // sine between a step and the surface from which it crosses an edge
-    float inverseViewProjection[16]; // clip to world, for depth
-    PelShadeImage normal, position, ids, curvature; // position: or depth
+    float scale;                      // multiplies the result
+    float edge;                       // sine between a step and the surface from which it crosses an edge
+    float inverseViewProjection[16];  // clip to world, for depth
+    PelShadeImage normal, position, ids, curvature;  // position: or depth
 } ScreenCurvatureFrame;
 
 #ifndef __OPENCL_VERSION__

@@ -11,44 +11,45 @@
 #define PEL_TILE_WIDTH 128  // pixels; measured, docs/shading.md
 #define PEL_TILE_HEIGHT 2
 #define PEL_TILE_PIXELS (PEL_TILE_WIDTH * PEL_TILE_HEIGHT)
-#define PEL_LIGHT_BUFFERS 16 // distinct buffers among all images of all lights
-#define PEL_EACH_LIGHT_BUFFER(X) X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8) X(9) X(10) X(11) X(12) X(13) X(14) X(15)
-#define PEL_MATERIALS 256    // ids 0 (background) to 255
+#define PEL_LIGHT_BUFFERS 16  // distinct buffers among all images of all lights
+#define PEL_EACH_LIGHT_BUFFER(X) \
+    X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8) X(9) X(10) X(11) X(12) X(13) X(14) X(15)
+#define PEL_MATERIALS 256  // ids 0 (background) to 255
 // Lists of tiles in one buffer: PEL_TILE_LISTS counts, then the lists, each with room for PelShadeFrame.listTiles. List 0 has
 // every tile with a material; list 1 + i the tiles of variant i of the shading kernel, where there are several.
 #define PEL_TILE_VARIANTS 3
 #define PEL_TILE_LISTS (1 + PEL_TILE_VARIANTS)
-#define PEL_EVERY_TILE 0xffffffffu // instead of a list's number: visit all tiles
+#define PEL_EVERY_TILE 0xffffffffu  // instead of a list's number: visit all tiles
 // Transmittance below 2^-16 counts as none: it lets taps stop early and is a third of the accuracy promised.
 #define PEL_LEAST_TRANSMITTANCE_LOG2 16
 
 // Where the pixels of an image lie in its buffer.
 typedef struct PelShadeImage {
-    PelUint32 offset[2]; // bytes to the first pixel, low and high word
-    PelUint32 plane[2];  // bytes from plane to plane, low and high word; planar formats only
-    PelUint32 pixelStride; // bytes
-    PelUint32 rowStride;   // bytes
-    PelUint32 width;       // pixels
+    PelUint32 offset[2];    // bytes to the first pixel, low and high word
+    PelUint32 plane[2];     // bytes from plane to plane, low and high word; planar formats only
+    PelUint32 pixelStride;  // bytes
+    PelUint32 rowStride;    // bytes
+    PelUint32 width;        // pixels
     PelUint32 height;
 } PelShadeImage;
 
 typedef struct PelShadeFrame {
-    PelUint32 width; // pixels
+    PelUint32 width;  // pixels
     PelUint32 height;
-    PelUint32 tilesX; // tiles in a row
+    PelUint32 tilesX;  // tiles in a row
     PelUint32 tiles;  // that this launch takes, from firstTile on; all of them unless the frame is shaded in bands
     PelUint32 firstTile;
-    PelUint32 scratchRow; // pixel row at which the images that passes make begin
-    PelUint32 listTiles;  // room in each list of tiles
+    PelUint32 scratchRow;  // pixel row at which the images that passes make begin
+    PelUint32 listTiles;   // room in each list of tiles
     PelUint32 lights;
-    PelUint32 materialMask[PEL_MATERIALS / 32]; // bit i: id i has a material
-    float cameraPosition[3];                    // length, world
-    float inverseViewProjection[16];            // clip to world
+    PelUint32 materialMask[PEL_MATERIALS / 32];  // bit i: id i has a material
+    float cameraPosition[3];                     // length, world
+    float inverseViewProjection[16];             // clip to world
     // Irradiance / pi as a polynomial of the normal: 1, y, z, x, xy, yz, 3z^2 - 1, xz, x^2 - y^2; the basis' factors
     // and the constant term are folded in.
     float ambient[9][3];
-    float invalidColor[3]; // radiance of a pixel with NaN or Inf input
-    PelUint32 cubeSize;    // texels along an edge of the ambient cube map; 0: none
+    float invalidColor[3];  // radiance of a pixel with NaN or Inf input
+    PelUint32 cubeSize;     // texels along an edge of the ambient cube map; 0: none
     PelShadeImage images[PEL_IMAGE_SLOTS];
 } PelShadeFrame;
 
@@ -61,67 +62,67 @@ typedef struct PelShadeLut {
 
 typedef struct PelShadeMaterial {
     float albedo[3];
-    float normalBlend[3]; // how far Nb replaces N, per channel
+    float normalBlend[3];  // how far Nb replaces N, per channel
     PelShadeLut curvature;
     PelShadeLut shadow;
-    float penumbraPerCosine;   // 1 / shadowFilterWidth, 1/length: reciprocal penumbra width = sat(Ng.L) times this
+    float penumbraPerCosine;  // 1 / shadowFilterWidth, 1/length: reciprocal penumbra width = sat(Ng.L) times this
     float specularSharpening;  // 0.9 k: specular's shadow is smoothstep(w 0.9k + (1 - 0.9k) / 2); 0: plain w
     float deepScatterColor[3];
-    float deepScatterFalloff; // -log2(e) / (2 radius^2), 1/length^2: transmittance = exp2(falloff t^2)
-    float thicknessCutoff;    // length beyond which the transmittance counts as none
-    float deepScatterNormalOffset; // length
-    float thicknessFilterRadius;   // UV of the shadow map
-    PelUint32 thicknessTaps;       // 0: no taps
+    float deepScatterFalloff;       // -log2(e) / (2 radius^2), 1/length^2: transmittance = exp2(falloff t^2)
+    float thicknessCutoff;          // length beyond which the transmittance counts as none
+    float deepScatterNormalOffset;  // length
+    float thicknessFilterRadius;    // UV of the shadow map
+    PelUint32 thicknessTaps;        // 0: no taps
     float specular;
     float roughness;
     float f0;
-    float diffusionRadius;   // length
-    float shadowFilterWidth; // length; 0: a sharp shadow
+    float diffusionRadius;    // length
+    float shadowFilterWidth;  // length; 0: a sharp shadow
     PelUint32 hasNormalMap;
-    PelUint32 specularModel; // PelSpecularModel
+    PelUint32 specularModel;  // PelSpecularModel
     float roughness2;
     float lobeMix;
     float deepScatterAmbient;
-    PelShadeLut transmission;    // one row over the root of thickness: layout.width 0: none
-    float transmissionPerLength; // 1 / the thickness at its end, 1/length
+    PelShadeLut transmission;     // one row over the root of thickness: layout.width 0: none
+    float transmissionPerLength;  // 1 / the thickness at its end, 1/length
     float transmissionShare;
-    float gain[3];      // length: direct light times 1 + gain * curvature; all 0: none
-    PelUint32 needs;    // PEL_BIT_...: features that this material asks for
-    PelUint32 scattering; // PelScattering
-    PelUint32 variants; // bit i: variant i of the shading kernel has all of them
+    float gain[3];         // length: direct light times 1 + gain * curvature; all 0: none
+    PelUint32 needs;       // PEL_BIT_...: features that this material asks for
+    PelUint32 scattering;  // PelScattering
+    PelUint32 variants;    // bit i: variant i of the shading kernel has all of them
 } PelShadeMaterial;
 
-#define PEL_CASCADES 4 // of one light, at most
+#define PEL_CASCADES 4  // of one light, at most
 
 // One of the parallel maps of a light with cascades.
 typedef struct PelShadeCascade {
     float worldToShadow[16];
-    float depthRange;    // length per unit of depth
-    float tapScale[2];   // UV of this map per UV of the first, along u and v
-    PelUint32 mapBuffer; // which light buffer
+    float depthRange;     // length per unit of depth
+    float tapScale[2];    // UV of this map per UV of the first, along u and v
+    PelUint32 mapBuffer;  // which light buffer
     PelShadeImage map;
 } PelShadeCascade;
 
 typedef struct PelShadeLight {
-    PelUint32 type;    // PelLightType
-    float toLight[3];  // directional: unit
-    float position[3]; // length, world
+    PelUint32 type;     // PelLightType
+    float toLight[3];   // directional: unit
+    float position[3];  // length, world
     float spotDirection[3];
     float spotCosOuter;
-    float spotScale; // 1 / (cosInner - cosOuter)
+    float spotScale;  // 1 / (cosInner - cosOuter)
     float color[3];
-    float range2; // length^2, square of the range; FLT_MAX: no limit
+    float range2;  // length^2, square of the range; FLT_MAX: no limit
     float worldToShadow[16];
-    PelUint32 projection; // PelShadowProjection
-    float depthRange;     // parallel: length per unit of depth; radial cube: distance from the light per unit
-    float depthA;         // perspective, cube: distance = 1 / (A z + B), 1/length
+    PelUint32 projection;  // PelShadowProjection
+    float depthRange;  // parallel: length per unit of depth; radial cube: distance from the light per unit
+    float depthA;      // perspective, cube: distance = 1 / (A z + B), 1/length
     float depthB;
-    PelUint32 wideBuffer; // which light buffer; >= PEL_LIGHT_BUFFERS: no image
+    PelUint32 wideBuffer;  // which light buffer; >= PEL_LIGHT_BUFFERS: no image
     PelUint32 mapBuffer;
     PelShadeImage wide;
     PelShadeImage map;
-    PelUint32 cascades;   // 0: the map above is no cascade
-    float perExponent;    // depth per log2 of a texel; exponential maps
+    PelUint32 cascades;  // 0: the map above is no cascade
+    float perExponent;   // depth per log2 of a texel; exponential maps
     PelShadeCascade cascade[PEL_CASCADES];
 } PelShadeLight;
 
@@ -134,7 +135,7 @@ typedef struct PelShadeLight {
 #define PEL_COUNT_WIDE_SHADOW 5
 #define PEL_COUNT_SHADOW_TEXELS 6
 #define PEL_COUNT_IRRADIANCE 7
-#define PEL_COUNT_SCATTERING 8 // and on: one for each PelScattering
+#define PEL_COUNT_SCATTERING 8  // and on: one for each PelScattering
 #define PEL_COUNTERS (PEL_COUNT_SCATTERING + PEL_SCATTERS)
 
 #ifndef __OPENCL_VERSION__

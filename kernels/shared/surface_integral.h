@@ -9,11 +9,11 @@
 
 // A set of triangles. Nodes stand in the order of a walk from the root, each before its children.
 typedef struct SurfaceNode {
-    float centre[3];  // length; of light, where first moments vanish
-    float radius;     // length; all of it lies within, round the centre
-    float weight[3];  // integral of E dA, length^2
-    float accept2;    // length^2; from this squared distance on the centre stands for the set
-    PelUint32 skip;   // node that follows when the children are left out
+    float centre[3];     // length; of light, where first moments vanish
+    float radius;        // length; all of it lies within, round the centre
+    float weight[3];     // integral of E dA, length^2
+    float accept2;       // length^2; from this squared distance on the centre stands for the set
+    PelUint32 skip;      // node that follows when the children are left out
     PelUint32 triangle;  // of a leaf; SURFACE_NONE: there are children
     PelUint32 pad[2];
 } SurfaceNode;
@@ -27,12 +27,12 @@ typedef struct SurfaceTriangle {
 
 typedef struct SurfaceSum {
     PelUint32 nodes;
-    PelUint32 rows;   // of the table
-    float firstLog2;  // log2 of the first row's distance
-    float reach;      // length; beyond it R is 0 in all channels
-    float cut[3];     // length; where R ends abruptly, 0: nowhere
-    float whole;      // 1 / 2 pi
-    float piecesPerU; // along an edge: rules of 4 points per unit of u
+    PelUint32 rows;    // of the table
+    float firstLog2;   // log2 of the first row's distance
+    float reach;       // length; beyond it R is 0 in all channels
+    float cut[3];      // length; where R ends abruptly, 0: nowhere
+    float whole;       // 1 / 2 pi
+    float piecesPerU;  // along an edge: rules of 4 points per unit of u
     float pad[3];
 } SurfaceSum;
 

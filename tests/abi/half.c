@@ -18,7 +18,8 @@ const char* JOIN(half, HALF)(uint32_t* sizeOfInfo) {
     memset(&s, 0x5a, sizeof s);
     s.info = pelDeviceInfoDefaults();
     if (pelDeviceGetInfo(device, &s.info)) return pelGetErrorMessage();
-    if (s.info.structSize != sizeof s.info || !s.info.name[0] || !s.info.globalMemoryBytes) return "PelDeviceInfo is wrong";
+    if (s.info.structSize != sizeof s.info || !s.info.name[0] || !s.info.globalMemoryBytes)
+        return "PelDeviceInfo is wrong";
     for (int i = 0; i < 64; ++i)
         if (s.guard[i] != 0x5a) return "memory after PelDeviceInfo was written";
     /* Read by the library: a tetrahedron with its directions as normals; scale is among the last fields. */
@@ -42,7 +43,8 @@ const char* JOIN(half, HALF)(uint32_t* sizeOfInfo) {
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     params.estimator = PEL_CURVATURE_EDGE;
     params.scale = 10;
-    if (pelMeshCurvature(topology, &params, &positions, &normals, &result, NULL, NULL)) return pelGetErrorMessage();
+    if (pelMeshCurvature(topology, &params, &positions, &normals, &result, NULL, NULL))
+        return pelGetErrorMessage();
     if (pelBufferRead(out, 0, sizeof curvature, curvature, NULL)) return pelGetErrorMessage();
     pelBufferRelease(in);
     pelBufferRelease(out);

@@ -8,7 +8,8 @@
 #include <cstdlib>
 #include <cstring>
 
-extern "C" __attribute__((visibility("default"))) cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* code) {
+extern "C" __attribute__((visibility("default"))) cl_kernel clCreateKernel(cl_program program,
+                                                                           const char* name, cl_int* code) {
     const char *bad = std::getenv("BAD_KERNEL"), *ending = std::getenv("BAD_ENDING");
     if (bad && ending && std::strcmp(bad, name) == 0) {
         while (std::strcmp(ending, "hang") == 0) ::pause();

@@ -10,10 +10,9 @@ struct [[gnu::visibility("default")]] Counts {
     int64_t contexts, queues, memory, programs, kernels, events;
     // Since the program began.
     uint64_t buffersMade;  // clCreateBuffer that succeeded
-    uint64_t
-        bytesCopied;     // by CL_MEM_COPY_HOST_PTR and the enqueued reads, writes and copies between buffers
-    uint64_t transfers;  // how many of those
-    uint64_t launches;   // clEnqueueNDRangeKernel that succeeded
+    uint64_t bytesCopied;  // by CL_MEM_COPY_HOST_PTR and the enqueued reads, writes and copies between buffers
+    uint64_t transfers;    // how many of those
+    uint64_t launches;     // clEnqueueNDRangeKernel that succeeded
 
     int64_t left() const {
         return contexts + queues + memory + programs + kernels + events;

@@ -22,7 +22,9 @@ class BinaryFile : public FolderTest {
         return found;
     }
     static std::string contents(const fs::path& file) { return read(file.string()); }
-    static void damage(const fs::path& file, const std::string& text) { std::ofstream(file, std::ios::binary) << text; }
+    static void damage(const fs::path& file, const std::string& text) {
+        std::ofstream(file, std::ios::binary) << text;
+    }
     static void age(const fs::path& file, int hours) {
         fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::hours(hours));
     }
@@ -59,13 +61,15 @@ TEST_F(BinaryFile, KeepsWhatWasStoredAndNothingElse) {
     EXPECT_EQ(file.filename(), one.text() + ".bin");
     const std::string good = contents(file);
     // Every byte counts, and so does every length.
-    for (const size_t at : {size_t{0}, size_t{9}, size_t{20}, size_t{25}, size_t{40}, size_t{60}, good.size() - 1}) {
+    for (const size_t at :
+         {size_t{0}, size_t{9}, size_t{20}, size_t{25}, size_t{40}, size_t{60}, good.size() - 1}) {
         std::string bad = good;
         bad[at] = char(bad[at] ^ 4);
         damage(file, bad);
         EXPECT_FALSE(store.load(one)) << "byte " << at;
     }
-    for (const std::string& bad : {std::string(), good.substr(0, 10), good.substr(0, good.size() - 1), good + "x"}) {
+    for (const std::string& bad :
+         {std::string(), good.substr(0, 10), good.substr(0, good.size() - 1), good + "x"}) {
         damage(file, bad);
         EXPECT_FALSE(store.load(one)) << bad.size() << " bytes";
     }
@@ -105,7 +109,8 @@ TEST_F(BinaryFile, OldestGoWhenThereIsTooMuch) {
 TEST_F(BinaryFile, WhereItIs) {
     const auto folder = [](const char* own, const char* xdg, const char* home) {
         std::vector<std::pair<const char*, std::string>> before;
-        for (const auto& [name, value] : {std::pair{"PELLUCID_CACHE_DIR", own}, {"XDG_CACHE_HOME", xdg}, {"HOME", home}}) {
+        for (const auto& [name, value] :
+             {std::pair{"PELLUCID_CACHE_DIR", own}, {"XDG_CACHE_HOME", xdg}, {"HOME", home}}) {
             const char* old = std::getenv(name);
             if (old) before.emplace_back(name, old);
             value ? ::setenv(name, value, 1) : ::unsetenv(name);

@@ -20,7 +20,8 @@ TEST(FirstUse, ByManyThreads) {
                     const pellucid::Device device("");
                     const pellucid::Buffer buffer(device, 16);
                     buffer.readAll<int>();
-                    if (device.info().index >= pellucid::Device::all().size()) s = "a device that is not listed";
+                    if (device.info().index >= pellucid::Device::all().size())
+                        s = "a device that is not listed";
                 } catch (const pellucid::Error& e) {
                     s = e.what();
                 }

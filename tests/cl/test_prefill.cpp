@@ -25,8 +25,8 @@ extern "C" {
 cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
                       void (*notify)(cl_program, void*), void* user) {
     ++builds;
-    return reinterpret_cast<decltype(clBuildProgram)*>(dlsym(RTLD_NEXT, "clBuildProgram"))(program, count, devices, options,
-                                                                                        notify, user);
+    return reinterpret_cast<decltype(clBuildProgram)*>(dlsym(RTLD_NEXT, "clBuildProgram"))(
+        program, count, devices, options, notify, user);
 }
 #pragma GCC visibility pop
 }
@@ -112,12 +112,14 @@ TEST(Prefill, TablesAndCurvatureFindEverythingBuilt) {
     const Device own("");
     Telling telling;
     pellucid::check(pelDeviceSetProgress(own.get(), Telling::tell, &telling));
-    const uint32_t built = pellucid::prefillPrograms(own, PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABLE_LUTS | PEL_PROGRAMS_CURVATURE);
+    const uint32_t built =
+        pellucid::prefillPrograms(own, PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABLE_LUTS | PEL_PROGRAMS_CURVATURE);
     EXPECT_GE(built, 10u);
     EXPECT_TRUE(std::is_sorted(telling.fractions.begin(), telling.fractions.end()));
     pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));
     builds = 0;
-    for (const PelCurvatureForm form : {PEL_FORM_ARC, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_SPHERE, PEL_FORM_PENNER_RING}) {
+    for (const PelCurvatureForm form :
+         {PEL_FORM_ARC, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_SPHERE, PEL_FORM_PENNER_RING}) {
         PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
         desc.form = form;
         desc.width = 40, desc.height = 24;
@@ -143,7 +145,8 @@ TEST(Prefill, TablesAndCurvatureFindEverythingBuilt) {
     for (const PelCurvatureEstimator e : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
         PelCurvatureParams params = pelCurvatureParamsDefaults();
         params.estimator = e;
-        mesh.curvature(params, pellucid::vertexView(where, 4), pellucid::vertexView(where, 4), pellucid::vertexView(out, 4));
+        mesh.curvature(params, pellucid::vertexView(where, 4), pellucid::vertexView(where, 4),
+                       pellucid::vertexView(out, 4));
     }
     EXPECT_EQ(builds.load(), 0);
 }
@@ -160,7 +163,8 @@ TEST(Prefill, CanBeStoppedAndGoneOnWith) {
     EXPECT_EQ(built, 77u) << "no output is written on an error";
     pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));
     pellucid::check(pelPrefillPrograms(own.get(), &work, &built));
-    EXPECT_LT(built, 7u) << "what was built before the stop is kept: all of it, where builders were faster than the one who tells";
+    EXPECT_LT(built, 7u) << "what was built before the stop is kept: all of it, where builders were faster "
+                            "than the one who tells";
 }
 
 TEST(Prefill, SaysWhatIsWrong) {

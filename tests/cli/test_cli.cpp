@@ -82,7 +82,8 @@ TEST_F(Cli, DevicesAreChosenOrNamedMissing) {
 
 TEST_F(Cli, WrongUseIsRefused) {
     expectRefused({}, 2, "subcommand");
-    expectRefused({"lut", "curvatur"}, 2, "no subcommand 'lut curvatur'; there are curvature, shadow, specular");
+    expectRefused({"lut", "curvatur"}, 2,
+                  "no subcommand 'lut curvatur'; there are curvature, shadow, specular");
     expectRefused({"curvatur"}, 2, "curvatur");
     expectRefused({"lut", "curvature"}, 2, "--output");
     expectRefused({"lut", "curvature", "-o", path("l.npy"), "--sise", "8x8"}, 2, "--sise");
@@ -141,8 +142,7 @@ TEST_F(Cli, CurvatureOfASphereLikeMesh) {
     ASSERT_EQ(ply.exitCode, 0) << ply.err;
     EXPECT_EQ(io::loadMesh(path("c.ply")).positions, io::loadMesh(mesh).positions);
     EXPECT_TRUE(contains(ply.out, "curvature_max: "));
-    ASSERT_EQ(run({"curvature", mesh, "-o", path("s.npy"), "--estimator", "edge", "--scale", "4"}).exitCode,
-              0);
+    ASSERT_EQ(run({"curvature", mesh, "-o", path("s.npy"), "--estimator", "edge", "--scale", "4"}).exitCode, 0);
     for (float v : npy::read<float>(path("s.npy")).data)
         EXPECT_NEAR(v, 2.0f, 2.0f * tolerance::edgeCurvature);
 }
@@ -173,7 +173,8 @@ TEST_F(Cli, CurvatureQuantitiesWeldAndPicture) {
     EXPECT_NE(colored("1", true), colored("2", true));
     const std::string horned = icosahedron("9 9 9\n", "3 0 1 12\n", 13, 21);
     const auto smoothed = [&](const char* weights) {
-        EXPECT_EQ(run({"curvature", horned, "-o", path("w.npy"), "--smooth-radius", "0.6", "--smooth-weights", weights})
+        EXPECT_EQ(run({"curvature", horned, "-o", path("w.npy"), "--smooth-radius", "0.6", "--smooth-weights",
+                       weights})
                       .exitCode,
                   0);
         return npy::read<float>(path("w.npy")).data;
@@ -253,8 +254,7 @@ TEST_F(Cli, LutFilesHoldTheLibrarysTexels) {
         const io::Image image = io::readImage(path(name));
         ASSERT_EQ(image.channels.size(), 4u);
         for (size_t i = 0; i < bytes.data.size(); ++i) {
-            ASSERT_EQ(std::lround(255 * image.channels[i % 4].pixels[i / 4]), bytes.data[i])
-                << name << ' ' << i;
+            ASSERT_EQ(std::lround(255 * image.channels[i % 4].pixels[i / 4]), bytes.data[i]) << name << ' ' << i;
         }
     }
     EXPECT_EQ(

@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "cli_run.h"
-#include "io/lut/batch_entry.h"
 #include "io/image/image_file.h"
+#include "io/lut/batch_entry.h"
 #include "io/lut/lut_file.h"
 #include "io/xx_hash.h"
 

@@ -88,9 +88,10 @@ TEST_F(BenchCommand, ADriverThatHangsOrCrashesCostsOneOperation) {
         const char *ending, *limit, *why;
     };
     for (const Row& row : {Row{"hang", "15", "no result within 15"}, {"crash", "100", "ended by signal 6"}}) {
-        const Result result = run({"bench", "--quick", "--limit", row.limit, "--only", "table-shadow", "--only", "table-specular",
-                                   "-o", path("out")},
-                                  std::string("LD_PRELOAD='" BAD_DRIVER "' BAD_KERNEL=shadowTexels BAD_ENDING=") + row.ending);
+        const Result result =
+            run({"bench", "--quick", "--limit", row.limit, "--only", "table-shadow", "--only",
+                 "table-specular", "-o", path("out")},
+                std::string("LD_PRELOAD='" BAD_DRIVER "' BAD_KERNEL=shadowTexels BAD_ENDING=") + row.ending);
         ASSERT_EQ(result.exitCode, 0) << result.err;
         const auto report = nlohmann::json::parse(read(path("out/bench.json")));
         EXPECT_EQ(report.at("limit_s").get<double>(), std::stod(row.limit));
@@ -133,8 +134,7 @@ TEST_F(BenchCommand, VerdictsSurviveNoise) {
         {"an error of rounding", report(10, 0.01, 1e-8), report(10, 0.01, 5e-8), "same", 0},
         {"an error that became NaN", report(10, 0.01, 1e-6), report(10, 0.01, NAN), "less accurate", 1},
         {"no time", report(10, 0.01, 1e-6), report(NAN, 0.01, 1e-6), "not compared", 0},
-        {"another operation", report(10, 0.01, 1e-6), report(10, 0.01, 1e-6, 1e10, "table-ring"), "only new",
-         0},
+        {"another operation", report(10, 0.01, 1e-6), report(10, 0.01, 1e-6, 1e10, "table-ring"), "only new", 0},
     };
     for (const Row& row : rows) {
         const auto result = pellucid::bench::compareReports(Json::parse(row.before), Json::parse(row.after));
@@ -144,16 +144,19 @@ TEST_F(BenchCommand, VerdictsSurviveNoise) {
     }
     Json broken = Json::parse(report(10, 0.01, 1e-6));
     for (auto& e : broken["devices"][0]["operations"])
-        if (e["group"] != "device") e = {{"name", e["name"]}, {"group", e["group"]}, {"failed", "out of memory"}};
+        if (e["group"] != "device")
+            e = {{"name", e["name"]}, {"group", e["group"]}, {"failed", "out of memory"}};
     write("broken.json", broken.dump());
     write("old.json", report(10, 0.01, 1e-6));
     const Result failing = run({"bench", "compare", path("old.json"), path("broken.json")});
     EXPECT_EQ(failing.exitCode, 1);
     EXPECT_TRUE(contains(failing.out, "1 fail,")) << failing.out;
-    EXPECT_EQ(run({"bench", "compare", path("broken.json"), path("broken.json")}).exitCode, 3) << "it fails as before: nothing to compare";
+    EXPECT_EQ(run({"bench", "compare", path("broken.json"), path("broken.json")}).exitCode, 3)
+        << "it fails as before: nothing to compare";
     Json elsewhere = Json::parse(report(10, 0.01, 1e-6));
     elsewhere["devices"][0]["name"] = "another";
-    expectRefused({"bench", "compare", path("old.json"), write("elsewhere.json", elsewhere.dump())}, 3, "nothing to compare");
+    expectRefused({"bench", "compare", path("old.json"), write("elsewhere.json", elsewhere.dump())}, 3,
+                  "nothing to compare");
     write("new.json", report(12, 0.01, 1e-6));
     const Result text = run({"bench", "compare", path("old.json"), path("new.json")});
     EXPECT_EQ(text.exitCode, 1);
@@ -166,6 +169,5 @@ TEST_F(BenchCommand, SaysWhatIsWrong) {
     expectRefused({"bench", "compare", path("none.json"), path("none.json")}, 3, "none.json: cannot be read");
     write("a.json", "{}");
     expectRefused({"bench", "compare", path("a.json"), path("a.json")}, 3, "not a report");
-    expectRefused({"bench", "compare", write("b.json", "{\"devices\":[{}]}"), path("b.json")}, 3,
-                  "not whole");
+    expectRefused({"bench", "compare", write("b.json", "{\"devices\":[{}]}"), path("b.json")}, 3, "not whole");
 }

@@ -54,8 +54,8 @@ Difference compare(const std::vector<float>& a, const std::vector<float>& b, con
 }
 
 // The same of the means over pixels of equal N.L: a sphere lit by a sun has one value there, and its mean has little noise.
-Difference compareCurves(const std::vector<float>& a, const std::vector<float>& b, const std::vector<float>& mask,
-                         const std::vector<double>& cosines) {
+Difference compareCurves(const std::vector<float>& a, const std::vector<float>& b,
+                         const std::vector<float>& mask, const std::vector<double>& cosines) {
     constexpr size_t bins = 100;
     std::vector<double> sums(3 * bins), counts(bins);
     for (size_t i = 0; i < mask.size(); ++i) {
@@ -67,7 +67,8 @@ Difference compareCurves(const std::vector<float>& a, const std::vector<float>& 
     Difference e;
     for (size_t bin = 0; bin < bins; ++bin) {
         e.pixels += size_t(counts[bin]);
-        for (size_t c = 0; c < 3 && counts[bin] > 0; ++c) e.rms[c] += sums[3 * bin + c] * sums[3 * bin + c] / counts[bin];
+        for (size_t c = 0; c < 3 && counts[bin] > 0; ++c)
+            e.rms[c] += sums[3 * bin + c] * sums[3 * bin + c] / counts[bin];
     }
     for (double& r : e.rms) r = std::sqrt(r / double(e.pixels));
     return e;
@@ -76,7 +77,8 @@ Difference compareCurves(const std::vector<float>& a, const std::vector<float>& 
 class BlenderGBuffer : public CommandTest {
   protected:
     std::vector<float> shade(const std::string& gbuffer, const std::string& scene) const {
-        const Result result = run({"shade", gbuffer, "--scene", write("scene.toml", scene), "-o", path("out.exr")});
+        const Result result =
+            run({"shade", gbuffer, "--scene", write("scene.toml", scene), "-o", path("out.exr")});
         EXPECT_EQ(result.exitCode, 0) << result.err;
         return result.exitCode == 0 ? rgb(io::readImage(path("out.exr")), "") : std::vector<float>();
     }
@@ -94,8 +96,8 @@ class BlenderReference : public BlenderGBuffer {
 };
 
 void report(const std::string& what, const Difference& ours, const Difference& lambert) {
-    std::printf("%s: RMSE %.5f %.5f %.5f, Lambert %.5f %.5f %.5f, %zu pixels\n", what.c_str(), ours.rms[0], ours.rms[1],
-                ours.rms[2], lambert.rms[0], lambert.rms[1], lambert.rms[2], ours.pixels);
+    std::printf("%s: RMSE %.5f %.5f %.5f, Lambert %.5f %.5f %.5f, %zu pixels\n", what.c_str(), ours.rms[0],
+                ours.rms[1], ours.rms[2], lambert.rms[0], lambert.rms[1], lambert.rms[2], ours.pixels);
 }
 
 }  // namespace
@@ -185,7 +187,8 @@ TEST_F(BlenderReference, ScatteringComesCloserToThePathTracedSphere) {
         if (i % 2 || cosines[i] < 0.5) measured[i] = 0;
         if (i % 2 == 0) others[i] = 0;
     }
-    const auto factor = [&](const std::vector<float>& picture, size_t c) {  // by which the walk is brighter, least squares
+    const auto factor = [&](const std::vector<float>& picture,
+                            size_t c) {  // by which the walk is brighter, least squares
         double both = 0, square = 0;
         for (size_t i = 0; i < mask.size(); ++i) {
             const double p = picture[3 * i + c];
@@ -234,7 +237,8 @@ TEST_F(BlenderGBuffer, ConventionsOnAFileOfOurOwn) {
     for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x) {
             // A unit sphere seen along +y from below 0, z up: image right is +x.
-            const double px = (x + 0.5) / size * 2.4 - 1.2, pz = 1.2 - (y + 0.5) / size * 2.4, rest = 1 - px * px - pz * pz;
+            const double px = (x + 0.5) / size * 2.4 - 1.2, pz = 1.2 - (y + 0.5) / size * 2.4,
+                         rest = 1 - px * px - pz * pz;
             const bool hit = rest > 0;
             const double n[3] = {px, hit ? -std::sqrt(rest) : 0, pz};
             double lit = 0;
@@ -245,16 +249,19 @@ TEST_F(BlenderGBuffer, ConventionsOnAFileOfOurOwn) {
             }
             id.push_back(hit);
             depth.push_back(hit ? float(10 - std::sqrt(rest)) : 1e10f);
-            for (int i = 0; i < 3; ++i) expected.push_back(hit ? float(0.25 * (i + 1) * std::max(lit, 0.0)) : 0);
+            for (int i = 0; i < 3; ++i)
+                expected.push_back(hit ? float(0.25 * (i + 1) * std::max(lit, 0.0)) : 0);
         }
     image.addInterleaved(std::vector<std::string>{"ViewLayer.Depth.Z"}, depth);
-    image.addInterleaved(std::vector<std::string>{"ViewLayer.DiffCol.R", "ViewLayer.DiffCol.G", "ViewLayer.DiffCol.B"},
-                         albedo, io::ChannelType::Half);
+    image.addInterleaved(
+        std::vector<std::string>{"ViewLayer.DiffCol.R", "ViewLayer.DiffCol.G", "ViewLayer.DiffCol.B"}, albedo,
+        io::ChannelType::Half);
     image.addInterleaved(std::vector<std::string>{"ViewLayer.IndexOB.X"}, id, io::ChannelType::Half);
     image.addInterleaved(
         std::vector<std::string>{"ViewLayer.NShading.R", "ViewLayer.NShading.G", "ViewLayer.NShading.B"}, normal);
     io::writeExr(path("gbuffer.exr"), image);
-    const std::vector<float> out = shade(path("gbuffer.exr"), std::string(names) + light + "[[material]]\nid = 1\n");
+    const std::vector<float> out =
+        shade(path("gbuffer.exr"), std::string(names) + light + "[[material]]\nid = 1\n");
     ASSERT_EQ(out.size(), expected.size());
     const Difference e = compare(out, expected, std::vector<float>(id.size(), 1.0f));
     EXPECT_LT(e.max, tolerance::shadeTerm);
@@ -262,7 +269,7 @@ TEST_F(BlenderGBuffer, ConventionsOnAFileOfOurOwn) {
     // A missing pass is named, with what there is.
     std::string wrong = names;
     wrong.replace(wrong.find("DiffCol.R"), 9, "Diffuse.R");
-    expectRefused({"shade", path("gbuffer.exr"), "--scene", write("scene.toml", wrong + light + "[[material]]\nid = 1\n"),
-                   "-o", path("no.exr")},
+    expectRefused({"shade", path("gbuffer.exr"), "--scene",
+                   write("scene.toml", wrong + light + "[[material]]\nid = 1\n"), "-o", path("no.exr")},
                   3, "ViewLayer.DiffCol.R");
 }

@@ -26,11 +26,11 @@ class BlenderScript : public CommandTest {
     // The exit code; what Blender says is in said.txt.
     int blender(const std::string& before, const std::string& arguments,
                 const std::string& scene = "blender_scene.py") const {
-        const std::string line = "PELLUCID_COMMAND='" PELLUCID_COMMAND "' " + before +
-                                 " blender --factory-startup -b -t 2 --python " PELLUCID_SOURCE_DIR "/tests/cli/" +
-                                 scene +
-                                 " --python " PELLUCID_SOURCE_DIR "/bindings/blender/render_gbuffer.py -- " +
-                                 arguments + " >" + path("said.txt") + " 2>&1 </dev/null";
+        const std::string line =
+            "PELLUCID_COMMAND='" PELLUCID_COMMAND "' " + before +
+            " blender --factory-startup -b -t 2 --python " PELLUCID_SOURCE_DIR "/tests/cli/" + scene +
+            " --python " PELLUCID_SOURCE_DIR "/bindings/blender/render_gbuffer.py -- " + arguments + " >" +
+            path("said.txt") + " 2>&1 </dev/null";
         return run(line);
     }
     // Without a .blend file.
@@ -50,8 +50,7 @@ class BlenderScript : public CommandTest {
     std::vector<float> shade(const std::string& gbuffer, const std::string& scene) const {
         const Result result = run({"shade", gbuffer, "--scene", scene, "-o", path("out.exr")});
         EXPECT_EQ(result.exitCode, 0) << result.err;
-        return result.exitCode == 0 ? rgb(io::readImage(path("out.exr")), "R", "G", "B")
-                                    : std::vector<float>();
+        return result.exitCode == 0 ? rgb(io::readImage(path("out.exr")), "R", "G", "B") : std::vector<float>();
     }
     static std::vector<float> rgb(const io::Image& image, const std::string& r, const std::string& g,
                                   const std::string& b) {
@@ -136,8 +135,7 @@ TEST_F(BlenderScript, ABlendFileGivesBlendersLambertPicture) {
             // albedo is.
             if (arrives && id[i] == 7) {
                 ++lit;
-                double peculiar =
-                    1;  // Blender 3.4 dims a spot by the cosine of the angle to its axis as well
+                double peculiar = 1;  // Blender 3.4 dims a spot by the cosine of the angle to its axis as well
                 if (light == "SPOT") {
                     double along = 0, distance = 0;
                     for (size_t c = 0; c < 3; ++c) {

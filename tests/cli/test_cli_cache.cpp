@@ -113,7 +113,8 @@ TEST_F(ProgramsOnDisk, TwoProcessesAtOnceAndTheSwitch) {
     const auto one = [&](int i) {
         // Not by run(), which has one place for what is printed.
         const std::string out = path("said" + std::to_string(i));
-        const std::string line = on() + PELLUCID_COMMAND + " prefill --luts --threads 1 --json >" + out + " 2>/dev/null";
+        const std::string line =
+            on() + PELLUCID_COMMAND + " prefill --luts --threads 1 --json >" + out + " 2>/dev/null";
         ASSERT_EQ(std::system(line.c_str()), 0);
         said[i] = nlohmann::json::parse(read(out));
     };
@@ -130,7 +131,8 @@ TEST_F(ProgramsOnDisk, TwoProcessesAtOnceAndTheSwitch) {
         const nlohmann::json none = prefill(on(off));
         EXPECT_EQ(none.at("loaded").get<int>() + none.at("stored").get<int>(), 0) << off;
     }
-    expectRefused({"prefill", "--luts"}, 2, "PELLUCID_CACHE is \"perhaps\"; it can be on, off or auto", "PELLUCID_CACHE=perhaps");
+    expectRefused({"prefill", "--luts"}, 2, "PELLUCID_CACHE is \"perhaps\"; it can be on, off or auto",
+                  "PELLUCID_CACHE=perhaps");
     expectRefused({"prefill", "--luts"}, 2, "PELLUCID_CACHE_MB is \"much\"", on("PELLUCID_CACHE_MB=much"));
     // No room: built, not kept.
     EXPECT_EQ(prefill(on("PELLUCID_CACHE_MB=0")).at("loaded"), 0);

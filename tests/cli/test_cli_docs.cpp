@@ -36,7 +36,8 @@ std::vector<std::string> commandsOf(const std::string& page) {
     std::vector<std::string> all;
     const std::regex line(R"((^|\n)(    )?pellucid ([^\n#;]*))"), span("`pellucid ([^`]*)`");
     for (const auto& [pattern, group] : {std::pair(line, 3), {span, 1}})
-        for (std::sregex_iterator it(page.begin(), page.end(), pattern), end; it != end; ++it) all.push_back((*it)[size_t(group)]);
+        for (std::sregex_iterator it(page.begin(), page.end(), pattern), end; it != end; ++it)
+            all.push_back((*it)[size_t(group)]);
     return all;
 }
 
@@ -53,7 +54,8 @@ TEST_F(CliDocs, CommandsAndOptionsExist) {
                 std::vector<std::vector<std::string>> deeper;
                 std::istringstream choices(word);
                 for (std::string choice; std::getline(choices, choice, '|');)
-                    if (std::regex_match(choice, std::regex("[a-z]+")) && meant.size() == 1 && names(meant[0]).contains(choice)) {
+                    if (std::regex_match(choice, std::regex("[a-z]+")) && meant.size() == 1 &&
+                        names(meant[0]).contains(choice)) {
                         deeper.push_back(meant[0]);
                         deeper.back().push_back(choice);
                     }
@@ -69,7 +71,8 @@ TEST_F(CliDocs, CommandsAndOptionsExist) {
                 for (const auto& subcommands : meant) {
                     known |= names(subcommands).contains(word);
                     for (const char* kind : {"curvature", "shadow", "specular"})
-                        if (subcommands == std::vector<std::string>{"lut"}) known |= names({"lut", kind}).contains(word);
+                        if (subcommands == std::vector<std::string>{"lut"})
+                            known |= names({"lut", kind}).contains(word);
                 }
                 EXPECT_TRUE(known) << page << ": pellucid " << command << ": no option " << word;
             }

@@ -133,11 +133,10 @@ TEST_F(CliReference, WrongUseIsRefused) {
     expectRefused(
         {"reference", path("ball.off"), "--scene", path("s.toml"), "-o", path("o.npy"), "--part", "skin"}, 3,
         "has no parts");
-    expectRefused({"reference", path("ball.off"), "--scene", path("s.toml"), "-o", path("o.npy"), "--profile",
-                   "nobody"},
-                  3, "nobody");
-    expectRefused({"reference", path("ball.off"), "--scene", path("s.toml"), "-o", path("o.jpg")}, 2,
-                  "o.jpg");
+    expectRefused(
+        {"reference", path("ball.off"), "--scene", path("s.toml"), "-o", path("o.npy"), "--profile", "nobody"},
+        3, "nobody");
+    expectRefused({"reference", path("ball.off"), "--scene", path("s.toml"), "-o", path("o.jpg")}, 2, "o.jpg");
 }
 
 TEST_F(CliReference, Compare) {

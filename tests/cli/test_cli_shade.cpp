@@ -40,7 +40,8 @@ TEST_F(Shade, InvalidPixelsAreCountedAndWarnedOf) {
             io::writeExr(path("bad.exr"), spoilt);
             std::vector<std::string> arguments = command("s.toml", "bad.exr");
             arguments.push_back("--strict");
-            const std::string message = (all ? "all 50 pixels" : "5 of 50 pixels") + std::string(" of a material have NaN or Inf");
+            const std::string message =
+                (all ? "all 50 pixels" : "5 of 50 pixels") + std::string(" of a material have NaN or Inf");
             expectRefused(arguments, 3, message);
             arguments.back() = "--json";
             const Result result = run(arguments);
@@ -124,8 +125,7 @@ TEST_F(Shade, BadFilesAreRefused) {
     expectRefused(expecting("form = \"sphere\""), 3, "form is arc; sphere is asked for");
     expectRefused(expecting("radius_min = 0.5"), 3, "radius_min is 1; 0.5 is asked for");
     expectRefused(expecting("diffusion_radius = 3"), 3, "diffusion_radius is 2.7; 3 is asked for");
-    expectRefused({"shade", path("g.exr"), "--scene", path("s.toml"), "-o", path("no/o.exr")}, 2,
-                  "no folder");
+    expectRefused({"shade", path("g.exr"), "--scene", path("s.toml"), "-o", path("no/o.exr")}, 2, "no folder");
     expectRefused({"shade", path("g.exr"), "--scene", path("s.toml"), "-o", path("o.png")}, 2, ".exr");
     expectRefused({"shade", path("g.exr"), "-o", path("o.exr")}, 2, "--scene");
 }

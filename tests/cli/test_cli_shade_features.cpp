@@ -12,8 +12,7 @@ TEST_F(Shade, TablesOfMaterialsAndProfileFiles) {
           "name = \"own\"\nsource = \"a test\"\nkind = \"table\"\nunit = \"mm\"\n[[sample]]\ndistance = 0\n"
           "value = [3, 2, 1]\n[[sample]]\ndistance = 4\nvalue = [0.1, 0.1, 0]\n");
     io::Image curved = gbuffer_;
-    curved.addInterleaved(std::vector<std::string>{"View.C.X"},
-                          std::vector<float>(size_t(width * height), 0.3f));
+    curved.addInterleaved(std::vector<std::string>{"View.C.X"}, std::vector<float>(size_t(width * height), 0.3f));
     io::writeExr(path("c.exr"), curved);
     scene_.channels[PEL_SLOT_CURVATURE] = {"C.X"};
     scene_.materials[0].curvatureLut = "t";
@@ -63,7 +62,8 @@ TEST_F(Shade, CurvatureFromThePictureItself) {
     ball.addInterleaved(std::vector<std::string>{"N.X", "N.Y", "N.Z"}, bumpy);
     ball.addInterleaved(std::vector<std::string>{"G.X", "G.Y", "G.Z"}, normals);
     ball.addInterleaved(std::vector<std::string>{"P.X", "P.Y", "P.Z"}, positions);
-    ball.addInterleaved(std::vector<std::string>{"Col.R", "Col.G", "Col.B"}, std::vector<float>(3 * pixels, 0.5f));
+    ball.addInterleaved(std::vector<std::string>{"Col.R", "Col.G", "Col.B"},
+                        std::vector<float>(3 * pixels, 0.5f));
     ball.addInterleaved(std::vector<std::string>{"Id.X"}, std::vector<float>(pixels, 1.0f));
     ball.addInterleaved(std::vector<std::string>{"Known.X"}, std::vector<float>(pixels, 1 / radius));
     ball.addInterleaved(std::vector<std::string>{"Twice.X"}, std::vector<float>(pixels, 2 / radius));
@@ -105,7 +105,8 @@ TEST_F(Shade, PartsOfThePictureAddUpToIt) {
     io::Image thick = gbuffer_;
     thick.addInterleaved(std::vector<std::string>{"Wall.V"}, std::vector<float>(size_t(width * height), 3.0f));
     std::vector<float> positions;
-    for (int i = 0; i < width * height; ++i) positions.insert(positions.end(), {float(i % width), float(i / width), 0.0f});
+    for (int i = 0; i < width * height; ++i)
+        positions.insert(positions.end(), {float(i % width), float(i / width), 0.0f});
     thick.addInterleaved(std::vector<std::string>{"P.X", "P.Y", "P.Z"}, positions);
     io::writeExr(path("thick.exr"), thick);
     scene_.channels[PEL_SLOT_THICKNESS] = {"Wall.V"};
@@ -123,7 +124,8 @@ TEST_F(Shade, PartsOfThePictureAddUpToIt) {
     ASSERT_EQ(result.exitCode, 0) << result.err;
     const auto report = result.json();
     ASSERT_EQ(report.at("outputs").size(), 5u);
-    for (const auto& file : report.at("outputs")) EXPECT_TRUE(std::filesystem::exists(file.get<std::string>())) << file;
+    for (const auto& file : report.at("outputs"))
+        EXPECT_TRUE(std::filesystem::exists(file.get<std::string>())) << file;
     const auto channel = [&](const std::string& file, const std::string& name) {
         return io::readImage(path(file)).channel(name).pixels;
     };
@@ -170,8 +172,10 @@ TEST_F(Shade, AnAmbientCubeIsReadFromAFile) {
     arguments.insert(arguments.end(), {"--json", "--stats", "--outputs", "thickness"});
     const Result result = run(arguments);
     ASSERT_EQ(result.exitCode, 0) << result.err;
-    EXPECT_EQ(result.json().at("stats").at("features"), nlohmann::json({"ambient", "outputs", "ambient_cube"}));
-    EXPECT_NE(result.err.find("deep_scatter_ambient of material 1 does nothing"), std::string::npos) << result.err;
+    EXPECT_EQ(result.json().at("stats").at("features"),
+              nlohmann::json({"ambient", "outputs", "ambient_cube"}));
+    EXPECT_NE(result.err.find("deep_scatter_ambient of material 1 does nothing"), std::string::npos)
+        << result.err;
     EXPECT_NE(result.err.find("thickness output is 0 everywhere"), std::string::npos) << result.err;
     const io::Image shaded = io::readImage(path("o.exr"));
     for (size_t i = 2; i < size_t(width); ++i) {

@@ -26,9 +26,8 @@ std::atomic<int> untilFailure{0};  // calls of clCreateBuffer; 0: none fails
 
 }  // namespace
 
-extern "C" __attribute__((visibility("default"))) cl_mem clCreateBuffer(cl_context context,
-                                                                        cl_mem_flags flags, size_t bytes,
-                                                                        void* host, cl_int* code) {
+extern "C" __attribute__((visibility("default"))) cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags,
+                                                                        size_t bytes, void* host, cl_int* code) {
     if (untilFailure > 0 && --untilFailure == 0) {
         if (code) *code = CL_MEM_OBJECT_ALLOCATION_FAILURE;
         return nullptr;
@@ -130,8 +129,7 @@ TEST(Memory, TablesAndTopologiesRunOutOfIt) {
         const rlimit none{addressSpace() + (8 << 20), addressSpace() + (8 << 20)};
         CHILD_EXPECT(::setrlimit(RLIMIT_AS, &none) == 0);
         PelMeshTopology topology = nullptr;
-        CHILD_EXPECT(pelMeshTopologyCreate(device.get(), &mesh, &topology, nullptr) ==
-                     PEL_ERROR_OUT_OF_MEMORY);
+        CHILD_EXPECT(pelMeshTopologyCreate(device.get(), &mesh, &topology, nullptr) == PEL_ERROR_OUT_OF_MEMORY);
     });
 }
 

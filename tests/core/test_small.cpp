@@ -4,9 +4,9 @@
 
 #include "lut/lut_cases.h"
 #include "mesh/mesh_calls.h"
-#include "shading/pass_scene.h"
-#include "reference/screen.h"
 #include "mesh/reference_meshes.h"
+#include "reference/screen.h"
+#include "shading/pass_scene.h"
 
 using namespace pellucid;
 
@@ -47,8 +47,7 @@ double worst(const std::vector<float>& values, const std::vector<double>& truth)
 TEST(Small, Curvature) {
     const SmallMesh m;
     PelCurvatureParams params = fixture::edgeParams(2);
-    EXPECT_LT(worst(m.curvature(params),
-                    reference::smoothed(m.truth, reference::edgeCurvature(m.truth), 2)),
+    EXPECT_LT(worst(m.curvature(params), reference::smoothed(m.truth, reference::edgeCurvature(m.truth), 2)),
               tolerance::edgeCurvature);
     params.estimator = PEL_CURVATURE_TENSOR;
     params.smoothingPasses = 0;
@@ -74,8 +73,7 @@ TEST(Small, NormalsAndUvScale) {
     const Buffer out(device(), m.vertices * 3 * sizeof(float)), uvs(device(), m.both.mesh.uvs);
     m.topology.normals(m.view(m.positionBuffer), m.view(out));
     std::vector<double> truth;
-    for (const auto& n : reference::estimatedNormals(m.truth))
-        truth.insert(truth.end(), {n.x, n.y, n.z});
+    for (const auto& n : reference::estimatedNormals(m.truth)) truth.insert(truth.end(), {n.x, n.y, n.z});
     EXPECT_LT(worst(out.readAll<float>(), truth), 1e-5);
     const double scale = reference::uvScale(m.truth);
     EXPECT_NEAR(m.topology.uvScale(m.view(m.positionBuffer), m.view(uvs)) / scale, 1, 1e-5);
@@ -103,8 +101,7 @@ TEST(Small, ShadowAndSpecularTables) {
     PelShadowLutDesc shadow = pelShadowLutDescDefaults();
     shadow.width = 5, shadow.height = 3;
     const std::vector<float> texels = Lut(device(), shadow).read<float>(PEL_LUT_FLOAT);
-    const reference::ShadowLutSpec spec{
-        5, 3, shadow.widthMin, shadow.widthMax, 2.7, shadow.sharpening};
+    const reference::ShadowLutSpec spec{5, 3, shadow.widthMin, shadow.widthMax, 2.7, shadow.sharpening};
     const auto skin = reference::skinProfile();
     PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
     specular.width = 5, specular.height = 3;
@@ -114,8 +111,7 @@ TEST(Small, ShadowAndSpecularTables) {
     for (int i = 0; i < 15; ++i) {
         const reference::Rgb truth = reference::shadowTexel(spec, *skin, i % 5, i / 5);
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(texels[size_t(3 * i + c)], truth[c], 1e-5);
-        EXPECT_NEAR(lobes[size_t(3 * i)], reference::beckmannEncoded((i % 5 + 0.5) / 5, (i / 5 + 0.5) / 3),
-                    1e-5);
+        EXPECT_NEAR(lobes[size_t(3 * i)], reference::beckmannEncoded((i % 5 + 0.5) / 5, (i / 5 + 0.5) / 3), 1e-5);
     }
 }
 
@@ -135,8 +131,7 @@ TEST(Small, Shading) {
 
 TEST(Small, PassesOverPixels) {
     const auto tables = shade_test::makeTables(device(), 12, 7);
-    const shade_test::MapLight from =
-        shade_test::mapLight(61, true, false, {0.5, 0.2, 0.9}, {4, 2, 5}, 40, 61);
+    const shade_test::MapLight from = shade_test::mapLight(61, true, false, {0.5, 0.2, 0.9}, {4, 2, 5}, 40, 61);
     shade_test::Frame f = shade_test::reliefFrame(1, 19, 9, 0.4f);
     f.lights = {from.light};
     shade_test::showWideShadow(f);
@@ -145,8 +140,7 @@ TEST(Small, PassesOverPixels) {
     for (size_t i = 0; i < f.pixels(); ++i) {
         if (f.slots[PEL_SLOT_MATERIAL].at(i) == 0) continue;
         const reference::WideFilterParams params{f.materials[1].shadowFilterWidth, l.shadowBias,
-                                                 l.shadowSoftness, l.shadowConeSlope,
-                                                 int(l.shadowFilterTexels)};
+                                                 l.shadowSoftness, l.shadowConeSlope, int(l.shadowFilterTexels)};
         EXPECT_NEAR(shadow[3 * i],
                     reference::wideShadow(from.map, from.view, f.slots[PEL_SLOT_POSITION].vec(i),
                                           f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), params),

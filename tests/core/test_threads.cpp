@@ -33,7 +33,8 @@ TEST(Threads, OneTopologyAndOneLiveMesh) {
     std::atomic<int> wrong{0};
     onThreads([&](int t) {
         const Buffer out(fixture::device(), n * sizeof(float));
-        const PelVertexView p = vertexView(positions, n), normal = vertexView(normals, n), o = vertexView(out, n);
+        const PelVertexView p = vertexView(positions, n), normal = vertexView(normals, n),
+                            o = vertexView(out, n);
         for (int i = 0; i < 5; ++i) {
             if (t % 2)
                 topology.curvature(params, p, normal, o);
@@ -108,7 +109,9 @@ TEST(Threads, Errors) {
     onThreads([&](int t) {
         const std::string name = "no such device " + std::to_string(t);
         for (int i = 0; i < 20; ++i) {
-            if (t == 0) pelSetErrorCallback(i % 2 ? nullptr : +[](void*, PelError, const char*) { ++heard; }, nullptr);
+            if (t == 0)
+                pelSetErrorCallback(
+                    i % 2 ? nullptr : +[](void*, PelError, const char*) { ++heard; }, nullptr);
             PelDevice device = nullptr;
             wrong += pelDeviceCreate(name.c_str(), &device) != PEL_ERROR_NO_DEVICE;
             wrong += std::string(pelGetErrorMessage()).find(name) == std::string::npos;

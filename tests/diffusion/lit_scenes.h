@@ -112,8 +112,7 @@ inline std::vector<float> curvatureOf(const Device& device, const sample::Mesh& 
     return c.readAll<float>();
 }
 
-inline LitScene make(const Device& device, const Body& body, const SceneRequest& request,
-                     const Profile& profile) {
+inline LitScene make(const Device& device, const Body& body, const SceneRequest& request, const Profile& profile) {
     LitScene s;
     s.name = body.name;
     s.unit = request.unit;
@@ -130,8 +129,7 @@ inline LitScene make(const Device& device, const Body& body, const SceneRequest&
     sample::GBufferOptions plain;
     plain.detail.enabled = false;
     plain.diffusionRadius = profile.info().radius * request.profileScale / request.unit;
-    s.gbuffer =
-        renderGBuffer(scene, frameHead(scene.bounds(), body.pose, framing, 1), s.width, s.height, plain);
+    s.gbuffer = renderGBuffer(scene, frameHead(scene.bounds(), body.pose, framing, 1), s.width, s.height, plain);
     s.map = renderShadowMap(scene, sample::DirectionalLight{s.toLight}, request.mapSize, 1 / request.unit);
 
     const size_t pixels = size_t(s.width) * s.height;
@@ -265,8 +263,7 @@ inline std::vector<float> shadePreintegrated(const Device& device, const LitScen
 }
 
 // Irradiance as it is: no scattering, and shadows traced by ray.
-inline std::vector<float> shadeLambert(const Device&, const LitScene& s, const Profile&, double,
-                                       double* seconds) {
+inline std::vector<float> shadeLambert(const Device&, const LitScene& s, const Profile&, double, double* seconds) {
     if (seconds) *seconds = 0;
     return s.irradiance;
 }

@@ -10,7 +10,8 @@
 namespace pages {
 
 inline const std::filesystem::path root = PELLUCID_SOURCE_DIR;
-inline const std::set<std::string> folders = {"bench", "bindings", "cmake", "docs", "examples", "host", "kernels", "tests"};
+inline const std::set<std::string> folders = {"bench",    "bindings", "cmake",   "docs",
+                                              "examples", "host",     "kernels", "tests"};
 
 inline std::string contents(const std::filesystem::path& path) {
     std::ifstream in(path);
@@ -20,8 +21,8 @@ inline std::string contents(const std::filesystem::path& path) {
 }
 
 inline std::vector<std::filesystem::path> all() {
-    std::vector<std::filesystem::path> found = {root / "README.md", root / "CONTRIBUTING.md", root / "CHANGELOG.md",
-                                                root / "bindings/python/README.md"};
+    std::vector<std::filesystem::path> found = {root / "README.md", root / "CONTRIBUTING.md",
+                                                root / "CHANGELOG.md", root / "bindings/python/README.md"};
     for (const auto& entry : std::filesystem::directory_iterator(root / "docs"))
         if (entry.path().extension() == ".md") found.push_back(entry.path());
     return found;
@@ -33,8 +34,10 @@ inline std::string withoutBlocks(const std::string& text) {
     std::string rest;
     bool inside = false;
     for (std::string line; std::getline(in, line);) {
-        if (line.starts_with("```")) inside = !inside;
-        else if (!inside) rest += line + "\n";
+        if (line.starts_with("```"))
+            inside = !inside;
+        else if (!inside)
+            rest += line + "\n";
     }
     return rest;
 }
@@ -44,7 +47,8 @@ inline std::vector<std::string> words(const std::string& text) {
     std::istringstream in(text);
     std::vector<std::string> all;
     for (std::string word; in >> word;) {
-        while (!word.empty() && (word.back() == ',' || word.back() == ':' || word.back() == ';')) word.pop_back();
+        while (!word.empty() && (word.back() == ',' || word.back() == ':' || word.back() == ';'))
+            word.pop_back();
         if (!word.empty()) all.push_back(word);
     }
     return all;

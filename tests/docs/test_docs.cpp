@@ -47,7 +47,8 @@ TEST(Docs, NamedFilesExist) {
         }
         return std::filesystem::exists(pages::root / path);
     };
-    const std::regex span("`([^`\n]+)`"), source(R"([\w/-]+\.(cpp|c|h|hpp|cl|clh|py|md)\b)"), path(R"([\w.-]+/[\w./-]*(\.\*)?)");
+    const std::regex span("`([^`\n]+)`"), source(R"([\w/-]+\.(cpp|c|h|hpp|cl|clh|py|md)\b)"),
+        path(R"([\w.-]+/[\w./-]*(\.\*)?)");
     const std::set<std::string> hosts = {"device.cl", "buffer.cl", "event.cl"};  // attributes of Python objects
     int files = 0;
     for (const auto& page : pages::all()) {

@@ -27,7 +27,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"host/lut", {"kernels/shared", "host/include/pellucid", "host/cl", "host/core"}},
     {"host/shading", {"kernels/shared", "host/include/pellucid", "host/cl", "host/core", "host/lut"}},
     {"host/diffusion",
-     {"kernels/shared", "host/include/pellucid", "host/cl", "host/core", "host/mesh", "host/lut", "host/shading"}},
+     {"kernels/shared", "host/include/pellucid", "host/cl", "host/core", "host/mesh", "host/lut",
+      "host/shading"}},
     {"host/api",
      {"kernels/shared", "host/include/pellucid", "host/cl", "host/core", "host/mesh", "host/lut",
       "host/shading", "host/diffusion"}},
@@ -89,8 +90,8 @@ TEST(IncludeRule, EveryIncludeGoesOneWay) {
                 if (target.empty() || target == layer) continue;
                 ++checked;
                 EXPECT_TRUE(allowed.at(layer).contains(target))
-                << entry.path().string() << ":" << number << ": " << layer << " must not include "
-                << target << " (" << match[1] << ")";
+                    << entry.path().string() << ":" << number << ": " << layer << " must not include "
+                    << target << " (" << match[1] << ")";
             }
         }
     }

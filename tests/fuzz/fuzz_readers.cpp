@@ -179,12 +179,11 @@ int main(int argc, char** argv) {
     const Options o = optionsOf(argc, argv);
     ::setenv("PELLUCID_INPUT_LIMIT_MIB", "64", 1);
 #ifndef __SANITIZE_ADDRESS__
-    const rlimit memory{rlim_t{6} << 30,
-                        rlim_t{6} << 30};  // address space: what takes more gets std::bad_alloc
+    const rlimit memory{rlim_t{6} << 30, rlim_t{6} << 30};  // address space: what takes more gets std::bad_alloc
     ::setrlimit(RLIMIT_AS, &memory);
 #endif
-    auto& place = *new (
-        ::mmap(nullptr, sizeof(Place), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) Place();
+    auto& place =
+        *new (::mmap(nullptr, sizeof(Place), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0)) Place();
     const double end = now() + o.seconds;
     int faults = 0;
     for (;;) {

@@ -100,8 +100,7 @@ void once(Random& r, std::string& b, const std::vector<std::string>& files,
 
 }  // namespace
 
-std::string mutant(Random& random, const std::vector<std::string>& files,
-                   const std::vector<std::string>& words) {
+std::string mutant(Random& random, const std::vector<std::string>& files, const std::vector<std::string>& words) {
     std::string bytes = files[random.below(files.size())];
     for (size_t changes = 1 + random.below(random.below(3) ? 3 : 8); changes > 0; --changes)
         once(random, bytes, files, words);

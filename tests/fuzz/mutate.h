@@ -24,7 +24,6 @@ class Random {
 
 // One of `files`, changed in one to eight places: bits, bytes and whole numbers that are often special,
 // pieces left out, doubled, taken from another file, words of the format, and digits.
-std::string mutant(Random& random, const std::vector<std::string>& files,
-                   const std::vector<std::string>& words);
+std::string mutant(Random& random, const std::vector<std::string>& files, const std::vector<std::string>& words);
 
 }  // namespace fuzz

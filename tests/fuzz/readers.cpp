@@ -266,11 +266,12 @@ std::vector<Reader> readers() {
                         "3/1\nl 1 2\np 1\n"},
                        {"vt", "vn", "vp", "f ", "v ", "/", "//", "\\\n", "curv", "call x", "mtllib", "usemtl",
                         "-1", "nan", "1e39"}));
-    all.push_back({"parts",
-                   {"g a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 1 2 3 4\ng b\nf 1 2 5\nf -5 -1 -2\n"},
-                   [](const std::string& t) { io::decodeParts("m.obj", t, 1); },
-                   {},
-                   {"g ", "g", "f ", "v ", "-1", "99", "\n"}});
+    all.push_back(
+        {"parts",
+         {"g a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nf 1 2 3 4\ng b\nf 1 2 5\nf -5 -1 -2\n"},
+         [](const std::string& t) { io::decodeParts("m.obj", t, 1); },
+         {},
+         {"g ", "g", "f ", "v ", "-1", "99", "\n"}});
     io::MeshData data;
     data.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     data.triangles = {0, 1, 2};
@@ -282,12 +283,11 @@ std::vector<Reader> readers() {
     std::string big = "ply\nformat binary_big_endian" + head;
     for (int v = 0; v < 3; ++v) big += std::string(12, '\0') + "\x01" + std::string("\0\7", 2);
     big += std::string("\3\0\0\0\0\0\0\0\1\0\0\0\2", 13) + std::string(8, '\0') + std::string(4, '\1');
-    all.push_back(
-        mesh("ply",
-             {bytesOf(folder / "m.ply"),
-              "ply\nformat ascii" + head + "0 0 0 1 7\n1 0 0 0\n0 1 0 2 7 7\n3 0 1 2 1.5\n9\n", big},
-             {"element", "property", "list", "uchar", "double", "int", "vertex", "face", "vertex_indices",
-              "binary_big_endian", "4294967295", "-1", "s", "t", "nx"}));
+    all.push_back(mesh("ply",
+                       {bytesOf(folder / "m.ply"),
+                        "ply\nformat ascii" + head + "0 0 0 1 7\n1 0 0 0\n0 1 0 2 7 7\n3 0 1 2 1.5\n9\n", big},
+                       {"element", "property", "list", "uchar", "double", "int", "vertex", "face",
+                        "vertex_indices", "binary_big_endian", "4294967295", "-1", "s", "t", "nx"}));
     std::string binaryStl(80, 'x');
     binaryStl += std::string("\1\0\0\0", 4);
     const float facet[12] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -297,8 +297,7 @@ std::vector<Reader> readers() {
                         "0\nendloop\nendfacet\nendsolid a\n",
                         binaryStl},
                        {"solid", "facet", "vertex", "endfacet", "endsolid", "outer loop", "nan"}));
-    std::vector<std::string> exrs = {parts(folder),
-                                     picture(folder, "exr", 4, "zip", 8, OIIO::TypeDesc::HALF)};
+    std::vector<std::string> exrs = {parts(folder), picture(folder, "exr", 4, "zip", 8, OIIO::TypeDesc::HALF)};
     for (const char* how : {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"}) {
         exrs.push_back(picture(folder, "exr", 3, how, 0, OIIO::TypeDesc::HALF));
         exrs.push_back(picture(folder, "exr", 1, how, 0, OIIO::TypeDesc::FLOAT));
@@ -315,9 +314,11 @@ std::vector<Reader> readers() {
     std::vector<std::string> profiles;
     for (const char* file :
          {"name = \"a\"\nkind = \"skin\"\nsource = \"s\"\n",
-          "name = \"a\"\nkind = \"dipole\"\nunit = \"mm\"\nsource = \"s\"\nabsorption = [0.0021, 0.0041, 0.0071]\n"
+          "name = \"a\"\nkind = \"dipole\"\nunit = \"mm\"\nsource = \"s\"\nabsorption = [0.0021, 0.0041, "
+          "0.0071]\n"
           "reduced_scattering = [2.19, 2.62, 3.00]\neta = 1.5\n",
-          "name = \"a\"\nkind = \"burley\"\nunit = \"cm\"\nsource = \"s\"\nmean_free_path = [1.3, 0.95, 0.67]\n"
+          "name = \"a\"\nkind = \"burley\"\nunit = \"cm\"\nsource = \"s\"\nmean_free_path = [1.3, 0.95, "
+          "0.67]\n"
           "albedo = [0.44, 0.22, 0.13]\nfit = \"searchlight\"\n",
           "name = \"a\"\nkind = \"burley\"\nunit = \"um\"\nsource = \"s\"\ndistance = [300, 100, 50]\n"})
         profiles.emplace_back(file);

@@ -203,9 +203,8 @@ TEST_F(MeshFile, BadPlyFilesSayWhere) {
         contains(loadError("e.ply", replaced(header, "end_header", "end") + body), "no line 'end_header'"));
     EXPECT_TRUE(
         contains(loadError("l.ply", header + "0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n"), "l.ply:13: the list"));
-    EXPECT_EQ(
-        loadError("o.ply", replaced(header, "element vertex", "obj_info element 7\nelement vertex") + body),
-        "");
+    EXPECT_EQ(loadError("o.ply", replaced(header, "element vertex", "obj_info element 7\nelement vertex") + body),
+              "");
     MeshData mesh = loadMesh(write("a.off", offTetrahedron));
     mesh.positions[4] = NAN;
     writePly(path("b.ply"), mesh, std::vector<float>(4, 0.0f), 0, 1);
@@ -218,8 +217,10 @@ TEST_F(MeshFile, BadPlyFilesSayWhere) {
 TEST_F(MeshFile, LengthsOfPlyListsAreWholeAndNotNegative) {
     const auto file = [&](const std::string& type, const std::string& length) {
         const std::string header =
-            "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-            "element face 1\nproperty list " + type + " int vertex_indices\nend_header\n";
+            "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float "
+            "y\nproperty float z\n"
+            "element face 1\nproperty list " +
+            type + " int vertex_indices\nend_header\n";
         const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
         return header + std::string(reinterpret_cast<const char*>(positions), sizeof positions) + length;
     };
@@ -227,8 +228,10 @@ TEST_F(MeshFile, LengthsOfPlyListsAreWholeAndNotNegative) {
     const std::string corners(reinterpret_cast<const char*>(triangle), sizeof triangle), many(4 * 255, '\0');
     EXPECT_EQ(loadError("good.ply", file("int", std::string("\3\0\0\0", 4) + corners)), "");
     EXPECT_TRUE(contains(loadError("negative.ply", file("char", "\xff" + many)), "negative length"));
-    EXPECT_TRUE(contains(loadError("short.ply", file("short", "\xff\xff" + std::string(4 * 65535, '\0'))), "negative length"));
-    EXPECT_TRUE(contains(loadError("float.ply", file("float", std::string(4, '\0'))), "float.ply:8: the lengths of a list are whole"));
+    EXPECT_TRUE(contains(loadError("short.ply", file("short", "\xff\xff" + std::string(4 * 65535, '\0'))),
+                         "negative length"));
+    EXPECT_TRUE(contains(loadError("float.ply", file("float", std::string(4, '\0'))),
+                         "float.ply:8: the lengths of a list are whole"));
 }
 
 TEST_F(MeshFile, NormalsPointOutwardsAlsoAcrossSeams) {
@@ -289,8 +292,7 @@ TEST_F(MeshFile, LoopTakesManyNeighbours) {
     for (int i = 0; i < n; ++i) fan << "3 0 " << 1 + i << ' ' << 1 + (i + 1) % n << '\n';
     MeshData mesh = loadMesh(write("fan.off", fan.str()));
     loopSubdivide(mesh, 1);
-    const double beta =
-        (40 - std::pow(3 + 2 * std::cos(2 * M_PI / n), 2)) / 64;  // Loop's weight of the neighbours
+    const double beta = (40 - std::pow(3 + 2 * std::cos(2 * M_PI / n), 2)) / 64;  // Loop's weight of the neighbours
     EXPECT_FLOAT_EQ(mesh.positions[2], static_cast<float>(1 - beta));
 }
 

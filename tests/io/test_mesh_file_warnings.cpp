@@ -18,9 +18,8 @@ class MeshWarnings : public FolderTest {
 
 std::string ply(const std::string& vertices, size_t count, const std::string& faces, size_t faceCount) {
     return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(count) +
-           "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-           std::to_string(faceCount) + "\nproperty list uchar int vertex_indices\nend_header\n" + vertices +
-           faces;
+           "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(faceCount) +
+           "\nproperty list uchar int vertex_indices\nend_header\n" + vertices + faces;
 }
 
 const std::string three = "0 0 0\n1 0 0\n0 1 0\n", four = three + "0 0 1\n";

@@ -135,7 +135,8 @@ TEST(ProfileFit, SixGaussiansGiveSkinBack) {
     ASSERT_EQ(fit.gaussians.size(), 6u);
     for (size_t g = 0; g < 6; ++g) {
         EXPECT_NEAR(fit.gaussians[g].variance / (sigma[g] * sigma[g]), 1, tolerance::fittedAgain) << g;
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(fit.gaussians[g].weight[c], weight[g][c], tolerance::fittedAgain) << g;
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(fit.gaussians[g].weight[c], weight[g][c], tolerance::fittedAgain) << g;
     }
     EXPECT_LT(*std::max_element(fit.error, fit.error + 3), tolerance::floatWeights);
 }

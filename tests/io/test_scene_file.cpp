@@ -247,7 +247,9 @@ TEST(MipChain, MeansOfWhatATexelCovers) {
     EXPECT_EQ(chain.levels[1].width, 2);
     EXPECT_EQ(chain.levels[2].width, 1);
     EXPECT_EQ(chain.levels[2].height, 1);
-    const auto red = [&](int level, int texel) { return chain.texels[chain.levels[level].byteOffset / 4 + 3 * texel]; };
+    const auto red = [&](int level, int texel) {
+        return chain.texels[chain.levels[level].byteOffset / 4 + 3 * texel];
+    };
     EXPECT_EQ(red(1, 0), (0 + 1 + 5 + 6) / 4.0f);
     EXPECT_EQ(red(1, 1), (2 + 3 + 4 + 7 + 8 + 9) / 6.0f) << "an odd side's last texel covers three";
     EXPECT_EQ(chain.texels.size(), 3u * (20 + 4 + 1));

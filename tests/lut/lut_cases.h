@@ -16,15 +16,16 @@
 namespace fixture {
 
 // Every form, and what the oracle calls it.
-inline constexpr std::pair<PelCurvatureForm, reference::Form> forms[] = {{PEL_FORM_ARC, reference::Form::arc},
-                                                                         {PEL_FORM_RING, reference::Form::ring},
-                                                                         {PEL_FORM_HALF_RING, reference::Form::halfRing},
-                                                                         {PEL_FORM_SPHERE, reference::Form::sphere},
-                                                                         {PEL_FORM_PENNER_RING, reference::Form::pennerRing}};
+inline constexpr std::pair<PelCurvatureForm, reference::Form> forms[] = {
+    {PEL_FORM_ARC, reference::Form::arc},
+    {PEL_FORM_RING, reference::Form::ring},
+    {PEL_FORM_HALF_RING, reference::Form::halfRing},
+    {PEL_FORM_SPHERE, reference::Form::sphere},
+    {PEL_FORM_PENNER_RING, reference::Form::pennerRing}};
 
 // Of the profile as it is, on the axis of roots; `least`, `most`: radii of curvature in units of the profile's.
-inline PelCurvatureLutDesc curvatureTable(const pellucid::Profile& profile, PelCurvatureForm form, uint32_t width,
-                                          uint32_t height, double least, double most) {
+inline PelCurvatureLutDesc curvatureTable(const pellucid::Profile& profile, PelCurvatureForm form,
+                                          uint32_t width, uint32_t height, double least, double most) {
     PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
     desc.width = width;
     desc.height = height;
@@ -38,8 +39,8 @@ inline PelCurvatureLutDesc curvatureTable(const pellucid::Profile& profile, PelC
 }
 
 // `least`, `most`: widths of the penumbra in units of the profile's radius.
-inline PelShadowLutDesc shadowTable(const pellucid::Profile& profile, uint32_t width, uint32_t height, double least,
-                                    double most, float sharpening) {
+inline PelShadowLutDesc shadowTable(const pellucid::Profile& profile, uint32_t width, uint32_t height,
+                                    double least, double most, float sharpening) {
     PelShadowLutDesc desc = pelShadowLutDescDefaults();
     desc.width = width;
     desc.height = height;
@@ -82,7 +83,8 @@ inline void expectNearPeer(const pellucid::Lut& lut, const std::filesystem::path
     const auto bytes = lut.read<uint8_t>(PEL_LUT_FACEWORKS8);
     ASSERT_EQ(bytes.size(), peer.data.size());
     int furthest = 0;
-    for (size_t i = 0; i < bytes.size(); ++i) furthest = std::max(furthest, std::abs(int(bytes[i]) - peer.data[i]));
+    for (size_t i = 0; i < bytes.size(); ++i)
+        furthest = std::max(furthest, std::abs(int(bytes[i]) - peer.data[i]));
     EXPECT_LE(furthest, int(tolerance::peerBytes.value));
 }
 

@@ -99,8 +99,7 @@ TEST(LutApi, InfoSizesAndRanges) {
     std::vector<float> texels(20 * 10 * 3);
     EXPECT_EQ(pelLutRead(lut.get(), PEL_LUT_FLOAT, texels.data(), 20 * 10 * 12 - 1, nullptr),
               PEL_ERROR_INVALID_ARGUMENT);
-    EXPECT_EQ(pelLutRead(lut.get(), PEL_LUT_FLOAT, nullptr, 20 * 10 * 12, nullptr),
-              PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(pelLutRead(lut.get(), PEL_LUT_FLOAT, nullptr, 20 * 10 * 12, nullptr), PEL_ERROR_INVALID_ARGUMENT);
 }
 
 TEST(LutApi, HalfIsTheNearestHalf) {
@@ -113,8 +112,7 @@ TEST(LutApi, HalfIsTheNearestHalf) {
     ASSERT_EQ(halves.size(), texels.size());
     for (size_t i = 0; i < texels.size(); ++i) {
         const double error = std::abs(double(fromHalf(halves[i])) - texels[i]);
-        const double below =
-            std::abs(double(fromHalf(uint16_t(std::max(1, int(halves[i])) - 1))) - texels[i]);
+        const double below = std::abs(double(fromHalf(uint16_t(std::max(1, int(halves[i])) - 1))) - texels[i]);
         const double above = std::abs(double(fromHalf(halves[i] + 1)) - texels[i]);
         EXPECT_LE(error, std::min(below, above)) << i << ": " << texels[i];
     }

@@ -33,7 +33,8 @@ reference::CurvatureLutSpec specOf(const PelCurvatureLutDesc& desc) {
 void compareTexels(const Device& device, const PelCurvatureLutDesc& usual, int samples) {
     const PelCurvatureLutDesc desc = sizedTable(usual);
     const std::vector<float> texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
-    const auto profile = reference::profileForRadius(reference::skinProfile(), desc.diffusionRadius ? desc.diffusionRadius : 2.7);
+    const auto profile = reference::profileForRadius(reference::skinProfile(),
+                                                     desc.diffusionRadius ? desc.diffusionRadius : 2.7);
     const auto spec = specOf(desc);
     std::mt19937 random(7);
     for (int i = 0; i < samples; ++i) {
@@ -124,7 +125,8 @@ TEST(CurvatureLut, EncodingsRoundTruth) {
             clipped += reference::faceworksCurvatureClips(truth, spec.u(x));
             fixture::expectRounded(&bytes[(size_t(y) * 256 + x) * 4], steps, x, y);
         }
-    EXPECT_TRUE(clipped > 0 || testsAreSmall()) << "the narrowest radii exceed what the peer's residual holds";
+    EXPECT_TRUE(clipped > 0 || testsAreSmall())
+        << "the narrowest radii exceed what the peer's residual holds";
     uint64_t all = 0;
     for (size_t i = 0; i < texels.size(); i += 3) {
         const double u = spec.u(int(i / 3 % 256));

@@ -48,7 +48,8 @@ std::vector<Pair> pairs() {
 
 void compare(const Device& device, const Pair& pair, PelCurvatureForm form, reference::Form trueForm,
              double least, double most, PelLutAxis axis) {
-    PelCurvatureLutDesc desc = fixture::curvatureTable(pair.ours, form, sized(48u, 7u), sized(12u, 3u), least, most);
+    PelCurvatureLutDesc desc =
+        fixture::curvatureTable(pair.ours, form, sized(48u, 7u), sized(12u, 3u), least, most);
     desc.axis = axis;
     const Lut lut(device, desc);
     const auto texels = lut.read<float>(PEL_LUT_FLOAT);
@@ -92,7 +93,8 @@ TEST(LutProfiles, ShadowEqualsTheIntegral) {
         for (float sharpening : {1.0f, 10.0f}) {
             const PelShadowLutDesc desc = fixture::shadowTable(pair.ours, 40, 8, 2, 40, sharpening);
             const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
-            const reference::ShadowLutSpec spec{40, 8, desc.widthMin, desc.widthMax, pair.truth->radius(), sharpening};
+            const reference::ShadowLutSpec spec{
+                40, 8, desc.widthMin, desc.widthMax, pair.truth->radius(), sharpening};
             for (int y = 0; y < 8; y += 2)
                 for (int x = y % 3; x < 40; x += 5) {
                     const auto truth = reference::shadowTexel(spec, *pair.truth, x, y);

@@ -99,8 +99,7 @@ TEST(LutProperties, CurvatureRisesIsBoundedAndScales) {
                     if (x < width / 2) {  // (D(u) - D(-u)) / u is the same along the row
                         const size_t mirror = i + 3 * (width - 1 - 2 * x), last = i + 3 * (width - 1 - x);
                         const double s = 1 - 2.0 * double(x) / (width - 1);
-                        ASSERT_NEAR(D[mirror] - D[i], s * s * (D[last] - D[i - 3 * x]), bound(kind))
-                            << where(i);
+                        ASSERT_NEAR(D[mirror] - D[i], s * s * (D[last] - D[i - 3 * x]), bound(kind)) << where(i);
                     }
                 }
             }
@@ -127,8 +126,7 @@ TEST(LutProperties, RandomGaussiansEqualTheIntegral) {
             for (int i = 0; i < 9; ++i) {
                 const int x = int(random() % 41);
                 const double s = -1 + x / 20.0, first = std::sqrt(1 / double(desc.radiusMax)),
-                             last = std::sqrt(1 / double(desc.radiusMin)),
-                             c = first + i / 8.0 * (last - first);
+                             last = std::sqrt(1 / double(desc.radiusMin)), c = first + i / 8.0 * (last - first);
                 const reference::Rgb exact =
                     reference::curvatureD(trueForm, *truth, s * std::abs(s), 1 / (c * c));
                 for (int k = 0; k < 3; ++k)
@@ -187,9 +185,7 @@ TEST(LutProperties, LineSpreadIsTheIntegralOfRadial) {
             double sum[3] = {};
             constexpr int panels = 40;
             for (int i = 0; i < panels; ++i) {
-                const auto at = [&](int k) {
-                    return s * std::sinh(std::asinh(20 * radius / s) * k / panels);
-                };
+                const auto at = [&](int k) { return s * std::sinh(std::asinh(20 * radius / s) * k / panels); };
                 for (int c = 0; c < 3; ++c)
                     sum[c] +=
                         2 * Rule::integrate([&](double t) { return profile.radial({std::hypot(s, t)})[c]; },
@@ -213,16 +209,14 @@ TEST(LutProperties, LargestTables) {
         PelCurvatureLutDesc desc = curvatureTable(profile, form, side, side, 0.05, 1e4);
         desc.axis = PEL_AXIS_LINEAR;
         const auto D = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
-        const reference::CurvatureLutSpec spec{trueForm, int(side), int(side), desc.radiusMin,
-                                               desc.radiusMax};
+        const reference::CurvatureLutSpec spec{trueForm, int(side), int(side), desc.radiusMin, desc.radiusMax};
         for (int i = 0; i < 160; ++i) {
             const int edges[] = {0, int(side) - 1, int(side) / 2};
             const int x = i % 4 == 3 ? int(random() % side) : edges[i % 4],
                       y = i < 9 ? edges[i / 3] : int(random() % side);
             const reference::Rgb truth = reference::curvatureTexel(spec, *skin, x, y);
             for (int c = 0; c < 3; ++c)
-                ASSERT_NEAR(D[(size_t(y) * side + size_t(x)) * 3 + size_t(c)], truth[c],
-                            tolerance::lutTexelGaussians)
+                ASSERT_NEAR(D[(size_t(y) * side + size_t(x)) * 3 + size_t(c)], truth[c], tolerance::lutTexelGaussians)
                     << "form " << int(form) << " texel " << x << ", " << y;
         }
     }
@@ -238,8 +232,7 @@ TEST(LutProperties, EndsOfTheAxesAreExact) {
             const auto D = Lut(device, curvatureTable(profile, form, 3, 1, r, r)).read<float>(PEL_LUT_FLOAT);
             const auto one = Lut(device, curvatureTable(profile, form, 1, 1, r, r)).read<float>(PEL_LUT_FLOAT);
             for (size_t x = 0; x < 3; ++x) {
-                const reference::Rgb truth =
-                    reference::curvatureD(trueForm, *skin, double(x) - 1, r * 2.7);
+                const reference::Rgb truth = reference::curvatureD(trueForm, *skin, double(x) - 1, r * 2.7);
                 for (int c = 0; c < 3; ++c) {
                     EXPECT_NEAR(D[3 * x + size_t(c)], truth[c], tolerance::lutTexelGaussians)
                         << int(form) << " r " << r;
@@ -277,9 +270,8 @@ TEST(LutProperties, WeightsAndVariancesAtTheEdgesOfFloat) {
         // A term that weighs nothing beside the others, however wide; but it sets the profile's radius, and
         // with it where an arc is cut.
         if (form != PEL_FORM_ARC) {
-            const auto beside =
-                texels(Profile::gaussians({{1, {1, 1, 1}}, {4, {1, 3, 1}}, {9, {tiny, tiny, tiny}}}), form, 1,
-                       50, 0);
+            const auto beside = texels(
+                Profile::gaussians({{1, {1, 1, 1}}, {4, {1, 3, 1}}, {9, {tiny, tiny, tiny}}}), form, 1, 50, 0);
             for (size_t i = 0; i < beside.size(); ++i)
                 EXPECT_NEAR(beside[i], expected[i], tolerance::lutTexelGaussians) << int(form) << ' ' << i;
         }
@@ -288,8 +280,7 @@ TEST(LutProperties, WeightsAndVariancesAtTheEdgesOfFloat) {
         const auto narrow = texels(Profile::gaussians({{tiny, {1, 1, 1}}}), form, 1, 50, 0);
         const auto wide = texels(Profile::gaussians({{most, {1, 1, 1}}}), form, 1, 50, 0);
         const double even = form == PEL_FORM_ARC ? 0 : form == PEL_FORM_SPHERE ? 0.25 : 1 / std::numbers::pi;
-        const double kept =
-            form == PEL_FORM_ARC ? std::erf(10 / 2.7 / std::numbers::sqrt2) : 1;  // within the cut
+        const double kept = form == PEL_FORM_ARC ? std::erf(10 / 2.7 / std::numbers::sqrt2) : 1;  // within the cut
         for (size_t i = 0; i < narrow.size(); ++i) {
             const double u = -1 + (double(i / 3 % 33) + 0.5) * 2 / 33;
             EXPECT_NEAR(narrow[i], kept * std::max(0.0, u), tolerance::lutTexelGaussians) << int(form);

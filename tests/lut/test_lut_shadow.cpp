@@ -28,8 +28,12 @@ PelShadowLutDesc describe(const Case& c) {
 }
 
 reference::ShadowLutSpec specOf(const PelShadowLutDesc& desc) {
-    return {int(desc.width), int(desc.height),     desc.widthMin,
-            desc.widthMax,   desc.diffusionRadius ? desc.diffusionRadius : 2.7, desc.sharpening};
+    return {int(desc.width),
+            int(desc.height),
+            desc.widthMin,
+            desc.widthMax,
+            desc.diffusionRadius ? desc.diffusionRadius : 2.7,
+            desc.sharpening};
 }
 
 void compareTexels(const Device& device, const PelShadowLutDesc& usual, int samples) {
@@ -98,14 +102,18 @@ TEST(ShadowLut, ClosedEndsRunFromNoneToAll) {
         desc.axis = PEL_AXIS_ROOT;
         const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
         for (uint32_t y = 0; y < 9; ++y) {
-            const double root = std::sqrt(1.0 / 400) + y / 8.0 * (std::sqrt(1.0 / 4) - std::sqrt(1.0 / 400)), q = root * root;
-            const auto low = reference::shadowT(*profile, 0, q, sharpening), high = reference::shadowT(*profile, 1, q, sharpening);
+            const double root = std::sqrt(1.0 / 400) + y / 8.0 * (std::sqrt(1.0 / 4) - std::sqrt(1.0 / 400)),
+                         q = root * root;
+            const auto low = reference::shadowT(*profile, 0, q, sharpening),
+                       high = reference::shadowT(*profile, 1, q, sharpening);
             for (uint32_t x = 0; x < 33; ++x) {
                 // w of a position p: p - 1/2 = (sqrt w - sqrt(1 - w)) / 2 = sin(asin(sqrt w) - pi/4) / sqrt 2
-                const double z = x / 32.0 - 0.5, angle = std::asin(std::clamp(z * std::sqrt(2.0), -1.0, 1.0)) + std::atan(1.0);
+                const double z = x / 32.0 - 0.5,
+                             angle = std::asin(std::clamp(z * std::sqrt(2.0), -1.0, 1.0)) + std::atan(1.0);
                 const auto t = reference::shadowT(*profile, std::pow(std::sin(angle), 2), q, sharpening);
                 for (int c = 0; c < 3; ++c)
-                    EXPECT_NEAR(texels[(y * 33 + x) * 3 + size_t(c)], (t[c] - low[c]) / (high[c] - low[c]), tolerance::closedEnds)
+                    EXPECT_NEAR(texels[(y * 33 + x) * 3 + size_t(c)], (t[c] - low[c]) / (high[c] - low[c]),
+                                tolerance::closedEnds)
                         << x << ", " << y << " channel " << c;
             }
             for (size_t c = 0; c < 3; ++c) {

@@ -56,7 +56,8 @@ TEST(LutTables, EveryFormEqualsTheIntegral) {
         const auto truth = table.truth();
         EXPECT_NEAR(ours.info().radius / truth->radius(), 1, tolerance::profileEvaluation);
         for (const auto& [form, trueForm] : forms) {
-            const PelCurvatureLutDesc desc = fixture::curvatureTable(ours, form, sized(60u, 9u), sized(16u, 3u), 0.05, 1e4);
+            const PelCurvatureLutDesc desc =
+                fixture::curvatureTable(ours, form, sized(60u, 9u), sized(16u, 3u), 0.05, 1e4);
             const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
             std::mt19937 random(5);
             for (int i = 0; i < 40; ++i) {
@@ -86,14 +87,17 @@ TEST(LutTables, ShadowEqualsTheIntegral) {
         for (auto [least, most, sharpening] :
              {std::tuple{2.0, 40.0, 1.0f}, {0.05, 1000.0, 1.0f}, {2.0, 40.0, 10.0f}, {1.0, 10.0, 1e5f}}) {
             const int width = sized(41, 9), height = sized(9, 3);
-            const PelShadowLutDesc desc = fixture::shadowTable(ours, uint32_t(width), uint32_t(height), least, most, sharpening);
+            const PelShadowLutDesc desc =
+                fixture::shadowTable(ours, uint32_t(width), uint32_t(height), least, most, sharpening);
             const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
-            const reference::ShadowLutSpec spec{width, height, desc.widthMin, desc.widthMax, radius, sharpening};
+            const reference::ShadowLutSpec spec{width,         height, desc.widthMin,
+                                                desc.widthMax, radius, sharpening};
             for (int y = 0; y < height; y += 2)
                 for (int x = y % 3; x < width; x += 4) {
                     const auto T = reference::shadowTexel(spec, *truth, x, y);
                     for (int k = 0; k < 3; ++k) {
-                        const double error = std::abs(texels[(size_t(y) * size_t(width) + size_t(x)) * 3 + k] - T[k]);
+                        const double error =
+                            std::abs(texels[(size_t(y) * size_t(width) + size_t(x)) * 3 + k] - T[k]);
                         EXPECT_LT(error, tolerance::lutTexelOther)
                             << table.name << " (" << x << ", " << y << ") sharpening " << sharpening
                             << " widths " << least << " to " << most << " truth " << T[k];
@@ -140,7 +144,8 @@ TEST(LutTables, MoreDistancesOnTheSameLinesChangeNothing) {
 TEST(LutTables, MeanOverTheSphereIsAQuarter) {
     const Device device("");
     for (const Table& table : tables())
-        fixture::expectMeansOfAQuarter(curvatureTexels(device, table.ours(), PEL_FORM_SPHERE, 2049, sized(8u, 1u)), 2049, table.name);
+        fixture::expectMeansOfAQuarter(
+            curvatureTexels(device, table.ours(), PEL_FORM_SPHERE, 2049, sized(8u, 1u)), 2049, table.name);
 }
 
 // A table that holds nothing within reach has no answer but the light itself.
@@ -151,8 +156,7 @@ TEST(LutTables, NothingWithinReachScattersNothing) {
         const auto texels = curvatureTexels(device, far, form, 33, 2);  // the second row: r = 0.05 radii
         for (int x = 0; x < 33; ++x) {
             const double s = -1 + x / 16.0;
-            EXPECT_NEAR(texels[(33 + size_t(x)) * 3], std::max(0.0, s * std::abs(s)),
-                        tolerance::lutTexelOther);
+            EXPECT_NEAR(texels[(33 + size_t(x)) * 3], std::max(0.0, s * std::abs(s)), tolerance::lutTexelOther);
         }
     }
 }
@@ -173,8 +177,7 @@ TEST(LutTables, LimitsAreFiniteAndBounded) {
                 desc.diffusionRadius = 0;
                 desc.radiusMin = desc.radiusMax = radius;
                 for (float texel : Lut(device, desc).read<float>(PEL_LUT_FLOAT)) {
-                    ASSERT_TRUE(std::isfinite(texel))
-                        << table.name << " form " << int(form) << " r " << radius;
+                    ASSERT_TRUE(std::isfinite(texel)) << table.name << " form " << int(form) << " r " << radius;
                     EXPECT_GE(texel, 0);
                     EXPECT_LE(texel, 1 + tolerance::lutTexelOther);
                 }

@@ -80,8 +80,7 @@ double sphereSeries(double u, double kappa) {
 TEST(ReferenceLut, RingOfOneGaussianIsABesselSeries) {
     for (double r : {0.05, 0.3, 1.0, 3.0, 30.0, 300.0})  // in sigmas
         for (double u : someU)
-            EXPECT_NEAR(curvatureD(Form::ring, *oneGaussian(1), u, r).x, ringSeries(u, r * r),
-                        tolerance::oracleClosedForm)
+            EXPECT_NEAR(curvatureD(Form::ring, *oneGaussian(1), u, r).x, ringSeries(u, r * r), tolerance::oracleClosedForm)
                 << "u " << u << " r " << r;
 }
 
@@ -108,8 +107,7 @@ TEST(ReferenceLut, RingOfASumOfGaussiansWeighsTheSeriesByEachKernelsIntegral) {
 TEST(ReferenceLut, SphereOfOneGaussianIsABesselLegendreSeries) {
     for (double r : {0.05, 0.3, 1.0, 3.0, 30.0, 300.0})
         for (double u : someU)
-            EXPECT_NEAR(curvatureD(Form::sphere, *oneGaussian(1), u, r).x, sphereSeries(u, r * r),
-                        tolerance::oracleClosedForm)
+            EXPECT_NEAR(curvatureD(Form::sphere, *oneGaussian(1), u, r).x, sphereSeries(u, r * r), tolerance::oracleClosedForm)
                 << "u " << u << " r " << r;
 }
 
@@ -129,11 +127,11 @@ TEST(ReferenceLut, ArcLongEnoughIsAWrappedGaussian) {
 double boostCurvature(Form form, const Profile& profile, int channel, double u, double r) {
     using Rule = boost::math::quadrature::gauss_kronrod<double, 61>;
     const double theta = std::acos(u);
-    const double end = form == Form::arc      ? std::min(pi * r, profileCut(profile)) / r
-                       : form == Form::ring   ? pi
+    const double end = form == Form::arc          ? std::min(pi * r, profileCut(profile)) / r
+                       : form == Form::ring       ? pi
                        : form == Form::pennerRing ? pi
-                       : form == Form::sphere ? pi
-                                              : pi / 2;
+                       : form == Form::sphere     ? pi
+                                                  : pi / 2;
     std::vector<double> borders{0};
     for (double l : profile.lengths()) {
         const double angle = form == Form::arc ? l / r : l < 2 * r ? 2 * std::asin(l / (2 * r)) : pi;
@@ -174,8 +172,7 @@ TEST(ReferenceLut, EveryFormAndProfileEqualsBoostQuadrature) {
     const std::pair<const char*, ProfilePtr> profiles[] = {
         {"skin", skinProfile()},
         {"dipole", dipoleProfile({0.032, 0.17, 0.48}, {0.74, 0.88, 1.01}, 1.3)},
-        {"table",
-         tableProfile({0, 0.5, 1, 2, 4}, {{9, 8, 7}, {4, 3, 2}, {1, .5, .2}, {.2, .05, .01}, {0, 0, 0}})},
+        {"table", tableProfile({0, 0.5, 1, 2, 4}, {{9, 8, 7}, {4, 3, 2}, {1, .5, .2}, {.2, .05, .01}, {0, 0, 0}})},
         {"burley", burleyProfile({3.67, 1.37, 0.68}, {0.9, 0.6, 0.4})}};
     for (const auto& [name, profile] : profiles)
         for (Form form : allForms) {
@@ -199,7 +196,8 @@ TEST(ReferenceLut, EveryFormAndProfileEqualsBoostQuadrature) {
 // The published listing: distances on the ring weighed by sums of one-dimensional Gaussians, 1/sqrt(2 pi v) exp(-d^2/2v), added up at
 // even angles [Penner, SIGGRAPH 2011]; trapezoids over a circle converge faster than any power.
 TEST(ReferenceLut, PennerRingIsThePublishedOne) {
-    const double sigma[6] = {0.080, 0.220, 0.432, 0.753, 1.411, 2.722}, red[6] = {.233, .100, .118, .113, .358, .078};
+    const double sigma[6] = {0.080, 0.220, 0.432, 0.753, 1.411, 2.722},
+                 red[6] = {.233, .100, .118, .113, .358, .078};
     const auto skin = skinProfile();
     for (double r : {0.5, 1.0, 5.0})
         for (double u : someU) {
@@ -210,7 +208,8 @@ TEST(ReferenceLut, PennerRingIsThePublishedOne) {
                 const double x = -pi + (i + 0.5) * 2 * pi / steps, d = 2 * r * std::sin(x / 2);
                 double weight = 0;
                 for (int g = 0; g < 6; ++g)
-                    weight += red[g] / (sigma[g] * std::sqrt(2 * pi)) * std::exp(-d * d / (2 * sigma[g] * sigma[g]));
+                    weight +=
+                        red[g] / (sigma[g] * std::sqrt(2 * pi)) * std::exp(-d * d / (2 * sigma[g] * sigma[g]));
                 sum += weight * std::max(0.0, std::cos(theta + x));
                 weights += weight;
             }

@@ -21,14 +21,18 @@ constexpr size_t count = 4096;
 constexpr uint32_t width = 300, height = 200;
 
 // n, l, v, m per evaluation: ten floats each.
-std::vector<float> evaluate(const pellucid::Device& device, const std::vector<float>& table, const std::vector<float>& inputs, int lanes) {
+std::vector<float> evaluate(const pellucid::Device& device, const std::vector<float>& table,
+                            const std::vector<float>& inputs, int lanes) {
     const char* source =
         "#include \"lib/shading/specular_table.clh\"\n"
-        "__kernel void evaluate(__global const float* in, __global const float* table, uint width, uint height, __global float* out) {\n"
+        "__kernel void evaluate(__global const float* in, __global const float* table, uint width, uint "
+        "height, __global float* out) {\n"
         "    const size_t at = get_global_id(0) * PEL_WIDTH, n = get_global_size(0) * PEL_WIDTH;\n"
-        "#define V(i) vec3(loadw(at, in + (i) * n), loadw(at, in + (i + 1) * n), loadw(at, in + (i + 2) * n))\n"
+        "#define V(i) vec3(loadw(at, in + (i) * n), loadw(at, in + (i + 1) * n), loadw(at, in + (i + 2) * "
+        "n))\n"
         "    const Vec3w normal = V(0), light = V(3), view = V(6);\n"
-        "    storew(specularKskTable(table, width, height, normal, light, view, dot3(normal, light), loadw(at, in + 9 * n), 0.028f),\n"
+        "    storew(specularKskTable(table, width, height, normal, light, view, dot3(normal, light), "
+        "loadw(at, in + 9 * n), 0.028f),\n"
         "           at, out);\n"
         "}\n";
     void *context, *id, *queue;
@@ -36,7 +40,8 @@ std::vector<float> evaluate(const pellucid::Device& device, const std::vector<fl
     cl_int code;
     cl_program program = clCreateProgramWithSource(cl_context(context), 1, &source, nullptr, &code);
     const auto cl = cl_device_id(id);
-    const std::string options = "-cl-std=CL1.2 -I" PELLUCID_SOURCE_DIR "/kernels -DPEL_WIDTH=" + std::to_string(lanes);
+    const std::string options =
+        "-cl-std=CL1.2 -I" PELLUCID_SOURCE_DIR "/kernels -DPEL_WIDTH=" + std::to_string(lanes);
     EXPECT_EQ(clBuildProgram(program, 1, &cl, options.c_str(), nullptr, nullptr), CL_SUCCESS);
     cl_kernel kernel = clCreateKernel(program, "evaluate", &code);
     const pellucid::Buffer in(device, inputs), texels(device, table), out(device, count * sizeof(float));
@@ -51,7 +56,9 @@ std::vector<float> evaluate(const pellucid::Device& device, const std::vector<fl
     pellucid::check(pelBufferGetCl(out.get(), &memory));
     clSetKernelArg(kernel, next++, sizeof memory, &memory);
     const size_t items = count / size_t(lanes);
-    EXPECT_EQ(clEnqueueNDRangeKernel(cl_command_queue(queue), kernel, 1, nullptr, &items, nullptr, 0, nullptr, nullptr), CL_SUCCESS);
+    EXPECT_EQ(clEnqueueNDRangeKernel(cl_command_queue(queue), kernel, 1, nullptr, &items, nullptr, 0, nullptr,
+                                     nullptr),
+              CL_SUCCESS);
     EXPECT_EQ(clFinish(cl_command_queue(queue)), CL_SUCCESS);
     clReleaseKernel(kernel);
     clReleaseProgram(program);
@@ -97,7 +104,8 @@ TEST(SpecularTable, ReadsWhatTheTableHolds) {
             if (dot(n, l) > 0 && dot(n, h) > 0) {
                 const double nh = dot(n, reference::normalized(h));
                 const double p = std::pow(2 * bilinear(truth, nh, m).x, 10);
-                expected = dot(n, l) * p * reference::schlick(dot(v, reference::normalized(h)), 0.028) / dot(h, h);
+                expected =
+                    dot(n, l) * p * reference::schlick(dot(v, reference::normalized(h)), 0.028) / dot(h, h);
                 ++lit;
             }
             EXPECT_NEAR(result[i], expected, tolerance::specularTable * std::max(1.0, expected)) << i;

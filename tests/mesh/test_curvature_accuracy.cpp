@@ -15,8 +15,7 @@ namespace {
 
 constexpr PelCurvatureEstimator estimators[] = {PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC};
 
-PelCurvatureParams paramsOf(PelCurvatureEstimator estimator, PelCurvatureQuantity quantity,
-                            uint32_t passes = 0) {
+PelCurvatureParams paramsOf(PelCurvatureEstimator estimator, PelCurvatureQuantity quantity, uint32_t passes = 0) {
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     params.estimator = estimator;
     params.quantity = quantity;
@@ -82,8 +81,7 @@ TEST(CurvatureTensor, EqualsTheOracle) {
                     expected.push_back(c.first);
                     expected.push_back(c.second);
                 }
-                EXPECT_LE(relativeError(principal(pair.mesh, PEL_CURVATURE_TENSOR), expected),
-                          tolerance::tensorCurvature)
+                EXPECT_LE(relativeError(principal(pair.mesh, PEL_CURVATURE_TENSOR), expected), tolerance::tensorCurvature)
                     << name << " " << int(kind) << " " << noisy;
             }
 }
@@ -96,8 +94,7 @@ TEST(CurvatureAccuracy, IrregularTorus) {
     for (bool exactNormals : {true, false})
         EXPECT_LE(torusError(100, Tessellation::irregular, exactNormals, PEL_CURVATURE_QUADRIC),
                   tolerance::torusQuadric);
-    EXPECT_LE(torusError(140, Tessellation::irregular, true, PEL_CURVATURE_TENSOR),
-              tolerance::torusExactNormals);
+    EXPECT_LE(torusError(140, Tessellation::irregular, true, PEL_CURVATURE_TENSOR), tolerance::torusExactNormals);
 }
 
 TEST(CurvatureAccuracy, ConvergesUnderRefinement) {
@@ -158,8 +155,8 @@ TEST(CurvatureAccuracy, TiltedNormalsOnlySayWhichWayIsUp) {
         // About an axis that differs from vertex to vertex.
         float* n = &mesh.normals[3 * v];
         const reference::Vec3 normal{n[0], n[1], n[2]};
-        const reference::Vec3 sideways =
-            normalized(cross(normal, reference::Vec3{std::sin(0.7 * double(v)), std::cos(0.7 * double(v)), 0.3}));
+        const reference::Vec3 sideways = normalized(
+            cross(normal, reference::Vec3{std::sin(0.7 * double(v)), std::cos(0.7 * double(v)), 0.3}));
         const reference::Vec3 tilted = std::cos(0.17) * normal + std::sin(0.17) * sideways;
         for (int c = 0; c < 3; ++c) n[c] = float(tilted[c]);
     }
@@ -168,18 +165,20 @@ TEST(CurvatureAccuracy, TiltedNormalsOnlySayWhichWayIsUp) {
 
 TEST(CurvatureAccuracy, NormalsOfAMeshWithFoldedTriangles) {
     // The jitter folds some triangles; normals made from them are off by tens of degrees, however fine the mesh.
-    const std::pair<const char*, reference::Surface> surfaces[] = {{"cone", reference::coneSurface(0.5236, 1, 4)},
-                                                                   {"ellipsoid", reference::ellipsoidSurface(3, 2, 1.5)}};
+    const std::pair<const char*, reference::Surface> surfaces[] = {
+        {"cone", reference::coneSurface(0.5236, 1, 4)}, {"ellipsoid", reference::ellipsoidSurface(3, 2, 1.5)}};
     for (const auto& [name, surface] : surfaces) {
         AnalyticMesh mesh = tessellate(surface, 120, 80, Tessellation::irregular);
         mesh.mesh.normals = reference::estimatedNormals(mesh.mesh);
-        EXPECT_LE(rmsError(mesh, pairOf(mesh.mesh).mesh, PEL_CURVATURE_QUADRIC), tolerance::foldedNormals) << name;
+        EXPECT_LE(rmsError(mesh, pairOf(mesh.mesh).mesh, PEL_CURVATURE_QUADRIC), tolerance::foldedNormals)
+            << name;
     }
 }
 
 TEST(CurvatureAccuracy, ANormalInItsOwnPlaneIsReplaced) {
     // As noise leaves it that folds a sliver over. Its neighbours' normals say what it should be.
-    const Mesh mesh = pairOf(tessellate(reference::torusSurface(3, 1), 100, 60, Tessellation::irregular).mesh).mesh;
+    const Mesh mesh =
+        pairOf(tessellate(reference::torusSurface(3, 1), 100, 60, Tessellation::irregular).mesh).mesh;
     Mesh broken = mesh;
     std::vector<size_t> faulty;
     for (size_t v = 37; v < mesh.vertices(); v += 407) {
@@ -212,7 +211,8 @@ std::pair<double, double> noisyErrors(const reference::Surface& surface) {
     for (size_t i = 0; i < mesh.indices.size(); i += 3) {
         double square = 0;
         for (int c = 0; c < 3; ++c)
-            square += std::pow(mesh.positions[3 * mesh.indices[i] + c] - mesh.positions[3 * mesh.indices[i + 1] + c], 2);
+            square += std::pow(
+                mesh.positions[3 * mesh.indices[i] + c] - mesh.positions[3 * mesh.indices[i + 1] + c], 2);
         edge += std::sqrt(square) / (double(mesh.indices.size()) / 3);
     }
     PelCurvatureParams params = paramsOf(PEL_CURVATURE_QUADRIC, PEL_QUANTITY_MEAN);
@@ -242,12 +242,14 @@ TEST(CurvatureAccuracy, EverySurfaceUnderNoise) {
         {"torus", reference::torusSurface(3, 1)},       {"ellipsoid", reference::ellipsoidSurface(3, 2, 1.5)},
         {"saddle", reference::monkeySaddle(1)},
     };
-    for (const auto& [name, surface] : surfaces) EXPECT_LE(noisyErrors(surface).first, tolerance::noisySurface) << name;
+    for (const auto& [name, surface] : surfaces)
+        EXPECT_LE(noisyErrors(surface).first, tolerance::noisySurface) << name;
 }
 
 TEST(CurvatureAccuracy, DoesNotDependOnTheUnitOfLength) {
     // Powers of two, so that positions round alike: every bit but the exponent must stay.
-    const AnalyticMesh sphere = tessellate(reference::sphereSurface(1), sized(48, 9), sized(32, 7), Tessellation::irregular);
+    const AnalyticMesh sphere =
+        tessellate(reference::sphereSurface(1), sized(48, 9), sized(32, 7), Tessellation::irregular);
     const Mesh base = pairOf(sphere.mesh).mesh;
     for (auto estimator : {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}) {
         const auto params = paramsOf(estimator, PEL_QUANTITY_ABSOLUTE, 2);
@@ -264,7 +266,9 @@ TEST(CurvatureAccuracy, DoesNotDependOnTheUnitOfLength) {
 
 TEST(CurvatureAccuracy, FarFromTheOriginOnlyTheRoundingOfPositionsShows) {
     // Positions that float holds exactly both near and far: moving them must change nothing at all.
-    Mesh mesh = pairOf(tessellate(reference::torusSurface(3, 1), sized(48, 9), sized(24, 7), Tessellation::irregular).mesh).mesh;
+    Mesh mesh =
+        pairOf(tessellate(reference::torusSurface(3, 1), sized(48, 9), sized(24, 7), Tessellation::irregular).mesh)
+            .mesh;
     for (float& x : mesh.positions) x = std::round(x * 4096) / 4096;
     Mesh far = mesh;
     for (size_t i = 0; i < far.positions.size(); i += 3) {
@@ -281,7 +285,8 @@ TEST(CurvatureAccuracy, FarFromTheOriginOnlyTheRoundingOfPositionsShows) {
 
 TEST(CurvatureQuantities, AreWhatTheyAreOfThePrincipalOnes) {
     const Mesh mesh =
-        pairOf(tessellate(reference::torusSurface(3, 1), sized(40, 9), sized(30, 7), Tessellation::irregular).mesh).mesh;
+        pairOf(tessellate(reference::torusSurface(3, 1), sized(40, 9), sized(30, 7), Tessellation::irregular).mesh)
+            .mesh;
     for (auto estimator : estimators)
         for (uint32_t passes : {0u, 2u}) {
             const std::vector<float> k = principal(mesh, estimator, passes);
@@ -309,8 +314,7 @@ TEST(CurvatureQuantities, AreWhatTheyAreOfThePrincipalOnes) {
 
 TEST(CurvatureQuantities, ScaleMultipliesCurvatureAndGaussianTwice) {
     const Mesh mesh = torus(24, 16);
-    for (auto [quantity, factor] :
-         {std::pair(PEL_QUANTITY_MEAN, 4.0f), std::pair(PEL_QUANTITY_GAUSSIAN, 16.0f)}) {
+    for (auto [quantity, factor] : {std::pair(PEL_QUANTITY_MEAN, 4.0f), std::pair(PEL_QUANTITY_GAUSSIAN, 16.0f)}) {
         PelCurvatureParams params = paramsOf(PEL_CURVATURE_TENSOR, quantity);
         const auto one = curvature(mesh, topologyDesc(mesh), params).values;
         params.scale = 4;
@@ -320,8 +324,7 @@ TEST(CurvatureQuantities, ScaleMultipliesCurvatureAndGaussianTwice) {
 }
 
 TEST(CurvatureQuantities, DirectionsOfACylinder) {
-    const AnalyticMesh cylinder =
-        tessellate(reference::cylinderSurface(2, 6), 60, 30, Tessellation::irregular);
+    const AnalyticMesh cylinder = tessellate(reference::cylinderSurface(2, 6), 60, 30, Tessellation::irregular);
     const Mesh mesh = pairOf(cylinder.mesh).mesh;
     const std::vector<bool> skip = onBorder(mesh, 2);
     for (auto estimator : estimators) {
@@ -336,8 +339,7 @@ TEST(CurvatureQuantities, DirectionsOfACylinder) {
             EXPECT_NEAR(f[2] * f[5] + f[3] * f[6] + f[4] * f[7], 0, tolerance::direction);
             // The second direction is the axis, the first goes round. Whichever coordinate the axis is, the
             // normal has none of it.
-            const double axis = std::abs(f[5 + 2]),
-                         across = std::abs(f[2] * n[0] + f[3] * n[1] + f[4] * n[2]);
+            const double axis = std::abs(f[5 + 2]), across = std::abs(f[2] * n[0] + f[3] * n[1] + f[4] * n[2]);
             EXPECT_GT(axis, 1 - tolerance::directionIrregular) << v;
             EXPECT_LT(across, tolerance::directionIrregular) << v;
         }
@@ -346,7 +348,8 @@ TEST(CurvatureQuantities, DirectionsOfACylinder) {
 
 TEST(CurvatureEstimators, ComeOutTheSameBitForBit) {
     const Mesh mesh =
-        pairOf(tessellate(reference::torusSurface(3, 1), sized(60, 9), sized(40, 7), Tessellation::irregular).mesh).mesh;
+        pairOf(tessellate(reference::torusSurface(3, 1), sized(60, 9), sized(40, 7), Tessellation::irregular).mesh)
+            .mesh;
     for (auto estimator : estimators) {
         const std::vector<float> base = principal(mesh, estimator, 1);
         for (int run = 0; run < 3; ++run) EXPECT_EQ(principal(mesh, estimator, 1), base);

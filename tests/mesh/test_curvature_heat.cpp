@@ -133,7 +133,6 @@ TEST(CurvatureHeat, HarmonicsOfASphereDecay) {
                 sum += (values[v] - 1) * harmonic[v], squares += harmonic[v] * harmonic[v];
             return sum / squares;
         };
-        EXPECT_NEAR(amplitude(float(radius)) / amplitude(0) / left, 1, tolerance::heatHarmonic)
-            << int(weights);
+        EXPECT_NEAR(amplitude(float(radius)) / amplitude(0) / left, 1, tolerance::heatHarmonic) << int(weights);
     }
 }

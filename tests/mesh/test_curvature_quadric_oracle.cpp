@@ -107,11 +107,13 @@ std::vector<std::pair<std::string, reference::Mesh>> meshes() {
     all.emplace_back("noisy torus", tessellate(torusSurface(3, 1), sized(40, 12), sized(20, 8), irregular).mesh);
     orient(all.back().second);
     addNoise(all.back().second, 0.05, 5);
-    const FlatMesh scattered = delaunay(uniformPoints(sized(600, 120), 3)), split = poked(flatGrid(12, 12), 0.5, 3, 2);
+    const FlatMesh scattered = delaunay(uniformPoints(sized(600, 120), 3)),
+                   split = poked(flatGrid(12, 12), 0.5, 3, 2);
     all.emplace_back("ellipsoid of scattered points", lifted(scattered, ellipsoidCap(1, 1.5, 2)).mesh);
     all.emplace_back("saddle of split triangles", lifted(split, monkeySaddle(2)).mesh);
     all.emplace_back("slender torus", tessellate(torusSurface(3, 1), 400, 12, regular).mesh);
-    all.emplace_back("noisy saddle, open", tessellate(monkeySaddle(2), sized(24, 10), sized(17, 8), irregular).mesh);
+    all.emplace_back("noisy saddle, open",
+                     tessellate(monkeySaddle(2), sized(24, 10), sized(17, 8), irregular).mesh);
     orient(all.back().second);
     addNoise(all.back().second, 0.05, 6);
     return all;
@@ -186,7 +188,8 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
 // Neither does a result depend on where the tangent frame's axes point: the ridge that decides at borders weighs all
 // directions alike.
 TEST(CurvatureQuadricOracle, TurnedMeshesCurveAlike) {
-    const double axis[3] = {1 / std::sqrt(14.0), 2 / std::sqrt(14.0), 3 / std::sqrt(14.0)}, c = std::cos(0.9), s = std::sin(0.9);
+    const double axis[3] = {1 / std::sqrt(14.0), 2 / std::sqrt(14.0), 3 / std::sqrt(14.0)}, c = std::cos(0.9),
+                 s = std::sin(0.9);
     const auto turn = [&](std::vector<float>& vectors) {
         for (size_t i = 0; i < vectors.size(); i += 3) {
             float* v = &vectors[i];

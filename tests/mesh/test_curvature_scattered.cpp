@@ -60,8 +60,7 @@ void expectAccurate(const char* name, const FlatMesh& flat, bool alsoMade = true
             if (made) mesh.mesh.normals = estimatedNormals(mesh.mesh);
             const Errors errors = errorsOf(mesh, 0, &flat);
             EXPECT_LE(errors.rms, tolerance::scatteredRms) << name << ", " << surface << ", made " << made;
-            EXPECT_LE(errors.worst, tolerance::scatteredWorst)
-                << name << ", " << surface << ", made " << made;
+            EXPECT_LE(errors.worst, tolerance::scatteredWorst) << name << ", " << surface << ", made " << made;
         }
 }
 

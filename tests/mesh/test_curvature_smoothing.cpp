@@ -58,7 +58,8 @@ TEST(CurvatureDiffusion, BlursACosineByWhatTheHeatEquationSays) {
             ASSERT_GT(highest - lowest, 10);
             const Mesh sampled = pairOf(mesh.mesh).mesh;
             const std::vector<float> before = run(sampled, smoothed(0));
-            for (auto [radius, weights] : {std::pair(0.25f, PEL_SMOOTHING_COTANGENT), {0.5f, PEL_SMOOTHING_COTANGENT},
+            for (auto [radius, weights] : {std::pair(0.25f, PEL_SMOOTHING_COTANGENT),
+                                           {0.5f, PEL_SMOOTHING_COTANGENT},
                                            {0.5f, PEL_SMOOTHING_AREA}}) {
                 const std::vector<float> after = run(sampled, smoothed(radius, PEL_CURVATURE_QUADRIC, weights));
                 // Amplitudes by least squares, away from the borders.
@@ -73,7 +74,8 @@ TEST(CurvatureDiffusion, BlursACosineByWhatTheHeatEquationSays) {
                 };
                 const double expected = std::exp(-0.5 * radius * radius * k * k);
                 EXPECT_NEAR(amplitude(after) / amplitude(before), expected,
-                            weights == PEL_SMOOTHING_AREA ? tolerance::diffusionAmplitudeArea : tolerance::diffusionAmplitude)
+                            weights == PEL_SMOOTHING_AREA ? tolerance::diffusionAmplitudeArea
+                                                          : tolerance::diffusionAmplitude)
                     << columns << " " << int(kind) << " " << radius << " " << int(weights);
             }
         }
@@ -85,19 +87,22 @@ TEST(CurvatureDiffusion, TwiceTheTrianglesGiveTheSameAnswer) {
     const AnalyticMesh coarse = tessellate(reference::torusSurface(3, 1), 2 * n, n, Tessellation::regular);
     const AnalyticMesh fine = tessellate(reference::torusSurface(3, 1), 4 * n, 2 * n, Tessellation::regular);
     // By the tensor estimator, which with exact normals is the same on both to 0.1 %.
-    const auto at = [&](const AnalyticMesh& mesh, float radius, PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT) {
+    const auto at = [&](const AnalyticMesh& mesh, float radius,
+                        PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT) {
         return run(pairOf(mesh.mesh).mesh, smoothed(radius, PEL_CURVATURE_TENSOR, weights));
     };
-    for (auto [radius, weights] : {std::pair(0.2f, PEL_SMOOTHING_COTANGENT), {0.6f, PEL_SMOOTHING_COTANGENT},
-                                   {1.0f, PEL_SMOOTHING_COTANGENT}, {1.0f, PEL_SMOOTHING_AREA}}) {
+    for (auto [radius, weights] : {std::pair(0.2f, PEL_SMOOTHING_COTANGENT),
+                                   {0.6f, PEL_SMOOTHING_COTANGENT},
+                                   {1.0f, PEL_SMOOTHING_COTANGENT},
+                                   {1.0f, PEL_SMOOTHING_AREA}}) {
         const std::vector<float> a = at(coarse, radius, weights), b = at(fine, radius, weights);
         std::vector<double> atCoarse;
         for (int y = 0; y < n; ++y)
             for (int x = 0; x < 2 * n; ++x) atCoarse.push_back(b[size_t(2 * y) * 4 * n + 2 * x]);
         EXPECT_LE(rms(a, atCoarse), tolerance::densityIndependence) << radius << " " << int(weights);
         if (radius < 1) continue;
-            EXPECT_GT(rms(at(coarse, 0), atCoarse), 5 * tolerance::densityIndependence)
-                << "the radius must do something";
+        EXPECT_GT(rms(at(coarse, 0), atCoarse), 5 * tolerance::densityIndependence)
+            << "the radius must do something";
     }
 }
 
@@ -115,7 +120,8 @@ TEST(CurvatureDiffusion, TakesNoiseOut) {
 }
 
 TEST(CurvatureDiffusion, StaysWithinTheRangeOfItsValues) {
-    AnalyticMesh torus = tessellate(reference::torusSurface(3, 1), sized(60, 9), sized(30, 7), Tessellation::irregular);
+    AnalyticMesh torus =
+        tessellate(reference::torusSurface(3, 1), sized(60, 9), sized(30, 7), Tessellation::irregular);
     addNoise(torus.mesh, 0.1, 2);
     const Mesh mesh = pairOf(torus.mesh).mesh;
     const std::vector<float> before = run(mesh, smoothed(0));
@@ -133,7 +139,8 @@ TEST(CurvatureDiffusion, StaysWithinTheRangeOfItsValues) {
 
 TEST(CurvatureDiffusion, AreaWeightsKeepEveryValueBetweenItsNeighbours) {
     // Slivers have negative cotangents, which carry a spike beyond the range of all values; areas have none.
-    const AnalyticMesh sliced = tessellate(reference::cylinderSurface(1, 0.3), sized(40, 14), sized(60, 20), Tessellation::irregular);
+    const AnalyticMesh sliced =
+        tessellate(reference::cylinderSurface(1, 0.3), sized(40, 14), sized(60, 20), Tessellation::irregular);
     Mesh mesh = pairOf(sliced.mesh).mesh;
     PelCurvatureParams params = smoothed(0.05f, PEL_CURVATURE_EDGE, PEL_SMOOTHING_AREA);
     const std::vector<float> before = run(mesh, smoothed(0, PEL_CURVATURE_EDGE));
@@ -188,7 +195,10 @@ TEST(CurvatureDiffusion, KeepsWhatLiesBeyondACrease) {
 }
 
 TEST(CurvatureDiffusion, SpreadsNoNaNAndNamesWrongParameters) {
-    Mesh mesh = pairOf(tessellate(reference::torusSurface(3, 1), sized(40, 20), sized(20, 16), Tessellation::irregular).mesh).mesh;
+    Mesh mesh =
+        pairOf(
+            tessellate(reference::torusSurface(3, 1), sized(40, 20), sized(20, 16), Tessellation::irregular).mesh)
+            .mesh;
     mesh.positions[300] = NAN;
     mesh.normals[900] = INFINITY;
     const std::vector<float> values = run(mesh, smoothed(0.5f));

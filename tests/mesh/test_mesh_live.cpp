@@ -146,8 +146,7 @@ TEST(MeshTopologyFile, DamageIsRefused) {
         bytes[at] = char(bytes[at] ^ (1 << random() % 8));
         // The counts of the report beyond those that sizes follow from are only told, never followed.
         PelMeshTopology topology = nullptr;
-        if (pelMeshTopologyLoad(device().get(), bytes.data(), bytes.size(), &topology, nullptr) ==
-            PEL_SUCCESS) {
+        if (pelMeshTopologyLoad(device().get(), bytes.data(), bytes.size(), &topology, nullptr) == PEL_SUCCESS) {
             EXPECT_LT(at, 200u) << "damage behind the header";
             pelMeshTopologyRelease(topology);
         }

@@ -31,9 +31,15 @@ unsigned countLanes(const llvm::Type* type) {
     const auto* vector = llvm::dyn_cast<llvm::FixedVectorType>(type);
     return vector ? vector->getNumElements() : 1;
 }
-Lanes everyLane(unsigned count) { return count >= 64 ? ~Lanes(0) : (Lanes(1) << count) - 1; }
-Lanes everyLane(const llvm::Value* value) { return everyLane(countLanes(value->getType())); }
-bool bit(Lanes lanes, unsigned i) { return lanes >> i & 1; }
+Lanes everyLane(unsigned count) {
+    return count >= 64 ? ~Lanes(0) : (Lanes(1) << count) - 1;
+}
+Lanes everyLane(const llvm::Value* value) {
+    return everyLane(countLanes(value->getType()));
+}
+bool bit(Lanes lanes, unsigned i) {
+    return lanes >> i & 1;
+}
 
 void append(const char* file, const std::string& text) {
     const char* folder = getenv("PELLUCID_OCLGRIND_DIR");
@@ -47,7 +53,8 @@ void append(const char* file, const std::string& text) {
 // What is released after main crashes in Oclgrind, whose thread-local stack of calls is gone by then. Handlers run in the reverse
 // order of their registration: the last of these, which comes after all that the test has made so far, before any release.
 void endWithoutReleasing() {
-    on_exit(+[](int status, void*) { fflush(nullptr), _exit(status); }, nullptr);
+    on_exit(
+        +[](int status, void*) { fflush(nullptr), _exit(status); }, nullptr);
 }
 
 struct Access {
@@ -133,7 +140,8 @@ class Defined : public Plugin {
     void log(MessageType type, const char* message) override {
         if (type == WARNING || type == ERROR) append("reports", std::string("\n") + message + "\n");
     }
-    void instructionExecuted(const WorkItem* item, const llvm::Instruction* instruction, const TypedValue&) override {
+    void instructionExecuted(const WorkItem* item, const llvm::Instruction* instruction,
+                             const TypedValue&) override {
         {
             std::lock_guard lock(mutex_);
             item_ = item, values_ = &items_[item], instruction_ = instruction;
@@ -211,7 +219,8 @@ class Defined : public Plugin {
         for (const Access& a : loads) {
             const uint8_t* from = bytes(a.memory, a.address, a.size);
             for (size_t i = 0; i < a.size && from; ++i)
-                if (from[i]) found |= total % lanes ? everyLane(lanes) : Lanes(1) << (at + i) / (total / lanes);
+                if (from[i])
+                    found |= total % lanes ? everyLane(lanes) : Lanes(1) << (at + i) / (total / lanes);
             at += a.size;
         }
         return found;
@@ -225,7 +234,9 @@ class Defined : public Plugin {
             if (unsetLanes && global) report("a value that nothing has set is stored in global memory");
             uint8_t* to = bytes(a.memory, a.address, a.size);
             for (size_t i = 0; i < a.size && to; ++i)
-                to[i] = global || !unsetLanes ? 0 : total % lanes ? 1 : bit(unsetLanes, (at + i) / (total / lanes));
+                to[i] = global || !unsetLanes ? 0
+                        : total % lanes       ? 1
+                                              : bit(unsetLanes, (at + i) / (total / lanes));
             at += a.size;
         }
     }
@@ -233,12 +244,18 @@ class Defined : public Plugin {
     void follow() {
         const llvm::Instruction& in = *instruction_;
         switch (in.getOpcode()) {
-            case llvm::Instruction::Alloca: return result(0);
-            case llvm::Instruction::Freeze: return result(0);
-            case llvm::Instruction::Br: return needs(in.getNumOperands() > 1 ? unset(0u) : 0, "a branch");
-            case llvm::Instruction::Switch: return needs(unset(0u), "a branch");
-            case llvm::Instruction::Call: return followCall(llvm::cast<llvm::CallInst>(in));
-            case llvm::Instruction::Ret: return followReturn();
+            case llvm::Instruction::Alloca:
+                return result(0);
+            case llvm::Instruction::Freeze:
+                return result(0);
+            case llvm::Instruction::Br:
+                return needs(in.getNumOperands() > 1 ? unset(0u) : 0, "a branch");
+            case llvm::Instruction::Switch:
+                return needs(unset(0u), "a branch");
+            case llvm::Instruction::Call:
+                return followCall(llvm::cast<llvm::CallInst>(in));
+            case llvm::Instruction::Ret:
+                return followReturn();
             case llvm::Instruction::Load:
                 needs(unset(0u), "an address that is read");
                 return result(loaded(countLanes(in.getType())));
@@ -246,8 +263,10 @@ class Defined : public Plugin {
                 needs(unset(1), "an address that is written");
                 return stored(unset(0u), countLanes(in.getOperand(0)->getType()));
             case llvm::Instruction::PHI:
-                return result(unset(llvm::cast<llvm::PHINode>(in).getIncomingValueForBlock(item_->getPreviousBlock())));
-            default: break;
+                return result(
+                    unset(llvm::cast<llvm::PHINode>(in).getIncomingValueForBlock(item_->getPreviousBlock())));
+            default:
+                break;
         }
         // Nothing open anywhere, as nearly always.
         Lanes any = 0;
@@ -256,9 +275,12 @@ class Defined : public Plugin {
         if (!any && !shuffle) return result(0);
         const unsigned lanes = countLanes(in.getType());
         switch (in.getOpcode()) {
-            case llvm::Instruction::And: return result(unlessDecided(0));
-            case llvm::Instruction::Or: return result(unlessDecided(-1));
-            case llvm::Instruction::GetElementPtr: return result(any ? everyLane(lanes) : 0);
+            case llvm::Instruction::And:
+                return result(unlessDecided(0));
+            case llvm::Instruction::Or:
+                return result(unlessDecided(-1));
+            case llvm::Instruction::GetElementPtr:
+                return result(any ? everyLane(lanes) : 0);
             case llvm::Instruction::BitCast: {
                 const unsigned from = countLanes(in.getOperand(0)->getType());
                 if (from == lanes) return result(any);
@@ -280,7 +302,8 @@ class Defined : public Plugin {
                 const unsigned half = countLanes(in.getOperand(0)->getType());
                 Lanes to = 0;
                 for (unsigned i = 0; i < lanes; ++i)
-                    if (mask[i] < 0 || (unsigned(mask[i]) < half ? bit(unset(0u), mask[i]) : bit(unset(1), mask[i] - half)))
+                    if (mask[i] < 0 ||
+                        (unsigned(mask[i]) < half ? bit(unset(0u), mask[i]) : bit(unset(1), mask[i] - half)))
                         to |= Lanes(1) << i;
                 return result(to);
             }
@@ -292,7 +315,8 @@ class Defined : public Plugin {
                     if (bit(unset(condition.getUInt(each ? i : 0) ? 1 : 2), i)) to |= Lanes(1) << i;
                 return result(to);
             }
-            default: return result(any);  // lane by lane: arithmetic, comparisons, conversions
+            default:
+                return result(any);  // lane by lane: arithmetic, comparisons, conversions
         }
     }
 
@@ -371,7 +395,9 @@ class Defined : public Plugin {
         if (name == "shuffle" || name == "shuffle2") return result(shuffled(name == "shuffle" ? 1 : 2));
         Lanes to = 0;
         for (unsigned i = 0; i < call.arg_size(); ++i)
-            to |= countLanes(call.getArgOperand(i)->getType()) == lanes ? unset(i) : unset(i) ? everyLane(lanes) : 0;
+            to |= countLanes(call.getArgOperand(i)->getType()) == lanes ? unset(i)
+                  : unset(i)                                            ? everyLane(lanes)
+                                                                        : 0;
         const bool mixes = name == "cross" || name == "normalize" || name == "fast_normalize";
         result(mixes && to ? everyLane(lanes) : to);
     }

@@ -20,7 +20,8 @@ double centre(int i, int size) {
 // Bilinear on one face alone, clamped to the outermost centres.
 Rgb onFace(const CubeMap& cube, int face, double s, double t) {
     const int n = cube.size;
-    const double x = std::clamp((s + 1) / 2 * n - 0.5, 0.0, n - 1.0), y = std::clamp((t + 1) / 2 * n - 0.5, 0.0, n - 1.0);
+    const double x = std::clamp((s + 1) / 2 * n - 0.5, 0.0, n - 1.0),
+                 y = std::clamp((t + 1) / 2 * n - 0.5, 0.0, n - 1.0);
     const int x0 = std::min(int(x), std::max(n - 2, 0)), y0 = std::min(int(y), std::max(n - 2, 0));
     const int x1 = std::min(x0 + 1, n - 1), y1 = std::min(y0 + 1, n - 1);
     return mix(mix(texel(cube, face, x0, y0), texel(cube, face, x1, y0), x - x0),
@@ -71,7 +72,8 @@ Rgb sampleCube(const CubeMap& cube, Vec3 d) {
         const bool inside = x > 0 && x <= cube.size && y > 0 && y <= cube.size;
         return inside ? texel(cube, face, x - 1, y - 1) : onEdge(cube, cubeDirection(face, knots[x], knots[y]));
     };
-    const double fs = (s - knots[i]) / (knots[i + 1] - knots[i]), ft = (t - knots[j]) / (knots[j + 1] - knots[j]);
+    const double fs = (s - knots[i]) / (knots[i + 1] - knots[i]),
+                 ft = (t - knots[j]) / (knots[j + 1] - knots[j]);
     return mix(mix(knot(i, j), knot(i + 1, j), fs), mix(knot(i, j + 1), knot(i + 1, j + 1), fs), ft);
 }
 

@@ -59,8 +59,7 @@ std::map<int, int> twoRing(const std::vector<Neighbourhood>& all, int vertex) {
             // The corner on the other side of the edge (b, next) is left to the neighbour `next`; not where
             // there is no other.
             if (further.size() > 1)
-                further.erase(all[b].before.at(next) == vertex ? all[b].across.at(next)
-                                                               : all[b].before.at(next));
+                further.erase(all[b].before.at(next) == vertex ? all[b].across.at(next) : all[b].before.at(next));
         }
         for (int f : further) ++counts[f];
     }
@@ -74,8 +73,7 @@ struct Frame {
 // [Duff et al., Building an Orthonormal Basis, Revisited, JCGT 2017]
 Frame frameOf(Vec3 n) {
     const double s = std::copysign(1.0, n.z), a = -1 / (s + n.z);
-    return {
-        {1 + s * n.x * n.x * a, s * n.x * n.y * a, -s * n.x}, {n.x * n.y * a, s + n.y * n.y * a, -n.y}, n};
+    return {{1 + s * n.x * n.x * a, s * n.x * n.y * a, -s * n.x}, {n.x * n.y * a, s + n.y * n.y * a, -n.y}, n};
 }
 
 // What the one-ring says about the coordinates of the fit.
@@ -181,8 +179,7 @@ void widen(Chart& chart, const Mesh& mesh, const std::map<int, int>& points, int
         const double u = dot(p, chart.frame.u), v = dot(p, chart.frame.v);
         const double n = dot(p, chart.frame.n) - chart.slopeU * u - chart.slopeV * v;
         const double weight = count / (0.05 + dot(p, p));
-        uu += weight * u * u, uv += weight * u * v, vv += weight * v * v, nn += weight * n * n,
-            total += weight;
+        uu += weight * u * u, uv += weight * u * v, vv += weight * v * v, nn += weight * n * n, total += weight;
     }
     // Its unit makes the mean square of the distance 0.72.
     const double unit2 = (uu + vv) / total / 0.72, part = 1 / (total * unit2);

@@ -4,8 +4,7 @@
 
 namespace reference {
 
-std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> values,
-                                     const RadiusSmoothing& how) {
+std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> values, const RadiusSmoothing& how) {
     const size_t count = values.size();
     struct Edge {
         int to;

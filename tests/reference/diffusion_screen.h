@@ -13,9 +13,8 @@ struct ScatterPicture {
     int width = 0, height = 0;
     std::vector<Vec3> positions;  // length
     std::vector<Rgb> irradiance;
-    std::vector<int> ids;  // 0 is background
-    std::optional<Vec3>
-        camera;  // surface seen at less than a quarter of its area counts as if it were a quarter
+    std::vector<int> ids;        // 0 is background
+    std::optional<Vec3> camera;  // surface seen at less than a quarter of its area counts as if it were a quarter
     size_t at(int x, int y) const { return size_t(y) * width + x; }
 };
 

@@ -14,9 +14,7 @@ double sine(double u) {
 
 Rgb arc(const Profile& profile, double u, double r, double cut) {
     const double reach = std::min(pi * r, cut), sinTheta = sine(u);
-    auto lit = [&](double x) {
-        return max0(u * std::cos(x) + sinTheta * std::sin(x));
-    };  // max0(cos(theta - x))
+    auto lit = [&](double x) { return max0(u * std::cos(x) + sinTheta * std::sin(x)); };  // max0(cos(theta - x))
     // Both sides of the shaded point folded onto s > 0. A logarithm at s = 0 is tamed by s = t³.
     const bool cubic = profile.singularAtZero();
     auto integrand = [&](double t) {
@@ -47,7 +45,8 @@ Rgb pennerRing(const Profile& profile, double u, double r) {
         for (double& b : borders) b = std::cbrt(b);
     const auto panels = panelPoints(0, cubic ? std::cbrt(pi) : pi, borders);
     Rgb norm;
-    for (int c = 0; c < 3; ++c) norm[c] = 2 * integrate<double>([&](double t) { return kernel(t)[c]; }, panels, 0, 1e-13);
+    for (int c = 0; c < 3; ++c)
+        norm[c] = 2 * integrate<double>([&](double t) { return kernel(t)[c]; }, panels, 0, 1e-13);
     const double sinTheta = sine(u);
     auto lit = [&](double x) { return max0(u * std::cos(x) - sinTheta * std::sin(x)); };
     auto integrand = [&](double t) {
@@ -68,9 +67,7 @@ Rgb ring(const Profile& profile, double u, double r, double halfAngle) {
         norm[c] = 2 * integrate<double>([&](double x) { return kernel(x)[c]; },
                                         panelPoints(0, halfAngle, borders), 0, 1e-13);
     const double sinTheta = sine(u), rise = std::asin(u);
-    auto lit = [&](double x) {
-        return max0(u * std::cos(x) - sinTheta * std::sin(x));
-    };  // max0(cos(theta + x))
+    auto lit = [&](double x) { return max0(u * std::cos(x) - sinTheta * std::sin(x)); };  // max0(cos(theta + x))
     auto integrand = [&](double x) {
         const Rgb k = kernel(x);
         return (lit(x) + lit(-x)) * Rgb{k.x / norm.x, k.y / norm.y, k.z / norm.z};
@@ -98,8 +95,7 @@ Rgb sphere(const Profile& profile, double u, double r) {
     borders.push_back(2 * r * std::sin(0.5 * rise));         // where the circle first touches the terminator
     borders.push_back(2 * r * std::sin(0.5 * (pi - rise)));  // and where it leaves it
     auto integrand = [&](double d) {
-        const double sinPsi = d / r * std::sqrt(max0(1 - d * d / (4 * r * r))),
-                     cosPsi = 1 - d * d / (2 * r * r);
+        const double sinPsi = d / r * std::sqrt(max0(1 - d * d / (4 * r * r))), cosPsi = 1 - d * d / (2 * r * r);
         const Rgb k = d * profile.radial(d);
         return circleMean(u * cosPsi, sinTheta * sinPsi) * Rgb{k.x / norm.x, k.y / norm.y, k.z / norm.z};
     };

@@ -130,7 +130,8 @@ std::vector<Vec2> turnedTaps(std::vector<Vec2> taps, uint32_t column, uint32_t r
     const double turn = std::fmod(column * turns(1 / plastic) + row * turns(1 / (plastic * plastic)), 1.0);
     const double angle = 2 * std::numbers::pi * turn;
     for (Vec2& tap : taps)
-        tap = {tap.x * std::cos(angle) - tap.y * std::sin(angle), tap.x * std::sin(angle) + tap.y * std::cos(angle)};
+        tap = {tap.x * std::cos(angle) - tap.y * std::sin(angle),
+               tap.x * std::sin(angle) + tap.y * std::cos(angle)};
     return taps;
 }
 
@@ -158,7 +159,8 @@ double ggxLobe(Vec3 n, Vec3 l, Vec3 v, double a) {
     return d / (1 + hidden(nl) + hidden(nv)) / (4 * nl * nv);
 }
 
-double specularGgx(Vec3 n, Vec3 l, Vec3 v, double roughness, double roughness2, double lobeMix, double intensity, double f0) {
+double specularGgx(Vec3 n, Vec3 l, Vec3 v, double roughness, double roughness2, double lobeMix,
+                   double intensity, double f0) {
     const double nl = dot(n, l);
     if (!(nl > 0) || !(dot(n, l + v) > 0)) return 0;
     const double lobes = std::lerp(ggxLobe(n, l, v, roughness), ggxLobe(n, l, v, roughness2), lobeMix);

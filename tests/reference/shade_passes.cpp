@@ -33,8 +33,8 @@ std::vector<Vec3> blurAlong(const SurfacePixels& s, const std::vector<Vec3>& val
             double spacing = INFINITY;
             for (int side : {-1, 1})
                 if (inside(x + side * dx, y + side * dy) && valid(index(x + side * dx, y + side * dy)))
-                    spacing = std::min(spacing,
-                                       length(s.positions[index(x + side * dx, y + side * dy)] - s.positions[at]));
+                    spacing = std::min(
+                        spacing, length(s.positions[index(x + side * dx, y + side * dy)] - s.positions[at]));
             if (std::isinf(spacing)) continue;
             const double wanted = radius / (6 * spacing);
             const int step = int(std::clamp(std::ceil(wanted), 1.0, 64.0));
@@ -80,7 +80,8 @@ std::vector<std::optional<Vec3>> blurredNormals(const SurfacePixels& s, std::vec
 
 Vec3 sampleRepeated(const NormalLevel& level, double u, double v) {
     const auto texel = [&](int i, int j) {
-        const int x = (i % level.width + level.width) % level.width, y = (j % level.height + level.height) % level.height;
+        const int x = (i % level.width + level.width) % level.width,
+                  y = (j % level.height + level.height) % level.height;
         return level.texels[size_t(y) * level.width + x];
     };
     const double x = u * level.width - 0.5, y = v * level.height - 0.5;
@@ -105,11 +106,12 @@ Vec3 fromTangentSpace(Vec3 texel, Vec3 tangent, Vec3 normal, double side) {
     return normalized(texel.x * tangent + side * texel.y * cross(normal, tangent) + texel.z * normal);
 }
 
-std::vector<FilterSample> filterSamples(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal,
-                                        const WideFilterParams& p) {
+std::vector<FilterSample> filterSamples(const ShadowMap& map, const ShadowView& view, Vec3 position,
+                                        Vec3 normal, const WideFilterParams& p) {
     std::vector<FilterSample> samples;
     const Vec3 from = position - view.origin;
-    const double along = dot(from, view.forward), across = view.decoding.perspective ? view.extent * along : view.extent;
+    const double along = dot(from, view.forward),
+                 across = view.decoding.perspective ? view.extent * along : view.extent;
     if (view.decoding.perspective && !(along > 0)) return samples;
     // Depth of a distance, and its derivative.
     const double a = view.decoding.a, b = view.decoding.b;
@@ -130,19 +132,23 @@ std::vector<FilterSample> filterSamples(const ShadowMap& map, const ShadowView& 
             if (r >= 1) continue;
             const double t = 1 - r * r, weight = std::sqrt(t) / (1 + t) + std::atan(std::sqrt(t));
             const bool inside = i >= 0 && j >= 0 && i < map.width && j < map.height;
-            const double sideways = dot(normal, view.right) * (i - x) * texelU + dot(normal, view.down) * (j - y) * texelV;
+            const double sideways =
+                dot(normal, view.right) * (i - x) * texelU + dot(normal, view.down) * (j - y) * texelV;
             samples.push_back({inside ? j * map.width + i : -1, weight,
-                               receiver + (sideways - p.coneSlope * p.width / 2 * r) * tilt * zPerLength, zPerLength});
+                               receiver + (sideways - p.coneSlope * p.width / 2 * r) * tilt * zPerLength,
+                               zPerLength});
         }
     return samples;
 }
 
-double wideShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal, const WideFilterParams& p) {
+double wideShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal,
+                  const WideFilterParams& p) {
     double sum = 0, total = 0;
     for (const FilterSample& s : filterSamples(map, view, position, normal, p)) {
         const double depth = s.texel < 0 ? NAN : map.depth[size_t(s.texel)];
-        sum += s.weight *
-               (std::isfinite(depth) ? saturate(1 + (depth - s.receiver) / (p.softness * p.width * s.zPerLength)) : 1.0);
+        sum += s.weight * (std::isfinite(depth)
+                               ? saturate(1 + (depth - s.receiver) / (p.softness * p.width * s.zPerLength))
+                               : 1.0);
         total += s.weight;
     }
     return total > 0 ? sum / total : 1;

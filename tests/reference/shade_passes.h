@@ -20,7 +20,8 @@ struct SurfacePixels {
 
 // Per pixel with an id; none where the pixel's normal or position is no number. `doubtful`, if given, is set for pixels
 // whose answer hangs on a decision (how many pixels from tap to tap, where an edge begins) that rounding could turn.
-std::vector<std::optional<Vec3>> blurredNormals(const SurfacePixels& surface, std::vector<bool>* doubtful = nullptr);
+std::vector<std::optional<Vec3>> blurredNormals(const SurfacePixels& surface,
+                                                std::vector<bool>* doubtful = nullptr);
 
 // --- normals from a map ---
 
@@ -53,8 +54,9 @@ struct FilterSample {
     int texel;  // in map.depth; -1: outside of it
     double weight, receiver, zPerLength;
 };
-std::vector<FilterSample> filterSamples(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal,
-                                        const WideFilterParams& params);
-double wideShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal, const WideFilterParams& params);
+std::vector<FilterSample> filterSamples(const ShadowMap& map, const ShadowView& view, Vec3 position,
+                                        Vec3 normal, const WideFilterParams& params);
+double wideShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal,
+                  const WideFilterParams& params);
 
 }  // namespace reference

@@ -31,7 +31,9 @@ struct Texel {
 Texel texelAt(const CubeShadowMap& map, Vec3 d) {
     const int face = shadowCubeFace(d);
     const double along = dot(d, cubeFaces[face].out);
-    const auto index = [&](double t) { return std::clamp(int(std::floor((t / along + 1) / 2 * map.size)), 0, map.size - 1); };
+    const auto index = [&](double t) {
+        return std::clamp(int(std::floor((t / along + 1) / 2 * map.size)), 0, map.size - 1);
+    };
     const int column = index(dot(d, cubeFaces[face].right)), row = index(dot(d, cubeFaces[face].down));
     return {map.depth[size_t((face * map.size + row) * map.size + column)], d, cubeFaces[face].out};
 }
@@ -94,8 +96,8 @@ double cubeWideShadow(const CubeShadowMap& map, Vec3 point, Vec3 normal, const W
     const double w = dot(axis, cubeFaces[face].out), sine2 = reach * reach / (1 + reach * reach);
     double low[2], high[2];
     for (int k = 0; k < 2; ++k) {
-        const double a = dot(axis, k ? cubeFaces[face].down : cubeFaces[face].right), middle = std::atan2(a, w),
-                     half = std::asin(std::sqrt(sine2 / (a * a + w * w)));
+        const double a = dot(axis, k ? cubeFaces[face].down : cubeFaces[face].right),
+                     middle = std::atan2(a, w), half = std::asin(std::sqrt(sine2 / (a * a + w * w)));
         low[k] = std::tan(middle - half), high[k] = std::tan(middle + half);
     }
     const auto texels = [&](double t) { return (t + 1) / 2 * map.size - 0.5; };
@@ -105,7 +107,8 @@ double cubeWideShadow(const CubeShadowMap& map, Vec3 point, Vec3 normal, const W
     for (int row = int(std::floor(texels(low[1]))); row <= texels(high[1]) + 1; ++row)
         for (int column = int(std::floor(texels(low[0]))); column <= texels(high[0]) + 1; ++column) {
             if (row % step || column % step) continue;
-            const Vec3 d = shadowCubeDirection(face, column, row, map.size), e = d / dot(d, axis), aside = e - axis;
+            const Vec3 d = shadowCubeDirection(face, column, row, map.size), e = d / dot(d, axis),
+                       aside = e - axis;
             const double r = length(aside) / reach;
             if (!(dot(d, axis) > 0) || r >= 1) continue;
             const double t = 1 - r * r, solid = std::pow(dot(d, axis) * w, -3);
@@ -113,8 +116,8 @@ double cubeWideShadow(const CubeShadowMap& map, Vec3 point, Vec3 normal, const W
             const double seen = 1 / map.nearestReach(e);
             double shown = 1;
             if (std::isfinite(seen)) {
-                const double plane =
-                    receiver + (dot(normal, aside) * distance - p.coneSlope * p.width / 2 * r) * tilt * perLength;
+                const double plane = receiver + (dot(normal, aside) * distance - p.coneSlope * p.width / 2 * r) *
+                                                    tilt * perLength;
                 shown = saturate(1 + (seen - plane) / (p.softness * p.width * perLength));
             }
             sum += weight * shown;
@@ -136,8 +139,8 @@ int cascadeOf(const std::vector<Matrix4>& maps, Vec3 position, double radius) {
     return -1;
 }
 
-double momentShadow(const ShadowMap& map, const std::vector<double>& second, const ShadowView& view, Vec3 position,
-                    Vec3 normal, const WideFilterParams& params, const MomentParams& moments) {
+double momentShadow(const ShadowMap& map, const std::vector<double>& second, const ShadowView& view,
+                    Vec3 position, Vec3 normal, const WideFilterParams& params, const MomentParams& moments) {
     double total = 0, mean = 0, square = 0;
     for (const FilterSample& s : filterSamples(map, view, position, normal, params)) {
         total += s.weight;
@@ -159,16 +162,18 @@ double exponentialShadow(const ShadowMap& map, double c, const ShadowView& view,
     for (const FilterSample& s : filterSamples(map, view, position, normal, params)) {
         const double e = s.texel < 0 ? NAN : map.depth[s.texel];
         total += s.weight;
-        sum += s.weight * (e > 0 && std::isfinite(e) ? std::min(1.0, std::exp(std::log(e) - c * s.receiver)) : 1.0);
+        sum += s.weight *
+               (e > 0 && std::isfinite(e) ? std::min(1.0, std::exp(std::log(e) - c * s.receiver)) : 1.0);
     }
     return total > 0 ? sum / total : 1;
 }
 
-double exponentialThickness(const ShadowMap& map, double c, Vec3 uvDepth, const std::vector<Vec2>& taps, double filterRadius,
-                            const DepthDecoding& decoding) {
+double exponentialThickness(const ShadowMap& map, double c, Vec3 uvDepth, const std::vector<Vec2>& taps,
+                            double filterRadius, const DepthDecoding& decoding) {
     double sum = 0;
     for (const Vec2& tap : taps) {
-        const double e = sampleMap(map, uvDepth.x + filterRadius * tap.x, uvDepth.y + filterRadius * tap.y, MapFilter::bilinear);
+        const double e = sampleMap(map, uvDepth.x + filterRadius * tap.x, uvDepth.y + filterRadius * tap.y,
+                                   MapFilter::bilinear);
         if (e > 0) sum += max0(decoding.distance(uvDepth.z) - decoding.distance(std::log(e) / c));
     }
     return sum / double(taps.size());

@@ -42,13 +42,13 @@ struct MomentParams {
     double bleeding = 0.1;
 };
 // `second`: means of z squared, beside the map's means of z.
-double momentShadow(const ShadowMap& map, const std::vector<double>& second, const ShadowView& view, Vec3 position,
-                    Vec3 normal, const WideFilterParams& params, const MomentParams& moments);
+double momentShadow(const ShadowMap& map, const std::vector<double>& second, const ShadowView& view,
+                    Vec3 position, Vec3 normal, const WideFilterParams& params, const MomentParams& moments);
 // The map holds means of exp(c z).
 double exponentialShadow(const ShadowMap& map, double c, const ShadowView& view, Vec3 position, Vec3 normal,
                          const WideFilterParams& params);
 // Bilinear exponentials, then their logarithms.
-double exponentialThickness(const ShadowMap& map, double c, Vec3 uvDepth, const std::vector<Vec2>& taps, double filterRadius,
-                            const DepthDecoding& decoding);
+double exponentialThickness(const ShadowMap& map, double c, Vec3 uvDepth, const std::vector<Vec2>& taps,
+                            double filterRadius, const DepthDecoding& decoding);
 
 }  // namespace reference

@@ -25,7 +25,8 @@ inline Frame reliefFrame(uint32_t seed, uint32_t width, uint32_t height, float p
             const float fx = 0.11f + 0.03f * float(seed % 3), fy = 0.07f;
             const float z = 3 * std::sin(fx * px) * std::cos(fy * py) + (x > 0.6f * float(width) ? 30.0f : 0.0f);
             const float p[3] = {px, py, z};
-            const float dx = 3 * fx * std::cos(fx * px) * std::cos(fy * py), dy = -3 * fy * std::sin(fx * px) * std::sin(fy * py);
+            const float dx = 3 * fx * std::cos(fx * px) * std::cos(fy * py),
+                        dy = -3 * fy * std::sin(fx * px) * std::sin(fy * py);
             float bend[3], n[3], g = 1 / std::sqrt(1 + dx * dx + dy * dy);
             random.unit(bend);
             const float geometric[3] = {-dx * g, -dy * g, g};
@@ -36,7 +37,8 @@ inline Frame reliefFrame(uint32_t seed, uint32_t width, uint32_t height, float p
                 f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * i + c] = geometric[c];
                 f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + c] = n[c] / std::sqrt(sum);
             }
-            const bool hole = std::hypot(float(x) - 0.3f * float(width), float(y) - 0.5f * float(height)) < 0.1f * float(height);
+            const bool hole = std::hypot(float(x) - 0.3f * float(width), float(y) - 0.5f * float(height)) <
+                              0.1f * float(height);
             f.slots[PEL_SLOT_MATERIAL].values[i] = hole ? 0 : 3 * x + y < width ? 2 : 1;
         }
     for (uint32_t id : {1u, 2u}) {
@@ -63,7 +65,8 @@ inline void showBlurredNormal(Frame& f) {
         for (int c = 0; c < 3; ++c) m.normalBlend[c] = m.albedo[c] = 1;
 }
 inline reference::Vec3 shownNormal(const std::vector<float>& radiance, size_t i) {
-    return 2.0 * (reference::Vec3{radiance[3 * i], radiance[3 * i + 1], radiance[3 * i + 2]} - reference::Vec3{1, 1, 1});
+    return 2.0 * (reference::Vec3{radiance[3 * i], radiance[3 * i + 1], radiance[3 * i + 2]} -
+                  reference::Vec3{1, 1, 1});
 }
 
 inline reference::SurfacePixels surfaceOf(const Frame& f) {
@@ -87,7 +90,8 @@ struct MapLight {
     reference::ShadowView view;
     reference::ShadowMap map;
 };
-inline MapLight mapLight(uint32_t seed, bool perspective, bool reversed, Vec3 toLight, Vec3 target, double extent, uint32_t size) {
+inline MapLight mapLight(uint32_t seed, bool perspective, bool reversed, Vec3 toLight, Vec3 target,
+                         double extent, uint32_t size) {
     Random random(seed);
     MapLight out;
     auto& v = out.view;
@@ -148,7 +152,8 @@ inline MapLight mapLight(uint32_t seed, bool perspective, bool reversed, Vec3 to
 // Makes the frame show the wide shadow: shading normals that face the light, white.
 inline void showWideShadow(Frame& f) {
     for (size_t i = 0; i < f.pixels(); ++i)
-        for (int c = 0; c < 3; ++c) f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + c] = f.lights[0].params.toLight[c];
+        for (int c = 0; c < 3; ++c)
+            f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + c] = f.lights[0].params.toLight[c];
     f.ambient = pelAmbientDefaults();
 }
 

@@ -41,10 +41,8 @@ inline Tables makeTables(const pellucid::Device& device, uint32_t width = 96, ui
     c.width = s.width = width;
     c.height = s.height = height;
     Tables t{pellucid::Lut(device, c), pellucid::Lut(device, s), {}, {}};
-    t.curvatureTruth = {readTable(t.curvature, width, height), c.radiusMin, c.radiusMax, c.diffusionRadius,
-                        0};
-    t.shadowTruth = {readTable(t.shadow, width, height), s.widthMin, s.widthMax, s.diffusionRadius,
-                     s.sharpening};
+    t.curvatureTruth = {readTable(t.curvature, width, height), c.radiusMin, c.radiusMax, c.diffusionRadius, 0};
+    t.shadowTruth = {readTable(t.shadow, width, height), s.widthMin, s.widthMax, s.diffusionRadius, s.sharpening};
     return t;
 }
 
@@ -240,9 +238,9 @@ inline void setFrame(const pellucid::Device& device, pellucid::Shader& shader, c
     }
     for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot)
         if (const Image& image = f.slots[slot]; !image.values.empty())
-            shader.set(PelImageSlot(slot),
-                       pellucid::imageDesc(upload(device, image), floatFormats[image.components], f.width,
-                                           f.height));
+            shader.set(
+                PelImageSlot(slot),
+                pellucid::imageDesc(upload(device, image), floatFormats[image.components], f.width, f.height));
     for (const auto& [id, material] : f.materials)
         shader.setMaterial(id, material, f.curvatureLut ? tables.curvature : pellucid::Lut(),
                            f.shadowLut ? tables.shadow : pellucid::Lut());
@@ -255,9 +253,9 @@ inline void setFrame(const pellucid::Device& device, pellucid::Shader& shader, c
             shader.set(i, PEL_LIGHT_WIDE_SHADOW,
                        pellucid::imageDesc(upload(device, light.wide), PEL_FORMAT_R32F, f.width, f.height));
         if (!light.map.values.empty())
-            shader.set(i, PEL_LIGHT_SHADOW_MAP,
-                       pellucid::imageDesc(upload(device, light.map), PEL_FORMAT_R32F, light.mapSize,
-                                           light.mapSize));
+            shader.set(
+                i, PEL_LIGHT_SHADOW_MAP,
+                pellucid::imageDesc(upload(device, light.map), PEL_FORMAT_R32F, light.mapSize, light.mapSize));
     }
 }
 
@@ -368,8 +366,7 @@ inline reference::Shaded truth(const Frame& f, const Tables& tables, size_t i) {
     pixel.shading = unit(PEL_SLOT_NORMAL_SHADING);
     pixel.geometric =
         s[PEL_SLOT_NORMAL_GEOMETRIC].values.empty() ? pixel.shading : unit(PEL_SLOT_NORMAL_GEOMETRIC);
-    pixel.blurred =
-        s[PEL_SLOT_NORMAL_BLURRED].values.empty() ? pixel.geometric : unit(PEL_SLOT_NORMAL_BLURRED);
+    pixel.blurred = s[PEL_SLOT_NORMAL_BLURRED].values.empty() ? pixel.geometric : unit(PEL_SLOT_NORMAL_BLURRED);
     if (material.specular > 0) {
         const Vec3 eye{f.camera.position[0], f.camera.position[1], f.camera.position[2]};
         pixel.toViewer = reference::normalized(eye - s[PEL_SLOT_POSITION].vec(i));

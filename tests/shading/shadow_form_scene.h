@@ -102,7 +102,8 @@ inline Seen shadeForms(Frame f, std::vector<FormLight> lights, bool atlas = fals
                 float* to;
                 pellucid::check(pelBufferMap(shared.get(), reinterpret_cast<void**>(&to)));
                 for (uint32_t y = 0; y < m.height; ++y)
-                    std::copy_n(&m.values[y * m.width * m.components], m.width * m.components, to + (offset + y * row) / 4);
+                    std::copy_n(&m.values[y * m.width * m.components], m.width * m.components,
+                                to + (offset + y * row) / 4);
                 pellucid::check(pelBufferUnmap(shared.get()));
                 offset += m.width * m.components * 4;
             } else {
@@ -112,7 +113,8 @@ inline Seen shadeForms(Frame f, std::vector<FormLight> lights, bool atlas = fals
             shader.set(i, m.slot, desc);
         }
     }
-    const Buffer radiance(device(), f.pixels() * 12), diffuse(device(), f.pixels() * 12), thickness(device(), f.pixels() * 4);
+    const Buffer radiance(device(), f.pixels() * 12), diffuse(device(), f.pixels() * 12),
+        thickness(device(), f.pixels() * 4);
     shader.set(PEL_SLOT_RADIANCE, imageDesc(radiance, PEL_FORMAT_RGB32F, f.width, f.height));
     shader.set(PEL_SLOT_OUT_DIFFUSE, imageDesc(diffuse, PEL_FORMAT_RGB32F, f.width, f.height));
     shader.set(PEL_SLOT_OUT_THICKNESS, imageDesc(thickness, PEL_FORMAT_R32F, f.width, f.height));
@@ -121,7 +123,8 @@ inline Seen shadeForms(Frame f, std::vector<FormLight> lights, bool atlas = fals
     seen.stats = shader.stats();
     seen.thickness = thickness.readAll<float>();
     const auto light = diffuse.readAll<float>();
-    for (size_t i = 0; i < f.pixels(); ++i) seen.wide.push_back(float(light[3 * i] / (strength[i] * first.color[0])));
+    for (size_t i = 0; i < f.pixels(); ++i)
+        seen.wide.push_back(float(light[3 * i] / (strength[i] * first.color[0])));
     return seen;
 }
 
@@ -132,7 +135,8 @@ inline const PelMaterial* materialAt(const Frame& f, size_t i) {
 
 inline std::vector<reference::Vec2> tapsOf(const Frame& f, const PelMaterial& m, size_t i) {
     const auto taps = diskTaps(m.thicknessTaps);
-    return f.options.rotateTaps ? reference::turnedTaps(taps, uint32_t(i % f.width), uint32_t(i / f.width)) : taps;
+    return f.options.rotateTaps ? reference::turnedTaps(taps, uint32_t(i % f.width), uint32_t(i / f.width))
+                                : taps;
 }
 
 struct Worst {
@@ -159,7 +163,9 @@ inline Worst worstOf(const Frame& f, const Seen& seen,
 
 struct Turn {
     Vec3 x, y, z;  // rows: world to the space of the cube
-    Vec3 operator()(Vec3 v) const { return {reference::dot(x, v), reference::dot(y, v), reference::dot(z, v)}; }
+    Vec3 operator()(Vec3 v) const {
+        return {reference::dot(x, v), reference::dot(y, v), reference::dot(z, v)};
+    }
     Vec3 back(Vec3 v) const { return v.x * x + v.y * y + v.z * z; }
 };
 // The direction `to` of the world becomes `axis` of the cube.
@@ -181,7 +187,8 @@ struct CubeLight {
     Vec3 position;
 };
 // `reach` gives the multiple of a direction of the world, from the light, that meets something first.
-inline CubeLight cubeLight(uint32_t size, bool radial, Turn turn, Vec3 position, const std::function<double(Vec3, int)>& reach) {
+inline CubeLight cubeLight(uint32_t size, bool radial, Turn turn, Vec3 position,
+                           const std::function<double(Vec3, int)>& reach) {
     CubeLight out;
     out.turn = turn;
     out.position = position;
@@ -209,7 +216,8 @@ inline CubeLight cubeLight(uint32_t size, bool radial, Turn turn, Vec3 position,
         for (uint32_t i = 0; i < size * size; ++i) {
             const Vec3 d = reference::shadowCubeDirection(face, i % size, i / size, int(size));
             const double s = reach(turn.back(d), int(i));
-            const double z = radial ? s * reference::length(d) / far : (1 / s - out.map.decoding.b) / out.map.decoding.a;
+            const double z =
+                radial ? s * reference::length(d) / far : (1 / s - out.map.decoding.b) / out.map.decoding.a;
             image.values.push_back(float(std::clamp(z, 0.0, 1.0)));
             out.map.depth.push_back(image.values.back());
         }
@@ -224,12 +232,14 @@ struct CascadeLight {
     FormLight light;
     std::vector<MapLight> maps;
 };
-inline CascadeLight cascadeLight(const std::vector<double>& extents, bool reversed = false, uint32_t size = 97, bool sameSize = false) {
+inline CascadeLight cascadeLight(const std::vector<double>& extents, bool reversed = false,
+                                 uint32_t size = 97, bool sameSize = false) {
     CascadeLight out;
     uint32_t i = 0;
     for (const double extent : extents) {
         const uint32_t texels = sameSize ? size : size + 11 * i;
-        out.maps.push_back(mapLight(i, false, reversed, {0.3, 0.1, 0.9}, Vec3{24 + 1.5 * i, 10 - double(i), 5}, extent, texels));
+        out.maps.push_back(mapLight(i, false, reversed, {0.3, 0.1, 0.9},
+                                    Vec3{24 + 1.5 * i, 10 - double(i), 5}, extent, texels));
         MapLight& map = out.maps.back();
         if (reversed) {  // from 1 at the light to 0
             map.light.params.worldToShadow[11] += 1;
@@ -262,7 +272,8 @@ struct ContentLight {
 };
 
 // Each texel of the map holds the means over 2 x 2 depths of `from`, whose size is twice that.
-inline ContentLight contentLight(PelShadowContent content, bool perspective, bool reversed, uint32_t size, bool flat = false) {
+inline ContentLight contentLight(PelShadowContent content, bool perspective, bool reversed, uint32_t size,
+                                 bool flat = false) {
     ContentLight out;
     out.from = mapLight(size, perspective, reversed, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 2 * size);
     auto& view = out.from.view;
@@ -278,7 +289,8 @@ inline ContentLight contentLight(PelShadowContent content, bool perspective, boo
         const double distance = 130;
         for (double& z : depth)
             z = perspective ? (1 / distance - view.decoding.b) / view.decoding.a
-                            : reversed ? 1 - distance / 300 : distance / 300;
+                : reversed  ? 1 - distance / 300
+                            : distance / 300;
     }
     l.params.shadowContent = content;
     l.params.shadowExponent = reversed ? -80 : 80;
@@ -290,7 +302,8 @@ inline ContentLight contentLight(PelShadowContent content, bool perspective, boo
             double sum[2] = {0, 0};
             for (uint32_t k = 0; k < 4; ++k) {
                 const double z = depth[(2 * y + k / 2) * 2 * size + 2 * x + k % 2];
-                sum[0] += content == PEL_SHADOW_CONTENT_EXPONENTIAL ? std::exp(l.params.shadowExponent * z) / 4 : z / 4;
+                sum[0] += content == PEL_SHADOW_CONTENT_EXPONENTIAL ? std::exp(l.params.shadowExponent * z) / 4
+                                                                    : z / 4;
                 sum[1] += z * z / 4;
             }
             for (uint32_t c = 0; c < components; ++c) l.maps[0].values.push_back(float(sum[c]));

@@ -33,7 +33,8 @@ TEST_P(PoissonDisk, KeepsItsTapsApart) {
     const auto taps = diskTaps(GetParam());
     double least = INFINITY;
     for (size_t i = 0; i < taps.size(); ++i)
-        for (size_t j = 0; j < i; ++j) least = std::min(least, std::hypot(taps[i].x - taps[j].x, taps[i].y - taps[j].y));
+        for (size_t j = 0; j < i; ++j)
+            least = std::min(least, std::hypot(taps[i].x - taps[j].x, taps[i].y - taps[j].y));
     const double relative = least / std::sqrt(2 * pi / (std::sqrt(3.0) * double(taps.size())));
     std::printf("%zu taps: %.3f of a hexagonal packing's distance\n", taps.size(), relative);
     EXPECT_GE(relative, tolerance::diskSpacing);

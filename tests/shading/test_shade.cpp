@@ -98,7 +98,8 @@ INSTANTIATE_TEST_SUITE_P(
                          [](Frame& f, const Frame& full) {
                              onlyAmbient(f, full);
                              f.materials = full.materials;
-                             for (auto& [id, m] : f.materials) m.deepScatterAmbient = 0.1f * float(id), m.specular = 0;
+                             for (auto& [id, m] : f.materials)
+                                 m.deepScatterAmbient = 0.1f * float(id), m.specular = 0;
                              f.slots[PEL_SLOT_THICKNESS] = f.slots[PEL_SLOT_AMBIENT_OCCLUSION];
                              for (float& t : f.slots[PEL_SLOT_THICKNESS].values) t *= 60;
                          }},
@@ -195,8 +196,7 @@ TEST(Shade, EveryWidthAndHeight) {
              {1, 1}, {1, 9}, {7, 1}, {8, 2}, {9, 3}, {15, 17}, {16, 16}, {17, 33}, {31, 5}}) {
         Frame f = randomFrame(width, width, height, 2);
         f.slots[PEL_SLOT_MATERIAL] = {};
-        EXPECT_LE(worstError(f, shade(device(), f, tables())), tolerance::shadeSum)
-            << width << " x " << height;
+        EXPECT_LE(worstError(f, shade(device(), f, tables())), tolerance::shadeSum) << width << " x " << height;
     }
 }
 

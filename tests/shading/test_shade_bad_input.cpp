@@ -165,8 +165,7 @@ TEST(ShadeBadInput, WhatCommitMisses) {
     {
         Ready r;
         r.shader.set({r.frame.lights[0].params, r.frame.lights[0].params});
-        r.shader.set(1, PEL_LIGHT_WIDE_SHADOW,
-                     imageDesc(Buffer(device(), 32 * 16), PEL_FORMAT_R8_UNORM, 32, 16));
+        r.shader.set(1, PEL_LIGHT_WIDE_SHADOW, imageDesc(Buffer(device(), 32 * 16), PEL_FORMAT_R8_UNORM, 32, 16));
         expectError(PEL_ERROR_UNSUPPORTED, {"wide shadow", "R32F", "R8_UNORM"}, commit(r));
     }
     {
@@ -174,8 +173,7 @@ TEST(ShadeBadInput, WhatCommitMisses) {
         std::vector<PelLight> lights(20, r.frame.lights[0].params);
         r.shader.set(lights);
         for (uint32_t i = 0; i < 20; ++i)
-            r.shader.set(i, PEL_LIGHT_WIDE_SHADOW,
-                         imageDesc(Buffer(device(), 2048), PEL_FORMAT_R32F, 32, 16));
+            r.shader.set(i, PEL_LIGHT_WIDE_SHADOW, imageDesc(Buffer(device(), 2048), PEL_FORMAT_R32F, 32, 16));
         expectError(PEL_ERROR_UNSUPPORTED, {"16", "buffers"}, commit(r));
         const Buffer one(device(), 20 * 2048);
         for (uint32_t i = 0; i < 20; ++i)
@@ -270,7 +268,8 @@ TEST(ShadeBadPixels, AFrameOfNothingElseIsCountedAlways) {
         for (const PelTileLists lists : {PEL_TILES_ONE_LIST, PEL_TILES_PER_VARIANT, PEL_TILES_NO_LIST}) {
             Frame f = randomFrame(2, 65, 19, 2);
             f.options.tileLists = lists;
-            std::fill(f.slots[PEL_SLOT_NORMAL_SHADING].values.begin(), f.slots[PEL_SLOT_NORMAL_SHADING].values.end(), value);
+            std::fill(f.slots[PEL_SLOT_NORMAL_SHADING].values.begin(),
+                      f.slots[PEL_SLOT_NORMAL_SHADING].values.end(), value);
             uint64_t materials = 0;
             for (const float id : f.slots[PEL_SLOT_MATERIAL].values) materials += id != 0;
             PelShaderStats stats = pelShaderStatsDefaults();
@@ -297,8 +296,8 @@ TEST(ShadeBadPixels, AccumulatingOntoNanGivesTheInvalidColor) {
         Shader shader(device());
         setFrame(device(), shader, f, tables());
         const Buffer target(device(), before);
-        shader.set(PEL_SLOT_RADIANCE,
-                   imageDesc(target, components == 3 ? PEL_FORMAT_RGB32F : PEL_FORMAT_RGBA32F, f.width, f.height));
+        shader.set(PEL_SLOT_RADIANCE, imageDesc(target, components == 3 ? PEL_FORMAT_RGB32F : PEL_FORMAT_RGBA32F,
+                                                f.width, f.height));
         shader.commit().execute();
         const auto after = target.readAll<float>();
         for (size_t i = 0; i < f.pixels(); ++i) {
@@ -308,7 +307,8 @@ TEST(ShadeBadPixels, AccumulatingOntoNanGivesTheInvalidColor) {
                 if (!material)
                     EXPECT_EQ(std::memcmp(&was, &is, sizeof was), 0) << "background, pixel " << i;
                 else
-                    EXPECT_EQ(is, spoilt ? f.options.invalidColor[c] : clean[3 * i + c] + 0.25f) << "pixel " << i;
+                    EXPECT_EQ(is, spoilt ? f.options.invalidColor[c] : clean[3 * i + c] + 0.25f)
+                        << "pixel " << i;
             }
         }
         EXPECT_GT(bad, 20u);
@@ -432,7 +432,8 @@ TEST(ShadeProgress, IsToldAndMayCancel) {
     const auto part = target.readAll<float>();
     size_t done = 0, left = 0;
     for (size_t i = 0; i < part.size(); ++i) {
-        if (f.slots[PEL_SLOT_MATERIAL].values[i / 3] == 0 || f.slots[PEL_SLOT_MATERIAL].values[i / 3] == 7) continue;
+        if (f.slots[PEL_SLOT_MATERIAL].values[i / 3] == 0 || f.slots[PEL_SLOT_MATERIAL].values[i / 3] == 7)
+            continue;
         (part[i] == -3 ? left : done)++;
     }
     EXPECT_GT(done, 0u) << "the first million";

@@ -79,12 +79,14 @@ TEST(ShadeBands, WideShadowsOfEveryBudget) {
 TEST(ShadeBands, BlurredNormalsAndMapsWithTheirHalo) {
     Frame f = passesFrame(2, 70, 1000);
     for (size_t i = 0; i < f.pixels(); ++i)
-        for (int c = 0; c < 3; ++c) f.slots[PEL_SLOT_POSITION].values[3 * i + c] *= 0.02f;  // a close-up: steps of many pixels
+        for (int c = 0; c < 3; ++c)
+            f.slots[PEL_SLOT_POSITION].values[3 * i + c] *= 0.02f;  // a close-up: steps of many pixels
     for (const bool map : {false, true}) {
         const Result whole = run(f, 0, map);
         EXPECT_TRUE(whole.stats.features & PEL_FEATURE_BLUR_NORMALS);
         EXPECT_EQ(bool(whole.stats.features & PEL_FEATURE_NORMAL_MAP), map);
-        const uint64_t rowBytes = 70 * (40 + 8), guards = 2 * 400 * 40;  // of PEL_PLANE_GUARD values round each plane
+        const uint64_t rowBytes = 70 * (40 + 8),
+                       guards = 2 * 400 * 40;  // of PEL_PLANE_GUARD values round each plane
         for (const auto& [rows, bands] : {std::pair{770u, 500u}, {786u, 56u}, {968u, 5u}}) {
             if (map && bands > 100) continue;
             const Result some = run(f, rows * rowBytes + guards, map);
@@ -116,7 +118,9 @@ TEST(ShadeBands, ABudgetThatIsTooSmallSaysWhatWouldDo) {
         FAIL() << "it fitted";
     } catch (const pellucid::Error& e) {
         EXPECT_EQ(e.code(), PEL_ERROR_OUT_OF_MEMORY);
-        EXPECT_NE(std::string(e.what()).find("at least " + std::to_string(150 * 48 * 61 + 2 * 400 * 40)), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("at least " + std::to_string(150 * 48 * 61 + 2 * 400 * 40)),
+                  std::string::npos)
+            << e.what();
     }
     f.options.scratchBudget = 150 * 48 * 61 + 2 * 400 * 40;
     shader.set(f.options).commit().execute();

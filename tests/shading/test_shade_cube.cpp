@@ -70,15 +70,18 @@ Frame randomAmbient(uint32_t seed, int size) {
 reference::Ambient randomHarmonics(uint32_t seed) {
     Random random(seed);
     reference::Ambient ambient{{0.8, 0.8, 0.8}, {}};
-    for (Rgb& h : ambient.harmonics) h = {random.uniform(-0.15f, 0.15f), random.uniform(-0.15f, 0.15f), random.uniform(-0.15f, 0.15f)};
+    for (Rgb& h : ambient.harmonics)
+        h = {random.uniform(-0.15f, 0.15f), random.uniform(-0.15f, 0.15f), random.uniform(-0.15f, 0.15f)};
     return ambient;
 }
 
-double worstOf(const std::vector<float>& result, const std::vector<Vec3>& normals, const reference::Ambient& truth) {
+double worstOf(const std::vector<float>& result, const std::vector<Vec3>& normals,
+               const reference::Ambient& truth) {
     double worst = 0;
     for (size_t i = 0; i < normals.size(); ++i)
         for (int c = 0; c < 3; ++c)
-            worst = std::max(worst, std::abs(result[3 * i + c] - irradiance(truth, reference::normalized(normals[i]))[c]));
+            worst = std::max(
+                worst, std::abs(result[3 * i + c] - irradiance(truth, reference::normalized(normals[i]))[c]));
     return worst;
 }
 
@@ -99,7 +102,8 @@ TEST(ShadeCube, AddsToHarmonicsAndComesThrough) {
         f.cube = randomCube(seed, 7);
         for (auto& [id, m] : f.materials) m.deepScatterAmbient = 0.6f;
         f.slots[PEL_SLOT_THICKNESS] = f.slots[PEL_SLOT_AMBIENT_OCCLUSION];
-        for (float& t : f.slots[PEL_SLOT_THICKNESS].values) t *= 300;  // some beyond the cutoff, where terms are skipped
+        for (float& t : f.slots[PEL_SLOT_THICKNESS].values)
+            t *= 300;  // some beyond the cutoff, where terms are skipped
         PelShaderStats stats = pelShaderStatsDefaults();
         const auto result = shade(device(), f, tables(), &stats);
         EXPECT_TRUE(stats.features & PEL_FEATURE_AMBIENT_SCATTER);
@@ -137,7 +141,8 @@ TEST(ShadeCube, AConstantCubeIsTheConstant) {
     const Rgb light{0.25, 0.5, 0.125};
     f.cube = cubeOf(9, [&](Vec3) { return light; });
     for (int c = 0; c < 3; ++c) g.ambient.constant[c] = float(light[c]);
-    EXPECT_EQ(shade(device(), f, tables()), shade(device(), g, tables())) << "texels of powers of two: to the bit";
+    EXPECT_EQ(shade(device(), f, tables()), shade(device(), g, tables()))
+        << "texels of powers of two: to the bit";
 }
 
 TEST(ShadeCube, SampledFromHarmonicsItIsThoseToSecondOrder) {
@@ -162,9 +167,11 @@ struct SkyIrradiance {
     explicit SkyIrradiance(const pellucid::sample::Sky& sky, int rings = 48) {
         for (int i = 0; i < rings; ++i)
             for (int j = 0; j < 2 * rings; ++j) {
-                const double z = (2 * i + 1.0) / rings - 1, phi = M_PI * (j + 0.5) / rings, r = std::sqrt(1 - z * z);
+                const double z = (2 * i + 1.0) / rings - 1, phi = M_PI * (j + 0.5) / rings,
+                             r = std::sqrt(1 - z * z);
                 const auto l = sky.radiance({r * std::cos(phi), r * std::sin(phi), z});
-                light.push_back({{r * std::cos(phi), r * std::sin(phi), z}, (2.0 / (rings * rings)) * Rgb{l[0], l[1], l[2]}});
+                light.push_back({{r * std::cos(phi), r * std::sin(phi), z},
+                                 (2.0 / (rings * rings)) * Rgb{l[0], l[1], l[2]}});
             }
     }
     Rgb operator()(Vec3 n) const {
@@ -217,7 +224,8 @@ TEST(ShadeCube, HasNoSeams) {
     f.cube = randomCube(10, 6);
     const auto result = shade(device(), f, tables());
     for (size_t i = 0; i < result.size(); i += 6)
-        for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(result[i + c], result[i + 3 + c], tolerance::cubeSeam) << i / 6;
+        for (size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(result[i + c], result[i + 3 + c], tolerance::cubeSeam) << i / 6;
 }
 
 TEST(ShadeCube, TurnsWithTheNormals) {
@@ -251,7 +259,8 @@ TEST(ShadeCube, ABadTexelStaysWhereItIsRead) {
         g.cube.texels[(face * 8 + y) * 8 + x].x = bad;
         PelShaderStats stats = pelShaderStatsDefaults();
         const auto result = shade(device(), g, tables(), &stats);
-        const Vec3 place = reference::normalized(reference::cubeDirection(face, (2 * x + 1) / 8.0 - 1, (2 * y + 1) / 8.0 - 1));
+        const Vec3 place =
+            reference::normalized(reference::cubeDirection(face, (2 * x + 1) / 8.0 - 1, (2 * y + 1) / 8.0 - 1));
         uint64_t invalid = 0;
         for (size_t i = 0; i < normals.size(); ++i) {
             const bool lost = result[3 * i] == -3;
@@ -286,7 +295,9 @@ TEST(ShadeCube, ComesInAnyColourFormatAndBothShapes) {
     const uint32_t n = 5;
     Frame f = ambientFrame(randomNormals(15, 700)), plain = f;
     // Values that every format holds exactly: 0 and 1.
-    f.cube = cubeOf(int(n), [&](Vec3 d) { return Rgb{double(d.x > 0.3), double(d.y > d.z), double(d.x + d.z < 0)}; });
+    f.cube = cubeOf(int(n), [&](Vec3 d) {
+        return Rgb{double(d.x > 0.3), double(d.y > d.z), double(d.x + d.z < 0)};
+    });
     const auto expected = shade(device(), f, tables());
     const auto texel = [&](size_t i, size_t c) { return float(f.cube.texels[i][int(c)]); };
     const size_t texels = 6 * n * n;

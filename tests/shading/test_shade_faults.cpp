@@ -83,11 +83,12 @@ cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* code) {
     }
     return next<decltype(clCreateKernel)>("clCreateKernel")(program, name, code);
 }
-cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset,
-                              const size_t* global, const size_t* local, cl_uint waits, const cl_event* list, cl_event* event) {
+cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions,
+                              const size_t* offset, const size_t* global, const size_t* local, cl_uint waits,
+                              const cl_event* list, cl_event* event) {
     if (strikes(Fault::launch)) return CL_MEM_OBJECT_ALLOCATION_FAILURE;
-    return next<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel")(queue, kernel, dimensions, offset, global, local,
-                                                                          waits, list, event);
+    return next<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel")(
+        queue, kernel, dimensions, offset, global, local, waits, list, event);
 }
 #pragma GCC visibility pop
 }
@@ -176,8 +177,9 @@ std::string nameOf(const testing::TestParamInfo<Case>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, ShadeFaults,
                          testing::Values(Case{Fault::hostMemory, false}, Case{Fault::deviceMemory, false},
-                                         Case{Fault::launch, false}, Case{Fault::kernel, false}, Case{Fault::deviceMemory, true},
-                                         Case{Fault::launch, true}, Case{Fault::kernel, true}),
+                                         Case{Fault::launch, false}, Case{Fault::kernel, false},
+                                         Case{Fault::deviceMemory, true}, Case{Fault::launch, true},
+                                         Case{Fault::kernel, true}),
                          nameOf);
 
 }  // namespace

@@ -147,7 +147,8 @@ TEST(BlurNormals, BadPixelsStayAlone) {
         for (int c = 0; c < 3; ++c) EXPECT_TRUE(std::isfinite(after[3 * i + c])) << i;
         // Beyond six taps in both directions nothing changes at all.
         const auto far = [&](size_t centre) {
-            return std::abs(int(i % 120) - int(centre % 120)) > 12 || std::abs(int(i / 120) - int(centre / 120)) > 12;
+            return std::abs(int(i % 120) - int(centre % 120)) > 12 ||
+                   std::abs(int(i / 120) - int(centre / 120)) > 12;
         };
         for (int c = 0; c < 3 && far(normal) && far(position); ++c)
             EXPECT_EQ(after[3 * i + c], before[3 * i + c]) << i;
@@ -161,7 +162,8 @@ TEST(BlurNormals, OddFrames) {
         f.slots[PEL_SLOT_MATERIAL] = {};
         showBlurredNormal(f);
         f.options.blurNormals = 1;
-        EXPECT_LE(againstOracle(f, shade(device(), f, tables())).error, tolerance::shadeTerm) << width << " x " << height;
+        EXPECT_LE(againstOracle(f, shade(device(), f, tables())).error, tolerance::shadeTerm)
+            << width << " x " << height;
     }
     Frame f = reliefFrame(2, 16, 16, 0.0f);  // all pixels in one place
     showBlurredNormal(f);
@@ -188,11 +190,15 @@ Mapped mappedFrame(uint32_t seed, uint32_t size) {
     f.slots[PEL_SLOT_UV].components = 2;
     f.slots[PEL_SLOT_UV_GRADIENT].components = f.slots[PEL_SLOT_TANGENT].components = 4;
     for (size_t i = 0; i < f.pixels(); ++i) {
-        const Vec3 n = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), t = reference::normalized(Vec3{1, 0, 0} - n.x * n);
-        for (float v : {float(t.x), float(t.y), float(t.z), i % 3 ? 1.0f : -1.0f}) f.slots[PEL_SLOT_TANGENT].values.push_back(v);
-        for (float v : {random.uniform(-1.5f, 2.5f), random.uniform(-1.5f, 2.5f)}) f.slots[PEL_SLOT_UV].values.push_back(v);
+        const Vec3 n = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i),
+                   t = reference::normalized(Vec3{1, 0, 0} - n.x * n);
+        for (float v : {float(t.x), float(t.y), float(t.z), i % 3 ? 1.0f : -1.0f})
+            f.slots[PEL_SLOT_TANGENT].values.push_back(v);
+        for (float v : {random.uniform(-1.5f, 2.5f), random.uniform(-1.5f, 2.5f)})
+            f.slots[PEL_SLOT_UV].values.push_back(v);
         const float footprint = std::exp2(random.uniform(-12, -2));
-        for (int c = 0; c < 4; ++c) f.slots[PEL_SLOT_UV_GRADIENT].values.push_back(footprint * random.uniform(-1, 1));
+        for (int c = 0; c < 4; ++c)
+            f.slots[PEL_SLOT_UV_GRADIENT].values.push_back(footprint * random.uniform(-1, 1));
     }
     for (uint32_t s = size; s > 0; s /= 2) {
         reference::NormalLevel level{int(s), int(s), {}};
@@ -220,7 +226,8 @@ std::vector<PelImageDesc> descriptions(const Mapped& m, const Buffer& buffer) {
     return all;
 }
 
-std::vector<float> shadeMapped(const Mapped& m, std::initializer_list<uint32_t> ids, PelShaderStats* stats = nullptr) {
+std::vector<float> shadeMapped(const Mapped& m, std::initializer_list<uint32_t> ids,
+                               PelShaderStats* stats = nullptr) {
     Shader shader(device());
     setFrame(device(), shader, m.frame, tables());
     const Buffer map(device(), m.texels), target(device(), m.frame.pixels() * 12);
@@ -237,8 +244,10 @@ Vec3 mappedTruth(const Mapped& m, size_t i) {
     const auto g = [&](uint32_t c) { return f.slots[PEL_SLOT_UV_GRADIENT].at(i, c); };
     double level = reference::blurredNormalMip(m.levels[0].width, material.diffusionRadius, m.uvScale);
     if (!f.slots[PEL_SLOT_UV_GRADIENT].values.empty())
-        level = std::max(level, reference::footprintLevel({g(0), g(1), g(2), g(3)}, m.levels[0].width, m.levels[0].height));
-    const Vec3 texel = reference::trilinear(m.levels, f.slots[PEL_SLOT_UV].at(i, 0), f.slots[PEL_SLOT_UV].at(i, 1), level);
+        level = std::max(
+            level, reference::footprintLevel({g(0), g(1), g(2), g(3)}, m.levels[0].width, m.levels[0].height));
+    const Vec3 texel =
+        reference::trilinear(m.levels, f.slots[PEL_SLOT_UV].at(i, 0), f.slots[PEL_SLOT_UV].at(i, 1), level);
     const auto& tangent = f.slots[PEL_SLOT_TANGENT];
     return reference::fromTangentSpace(texel, {tangent.at(i, 0), tangent.at(i, 1), tangent.at(i, 2)},
                                        f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), tangent.at(i, 3) < 0 ? -1 : 1);
@@ -263,8 +272,14 @@ TEST(NormalMap, MatchesTheOracle) {
 TEST(NormalMap, NeverSharperThanTheOrdinaryLevelAndBlurredOverTheRadius) {
     Mapped m = mappedFrame(4, 64);
     for (size_t k = 0; k < m.levels.size(); ++k)  // each level leans further along the tangent
-        for (size_t i = 0, at = [&] { size_t a = 0; for (size_t j = 0; j < k; ++j) a += 3 * m.levels[j].texels.size(); return a; }();
-             i < m.levels[k].texels.size(); ++i) {
+        for (
+            size_t i = 0, at =
+                              [&] {
+                                  size_t a = 0;
+                                  for (size_t j = 0; j < k; ++j) a += 3 * m.levels[j].texels.size();
+                                  return a;
+                              }();
+            i < m.levels[k].texels.size(); ++i) {
             m.texels[at + 3 * i] = float(k);
             m.texels[at + 3 * i + 1] = 0;
             m.texels[at + 3 * i + 2] = 1;
@@ -284,7 +299,8 @@ TEST(NormalMap, NeverSharperThanTheOrdinaryLevelAndBlurredOverTheRadius) {
     footprint(0.01f);
     EXPECT_NEAR(levelSeen(), blurred, tolerance::mappedLevel) << "magnified: the diffusion radius alone";
     footprint(9.0f);
-    EXPECT_NEAR(levelSeen(), std::log2(9.0), tolerance::mappedLevel) << "minified: as sharp as any other texture";
+    EXPECT_NEAR(levelSeen(), std::log2(9.0), tolerance::mappedLevel)
+        << "minified: as sharp as any other texture";
     for (auto& [id, material] : m.frame.materials) material.uvScale = 1e6f;
     footprint(0.01f);
     EXPECT_NEAR(levelSeen(), 0, tolerance::mappedLevel) << "texels longer than the radius: the finest level";
@@ -296,7 +312,8 @@ TEST(NormalMap, MaterialsWithoutOneKeepTheirNormal) {
     for (const bool blur : {false, true}) {
         m.frame.options.blurNormals = blur;
         const auto shown = shadeMapped(m, {1}, &stats);
-        EXPECT_EQ(stats.features, uint32_t(PEL_FEATURE_AMBIENT | PEL_FEATURE_NORMAL_MAP | (blur ? PEL_FEATURE_BLUR_NORMALS : 0)));
+        EXPECT_EQ(stats.features, uint32_t(PEL_FEATURE_AMBIENT | PEL_FEATURE_NORMAL_MAP |
+                                           (blur ? PEL_FEATURE_BLUR_NORMALS : 0)));
         const auto blurred = reference::blurredNormals(surfaceOf(m.frame));
         size_t close = 0, of = 0;
         for (size_t i = 0; i < m.frame.pixels(); ++i) {
@@ -333,12 +350,14 @@ TEST(NormalMap, BadInput) {
         change(bad, levels, id);
         try {
             setFrame(device(), shader, bad.frame, tables());
-            shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, bad.frame.width, bad.frame.height));
+            shader.set(PEL_SLOT_RADIANCE,
+                       imageDesc(target, PEL_FORMAT_RGB32F, bad.frame.width, bad.frame.height));
             shader.setNormalMap(id, levels).commit();
             ADD_FAILURE() << "no error about " << word;
         } catch (const pellucid::Error& e) {
             EXPECT_EQ(e.code(), code) << e.what();
-            EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << "\"" << word << "\" in: " << e.what();
+            EXPECT_NE(std::string(e.what()).find(word), std::string::npos)
+                << "\"" << word << "\" in: " << e.what();
         }
     };
     using Levels = std::vector<PelImageDesc>;
@@ -346,9 +365,11 @@ TEST(NormalMap, BadInput) {
     refused(PEL_ERROR_INVALID_ARGUMENT, "4 x 4", [](Mapped&, Levels& l, uint32_t&) { l[1].width = 3; });
     refused(PEL_ERROR_INVALID_ARGUMENT, "another format",
             [](Mapped&, Levels& l, uint32_t&) { l[1].format = PEL_FORMAT_RGBA8_UNORM; });
-    refused(PEL_ERROR_INVALID_ARGUMENT, "R32F", [](Mapped&, Levels& l, uint32_t&) { l[0].format = PEL_FORMAT_R32F; });
+    refused(PEL_ERROR_INVALID_ARGUMENT, "R32F",
+            [](Mapped&, Levels& l, uint32_t&) { l[0].format = PEL_FORMAT_R32F; });
     refused(PEL_ERROR_INVALID_ARGUMENT, "17 levels", [](Mapped&, Levels& l, uint32_t&) { l.resize(17, l[0]); });
-    refused(PEL_ERROR_INVALID_ARGUMENT, "UV image", [](Mapped& b, Levels&, uint32_t&) { b.frame.slots[PEL_SLOT_UV] = {}; });
+    refused(PEL_ERROR_INVALID_ARGUMENT, "UV image",
+            [](Mapped& b, Levels&, uint32_t&) { b.frame.slots[PEL_SLOT_UV] = {}; });
     refused(PEL_ERROR_INVALID_ARGUMENT, "tangent image",
             [](Mapped& b, Levels&, uint32_t&) { b.frame.slots[PEL_SLOT_TANGENT] = {}; });
     refused(PEL_ERROR_INVALID_ARGUMENT, "uvScale",
@@ -371,7 +392,8 @@ TEST(NormalMap, ATexelThatIsNoNumberStaysWithThePixelsThatReadIt) {
         const bool mayRead = !std::isfinite(reference::length(mappedTruth(m, i))), bad = after[3 * i + 1] == -7;
         invalid += bad;
         EXPECT_TRUE(mayRead || !bad) << i;
-        for (size_t c = 0; c < 3; ++c) EXPECT_EQ(after[3 * i + c], !bad ? before[3 * i + c] : c == 1 ? -7 : 0) << i;
+        for (size_t c = 0; c < 3; ++c)
+            EXPECT_EQ(after[3 * i + c], !bad ? before[3 * i + c] : c == 1 ? -7 : 0) << i;
     }
     EXPECT_GT(invalid, 20u);
 }
@@ -391,7 +413,8 @@ TEST(NormalMap, BytesDecodeToTheSame) {
     setFrame(device(), shader, m.frame, tables());
     const Buffer map(device(), bytes), target(device(), m.frame.pixels() * 12);
     auto levels = descriptions(m, map);
-    for (PelImageDesc& level : levels) level.format = PEL_FORMAT_RGBA8_UNORM, level.byteOffset = level.byteOffset / 12 * 4;
+    for (PelImageDesc& level : levels)
+        level.format = PEL_FORMAT_RGBA8_UNORM, level.byteOffset = level.byteOffset / 12 * 4;
     shader.setNormalMap(1, levels).setNormalMap(2, levels);
     shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, m.frame.width, m.frame.height));
     shader.commit().execute();

@@ -23,14 +23,17 @@ Shaded shadeParts(const Frame& f) {
     Shader shader(device());
     setFrame(device(), shader, f, tables());
     const size_t bytes = f.pixels() * 12;
-    const Buffer targets[4] = {Buffer(device(), bytes), Buffer(device(), bytes), Buffer(device(), bytes), Buffer(device(), bytes)};
+    const Buffer targets[4] = {Buffer(device(), bytes), Buffer(device(), bytes), Buffer(device(), bytes),
+                               Buffer(device(), bytes)};
     const Buffer thickness(device(), std::vector<float>(f.pixels(), -1));
-    const PelImageSlot slots[4] = {PEL_SLOT_RADIANCE, PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER, PEL_SLOT_OUT_SPECULAR};
-    for (int i = 0; i < 4; ++i) shader.set(slots[i], imageDesc(targets[i], PEL_FORMAT_RGB32F, f.width, f.height));
+    const PelImageSlot slots[4] = {PEL_SLOT_RADIANCE, PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER,
+                                   PEL_SLOT_OUT_SPECULAR};
+    for (int i = 0; i < 4; ++i)
+        shader.set(slots[i], imageDesc(targets[i], PEL_FORMAT_RGB32F, f.width, f.height));
     shader.set(PEL_SLOT_OUT_THICKNESS, imageDesc(thickness, PEL_FORMAT_R32F, f.width, f.height));
     shader.commit().execute();
-    return {targets[0].readAll<float>(), targets[1].readAll<float>(), targets[2].readAll<float>(), targets[3].readAll<float>(),
-            thickness.readAll<float>(), shader.stats()};
+    return {targets[0].readAll<float>(), targets[1].readAll<float>(), targets[2].readAll<float>(),
+            targets[3].readAll<float>(), thickness.readAll<float>(),  shader.stats()};
 }
 
 Frame partsFrame(uint32_t seed) {
@@ -62,7 +65,8 @@ TEST(ShadeOutputs, EachMatchesTheOracleAndRadianceStaysWhatItIs) {
             const reference::Shaded truth = shade_test::truth(f, tables(), i);
             const Rgb diffuse = truth.scattered + truth.ambient;
             const PelMaterial& m = f.materials.at(uint32_t(f.slots[PEL_SLOT_MATERIAL].at(i)));
-            EXPECT_NEAR(shaded.thickness[i], truthLight(f, m, f.lights[0], i).thickness, tolerance::shadeThickness) << i;
+            EXPECT_NEAR(shaded.thickness[i], truthLight(f, m, f.lights[0], i).thickness, tolerance::shadeThickness)
+                << i;
             for (int c = 0; c < 3; ++c) {
                 EXPECT_NEAR(shaded.diffuse[3 * i + c], diffuse[c], tolerance::shadeSum);
                 EXPECT_NEAR(shaded.deepScatter[3 * i + c], truth.deepScatter[c], tolerance::shadeTerm);
@@ -91,7 +95,8 @@ TEST(ShadeOutputs, OneAloneInHalf) {
     const Shaded all = shadeParts(f);
     Shader shader(device());
     setFrame(device(), shader, f, tables());
-    const Buffer radiance(device(), f.pixels() * 12), specular(device(), f.pixels() * 8), thickness(device(), f.pixels() * 2);
+    const Buffer radiance(device(), f.pixels() * 12), specular(device(), f.pixels() * 8),
+        thickness(device(), f.pixels() * 2);
     shader.set(PEL_SLOT_RADIANCE, imageDesc(radiance, PEL_FORMAT_RGB32F, f.width, f.height));
     shader.set(PEL_SLOT_OUT_SPECULAR, imageDesc(specular, PEL_FORMAT_RGBA16F, f.width, f.height));
     shader.set(PEL_SLOT_OUT_THICKNESS, imageDesc(thickness, PEL_FORMAT_R16F, f.width, f.height));
@@ -105,7 +110,8 @@ TEST(ShadeOutputs, OneAloneInHalf) {
     for (size_t i = 0; i < f.pixels(); ++i) {
         const bool background = f.slots[PEL_SLOT_MATERIAL].values[i] == 0;
         EXPECT_NEAR(toFloat(s[4 * i]), all.specular[3 * i], std::abs(all.specular[3 * i]) * 0x1p-11 + 1e-7);
-        EXPECT_NEAR(toFloat(t[i]), background ? 0 : all.thickness[i], std::abs(all.thickness[i]) * 0x1p-11 + 1e-7);
+        EXPECT_NEAR(toFloat(t[i]), background ? 0 : all.thickness[i],
+                    std::abs(all.thickness[i]) * 0x1p-11 + 1e-7);
     }
 }
 
@@ -133,10 +139,14 @@ TEST(ShadeOutputs, BadPixelsAndBadInput) {
     shader.set(PEL_SLOT_OUT_THICKNESS, shifted);
     EXPECT_THROW(shader.commit(), pellucid::Error) << "outputs over each other";
     EXPECT_NE(std::string(pelGetErrorMessage()).find("overlap"), std::string::npos) << pelGetErrorMessage();
-    EXPECT_THROW(shader.set(PEL_SLOT_OUT_THICKNESS, imageDesc(two, PEL_FORMAT_R8_UNORM, f.width, f.height)), pellucid::Error);
-    EXPECT_THROW(shader.set(PEL_SLOT_OUT_DIFFUSE, imageDesc(two, PEL_FORMAT_RG32F, f.width, f.height)), pellucid::Error);
-    for (const auto& [field, value] : {std::pair{&PelMaterial::roughness2, -1.0f}, {&PelMaterial::lobeMix, 1.5f},
-                                       {&PelMaterial::deepScatterAmbient, std::numeric_limits<float>::infinity()}}) {
+    EXPECT_THROW(shader.set(PEL_SLOT_OUT_THICKNESS, imageDesc(two, PEL_FORMAT_R8_UNORM, f.width, f.height)),
+                 pellucid::Error);
+    EXPECT_THROW(shader.set(PEL_SLOT_OUT_DIFFUSE, imageDesc(two, PEL_FORMAT_RG32F, f.width, f.height)),
+                 pellucid::Error);
+    for (const auto& [field, value] :
+         {std::pair{&PelMaterial::roughness2, -1.0f},
+          {&PelMaterial::lobeMix, 1.5f},
+          {&PelMaterial::deepScatterAmbient, std::numeric_limits<float>::infinity()}}) {
         PelMaterial m = fixture::faceworksMaterial();
         m.*field = value;
         EXPECT_THROW(shader.setMaterial(1, m), pellucid::Error);

@@ -45,7 +45,8 @@ class ShadePeer : public testing::Test {
         for (size_t i = 0; i < 512 * 512; ++i)
             for (int c = 0; c < 3; ++c) {
                 const double value = bytes.data[4 * i + c] / 255.0, u = (double(i % 512) + 0.5) / 256 - 1;
-                texels.push_back(float(kind == PEL_LUT_CURVATURE ? value / 2 - 0.25 + std::max(u, 0.0) : linear(value)));
+                texels.push_back(
+                    float(kind == PEL_LUT_CURVATURE ? value / 2 - 0.25 + std::max(u, 0.0) : linear(value)));
             }
         return pellucid::Lut(device(), info, texels);
     }
@@ -55,7 +56,8 @@ class ShadePeer : public testing::Test {
     }
     Vec3 turned(size_t i, Vec3 v) const {
         const Vec3 z = reference::normalized(in(i, 9));
-        const Vec3 x = reference::normalized(reference::cross(std::abs(z.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, z));
+        const Vec3 x =
+            reference::normalized(reference::cross(std::abs(z.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, z));
         return {reference::dot(v, x), reference::dot(v, reference::cross(z, x)), reference::dot(v, z)};
     }
     template <class F>
@@ -88,7 +90,8 @@ class ShadePeer : public testing::Test {
         double largest = 0;
         for (size_t i = 0; i < frame_.pixels(); ++i)
             for (int c = 0; c < count; ++c)
-                largest = std::max(largest, std::abs(double(ours[size_t(stride) * i + size_t(c)]) - out_.row(i)[first + c]));
+                largest = std::max(
+                    largest, std::abs(double(ours[size_t(stride) * i + size_t(c)]) - out_.row(i)[first + c]));
         return largest;
     }
     void normals() {
@@ -125,11 +128,13 @@ TEST_F(ShadePeer, AmbientNormals) {
     double largest = 0;
     for (int axis = 0; axis < 3; ++axis) {  // E = 1 + n[axis] / 2, where each channel has a normal of its own
         frame_.ambient = pelAmbientDefaults();
-        for (int c = 0; c < 3; ++c) frame_.ambient.constant[c] = 1, frame_.ambient.sh[basis[axis]][c] = float(0.5 / band);
+        for (int c = 0; c < 3; ++c)
+            frame_.ambient.constant[c] = 1, frame_.ambient.sh[basis[axis]][c] = float(0.5 / band);
         const auto shown = run();
         for (size_t i = 0; i < frame_.pixels(); ++i)
             for (int c = 0; c < 3; ++c)
-                largest = std::max(largest, std::abs(2.0 * (shown[3 * i + size_t(c)] - 1.0) - out_.row(i)[7 + 3 * c + axis]));
+                largest = std::max(
+                    largest, std::abs(2.0 * (shown[3 * i + size_t(c)] - 1.0) - out_.row(i)[7 + 3 * c + axis]));
     }
     EXPECT_LE(largest, tolerance::peerPass);
 }
@@ -171,7 +176,8 @@ TEST_F(ShadePeer, ThicknessOnAverage) {
                 apart += std::pow(ours[i] - out_.row(i)[column], 2);
             }
             EXPECT_NEAR(sum / theirs, 1, tolerance::peerTapsMean) << taps;
-            EXPECT_LT(std::sqrt(apart / double(frame_.pixels())), tolerance::peerTapsRms * theirs / double(frame_.pixels()));
+            EXPECT_LT(std::sqrt(apart / double(frame_.pixels())),
+                      tolerance::peerTapsRms * theirs / double(frame_.pixels()));
             std::printf("%d taps, %s: mean %.5f of the peer's, RMS difference %.4f of it\n", taps,
                         perspective ? "perspective" : "parallel", sum / theirs,
                         std::sqrt(apart / double(frame_.pixels())) / (theirs / double(frame_.pixels())));

@@ -11,8 +11,8 @@ using pellucid::Shader;
 
 namespace {
 
-constexpr PelImageSlot outputs[] = {PEL_SLOT_RADIANCE, PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER, PEL_SLOT_OUT_SPECULAR,
-                                    PEL_SLOT_OUT_THICKNESS};
+constexpr PelImageSlot outputs[] = {PEL_SLOT_RADIANCE, PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER,
+                                    PEL_SLOT_OUT_SPECULAR, PEL_SLOT_OUT_THICKNESS};
 
 // What a scene has beside what all have; drawn at random, but so that two scenes have each.
 struct Choices {
@@ -35,7 +35,8 @@ Scene randomScene(uint32_t seed, const Choices& choices) {
     f.options.invalidColor[2] = 9;
     const auto fill = [&](Image& image, uint32_t components, float least, float most) {
         image.components = components;
-        for (size_t i = 0; i < f.pixels() * components; ++i) image.values.push_back(random.uniform(least, most));
+        for (size_t i = 0; i < f.pixels() * components; ++i)
+            image.values.push_back(random.uniform(least, most));
     };
     fill(f.slots[PEL_SLOT_CURVATURE], 1, -0.1f, 1);
     fill(f.slots[PEL_SLOT_ROUGHNESS], 1, 0.7f, 1.4f);
@@ -79,7 +80,8 @@ Scene randomScene(uint32_t seed, const Choices& choices) {
     return s;
 }
 
-std::vector<std::vector<unsigned char>> run(const Scene& s, const PelShaderOptions& options, PelShaderStats* stats) {
+std::vector<std::vector<unsigned char>> run(const Scene& s, const PelShaderOptions& options,
+                                            PelShaderStats* stats) {
     const Frame& f = s.frame;
     Shader shader(device());
     setFrame(device(), shader, f, tables());
@@ -88,7 +90,8 @@ std::vector<std::vector<unsigned char>> run(const Scene& s, const PelShaderOptio
     if (s.choices.normalMap) {
         shader.setNormalMap(2, {imageDesc(Buffer(device(), s.texels), PEL_FORMAT_RGB32F, 64, 64)});
         shader.set(PEL_SLOT_UV, imageDesc(Buffer(device(), s.uv), PEL_FORMAT_RG32F, f.width, f.height));
-        shader.set(PEL_SLOT_TANGENT, imageDesc(Buffer(device(), s.tangent), PEL_FORMAT_RGB32F, f.width, f.height));
+        shader.set(PEL_SLOT_TANGENT,
+                   imageDesc(Buffer(device(), s.tangent), PEL_FORMAT_RGB32F, f.width, f.height));
     }
     std::vector<Buffer> targets;
     for (const PelImageSlot slot : outputs) {
@@ -124,8 +127,9 @@ TEST_P(ShadeSkipping, ChangesNoBit) {
         }
         options = s.frame.options;
         if (stats.features & (PEL_FEATURE_FILTER_SHADOW | PEL_FEATURE_NORMAL_MAP) && !s.choices.blur) {
-            options.scratchBudget = uint64_t(s.frame.width) * (12 * s.choices.normalMap + 8 * s.choices.filter) * 8 +
-                                    2 * 400 * 12 * s.choices.normalMap;
+            options.scratchBudget =
+                uint64_t(s.frame.width) * (12 * s.choices.normalMap + 8 * s.choices.filter) * 8 +
+                2 * 400 * 12 * s.choices.normalMap;
             PelShaderStats bands = stats;
             EXPECT_EQ(run(s, options, &bands), right) << "in bands";
             EXPECT_EQ(bands.bands, sized(7u, 2u));

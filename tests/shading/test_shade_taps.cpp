@@ -39,7 +39,8 @@ TEST(ShadeTaps, TurnedTheyMatchTheOracle) {
         for (size_t i = 0; i < f.pixels(); ++i) {
             const auto found = f.materials.find(uint32_t(f.slots[PEL_SLOT_MATERIAL].at(i)));
             if (found == f.materials.end()) continue;
-            EXPECT_NEAR(thickness[i], truthLight(f, found->second, f.lights[0], i).thickness, tolerance::shadeThickness) << i;
+            EXPECT_NEAR(thickness[i], truthLight(f, found->second, f.lights[0], i).thickness, tolerance::shadeThickness)
+                << i;
             ++compared;
         }
         EXPECT_GT(compared, f.pixels() / 2);
@@ -50,8 +51,10 @@ TEST(ShadeTaps, TurningDependsOnThePlaceAlone) {
     // One and the same pixel everywhere: what differs is the angle.
     Frame f = tapFrame(23, 64, 16);
     f.slots[PEL_SLOT_MATERIAL].values.assign(f.pixels(), 1.0f);
-    for (int slot : {PEL_SLOT_POSITION, PEL_SLOT_NORMAL_GEOMETRIC, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_BLURRED})
-        for (size_t i = 0; i < f.slots[slot].values.size(); ++i) f.slots[slot].values[i] = f.slots[slot].values[i % 3];
+    for (int slot :
+         {PEL_SLOT_POSITION, PEL_SLOT_NORMAL_GEOMETRIC, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_BLURRED})
+        for (size_t i = 0; i < f.slots[slot].values.size(); ++i)
+            f.slots[slot].values[i] = f.slots[slot].values[i % 3];
     for (size_t i = 0; i < f.pixels() * 3; ++i) f.slots[PEL_SLOT_POSITION].values[i] = 0;
     const auto turned = measure(f);
     EXPECT_EQ(turned, measure(f)) << "the same bits each time";

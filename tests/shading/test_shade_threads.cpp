@@ -14,7 +14,8 @@ using pellucid::Shader;
 namespace {
 
 // A shader of its own, executed again and again; every frame must be the same to the bit.
-void shadeOften(const Device& device, const Tables& tables, const Frame& f, const std::vector<float>& right, int* wrong) {
+void shadeOften(const Device& device, const Tables& tables, const Frame& f, const std::vector<float>& right,
+                int* wrong) {
     for (int i = 0; i < 3; ++i) {
         Shader shader(device);
         setFrame(device, shader, f, tables);
@@ -49,12 +50,15 @@ TEST(ShadeThreads, ShadersOnOneDeviceAndOnTwo) {
             for (size_t i = 0; i < 4; ++i)
                 threads.emplace_back([&, i] {
                     const bool other = two && i % 2;
-                    shadeOften(other ? second : first, other ? secondTables : firstTables, frames[i], right[i], &wrong[i]);
+                    shadeOften(other ? second : first, other ? secondTables : firstTables, frames[i],
+                               right[i], &wrong[i]);
                 });
         }
-        for (int i = 0; i < 4; ++i) EXPECT_EQ(wrong[i], 0) << "thread " << i << (two ? ", two devices" : ", one device");
+        for (int i = 0; i < 4; ++i)
+            EXPECT_EQ(wrong[i], 0) << "thread " << i << (two ? ", two devices" : ", one device");
         pellucid::check(pelDeviceGetStats(first.get(), &after));
-        EXPECT_EQ(after.programsBuilt - before.programsBuilt, two ? 0u : 1u) << "whoever comes second waits for the first";
+        EXPECT_EQ(after.programsBuilt - before.programsBuilt, two ? 0u : 1u)
+            << "whoever comes second waits for the first";
     }
 }
 

@@ -24,8 +24,8 @@ extern "C" {
 cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
                       void (*notify)(cl_program, void*), void* user) {
     if (pretend) return CL_SUCCESS;
-    return reinterpret_cast<decltype(clBuildProgram)*>(dlsym(RTLD_NEXT, "clBuildProgram"))(program, count, devices, options,
-                                                                                        notify, user);
+    return reinterpret_cast<decltype(clBuildProgram)*>(dlsym(RTLD_NEXT, "clBuildProgram"))(
+        program, count, devices, options, notify, user);
 }
 #pragma GCC visibility pop
 }
@@ -65,7 +65,8 @@ TEST(ShadeVariants, FewAreReached) {
         for (int number = 0; number < 4; ++number) {
             int rest = choice;
             const auto next = [&](int count) { return std::exchange(rest, rest / count) % count; };
-            const int curvature = next(2), shadow = next(3), ambient = next(2), deep = next(4), specular = next(3), positional = next(2);
+            const int curvature = next(2), shadow = next(3), ambient = next(2), deep = next(4),
+                      specular = next(3), positional = next(2);
             Frame f = small(1 + uint32_t(number));
             f.curvatureLut = curvature;
             f.shadowLut = shadow == 2;
@@ -122,13 +123,16 @@ TEST(ShadeVariants, EqualMeaningIsOneProgram) {
     add([](Frame& f) { f.materials[200] = f.materials[1]; });
     add([](Frame& f) { f.materials[1].diffusionRadius = 1; });
     add([](Frame& f) { f.materials[1].thicknessTaps = 0; });
-    add([](Frame& f) { f.materials[1].specularModel = PEL_SPECULAR_GGX; });     // of a specular of 0
-    add([](Frame& f) { f.materials[1].deepScatterAmbient = 1; });               // of a black colour
+    add([](Frame& f) { f.materials[1].specularModel = PEL_SPECULAR_GGX; });  // of a specular of 0
+    add([](Frame& f) { f.materials[1].deepScatterAmbient = 1; });            // of a black colour
     add([](Frame& f) { f.lights[0].params.color[1] = 7; });
     add([](Frame& f) { f.lights.push_back(f.lights[0]); });
-    add([](Frame& f) { f.lights[0].map = {}; });                                // no taps read it
-    add([](Frame& f) { f.lights[0].params.shadowProjection = PEL_SHADOW_PERSPECTIVE, f.lights[0].params.shadowDepthA = 1; });
-    for (const PelImageSlot unread : {PEL_SLOT_POSITION, PEL_SLOT_ROUGHNESS, PEL_SLOT_SPECULAR, PEL_SLOT_NORMAL_GEOMETRIC})
+    add([](Frame& f) { f.lights[0].map = {}; });  // no taps read it
+    add([](Frame& f) {
+        f.lights[0].params.shadowProjection = PEL_SHADOW_PERSPECTIVE, f.lights[0].params.shadowDepthA = 1;
+    });
+    for (const PelImageSlot unread :
+         {PEL_SLOT_POSITION, PEL_SLOT_ROUGHNESS, PEL_SLOT_SPECULAR, PEL_SLOT_NORMAL_GEOMETRIC})
         add([=](Frame& f) { f.slots[unread] = {}; });
     add([](Frame& f) { f.slots[PEL_SLOT_THICKNESS] = f.slots[PEL_SLOT_CURVATURE]; });
     add([](Frame& f) { f.slots[PEL_SLOT_DEPTH] = f.slots[PEL_SLOT_CURVATURE]; });
@@ -192,7 +196,8 @@ std::vector<float> shadeMixed(const Frame& f, PelShaderStats& stats) {
 TEST(ShadeVariants, TilesThatNeedLessGetTheSameBits) {
     for (uint32_t seed : {1u, 2u}) {
         Frame f = mixedFrame(seed);
-        for (Light& light : f.lights) light.params.type = PelLightType(seed == 1 ? PEL_LIGHT_DIRECTIONAL : PEL_LIGHT_SPOT);
+        for (Light& light : f.lights)
+            light.params.type = PelLightType(seed == 1 ? PEL_LIGHT_DIRECTIONAL : PEL_LIGHT_SPOT);
         PelShaderStats lists = pelShaderStatsDefaults(), one = lists, none = lists, all = lists;
         const auto right = shadeMixed(f, lists);
         EXPECT_EQ(lists.variants, 3u);
@@ -229,9 +234,11 @@ TEST(ShadeVariants, InputsThatAMaterialDoesNotReadMayBeNoNumbers) {
     f.slots[PEL_SLOT_MATERIAL].values[at] = 2;  // amid skin
     PelShaderStats stats = pelShaderStatsDefaults();
     const auto right = shadeMixed((f.materials[7] = f.materials[2], f), stats);
-    for (const PelImageSlot unread : {PEL_SLOT_POSITION, PEL_SLOT_CURVATURE, PEL_SLOT_ROUGHNESS, PEL_SLOT_SPECULAR}) {
+    for (const PelImageSlot unread :
+         {PEL_SLOT_POSITION, PEL_SLOT_CURVATURE, PEL_SLOT_ROUGHNESS, PEL_SLOT_SPECULAR}) {
         Image& image = f.slots[unread];
-        for (uint32_t c = 0; c < image.components; ++c) image.values[at * image.components + c] = std::nanf("");
+        for (uint32_t c = 0; c < image.components; ++c)
+            image.values[at * image.components + c] = std::nanf("");
     }
     EXPECT_EQ(shadeMixed(f, stats), right);
 }
@@ -247,8 +254,8 @@ TEST(ShadeVariants, AFrameWithoutMaterialsCostsOneClassification) {
     for (float v : shadeMixed(f, stats)) ASSERT_EQ(v, 0);
     EXPECT_EQ(stats.launches, 2u) << "the classification, and the kernel that finds its list empty";
     EXPECT_EQ(stats.tilesShaded, 0u);
-    for (const uint64_t touched : {stats.pixelsShaded, stats.pixelsShadowLut, stats.pixelsThickness, stats.pixelsSpecular,
-                                   stats.pixelsInvalid, stats.pixelsWideShadow})
+    for (const uint64_t touched : {stats.pixelsShaded, stats.pixelsShadowLut, stats.pixelsThickness,
+                                   stats.pixelsSpecular, stats.pixelsInvalid, stats.pixelsWideShadow})
         EXPECT_EQ(touched, 0u);
 }
 

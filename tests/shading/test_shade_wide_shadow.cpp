@@ -29,9 +29,9 @@ double worstShadow(const Frame& f, const MapLight& from, const std::vector<float
     for (size_t i = 0; i < f.pixels(); ++i) {
         const auto found = f.materials.find(uint32_t(f.slots[PEL_SLOT_MATERIAL].at(i)));
         if (found == f.materials.end()) continue;
-        const double truth =
-            reference::wideShadow(from.map, from.view, f.slots[PEL_SLOT_POSITION].vec(i),
-                                  f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), params(from.light.params, found->second.shadowFilterWidth));
+        const double truth = reference::wideShadow(from.map, from.view, f.slots[PEL_SLOT_POSITION].vec(i),
+                                                   f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i),
+                                                   params(from.light.params, found->second.shadowFilterWidth));
         worst = std::max(worst, std::abs(truth - shown[3 * i]));
     }
     return worst;
@@ -41,7 +41,8 @@ TEST(WideShadow, MatchesTheOracle) {
     for (const bool perspective : {false, true})
         for (const bool reversed : {false, true})
             for (const uint32_t size : {61u, 300u}) {
-                const MapLight from = mapLight(size, perspective, reversed, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, size);
+                const MapLight from =
+                    mapLight(size, perspective, reversed, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, size);
                 const Frame f = litRelief(from);
                 PelShaderStats stats = pelShaderStatsDefaults();
                 const auto shown = shade(device(), f, tables(), &stats);
@@ -50,7 +51,8 @@ TEST(WideShadow, MatchesTheOracle) {
                 EXPECT_LE(worstShadow(f, from, shown), tolerance::wideShadow)
                     << "perspective " << perspective << ", reversed " << reversed << ", " << size << " texels";
                 size_t penumbra = 0;
-                for (size_t i = 0; i < f.pixels(); ++i) penumbra += shown[3 * i] > 0.1f && shown[3 * i] < 0.9f;
+                for (size_t i = 0; i < f.pixels(); ++i)
+                    penumbra += shown[3 * i] > 0.1f && shown[3 * i] < 0.9f;
                 EXPECT_GT(penumbra, f.pixels() / 20) << "there is something to see";
             }
 }
@@ -113,7 +115,8 @@ TEST(WideShadow, SkippingAndRunsChangeNoBit) {
         PelLight& l = f.lights[0].params;
         if (seed % 2) {  // a spot that misses part of the frame, and a second light
             l.type = PEL_LIGHT_SPOT;
-            for (int c = 0; c < 3; ++c) l.position[c] = float(from.view.origin[c]), l.spotDirection[c] = -l.toLight[c];
+            for (int c = 0; c < 3; ++c)
+                l.position[c] = float(from.view.origin[c]), l.spotDirection[c] = -l.toLight[c];
             l.spotCosInner = 0.998f, l.spotCosOuter = 0.995f;
             for (float& c : l.color) c = 20000;
             f.lights.push_back(mapLight(seed + 9, false, false, {-0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61).light);
@@ -163,7 +166,8 @@ TEST(WideShadow, BadTexelsAndPixels) {
     for (size_t i = 0; i < from.map.depth.size(); i += 5)
         from.light.map.values[i] = i % 2 ? nan : std::numeric_limits<float>::infinity(), from.map.depth[i] = NAN;
     Frame f = litRelief(from);
-    EXPECT_LE(worstShadow(f, from, shade(device(), f, tables())), tolerance::wideShadow) << "such texels throw no shadow";
+    EXPECT_LE(worstShadow(f, from, shade(device(), f, tables())), tolerance::wideShadow)
+        << "such texels throw no shadow";
     const auto before = shade(device(), f, tables());
     f.options.invalidColor[0] = -7;
     f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * 1700] = nan;
@@ -188,7 +192,8 @@ TEST(WideShadow, WhatIsRefused) {
             ADD_FAILURE() << "no error about " << word;
         } catch (const pellucid::Error& e) {
             EXPECT_EQ(e.code(), code) << e.what();
-            EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << "\"" << word << "\" in: " << e.what();
+            EXPECT_NE(std::string(e.what()).find(word), std::string::npos)
+                << "\"" << word << "\" in: " << e.what();
         }
     };
     const auto invalid = PEL_ERROR_INVALID_ARGUMENT;
@@ -196,7 +201,9 @@ TEST(WideShadow, WhatIsRefused) {
     refused(invalid, "shadowSoftness", [](Frame& f) { f.lights[0].params.shadowSoftness = 0; });
     refused(invalid, "shadowBias", [](Frame& f) { f.lights[0].params.shadowBias = nan; });
     refused(invalid, "position image", [](Frame& f) { f.slots[PEL_SLOT_POSITION] = {}; });
-    refused(invalid, "singular", [](Frame& f) { std::copy_n(f.lights[0].params.worldToShadow, 4, f.lights[0].params.worldToShadow + 4); });
+    refused(invalid, "singular", [](Frame& f) {
+        std::copy_n(f.lights[0].params.worldToShadow, 4, f.lights[0].params.worldToShadow + 4);
+    });
     refused(invalid, "singular", [](Frame& f) { std::fill_n(f.lights[0].params.worldToShadow, 4, 0.0f); });
     // Beside a filtered shadow, images of the host have its format.
     pellucid::Shader shader(device());
@@ -218,7 +225,8 @@ TEST(WideShadow, OddFramesAndMaps) {
         Frame f = reliefFrame(1, width, height, 0.4f);
         f.lights = {from.light};
         showWideShadow(f);
-        EXPECT_LE(worstShadow(f, from, shade(device(), f, tables())), tolerance::wideShadow) << width << " x " << height;
+        EXPECT_LE(worstShadow(f, from, shade(device(), f, tables())), tolerance::wideShadow)
+            << width << " x " << height;
     }
 }
 

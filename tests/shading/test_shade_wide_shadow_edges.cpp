@@ -46,8 +46,7 @@ Seen compare(Frame f, const MapLight& from, const std::string& where) {
     f.options.disableSkipping = 1;
     EXPECT_EQ(shown, shade(device(), f, tables())) << where << ": without bounds";
     // Of a hard shadow float depths are a larger part.
-    EXPECT_LE(seen.worst, f.lights[0].params.shadowSoftness < 0.1f ? tolerance::wideShadowAnywhere
-                                                                   : tolerance::wideShadow)
+    EXPECT_LE(seen.worst, f.lights[0].params.shadowSoftness < 0.1f ? tolerance::wideShadowAnywhere : tolerance::wideShadow)
         << where;
     return seen;
 }
@@ -71,8 +70,7 @@ TEST(WideShadowEdges, SoftnessFromHardToWiderThanTheFilter) {
                 Frame f = sceneUnder(from, 1);
                 for (auto& [id, material] : f.materials) material.shadowFilterWidth *= 0.4f;
                 const std::string where = "softness " + std::to_string(softness) +
-                                          (perspective ? ", perspective" : "") +
-                                          (reversed ? ", reversed" : "");
+                                          (perspective ? ", perspective" : "") + (reversed ? ", reversed" : "");
                 const Seen seen = compare(f, from, where);
                 EXPECT_LT(seen.read, seen.filtered) << where << ": bounds decide some";
                 EXPECT_GT(seen.between, 100u) << where;
@@ -92,8 +90,7 @@ TEST(WideShadowEdges, UnderARoofThatComesDown) {
                 Frame f = sceneUnder(from, 1);
                 for (auto& [id, material] : f.materials) material.shadowFilterWidth *= 0.4f;
                 const std::string where = "softness " + std::to_string(softness) +
-                                          (perspective ? ", perspective" : "") +
-                                          (reversed ? ", reversed" : "");
+                                          (perspective ? ", perspective" : "") + (reversed ? ", reversed" : "");
                 const Seen seen = compare(f, from, where);
                 EXPECT_LT(seen.read, seen.filtered) << where << ": bounds decide some";
                 EXPECT_GT(seen.between, 20u) << where;
@@ -115,8 +112,7 @@ TEST(WideShadowEdges, OutsideOfTheMapEverythingIsLit) {
                 from.light.params.shadowFilterTexels = 256;
                 const Frame f = sceneUnder(from, 2);
                 const std::string where = std::to_string(size) + " texels" +
-                                          (perspective ? ", perspective" : "") +
-                                          (reversed ? ", reversed" : "");
+                                          (perspective ? ", perspective" : "") + (reversed ? ", reversed" : "");
                 const Seen seen = compare(f, from, where);
                 EXPECT_GT(seen.between, 200u) << where;
                 if (size > 2) {
@@ -146,8 +142,7 @@ TEST(WideShadowEdges, TexelsAreReadAcrossTheEdgeAlone) {
             ++skin;
             const Vec3 offset = f.slots[PEL_SLOT_POSITION].vec(i) - from.view.origin;
             const double x = reference::dot(from.view.right, offset) / from.view.extent * 128 + 63.5;
-            const double radius =
-                std::max(0.5 * f.materials[id].shadowFilterWidth, 2.0);  // texels, at least two
+            const double radius = std::max(0.5 * f.materials[id].shadowFilterWidth, 2.0);  // texels, at least two
             across += x - radius <= 63 && x + radius >= 64;
             doubtful += std::abs(x - radius - 63) < 1e-3 || std::abs(x + radius - 64) < 1e-3;
         }

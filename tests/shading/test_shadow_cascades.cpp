@@ -21,7 +21,8 @@ Worst worstCascade(const Frame& f, const CascadeLight& from, const Seen& seen, s
         const Vec3 p = f.slots[PEL_SLOT_POSITION].vec(i), n = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i);
         const auto choose = [&](Vec3 at, double radius, bool& sure) {
             const int chosen = reference::cascadeOf(matrices, at, radius);
-            for (const double k : {-1e-4, 1e-4}) sure &= reference::cascadeOf(matrices, at, radius + k) == chosen;
+            for (const double k : {-1e-4, 1e-4})
+                sure &= reference::cascadeOf(matrices, at, radius + k) == chosen;
             return chosen;
         };
         bool sure = true;
@@ -32,13 +33,14 @@ Worst worstCascade(const Frame& f, const CascadeLight& from, const Seen& seen, s
         if (!sure) return false;
         if (k >= 0)
             wide = reference::wideShadow(from.maps[size_t(k)].map, from.maps[size_t(k)].view, p, n,
-                                         {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope,
-                                          int(l.shadowFilterTexels)});
+                                         {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness,
+                                          l.shadowConeSlope, int(l.shadowFilterTexels)});
         if (t >= 0)
-            thickness = reference::thickness(from.maps[size_t(t)].map,
-                                             reference::shadowCoordinates(matrices[size_t(t)], inside, {0, 0, 0}, 0),
-                                             tapsOf(f, m, i), radius * reference::uvPerLength(matrices[size_t(t)], 0),
-                                             from.maps[size_t(t)].view.decoding, reference::MapFilter::bilinear);
+            thickness =
+                reference::thickness(from.maps[size_t(t)].map,
+                                     reference::shadowCoordinates(matrices[size_t(t)], inside, {0, 0, 0}, 0),
+                                     tapsOf(f, m, i), radius * reference::uvPerLength(matrices[size_t(t)], 0),
+                                     from.maps[size_t(t)].view.decoding, reference::MapFilter::bilinear);
         if (taken) taken->push_back(k);
         return true;
     });
@@ -123,7 +125,8 @@ TEST(ShadowCascades, WhatIsRefused) {
             ADD_FAILURE() << "no error about " << word;
         } catch (const pellucid::Error& e) {
             EXPECT_EQ(e.code(), code) << e.what();
-            EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << "\"" << word << "\" in: " << e.what();
+            EXPECT_NE(std::string(e.what()).find(word), std::string::npos)
+                << "\"" << word << "\" in: " << e.what();
         }
     };
     const auto invalid = PEL_ERROR_INVALID_ARGUMENT;
@@ -131,8 +134,10 @@ TEST(ShadowCascades, WhatIsRefused) {
     refused(invalid, "cascade 2 is not set", [](FormLight& l) { l.params.shadowCascades = 3; });
     refused(invalid, "directional", [](FormLight& l) { l.params.type = PEL_LIGHT_SPOT; });
     refused(invalid, "directional", [](FormLight& l) { l.params.shadowProjection = PEL_SHADOW_PERSPECTIVE; });
-    refused(invalid, "cascadeToShadow[0] is singular", [](FormLight& l) { std::fill_n(l.params.cascadeToShadow[0], 4, 0.0f); });
-    refused(invalid, "worldToShadow is singular", [](FormLight& l) { std::fill_n(l.params.worldToShadow, 16, 0.0f); });
+    refused(invalid, "cascadeToShadow[0] is singular",
+            [](FormLight& l) { std::fill_n(l.params.cascadeToShadow[0], 4, 0.0f); });
+    refused(invalid, "worldToShadow is singular",
+            [](FormLight& l) { std::fill_n(l.params.worldToShadow, 16, 0.0f); });
     refused(invalid, "cascadeToShadow[0]", [](FormLight& l) { l.params.cascadeToShadow[0][3] = nan; });
     refused(invalid, "cascadeDepthRange[0] is 0", [](FormLight& l) { l.params.cascadeDepthRange[0] = 0; });
     refused(invalid, "one sign", [](FormLight& l) { l.params.cascadeDepthRange[0] *= -1; });

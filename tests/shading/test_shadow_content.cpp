@@ -17,19 +17,19 @@ Worst worstContent(const Frame& f, const ContentLight& from, const Seen& seen) {
     const auto matrix = matrixOf(l.worldToShadow);
     return worstOf(f, seen, [&](size_t i, const PelMaterial& m, double& wide, double& thickness) {
         const Vec3 p = f.slots[PEL_SLOT_POSITION].vec(i), n = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i);
-        const reference::WideFilterParams filter{m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope,
-                                                 int(l.shadowFilterTexels)};
+        const reference::WideFilterParams filter{m.shadowFilterWidth, l.shadowBias, l.shadowSoftness,
+                                                 l.shadowConeSlope, int(l.shadowFilterTexels)};
         const Vec3 uvz = reference::shadowCoordinates(matrix, p, n, m.deepScatterNormalOffset);
         const auto taps = diskTaps(m.thicknessTaps);
         if (l.shadowContent == PEL_SHADOW_CONTENT_MOMENTS) {
             wide = reference::momentShadow(from.first, from.second, from.from.view, p, n, filter,
                                            {l.shadowMinDeviation, l.shadowBleeding});
-            thickness = reference::thickness(from.first, uvz, taps, m.thicknessFilterRadius, from.from.view.decoding,
-                                             reference::MapFilter::bilinear);
+            thickness = reference::thickness(from.first, uvz, taps, m.thicknessFilterRadius,
+                                             from.from.view.decoding, reference::MapFilter::bilinear);
         } else {
             wide = reference::exponentialShadow(from.first, l.shadowExponent, from.from.view, p, n, filter);
-            thickness = reference::exponentialThickness(from.first, l.shadowExponent, uvz, taps, m.thicknessFilterRadius,
-                                                        from.from.view.decoding);
+            thickness = reference::exponentialThickness(from.first, l.shadowExponent, uvz, taps,
+                                                        m.thicknessFilterRadius, from.from.view.decoding);
         }
         return true;
     });
@@ -42,10 +42,12 @@ TEST(ShadowContent, MatchesTheOracle) {
             for (const bool reversed : {false, true}) {
                 const ContentLight from = contentLight(content, perspective, reversed, 131);
                 const Seen seen = shadeForms(f, {from.light});
-                EXPECT_TRUE(seen.stats.features & (content == PEL_SHADOW_CONTENT_MOMENTS ? PEL_FEATURE_SHADOW_MOMENTS
-                                                                                         : PEL_FEATURE_SHADOW_EXPONENTIAL));
+                EXPECT_TRUE(seen.stats.features &
+                            (content == PEL_SHADOW_CONTENT_MOMENTS ? PEL_FEATURE_SHADOW_MOMENTS
+                                                                   : PEL_FEATURE_SHADOW_EXPONENTIAL));
                 const Worst worst = worstContent(f, from, seen);
-                const auto what = testing::Message() << "content " << content << ", perspective " << perspective << ", reversed " << reversed;
+                const auto what = testing::Message() << "content " << content << ", perspective "
+                                                     << perspective << ", reversed " << reversed;
                 EXPECT_LE(worst.wide, tolerance::contentShadow) << what;
                 EXPECT_LE(worst.thickness, tolerance::contentThickness) << what;
                 EXPECT_GT(worst.penumbra, f.pixels() / 50) << what;
@@ -71,7 +73,8 @@ TEST(ShadowContent, OfAFlatOccluderEqualsDepth) {
                         EXPECT_GE(as.wide[i], 1 - tolerance::contentShadow);
                     } else if (depth.thickness[i] > 15) {
                         ++dark;
-                        EXPECT_LE(as.wide[i], tolerance::contentBehind) << "at least 15 mm behind an occluder";
+                        EXPECT_LE(as.wide[i], tolerance::contentBehind)
+                            << "at least 15 mm behind an occluder";
                     }
                 }
                 EXPECT_GT(dark, 200u);
@@ -83,7 +86,9 @@ TEST(ShadowContent, OfAFlatOccluderEqualsDepth) {
 TEST(ShadowContent, CubesAndCascadesHoldThemToo) {
     const Frame f = formFrame();
     const Vec3 lamp{24, 10, 70};
-    const auto shelf = [&](Vec3 d, int) { return d.z < -1e-3 ? std::min((d.x * 40 < -d.z * 3 ? 30.0 : 78.0) / -d.z, 500.0) : 500; };
+    const auto shelf = [&](Vec3 d, int) {
+        return d.z < -1e-3 ? std::min((d.x * 40 < -d.z * 3 ? 30.0 : 78.0) / -d.z, 500.0) : 500;
+    };
     for (const bool radial : {false, true}) {
         const CubeLight cube = cubeLight(256, radial, turnTo({0, 0, -1}, {-1, 1, 1}), lamp, shelf);
         const Seen depth = shadeForms(f, {cube.light});
@@ -95,14 +100,18 @@ TEST(ShadowContent, CubesAndCascadesHoldThemToo) {
             map.components = content == PEL_SHADOW_CONTENT_MOMENTS ? 2 : 1;
             map.values.clear();
             for (const double z : cube.map.depth) {
-                if (content == PEL_SHADOW_CONTENT_MOMENTS) map.values.insert(map.values.end(), {float(z), float(z * z)});
-                else map.values.push_back(float(std::exp(80 * z)));
+                if (content == PEL_SHADOW_CONTENT_MOMENTS)
+                    map.values.insert(map.values.end(), {float(z), float(z * z)});
+                else
+                    map.values.push_back(float(std::exp(80 * z)));
             }
             const Seen as = shadeForms(f, {other});
             double wide = 0;
             for (size_t i = 0; i < f.pixels(); ++i) {
                 if (!materialAt(f, i)) continue;
-                EXPECT_NEAR(as.thickness[i], depth.thickness[i], tolerance::contentInCubeThickness + 0.02 * depth.thickness[i]) << i << " radial " << radial;
+                EXPECT_NEAR(as.thickness[i], depth.thickness[i],
+                            tolerance::contentInCubeThickness + 0.02 * depth.thickness[i])
+                    << i << " radial " << radial;
                 wide += std::abs(as.wide[i] - depth.wide[i]) / double(f.pixels());
             }
             EXPECT_LE(wide, tolerance::contentInCube) << "mean; content " << content << ", radial " << radial;
@@ -119,13 +128,15 @@ TEST(ShadowContent, BadTexels) {
     for (const auto content : {PEL_SHADOW_CONTENT_MOMENTS, PEL_SHADOW_CONTENT_EXPONENTIAL}) {
         ContentLight from = contentLight(content, true, false, 131);
         const uint32_t components = from.light.maps[0].components;
-        const float bad[] = {nan, std::numeric_limits<float>::infinity(), components == 1 ? -1.0f : nan, components == 1 ? 0.0f : nan};
+        const float bad[] = {nan, std::numeric_limits<float>::infinity(), components == 1 ? -1.0f : nan,
+                             components == 1 ? 0.0f : nan};
         for (size_t i = 0; i < from.first.depth.size(); i += 5) {
             from.light.maps[0].values[components * i] = bad[i % 4];
             from.first.depth[i] = bad[i % 4];
         }
         const Seen seen = shadeForms(f, {from.light});
-        EXPECT_LE(worstContent(f, from, seen).wide, tolerance::contentShadow) << "such texels throw no shadow, content " << content;
+        EXPECT_LE(worstContent(f, from, seen).wide, tolerance::contentShadow)
+            << "such texels throw no shadow, content " << content;
         for (size_t i = 0; i < f.pixels(); ++i) EXPECT_TRUE(std::isfinite(seen.thickness[i])) << i;
     }
 }
@@ -140,18 +151,26 @@ TEST(ShadowContent, WhatIsRefused) {
             ADD_FAILURE() << "no error about " << word;
         } catch (const pellucid::Error& e) {
             EXPECT_EQ(e.code(), code) << e.what();
-            EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << "\"" << word << "\" in: " << e.what();
+            EXPECT_NE(std::string(e.what()).find(word), std::string::npos)
+                << "\"" << word << "\" in: " << e.what();
         }
     };
     using Lights = std::vector<FormLight>;
     const auto invalid = PEL_ERROR_INVALID_ARGUMENT;
-    refused(invalid, PEL_SHADOW_CONTENT_EXPONENTIAL, "two components", [](Lights& l) { l[0].params.shadowContent = PEL_SHADOW_CONTENT_MOMENTS, l[0].params.shadowExponent = 1; });
+    refused(invalid, PEL_SHADOW_CONTENT_EXPONENTIAL, "two components", [](Lights& l) {
+        l[0].params.shadowContent = PEL_SHADOW_CONTENT_MOMENTS, l[0].params.shadowExponent = 1;
+    });
     for (const float c : {0.0f, -80.0f, nan, 1e5f})
-        refused(invalid, PEL_SHADOW_CONTENT_EXPONENTIAL, "shadowExponent", [c](Lights& l) { l[0].params.shadowExponent = c; });
-    refused(invalid, PEL_SHADOW_CONTENT_EXPONENTIAL, "below 0", [](Lights& l) { l[0].params.shadowDepthRange *= -1; });
-    refused(invalid, PEL_SHADOW_CONTENT_MOMENTS, "shadowMinDeviation", [](Lights& l) { l[0].params.shadowMinDeviation = -1; });
-    refused(invalid, PEL_SHADOW_CONTENT_MOMENTS, "shadowBleeding", [](Lights& l) { l[0].params.shadowBleeding = 1; });
-    refused(invalid, PEL_SHADOW_CONTENT_MOMENTS, "PelShadowContent", [](Lights& l) { l[0].params.shadowContent = PelShadowContent(3); });
+        refused(invalid, PEL_SHADOW_CONTENT_EXPONENTIAL, "shadowExponent",
+                [c](Lights& l) { l[0].params.shadowExponent = c; });
+    refused(invalid, PEL_SHADOW_CONTENT_EXPONENTIAL, "below 0",
+            [](Lights& l) { l[0].params.shadowDepthRange *= -1; });
+    refused(invalid, PEL_SHADOW_CONTENT_MOMENTS, "shadowMinDeviation",
+            [](Lights& l) { l[0].params.shadowMinDeviation = -1; });
+    refused(invalid, PEL_SHADOW_CONTENT_MOMENTS, "shadowBleeding",
+            [](Lights& l) { l[0].params.shadowBleeding = 1; });
+    refused(invalid, PEL_SHADOW_CONTENT_MOMENTS, "PelShadowContent",
+            [](Lights& l) { l[0].params.shadowContent = PelShadowContent(3); });
     refused(PEL_ERROR_UNSUPPORTED, PEL_SHADOW_CONTENT_EXPONENTIAL, "shadowContent", [](Lights& l) {
         l.push_back(l[0]);
         l[1].params.shadowContent = PEL_SHADOW_CONTENT_DEPTH;

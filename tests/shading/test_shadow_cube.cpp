@@ -27,10 +27,11 @@ Worst worstCube(const Frame& f, const CubeLight& from, const Seen& seen) {
     return worstOf(f, seen, [&](size_t i, const PelMaterial& m, double& wide, double& thickness) {
         const Vec3 p = f.slots[PEL_SLOT_POSITION].vec(i), n = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i);
         wide = reference::cubeWideShadow(from.map, from.turn(p - from.position), from.turn(n),
-                                         {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope,
-                                          int(l.shadowFilterTexels)});
-        thickness = reference::cubeThickness(from.map, from.turn(p - double(m.deepScatterNormalOffset) * n - from.position),
-                                             tapsOf(f, m, i), m.thicknessFilterRadius);
+                                         {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness,
+                                          l.shadowConeSlope, int(l.shadowFilterTexels)});
+        thickness = reference::cubeThickness(
+            from.map, from.turn(p - double(m.deepScatterNormalOffset) * n - from.position), tapsOf(f, m, i),
+            m.thicknessFilterRadius);
         return true;
     });
 }
@@ -45,7 +46,8 @@ TEST(ShadowCube, MatchesTheOracle) {
                 const Seen seen = shadeForms(f, {from.light});
                 EXPECT_TRUE(seen.stats.features & PEL_FEATURE_SHADOW_CUBE);
                 const Worst worst = worstCube(f, from, seen);
-                const auto what = testing::Message() << "radial " << radial << ", aim " << aim.x << aim.y << ", " << size;
+                const auto what = testing::Message()
+                                  << "radial " << radial << ", aim " << aim.x << aim.y << ", " << size;
                 EXPECT_LE(worst.wide, tolerance::wideShadow) << what;
                 EXPECT_LE(worst.thickness, tolerance::cubeThickness) << what;
                 EXPECT_GT(worst.penumbra, f.pixels() / 50) << what;
@@ -68,13 +70,15 @@ TEST(ShadowCube, EqualsAPerspectiveMapAlongTheAxis) {
     FormLight face = cube.light;
     face.params.shadowProjection = PEL_SHADOW_PERSPECTIVE;
     face.maps[0].height = size;
-    face.maps[0].values.assign(cube.map.depth.begin() + 4 * size * size, cube.map.depth.begin() + 5 * size * size);
+    face.maps[0].values.assign(cube.map.depth.begin() + 4 * size * size,
+                               cube.map.depth.begin() + 5 * size * size);
     // u = (x / z + 1) / 2, v = (-y / z + 1) / 2; z = (1 / distance - B) / A, times the distance.
     const float* t = cube.light.params.worldToShadow;
     for (int c = 0; c < 4; ++c) {
         face.params.worldToShadow[c] = 0.5f * (t[c] + t[8 + c]);
         face.params.worldToShadow[4 + c] = 0.5f * (-t[4 + c] + t[8 + c]);
-        face.params.worldToShadow[8 + c] = ((c == 3) - cube.light.params.shadowDepthB * t[8 + c]) / cube.light.params.shadowDepthA;
+        face.params.worldToShadow[8 + c] =
+            ((c == 3) - cube.light.params.shadowDepthB * t[8 + c]) / cube.light.params.shadowDepthA;
         face.params.worldToShadow[12 + c] = t[8 + c];
     }
     const Frame f = formFrame();
@@ -82,20 +86,25 @@ TEST(ShadowCube, EqualsAPerspectiveMapAlongTheAxis) {
     size_t compared = 0;
     for (size_t i = 0; i < f.pixels(); ++i) {
         const Vec3 aside = f.slots[PEL_SLOT_POSITION].vec(i) - lamp;
-        if (!materialAt(f, i) || std::hypot(aside.x, aside.y) > 5) continue;  // 4 degrees: 1 - cosine = 0.0025
+        if (!materialAt(f, i) || std::hypot(aside.x, aside.y) > 5)
+            continue;  // 4 degrees: 1 - cosine = 0.0025
         ++compared;
         EXPECT_NEAR(asCube.wide[i], asFace.wide[i], tolerance::cubeAsPerspective) << i;
-        EXPECT_NEAR(asCube.thickness[i], asFace.thickness[i], tolerance::cubeAsPerspective * (1 + asFace.thickness[i])) << i;
+        EXPECT_NEAR(asCube.thickness[i], asFace.thickness[i],
+                    tolerance::cubeAsPerspective * (1 + asFace.thickness[i]))
+            << i;
     }
     EXPECT_GT(compared, 300u);
 }
 
 TEST(ShadowCube, TurningItChangesNothingAndFacesMeetWithoutASeam) {
     const Frame f = formFrame();
-    const Seen straight = shadeForms(f, {cubeLight(512, false, turnTo(down, aims[0]), lamp, ballOverGround).light});
+    const Seen straight =
+        shadeForms(f, {cubeLight(512, false, turnTo(down, aims[0]), lamp, ballOverGround).light});
     for (const Vec3 aim : {aims[1], aims[2]})
         for (const bool radial : {false, true}) {
-            const Seen turned = shadeForms(f, {cubeLight(512, radial, turnTo(down, aim), lamp, ballOverGround).light});
+            const Seen turned =
+                shadeForms(f, {cubeLight(512, radial, turnTo(down, aim), lamp, ballOverGround).light});
             double wide = 0, thickness = 0;
             for (size_t i = 0; i < f.pixels(); ++i) {
                 if (!materialAt(f, i)) continue;
@@ -127,7 +136,8 @@ TEST(ShadowCube, SkippingAndRunsChangeNoBit) {
 
 TEST(ShadowCube, BadTexelsAndPlaces) {
     CubeLight from = cubeLight(64, false, turnTo(down, aims[2]), lamp, bumps);
-    for (size_t i = 0; i < from.map.depth.size(); i += 5) from.light.maps[0].values[i] = nan, from.map.depth[i] = NAN;
+    for (size_t i = 0; i < from.map.depth.size(); i += 5)
+        from.light.maps[0].values[i] = nan, from.map.depth[i] = NAN;
     Frame f = formFrame();
     Worst worst = worstCube(f, from, shadeForms(f, {from.light}));
     EXPECT_LE(worst.wide, tolerance::wideShadow) << "such texels throw no shadow";
@@ -136,7 +146,8 @@ TEST(ShadowCube, BadTexelsAndPlaces) {
     const Seen before = shadeForms(f, {from.light});
     f.slots[PEL_SLOT_POSITION].values[3 * 1700] = nan;
     for (int c = 0; c < 3; ++c) f.slots[PEL_SLOT_POSITION].values[3 * 1703 + c] = 1e30f;
-    for (int c = 0; c < 3; ++c) f.slots[PEL_SLOT_POSITION].values[3 * 1706 + c] = float(lamp[c]);  // at the light
+    for (int c = 0; c < 3; ++c)
+        f.slots[PEL_SLOT_POSITION].values[3 * 1706 + c] = float(lamp[c]);  // at the light
     const Seen after = shadeForms(f, {from.light});
     for (size_t i = 0; i < f.pixels(); ++i) {
         EXPECT_TRUE(std::isfinite(after.thickness[i])) << i;
@@ -162,7 +173,8 @@ TEST(ShadowCube, WhatIsRefused) {
             ADD_FAILURE() << "no error about " << word;
         } catch (const pellucid::Error& e) {
             EXPECT_EQ(e.code(), PEL_ERROR_INVALID_ARGUMENT) << e.what();
-            EXPECT_NE(std::string(e.what()).find(word), std::string::npos) << "\"" << word << "\" in: " << e.what();
+            EXPECT_NE(std::string(e.what()).find(word), std::string::npos)
+                << "\"" << word << "\" in: " << e.what();
         }
     };
     refused("16 x 96", [](FormLight& l) { l.maps[0].height = 95; });

@@ -178,8 +178,7 @@ TEST(SharpShadow, FacetsThrowNoneOnThemselves) {
                 reference::normalized(Vec3{0.08 * std::cos(double(i)), 0.08 * std::sin(double(i)), 1});
         const std::vector<float> e = lit(s);
         for (size_t i = 0; i < e.size(); ++i)
-            EXPECT_NEAR(e[i], cosine(s, i), 2e-3)
-                << "cosine " << c;  // the flattest are just beyond the tolerance
+            EXPECT_NEAR(e[i], cosine(s, i), 2e-3) << "cosine " << c;  // the flattest are just beyond the tolerance
     }
 }
 

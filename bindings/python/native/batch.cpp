@@ -18,7 +18,8 @@ BatchManifest read(const std::string& path) {
     }
 }
 
-BatchManifest parsed(const std::string& path, const std::string& text, const std::map<std::string, std::string>& profiles) {
+BatchManifest parsed(const std::string& path, const std::string& text,
+                     const std::map<std::string, std::string>& profiles) {
     try {
         return pellucid::io::parseManifest(path, text, profiles);
     } catch (const std::exception& e) {

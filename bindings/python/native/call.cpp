@@ -118,7 +118,8 @@ void opensDevices() {
 void refuseForked() {
     if (opener && opener != getpid())
         throw CallError{PEL_ERROR_INVALID_STATE,
-                        "this process was forked from one that had used OpenCL, whose threads did not come along: start processes by "
+                        "this process was forked from one that had used OpenCL, whose threads did not come "
+                        "along: start processes by "
                         "multiprocessing.get_context(\"spawn\"), or open no device before"};
 }
 
@@ -144,8 +145,8 @@ void waitInterruptibly(const pellucid::Event& event) {
             while ((error = pelEventIsDone(event.get(), &done)) == PEL_SUCCESS && !done && Clock::now() < look) {
                 // Sleeping a sixteenth of the time waited so far finds the end at most that much late.
                 const auto nap = (Clock::now() - start) / 16;
-                std::this_thread::sleep_for(
-                    std::clamp<Clock::duration>(nap, std::chrono::microseconds(5), std::chrono::milliseconds(2)));
+                std::this_thread::sleep_for(std::clamp<Clock::duration>(nap, std::chrono::microseconds(5),
+                                                                        std::chrono::milliseconds(2)));
             }
             return error;
         });
@@ -275,8 +276,8 @@ void interpreterEnds() {
 }
 
 PelImageDesc imageDesc(const ImageView& v) {
-    PelImageDesc d = pellucid::imageDesc(std::get<0>(v), PelFormat(std::get<1>(v)), std::get<2>(v), std::get<3>(v),
-                                         std::get<4>(v));
+    PelImageDesc d = pellucid::imageDesc(std::get<0>(v), PelFormat(std::get<1>(v)), std::get<2>(v),
+                                         std::get<3>(v), std::get<4>(v));
     d.pixelStride = std::get<5>(v);
     d.rowStride = std::get<6>(v);
     d.planeStride = std::get<7>(v);

@@ -9,12 +9,16 @@ namespace pel::python {
 void bindCompare(py::module_& module) {
 #ifdef PELLUCID_BATCH
     module.def("compare_images", [](uintptr_t a, uintptr_t b, size_t pixels, uintptr_t mask) {
-        const auto values = [&](uintptr_t p) { return std::span(static_cast<const float*>(pointer(p)), 3 * pixels); };
+        const auto values = [&](uintptr_t p) {
+            return std::span(static_cast<const float*>(pointer(p)), 3 * pixels);
+        };
         size_t invalid = 0;
         pellucid::io::ImageDifference d;
         {
             const WithoutGil free;
-            d = pellucid::io::compareImages(values(a), values(b), mask ? std::span(static_cast<const uint8_t*>(pointer(mask)), pixels) : std::span<const uint8_t>(),
+            d = pellucid::io::compareImages(values(a), values(b),
+                                            mask ? std::span(static_cast<const uint8_t*>(pointer(mask)), pixels)
+                                                 : std::span<const uint8_t>(),
                                             &invalid);
         }
         py::dict result;

@@ -56,48 +56,58 @@ void bindDevice(py::module_& module) {
         return infos;
     });
     py::class_<Device>(module, "Device")
-        .def_static("create", [](const std::string& selector) {
-            return created([selector] { return pellucid::Device(selector); });
-        })
-        .def_static("from_cl", [](uintptr_t context, uintptr_t device, uintptr_t queue) {
-            return created([=] { return pellucid::Device::fromCl(pointer(context), pointer(device), pointer(queue)); });
-        })
-        .def("info", [](const Device& d) {
-            PelDeviceInfo info = pelDeviceInfoDefaults();
-            call([&] { return pelDeviceGetInfo(d.handle.get(), &info); });
-            return bytesOf(info);
-        })
-        .def("stats", [](const Device& d) {
-            PelDeviceStats stats = pelDeviceStatsDefaults();
-            call([&] { return pelDeviceGetStats(d.handle.get(), &stats); });
-            return bytesOf(stats);
-        })
-        .def("cl", [](const Device& d) {
-            void *context = nullptr, *device = nullptr, *queue = nullptr;
-            call([&] { return pelDeviceGetCl(d.handle.get(), &context, &device, &queue); });
-            return py::make_tuple(address(context), address(device), address(queue));
-        })
+        .def_static("create",
+                    [](const std::string& selector) {
+                        return created([selector] { return pellucid::Device(selector); });
+                    })
+        .def_static("from_cl",
+                    [](uintptr_t context, uintptr_t device, uintptr_t queue) {
+                        return created([=] {
+                            return pellucid::Device::fromCl(pointer(context), pointer(device), pointer(queue));
+                        });
+                    })
+        .def("info",
+             [](const Device& d) {
+                 PelDeviceInfo info = pelDeviceInfoDefaults();
+                 call([&] { return pelDeviceGetInfo(d.handle.get(), &info); });
+                 return bytesOf(info);
+             })
+        .def("stats",
+             [](const Device& d) {
+                 PelDeviceStats stats = pelDeviceStatsDefaults();
+                 call([&] { return pelDeviceGetStats(d.handle.get(), &stats); });
+                 return bytesOf(stats);
+             })
+        .def("cl",
+             [](const Device& d) {
+                 void *context = nullptr, *device = nullptr, *queue = nullptr;
+                 call([&] { return pelDeviceGetCl(d.handle.get(), &context, &device, &queue); });
+                 return py::make_tuple(address(context), address(device), address(queue));
+             })
         // The handle is copied, so that an abandoned wait keeps the device alive.
-        .def("finish", [](const Device& d) {
-            callInterruptibly([device = d.handle] { return pelDeviceFinish(device.get()); });
-        })
+        .def("finish",
+             [](const Device& d) {
+                 callInterruptibly([device = d.handle] { return pelDeviceFinish(device.get()); });
+             })
         .def("settle", [](const Device& d) { return Settling(d.handle); })
         .def_readwrite("progress", &Device::progress);
 
     py::class_<Settling>(module, "Settling").def("is_done", &Settling::done).def("wait", &Settling::wait);
 
     py::class_<pellucid::Event, Owner<pellucid::Event>>(module, "Event")
-        .def_static("from_cl", [](const Device& d, uintptr_t event) {
-            PelEvent handle = nullptr;
-            call([&] { return pelEventCreateFromCl(d.handle.get(), pointer(event), &handle); });
-            return pellucid::Event(handle);
-        })
+        .def_static("from_cl",
+                    [](const Device& d, uintptr_t event) {
+                        PelEvent handle = nullptr;
+                        call([&] { return pelEventCreateFromCl(d.handle.get(), pointer(event), &handle); });
+                        return pellucid::Event(handle);
+                    })
         .def("wait", &waitInterruptibly)
-        .def("is_done", [](const pellucid::Event& e) {
-            int done = 0;
-            call([&] { return pelEventIsDone(e.get(), &done); });
-            return done != 0;
-        })
+        .def("is_done",
+             [](const pellucid::Event& e) {
+                 int done = 0;
+                 call([&] { return pelEventIsDone(e.get(), &done); });
+                 return done != 0;
+             })
         .def("cl", [](const pellucid::Event& e) {
             void* event = nullptr;
             call([&] { return pelEventGetCl(e.get(), &event); });

@@ -10,12 +10,13 @@ namespace {
 template <class Desc, PelError (*Create)(PelDevice, const Desc*, PelLut*, const PelSubmit*)>
 std::pair<pellucid::Lut, pellucid::Event> created(const Device& d, const py::object& desc, const Waits& waits) {
     const auto lut = std::make_shared<pellucid::Lut>();
-    const pellucid::Event done = submitInterruptibly(waits, [lut, device = d.handle, what = *structOf<Desc>(desc)](const PelSubmit* submit) {
-        PelLut handle = nullptr;
-        const PelError error = Create(device.get(), &what, &handle, submit);
-        *lut = pellucid::Lut(handle);
-        return error;
-    });
+    const pellucid::Event done = submitInterruptibly(
+        waits, [lut, device = d.handle, what = *structOf<Desc>(desc)](const PelSubmit* submit) {
+            PelLut handle = nullptr;
+            const PelError error = Create(device.get(), &what, &handle, submit);
+            *lut = pellucid::Lut(handle);
+            return error;
+        });
     return {*lut, done};
 }
 
@@ -48,27 +49,30 @@ void bindLut(py::module_& module) {
         .def_static("curvature", created<PelCurvatureLutDesc, pelCurvatureLutCreate>)
         .def_static("shadow", created<PelShadowLutDesc, pelShadowLutCreate>)
         .def_static("specular", created<PelSpecularLutDesc, pelSpecularLutCreate>)
-        .def_static("from_texels", [](const Device& d, const py::object& info, uintptr_t texels, size_t bytes) {
-            const auto lut = std::make_shared<Lut>();
-            callInterruptibly([=, device = d.handle, what = *structOf<PelLutInfo>(info)] {
-                PelLut handle = nullptr;
-                const PelError error =
-                    pelLutCreateFromTexels(device.get(), &what, static_cast<const float*>(pointer(texels)), bytes, &handle);
-                *lut = Lut(handle);
-                return error;
-            });
-            return *lut;
-        })
-        .def("info", [](const Lut& l) {
-            PelLutInfo info = pelLutInfoDefaults();
-            call([&] { return pelLutGetInfo(l.get(), &info); });
-            return bytesOf(info);
-        })
-        .def("clipped", [](const Lut& l) {
-            const auto clipped = std::make_shared<uint64_t>();
-            callInterruptibly([l, clipped] { return pelLutCountClipped(l.get(), clipped.get()); });
-            return *clipped;
-        })
+        .def_static("from_texels",
+                    [](const Device& d, const py::object& info, uintptr_t texels, size_t bytes) {
+                        const auto lut = std::make_shared<Lut>();
+                        callInterruptibly([=, device = d.handle, what = *structOf<PelLutInfo>(info)] {
+                            PelLut handle = nullptr;
+                            const PelError error = pelLutCreateFromTexels(
+                                device.get(), &what, static_cast<const float*>(pointer(texels)), bytes, &handle);
+                            *lut = Lut(handle);
+                            return error;
+                        });
+                        return *lut;
+                    })
+        .def("info",
+             [](const Lut& l) {
+                 PelLutInfo info = pelLutInfoDefaults();
+                 call([&] { return pelLutGetInfo(l.get(), &info); });
+                 return bytesOf(info);
+             })
+        .def("clipped",
+             [](const Lut& l) {
+                 const auto clipped = std::make_shared<uint64_t>();
+                 callInterruptibly([l, clipped] { return pelLutCountClipped(l.get(), clipped.get()); });
+                 return *clipped;
+             })
         .def("read", [](const Lut& l, uint32_t encoding, uintptr_t to, size_t bytes, const Waits& waits) {
             return submitInterruptibly(waits, [=](const PelSubmit* submit) {
                 return pelLutRead(l.get(), PelLutEncoding(encoding), pointer(to), bytes, submit);

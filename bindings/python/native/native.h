@@ -11,8 +11,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <span>
 #include <pellucid/pellucid.hpp>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -83,7 +83,8 @@ T* structOf(const py::object& object) {
     const py::buffer_info info = py::reinterpret_borrow<py::buffer>(object).request(true);
     if (size_t(info.size * info.itemsize) != sizeof(T))
         throw CallError{PEL_ERROR_UNKNOWN, "a structure of " + std::to_string(info.size * info.itemsize) +
-                                               " bytes where one of " + std::to_string(sizeof(T)) + " belongs"};
+                                               " bytes where one of " + std::to_string(sizeof(T)) +
+                                               " belongs"};
     return static_cast<T*>(info.ptr);
 }
 

@@ -20,71 +20,87 @@ Profile named(const std::string& name, const std::function<PelError(PelProfile*)
 void bindProfile(py::module_& module) {
     py::class_<Profile>(module, "Profile")
         .def_static("skin", [](const std::string& name) { return named(name, pelProfileCreateSkin); })
-        .def_static("gaussians", [](const std::vector<std::pair<float, Triple>>& terms, const std::string& name) {
-            std::vector<PelGaussian> all;
-            for (const auto& [variance, weight] : terms) all.push_back({variance, {weight[0], weight[1], weight[2]}});
-            return named(name, [&](PelProfile* out) {
-                return pelProfileCreateGaussians(all.data(), uint32_t(all.size()), out);
-            });
-        })
-        .def_static("burley", [](const Triple& path, const Triple& albedo, uint32_t fit, const std::string& name) {
-            return named(name, [&](PelProfile* out) {
-                return pelProfileCreateBurley(path.data(), albedo.data(), PelBurleyFit(fit), out);
-            });
-        })
-        .def_static("burley_distance", [](const Triple& distance, const std::string& name) {
-            return named(name, [&](PelProfile* out) { return pelProfileCreateBurleyDistance(distance.data(), out); });
-        })
-        .def_static("named", [](const std::string& material) {
-            return named("", [&](PelProfile* out) { return pelProfileCreateNamed(material.c_str(), out); });
-        })
-        .def_static("library_names", [] {
-            std::vector<std::string> names;
-            for (uint32_t i = 0; const char* name = pelProfileLibraryName(i); ++i) names.push_back(name);
-            return names;
-        })
-        .def_static("dipole", [](const Triple& absorption, const Triple& scattering, float eta, const std::string& name) {
-            return named(name, [&](PelProfile* out) {
-                return pelProfileCreateDipole(absorption.data(), scattering.data(), eta, out);
-            });
-        })
-        .def_static("table", [](uintptr_t distances, uintptr_t values, uint32_t count, const std::string& name) {
-            return named(name, [&](PelProfile* out) {
-                return pelProfileCreateTable(static_cast<const float*>(pointer(distances)),
-                                             static_cast<const float*>(pointer(values)), count, out);
-            });
-        })
-        .def("info", [](const Profile& p) {
-            PelProfileInfo info = pelProfileInfoDefaults();
-            call([&] { return pelProfileGetInfo(p.get(), &info); });
-            return bytesOf(info);
-        })
-        .def("transmission", [](const Profile& p, uintptr_t distances, uint32_t count, uintptr_t through) {
-            const auto* first = static_cast<const double*>(pointer(distances));
-            auto* to = static_cast<double*>(pointer(through));
-            call([&] { return pelProfileTransmission(p.get(), first, count, to); });
-        })
-        .def("evaluate", [](const Profile& p, uintptr_t distances, uint32_t count, uintptr_t radial, uintptr_t spread) {
-            struct Work {
-                std::vector<double> distances, radial, spread;
-            };
-            const auto work = std::make_shared<Work>();
-            const auto* first = static_cast<const double*>(pointer(distances));
-            work->distances.assign(first, first + count);
-            work->radial.resize(3 * size_t(count)), work->spread.resize(3 * size_t(count));
-            callInterruptibly([p, work, count] {
-                // In pieces, so that one that was left behind ends soon.
-                PelError error = PEL_SUCCESS;
-                for (uint32_t from = 0, n; from < count && !error && !abandoned(); from += n) {
-                    n = std::min(count - from, 4096u);
-                    error = pelProfileEvaluate(p.get(), &work->distances[from], n, &work->radial[3 * size_t(from)],
-                                               &work->spread[3 * size_t(from)]);
-                }
-                return error;
-            });
-            std::copy(work->radial.begin(), work->radial.end(), static_cast<double*>(pointer(radial)));
-            std::copy(work->spread.begin(), work->spread.end(), static_cast<double*>(pointer(spread)));
-        })
+        .def_static("gaussians",
+                    [](const std::vector<std::pair<float, Triple>>& terms, const std::string& name) {
+                        std::vector<PelGaussian> all;
+                        for (const auto& [variance, weight] : terms)
+                            all.push_back({variance, {weight[0], weight[1], weight[2]}});
+                        return named(name, [&](PelProfile* out) {
+                            return pelProfileCreateGaussians(all.data(), uint32_t(all.size()), out);
+                        });
+                    })
+        .def_static("burley",
+                    [](const Triple& path, const Triple& albedo, uint32_t fit, const std::string& name) {
+                        return named(name, [&](PelProfile* out) {
+                            return pelProfileCreateBurley(path.data(), albedo.data(), PelBurleyFit(fit), out);
+                        });
+                    })
+        .def_static("burley_distance",
+                    [](const Triple& distance, const std::string& name) {
+                        return named(name, [&](PelProfile* out) {
+                            return pelProfileCreateBurleyDistance(distance.data(), out);
+                        });
+                    })
+        .def_static("named",
+                    [](const std::string& material) {
+                        return named(
+                            "", [&](PelProfile* out) { return pelProfileCreateNamed(material.c_str(), out); });
+                    })
+        .def_static("library_names",
+                    [] {
+                        std::vector<std::string> names;
+                        for (uint32_t i = 0; const char* name = pelProfileLibraryName(i); ++i)
+                            names.push_back(name);
+                        return names;
+                    })
+        .def_static("dipole",
+                    [](const Triple& absorption, const Triple& scattering, float eta, const std::string& name) {
+                        return named(name, [&](PelProfile* out) {
+                            return pelProfileCreateDipole(absorption.data(), scattering.data(), eta, out);
+                        });
+                    })
+        .def_static("table",
+                    [](uintptr_t distances, uintptr_t values, uint32_t count, const std::string& name) {
+                        return named(name, [&](PelProfile* out) {
+                            return pelProfileCreateTable(static_cast<const float*>(pointer(distances)),
+                                                         static_cast<const float*>(pointer(values)), count, out);
+                        });
+                    })
+        .def("info",
+             [](const Profile& p) {
+                 PelProfileInfo info = pelProfileInfoDefaults();
+                 call([&] { return pelProfileGetInfo(p.get(), &info); });
+                 return bytesOf(info);
+             })
+        .def("transmission",
+             [](const Profile& p, uintptr_t distances, uint32_t count, uintptr_t through) {
+                 const auto* first = static_cast<const double*>(pointer(distances));
+                 auto* to = static_cast<double*>(pointer(through));
+                 call([&] { return pelProfileTransmission(p.get(), first, count, to); });
+             })
+        .def("evaluate",
+             [](const Profile& p, uintptr_t distances, uint32_t count, uintptr_t radial, uintptr_t spread) {
+                 struct Work {
+                     std::vector<double> distances, radial, spread;
+                 };
+                 const auto work = std::make_shared<Work>();
+                 const auto* first = static_cast<const double*>(pointer(distances));
+                 work->distances.assign(first, first + count);
+                 work->radial.resize(3 * size_t(count)), work->spread.resize(3 * size_t(count));
+                 callInterruptibly([p, work, count] {
+                     // In pieces, so that one that was left behind ends soon.
+                     PelError error = PEL_SUCCESS;
+                     for (uint32_t from = 0, n; from < count && !error && !abandoned(); from += n) {
+                         n = std::min(count - from, 4096u);
+                         error = pelProfileEvaluate(p.get(), &work->distances[from], n,
+                                                    &work->radial[3 * size_t(from)],
+                                                    &work->spread[3 * size_t(from)]);
+                     }
+                     return error;
+                 });
+                 std::copy(work->radial.begin(), work->radial.end(), static_cast<double*>(pointer(radial)));
+                 std::copy(work->spread.begin(), work->spread.end(), static_cast<double*>(pointer(spread)));
+             })
         .def("address", [](const Profile& p) { return address(p.get()); });
 }
 

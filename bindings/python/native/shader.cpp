@@ -1,6 +1,6 @@
+#include <map>
 #include <memory>
 #include <mutex>
-#include <map>
 #include <vector>
 
 #include "progress.h"
@@ -34,110 +34,131 @@ void locked(const Shader& shader, Body&& body) {
 void bindShader(py::module_& module) {
     using pellucid::Lut;
     py::class_<Shader, Owner<Shader>>(module, "Shader")
-        .def_static("create", [](const Device& d) {
-            PelShader handle = nullptr;
-            call([&] { return pelShaderCreate(d.handle.get(), &handle); });
-            return Shader(handle);
-        })
-        .def("set_options", [](const Shader& s, const py::object& options) {
-            locked(s, [&, o = structOf<PelShaderOptions>(options)] { return pelShaderSetOptions(s.get(), o); });
-        })
-        .def("set_image", [](const Shader& s, uint32_t slot, const std::optional<ImageView>& image) {
-            const PelImageDesc desc = image ? imageDesc(*image) : pelImageDescDefaults();
-            locked(s, [&] { return pelShaderSetImage(s.get(), PelImageSlot(slot), image ? &desc : nullptr); });
-        })
-        .def("set_material", [](const Shader& s, uint32_t id, const py::object& material, const Lut* curvature,
-                                const Lut* shadow) {
-            const PelMaterial* m = material.is_none() ? nullptr : structOf<PelMaterial>(material);
-            locked(s, [&] {
-                return pelShaderSetMaterial(s.get(), id, m, curvature ? curvature->get() : nullptr,
-                                            shadow ? shadow->get() : nullptr);
-            });
-        })
-        .def("set_normal_map", [](const Shader& s, uint32_t id, const std::vector<ImageView>& levels) {
-            std::vector<PelImageDesc> all;
-            for (const ImageView& level : levels) all.push_back(imageDesc(level));
-            locked(s, [&] { return pelShaderSetNormalMap(s.get(), id, all.data(), uint32_t(all.size())); });
-        })
-        .def("set_lights", [](const Shader& s, const std::vector<py::object>& lights) {
-            std::vector<PelLight> all;
-            for (const py::object& light : lights) all.push_back(*structOf<PelLight>(light));
-            locked(s, [&] { return pelShaderSetLights(s.get(), all.data(), uint32_t(all.size())); });
-        })
-        .def("set_light_image", [](const Shader& s, uint32_t light, uint32_t slot, const std::optional<ImageView>& image) {
-            const PelImageDesc desc = image ? imageDesc(*image) : pelImageDescDefaults();
-            locked(s, [&] { return pelShaderSetLightImage(s.get(), light, PelLightSlot(slot), image ? &desc : nullptr); });
-        })
-        .def("set_ambient", [](const Shader& s, const py::object& ambient) {
-            locked(s, [&, a = structOf<PelAmbient>(ambient)] { return pelShaderSetAmbient(s.get(), a); });
-        })
-        .def("set_ambient_cube", [](const Shader& s, const std::optional<ImageView>& faces) {
-            const PelImageDesc desc = faces ? imageDesc(*faces) : pelImageDescDefaults();
-            locked(s, [&] { return pelShaderSetAmbientCube(s.get(), faces ? &desc : nullptr); });
-        })
-        .def("set_camera", [](const Shader& s, const py::object& camera) {
-            locked(s, [&, c = structOf<PelCamera>(camera)] { return pelShaderSetCamera(s.get(), c); });
-        })
+        .def_static("create",
+                    [](const Device& d) {
+                        PelShader handle = nullptr;
+                        call([&] { return pelShaderCreate(d.handle.get(), &handle); });
+                        return Shader(handle);
+                    })
+        .def("set_options",
+             [](const Shader& s, const py::object& options) {
+                 locked(s, [&, o = structOf<PelShaderOptions>(options)] {
+                     return pelShaderSetOptions(s.get(), o);
+                 });
+             })
+        .def("set_image",
+             [](const Shader& s, uint32_t slot, const std::optional<ImageView>& image) {
+                 const PelImageDesc desc = image ? imageDesc(*image) : pelImageDescDefaults();
+                 locked(s, [&] {
+                     return pelShaderSetImage(s.get(), PelImageSlot(slot), image ? &desc : nullptr);
+                 });
+             })
+        .def("set_material",
+             [](const Shader& s, uint32_t id, const py::object& material, const Lut* curvature, const Lut* shadow) {
+                 const PelMaterial* m = material.is_none() ? nullptr : structOf<PelMaterial>(material);
+                 locked(s, [&] {
+                     return pelShaderSetMaterial(s.get(), id, m, curvature ? curvature->get() : nullptr,
+                                                 shadow ? shadow->get() : nullptr);
+                 });
+             })
+        .def("set_normal_map",
+             [](const Shader& s, uint32_t id, const std::vector<ImageView>& levels) {
+                 std::vector<PelImageDesc> all;
+                 for (const ImageView& level : levels) all.push_back(imageDesc(level));
+                 locked(s, [&] { return pelShaderSetNormalMap(s.get(), id, all.data(), uint32_t(all.size())); });
+             })
+        .def("set_lights",
+             [](const Shader& s, const std::vector<py::object>& lights) {
+                 std::vector<PelLight> all;
+                 for (const py::object& light : lights) all.push_back(*structOf<PelLight>(light));
+                 locked(s, [&] { return pelShaderSetLights(s.get(), all.data(), uint32_t(all.size())); });
+             })
+        .def("set_light_image",
+             [](const Shader& s, uint32_t light, uint32_t slot, const std::optional<ImageView>& image) {
+                 const PelImageDesc desc = image ? imageDesc(*image) : pelImageDescDefaults();
+                 locked(s, [&] {
+                     return pelShaderSetLightImage(s.get(), light, PelLightSlot(slot), image ? &desc : nullptr);
+                 });
+             })
+        .def("set_ambient",
+             [](const Shader& s, const py::object& ambient) {
+                 locked(s, [&, a = structOf<PelAmbient>(ambient)] { return pelShaderSetAmbient(s.get(), a); });
+             })
+        .def("set_ambient_cube",
+             [](const Shader& s, const std::optional<ImageView>& faces) {
+                 const PelImageDesc desc = faces ? imageDesc(*faces) : pelImageDescDefaults();
+                 locked(s, [&] { return pelShaderSetAmbientCube(s.get(), faces ? &desc : nullptr); });
+             })
+        .def("set_camera",
+             [](const Shader& s, const py::object& camera) {
+                 locked(s, [&, c = structOf<PelCamera>(camera)] { return pelShaderSetCamera(s.get(), c); });
+             })
         // Compilers take seconds, on some devices minutes.
-        .def("commit", [](const Shader& s) {
-            callInterruptibly([s] {
-                const auto lock = locking(s);
-                return pelShaderCommit(s.get());
-            });
-        })
-        .def("execute", [](const Shader& s, const Waits& waits) {
-            return submitInterruptibly(waits, [s](const PelSubmit* submit) {
-                const auto lock = locking(s);
-                return pelShaderExecute(s.get(), submit);
-            });
-        })
+        .def("commit",
+             [](const Shader& s) {
+                 callInterruptibly([s] {
+                     const auto lock = locking(s);
+                     return pelShaderCommit(s.get());
+                 });
+             })
+        .def("execute",
+             [](const Shader& s, const Waits& waits) {
+                 return submitInterruptibly(waits, [s](const PelSubmit* submit) {
+                     const auto lock = locking(s);
+                     return pelShaderExecute(s.get(), submit);
+                 });
+             })
         // Blocking, so that the device's progress callback is told.
-        .def("execute_told", [](const Shader& s) {
-            callInterruptibly([s] {
-                const auto lock = locking(s);
-                return pelShaderExecute(s.get(), nullptr);
-            });
-        })
-        .def("material", [](const Shader& s, uint32_t id) {
-            PelMaterial material = pelMaterialDefaults();
-            locked(s, [&] { return pelShaderGetMaterial(s.get(), id, &material); });
-            material.profile = nullptr;  // the shader's own
-            return bytesOf(material);
-        })
-        .def("warnings", [](const Shader& s) {
-            const char* text = "";
-            std::string copy;
-            locked(s, [&] {
-                const PelError error = pelShaderGetWarnings(s.get(), &text);
-                copy = text;
-                return error;
-            });
-            return copy;
-        })
+        .def("execute_told",
+             [](const Shader& s) {
+                 callInterruptibly([s] {
+                     const auto lock = locking(s);
+                     return pelShaderExecute(s.get(), nullptr);
+                 });
+             })
+        .def("material",
+             [](const Shader& s, uint32_t id) {
+                 PelMaterial material = pelMaterialDefaults();
+                 locked(s, [&] { return pelShaderGetMaterial(s.get(), id, &material); });
+                 material.profile = nullptr;  // the shader's own
+                 return bytesOf(material);
+             })
+        .def("warnings",
+             [](const Shader& s) {
+                 const char* text = "";
+                 std::string copy;
+                 locked(s, [&] {
+                     const PelError error = pelShaderGetWarnings(s.get(), &text);
+                     copy = text;
+                     return error;
+                 });
+                 return copy;
+             })
         .def("stats", [](const Shader& s) {
             PelShaderStats stats = pelShaderStatsDefaults();
             locked(s, [&] { return pelShaderGetStats(s.get(), &stats); });
             return bytesOf(stats);
         });
-    module.def("prefill_programs", [](const Device& d, uint32_t groups, const std::vector<Shader>& shaders, uint32_t threads) {
-        const auto built = std::make_shared<uint32_t>();
-        callInterruptibly([=, device = d.handle] {
-            std::vector<PelShader> handles;
-            for (const Shader& s : shaders) handles.push_back(s.get());
-            // In one order for all threads, whatever the order of their lists: two would wait for each other otherwise.
-            std::map<std::recursive_mutex*, const Shader*, std::less<>> order;
-            for (const Shader& s : shaders) order.emplace(s.busy.get(), &s);
-            std::vector<std::unique_lock<std::recursive_mutex>> locks;
-            for (const auto& [mutex, shader] : order) locks.push_back(locking(*shader));
-            PelPrefill work = pelPrefillDefaults();
-            work.groups = groups;
-            work.shaders = handles.data();
-            work.numShaders = uint32_t(handles.size());
-            work.threads = threads;
-            return pelPrefillPrograms(device.get(), &work, built.get());
-        });
-        return *built;
-    });
+    module.def("prefill_programs",
+               [](const Device& d, uint32_t groups, const std::vector<Shader>& shaders, uint32_t threads) {
+                   const auto built = std::make_shared<uint32_t>();
+                   callInterruptibly([=, device = d.handle] {
+                       std::vector<PelShader> handles;
+                       for (const Shader& s : shaders) handles.push_back(s.get());
+                       // In one order for all threads, whatever the order of their lists: two would wait for each other otherwise.
+                       std::map<std::recursive_mutex*, const Shader*, std::less<>> order;
+                       for (const Shader& s : shaders) order.emplace(s.busy.get(), &s);
+                       std::vector<std::unique_lock<std::recursive_mutex>> locks;
+                       for (const auto& [mutex, shader] : order) locks.push_back(locking(*shader));
+                       PelPrefill work = pelPrefillDefaults();
+                       work.groups = groups;
+                       work.shaders = handles.data();
+                       work.numShaders = uint32_t(handles.size());
+                       work.threads = threads;
+                       return pelPrefillPrograms(device.get(), &work, built.get());
+                   });
+                   return *built;
+               });
 }
 
 }  // namespace pel::python

@@ -73,17 +73,21 @@ PEL_API uint32_t pelVersion(void);
 typedef struct PelDeviceObject* PelDevice;
 typedef struct PelEventObject* PelEvent;
 
-typedef enum PelDeviceType { PEL_DEVICE_CPU = 0, PEL_DEVICE_GPU = 1, PEL_DEVICE_ACCELERATOR = 2 } PelDeviceType;
+typedef enum PelDeviceType {
+    PEL_DEVICE_CPU = 0,
+    PEL_DEVICE_GPU = 1,
+    PEL_DEVICE_ACCELERATOR = 2
+} PelDeviceType;
 
 typedef struct PelDeviceInfo {
     uint32_t structSize;
-    uint32_t index;         /* position in the list, as selectors use it; UINT32_MAX for a host's own context */
+    uint32_t index; /* position in the list, as selectors use it; UINT32_MAX for a host's own context */
     PelDeviceType type;
     uint32_t computeUnits;
     uint32_t clockMhz;
     uint32_t preferredFloatWidth; /* CL_DEVICE_PREFERRED_VECTOR_WIDTH_FLOAT, lanes */
     uint32_t mathWidth;           /* lanes per work-item that Pellucid's kernels use here: 1, 8 or 16 */
-    uint32_t sharedMemory;        /* 1: host and device share memory, buffers from host memory are not copied */
+    uint32_t sharedMemory; /* 1: host and device share memory, buffers from host memory are not copied */
     uint64_t globalMemoryBytes;
     uint64_t maxAllocationBytes;
     uint64_t localMemoryBytes;
@@ -109,7 +113,8 @@ PEL_API PelError pelDeviceCreate(const char* selector, PelDevice* device);
 
 /* Makes a device from the caller's own cl_context, cl_device_id and in-order cl_command_queue (retained; all needed).
  * Work goes to that queue and nowhere else. */
-PEL_API PelError pelDeviceCreateFromCl(void* clContext, void* clDeviceId, void* clCommandQueue, PelDevice* device);
+PEL_API PelError pelDeviceCreateFromCl(void* clContext, void* clDeviceId, void* clCommandQueue,
+                                       PelDevice* device);
 
 PEL_API void pelDeviceRetain(PelDevice device);
 PEL_API void pelDeviceRelease(PelDevice device); /* NULL does nothing, as for every Release */
@@ -128,11 +133,11 @@ typedef struct PelDeviceStats {
     uint64_t launches;      /* kernels enqueued */
     uint64_t bytesToDevice; /* copied from the host; memory shared in place is not counted */
     uint64_t bytesToHost;
-    uint64_t bytesAllocated;   /* device memory allocated by the library, in total over time */
+    uint64_t bytesAllocated; /* device memory allocated by the library, in total over time */
     double kernelMilliseconds; /* device time of finished kernels, from OpenCL profiling; 0 on a queue without it */
-    double buildMilliseconds;  /* host time spent in building programs */
-    uint32_t programsLoaded;   /* of programsBuilt: from binaries that this library keeps on disk (docs/devices.md) */
-    uint32_t programsStored;   /* of programsBuilt: compiled, and their binaries written there */
+    double buildMilliseconds; /* host time spent in building programs */
+    uint32_t programsLoaded; /* of programsBuilt: from binaries that this library keeps on disk (docs/devices.md) */
+    uint32_t programsStored; /* of programsBuilt: compiled, and their binaries written there */
 } PelDeviceStats;
 /* Waits for submitted work first, so that kernelMilliseconds is whole. */
 PEL_API PelError pelDeviceGetStats(PelDevice device, PelDeviceStats* stats);
@@ -207,8 +212,8 @@ typedef enum PelFormat {
     PEL_FORMAT_RGBA8_UNORM = 10, /* as a vector: 2 * value - 1 */
     PEL_FORMAT_RGBA8_SRGB = 11,  /* RGB decoded from sRGB, A linear */
     PEL_FORMAT_R16_UNORM = 12,
-    PEL_FORMAT_OCT16X2_SNORM = 13,      /* a unit vector as two signed 16-bit octahedral coordinates */
-    PEL_FORMAT_A2B10G10R10_UNORM = 14,  /* one uint32, R in the lowest 10 bits; as a vector: 2 * value - 1 */
+    PEL_FORMAT_OCT16X2_SNORM = 13,     /* a unit vector as two signed 16-bit octahedral coordinates */
+    PEL_FORMAT_A2B10G10R10_UNORM = 14, /* one uint32, R in the lowest 10 bits; as a vector: 2 * value - 1 */
     PEL_FORMAT_R8_UINT = 15,
     PEL_FORMAT_R16_UINT = 16,
     PEL_FORMAT_R32_UINT = 17,
@@ -244,8 +249,8 @@ typedef struct PelMeshReport {
     uint32_t unreferencedVertices; /* in no triangle: their curvature is 0 */
     uint32_t degenerateTriangles;  /* a repeated index: skipped */
     uint32_t zeroLengthEdges;      /* too short to measure: skipped; set by curvature */
-    uint32_t nonFinitePositions;   /* NaN or Inf: edges to them are skipped, their own curvature is 0; set by curvature */
-    uint32_t nonFiniteNormals;     /* NaN, Inf or zero, likewise; set by curvature */
+    uint32_t nonFinitePositions; /* NaN or Inf: edges to them are skipped, their own curvature is 0; set by curvature */
+    uint32_t nonFiniteNormals; /* NaN, Inf or zero, likewise; set by curvature */
 } PelMeshReport;
 
 typedef enum PelWeld { PEL_WELD_NONE = 0, PEL_WELD_EXACT = 1, PEL_WELD_TOLERANCE = 2 } PelWeld;
@@ -257,15 +262,15 @@ typedef struct PelMeshTopologyDesc {
     uint64_t numIndices;     /* a multiple of 3 */
     PelWeld weld;            /* vertices at the same place are one vertex to the topology; default none */
     float weldTolerance;     /* length; PEL_WELD_TOLERANCE only */
-    const float* positions;  /* needed when welding: xyz per vertex, positionStride bytes apart; read during the call */
+    const float* positions; /* needed when welding: xyz per vertex, positionStride bytes apart; read during the call */
     uint32_t positionStride; /* bytes; 0: 12 */
 } PelMeshTopologyDesc;
 
 /* Analyses the connectivity once; curvature for any positions then reuses it. Errors: PEL_ERROR_INVALID_ARGUMENT for an
  * index count that is no multiple of 3 or an index >= numVertices (the message names the triangle). `report` may be
  * NULL. */
-PEL_API PelError pelMeshTopologyCreate(PelDevice device, const PelMeshTopologyDesc* desc, PelMeshTopology* topology,
-                                       PelMeshReport* report);
+PEL_API PelError pelMeshTopologyCreate(PelDevice device, const PelMeshTopologyDesc* desc,
+                                       PelMeshTopology* topology, PelMeshReport* report);
 PEL_API void pelMeshTopologyRetain(PelMeshTopology topology);
 PEL_API void pelMeshTopologyRelease(PelMeshTopology topology);
 
@@ -274,8 +279,8 @@ PEL_API void pelMeshTopologyRelease(PelMeshTopology topology);
  * version of the library; pelMeshTopologyLoad refuses others, and anything that is damaged. Errors:
  * PEL_ERROR_INVALID_ARGUMENT when the room is too small. */
 PEL_API PelError pelMeshTopologySave(PelMeshTopology topology, void* destination, size_t* size);
-PEL_API PelError pelMeshTopologyLoad(PelDevice device, const void* bytes, size_t size, PelMeshTopology* topology,
-                                     PelMeshReport* report);
+PEL_API PelError pelMeshTopologyLoad(PelDevice device, const void* bytes, size_t size,
+                                     PelMeshTopology* topology, PelMeshReport* report);
 
 /* Vertex data inside a buffer. */
 typedef struct PelVertexView {
@@ -294,24 +299,25 @@ typedef enum PelCurvatureEstimator {
 /* What is written for a vertex. Curvatures are positive where the surface bends away from its normal (a sphere with
  * outward normals has two positive ones); k1 >= k2. Edge has the first quantity only. */
 typedef enum PelCurvatureQuantity {
-    PEL_QUANTITY_ABSOLUTE = 0,     /* |k1 + k2| / 2, 1/radius of the best sphere; edge: its own estimate. For LUTs */
+    PEL_QUANTITY_ABSOLUTE = 0, /* |k1 + k2| / 2, 1/radius of the best sphere; edge: its own estimate. For LUTs */
     PEL_QUANTITY_ABSOLUTE_MAX = 1, /* max(|k1|, |k2|), 1/radius of the best cylinder: on a cylinder twice the above */
-    PEL_QUANTITY_CURVEDNESS = 2,   /* sqrt((k1^2 + k2^2) / 2) [Koenderink 1992]: between the two, 0 on planes only */
-    PEL_QUANTITY_MEAN = 3,         /* H = (k1 + k2) / 2, signed */
-    PEL_QUANTITY_GAUSSIAN = 4,     /* K = k1 k2, 1/length^2; `scale` multiplies it twice */
-    PEL_QUANTITY_FIRST = 5,        /* k1 */
-    PEL_QUANTITY_SECOND = 6,       /* k2 */
-    PEL_QUANTITY_PRINCIPAL = 7,    /* k1, k2: 2 floats */
-    PEL_QUANTITY_FRAME = 8         /* k1, k2, unit direction of k1, unit direction of k2: 8 floats. Directions are not
+    PEL_QUANTITY_CURVEDNESS = 2, /* sqrt((k1^2 + k2^2) / 2) [Koenderink 1992]: between the two, 0 on planes only */
+    PEL_QUANTITY_MEAN = 3,       /* H = (k1 + k2) / 2, signed */
+    PEL_QUANTITY_GAUSSIAN = 4,  /* K = k1 k2, 1/length^2; `scale` multiplies it twice */
+    PEL_QUANTITY_FIRST = 5,     /* k1 */
+    PEL_QUANTITY_SECOND = 6,    /* k2 */
+    PEL_QUANTITY_PRINCIPAL = 7, /* k1, k2: 2 floats */
+    PEL_QUANTITY_FRAME = 8 /* k1, k2, unit direction of k1, unit direction of k2: 8 floats. Directions are not
                                       smoothed; 0 where nothing was measured */
 } PelCurvatureQuantity;
 
 /* How a smoothing to a radius weighs the neighbours of a vertex. Either way a mesh of twice the triangles gives the same
  * answer. */
 typedef enum PelSmoothingWeights {
-    PEL_SMOOTHING_COTANGENT = 0, /* cotangents over Voronoi areas [Pinkall & Polthier 1993]: spreads alike in all directions,
+    PEL_SMOOTHING_COTANGENT =
+        0, /* cotangents over Voronoi areas [Pinkall & Polthier 1993]: spreads alike in all directions,
                                     whatever the triangles. Default */
-    PEL_SMOOTHING_AREA = 1       /* area of an edge's triangles over the square of its length: never negative, and the sum of
+    PEL_SMOOTHING_AREA = 1 /* area of an edge's triangles over the square of its length: never negative, and the sum of
                                     value times area of all vertices stays; on stretched cells it spreads further along
                                     than across */
 } PelSmoothingWeights;
@@ -322,10 +328,10 @@ typedef struct PelCurvatureParams {
     uint32_t smoothingPasses; /* each vertex becomes the mean of its triangles' other two vertices; typical 2 */
     float scale;              /* multiplies the result; 1 when mesh and LUT share their unit of length */
     PelCurvatureQuantity quantity;
-    float smoothingRadius;    /* length; standard deviation of a smoothing that does not depend on the mesh's density;
+    float smoothingRadius; /* length; standard deviation of a smoothing that does not depend on the mesh's density;
                                  0: none. The first call with a radius measures the mesh, which blocks, unless
                                  smoothingStages is given */
-    float smoothingCrease;    /* with a radius: angle between normals, radians, across which smoothing falls to 1/e, so
+    float smoothingCrease; /* with a radius: angle between normals, radians, across which smoothing falls to 1/e, so
                                  that sharp features stay; 0: none stay */
     uint32_t smoothingStages; /* with a radius: work spent, about 9 * radius / edge length; 0: chosen from the mesh. Too
                                  few smooth less, never wrongly */
@@ -338,19 +344,20 @@ typedef struct PelCurvatureParams {
  * input, same bits. Sources: FaceWorks 1.0; Rusinkiewicz, Estimating Curvatures, 3DPVT 2004. */
 PEL_API PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* params,
                                   const PelVertexView* positions, const PelVertexView* normals,
-                                  const PelVertexView* curvature, PelMeshReport* report, const PelSubmit* submit);
+                                  const PelVertexView* curvature, PelMeshReport* report,
+                                  const PelSubmit* submit);
 
 /* Unit normals from positions: those of a vertex's triangles, weighted by their angles there; vertices that were welded
  * share one. (0, 0, 0) where no triangle has a plane. `normals`: xyz float32 per vertex, written. Same input, same bits.
  * Source: Thuermer & Wuethrich 1998. */
-PEL_API PelError pelMeshNormals(PelMeshTopology topology, const PelVertexView* positions, const PelVertexView* normals,
-                                const PelSubmit* submit);
+PEL_API PelError pelMeshNormals(PelMeshTopology topology, const PelVertexView* positions,
+                                const PelVertexView* normals, const PelSubmit* submit);
 
 /* Geometric mean over triangles of longest edge / longest UV edge, in length per UV unit. `uvs`: two float32 per vertex.
  * Triangles where either edge is below 1e-6 of the mesh's largest are skipped. Blocks. Errors:
  * PEL_ERROR_INVALID_ARGUMENT when no triangle is left. */
-PEL_API PelError pelMeshUvScale(PelMeshTopology topology, const PelVertexView* positions, const PelVertexView* uvs,
-                                float* uvScale);
+PEL_API PelError pelMeshUvScale(PelMeshTopology topology, const PelVertexView* positions,
+                                const PelVertexView* uvs, float* uvScale);
 
 /* ---- Meshes that move --------------------------------------------------------------------------------------- */
 
@@ -375,9 +382,9 @@ PEL_API void pelLiveMeshRelease(PelLiveMesh live);
  * One asynchronous submission; the first with a smoothing radius measures the mesh, which blocks, unless
  * params.smoothingStages is given, and so does the first with `changed`, which reads the neighbour lists back. Errors:
  * PEL_ERROR_INVALID_ARGUMENT for a range that leaves the mesh. */
-PEL_API PelError pelLiveMeshUpdate(PelLiveMesh live, const PelVertexView* positions, const PelVertexView* normals,
-                                   const PelVertexView* curvature, const PelVertexRange* changed, uint32_t numChanged,
-                                   const PelSubmit* submit);
+PEL_API PelError pelLiveMeshUpdate(PelLiveMesh live, const PelVertexView* positions,
+                                   const PelVertexView* normals, const PelVertexView* curvature,
+                                   const PelVertexRange* changed, uint32_t numChanged, const PelSubmit* submit);
 
 /* What the last update did. A row is a vertex after welding; rows are worked on eight at a time. */
 typedef struct PelLiveMeshStats {
@@ -398,7 +405,7 @@ PEL_API PelError pelLiveMeshGetStats(PelLiveMesh live, PelLiveMeshStats* stats);
 typedef struct PelScreenCurvatureParams {
     uint32_t structSize;
     float scale; /* multiplies the result; 1 when the picture and the LUT share their unit of length */
-    float edge;  /* 0 to 1: sine of the angle between the surface and the step to the next pixel from which the step crosses
+    float edge; /* 0 to 1: sine of the angle between the surface and the step to the next pixel from which the step crosses
                     an edge of depth; 0.5 */
     float inverseViewProjection[16]; /* clip to world, for depth, as in PelCamera */
 } PelScreenCurvatureParams;
@@ -411,8 +418,8 @@ typedef struct PelScreenCurvatureParams {
  * SIGGRAPH 2011. */
 PEL_API PelError pelScreenCurvature(PelDevice device, const PelScreenCurvatureParams* params,
                                     const PelImageDesc* normals, const PelImageDesc* positions,
-                                    const PelImageDesc* depth, const PelImageDesc* ids, const PelImageDesc* curvature,
-                                    const PelSubmit* submit);
+                                    const PelImageDesc* depth, const PelImageDesc* ids,
+                                    const PelImageDesc* curvature, const PelSubmit* submit);
 
 /* ---- Diffusion profiles ------------------------------------------------------------------------------------- */
 
@@ -435,8 +442,8 @@ typedef struct PelGaussian {
 
 /* The fits of s(A) in Christensen and Burley 2015, by what the length given is and how light enters. */
 typedef enum PelBurleyFit {
-    PEL_BURLEY_SEARCHLIGHT = 0,           /* eq. 5: volume mean free path, perpendicular beam */
-    PEL_BURLEY_DIFFUSE_TRANSMISSION = 1,  /* eq. 6: volume mean free path, diffuse transmission; the usual one */
+    PEL_BURLEY_SEARCHLIGHT = 0,          /* eq. 5: volume mean free path, perpendicular beam */
+    PEL_BURLEY_DIFFUSE_TRANSMISSION = 1, /* eq. 6: volume mean free path, diffuse transmission; the usual one */
     PEL_BURLEY_DIFFUSE_MEAN_FREE_PATH = 2 /* eq. 8: diffuse mean free path on the surface, perpendicular beam */
 } PelBurleyFit;
 
@@ -458,8 +465,8 @@ PEL_API PelError pelProfileCreateBurley(const float meanFreePath[3], const float
 PEL_API PelError pelProfileCreateBurleyDistance(const float distance[3], PelProfile* profile);
 /* The classical dipole. absorption and reducedScattering > 0, 1/length; eta > 1, the medium against its outside.
  * Source: Jensen, Marschner, Levoy, Hanrahan, A Practical Model for Subsurface Light Transport, 2001. */
-PEL_API PelError pelProfileCreateDipole(const float absorption[3], const float reducedScattering[3], float eta,
-                                        PelProfile* profile);
+PEL_API PelError pelProfileCreateDipole(const float absorption[3], const float reducedScattering[3],
+                                        float eta, PelProfile* profile);
 /* Measured R: linear between `count` (2 to 4096) rising distances >= 0, constant before the first, 0 after the last.
  * `values`: RGB per distance, >= 0, up to a factor. Tables are integrated from it as it stands, corners and all. */
 PEL_API PelError pelProfileCreateTable(const float* distances, const float* values, uint32_t count,
@@ -475,17 +482,17 @@ PEL_API void pelProfileRelease(PelProfile profile);
 typedef struct PelProfileInfo {
     uint32_t structSize;
     PelProfileKind kind;
-    float radius;         /* length that diffusionRadius refers to: a table for radius rho stretches the profile by rho/radius */
-    float width[3];       /* length, standard deviation of the line spread per channel */
+    float radius; /* length that diffusionRadius refers to: a table for radius rho stretches the profile by rho/radius */
+    float width[3]; /* length, standard deviation of the line spread per channel */
     float normalBlend[3]; /* for PelMaterial.normalBlend: 1 - log8(widest width / width), at least 0. A channel as wide as
                              the widest sees the blurred normal alone, one eight times narrower the shading normal alone;
                              1, 0.28, 0.03 for skin */
-    uint32_t gaussians;   /* terms of the sum that stands for it on the device; 0 for tables */
-    uint32_t singular;    /* 1: R grows like 1/d towards 0, so that the ring forms have no finite integral (burley) */
-    char name[64];        /* as tables and their files carry it; the kind's name unless pelProfileSetName was called */
+    uint32_t gaussians; /* terms of the sum that stands for it on the device; 0 for tables */
+    uint32_t singular; /* 1: R grows like 1/d towards 0, so that the ring forms have no finite integral (burley) */
+    char name[64]; /* as tables and their files carry it; the kind's name unless pelProfileSetName was called */
     float meanFreePath[3]; /* length; 0 where the profile does not know it: all but burley from mean free paths, and dipole */
-    float reach;           /* length within which all but a thousandth of the light of each channel leaves again */
-    char source[256];      /* where the numbers of a material of the library come from; "" for others */
+    float reach;      /* length within which all but a thousandth of the light of each channel leaves again */
+    char source[256]; /* where the numbers of a material of the library come from; "" for others */
 } PelProfileInfo;
 PEL_API PelError pelProfileGetInfo(PelProfile profile, PelProfileInfo* info);
 /* Names a profile, once, before it is used: up to 63 bytes. */
@@ -493,10 +500,11 @@ PEL_API PelError pelProfileSetName(PelProfile profile, const char* name);
 
 /* What comes through a slab that is lit evenly on its far side: the share of R beyond `count` distances >= 0 (length), RGB each.
  * (1/4) exp(-s/b) + (3/4) exp(-s/3b) for Burley's profile, the sum of w exp(-s^2/2v) for Gaussians [Jimenez et al. 2010]. */
-PEL_API PelError pelProfileTransmission(PelProfile profile, const double* distances, uint32_t count, double* transmission);
+PEL_API PelError pelProfileTransmission(PelProfile profile, const double* distances, uint32_t count,
+                                        double* transmission);
 /* R and P at `count` distances > 0 (length): RGB each, either may be NULL. R is energy per area, P energy per length. */
-PEL_API PelError pelProfileEvaluate(PelProfile profile, const double* distances, uint32_t count, double* radial,
-                                    double* lineSpread);
+PEL_API PelError pelProfileEvaluate(PelProfile profile, const double* distances, uint32_t count,
+                                    double* radial, double* lineSpread);
 
 /* ---- Look-up tables ----------------------------------------------------------------------------------------- */
 
@@ -506,11 +514,12 @@ typedef enum PelLutKind { PEL_LUT_CURVATURE = 0, PEL_LUT_SHADOW = 1, PEL_LUT_SPE
 
 /* Over what geometry a curvature LUT is integrated; docs/luts.md says what each is good for. */
 typedef enum PelCurvatureForm {
-    PEL_FORM_ARC = 0,       /* the line spread along the arc of a circle, cut at 10 mm * radius / 2.7 [FaceWorks] */
-    PEL_FORM_RING = 1,      /* the radial profile R (energy per area) of the chord, round a circle, normalised */
+    PEL_FORM_ARC = 0, /* the line spread along the arc of a circle, cut at 10 mm * radius / 2.7 [FaceWorks] */
+    PEL_FORM_RING = 1, /* the radial profile R (energy per area) of the chord, round a circle, normalised */
     PEL_FORM_HALF_RING = 2, /* the same over the half circle about the point */
-    PEL_FORM_SPHERE = 3,    /* the radial profile of the chord, over a whole sphere, normalised: exact for a sphere */
-    PEL_FORM_PENNER_RING = 4 /* the line spread P (energy per length) of the chord, round a circle, normalised: the published
+    PEL_FORM_SPHERE = 3, /* the radial profile of the chord, over a whole sphere, normalised: exact for a sphere */
+    PEL_FORM_PENNER_RING =
+        4 /* the line spread P (energy per length) of the chord, round a circle, normalised: the published
                                 table [Penner 2011], and a cylinder by straight-line distances */
 } PelCurvatureForm;
 
@@ -518,7 +527,7 @@ typedef enum PelCurvatureForm {
  * reads a table itself must too. s is the texel coordinate from -1 to 1 across, t that from 0 to 1 down. */
 typedef enum PelLutAxis {
     PEL_AXIS_LINEAR = 0, /* u = s; curvature linear in t [FaceWorks] */
-    PEL_AXIS_ROOT = 1    /* u = s |s|; the square root of curvature linear in t: dense at the terminator and for flat
+    PEL_AXIS_ROOT = 1 /* u = s |s|; the square root of curvature linear in t: dense at the terminator and for flat
                             surfaces, so that 64x64 texels look up as well as 1024x1024 linear ones */
 } PelLutAxis;
 
@@ -528,8 +537,8 @@ typedef struct PelCurvatureLutDesc {
     uint32_t height; /* texels along curvature from 1/radiusMax to 1/radiusMin; typical 512 */
     PelCurvatureForm form;
     float diffusionRadius; /* length; stretches the profile, whose own radius is in PelProfileInfo; default 0: its own */
-    float radiusMin;       /* length, smallest radius of curvature; typical 1 mm */
-    float radiusMax;       /* length; typical 100 mm */
+    float radiusMin; /* length, smallest radius of curvature; typical 1 mm */
+    float radiusMax; /* length; typical 100 mm */
     PelLutAxis axis;
     PelProfile profile; /* NULL: skin. The table keeps it alive */
 } PelCurvatureLutDesc;
@@ -543,9 +552,9 @@ typedef struct PelShadowLutDesc {
     float widthMax;        /* length; typical 100 mm */
     float sharpening;      /* >= 1: how much narrower the shadow gets than the wide filter; typical 10 */
     PelProfile profile;    /* NULL: skin. The table keeps it alive */
-    uint32_t closedEnds;   /* 1: each row rescaled, so that w = 0 gives 0 and w = 1 gives 1: lit skin then keeps what scatters
+    uint32_t closedEnds; /* 1: each row rescaled, so that w = 0 gives 0 and w = 1 gives 1: lit skin then keeps what scatters
                               further than the filter reaches; 0: as it is [FaceWorks] */
-    PelLutAxis axis;       /* PEL_AXIS_LINEAR: w and 1/width linear [FaceWorks]; PEL_AXIS_ROOT: the position across the edge,
+    PelLutAxis axis; /* PEL_AXIS_LINEAR: w and 1/width linear [FaceWorks]; PEL_AXIS_ROOT: the position across the edge,
                               (sqrt(w) - sqrt(1 - w)) / 2 + 1/2, and the root of 1/width linear, from end to end */
 } PelShadowLutDesc;
 
@@ -581,8 +590,8 @@ typedef struct PelLutInfo {
 PEL_API PelError pelLutGetInfo(PelLut lut, PelLutInfo* info);
 
 typedef enum PelLutEncoding {
-    PEL_LUT_FLOAT = 0,     /* RGB float32, the values themselves */
-    PEL_LUT_HALF = 1,      /* RGB float16, the same */
+    PEL_LUT_FLOAT = 0, /* RGB float32, the values themselves */
+    PEL_LUT_HALF = 1,  /* RGB float16, the same */
     PEL_LUT_FACEWORKS8 = 2 /* RGBA8: curvature sat(2 (D - max(u, 0)) + 1/2); shadow faded at the left edge, then sRGB;
                               specular as it is */
 } PelLutEncoding;
@@ -596,8 +605,8 @@ PEL_API PelError pelLutRead(PelLut lut, PelLutEncoding encoding, void* destinati
  * 0 for other kinds. Waits for the LUT. */
 PEL_API PelError pelLutCountClipped(PelLut lut, uint64_t* clipped);
 /* A LUT from texels that were integrated before: RGB float32, width * height * 12 bytes, described by info. */
-PEL_API PelError pelLutCreateFromTexels(PelDevice device, const PelLutInfo* info, const float* texels, size_t bytes,
-                                        PelLut* lut);
+PEL_API PelError pelLutCreateFromTexels(PelDevice device, const PelLutInfo* info, const float* texels,
+                                        size_t bytes, PelLut* lut);
 
 /* ---- Shading ------------------------------------------------------------------------------------------------ */
 
@@ -605,10 +614,10 @@ typedef struct PelShaderObject* PelShader;
 
 /* The images of a G-buffer. A slot that is not set is a feature that is off. All set images have one size. */
 typedef enum PelImageSlot {
-    PEL_SLOT_RADIANCE = 0,          /* output, RGB or RGBA, float or half: the shaded pixels. Needed */
-    PEL_SLOT_MATERIAL = 1,          /* id per pixel, uint or float; 0 is background. Not set: all are material 1 */
-    PEL_SLOT_POSITION = 2,          /* xyz, world. Needed by thickness, specular and positional lights */
-    PEL_SLOT_DEPTH = 3,             /* device depth, with PelCamera.inverseViewProjection, instead of positions */
+    PEL_SLOT_RADIANCE = 0, /* output, RGB or RGBA, float or half: the shaded pixels. Needed */
+    PEL_SLOT_MATERIAL = 1, /* id per pixel, uint or float; 0 is background. Not set: all are material 1 */
+    PEL_SLOT_POSITION = 2, /* xyz, world. Needed by thickness, specular and positional lights */
+    PEL_SLOT_DEPTH = 3,    /* device depth, with PelCamera.inverseViewProjection, instead of positions */
     PEL_SLOT_NORMAL_GEOMETRIC = 4,  /* Ng, unit. Not set: the shading normal */
     PEL_SLOT_NORMAL_SHADING = 5,    /* N, unit. Needed */
     PEL_SLOT_NORMAL_BLURRED = 6,    /* Nb, unit. Not set: the geometric normal */
@@ -618,19 +627,20 @@ typedef enum PelImageSlot {
     PEL_SLOT_THICKNESS = 10,        /* length, from the host, instead of shadow map taps */
     PEL_SLOT_ROUGHNESS = 11,        /* multiplies PelMaterial.roughness */
     PEL_SLOT_SPECULAR = 12,         /* multiplies PelMaterial.specular */
-    PEL_SLOT_UV = 13,               /* u, v of the normal map: two components, float or half. Needed by normal maps */
-    PEL_SLOT_UV_GRADIENT = 14,      /* du/dx, dv/dx, du/dy, dv/dy per pixel: four components. Not set: only the
+    PEL_SLOT_UV = 13, /* u, v of the normal map: two components, float or half. Needed by normal maps */
+    PEL_SLOT_UV_GRADIENT = 14, /* du/dx, dv/dx, du/dy, dv/dy per pixel: four components. Not set: only the
                                        diffusion radius chooses the level of a normal map */
-    PEL_SLOT_TANGENT = 15,          /* xyz, unit, along u; a fourth component below 0 turns the bitangent round.
+    PEL_SLOT_TANGENT = 15,     /* xyz, unit, along u; a fourth component below 0 turns the bitangent round.
                                        Needed by normal maps */
     /* Outputs beside radiance, which stays what it is: parts of it per pixel of a material, for compositing and debugging.
        Always replaced, never added to; RGB or RGBA, float or half, but for the last. */
     PEL_SLOT_OUT_DIFFUSE = 16,      /* albedo * (scattered light + ambient) */
     PEL_SLOT_OUT_DEEP_SCATTER = 17, /* albedo * light that came through */
     PEL_SLOT_OUT_SPECULAR = 18,
-    PEL_SLOT_OUT_THICKNESS = 19,    /* length, one component: of the thickness image, or along the first light with a shadow
+    PEL_SLOT_OUT_THICKNESS = 19, /* length, one component: of the thickness image, or along the first light with a shadow
                                        map; 0 where neither is */
-    PEL_SLOT_IRRADIANCE = 20,       /* RGB, irradiance / pi: all lights and the ambient, shadows sharp; no specular, no albedo. Read
+    PEL_SLOT_IRRADIANCE =
+        20, /* RGB, irradiance / pi: all lights and the ambient, shadows sharp; no specular, no albedo. Read
                                        by materials that do not scatter by tables (PelMaterial.scattering); not set: made from
                                        lights, PEL_LIGHT_WIDE_SHADOW or shadow maps, and the ambient */
     PEL_SLOT_COUNT = 21
@@ -640,9 +650,11 @@ typedef enum PelImageSlot {
 typedef enum PelLightSlot {
     PEL_LIGHT_WIDE_SHADOW = 0, /* w per pixel, 0 shadow to 1 lit, filtered over PelMaterial.shadowFilterWidth. Not set:
                                   PelLight.shadowFilterTexels makes it from the shadow map */
-    PEL_LIGHT_SHADOW_MAP = 1,  /* depth in [0, 1], any size, one component: thickness by taps, wide shadow. What else it may
+    PEL_LIGHT_SHADOW_MAP =
+        1, /* depth in [0, 1], any size, one component: thickness by taps, wide shadow. What else it may
                                   hold: PelLight.shadowProjection, shadowContent, shadowCascades */
-    PEL_LIGHT_CASCADE_1 = 2,   /* the second of PelLight.shadowCascades, and so on. Maps that share one image (an atlas) are
+    PEL_LIGHT_CASCADE_1 =
+        2, /* the second of PelLight.shadowCascades, and so on. Maps that share one image (an atlas) are
                                   views of it: the same buffer and rowStride, each with its byteOffset */
     PEL_LIGHT_CASCADE_2 = 3,
     PEL_LIGHT_CASCADE_3 = 4,
@@ -657,14 +669,15 @@ typedef enum PelLightType { PEL_LIGHT_DIRECTIONAL = 0, PEL_LIGHT_POINT = 1, PEL_
 typedef enum PelShadowProjection {
     PEL_SHADOW_PARALLEL = 0,
     PEL_SHADOW_PERSPECTIVE = 1,
-    PEL_SHADOW_CUBE = 2,       /* distance along the axis of the face = 1 / (shadowDepthA * z + shadowDepthB) */
+    PEL_SHADOW_CUBE = 2, /* distance along the axis of the face = 1 / (shadowDepthA * z + shadowDepthB) */
     PEL_SHADOW_CUBE_RADIAL = 3 /* distance from the light = shadowDepthRange * z */
 } PelShadowProjection;
 
 /* What the texels of a shadow map hold: z, or what may be filtered beforehand. All lights need the same. */
 typedef enum PelShadowContent {
-    PEL_SHADOW_CONTENT_DEPTH = 0,      /* z */
-    PEL_SHADOW_CONTENT_MOMENTS = 1,    /* means of z and z^2, two components: variance shadow maps [Donnelly, Lauritzen 2006] */
+    PEL_SHADOW_CONTENT_DEPTH = 0, /* z */
+    PEL_SHADOW_CONTENT_MOMENTS =
+        1, /* means of z and z^2, two components: variance shadow maps [Donnelly, Lauritzen 2006] */
     PEL_SHADOW_CONTENT_EXPONENTIAL = 2 /* mean of exp(shadowExponent * z): exponential shadow maps [Annen et al. 2008] */
 } PelShadowContent;
 
@@ -676,33 +689,33 @@ typedef struct PelLight {
     float spotDirection[3]; /* spot: unit vector the way the light looks */
     float spotCosInner;     /* cosine of the angle from spotDirection up to which the spot is fully bright */
     float spotCosOuter;     /* and from which it is dark; between them a smoothstep of the cosine */
-    float color[3];         /* directional: irradiance / pi at normal incidence; point, spot: that at distance 1 */
-    float range;            /* point, spot: no light beyond it; 0: no limit */
+    float color[3]; /* directional: irradiance / pi at normal incidence; point, spot: that at distance 1 */
+    float range;    /* point, spot: no light beyond it; 0: no limit */
     /* The rest describes the shadow map, if PEL_LIGHT_SHADOW_MAP is set. */
     float worldToShadow[16]; /* to homogeneous (u, v, z): u, v in [0, 1] over the map, row 0 at v = 0; z as in the map */
     PelShadowProjection shadowProjection;
     float shadowDepthRange; /* parallel: length that z from 0 to 1 spans; negative when z falls away from the light */
-    float shadowDepthA;     /* perspective: distance along the light = 1 / (A * z + B), from its projection matrix */
+    float shadowDepthA; /* perspective: distance along the light = 1 / (A * z + B), from its projection matrix */
     float shadowDepthB;
     /* The wide shadow made from the shadow map, when PEL_LIGHT_WIDE_SHADOW is not set (docs/shading.md, "Wide shadow"). */
     uint32_t shadowFilterTexels; /* 0: none. Else the most texels across the filter that are read, 4 to 256; of a finer map
                                     every 2nd, 3rd, ... row and column. Typical 48 */
-    float shadowBias;            /* length an occluder must stand before the surface to count; 0.5 mm */
-    float shadowSoftness;        /* times PelMaterial.shadowFilterWidth: how much further before the bias it counts in
+    float shadowBias;     /* length an occluder must stand before the surface to count; 0.5 mm */
+    float shadowSoftness; /* times PelMaterial.shadowFilterWidth: how much further before the bias it counts in
                                     full, so that round bodies do not shade themselves with a hard edge; 0.25 */
-    float shadowConeSlope;       /* the bias grows by this times the sideways distance, so that folds and facets do not
+    float shadowConeSlope; /* the bias grows by this times the sideways distance, so that folds and facets do not
                                     shade themselves; 0.5 */
     /* Cascades: up to four parallel maps of a directional light, the finest first: PEL_LIGHT_SHADOW_MAP with the matrix and range
        above, then PEL_LIGHT_CASCADE_1, 2, 3 with those below. A point takes the finest that holds it with its whole filter;
        outside of all there is neither shadow nor thickness. */
-    uint32_t shadowCascades;       /* 1 to 4 maps; 0: one map that is no cascade */
-    float cascadeToShadow[3][16];  /* worldToShadow of PEL_LIGHT_CASCADE_1, 2, 3 */
-    float cascadeDepthRange[3];    /* shadowDepthRange of those */
+    uint32_t shadowCascades;      /* 1 to 4 maps; 0: one map that is no cascade */
+    float cascadeToShadow[3][16]; /* worldToShadow of PEL_LIGHT_CASCADE_1, 2, 3 */
+    float cascadeDepthRange[3];   /* shadowDepthRange of those */
     PelShadowContent shadowContent;
-    float shadowExponent;     /* PEL_SHADOW_CONTENT_EXPONENTIAL: c, of the sign that lets c * z grow away from the light; 80
+    float shadowExponent; /* PEL_SHADOW_CONTENT_EXPONENTIAL: c, of the sign that lets c * z grow away from the light; 80
                                  for float32, 10 for half */
     float shadowMinDeviation; /* PEL_SHADOW_CONTENT_MOMENTS: length, least standard deviation of depths; 0.25 mm */
-    float shadowBleeding;     /* PEL_SHADOW_CONTENT_MOMENTS: 0 to below 1, share of light below which it is dark, for lights
+    float shadowBleeding; /* PEL_SHADOW_CONTENT_MOMENTS: 0 to below 1, share of light below which it is dark, for lights
                                  that shine through overlapping shadows; 0.1 */
 } PelLight;
 
@@ -713,23 +726,23 @@ typedef enum PelSpecularModel {
 
 /* How diffuse light spreads under the surface. A method that this build does not have is an error at commit. */
 typedef enum PelScattering {
-    PEL_SCATTERING_NONE = 0,          /* not at all: Lambert, with a sharp shadow */
+    PEL_SCATTERING_NONE = 0, /* not at all: Lambert, with a sharp shadow */
     PEL_SCATTERING_PREINTEGRATED = 1, /* by the tables, from curvature, blurred normals and wide shadows [Penner 2011] */
-    PEL_SCATTERING_SEPARABLE = 2,     /* two filters across the screen, from irradiance per pixel [Jimenez et al. 2015] */
-    PEL_SCATTERING_SCREEN = 3,        /* the profile summed over the screen, from irradiance per pixel */
-    PEL_SCATTERING_LIGHT = 4,         /* the profile summed over the light's shadow map */
-    PEL_SCATTERING_TEXTURE = 5,       /* irradiance in texture space [d'Eon, Luebke 2007] */
-    PEL_SCATTERING_AUTO = 6           /* what the inputs allow, with the least work for PelShaderOptions.targetError */
+    PEL_SCATTERING_SEPARABLE = 2, /* two filters across the screen, from irradiance per pixel [Jimenez et al. 2015] */
+    PEL_SCATTERING_SCREEN = 3,  /* the profile summed over the screen, from irradiance per pixel */
+    PEL_SCATTERING_LIGHT = 4,   /* the profile summed over the light's shadow map */
+    PEL_SCATTERING_TEXTURE = 5, /* irradiance in texture space [d'Eon, Luebke 2007] */
+    PEL_SCATTERING_AUTO = 6 /* what the inputs allow, with the least work for PelShaderOptions.targetError */
 } PelScattering;
 
 typedef struct PelMaterial {
     uint32_t structSize;
-    float albedo[3];       /* used when PEL_SLOT_ALBEDO is not set */
+    float albedo[3]; /* used when PEL_SLOT_ALBEDO is not set */
     float diffusionRadius; /* length; default 0: that of the curvature LUT, else of the shadow LUT, else skin's 2.7 mm.
                               Where it differs from a LUT's, look-ups are rescaled */
-    float normalBlend[3];  /* how far the blurred normal replaces the shading normal, per channel: the channel that scatters
+    float normalBlend[3]; /* how far the blurred normal replaces the shading normal, per channel: the channel that scatters
                               widest sees the blurred normal only. Default -1: the profile's; without one 1, 0.3, 0 */
-    float shadowFilterWidth;       /* length: penumbra of the wide shadow where the surface faces the light. Default 0: three
+    float shadowFilterWidth; /* length: penumbra of the wide shadow where the surface faces the light. Default 0: three
                                       times the profile's largest width; without a profile 8 mm */
     float deepScatterColor[3];     /* 0: no deep scatter */
     float deepScatterRadius;       /* length, sigma of the transmission through thickness; 6 mm */
@@ -739,23 +752,23 @@ typedef struct PelMaterial {
     float specular;                /* rho_s; 0: no specular */
     float roughness;               /* m of Beckmann; 0.3 */
     float f0;                      /* reflectance at normal incidence; 0.028 */
-    float uvScale;                 /* length per unit of u or v on the surface, as pelMeshUvScale gives it: which level of
+    float uvScale; /* length per unit of u or v on the surface, as pelMeshUvScale gives it: which level of
                                       the normal map is blurred over diffusionRadius; 1 */
     PelSpecularModel specularModel;
-    float roughness2;              /* of the second lobe of GGX; multiplied by the roughness image too; 0.15 */
-    float lobeMix;                 /* its share, 0 to 1; 0.15 */
-    float deepScatterAmbient;      /* share of ambient light that comes through from behind: times deepScatterColor and the
+    float roughness2;         /* of the second lobe of GGX; multiplied by the roughness image too; 0.15 */
+    float lobeMix;            /* its share, 0 to 1; 0.15 */
+    float deepScatterAmbient; /* share of ambient light that comes through from behind: times deepScatterColor and the
                                       irradiance on -Nb. Needs PEL_SLOT_THICKNESS, measured along the
                                       inward normal: off without it, also with shadow maps; 0 */
-    PelScattering scattering;      /* PEL_SCATTERING_PREINTEGRATED. All but it take shadows from maps sharp: compared about a
+    PelScattering scattering; /* PEL_SCATTERING_PREINTEGRATED. All but it take shadows from maps sharp: compared about a
                                       texel wide, whatever the filter's fields of PelLight say */
-    PelProfile profile;            /* in mm; the shader keeps it alive. Everything left to defaults follows from it: both tables
+    PelProfile profile; /* in mm; the shader keeps it alive. Everything left to defaults follows from it: both tables
                                       (made, and kept for the device), widths, normal blend, transmission. NULL: none */
-    float transmission;            /* share of the light that the profile lets through thin parts (pelProfileTransmission of the
+    float transmission; /* share of the light that the profile lets through thin parts (pelProfileTransmission of the
                                       thickness along the light, times max(-Ng.L, 0)): the larger of it and the table's dark
                                       side counts. Needs a profile, and a thickness image or a shadow map with thicknessTaps;
                                       a deepScatterColor stands in its place; 1 */
-    float curvatureGain;           /* how much more a body of curvature c reflects than a half-space of the same medium: direct
+    float curvatureGain; /* how much more a body of curvature c reflects than a half-space of the same medium: direct
                                       light times 1 + curvatureGain * 1.38 * meanFreePath * c. Needs a profile that knows its
                                       mean free path; 0 */
 } PelMaterial;
@@ -784,16 +797,16 @@ typedef enum PelFeature {
     PEL_FEATURE_DEEP_SCATTER = 1 << 4,   /* deepScatterColor, and thickness from an image or taps */
     PEL_FEATURE_THICKNESS_TAPS = 1 << 5, /* deep scatter with a shadow map */
     PEL_FEATURE_SPECULAR = 1 << 6,
-    PEL_FEATURE_BLUR_NORMALS = 1 << 7, /* PelShaderOptions.blurNormals, and no blurred normal image */
-    PEL_FEATURE_NORMAL_MAP = 1 << 8,   /* blurred normals from the normal map of a material */
-    PEL_FEATURE_FILTER_SHADOW = 1 << 9, /* a wide shadow made from a shadow map */
-    PEL_FEATURE_GGX = 1 << 10,          /* specular with PEL_SPECULAR_GGX */
+    PEL_FEATURE_BLUR_NORMALS = 1 << 7,     /* PelShaderOptions.blurNormals, and no blurred normal image */
+    PEL_FEATURE_NORMAL_MAP = 1 << 8,       /* blurred normals from the normal map of a material */
+    PEL_FEATURE_FILTER_SHADOW = 1 << 9,    /* a wide shadow made from a shadow map */
+    PEL_FEATURE_GGX = 1 << 10,             /* specular with PEL_SPECULAR_GGX */
     PEL_FEATURE_AMBIENT_SCATTER = 1 << 11, /* deepScatterAmbient, ambient light and a thickness image */
-    PEL_FEATURE_OUTPUTS = 1 << 12,      /* an output beside radiance */
-    PEL_FEATURE_AMBIENT_CUBE = 1 << 13, /* ambient light from a cube map */
-    PEL_FEATURE_IRRADIANCE = 1 << 14,   /* a material whose diffuse light comes from irradiance per pixel */
+    PEL_FEATURE_OUTPUTS = 1 << 12,         /* an output beside radiance */
+    PEL_FEATURE_AMBIENT_CUBE = 1 << 13,    /* ambient light from a cube map */
+    PEL_FEATURE_IRRADIANCE = 1 << 14, /* a material whose diffuse light comes from irradiance per pixel */
     PEL_FEATURE_MAKE_IRRADIANCE = 1 << 15, /* which is made here: there is no PEL_SLOT_IRRADIANCE */
-    PEL_FEATURE_TRANSMISSION = 1 << 23, /* PelMaterial.transmission, and thickness from an image or taps */
+    PEL_FEATURE_TRANSMISSION = 1 << 23,    /* PelMaterial.transmission, and thickness from an image or taps */
     PEL_FEATURE_SHADOW_CUBE = 1 << 24,     /* a shadow map of a cube, for thickness or a wide shadow */
     PEL_FEATURE_SHADOW_CASCADES = 1 << 25, /* cascades, likewise */
     PEL_FEATURE_SHADOW_EXPONENTIAL = 1 << 26, /* PEL_SHADOW_CONTENT_EXPONENTIAL, likewise */
@@ -806,23 +819,23 @@ typedef struct PelShaderStats {
     uint32_t features;      /* PelFeature bits, derived at commit */
     uint64_t programsBuilt; /* total */
     uint64_t launches;
-    uint64_t scratchBytes;    /* device memory held beside the caller's images */
-    uint64_t bytesUploaded;   /* constants and tables sent since the execution before */
+    uint64_t scratchBytes;  /* device memory held beside the caller's images */
+    uint64_t bytesUploaded; /* constants and tables sent since the execution before */
     uint64_t tilesTotal;
-    uint64_t tilesShaded;     /* with at least one pixel of a material */
+    uint64_t tilesShaded; /* with at least one pixel of a material */
     uint64_t pixelsTotal;
-    uint64_t pixelsShaded;    /* of a material. This and pixelsInvalid are always counted, the others of pixels and texels
+    uint64_t pixelsShaded; /* of a material. This and pixelsInvalid are always counted, the others of pixels and texels
                                  with PelShaderOptions.countPixels */
     uint64_t pixelsShadowLut; /* that read the shadow LUT, summed over lights, like the next two */
     uint64_t pixelsThickness; /* that took thickness taps */
     uint64_t pixelsSpecular;
-    uint64_t pixelsInvalid;    /* of a material, with NaN or Inf in an input, in the result, or in what it is added to: they get
+    uint64_t pixelsInvalid; /* of a material, with NaN or Inf in an input, in the result, or in what it is added to: they get
                                   PelShaderOptions.invalidColor */
     double deviceMilliseconds; /* kernels; 0 on a queue without profiling */
     uint64_t pixelsWideShadow; /* whose wide shadow was filtered from a shadow map, summed over lights */
-    uint64_t bands;            /* rows of tiles are shaded in this many rounds, to keep to PelShaderOptions.scratchBudget */
-    uint64_t variants;         /* of the shading kernel, each with a tile list of its own */
-    uint64_t tilesPartial;     /* shaded by a variant with fewer features than the shader has */
+    uint64_t bands; /* rows of tiles are shaded in this many rounds, to keep to PelShaderOptions.scratchBudget */
+    uint64_t variants;     /* of the shading kernel, each with a tile list of its own */
+    uint64_t tilesPartial; /* shaded by a variant with fewer features than the shader has */
     uint64_t pixelsShadowTexels; /* of those, whose filter read texels: of the others the bounds of the map's blocks said that they
                                     are lit or in shadow */
     uint64_t pixelsIrradiance;      /* whose irradiance was made */
@@ -831,27 +844,28 @@ typedef struct PelShaderStats {
 
 /* How the shading kernel finds its tiles. The same bits come out of each. */
 typedef enum PelTileLists {
-    PEL_TILES_ONE_LIST = 0,    /* one list of all tiles with a material */
-    PEL_TILES_PER_VARIANT = 1, /* a list per variant: tiles whose materials need less are shaded by a kernel that has less.
+    PEL_TILES_ONE_LIST = 0, /* one list of all tiles with a material */
+    PEL_TILES_PER_VARIANT =
+        1, /* a list per variant: tiles whose materials need less are shaded by a kernel that has less.
                                   Faster where nearly all tiles do (docs/shading.md, "Tiles") */
-    PEL_TILES_NO_LIST = 2      /* every tile is visited, and left again where it has no material; for measurements */
+    PEL_TILES_NO_LIST = 2 /* every tile is visited, and left again where it has no material; for measurements */
 } PelTileLists;
 
 typedef struct PelShaderOptions {
     uint32_t structSize;
-    uint32_t accumulate;      /* 1: radiance is added to the output image; 0: it replaces pixels that have a material */
+    uint32_t accumulate; /* 1: radiance is added to the output image; 0: it replaces pixels that have a material */
     uint32_t disableSkipping; /* 1: shade every tile and evaluate every term; the same bits come out, for tests */
     uint32_t countPixels;     /* 1: fill all pixel counters of PelShaderStats, at some cost */
-    float invalidColor[3];    /* radiance of a pixel with a NaN or Inf input; default 0 */
-    uint32_t blurNormals;     /* 1: without PEL_SLOT_NORMAL_BLURRED, blurred normals are shading normals blurred on screen
+    float invalidColor[3]; /* radiance of a pixel with a NaN or Inf input; default 0 */
+    uint32_t blurNormals; /* 1: without PEL_SLOT_NORMAL_BLURRED, blurred normals are shading normals blurred on screen
                                  over PelMaterial.diffusionRadius; needs positions or depth */
-    uint32_t rotateTaps;      /* 1: the disk of thickness taps is turned by an angle that depends on the pixel's column and row
+    uint32_t rotateTaps; /* 1: the disk of thickness taps is turned by an angle that depends on the pixel's column and row
                                  alone, so that what few taps miss is noise, not bands (docs/shading.md, "Turned taps") */
-    uint64_t scratchBudget;   /* bytes that images which the passes make (blurred normals, wide shadows) may take: larger
+    uint64_t scratchBudget; /* bytes that images which the passes make (blurred normals, wide shadows) may take: larger
                                  frames are shaded in bands of rows, with the same bits as a result. 0: no limit, and bands
                                  only when memory runs out */
     PelTileLists tileLists;
-    float targetError;        /* of methods that leave out what changes little: how much of white their result may be off, 0 to 1;
+    float targetError; /* of methods that leave out what changes little: how much of white their result may be off, 0 to 1;
                                  0.002 */
     float millimetresPerUnit; /* of positions, > 0: profiles are in mm, every other length in the scene's unit; 1 */
 } PelShaderOptions;
@@ -864,8 +878,8 @@ PEL_API PelError pelShaderSetOptions(PelShader shader, const PelShaderOptions* o
 PEL_API PelError pelShaderSetImage(PelShader shader, PelImageSlot slot, const PelImageDesc* image);
 /* Material `id`, 1 to 255; a NULL material removes it. Either LUT may be NULL: the profile's own then, or, without a profile, no
  * direct scattering, plain shadow. */
-PEL_API PelError pelShaderSetMaterial(PelShader shader, uint32_t id, const PelMaterial* material, PelLut curvatureLut,
-                                      PelLut shadowLut);
+PEL_API PelError pelShaderSetMaterial(PelShader shader, uint32_t id, const PelMaterial* material,
+                                      PelLut curvatureLut, PelLut shadowLut);
 /* The tangent-space normal map of material `id`, which must be set: `levels` images, each half the size of the one before,
  * all in one buffer and of one format with three components (unorm: 2x - 1; float: as they are), repeated beyond [0, 1].
  * Without PEL_SLOT_NORMAL_BLURRED, the blurred normal is read from it: trilinear, at level
@@ -874,7 +888,8 @@ PEL_API PelError pelShaderSetMaterial(PelShader shader, uint32_t id, const PelMa
 PEL_API PelError pelShaderSetNormalMap(PelShader shader, uint32_t id, const PelImageDesc* levels, uint32_t count);
 /* Replaces all lights, 0 to 64 of them; images of lights beyond the count are cleared. */
 PEL_API PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t count);
-PEL_API PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot, const PelImageDesc* image);
+PEL_API PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot,
+                                        const PelImageDesc* image);
 PEL_API PelError pelShaderSetAmbient(PelShader shader, const PelAmbient* ambient);
 /* An irradiance cube map, added to PelAmbient: irradiance / pi (the cosine already convolved in) of the six normals +x, -x, +y,
  * -y, +z, -z and those between. Six square faces in one image, one below the other (height = 6 * width) or side by side (width =
@@ -911,21 +926,21 @@ typedef enum PelIrradianceAt {
 typedef struct PelSurfaceIntegralDesc {
     uint32_t structSize;
     uint32_t numVertices;
-    const float* positions;   /* xyz per vertex, units of positions */
-    const uint32_t* indices;  /* numIndices, three per triangle; either order */
+    const float* positions;  /* xyz per vertex, units of positions */
+    const uint32_t* indices; /* numIndices, three per triangle; either order */
     uint64_t numIndices;
-    const float* irradiance;  /* RGB, 0 or more, visibility in it: pi times the radiance of a white Lambertian surface, or
+    const float* irradiance; /* RGB, 0 or more, visibility in it: pi times the radiance of a white Lambertian surface, or
                                  whatever the result is to be in */
     PelIrradianceAt irradianceAt;
     PelProfile profile;       /* NULL: skin */
     float diffusionRadius;    /* unit of the profile, millimetres for skin; 0: the profile's own */
     float millimetresPerUnit; /* units of the profile per unit of positions: 10 for a mesh in centimetres; 1 */
-    float cut[3];             /* unit of the profile; from this distance on R is 0, and what is left of it is scaled to 1 on a
+    float cut[3]; /* unit of the profile; from this distance on R is 0, and what is left of it is scaled to 1 on a
                                  plane; per channel; 0: R as it is */
-    float tolerance;          /* error of the hierarchy, part of the largest irradiance, 1e-7 to 1; 1e-3, which in practice
+    float tolerance; /* error of the hierarchy, part of the largest irradiance, 1e-7 to 1; 1e-3, which in practice
                                  leaves 1e-5 */
-    PelVertexView points;     /* xyz float32 each, units of positions; on the triangles: a point above them gets less */
-    PelVertexView result;     /* RGB float32 each, written, in units of irradiance; 0 for a point that is not finite */
+    PelVertexView points; /* xyz float32 each, units of positions; on the triangles: a point above them gets less */
+    PelVertexView result; /* RGB float32 each, written, in units of irradiance; 0 for a point that is not finite */
 } PelSurfaceIntegralDesc;
 
 /* Light that leaves a surface after diffusing under it: the sum over all of the surface of R(distance) times irradiance, by
@@ -937,7 +952,8 @@ typedef struct PelSurfaceIntegralDesc {
  * The mesh is sorted on the host before the first point is; blocking calls tell a progress callback of the device how far they
  * are. Same input, same bits. Errors: PEL_ERROR_INVALID_ARGUMENT for numbers that are not finite or negative (the message
  * names the vertex), indices beyond the vertices, points and result of different length. Source: mathematics, section 9. */
-PEL_API PelError pelSurfaceIntegral(PelDevice device, const PelSurfaceIntegralDesc* desc, const PelSubmit* submit);
+PEL_API PelError pelSurfaceIntegral(PelDevice device, const PelSurfaceIntegralDesc* desc,
+                                    const PelSubmit* submit);
 
 /* ---- Programs ahead of their first use ---------------------------------------------------------------------- */
 
@@ -951,8 +967,8 @@ typedef struct PelScatterParams {
     uint32_t structSize;
     float targetError; /* share of white by which 99 % of the pixels may differ from what `everywhere` gives, so that pixels and
                           blocks that change little are left out; below 0.002 it is an aim, not a promise; 0.002 */
-    float white;       /* irradiance that counts as white; 1 */
-    uint32_t everywhere;             /* 1: leave nothing out anywhere; 0 */
+    float white;         /* irradiance that counts as white; 1 */
+    uint32_t everywhere; /* 1: leave nothing out anywhere; 0 */
     float inverseViewProjection[16]; /* clip to world, as in PelCamera. Needed with depth; with positions it tells surface seen at a
                                         grazing angle, and may be all zero; default */
 } PelScatterParams;
@@ -964,9 +980,9 @@ typedef struct PelScatterStats {
     uint64_t pixelsCovered; /* with a material */
     uint64_t pixelsTapped;  /* that were gathered; the others kept their irradiance */
     uint64_t pixelsInvalid; /* NaN or Inf in irradiance or position: kept as they are, and counted by no neighbour */
-    uint64_t tilesCovered;  /* of 16 x 16 pixels */
+    uint64_t tilesCovered; /* of 16 x 16 pixels */
     uint64_t tilesTapped;
-    uint64_t taps;          /* pixels and blocks of pixels that were looked at, modulo 2^32 */
+    uint64_t taps; /* pixels and blocks of pixels that were looked at, modulo 2^32 */
     uint64_t scratchBytes;
     double deviceMilliseconds; /* of devices that measure */
 } PelScatterStats;
@@ -984,8 +1000,9 @@ PEL_API PelError pelScatterSetMaterial(PelScatter scatter, uint32_t id, PelProfi
  * half image of 3 or 4 components, written; may be the irradiance itself. Nothing flows between ids, or over a gap in depth wider
  * than the profile reaches. All images have one size. `params` may be NULL. Sources: d'Eon and Luebke, GPU Gems 3 (the sum);
  * docs/mathematics.md, sections 9 and 10. */
-PEL_API PelError pelScatterExecute(PelScatter scatter, const PelScatterParams* params, const PelImageDesc* irradiance,
-                                   const PelImageDesc* positions, const PelImageDesc* depth, const PelImageDesc* ids,
+PEL_API PelError pelScatterExecute(PelScatter scatter, const PelScatterParams* params,
+                                   const PelImageDesc* irradiance, const PelImageDesc* positions,
+                                   const PelImageDesc* depth, const PelImageDesc* ids,
                                    const PelImageDesc* out, const PelSubmit* submit);
 
 /* Of the last execution; waits for it. */
@@ -993,19 +1010,19 @@ PEL_API PelError pelScatterGetStats(PelScatter scatter, PelScatterStats* stats);
 
 /* Groups of programs that do not depend on a G-buffer; bits of PelPrefill.groups. */
 typedef enum PelProgramGroup {
-    PEL_PROGRAMS_LUTS = 1 << 0,       /* curvature, shadow and specular tables of sums of Gaussians, and their encodings */
+    PEL_PROGRAMS_LUTS = 1 << 0, /* curvature, shadow and specular tables of sums of Gaussians, and their encodings */
     PEL_PROGRAMS_TABLE_LUTS = 1 << 1, /* tables of profiles that are not such sums */
     PEL_PROGRAMS_CURVATURE = 1 << 2   /* of meshes by every estimator, smoothing, UV scale */
 } PelProgramGroup;
 
 typedef struct PelPrefill {
     uint32_t structSize;
-    uint32_t groups;          /* PelProgramGroup bits; 0: none */
+    uint32_t groups; /* PelProgramGroup bits; 0: none */
     const PelShader* shaders; /* numShaders of this device, with images, materials and lights set as for a commit; nothing of
                                  theirs is written, and only the formats and packing of images matter: 16 x 1 pixels stand
                                  for a frame */
     uint32_t numShaders;
-    uint32_t threads;         /* that build at a time; 0: one per core, at most one per program. PoCL builds one by one */
+    uint32_t threads; /* that build at a time; 0: one per core, at most one per program. PoCL builds one by one */
 } PelPrefill;
 
 /* Builds the programs that the described work will need, so that neither the first commit nor the first execution pays for

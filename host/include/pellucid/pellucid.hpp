@@ -162,7 +162,8 @@ class MeshTopology : public Handle<PelMeshTopology, pelMeshTopologyRetain, pelMe
     MeshTopology(const Device& device, const PelMeshTopologyDesc& desc, PelMeshReport* report = nullptr) {
         check(pelMeshTopologyCreate(device.get(), &desc, out(), report));
     }
-    static MeshTopology load(const Device& device, const void* bytes, size_t size, PelMeshReport* report = nullptr) {
+    static MeshTopology load(const Device& device, const void* bytes, size_t size,
+                             PelMeshReport* report = nullptr) {
         MeshTopology topology;
         check(pelMeshTopologyLoad(device.get(), bytes, size, topology.out(), report));
         return topology;
@@ -174,7 +175,8 @@ class MeshTopology : public Handle<PelMeshTopology, pelMeshTopologyRetain, pelMe
         check(pelMeshTopologySave(h_, bytes.data(), &size));
         return bytes;
     }
-    void normals(const PelVertexView& positions, const PelVertexView& result, const PelSubmit* submit = nullptr) const {
+    void normals(const PelVertexView& positions, const PelVertexView& result,
+                 const PelSubmit* submit = nullptr) const {
         check(pelMeshNormals(h_, &positions, &result, submit));
     }
     // With normals made from the positions.
@@ -221,14 +223,16 @@ class LiveMesh : public Handle<PelLiveMesh, pelLiveMeshRetain, pelLiveMeshReleas
 };
 
 // Any of positions, depth and ids may be NULL, but not both of the first two.
-inline void screenCurvature(const Device& device, const PelScreenCurvatureParams& params, const PelImageDesc& normals,
-                            const PelImageDesc* positions, const PelImageDesc* depth, const PelImageDesc* ids,
-                            const PelImageDesc& curvature, const PelSubmit* submit = nullptr) {
+inline void screenCurvature(const Device& device, const PelScreenCurvatureParams& params,
+                            const PelImageDesc& normals, const PelImageDesc* positions,
+                            const PelImageDesc* depth, const PelImageDesc* ids, const PelImageDesc& curvature,
+                            const PelSubmit* submit = nullptr) {
     check(pelScreenCurvature(device.get(), &params, &normals, positions, depth, ids, &curvature, submit));
 }
 
 // RGB per point: pelSurfaceIntegral.
-inline void surfaceIntegral(const Device& device, const PelSurfaceIntegralDesc& desc, const PelSubmit* submit = nullptr) {
+inline void surfaceIntegral(const Device& device, const PelSurfaceIntegralDesc& desc,
+                            const PelSubmit* submit = nullptr) {
     check(pelSurfaceIntegral(device.get(), &desc, submit));
 }
 
@@ -309,10 +313,13 @@ class Scatter : public Handle<PelScatter, pelScatterRetain, pelScatterRelease> {
   public:
     using Handle::Handle;
     explicit Scatter(const Device& device) { check(pelScatterCreate(device.get(), out())); }
-    void setMaterial(uint32_t id, const Profile& profile, float scale = 1) { check(pelScatterSetMaterial(h_, id, profile.get(), scale)); }
+    void setMaterial(uint32_t id, const Profile& profile, float scale = 1) {
+        check(pelScatterSetMaterial(h_, id, profile.get(), scale));
+    }
     // Any of positions, depth and ids may be NULL, but not both of the first two.
-    void execute(const PelScatterParams& params, const PelImageDesc& irradiance, const PelImageDesc* positions, const PelImageDesc* depth,
-                 const PelImageDesc* ids, const PelImageDesc& scattered, const PelSubmit* submit = nullptr) {
+    void execute(const PelScatterParams& params, const PelImageDesc& irradiance,
+                 const PelImageDesc* positions, const PelImageDesc* depth, const PelImageDesc* ids,
+                 const PelImageDesc& scattered, const PelSubmit* submit = nullptr) {
         check(pelScatterExecute(h_, &params, &irradiance, positions, depth, ids, &scattered, submit));
     }
     PelScatterStats stats() const {
@@ -335,8 +342,7 @@ class Lut : public Handle<PelLut, pelLutRetain, pelLutRelease> {
         check(pelSpecularLutCreate(device.get(), &desc, out(), submit));
     }
     Lut(const Device& device, const PelLutInfo& info, const std::vector<float>& texels) {
-        check(
-            pelLutCreateFromTexels(device.get(), &info, texels.data(), texels.size() * sizeof(float), out()));
+        check(pelLutCreateFromTexels(device.get(), &info, texels.data(), texels.size() * sizeof(float), out()));
     }
     PelLutInfo info() const {
         PelLutInfo info = pelLutInfoDefaults();
@@ -414,8 +420,8 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
 
 // Builds programs before they are needed (pelPrefillPrograms): those of the groups (PelProgramGroup bits), and those that the
 // shaders would build at their commit. Returns how many were not there before.
-inline uint32_t prefillPrograms(const Device& device, uint32_t groups, const std::vector<Shader>& shaders = {},
-                                uint32_t threads = 0) {
+inline uint32_t prefillPrograms(const Device& device, uint32_t groups,
+                                const std::vector<Shader>& shaders = {}, uint32_t threads = 0) {
     std::vector<PelShader> handles;
     for (const Shader& shader : shaders) handles.push_back(shader.get());
     PelPrefill work = pelPrefillDefaults();

@@ -4,8 +4,8 @@
 #define PELLUCID_DEFAULTS_H
 #include <string.h>
 
-#define PEL_ZEROED_(Type, value)    \
-    Type value;                     \
+#define PEL_ZEROED_(Type, value)     \
+    Type value;                      \
     memset(&value, 0, sizeof value); \
     value.structSize = (uint32_t)sizeof value
 

@@ -77,9 +77,8 @@ class Check {
                 part.tile = Window{numberAt<uint32_t>(a->value, 0), numberAt<uint32_t>(a->value, 4)};
             } else if (a->name == "compression") {
                 need("compression", 1);
-                constexpr int rows[] = {
-                    1,  1,  1,  16, 32,
-                    16, 32, 32, 32, 256};  // none, RLE, ZIPS, ZIP, PIZ, PXR24, B44(A), DWAA, DWAB
+                constexpr int rows[] = {1,  1,  1,  16, 32, 16,
+                                        32, 32, 32, 256};  // none, RLE, ZIPS, ZIP, PIZ, PXR24, B44(A), DWAA, DWAB
                 const auto method = uint8_t(a->value[0]);
                 if (method >= std::size(rows))
                     damaged("its compression " + std::to_string(method) + " is not known");
@@ -139,10 +138,9 @@ class Check {
         if (taken_ > limit_) {
             throw FileError(path_, std::to_string(part.display.width) + " x " +
                                        std::to_string(part.display.height) + " pixels (" +
-                                       std::to_string(part.data.width) + " x " +
-                                       std::to_string(part.data.height) + " of them stored) of " +
-                                       std::to_string(part.channels) + " channels take " +
-                                       tooLarge(taken_, uint64_t(limit_)));
+                                       std::to_string(part.data.width) + " x " + std::to_string(part.data.height) +
+                                       " of them stored) of " + std::to_string(part.channels) +
+                                       " channels take " + tooLarge(taken_, uint64_t(limit_)));
         }
         constexpr double placeOfChunk = 8;  // bytes in the table before the pixels
         if (chunks * placeOfChunk > double(file_.size()))

@@ -48,8 +48,7 @@ ImageDifference compareImages(std::span<const float> a, std::span<const float> b
             d.mean[c] += e;
             errors[c].push_back(float(std::abs(e)));
         }
-        colors.push_back(
-            float(deltaE2000(labFromLinear({p[0], p[1], p[2]}), labFromLinear({q[0], q[1], q[2]}))));
+        colors.push_back(float(deltaE2000(labFromLinear({p[0], p[1], p[2]}), labFromLinear({q[0], q[1], q[2]}))));
         d.deltaEMean += colors.back();
     }
     d.psnr = std::numeric_limits<double>::infinity();

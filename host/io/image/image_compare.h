@@ -35,8 +35,7 @@ struct SubsetInputs {
     std::span<const float> positions;  // xyz per pixel
     std::span<const float> normals;    // unit xyz per pixel
     std::span<const float> toLight;    // unit xyz per pixel
-    std::span<const float>
-        visible;  // 1 lit, 0 in a cast shadow; anything where N.L <= 0. Empty: no penumbra is known
+    std::span<const float> visible;  // 1 lit, 0 in a cast shadow; anything where N.L <= 0. Empty: no penumbra is known
     std::span<const uint8_t> covered;  // 0: background
     float reach = 1;  // length, 1 mm: how far from the edge of a cast shadow its penumbra goes
 };

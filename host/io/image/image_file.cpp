@@ -95,8 +95,7 @@ std::vector<float> Image::interleaved(std::span<const std::string> names) const 
     return values;
 }
 
-void Image::addInterleaved(std::span<const std::string> names, std::span<const float> values,
-                           ChannelType type) {
+void Image::addInterleaved(std::span<const std::string> names, std::span<const float> values, ChannelType type) {
     if (values.size() != names.size() * pixelCount()) {
         throw std::invalid_argument("addInterleaved: " + std::to_string(values.size()) + " values for " +
                                     std::to_string(names.size()) + " channels of " + std::to_string(width) +

@@ -46,9 +46,8 @@ void readHeader(Image& image, ImageInput& input, int part, bool severalParts, ui
     const ImageSpec spec = input.spec(part);
     if (spec.deep) throw FileError(image.source, "holds deep pixels; flatten it first");
     if (spec.full_width != image.width || spec.full_height != image.height) {
-        throw FileError(image.source, "part " + std::to_string(part) + " is " +
-                                          std::to_string(spec.full_width) + " x " +
-                                          std::to_string(spec.full_height) + " pixels, part 0 is " +
+        throw FileError(image.source, "part " + std::to_string(part) + " is " + std::to_string(spec.full_width) +
+                                          " x " + std::to_string(spec.full_height) + " pixels, part 0 is " +
                                           std::to_string(image.width) + " x " + std::to_string(image.height) +
                                           "; all parts must have one display window");
     }
@@ -105,8 +104,7 @@ Image decodeImage(const std::string& path, std::string bytes, const std::functio
     ImageSpec first, config;
     config.attribute("oiio:UnassociatedAlpha", 1);  // else colours come multiplied by alpha
     if (!input || !input->set_ioproxy(&memory) || !input->open(path, first, config))
-        throw FileError(path,
-                        "is no image that can be read: " + (input ? input->geterror() : OIIO::geterror()));
+        throw FileError(path, "is no image that can be read: " + (input ? input->geterror() : OIIO::geterror()));
     int parts = 0;
     while (input->seek_subimage(parts, 0)) ++parts;
     Image image;

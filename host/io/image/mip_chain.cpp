@@ -19,7 +19,8 @@ MipChain mipChain(int width, int height, std::vector<float> rgb) {
                 for (int j = y0; j < y1; ++j)
                     for (int i = x0; i < x1; ++i)
                         for (int c = 0; c < 3; ++c)
-                            sum[c] += chain.texels[from + 3 * (size_t(j) * size_t(width) + size_t(i)) + size_t(c)];
+                            sum[c] +=
+                                chain.texels[from + 3 * (size_t(j) * size_t(width) + size_t(i)) + size_t(c)];
                 for (double s : sum) chain.texels.push_back(float(s / double((x1 - x0) * (y1 - y0))));
             }
         width = w;

@@ -75,7 +75,8 @@ NpyArray readNpy(const std::string& path) {
     if (there != count * bytes)
         throw FileError(path, "holds " + std::to_string(there) + " bytes of values; its shape needs " +
                                   std::to_string(count * bytes));
-    if (count > inputLimit() / sizeof(float)) throw FileError(path, tooLarge(double(count) * sizeof(float), inputLimit()));
+    if (count > inputLimit() / sizeof(float))
+        throw FileError(path, tooLarge(double(count) * sizeof(float), inputLimit()));
     array.values.resize(count);
     const char* values = file.data() + preamble + length;
     if (bytes == 2) convert<half>(values, array.values);

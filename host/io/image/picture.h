@@ -29,7 +29,9 @@ struct Picture {
 
 // Pixels that write() needs.
 int textWidth(std::string_view text, int scale = 1);
-constexpr int textHeight(int scale = 1) { return 9 * scale; }
+constexpr int textHeight(int scale = 1) {
+    return 9 * scale;
+}
 
 // The mean of factor x factor pixels for each, in linear light; sizes are rounded down, at least 1 pixel.
 Picture shrunk(const Picture& picture, int factor);

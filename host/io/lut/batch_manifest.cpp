@@ -171,8 +171,7 @@ class Expansion {
     }
 
     void addOne(const TomlReader& reader, const Request& r, const std::string& encoding, uint32_t side,
-                const std::string& profileName, const std::string& form, const std::string& axis,
-                float radius) {
+                const std::string& profileName, const std::string& form, const std::string& axis, float radius) {
         BatchEntry entry{pelLutInfoDefaults(), {}, {}, {}, {}, reader.line()};
         entry.info.kind = r.kind;
         entry.encoding = PelLutEncoding(indexOf(reader, "encoding", encoding, encodingNames));

@@ -54,7 +54,7 @@ class BatchRun {
     std::vector<std::atomic<size_t>> madeBy_;
     std::atomic<bool> stopped_{false};
     std::mutex mutex_;
-    std::exception_ptr fatal_;  // guarded, as are the calls of options_.failed
+    std::exception_ptr fatal_;           // guarded, as are the calls of options_.failed
     std::vector<std::jthread> workers_;  // the last member: they use all others
 };
 

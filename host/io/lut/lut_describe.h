@@ -12,7 +12,8 @@
 namespace pellucid::io {
 
 inline constexpr std::string_view lutKindNames[] = {"curvature", "shadow", "specular"};  // PelLutKind
-inline constexpr std::string_view lutFormNames[] = {"arc", "ring", "half-ring", "sphere", "penner-ring"};  // PelCurvatureForm
+inline constexpr std::string_view lutFormNames[] = {"arc", "ring", "half-ring", "sphere",
+                                                    "penner-ring"};     // PelCurvatureForm
 inline constexpr std::string_view lutAxisNames[] = {"linear", "root"};  // PelLutAxis
 inline constexpr int lutFormatVersion = 1;
 

@@ -122,8 +122,9 @@ bool verifyLutExr(std::string_view file, std::string_view key) {
     while (const auto attribute = header.next()) {
         if (attribute->name == keyName) keyFits = attribute->value == key;
         if (attribute->name == sumName && attribute->value.size() == noSum.size())
-            return keyFits && attribute->value == hexDigits(xxHash64(std::string(file).replace(
-                                                      attribute->valueAt, noSum.size(), noSum)));
+            return keyFits &&
+                   attribute->value ==
+                       hexDigits(xxHash64(std::string(file).replace(attribute->valueAt, noSum.size(), noSum)));
     }
     return false;
 }

@@ -166,7 +166,8 @@ void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLut
         same("diffusion_radius", curvature ? c.diffusionRadius : s.diffusionRadius,
              curvature ? askedC.diffusionRadius : askedS.diffusionRadius);
         same("form", lutFormNames[c.form], lutFormNames[askedC.form]);
-        same("axis", lutAxisNames[curvature ? c.axis : s.axis], lutAxisNames[curvature ? askedC.axis : askedS.axis]);
+        same("axis", lutAxisNames[curvature ? c.axis : s.axis],
+             lutAxisNames[curvature ? askedC.axis : askedS.axis]);
         same("closed_ends", s.closedEnds, askedS.closedEnds);
         same("radius_min", c.radiusMin, askedC.radiusMin);
         same("radius_max", c.radiusMax, askedC.radiusMax);
@@ -213,7 +214,8 @@ PelLutInfo lutInfoOf(const Image& image) {
         info.shadow.axis = PEL_AXIS_LINEAR;
         info.shadow.closedEnds = 0;
         if (image.attribute("pellucid:axis"))
-            info.shadow.axis = PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), lutAxisNames));
+            info.shadow.axis =
+                PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), lutAxisNames));
         if (image.attribute("pellucid:closedEnds"))
             info.shadow.closedEnds = uint32_t(need("pellucid:closedEnds", static_cast<int*>(nullptr)));
     }

@@ -10,8 +10,7 @@ namespace {
 constexpr std::string_view kinds[] = {"skin", "gaussians", "burley", "dipole", "table"};  // PelProfileKind
 constexpr std::string_view units[] = {"mm", "cm", "m", "um"};
 constexpr float millimetres[] = {1, 10, 1000, 0.001f};
-constexpr std::string_view fits[] = {"searchlight", "diffuse-transmission",
-                                     "diffuse-mean-free-path"};  // PelBurleyFit
+constexpr std::string_view fits[] = {"searchlight", "diffuse-transmission", "diffuse-mean-free-path"};  // PelBurleyFit
 
 void need(const TomlReader& reader, const char* key, std::string_view kind) {
     if (!reader.has(key))
@@ -43,7 +42,9 @@ Profile gaussians(TomlReader& reader, float unit) {
 Profile burley(TomlReader& reader, float unit) {
     if (reader.has("distance")) {
         for (const char* key : {"mean_free_path", "albedo", "fit"})
-            if (reader.has(key)) reader.fail(key, "cannot stand beside 'distance', which is what it would give; leave one out");
+            if (reader.has(key))
+                reader.fail(key,
+                            "cannot stand beside 'distance', which is what it would give; leave one out");
         float distance[3];
         threeNumbers(reader, "distance", distance, Range::Positive, "burley", unit);
         return Profile::burleyDistance(distance);
@@ -123,7 +124,8 @@ ProfileFile parseProfile(const std::string& file, const std::string& text) {
 }
 
 ProfileFile findProfile(const std::string& nameOrPath) {
-    if (extensionOf(nameOrPath) == "toml") return parseProfile(nameOrPath, readWholeFile(nameOrPath, textLimit));
+    if (extensionOf(nameOrPath) == "toml")
+        return parseProfile(nameOrPath, readWholeFile(nameOrPath, textLimit));
     std::string known;
     for (const std::string& name : Profile::libraryNames()) {
         if (name == nameOrPath) {

@@ -14,8 +14,7 @@ double dot(const double* a, const double* b, size_t n) {
 
 // The least squares over the columns of `free` alone, with weights that add up to 1: the last of them is 1
 // less the others.
-std::vector<double> onFreeColumns(const Columns& a, std::span<const double> b,
-                                  const std::vector<size_t>& free) {
+std::vector<double> onFreeColumns(const Columns& a, std::span<const double> b, const std::vector<size_t>& free) {
     const size_t last = free.size() - 1;
     Columns reduced{a.rows, last, std::vector<double>(a.rows * last)};
     const double* base = a.column(free[last]);

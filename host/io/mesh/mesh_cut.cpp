@@ -76,8 +76,7 @@ void dropUnused(MeshData& mesh) {
     for (uint32_t& v : mesh.triangles) {
         if (place[v] == UINT32_MAX) {
             place[v] = uint32_t(positions.size() / 3);
-            positions.insert(positions.end(), &mesh.positions[3 * size_t(v)],
-                             &mesh.positions[3 * size_t(v)] + 3);
+            positions.insert(positions.end(), &mesh.positions[3 * size_t(v)], &mesh.positions[3 * size_t(v)] + 3);
             normals.insert(normals.end(), &mesh.normals[3 * size_t(v)], &mesh.normals[3 * size_t(v)] + 3);
         }
         v = place[v];
@@ -126,8 +125,7 @@ void cutAndClose(PartedMesh& mesh, const std::string& part, const float (&normal
     mesh.partOf = std::move(partOf);
     std::map<uint32_t, int> ends;
     for (const auto& edge : rim) ++ends[edge[0]], --ends[edge[1]];
-    const bool closed =
-        std::all_of(ends.begin(), ends.end(), [](const auto& end) { return end.second == 0; });
+    const bool closed = std::all_of(ends.begin(), ends.end(), [](const auto& end) { return end.second == 0; });
     if (!rim.empty() && closed) {
         mesh.parts.push_back(cap);
         closeRim(mesh, rim, normal, uint32_t(mesh.parts.size() - 1));

@@ -106,7 +106,8 @@ MeshData decodeMesh(const std::string& path, const std::string& text, const Mesh
     if (extension == "ply") checked = checkPly(path, text);
 
     RawMesh raw = checked.mesh ? std::move(*checked.mesh)
-                               : importWithOpenMesh(path, checked.canonical ? *checked.canonical : text, extension, checked.binary);
+                               : importWithOpenMesh(path, checked.canonical ? *checked.canonical : text,
+                                                    extension, checked.binary);
     checkRawMesh(path, raw);
 
     MeshData mesh;

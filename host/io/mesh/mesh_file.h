@@ -13,8 +13,7 @@ struct MeshData {
     std::vector<float> normals;       // unit xyz per vertex, or empty
     std::vector<float> uvs;           // u, v per vertex, or empty
     std::vector<uint32_t> triangles;  // three indices each; polygons come as fans round their first corner
-    std::vector<uint32_t>
-        splitFrom;  // vertices beyond the file's own, made at UV seams: which one each copies
+    std::vector<uint32_t> splitFrom;  // vertices beyond the file's own, made at UV seams: which one each copies
     std::vector<std::string> warnings;  // what was left out or repaired, one sentence each
     std::string source;                 // the file, for messages
 

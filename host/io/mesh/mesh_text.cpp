@@ -89,7 +89,8 @@ MeshText checkOff(const std::string& path, const std::string& text) {
             // Colours stand before them, in a number of ways.
             const size_t count = scan.words().size();
             if (count < (normals ? 6u : 3u) + 2) scan.fail("the texture coordinates are missing");
-            for (size_t i = count - 2; i < count; ++i) mesh.uvs.push_back(scan.number(i, "texture coordinate"));
+            for (size_t i = count - 2; i < count; ++i)
+                mesh.uvs.push_back(scan.number(i, "texture coordinate"));
         }
     }
     mesh.faceStart.push_back(0);

@@ -14,8 +14,7 @@ struct MeshText {
     size_t faces = 0;             // faces that the file lists
     bool binary = false;          // an STL that is no text
     std::optional<RawMesh> mesh;  // where the look at the text has read it already
-    std::optional<std::string>
-        canonical;  // the same mesh without what OpenMesh cannot read, when there was such a thing
+    std::optional<std::string> canonical;  // the same mesh without what OpenMesh cannot read, when there was such a thing
 };
 
 // Each throws FileError with the line of the first number that is missing, not finite, or an index out of

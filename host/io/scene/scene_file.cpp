@@ -84,8 +84,7 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
             const std::string table = kind == PEL_LUT_CURVATURE ? "curvature_lut" : "shadow_lut";
             throw FileError(scene.source,
                             "material " + std::to_string(m.id) + " asks for the " + table + " '" + name +
-                                "'; there is " +
-                                (list.empty() ? "no [[" + table + "]] table" : "only: " + list),
+                                "'; there is " + (list.empty() ? "no [[" + table + "]] table" : "only: " + list),
                             m.line);
         }
     }

@@ -29,9 +29,9 @@ struct SceneMaterial {
     PelMaterial material = pelMaterialDefaults();
     std::string curvatureLut;  // name of a SceneLut; "": the profile's; without a profile no direct scattering
     std::string shadowLut;     // likewise; "": plain shadow
-    std::string profile;       // a material's name or a profile file: what is left to defaults follows from it; "": none
+    std::string profile;  // a material's name or a profile file: what is left to defaults follows from it; "": none
     ScenePreset preset = ScenePreset::none;
-    std::string normalMap;     // image of tangent-space normals, x, y, z from 0 to 1 as in 8-bit files; "": none
+    std::string normalMap;  // image of tangent-space normals, x, y, z from 0 to 1 as in 8-bit files; "": none
     int line = 0;
 };
 
@@ -48,23 +48,19 @@ struct SceneLight {
     std::string shadowMapFile;     // image of depths seen from the light; "": no thickness from this light
     std::string shadowMapChannel;  // its channel; "": the only one
     std::string secondChannel;     // of second moments; "": none
-    std::array<SceneCascade, 3>
-        cascades;  // PEL_LIGHT_CASCADE_1 to 3, as many as PelLight.shadowCascades needs
+    std::array<SceneCascade, 3> cascades;  // PEL_LIGHT_CASCADE_1 to 3, as many as PelLight.shadowCascades needs
     int line = 0;
 };
 
 struct SceneFile {
-    std::string source;  // the file, for messages
-    std::array<std::vector<std::string>, PEL_SLOT_COUNT>
-        channels;              // of the G-buffer per image slot; empty: slot not set
-    uint32_t blurNormals = 0;  // PelShaderOptions.blurNormals
-    uint32_t rotateTaps = 0;   // PelShaderOptions.rotateTaps
+    std::string source;                                             // the file, for messages
+    std::array<std::vector<std::string>, PEL_SLOT_COUNT> channels;  // of the G-buffer per image slot; empty: slot not set
+    uint32_t blurNormals = 0;                                       // PelShaderOptions.blurNormals
+    uint32_t rotateTaps = 0;                                        // PelShaderOptions.rotateTaps
     float targetError = pelShaderOptionsDefaults().targetError;  // PelShaderOptions.targetError
-    float unitMm = 1;  // PelShaderOptions.millimetresPerUnit
-    std::string
-        ambientCube;  // image of an irradiance cube map, six faces below or beside one another; "": none
-    std::array<std::string, PEL_SLOT_COUNT>
-        outputs;  // EXR files to write per output slot beside radiance; "": none
+    float unitMm = 1;                                            // PelShaderOptions.millimetresPerUnit
+    std::string ambientCube;  // image of an irradiance cube map, six faces below or beside one another; "": none
+    std::array<std::string, PEL_SLOT_COUNT> outputs;  // EXR files to write per output slot beside radiance; "": none
     PelCamera camera = pelCameraDefaults();
     PelAmbient ambient = pelAmbientDefaults();
     std::vector<SceneLight> lights;

@@ -21,9 +21,9 @@ constexpr std::string_view specularModels[] = {PEL_EACH_SPECULAR_MODEL(PELLUCID_
 constexpr std::string_view scatterings[] = {PEL_EACH_SCATTERING(PELLUCID_KEY)};
 #undef PELLUCID_KEY
 constexpr std::string_view cascadeKeys[] = {"cascade_1", "cascade_2", "cascade_3"};
-constexpr std::string_view scenePresets[] = {"none", "faceworks"};                     // ScenePreset
+constexpr std::string_view scenePresets[] = {"none", "faceworks"};  // ScenePreset
 constexpr std::string_view curvatureForms[] = {"arc", "ring", "half-ring", "sphere", "penner-ring"};  // PelCurvatureForm
-constexpr std::string_view lutAxes[] = {"linear", "root"};                             // PelLutAxis
+constexpr std::string_view lutAxes[] = {"linear", "root"};  // PelLutAxis
 
 struct SlotKey {
     PelImageSlot slot;
