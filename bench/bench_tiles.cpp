@@ -1,4 +1,4 @@
-// What lists of tiles save (docs/shading.md, "Tiles"): 1920 x 1080 pixels of which a part has a material, and frames of two
+// What lists of tiles save (docs/guide/shading.md, "Tiles"): 1920 x 1080 pixels of which a part has a material, and frames of two
 // materials, skin with everything and one that is plain, by PelShaderOptions.tileLists.
 #include <benchmark/benchmark.h>
 

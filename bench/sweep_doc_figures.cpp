@@ -1,4 +1,4 @@
-// The figures of docs/luts.md and docs/shading.md that follow from the definitions alone, in double precision
+// The figures of docs/guide/luts.md and docs/guide/shading.md that follow from the definitions alone, in double precision
 // by the oracle: prints the blocks between <!-- figures: NAME --> and <!-- figures end --> there, which bench/doc_figures puts
 // in place and checks. Nothing of a device or of this library's own code is in them.
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Error of every curvature estimator on every surface whose curvature is known, as rows of docs/curvature.md:
+// Error of every curvature estimator on every surface whose curvature is known, as rows of docs/guide/curvature.md:
 // tessellations of about 20,000 vertices, exact normals; "noisy": the irregular one with noise of 2 % of an edge, normals
 // from the mesh, smoothed over three edges, by cotangents and by areas. RMS error of mean curvature in percent of the RMS
 // curvedness of the truth (which does not vanish on a saddle), away from borders; of a plane times its side. Behind the

@@ -3,7 +3,7 @@
     blender -b [FILE.blend] --python render_gbuffer.py -- [MESH] -o DIR [--size WxH] ...
     pellucid shade DIR/gbuffer.exr --scene DIR/scene.toml -o picture.exr
 
-`-- --help` lists the options; docs/blender.md has the steps and the conventions. Debian's Blender 3.4 has no NumPy, so this
+`-- --help` lists the options; docs/guide/blender.md has the steps and the conventions. Debian's Blender 3.4 has no NumPy, so this
 uses none. The .blend file is never written.
 """
 

@@ -167,7 +167,7 @@ void addBatch(CLI::App& app) {
     CLI::App* batch =
         app.add_subcommand("batch", "Make the look-up tables of a manifest that are not there yet");
     auto a = std::make_shared<Arguments>();
-    batch->add_option("manifest", a->manifest, "TOML: [[lut]] and [[grid]] (docs/batch.md)")->required();
+    batch->add_option("manifest", a->manifest, "TOML: [[lut]] and [[grid]] (docs/guide/batch.md)")->required();
     batch->add_option("-o,--output", a->folder, "folder for the files; made if need be")->required();
     batch->add_option("--device", a->devices, "device; several share the work");
     batch->add_option("-j,--jobs", a->jobs, "tables in flight (default: four per core and device)")

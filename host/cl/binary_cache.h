@@ -1,4 +1,4 @@
-// Programs from binaries that earlier processes left on disk (docs/devices.md, "Compiled programs").
+// Programs from binaries that earlier processes left on disk (docs/guide/devices.md, "Compiled programs").
 #pragma once
 #include <optional>
 #include <string>

@@ -10,7 +10,7 @@ namespace pel {
 namespace {
 
 // The wide filter spans three standard deviations of the widest line spread: a narrower one cuts red off, a
-// wider one makes shadows of its own, which narrow channels show most (docs/shading.md, "Materials").
+// wider one makes shadows of its own, which narrow channels show most (docs/guide/shading.md, "Materials").
 constexpr double filterWidths = 3;
 constexpr double reflectionGain = 1.38;  // of a ball, per mean free path times curvature (section 12)
 constexpr float noBlend[3] = {1, 0.3f, 0};

@@ -110,7 +110,7 @@ std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t feature
     std::vector<uint32_t> partial;
     for (const uint32_t needs : needed) {
         const uint32_t left = (features & ~materialFeatures) | needs;
-        // Another variant pays where it spares a term of its own (docs/shading.md, "Tiles").
+        // Another variant pays where it spares a term of its own (docs/guide/shading.md, "Tiles").
         if ((features & ~left) & (PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SPECULAR |
                                   PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_TRANSMISSION))
             partial.push_back(left);

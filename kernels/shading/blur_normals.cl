@@ -1,4 +1,4 @@
-// Blurred normals from shading normals, on screen (docs/shading.md, "Blurred normals"): a separable mean over the surface
+// Blurred normals from shading normals, on screen (docs/guide/shading.md, "Blurred normals"): a separable mean over the surface
 // within the material's diffusion radius, which stops at depth edges and at other materials.
 //
 // Along one axis, first x, then y, the taps k = 1..PEL_BLUR_TAPS to each side lie `step` pixels apart, so that the last one

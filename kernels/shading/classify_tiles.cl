@@ -1,5 +1,5 @@
 // Which tiles hold a pixel of a material, and which variant of the shading kernel they need: compact lists of their numbers
-// (docs/shading.md, "Tiles").
+// (docs/guide/shading.md, "Tiles").
 //
 // Inputs: the material id image, PelShadeFrame.materialMask, PelShadeMaterial.variants. Output: lists of tiles (shared/shade.h),
 // in runs of PEL_CLASSIFY_RUN tiles that stay in order, since neighbours share cache lines and pages; list 0 is left out when

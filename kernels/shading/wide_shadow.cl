@@ -19,7 +19,7 @@
 // Smaller filters would see texels come and go.
 #define PEL_LEAST_TEXELS 2.0f
 // Of sharp shadows: the same cosine, and the tolerance in texels, for light from straight above by what a texel is wide and what the
-// normal may be off (a facet of 6 degrees to the surface). docs/shading.md, "Irradiance per pixel", has what others give.
+// normal may be off (a facet of 6 degrees to the surface). docs/guide/shading.md, "Irradiance per pixel", has what others give.
 #define PEL_SHARP_FLATTEST 0.05f
 #define PEL_SHARP_OFFSET 0.1f
 #define PEL_SHARP_CURVE 0.1f

@@ -1,4 +1,4 @@
-// G-buffers as Blender's Cycles writes them, through `pellucid shade` (docs/blender.md): with scattering off the picture is
+// G-buffers as Blender's Cycles writes them, through `pellucid shade` (docs/guide/blender.md): with scattering off the picture is
 // Blender's Lambert picture; with it on it is nearer to the path-traced one. Pictures: PELLUCID_GBUFFER_DIR.
 #include <cmath>
 #include <cstdlib>

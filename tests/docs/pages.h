@@ -23,7 +23,7 @@ inline std::string contents(const std::filesystem::path& path) {
 inline std::vector<std::filesystem::path> all() {
     std::vector<std::filesystem::path> found = {root / "README.md", root / "CONTRIBUTING.md",
                                                 root / "CHANGELOG.md", root / "bindings/python/README.md"};
-    for (const auto& entry : std::filesystem::directory_iterator(root / "docs"))
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "docs"))
         if (entry.path().extension() == ".md") found.push_back(entry.path());
     return found;
 }

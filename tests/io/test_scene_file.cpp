@@ -16,7 +16,7 @@ class SceneFileTest : public FolderTest {
   protected:
     // The documentation's example, with `from` replaced by `to` if given.
     std::string example(const std::string& from = "", const std::string& to = "") const {
-        const std::string page = read(PELLUCID_SOURCE_DIR "/docs/scene-file.md");
+        const std::string page = read(PELLUCID_SOURCE_DIR "/docs/guide/scene-file.md");
         const size_t begin = page.find("```toml\n") + 8;
         std::string text = page.substr(begin, page.find("```", begin) - begin);
         if (!from.empty()) {
@@ -222,7 +222,7 @@ TEST_F(SceneFileTest, EveryKeyIsDocumented) {
     for (auto& names : scene.channels) names.assign(3, "x");
     scene.luts[1].file.clear();
     writeScene(path("all.toml"), scene);
-    const std::string page = read(PELLUCID_SOURCE_DIR "/docs/scene-file.md");
+    const std::string page = read(PELLUCID_SOURCE_DIR "/docs/guide/scene-file.md");
     std::istringstream lines(read(path("all.toml")));
     size_t keys = 0;
     for (std::string line; std::getline(lines, line);) {

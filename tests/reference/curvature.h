@@ -25,7 +25,7 @@ std::vector<double> edgeCurvature(const Mesh& mesh);
 // values, so that an interior edge counts twice and a border edge once. A vertex in no triangle becomes 0.
 std::vector<double> smoothed(const Mesh& mesh, std::vector<double> values, int passes);
 
-// The heat equation on the surface until a point has spread over a standard deviation of `radius` (docs/curvature.md,
+// The heat equation on the surface until a point has spread over a standard deviation of `radius` (docs/guide/curvature.md,
 // "Smoothing"; kernels/mesh/curvature_diffuse.cl): cotangents over Voronoi areas or, by area, the triangles of an edge over the
 // square of its length. `stages`: what the library may spend, which bounds how fast a vertex evens out.
 // A triangle has no plane at a corner of which the squared sine is at most this.

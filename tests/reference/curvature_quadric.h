@@ -1,4 +1,4 @@
-// The two-ring fit of docs/curvature.md ("The fit, exactly") in double precision.
+// The two-ring fit of docs/guide/curvature.md ("The fit, exactly") in double precision.
 #pragma once
 
 #include "reference/curvature.h"

@@ -1,4 +1,4 @@
-// The images that the shading pass makes itself when its caller has none (docs/shading.md, "Blurred normals", "Wide
+// The images that the shading pass makes itself when its caller has none (docs/guide/shading.md, "Blurred normals", "Wide
 // shadow"): the definitions, in double precision, pixel by pixel.
 #pragma once
 

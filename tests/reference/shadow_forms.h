@@ -1,4 +1,4 @@
-// Shadow maps of other forms than one plain depth map (docs/shading.md, "Forms of shadow map"): the definitions, in double
+// Shadow maps of other forms than one plain depth map (docs/guide/shading.md, "Forms of shadow map"): the definitions, in double
 // precision, texel by texel.
 #pragma once
 

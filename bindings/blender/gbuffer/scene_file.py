@@ -1,4 +1,4 @@
-"""The scene file of `pellucid shade` (docs/scene-file.md)."""
+"""The scene file of `pellucid shade` (docs/guide/scene-file.md)."""
 
 # Lengths of the defaults, in millimetres.
 SKIN = {"diffusion_radius": 2.7, "shadow_filter_width": 8.0, "deep_scatter_radius": 6.0, "deep_scatter_normal_offset": 0.2}

@@ -1,4 +1,4 @@
-"""The recipes of docs/batch.md for Slurm and Kubernetes, as they stand there: with an `sbatch` that starts its jobs on this machine, and
+"""The recipes of docs/guide/batch.md for Slurm and Kubernetes, as they stand there: with an `sbatch` that starts its jobs on this machine, and
 with pods that are processes of it."""
 import contextlib
 import os
@@ -76,7 +76,7 @@ operator.KubeCluster = Pods
 
 def recipe(heading, changes):
     """The block of code under a heading, with the places and sizes of this machine."""
-    code = (ROOT / "docs/batch.md").read_text().split(f"### {heading}", 1)[1].split("```python\n", 1)[1].split("```", 1)[0]
+    code = (ROOT / "docs/guide/batch.md").read_text().split(f"### {heading}", 1)[1].split("```python\n", 1)[1].split("```", 1)[0]
     for old, new in changes.items():
         assert old in code, f"the recipe has no {old}"
         code = code.replace(old, new)

@@ -1,5 +1,5 @@
 // The manifest of `pellucid batch`: TOML that lists look-up tables one by one and as grids. Keys:
-// docs/batch.md.
+// docs/guide/batch.md.
 #pragma once
 #include <map>
 #include <pellucid/pellucid.hpp>

@@ -1,5 +1,5 @@
 // Diffusion profiles as TOML files, and the materials of the library by name. Keys and units:
-// docs/profiles.md.
+// docs/guide/profiles.md.
 #pragma once
 #include <pellucid/pellucid.hpp>
 #include <string>

@@ -1,5 +1,5 @@
 // The scene file of `pellucid shade`: TOML that says what the channels of a G-buffer are, and what shines on
-// them. Every key, with units, is in docs/scene-file.md; the fields are those of pellucid.h.
+// them. Every key, with units, is in docs/guide/scene-file.md; the fields are those of pellucid.h.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,4 +1,4 @@
-"""Batches of look-up tables: the manifests of `pellucid batch` (docs/batch.md), here or on a cluster.
+"""Batches of look-up tables: the manifests of `pellucid batch` (docs/guide/batch.md), here or on a cluster.
 
 `python -m pellucid.batch MANIFEST --out DIR` makes what is missing; `run` does the same from Python. Names, bytes and
 resumability are those of the command, so that either can finish what the other began.

@@ -1,4 +1,4 @@
-"""python -m pellucid.batch MANIFEST --out DIR [--scheduler ADDRESS]: see docs/batch.md. Exit codes as the command's."""
+"""python -m pellucid.batch MANIFEST --out DIR [--scheduler ADDRESS]: see docs/guide/batch.md. Exit codes as the command's."""
 from __future__ import annotations
 
 import argparse
@@ -9,7 +9,7 @@ import sys
 def main() -> int:
     parser = argparse.ArgumentParser("python -m pellucid.batch", description="Make the look-up tables of a manifest that are "
                                      "not there yet, on a Dask cluster or the processes of this machine.")
-    parser.add_argument("manifest", help="TOML: [[lut]] and [[grid]] (docs/batch.md)")
+    parser.add_argument("manifest", help="TOML: [[lut]] and [[grid]] (docs/guide/batch.md)")
     parser.add_argument("--out", "-o", required=True, help="a folder that all workers see, or a URL that fsspec knows")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, such as tcp://host:8786; without it: "
                         "processes of this machine, one per device")
