@@ -29,10 +29,39 @@ struct Body {
     std::string name;
     sample::Mesh mesh;  // mm
     sample::HeadPose pose;
+    sample::Bounds focus = {};  // what a picture shows; empty: all of it
 };
 
 inline Body ball(double radius, int rings) {
     return {"ball", sample::makeSphere(radius, rings, 2 * rings), {}};
+}
+
+// Walls and a floor for a square of (cells + 1)^2 vertices: without them light from below would come through a
+// body that has no thickness.
+inline void closeBelow(sample::Mesh& mesh, int cells, float floor) {
+    const auto top = [&](int k) {  // counter-clockwise round the square, seen from above
+        const int side = k / cells % 4, i = k % cells, n = cells + 1;
+        return uint32_t(side == 0   ? i
+                        : side == 1 ? i * n + cells
+                        : side == 2 ? cells * n + cells - i
+                                    : (cells - i) * n);
+    };
+    const Vec3 outward[] = {{0, -1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};
+    const auto add = [&](uint32_t from, bool low, Vec3 normal) {
+        for (int c = 0; c < 3; ++c)
+            mesh.positions.push_back(low && c == 2 ? floor : mesh.positions[3 * size_t(from) + size_t(c)]);
+        for (double n : {normal.x, normal.y, normal.z}) mesh.normals.push_back(float(n));
+        return uint32_t(mesh.positions.size() / 3 - 1);
+    };
+    for (int k = 0; k < 4 * cells; ++k) {
+        const uint32_t a = top(k), b = top(k + 1);
+        const Vec3 n = outward[k / cells];
+        const uint32_t corners[] = {add(a, true, n), add(b, true, n), add(b, false, n), add(a, false, n)};
+        for (int i : {0, 1, 2, 0, 2, 3}) mesh.triangles.push_back(corners[i]);
+    }
+    const uint32_t a = add(top(0), true, {0, 0, -1}), b = add(top(cells), true, {0, 0, -1}),
+                   c = add(top(2 * cells), true, {0, 0, -1}), d = add(top(3 * cells), true, {0, 0, -1});
+    for (uint32_t v : {a, c, b, a, d, c}) mesh.triangles.push_back(v);
 }
 
 // A square of relief: a monkey saddle with a ridge and a pit in it, curved both ways at every scale down to 1
@@ -58,6 +87,7 @@ inline Body relief(int cells) {
             const uint32_t a = uint32_t(j * (cells + 1) + i), b = a + uint32_t(cells) + 1;
             for (uint32_t v : {a, a + 1, b, b, a + 1, b + 1}) body.mesh.triangles.push_back(v);
         }
+    closeBelow(body.mesh, cells, -12);
     return body;
 }
 
@@ -71,6 +101,22 @@ inline Body head(const std::string& path, const std::string& name, int levels) {
     body.mesh.triangles = parted.mesh.triangles;
     for (uint32_t part : parted.partOf)
         body.mesh.materials.push_back(part == uint32_t(parted.part("skin")) ? 1 : 2);
+    return body;
+}
+
+// The part of a body round one of its vertices, `size` mm a side.
+inline Body closeUp(Body body, const std::string& name, const std::function<double(Vec3)>& foremost, double size) {
+    Vec3 best{};
+    for (size_t v = 0; 3 * v < body.mesh.positions.size(); ++v) {
+        const float* p = &body.mesh.positions[3 * v];
+        const Vec3 at{p[0], p[1], p[2]};
+        if (v == 0 || foremost(at) > foremost(best)) best = at;
+    }
+    const Vec3 half = Vec3{1, 1, 1} * (size / 2);
+    body.focus = sample::Bounds();
+    body.focus.add(best - half);
+    body.focus.add(best + half);
+    body.name += " " + name;
     return body;
 }
 
@@ -129,7 +175,18 @@ inline LitScene make(const Device& device, const Body& body, const SceneRequest&
     sample::GBufferOptions plain;
     plain.detail.enabled = false;
     plain.diffusionRadius = profile.info().radius * request.profileScale / request.unit;
-    s.gbuffer = renderGBuffer(scene, frameHead(scene.bounds(), body.pose, framing, 1), s.width, s.height, plain);
+    sample::Bounds shown = scene.bounds();
+    if (!body.focus.empty()) {
+        shown = sample::Bounds();
+        for (const Vec3& corner : {body.focus.low, body.focus.high}) shown.add(corner * (1 / request.unit));
+    }
+    sample::Camera camera = frameHead(shown, body.pose, framing, 1);
+    for (int i = 0; i < 8; ++i) {  // near and far plane enclose all of it
+        const double depth = dot(scene.bounds().corner(i) - camera.eye, camera.forward());
+        camera.nearPlane = std::max(std::min(camera.nearPlane, depth), 1e-3 * camera.farPlane);
+        camera.farPlane = std::max(camera.farPlane, 1.01 * depth);
+    }
+    s.gbuffer = renderGBuffer(scene, camera, s.width, s.height, plain);
     s.map = renderShadowMap(scene, sample::DirectionalLight{s.toLight}, request.mapSize, 1 / request.unit);
 
     const size_t pixels = size_t(s.width) * s.height;
@@ -199,14 +256,23 @@ inline LitScene make(const Device& device, const Body& body, const SceneRequest&
 using Method = std::function<std::vector<float>(const Device&, const LitScene&, const Profile&,
                                                 double profileScale, double* seconds)>;
 
-// The pre-integrated method with default settings of everything, its wide shadow filtered from the map.
-// `tableSize` 0: the tables that the profile brings; else tables of that size.
-inline std::vector<float> shadePreintegrated(const Device& device, const LitScene& s, const Profile& profile,
-                                             double profileScale, double* seconds, uint32_t tableSize = 0) {
+struct ShadeRequest {
+    PelScattering scattering = PEL_SCATTERING_AUTO;
+    uint32_t tableSize = 0;  // 0: the tables that the profile brings
+    float targetError = pelShaderOptionsDefaults().targetError;
+    bool traced = false;    // irradiance with ray-traced shadows is given
+    bool curvature = true;  // the mesh's is given
+};
+
+// By the shader, all else at its default, shadows from the map.
+inline std::vector<float> shade(const Device& device, const LitScene& s, const Profile& profile,
+                                double profileScale, double* seconds, const ShadeRequest& request) {
+    const uint32_t tableSize = request.tableSize;
     const auto radius = float(profile.info().radius * profileScale / s.unit);
     PelMaterial material = pelMaterialDefaults();
     std::fill(material.albedo, material.albedo + 3, 1.0f);
     material.profile = profile.get();
+    material.scattering = request.scattering;
     if (profileScale != 1) material.diffusionRadius = radius;
     pellucid::Lut curvatureLut, shadowLut;
     if (tableSize) {
@@ -225,6 +291,7 @@ inline std::vector<float> shadePreintegrated(const Device& device, const LitScen
     }
     PelShaderOptions options = pelShaderOptionsDefaults();
     options.millimetresPerUnit = float(s.unit);
+    options.targetError = request.targetError;
     PelLight light = pelLightDefaults();
     const double direction[3] = {s.toLight.x, s.toLight.y, s.toLight.z};
     for (int c = 0; c < 3; ++c) light.toLight[c] = float(direction[c]);
@@ -236,12 +303,13 @@ inline std::vector<float> shadePreintegrated(const Device& device, const LitScen
     shader.set(options);
     const auto w = uint32_t(s.width), h = uint32_t(s.height);
     const Buffer positions(device, s.positions), normals(device, s.normals),
-        curvature(device, s.gbuffer.curvature.data), ids(device, s.gbuffer.material),
-        map(device, s.map.depth), radiance(device, s.positions.size() * sizeof(float));
+        curvature(device, s.gbuffer.curvature.data), ids(device, s.gbuffer.material), map(device, s.map.depth),
+        irradiance(device, s.irradiance), radiance(device, s.positions.size() * sizeof(float));
     shader.set(PEL_SLOT_POSITION, imageDesc(positions, PEL_FORMAT_RGB32F, w, h));
     shader.set(PEL_SLOT_NORMAL_SHADING, imageDesc(normals, PEL_FORMAT_RGB32F, w, h));
     shader.set(PEL_SLOT_NORMAL_GEOMETRIC, imageDesc(normals, PEL_FORMAT_RGB32F, w, h));
-    shader.set(PEL_SLOT_CURVATURE, imageDesc(curvature, PEL_FORMAT_R32F, w, h));
+    if (request.curvature) shader.set(PEL_SLOT_CURVATURE, imageDesc(curvature, PEL_FORMAT_R32F, w, h));
+    if (request.traced) shader.set(PEL_SLOT_IRRADIANCE, imageDesc(irradiance, PEL_FORMAT_RGB32F, w, h));
     shader.set(PEL_SLOT_MATERIAL, imageDesc(ids, PEL_FORMAT_R32_UINT, w, h));
     shader.set(PEL_SLOT_RADIANCE, imageDesc(radiance, PEL_FORMAT_RGB32F, w, h));
     shader.setMaterial(1, material, curvatureLut, shadowLut);
@@ -260,6 +328,15 @@ inline std::vector<float> shadePreintegrated(const Device& device, const LitScen
         *seconds = times[3];
     }
     return radiance.readAll<float>();
+}
+
+// The pre-integrated method, its wide shadow filtered from the map.
+inline std::vector<float> shadePreintegrated(const Device& device, const LitScene& s, const Profile& profile,
+                                             double profileScale, double* seconds, uint32_t tableSize = 0) {
+    ShadeRequest request;
+    request.scattering = PEL_SCATTERING_PREINTEGRATED;
+    request.tableSize = tableSize;
+    return shade(device, s, profile, profileScale, seconds, request);
 }
 
 // Irradiance as it is: no scattering, and shadows traced by ray.

@@ -27,6 +27,25 @@ const Contender contenders[] = {
          return shadePreintegrated(d, s, p, k, t);
      },
      false},
+    {"none",
+     [](const Device& d, const LitScene& s, const Profile& p, double k, double* t) {
+         ShadeRequest request;
+         request.scattering = PEL_SCATTERING_NONE;
+         return shade(d, s, p, k, t, request);
+     },
+     false},
+    {"auto, traced",
+     [](const Device& d, const LitScene& s, const Profile& p, double k, double* t) {
+         ShadeRequest request;
+         request.traced = true;
+         return shade(d, s, p, k, t, request);
+     },
+     false},
+    {"auto",
+     [](const Device& d, const LitScene& s, const Profile& p, double k, double* t) {
+         return shade(d, s, p, k, t, {});
+     },
+     false},
 };
 
 const std::pair<const char*, uint8_t> parts[] = {{"unlit", io::SUBSET_UNLIT},
@@ -102,6 +121,18 @@ TEST(NeverWorse, Relief) {
 }
 TEST(NeverWorse, FemaleHead) {
     holdBody(head(headFile("head_female"), "female", sized(2, 0)), sized(128, 12));
+}
+TEST(NeverWorse, Nose) {
+    const Body whole = head(headFile("head_female"), "female", sized(2, 0));
+    holdBody(closeUp(
+                 whole, "nose", [](Vec3 p) { return p.z - 10 * std::abs(p.x); }, 45),
+             sized(112, 12));
+}
+TEST(NeverWorse, Ear) {
+    const Body whole = head(headFile("head_male"), "male", sized(2, 0));
+    holdBody(closeUp(
+                 whole, "ear", [](Vec3 p) { return p.x; }, 70),
+             sized(112, 12));
 }
 TEST(NeverWorse, MaleHead) {
     holdBody(head(headFile("head_male"), "male", sized(2, 0)), sized(128, 12));
