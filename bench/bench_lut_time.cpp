@@ -60,7 +60,7 @@ double largestError(cl_mem memory, size_t stride, size_t row) {
     return worst;
 }
 
-// Exponentials that curvatureRows evaluates: for each block of rows, in each interval, the Gaussians in
+// Exponentials that curvature_rows evaluates: for each block of rows, in each interval, the Gaussians in
 // reach.
 double exponentialsOfRows(const bench::ArcTable& table, int nodes, int points) {
     constexpr int lanes = bench::Runner::width;
@@ -85,8 +85,8 @@ void ours(benchmark::State& state) {
     const std::string defines =
         "-DPEL_FORM=0 -DPEL_GROUP=1 -DPEL_COLUMNS=256 -DPEL_NODES=" + std::to_string(nodes) +
         " -DPEL_POINTS=" + std::to_string(points);
-    cl_kernel rows = runner().kernel(kernels + "lut/curvature_lut.cl", "curvatureRows", defines);
-    cl_kernel fill = runner().kernel(kernels + "lut/curvature_lut.cl", "curvatureTexels", defines);
+    cl_kernel rows = runner().kernel(kernels + "lut/curvature_lut.cl", "curvature_rows", defines);
+    cl_kernel fill = runner().kernel(kernels + "lut/curvature_lut.cl", "curvature_texels", defines);
     const cl_mem gaussians = runner().upload(table.gaussians),
                  mesh = runner().upload(bench::meshOfNodes(nodes)),
                  columns = runner().upload(bench::columnsOf(nodes)),

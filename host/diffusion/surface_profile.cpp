@@ -45,11 +45,11 @@ Rgb energyBetween(const ProfileShape& shape, const std::vector<double>& knots, d
 }  // namespace
 
 double SurfaceProfile::distance(size_t row) const {
-    return std::exp2(firstLog2 + double(row) / SURFACE_ROWS);
+    return std::exp2(firstLog2 + double(row) / PEL_SURFACE_ROWS);
 }
 
 size_t SurfaceProfile::rowBelow(double at) const {
-    const double row = (std::log2(at) - firstLog2) * SURFACE_ROWS;
+    const double row = (std::log2(at) - firstLog2) * PEL_SURFACE_ROWS;
     return size_t(std::clamp(row, 0.0, double(count() - 1)));
 }
 
@@ -66,8 +66,8 @@ SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
     const Rgb width = shape.width();
     const double middle = std::log2(std::max({width[0], width[1], width[2]}));
     const double first = middle - octavesIn;
-    const int cells = (octavesIn + octavesOut) * SURFACE_ROWS;
-    const auto at = [&](int i) { return std::exp2(first + double(i) / SURFACE_ROWS); };
+    const int cells = (octavesIn + octavesOut) * PEL_SURFACE_ROWS;
+    const auto at = [&](int i) { return std::exp2(first + double(i) / PEL_SURFACE_ROWS); };
     // Within the first distance R is taken for constant times 1/s.
     std::vector<Rgb> enclosed(size_t(cells) + 1);
     for (int i = 0; i < cells; ++i) {
@@ -77,7 +77,7 @@ SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
     Rgb all = enclosed[cells];
     for (int c = 0; c < 3; ++c) {
         if (!(cut[c] > 0)) continue;
-        const int row = int(std::clamp((std::log2(cut[c]) - first) * SURFACE_ROWS, 0.0, double(cells)));
+        const int row = int(std::clamp((std::log2(cut[c]) - first) * PEL_SURFACE_ROWS, 0.0, double(cells)));
         all[c] = enclosed[row][c] + (cut[c] > at(row) ? energyBetween(shape, knots, at(row), cut[c])[c] : 0);
     }
     const char* const names[] = {"red", "green", "blue"};
@@ -94,7 +94,7 @@ SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
         high = std::max(high, end);
     }
     SurfaceProfile table;
-    table.firstLog2 = first + double(low) / SURFACE_ROWS + std::log2(scale);
+    table.firstLog2 = first + double(low) / PEL_SURFACE_ROWS + std::log2(scale);
     table.reach = at(high) * scale;
     for (int c = 0; c < 3; ++c) table.cut[c] = cut[c] * scale;
     // Where R steps or bends, the rule along edges has an error in proportion to the step of s^2 R and the
@@ -133,7 +133,7 @@ SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
         cl_float4 value{}, slope{};
         for (int c = 0; c < 3; ++c) {
             value.s[c] = float(enclosed[i][c] / all[c] * whole);
-            slope.s[c] = float(R[c] * s * s * whole / all[c] * std::numbers::ln2 / SURFACE_ROWS);
+            slope.s[c] = float(R[c] * s * s * whole / all[c] * std::numbers::ln2 / PEL_SURFACE_ROWS);
         }
         table.rows.push_back(value);
         table.rows.push_back(slope);

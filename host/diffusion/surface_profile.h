@@ -11,7 +11,7 @@
 namespace pel {
 
 struct SurfaceProfile {
-    std::vector<cl_float4> rows;  // two per distance, as SURFACE_ROWS says
+    std::vector<cl_float4> rows;  // two per distance, as PEL_SURFACE_ROWS says
     double firstLog2;             // log2 of the first distance
     double reach;                 // length; R is 0 beyond in all channels
     std::array<double, 3> cut;    // length; 0: R falls off by itself

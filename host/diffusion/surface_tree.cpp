@@ -87,7 +87,7 @@ class Builder {
         std::vector<SurfaceTriangle> sorted(order_.size());
         uint32_t next = 0;
         for (SurfaceNode& node : tree_.nodes)
-            if (node.triangle != SURFACE_NONE) {
+            if (node.triangle != PEL_SURFACE_NONE) {
                 sorted[next] = tree_.triangles[node.triangle];
                 node.triangle = next++;
             }
@@ -131,7 +131,7 @@ class Builder {
             set.moments.add(other.moments);
             grow(set, other.low, other.high);
         }
-        finish(tree_.nodes[index], set, end - begin == 1 ? order_[begin] : SURFACE_NONE);
+        finish(tree_.nodes[index], set, end - begin == 1 ? order_[begin] : PEL_SURFACE_NONE);
         return set;
     }
     static void grow(Set& set, const Vec& low, const Vec& high) {

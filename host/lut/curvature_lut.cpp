@@ -78,11 +78,11 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
     const cl::Memory rows = device->allocate(record * desc.height * sizeof(cl_float4));
     const CurvatureParams params = paramsOf(desc, curvatureMin, curvatureMax, terms.size());
 
-    cl::Launch rowLaunch(program, "curvatureRows");
+    cl::Launch rowLaunch(program, "curvature_rows");
     rowLaunch.arg(params).arg(gaussians).arg(nodes).arg(rows);
     device->launch(rowLaunch, {{(desc.height + lanes - 1) / lanes, 1, 1}, {group, 1, 1}});
 
-    cl::Launch texelLaunch(program, "curvatureTexels");
+    cl::Launch texelLaunch(program, "curvature_texels");
     texelLaunch.arg(params).arg(rows).arg(columns).arg(lut->texels());
     const size_t items = (columnWeights.size() + columnsPerItem - 1) / columnsPerItem;
     device->launch(texelLaunch, {{items, desc.height + 1, 1}, {group, 1, 1}});

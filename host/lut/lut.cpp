@@ -8,7 +8,7 @@
 namespace pel {
 namespace {
 
-static_assert(int(PEL_AXIS_LINEAR) == LUT_AXIS_LINEAR && int(PEL_AXIS_ROOT) == LUT_AXIS_ROOT);
+static_assert(int(PEL_AXIS_LINEAR) == PEL_LUT_AXIS_LINEAR && int(PEL_AXIS_ROOT) == PEL_LUT_AXIS_ROOT);
 
 PelProfile profileHandle(const PelLutInfo& info) {
     return info.kind == PEL_LUT_CURVATURE ? info.curvature.profile
@@ -53,7 +53,7 @@ LutLayout layoutOf(const PelLutInfo& info) {
             break;
     }
     layout.rowTexels = layout.width + 1;
-    const bool root = layout.axis == LUT_AXIS_ROOT;
+    const bool root = layout.axis == PEL_LUT_AXIS_ROOT;
     const double first = root ? std::sqrt(1 / longest) : 1 / longest;
     const double last = root ? std::sqrt(1 / shortest) : 1 / shortest;
     // Linear rows have their values in the middle of texels, as FaceWorks has it; root rows reach the ends of

@@ -14,17 +14,17 @@ struct Encoding {
 };
 
 const char* bytesKernel(PelLutKind kind) {
-    return kind == PEL_LUT_CURVATURE ? "encodeCurvatureBytes"
-           : kind == PEL_LUT_SHADOW  ? "encodeShadowBytes"
-                                     : "encodeBytes";
+    return kind == PEL_LUT_CURVATURE ? "encode_curvature_bytes"
+           : kind == PEL_LUT_SHADOW  ? "encode_shadow_bytes"
+                                     : "encode_bytes";
 }
 
 Encoding encodingOf(const Lut& lut, PelLutEncoding encoding) {
     switch (encoding) {
         case PEL_LUT_FLOAT:
-            return {"encodeFloat", 12};
+            return {"encode_float", 12};
         case PEL_LUT_HALF:
-            return {"encodeHalf", 6};
+            return {"encode_half", 6};
         case PEL_LUT_FACEWORKS8:
             return {bytesKernel(lut.info().kind), 4};
     }
@@ -81,7 +81,7 @@ uint64_t countClipped(const Lut& lut) {
     const cl::Memory counter = device.allocate(sizeof count, &count);
     constexpr size_t group = 64;
     cl::Launch launch(device.programs().get("lut/lut_encode.cl", {{"PEL_GROUP", std::to_string(group)}}),
-                      "countClipped");
+                      "count_clipped");
     launch.arg(lut.layout()).arg(lut.texels()).arg(counter);
     device.launch(launch, {{lut.height(), 1, 1}, {group, 1, 1}});
     device.read(counter.get(), 0, sizeof count, &count, true);

@@ -42,7 +42,7 @@ Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
         "lut/shadow_lut.cl",
         {{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
     const cl::Memory gaussians = upload(*device, terms);
-    cl::Launch launch(program, "shadowTexels");
+    cl::Launch launch(program, "shadow_texels");
     launch.arg(params).arg(gaussians).arg(lut->texels());
     const size_t lit = desc.width - desc.width / 2;
     device->launch(launch, {{(lit + columnsPerItem - 1) / columnsPerItem, desc.height + 1, 1}, {group, 1, 1}});

@@ -12,7 +12,7 @@ Ref<Lut> tabulateSpecularLut(Ref<Device> device, const PelSpecularLutDesc& desc)
     Ref<Lut> lut = make<Lut>(device, info);
     constexpr size_t group = 64;
     cl::Launch launch(device->programs().get("lut/specular_lut.cl", {{"PEL_GROUP", std::to_string(group)}}),
-                      "specularTexels");
+                      "specular_texels");
     launch.arg(lut->layout()).arg(lut->texels());
     device->launch(launch, {{desc.width + size_t(1), desc.height + size_t(1), 1}, {group, 1, 1}});
     return lut;

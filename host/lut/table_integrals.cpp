@@ -62,13 +62,13 @@ std::vector<cl_float4> tableTails(const Profile& profile, double end) {
         return P;
     };
     std::vector<double> mesh;
-    for (int i = 0; i <= TAIL_CELLS; ++i) mesh.push_back(end * i / TAIL_CELLS * i / TAIL_CELLS);
+    for (int i = 0; i <= PEL_TAIL_CELLS; ++i) mesh.push_back(end * i / PEL_TAIL_CELLS * i / PEL_TAIL_CELLS);
     const std::vector<double> borders = withKnots(mesh, tableKnots(profile));
 
-    std::vector<cl_float4> tails(size_t(TAIL_CELLS + 1) * TAIL_VALUES);
+    std::vector<cl_float4> tails(size_t(PEL_TAIL_CELLS + 1) * PEL_TAIL_VALUES);
     Rgb mass{}, first{}, second{}, third{};
     size_t border = borders.size() - 1;
-    for (int i = TAIL_CELLS; i >= 0; --i) {
+    for (int i = PEL_TAIL_CELLS; i >= 0; --i) {
         while (borders[border] > mesh[i]) {
             const double b = borders[border], a = borders[--border], h = b - a;
             for (int c = 0; c < 3; ++c) {
@@ -88,12 +88,12 @@ std::vector<cl_float4> tableTails(const Profile& profile, double end) {
                 }
             }
         }
-        cl_float4* out = tails.data() + size_t(i) * TAIL_VALUES;
-        out[TAIL_SPREAD] = float4Of(lineSpread(mesh[i]), 0);
-        out[TAIL_MASS] = float4Of(mass, 0);
-        out[TAIL_FIRST] = float4Of(first, 0);
-        out[TAIL_SECOND] = float4Of(second, 0);
-        out[TAIL_THIRD] = float4Of(third, 0);
+        cl_float4* out = tails.data() + size_t(i) * PEL_TAIL_VALUES;
+        out[PEL_TAIL_SPREAD] = float4Of(lineSpread(mesh[i]), 0);
+        out[PEL_TAIL_MASS] = float4Of(mass, 0);
+        out[PEL_TAIL_FIRST] = float4Of(first, 0);
+        out[PEL_TAIL_SECOND] = float4Of(second, 0);
+        out[PEL_TAIL_THIRD] = float4Of(third, 0);
     }
     return tails;
 }

@@ -15,7 +15,7 @@ std::vector<cl_float4> tableKnots(const Profile& profile);
 double tableEnd(const Profile& profile);
 // Where the table ends.
 double tableReach(const Profile& profile);
-// Within `end`, TAIL_VALUES float4 at each of TAIL_CELLS + 1 distances, as shared/lut_integral.h describes.
+// Within `end`, PEL_TAIL_VALUES float4 at each of PEL_TAIL_CELLS + 1 distances, as shared/lut_integral.h describes.
 std::vector<cl_float4> tableTails(const Profile& profile, double end);
 
 // Points (weight R, G, B; distance) that stand for the table of those knots on a sphere of that diameter, or

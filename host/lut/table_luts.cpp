@@ -101,9 +101,9 @@ void integrateTableCurvature(Lut& lut, double curvatureMin, double curvatureMax)
     const cl::Memory rows = device.allocate(record * part);
     for (params.firstRow = 0; params.firstRow < desc.height; params.firstRow += part) {
         params.rows = std::min(part, desc.height - params.firstRow);
-        const char* name = ring                           ? "tableRingRows"
-                           : desc.form == PEL_FORM_SPHERE ? "tableSphereRows"
-                                                          : "tableArcRows";
+        const char* name = ring                           ? "table_ring_rows"
+                           : desc.form == PEL_FORM_SPHERE ? "table_sphere_rows"
+                                                          : "table_arc_rows";
         cl::Launch rowLaunch(program, name);
         rowLaunch.arg(params).arg(nodes);
         if (desc.form == PEL_FORM_SPHERE) rowLaunch.arg(ofRow);
@@ -113,7 +113,7 @@ void integrateTableCurvature(Lut& lut, double curvatureMin, double curvatureMax)
         else
             device.launch(rowLaunch, {{params.rows, 1, 1}, {group, 1, 1}});
 
-        cl::Launch texelLaunch(program, "tableTexels");
+        cl::Launch texelLaunch(program, "table_texels");
         texelLaunch.arg(params).arg(rows).arg(columns).arg(lut.texels());
         const bool last = params.firstRow + params.rows == desc.height;  // with the copied row
         device.launch(texelLaunch, {{(columnList.size() + columnsPerItem - 1) / columnsPerItem,
@@ -135,7 +135,7 @@ void integrateTableShadow(Lut& lut, double reciprocalMin, double reciprocalMax) 
         "lut/table_shadow_lut.cl",
         {{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
     const cl::Memory tails = upload(device, tableTails(*lut.profile(), end));
-    cl::Launch launch(program, "tableShadowTexels");
+    cl::Launch launch(program, "table_shadow_texels");
     launch.arg(params).arg(tails).arg(lut.texels());
     const size_t lit = desc.width - desc.width / 2;
     device.launch(launch,

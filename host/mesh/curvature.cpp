@@ -91,29 +91,29 @@ uint32_t planesOf(PelCurvatureQuantity quantity) {
 }
 
 uint32_t planeStrideOf(const MeshTopology& topology) {
-    return (topology.slots() + MESH_LANES - 1) / MESH_LANES * MESH_LANES;  // whole slices are written
+    return (topology.slots() + PEL_MESH_LANES - 1) / PEL_MESH_LANES * PEL_MESH_LANES;  // whole slices are written
 }
 
 cl::Defines passDefines(const MeshTopology& topology, const PelCurvatureParams& params, uint32_t stride) {
-    return {{"MESH_MAPPED", topology.mapped() ? "1" : "0"},
-            {"MESH_STRIDE", std::to_string(stride)},
+    return {{"PEL_MESH_MAPPED", topology.mapped() ? "1" : "0"},
+            {"PEL_MESH_STRIDE", std::to_string(stride)},
             {"MESH_PLANES", std::to_string(planesOf(params.quantity))},
-            {"MESH_QUANTITY", std::to_string(params.quantity)},
-            {"MESH_LISTED", "0"},
-            {"MESH_RUNS", haveRuns(topology)},
+            {"PEL_MESH_QUANTITY", std::to_string(params.quantity)},
+            {"PEL_MESH_LISTED", "0"},
+            {"PEL_MESH_RUNS", haveRuns(topology)},
             {"PEL_WIDTH", std::to_string(width(topology.device()))}};
 }
 
 void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params, const SlotData& data,
                        const cl::Memory& planes, const Rows& rows) {
     cl::Defines defines = passDefines(topology, params, data.stride);
-    defines["MESH_LISTED"] = listed(rows);
+    defines["PEL_MESH_LISTED"] = listed(rows);
     const char* kernel = estimatorKernel(params.estimator);
     const bool edge = params.estimator == PEL_CURVATURE_EDGE;
     if (!edge) {  // neither what is stored nor the mapping makes another program of these
-        defines.erase("MESH_MAPPED");
-        defines["MESH_RUNS"] = "0";  // they compute far more than they read
-        defines.erase("MESH_QUANTITY");
+        defines.erase("PEL_MESH_MAPPED");
+        defines["PEL_MESH_RUNS"] = "0";  // they compute far more than they read
+        defines.erase("PEL_MESH_QUANTITY");
     }
     cl::Launch estimate(
         topology.device().programs().get(text("mesh/", edge ? "curvature" : kernel, ".cl"), defines), kernel);

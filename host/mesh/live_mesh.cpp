@@ -114,7 +114,7 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
     const Rows stored = rowsUpTo(farthest, storing);
     if (stored.list) {
         cl::Defines defines = passDefines(topology, params_, data.stride);
-        defines["MESH_LISTED"] = "1";
+        defines["PEL_MESH_LISTED"] = "1";
         cl::Launch store(topology.device().programs().get("mesh/curvature.cl", defines),
                          "curvature_store_listed");
         rowArguments(topology, store, stored);

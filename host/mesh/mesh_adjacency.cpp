@@ -65,7 +65,7 @@ std::vector<uint32_t> breadthFirstNumbers(const MeshAdjacency& adjacency) {
         queue.push_back(first);
         for (; next < queue.size(); ++next)
             for (uint32_t e = adjacency.offsets[queue[next]]; e < adjacency.offsets[queue[next] + 1]; ++e) {
-                const uint32_t neighbour = adjacency.neighbours[e] & MESH_SLOT;
+                const uint32_t neighbour = adjacency.neighbours[e] & PEL_MESH_SLOT;
                 if (numbers[neighbour] != none) continue;
                 numbers[neighbour] = uint32_t(queue.size());
                 queue.push_back(neighbour);
@@ -79,38 +79,38 @@ MeshSlices sliceAdjacency(const MeshAdjacency& adjacency) {
     const uint32_t slots = uint32_t(adjacency.offsets.size() - 1);
     const auto degree = [&](uint32_t slot) { return adjacency.offsets[slot + 1] - adjacency.offsets[slot]; };
     result.slices.push_back(0);
-    for (uint32_t first = 0; first < slots; first += MESH_LANES) {
+    for (uint32_t first = 0; first < slots; first += PEL_MESH_LANES) {
         uint32_t longest = 0;
-        for (uint32_t slot = first; slot < std::min(first + MESH_LANES, slots); ++slot)
+        for (uint32_t slot = first; slot < std::min(first + PEL_MESH_LANES, slots); ++slot)
             longest = std::max(longest, degree(slot));
         if (result.slices.back() > UINT32_MAX - longest)
             fail(PEL_ERROR_UNSUPPORTED, "the neighbour lists of this mesh exceed ", UINT32_MAX,
                  " rows: split it");
         result.slices.push_back(result.slices.back() + longest);
     }
-    result.rows.resize(size_t(result.slices.back()) * MESH_LANES);
-    for (uint32_t first = 0, slice = 0; first < slots; first += MESH_LANES, ++slice)
-        for (uint32_t lane = 0; lane < MESH_LANES; ++lane) {
+    result.rows.resize(size_t(result.slices.back()) * PEL_MESH_LANES);
+    for (uint32_t first = 0, slice = 0; first < slots; first += PEL_MESH_LANES, ++slice)
+        for (uint32_t lane = 0; lane < PEL_MESH_LANES; ++lane) {
             const uint32_t slot = std::min(first + lane, slots - 1);
             const uint32_t entries = first + lane < slots ? degree(slot) : 0;
             const uint32_t* list = adjacency.neighbours.data() + adjacency.offsets[slot];
-            uint32_t* out = result.rows.data() + size_t(result.slices[slice]) * MESH_LANES + lane;
+            uint32_t* out = result.rows.data() + size_t(result.slices[slice]) * PEL_MESH_LANES + lane;
             const uint32_t rows = result.slices[slice + 1] - result.slices[slice];
             for (uint32_t row = 0; row < rows; ++row)
-                out[size_t(row) * MESH_LANES] = row < entries ? list[row] : slot;
+                out[size_t(row) * PEL_MESH_LANES] = row < entries ? list[row] : slot;
         }
     return result;
 }
 
 std::vector<uint32_t> findRuns(const std::vector<uint32_t>& rows) {
-    std::vector<uint32_t> runs(rows.size() / MESH_LANES, MESH_NO_RUN);
+    std::vector<uint32_t> runs(rows.size() / PEL_MESH_LANES, PEL_MESH_NO_RUN);
     size_t found = 0;
     for (size_t r = 0; r < runs.size(); ++r) {
-        const uint32_t* row = rows.data() + r * MESH_LANES;
+        const uint32_t* row = rows.data() + r * PEL_MESH_LANES;
         uint32_t lane = 1;
-        // Flags stand above the slot, and the last slot is below MESH_SLOT: a sum never reaches them.
-        while (lane < MESH_LANES && row[lane] == row[0] + lane) ++lane;
-        if (lane == MESH_LANES) runs[r] = row[0], ++found;
+        // Flags stand above the slot, and the last slot is below PEL_MESH_SLOT: a sum never reaches them.
+        while (lane < PEL_MESH_LANES && row[lane] == row[0] + lane) ++lane;
+        if (lane == PEL_MESH_LANES) runs[r] = row[0], ++found;
     }
     if (found * 2 < runs.size()) runs.clear();
     return runs;

@@ -7,7 +7,7 @@ namespace {
 SlotData gatherRows(MeshTopology& topology, const VertexView& positions, const VertexView& normals,
                     const cl::Memory& memory, const Rows& rows) {
     cl::Defines defines = mapping(topology);
-    defines["MESH_LISTED"] = listed(rows);
+    defines["PEL_MESH_LISTED"] = listed(rows);
     defines["PEL_WIDTH"] = std::to_string(width(topology.device()));  // whether to fetch ahead
     cl::Launch gather(topology.device().programs().get("mesh/mesh_rows.cl", defines), "mesh_rows");
     rowArguments(topology, gather, rows);
@@ -20,9 +20,9 @@ SlotData gatherRows(MeshTopology& topology, const VertexView& positions, const V
 
 cl::Program program(const MeshTopology& topology, uint32_t stride, const Rows& rows) {
     cl::Defines defines = mapping(topology);
-    defines["MESH_STRIDE"] = std::to_string(stride);
-    defines["MESH_LISTED"] = listed(rows);
-    defines["MESH_RUNS"] = haveRuns(topology);
+    defines["PEL_MESH_STRIDE"] = std::to_string(stride);
+    defines["PEL_MESH_LISTED"] = listed(rows);
+    defines["PEL_MESH_RUNS"] = haveRuns(topology);
     defines["PEL_WIDTH"] = std::to_string(width(topology.device()));
     return topology.device().programs().get("mesh/mesh_normals.cl", defines);
 }

@@ -8,12 +8,12 @@
 namespace pel {
 
 inline cl::Range over(size_t items) {
-    return {{items, 1, 1}, {MESH_GROUP, 1, 1}};
+    return {{items, 1, 1}, {PEL_MESH_GROUP, 1, 1}};
 }
 
 // Mesh passes take a slice of slots at a time where wide arithmetic pays, else one slot.
 inline uint32_t width(const Device& device) {
-    return device.info().mathWidth > 1 ? MESH_LANES : 1;
+    return device.info().mathWidth > 1 ? PEL_MESH_LANES : 1;
 }
 
 // The rows (slots) that a pass works on: all of them, or those of the first `slices` slices of a list on the
@@ -34,8 +34,8 @@ inline std::string listed(const Rows& rows) {
 // Launches a pass that takes `lanes` slots per work-item.
 inline void launchRows(const MeshTopology& topology, cl::Launch& launch, const Rows& rows, uint32_t lanes,
                        uint32_t planes = 1) {
-    const uint32_t slots = rows.list ? rows.slices * MESH_LANES : topology.slots();
-    topology.device().launch(launch, {{(slots + lanes - 1) / lanes, planes, 1}, {MESH_GROUP, 1, 1}});
+    const uint32_t slots = rows.list ? rows.slices * PEL_MESH_LANES : topology.slots();
+    topology.device().launch(launch, {{(slots + lanes - 1) / lanes, planes, 1}, {PEL_MESH_GROUP, 1, 1}});
     if (rows.work && slots > 0) ++rows.work->launches, rows.work->rows += slots;
 }
 
@@ -55,7 +55,7 @@ inline std::string haveRuns(const MeshTopology& topology) {
 }
 
 inline cl::Defines mapping(const MeshTopology& topology) {
-    return {{"MESH_MAPPED", topology.mapped() ? "1" : "0"}};
+    return {{"PEL_MESH_MAPPED", topology.mapped() ? "1" : "0"}};
 }
 
 // Positions and normals by slot, both `stride` words apart: the caller's own memory, or rows gathered from

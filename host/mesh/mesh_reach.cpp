@@ -23,7 +23,7 @@ MeshReacher::MeshReacher(const MeshTopology& topology)
       rings_(readBack(topology.device(), topology.rings())),
       slotOf_(readBack(topology.device(), topology.slotOf())),
       slotMarks_(slots_),
-      sliceMarks_((slots_ + MESH_LANES - 1) / MESH_LANES) {}
+      sliceMarks_((slots_ + PEL_MESH_LANES - 1) / PEL_MESH_LANES) {}
 
 size_t MeshReacher::bytes() const {
     return (slices_.size() + rings_.size() + slotOf_.size() + slotMarks_.size() + sliceMarks_.size()) *
@@ -42,7 +42,7 @@ MeshReach MeshReacher::reach(const std::vector<PelVertexRange>& changed, uint32_
     for (uint32_t distance = 0; distance <= farthest; ++distance) {
         const size_t begin = result.slices.size();
         for (uint32_t slot : front)
-            if (take(sliceMarks_, slot / MESH_LANES)) result.slices.push_back(slot / MESH_LANES);
+            if (take(sliceMarks_, slot / PEL_MESH_LANES)) result.slices.push_back(slot / PEL_MESH_LANES);
         // In memory order within a level.
         std::sort(result.slices.begin() + std::ptrdiff_t(begin), result.slices.end());
         if (result.slices.size() * 4 > sliceMarks_.size() * 3) {
@@ -54,8 +54,9 @@ MeshReach MeshReacher::reach(const std::vector<PelVertexRange>& changed, uint32_
         if (distance == farthest) break;
         next.clear();
         for (uint32_t slot : front)
-            for (uint32_t row = slices_[slot / MESH_LANES]; row < slices_[slot / MESH_LANES + 1]; ++row) {
-                const uint32_t other = rings_[size_t(row) * MESH_LANES + slot % MESH_LANES] & MESH_SLOT;
+            for (uint32_t row = slices_[slot / PEL_MESH_LANES]; row < slices_[slot / PEL_MESH_LANES + 1]; ++row) {
+                const uint32_t other =
+                    rings_[size_t(row) * PEL_MESH_LANES + slot % PEL_MESH_LANES] & PEL_MESH_SLOT;
                 if (take(slotMarks_, other)) next.push_back(other);
             }
         front.swap(next);
@@ -64,7 +65,8 @@ MeshReach MeshReacher::reach(const std::vector<PelVertexRange>& changed, uint32_
         std::vector<uint32_t>& place = sliceMarks_;  // of each slice in the list; marks of no round to come
         for (uint32_t i = 0; i < result.upTo[stored]; ++i) place[result.slices[i]] = i;
         result.lanes.resize(result.upTo[stored]);
-        for (uint32_t slot : near) result.lanes[place[slot / MESH_LANES]] |= 1u << (slot % MESH_LANES);
+        for (uint32_t slot : near)
+            result.lanes[place[slot / PEL_MESH_LANES]] |= 1u << (slot % PEL_MESH_LANES);
         result.storedSlots = near.size();
         std::fill(sliceMarks_.begin(), sliceMarks_.end(), 0);
     }

@@ -34,9 +34,9 @@ RingBuilder::Edges RingBuilder::build(uint32_t slot, Corner* corners, uint32_t c
         return edges;
     }
     for (size_t e = begin; e < out.size(); ++e) {
-        if ((out[e] & MESH_SLOT) < slot) continue;
+        if ((out[e] & PEL_MESH_SLOT) < slot) continue;
         ++edges.all;
-        edges.border += (out[e] & MESH_SINGLE) != 0;
+        edges.border += (out[e] & PEL_MESH_SINGLE) != 0;
     }
     return edges;
 }
@@ -68,9 +68,10 @@ bool RingBuilder::buildFan(Corner* corners, uint32_t count, std::vector<uint32_t
         if (next == count) return false;  // two closed fans
         std::swap(corners[a], corners[next]);
     }
-    const uint32_t open = entrances ? MESH_SINGLE : 0;
-    for (uint32_t a = 0; a < count; ++a) out.push_back(corners[a].from | (a == 0 ? MESH_START | open : 0));
-    if (open) out.push_back(corners[count - 1].to | MESH_SINGLE);
+    const uint32_t open = entrances ? PEL_MESH_SINGLE : 0;
+    for (uint32_t a = 0; a < count; ++a)
+        out.push_back(corners[a].from | (a == 0 ? PEL_MESH_START | open : 0));
+    if (open) out.push_back(corners[count - 1].to | PEL_MESH_SINGLE);
     return true;
 }
 
@@ -113,22 +114,22 @@ void RingBuilder::buildTrails(const Corner* corners, uint32_t count, std::vector
 void RingBuilder::walk(Node& start, std::vector<uint32_t>& out) {
     const bool open = start.free % 2;
     const auto emit = [&](Node& n, uint32_t flags) {
-        out.push_back(n.slot | flags | (n.visited ? MESH_REPEAT : 0));
+        out.push_back(n.slot | flags | (n.visited ? PEL_MESH_REPEAT : 0));
         n.visited = true;
     };
-    emit(start, MESH_START | (open ? MESH_SINGLE : 0));
+    emit(start, PEL_MESH_START | (open ? PEL_MESH_SINGLE : 0));
     for (Node* current = &start; current->free > 0;) {
         while (used_[ends_[current->next].triangle]) ++current->next;
         const End& taken = ends_[current->next];
         used_[taken.triangle] = 1;
-        if (taken.backward) out.back() |= MESH_FLIPPED;
+        if (taken.backward) out.back() |= PEL_MESH_FLIPPED;
         --current->free;
         current = &node(taken.other);
         --current->free;
         if (current->free > 0)
             emit(*current, 0);
         else if (open)
-            emit(*current, MESH_SINGLE);
+            emit(*current, PEL_MESH_SINGLE);
     }
 }
 

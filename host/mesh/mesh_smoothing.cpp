@@ -11,10 +11,10 @@ namespace {
 cl::Program program(const MeshTopology& topology, const SlotData& data, const Rows& rows,
                     PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT) {
     return topology.device().programs().get("mesh/curvature_diffuse.cl",
-                                            {{"MESH_STRIDE", std::to_string(data.stride)},
-                                             {"MESH_LISTED", listed(rows)},
+                                            {{"PEL_MESH_STRIDE", std::to_string(data.stride)},
+                                             {"PEL_MESH_LISTED", listed(rows)},
                                              {"DIFFUSE_AREA", std::to_string(weights == PEL_SMOOTHING_AREA)},
-                                             {"MESH_RUNS", haveRuns(topology)},
+                                             {"PEL_MESH_RUNS", haveRuns(topology)},
                                              {"PEL_WIDTH", std::to_string(width(topology.device()))}});
 }
 
@@ -23,7 +23,7 @@ const cl::Memory& makeWeights(MeshTopology& topology, const SlotData& data, PelS
                               float limit, float crease2, const Scratch& scratch, const Rows& rows) {
     const cl::Memory& weights = scratch(MeshTopology::scratchWeights, topology.ringEntries() * sizeof(float));
     const cl::Memory& rates =
-        scratch(MeshTopology::scratchRates, (topology.slots() + MESH_LANES) * sizeof(float));
+        scratch(MeshTopology::scratchRates, (topology.slots() + PEL_MESH_LANES) * sizeof(float));
     cl::Launch launch(program(topology, data, rows, kind), "diffuse_weights");
     ringArguments(topology, launch, rows);
     launch.arg(data.positions.memory).arg(data.positions.layout.offset);
@@ -66,7 +66,7 @@ void smoothUniform(MeshTopology& topology, const cl::Defines& defines, uint32_t 
     for (uint32_t pass = 0; pass < count; ++pass) {
         const Rows here = rows ? rows(pass) : Rows{};
         cl::Defines variant = defines;
-        variant["MESH_LISTED"] = listed(here);
+        variant["PEL_MESH_LISTED"] = listed(here);
         cl::Launch smooth(topology.device().programs().get("mesh/curvature.cl", variant), "curvature_smooth");
         ringArguments(topology, smooth, here);
         smooth.arg(values.planeStride).arg(values.from).arg(values.to);

@@ -9,9 +9,9 @@ namespace {
 void checkDesc(const PelMeshTopologyDesc& desc) {
     if (desc.weld != PEL_WELD_NONE && desc.weld != PEL_WELD_EXACT && desc.weld != PEL_WELD_TOLERANCE)
         invalidArgument("PelMeshTopologyDesc.weld is ", int(desc.weld), ", which is no PelWeld");
-    if (desc.numVertices > MESH_SLOT)
-        fail(PEL_ERROR_UNSUPPORTED, desc.numVertices, " vertices are more than a topology holds (", MESH_SLOT,
-             "): split the mesh");
+    if (desc.numVertices > PEL_MESH_SLOT)
+        fail(PEL_ERROR_UNSUPPORTED, desc.numVertices, " vertices are more than a topology holds (",
+             PEL_MESH_SLOT, "): split the mesh");
     if (desc.numIndices % 3 != 0)
         invalidArgument("PelMeshTopologyDesc.numIndices is ", desc.numIndices,
                         "; three indices make a triangle, ", desc.numIndices % 3, " are left over");

@@ -99,7 +99,7 @@ Ref<MeshTopology> MeshTopology::load(Ref<Device> device, const void* bytes, size
     const auto& [indices, slotOf, memberOffsets, members, slices, rings] = arrays;
     const PelMeshReport& r = header.report;
     const uint32_t slots = r.uniquePositions;
-    check(slots <= r.vertices && r.vertices <= MESH_SLOT, "impossible counts");
+    check(slots <= r.vertices && r.vertices <= PEL_MESH_SLOT, "impossible counts");
     check(indices.size() == size_t(r.triangles) * 3 && below(indices, r.vertices), "wrong indices");
     if (slotOf.empty()) {
         check(slots == r.vertices && memberOffsets.empty() && members.empty(), "a wrong mapping");
@@ -112,10 +112,10 @@ Ref<MeshTopology> MeshTopology::load(Ref<Device> device, const void* bytes, size
         check(std::adjacent_find(memberOffsets.begin(), memberOffsets.end()) == memberOffsets.end(),
               "a wrong mapping");
     }
-    check(slices.size() == (size_t(slots) + MESH_LANES - 1) / MESH_LANES + 1 &&
-              rings.size() % MESH_LANES == 0 && rising(slices, rings.size() / MESH_LANES),
+    check(slices.size() == (size_t(slots) + PEL_MESH_LANES - 1) / PEL_MESH_LANES + 1 &&
+              rings.size() % PEL_MESH_LANES == 0 && rising(slices, rings.size() / PEL_MESH_LANES),
           "wrong neighbour lists");
-    for (uint32_t entry : rings) check((entry & MESH_SLOT) < slots, "wrong neighbours");
+    for (uint32_t entry : rings) check((entry & PEL_MESH_SLOT) < slots, "wrong neighbours");
 
     Ref<MeshTopology> topology = make<MeshTopology>(device);
     topology->report_ = r;

@@ -14,17 +14,17 @@ constexpr float smallestPart = 1e-6f;
 float meshUvScale(MeshTopology& topology, const VertexView& positions, const VertexView& uvs) {
     if (topology.triangles() == 0) invalidArgument("the UV scale of a mesh without triangles was asked for");
     Device& device = topology.device();
-    const cl::Range range{{UV_SCALE_ITEMS, 1, 1}, {MESH_GROUP, 1, 1}};
+    const cl::Range range{{PEL_UV_SCALE_ITEMS, 1, 1}, {PEL_MESH_GROUP, 1, 1}};
     const cl::Program program = device.programs().get("mesh/uv_scale.cl", {});
     const auto lock = topology.lock();
     const cl::Memory& memory =
-        topology.scratch(MeshTopology::scratchReduce, UV_SCALE_ITEMS * sizeof(UvScaleShare));
+        topology.scratch(MeshTopology::scratchReduce, PEL_UV_SCALE_ITEMS * sizeof(UvScaleShare));
 
     cl::Launch largest(program, "uv_scale_largest");
     largest.arg(topology.triangles()).arg(topology.indices());
     largest.arg(positions.memory).arg(positions.layout).arg(uvs.memory).arg(uvs.layout).arg(memory);
     device.launch(largest, range);
-    std::vector<std::array<float, 2>> maxima(UV_SCALE_ITEMS);
+    std::vector<std::array<float, 2>> maxima(PEL_UV_SCALE_ITEMS);
     device.read(memory.get(), 0, maxima.size() * sizeof maxima[0], maxima.data(), true);
     float length2 = 0, uv2 = 0;
     for (const auto& m : maxima) {
@@ -41,7 +41,7 @@ float meshUvScale(MeshTopology& topology, const VertexView& positions, const Ver
     sum.arg(positions.memory).arg(positions.layout).arg(uvs.memory).arg(uvs.layout);
     sum.arg(length2 * smallestPart * smallestPart).arg(uv2 * smallestPart * smallestPart).arg(memory);
     device.launch(sum, range);
-    std::vector<UvScaleShare> shares(UV_SCALE_ITEMS);
+    std::vector<UvScaleShare> shares(PEL_UV_SCALE_ITEMS);
     device.read(memory.get(), 0, shares.size() * sizeof shares[0], shares.data(), true);
     double log2Sum = 0;
     uint64_t triangles = 0;

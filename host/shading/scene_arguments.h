@@ -1,4 +1,4 @@
-// The first arguments of kernels with a Scene: SCENE_ARGUMENTS of lib/shading/scene.clh.
+// The first arguments of kernels with a Scene: SCENE_ARGUMENTS of shading/scene.clh.
 #pragma once
 #include "shading/pass.h"
 

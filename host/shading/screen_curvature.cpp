@@ -69,7 +69,7 @@ void screenCurvature(Device& device, const PelScreenCurvatureParams& params, con
     launch.arg(memory).arg(images.normals.buffer->memory()).arg(where.buffer->memory());
     launch.arg(images.ids ? images.ids.buffer->memory() : cl::Memory()).arg(images.curvature.buffer->memory());
     const size_t across = (frame.width + lanes - 1) / lanes;
-    device.launch(launch, {{across * frame.height, 1, 1}, {SCREEN_GROUP, 1, 1}});
+    device.launch(launch, {{across * frame.height, 1, 1}, {PEL_SCREEN_GROUP, 1, 1}});
 }
 
 }  // namespace pel

@@ -6,7 +6,7 @@ namespace pel {
 
 // The features that each variant has: of the whole shader first, then fewer and fewer.
 std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t features);
-// What kernels with a Scene (lib/shading/scene.clh) are built with: features and the formats of the images
+// What kernels with a Scene (shading/scene.clh) are built with: features and the formats of the images
 // that they read by these.
 cl::Defines sceneDefines(const Device& device, const ShaderState& state, uint32_t features);
 // What makes the program of a variant and its classification: shaders that mean the same have equal keys.

@@ -16,14 +16,14 @@
 #include "shared/surface_integral.h"
 
 // Row and fraction of a distance in the table.
-static inline floatw surface_row(SurfaceSum sum, floatw r) {
-    const floatw row = (log2(r) - sum.firstLog2) * (float)SURFACE_ROWS;
+static inline floatw surfaceRow(SurfaceSum sum, floatw r) {
+    const floatw row = (log2(r) - sum.firstLog2) * (float)PEL_SURFACE_ROWS;
     return fmin(fmax(row, (floatw)(0.0f)), (floatw)((float)(sum.rows - 1) - 0.0078125f));
 }
 
 // M(r). Below the first row it is taken to rise linearly. Where R ends abruptly the table goes on, and M stays at 1 / 2 pi.
-static inline Vec3w surface_enclosed(SurfaceSum sum, __global const float4* table, floatw r) {
-    const floatw row = surface_row(sum, fmax(r, (floatw)(1e-37f)));
+static inline Vec3w surfaceEnclosed(SurfaceSum sum, __global const float4* table, floatw r) {
+    const floatw row = surfaceRow(sum, fmax(r, (floatw)(1e-37f)));
     const floatw below = fmin(r * exp2(-sum.firstLog2), (floatw)(1.0f));
     const intw i = convert_intw(row);
     const floatw f = row - convert_floatw(i);
@@ -43,8 +43,8 @@ static inline Vec3w surface_enclosed(SurfaceSum sum, __global const float4* tabl
 }
 
 // R(r) = M'(r) / r, from the slopes.
-static inline Vec3w surface_radial(SurfaceSum sum, __global const float4* table, floatw r2) {
-    const floatw row = surface_row(sum, sqrt(r2));
+static inline Vec3w surfaceRadial(SurfaceSum sum, __global const float4* table, floatw r2) {
+    const floatw row = surfaceRow(sum, sqrt(r2));
     const intw i = convert_intw(row);
     const floatw f = row - convert_floatw(i);
     Vec3w slope;
@@ -56,10 +56,10 @@ static inline Vec3w surface_radial(SurfaceSum sum, __global const float4* table,
     }
     PEL_EACH_LANE(SURFACE_LANE_)
 #undef SURFACE_LANE_
-    return scale3(slope, (floatw)(SURFACE_ROWS / 0.693147181f) / r2);
+    return scale3(slope, (floatw)(PEL_SURFACE_ROWS / 0.693147181f) / r2);
 }
 
-static inline float largest_lane(floatw x) {
+static inline float largestLane(floatw x) {
     float most = 0.0f;
 #define SURFACE_LANE_(k, s) most = fmax(most, x s);
     PEL_EACH_LANE(SURFACE_LANE_)
@@ -67,7 +67,7 @@ static inline float largest_lane(floatw x) {
     return most;
 }
 
-static inline floatw surface_asinh(floatw x) {
+static inline floatw surfaceAsinh(floatw x) {
     const floatw a = fabs(x);
     return copysign(log(a + sqrt(fma(a, a, (floatw)(1.0f)))), x);
 }
@@ -86,8 +86,8 @@ __constant float surface_part[4] = {0.1739274226f, 0.3260725774f, 0.3260725774f,
 #define SURFACE_NARROW 1e-6f
 
 // What one triangle adds.
-static inline Vec3w surface_triangle(SurfaceSum sum, __global const float4* table,
-                                     __global const SurfaceTriangle* triangle, Vec3w x) {
+static inline Vec3w surfaceTriangle(SurfaceSum sum, __global const float4* table,
+                                    __global const SurfaceTriangle* triangle, Vec3w x) {
     float3 corner[3], light[3];
     for (int k = 0; k < 3; ++k) {
         corner[k] = vload3(k, triangle->corner);
@@ -101,7 +101,7 @@ static inline Vec3w surface_triangle(SurfaceSum sum, __global const float4* tabl
     // A point of the surface is off by rounding alone, which 1/r would notice.
     const float extent = fmax(fmax(fabs(corner[0].x), fabs(corner[0].y)), fmax(fabs(corner[0].z), length(ab)));
     h = selectw(h, (floatw)(0.0f), fabs(h) < (floatw)(5e-7f * extent));
-    const Vec3w p = sub3(toPoint, scale3(all3(n), h)), atHeight = surface_enclosed(sum, table, fabs(h));
+    const Vec3w p = sub3(toPoint, scale3(all3(n), h)), atHeight = surfaceEnclosed(sum, table, fabs(h));
     // E = light[0] + b beta + c gamma at p, and its gradient along the plane, per channel.
     const float3 towardsB = cross(ac, n) / twice, towardsC = cross(n, ab) / twice;  // gradients of beta and gamma
     const floatw beta = dot3(p, all3(towardsB)), gamma = dot3(p, all3(towardsC));
@@ -119,10 +119,10 @@ static inline Vec3w surface_triangle(SurfaceSum sum, __global const float4* tabl
         // Seen from afar an edge spans 2 artanh of this; the difference of two asinh would leave nothing of small triangles.
         const floatw root0 = sqrt(fma(t0, t0, distance * distance)),
                      root1 = sqrt(fma(t1, t1, distance * distance));
-        const bool isShort = largest_lane(edge / (root0 + root1)) < SURFACE_SHORT && sum.piecesPerU < 1.0f;
-        const floatw u0 = surface_asinh(t0 / distance), range = surface_asinh(t1 / distance) - u0;
+        const bool isShort = largestLane(edge / (root0 + root1)) < SURFACE_SHORT && sum.piecesPerU < 1.0f;
+        const floatw u0 = surfaceAsinh(t0 / distance), range = surfaceAsinh(t1 / distance) - u0;
         const int pieces =
-            isShort ? 1 : clamp((int)ceil(largest_lane(range) * sum.piecesPerU), 1, SURFACE_PIECES);
+            isShort ? 1 : clamp((int)ceil(largestLane(range) * sum.piecesPerU), 1, SURFACE_PIECES);
         const floatw step = range / (floatw)((float)pieces);
         for (int i = 0; i < pieces; ++i)
             for (int q = 0; q < 4; ++q) {
@@ -139,7 +139,7 @@ static inline Vec3w surface_triangle(SurfaceSum sum, __global const float4* tabl
                     turn = step * surface_part[q] / c;
                     way = step * surface_part[q] * rho;
                 }
-                const Vec3w M = surface_enclosed(sum, table, sqrt(fma(h, h, rho2)));
+                const Vec3w M = surfaceEnclosed(sum, table, sqrt(fma(h, h, rho2)));
                 angle = add3(angle, scale3(sub3(M, atHeight), turn));
                 length = add3(length, scale3(sub3(M, all3((float3)(sum.whole))), way));
             }
@@ -153,8 +153,8 @@ static inline Vec3w surface_triangle(SurfaceSum sum, __global const float4* tabl
 }
 
 // R(r), 0 where it ends.
-static inline Vec3w surface_ended(SurfaceSum sum, __global const float4* table, floatw r2) {
-    const Vec3w R = surface_radial(sum, table, r2);
+static inline Vec3w surfaceEnded(SurfaceSum sum, __global const float4* table, floatw r2) {
+    const Vec3w R = surfaceRadial(sum, table, r2);
     floatw within[3];
     for (int c = 0; c < 3; ++c) {
         const float ends = sum.cut[c] > 0.0f ? sum.cut[c] : sum.reach;
@@ -174,8 +174,8 @@ __constant float surface_weight[7] = {0.225f,       0.132394153f, 0.132394153f, 
                                       0.125939181f, 0.125939181f, 0.125939181f};
 #define SURFACE_SMALL 5.0f  // distances in radii from which on this is done: 1e-5 of the energy are left
 
-static inline Vec3w surface_sampled(SurfaceSum sum, __global const float4* table,
-                                    __global const SurfaceTriangle* triangle, Vec3w x) {
+static inline Vec3w surfaceSampled(SurfaceSum sum, __global const float4* table,
+                                   __global const SurfaceTriangle* triangle, Vec3w x) {
     float3 corner[3], light[3];
     for (int k = 0; k < 3; ++k) {
         corner[k] = vload3(k, triangle->corner);
@@ -188,13 +188,13 @@ static inline Vec3w surface_sampled(SurfaceSum sum, __global const float4* table
         const float a = surface_corner[q][0], b = surface_corner[q][1], c = surface_corner[q][2];
         const Vec3w d = add3(from, all3(b * (corner[1] - corner[0]) + c * (corner[2] - corner[0])));
         const float3 E = (area * surface_weight[q]) * (a * light[0] + b * light[1] + c * light[2]);
-        result = add3(result, mul3(all3(E), surface_ended(sum, table, dot3(d, d))));
+        result = add3(result, mul3(all3(E), surfaceEnded(sum, table, dot3(d, d))));
     }
     return result;
 }
 
 // Kahan's sum: thousands of small terms would leave nothing behind in a float near 1.
-static inline void surface_add(Vec3w* total, Vec3w* lost, Vec3w term) {
+static inline void surfaceAdd(Vec3w* total, Vec3w* lost, Vec3w term) {
     const Vec3w corrected = sub3(term, *lost), next = add3(*total, corrected);
     *lost = sub3(sub3(next, *total), corrected);
     *total = next;
@@ -235,17 +235,17 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_int
         for (int c = 0; c < 3; ++c)
             if (sum.cut[c] > 0.0f) near |= (fabs(sqrt(r2) - sum.cut[c]) < (floatw)(node->radius));
         if (!anyw(near)) {
-            const Vec3w R = surface_ended(sum, table, r2);
-            surface_add(
+            const Vec3w R = surfaceEnded(sum, table, r2);
+            surfaceAdd(
                 &total, &lost,
                 mul3(R, vec3((floatw)(node->weight[0]), (floatw)(node->weight[1]), (floatw)(node->weight[2]))));
             i = node->skip;
-        } else if (node->triangle != SURFACE_NONE) {
+        } else if (node->triangle != PEL_SURFACE_NONE) {
             const float small = SURFACE_SMALL * node->radius;
             if (anyw((maskw)(r2 < (floatw)(small * small))))
-                surface_add(&total, &lost, surface_triangle(sum, table, triangles + node->triangle, x));
+                surfaceAdd(&total, &lost, surfaceTriangle(sum, table, triangles + node->triangle, x));
             else
-                surface_add(&total, &lost, surface_sampled(sum, table, triangles + node->triangle, x));
+                surfaceAdd(&total, &lost, surfaceSampled(sum, table, triangles + node->triangle, x));
             i = node->skip;
         } else {
             ++i;

@@ -20,7 +20,7 @@
 // profiles.
 //
 // Variants: PEL_WIDTH; PEL_FORM, as PelCurvatureForm; PEL_GROUP, work-items in a group; PEL_NODES, N;
-// PEL_POINTS, Gauss points per mesh interval (1 to 3); PEL_COLUMNS, columns per work-item of curvatureTexels.
+// PEL_POINTS, Gauss points per mesh interval (1 to 3); PEL_COLUMNS, columns per work-item of curvature_texels.
 #include "lib/lut/normal.clh"
 #include "lib/width.clh"
 #include "shared/lut.h"
@@ -149,14 +149,14 @@ inline Rgb kernelAt(__global const LutGaussian* gaussians, const uint first, con
 }
 
 // One work-item: PEL_WIDTH rows, one per lane.
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvatureRows(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_rows(
     const CurvatureParams params, __global const LutGaussian* gaussians, __constant LutNode* nodes,
     __global float4* rows) {
     const uint firstRow = get_global_id(0) * PEL_WIDTH;
     if (firstRow >= params.height) return;
     const floatw row = convert_floatw((intw)((int)firstRow) + lanesw());
     const floatw rowValue = fma(row + 0.5f, (floatw)(params.rowStep), (floatw)(params.rowMin));
-    const floatw curvature = params.axis == LUT_AXIS_ROOT ? rowValue * rowValue : rowValue;
+    const floatw curvature = params.axis == PEL_LUT_AXIS_ROOT ? rowValue * rowValue : rowValue;
     const floatw radius = 1.0f / curvature;
 #if PEL_FORM == FORM_ARC
     const floatw end = fmin(params.cut * curvature, (floatw)(M_PI_F));
@@ -280,7 +280,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvatureRo
 
 // One work-item: PEL_COLUMNS columns of the unlit half of one row, and their mirror images in the lit half.
 // The row behind the last is a copy of it, and the column behind the last likewise (shared/lut.h).
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvatureTexels(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_texels(
     const CurvatureParams params, __global const float4* rows, __global const LutColumn* columns,
     __global float4* texels) {
     const uint unlit = (params.width + 1) / 2;

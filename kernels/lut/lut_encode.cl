@@ -1,27 +1,27 @@
 // LUT texels (float4, with a copied column and row, shared/lut.h) packed for the host: row-major, without the
 // copies. Section 2 and 3 of the mathematics define the 8-bit encodings, which are those of FaceWorks.
 //
-// One work-item: one texel, but for countClipped. Variants: PEL_GROUP, work-items in a group.
+// One work-item: one texel, but for count_clipped. Variants: PEL_GROUP, work-items in a group.
 #include "lib/lut/lut_lookup.clh"
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeFloat(const LutLayout lut,
-                                                                                 __global const float4* texels,
-                                                                                 __global float* packed) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_float(const LutLayout lut,
+                                                                                  __global const float4* texels,
+                                                                                  __global float* packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x >= lut.width) return;
     vstore3(texels[(size_t)y * lut.rowTexels + x].xyz, (size_t)y * lut.width + x, packed);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeHalf(const LutLayout lut,
-                                                                                __global const float4* texels,
-                                                                                __global half* packed) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_half(const LutLayout lut,
+                                                                                 __global const float4* texels,
+                                                                                 __global half* packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x >= lut.width) return;
     vstore_half3_rte(texels[(size_t)y * lut.rowTexels + x].xyz, (size_t)y * lut.width + x, packed);
 }
 
 // sat(2 (D - max0(u)) + 1/2): what scattering changes, doubled, about the middle grey. Linear.
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeCurvatureBytes(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_curvature_bytes(
     const LutLayout lut, __global const float4* texels, __global uchar* packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x >= lut.width) return;
@@ -32,9 +32,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeCurva
 }
 
 // One work-item: one row. Texels that the above clips in some channel.
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void countClipped(const LutLayout lut,
-                                                                                  __global const float4* texels,
-                                                                                  __global uint* clipped) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void count_clipped(const LutLayout lut,
+                                                                                   __global const float4* texels,
+                                                                                   __global uint* clipped) {
     const uint y = get_global_id(0);
     if (y >= lut.height) return;
     uint found = 0;
@@ -47,7 +47,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void countClippe
 }
 
 // The peer fades the first twenty-fifth of the columns to black, then stores sRGB.
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeShadowBytes(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_shadow_bytes(
     const LutLayout lut, __global const float4* texels, __global uchar* packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x >= lut.width) return;
@@ -60,9 +60,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeShado
 }
 
 // Specular tables are kept as they are, like those of d'Eon and Luebke.
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encodeBytes(const LutLayout lut,
-                                                                                 __global const float4* texels,
-                                                                                 __global uchar* packed) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_bytes(const LutLayout lut,
+                                                                                  __global const float4* texels,
+                                                                                  __global uchar* packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x >= lut.width) return;
     float4 value = texels[(size_t)y * lut.rowTexels + x];

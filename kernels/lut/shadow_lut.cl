@@ -173,13 +173,13 @@ inline void storeTexels(__global float4* line, const uint width, const uint x, c
 
 // One work-item: PEL_COLUMNS columns of the lit half of one row, and their mirror images. The row behind the
 // last is a copy of it, and the column behind the last likewise (shared/lut.h).
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadowTexels(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadow_texels(
     const ShadowParams params, __global const LutGaussian* gaussians, __global float4* texels) {
     const uint begin = params.width / 2 + get_global_id(0) * PEL_COLUMNS;
     const uint y = get_global_id(1);
     const float row = (float)min(y, params.height - 1);
     const float rowValue = fma(row + 0.5f, params.reciprocalStep, params.reciprocalMin);
-    const float q = params.axis == LUT_AXIS_ROOT ? rowValue * rowValue : rowValue;
+    const float q = params.axis == PEL_LUT_AXIS_ROOT ? rowValue * rowValue : rowValue;
     const float b = 0.5f / (params.sharpening * q);
     const uint end = min(begin + PEL_COLUMNS, params.width);
     const float3 mass = (float3)(params.mass[0], params.mass[1], params.mass[2]);
@@ -197,7 +197,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadowTexel
         const floatw w = fmin(column / (float)params.width, 1.0f);
         // p - 1/2 = (sqrt w - sqrt(1 - w)) / 2 without its cancellation
         floatw z = (column - 0.5f * (float)params.width) / (float)params.width / (sqrt(w) + sqrt(1.0f - w));
-        if (params.axis == LUT_AXIS_ROOT)
+        if (params.axis == PEL_LUT_AXIS_ROOT)
             z = (column - 0.5f * (float)params.width) / (float)(max(params.width, 2u) - 1);
         z = fmin(z, 0.5f);
         const Far U = farSideOfAll(gaussians, params.gaussians, z / q, b, params.cut);

@@ -2,16 +2,16 @@
 // the mathematics). As in curvature_lut.cl each row becomes nodes at angles phi behind the terminator with E and F = -E',
 //   unlit side D(-u) = E + back u,   lit side D(+u) = E + front u,   u = sin phi,
 // and texels are cubics between nodes; here a row carries the angles of its nodes, so that it may have its own.
-//   tableArcRows     E'' + E = K(phi) + K(pi - phi), K = r P(r t), swept from pi/2 to 0. P has corners, its
+//   table_arc_rows     E'' + E = K(phi) + K(pi - phi), K = r P(r t), swept from pi/2 to 0. P has corners, its
 //                    tail has none worse than a root's integral: what an interval adds is its mass, a difference of tails,
 //                    and the mass's moment, from K at both ends. PEL_CHORD is penner-ring, K = P(2r sin(t/2)): masses over
 //                    chords, divided by dchord/dt, and where the chord stands still, from K alone.
-//   tableRingRows    the same with K = R(2r sin(t/2)), which is smooth between the angles where R bends: they
+//   table_ring_rows    the same with K = R(2r sin(t/2)), which is smooth between the angles where R bends: they
 //                    become nodes of their row.
-//   tableSphereRows  the circle of points at chord d receives in the mean m(phi, d), a closed form: a sum over
+//   table_sphere_rows  the circle of points at chord d receives in the mean m(phi, d), a closed form: a sum over
 //                    the points and weights that stand for the profile.
 //
-// One work-item: tableArcRows, tableRingRows a row; tableSphereRows PEL_WIDTH nodes of a row; tableTexels PEL_COLUMNS
+// One work-item: table_arc_rows, table_ring_rows a row; table_sphere_rows PEL_WIDTH nodes of a row; table_texels PEL_COLUMNS
 // columns of the unlit half of a row, and their mirror images.
 // Variants: PEL_WIDTH; PEL_GROUP, work-items in a group; PEL_COLUMNS; PEL_HALF: the half ring; PEL_CHORD.
 #include "lib/lut/table_tails.clh"
@@ -25,7 +25,7 @@
 // In diffusion radii.
 inline float rowRadius(const TableCurvatureParams params, const uint row) {
     const float value = fma((float)row + 0.5f, params.rowStep, params.rowMin);
-    return 1.0f / (params.axis == LUT_AXIS_ROOT ? value * value : value);
+    return 1.0f / (params.axis == PEL_LUT_AXIS_ROOT ? value * value : value);
 }
 
 inline void storeNode(__global float4* record, const uint slot, const float angle, const float4 E,
@@ -63,7 +63,7 @@ inline void turn(Sum* E, Sum* F, const float h, const float4 addE, const float4 
 #define BEHIND(r, angle) ((r) * (M_PI_F - (angle)))
 #endif
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableArcRows(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void table_arc_rows(
     const TableCurvatureParams params, __global const LutNode* nodes, __global const float4* tails,
     __global float4* rows) {
     if (get_global_id(0) >= params.rows) return;
@@ -72,7 +72,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableArcRow
     __global float4* record = rows + get_global_id(0) * RECORD(params);
     Sum E = {0.0f, 0.0f}, F = E;
     float4 front = 0.0f, back = 0.0f;
-    float4 frontTail = tailAt(tails, TAIL_MASS, DISTANCE(r, M_PI_2_F), end), backTail = frontTail;
+    float4 frontTail = tailAt(tails, PEL_TAIL_MASS, DISTANCE(r, M_PI_2_F), end), backTail = frontTail;
     float4 frontK = r * spreadAt(tails, DISTANCE(r, M_PI_2_F), end), backK = frontK;
 #ifdef PEL_CHORD
     Sum mass = {0.0f, 0.0f};
@@ -81,8 +81,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableArcRow
         const float angle = nodes[j].angle;
         if (j + 1 < (int)params.nodes) {
             const float h = nodes[j + 1].angle - angle;
-            const float4 frontNext = tailAt(tails, TAIL_MASS, DISTANCE(r, angle), end),
-                         backNext = tailAt(tails, TAIL_MASS, BEHIND(r, angle), end);
+            const float4 frontNext = tailAt(tails, PEL_TAIL_MASS, DISTANCE(r, angle), end),
+                         backNext = tailAt(tails, PEL_TAIL_MASS, BEHIND(r, angle), end);
             const float4 frontNextK = r * spreadAt(tails, DISTANCE(r, angle), end),
                          backNextK = r * spreadAt(tails, BEHIND(r, angle), end);
             float4 frontMass = fmax(frontNext - frontTail, 0.0f), backMass = fmax(backTail - backNext, 0.0f);
@@ -133,7 +133,7 @@ inline float knotAngle(const float distance, const float diameter) {
     return 2.0f * asin(fmin(distance / diameter, 1.0f));
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableRingRows(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void table_ring_rows(
     const TableCurvatureParams params, __global const LutNode* nodes, __global const float4* knots,
     __global float4* rows) {
     if (get_global_id(0) >= params.rows) return;
@@ -217,7 +217,7 @@ inline floatw acosOverPi(const floatw x) {
 // With a = cos theta cos psi, b = sin theta sin psi and theta = pi/2 + phi, the mean over the circle at colatitude psi is
 // (a acos(-a/b) + sqrt(b^2 - a^2)) / pi, 0 from a = -b and a from b on; its derivatives by a and b are acos(-a/b) / pi
 // and sqrt(1 - a^2/b^2) / pi.
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableSphereRows(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void table_sphere_rows(
     const TableCurvatureParams params, __global const LutNode* nodes, __global const TablePoints* pointsOfRow,
     __global const float4* points, __global float4* rows) {
     const uint firstNode = get_global_id(0) * PEL_WIDTH;
@@ -273,7 +273,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableSphere
     }
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableTexels(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void table_texels(
     const TableCurvatureParams params, __global const float4* rows, __global const TableColumn* columns,
     __global float4* texels) {
     const uint unlit = (params.width + 1) / 2;

@@ -13,12 +13,12 @@
 
 // Tails from any x: P is even, so that a tail from x < 0 is the whole less its mirror image.
 inline float4 secondFrom(__global const float4* tails, const float x, const float4 mass, const float end) {
-    const float4 beyond = tailAt(tails, TAIL_SECOND, fabs(x), end);
-    return x < 0.0f ? 0.5f * x * x * mass + 2.0f * tails[TAIL_SECOND] - beyond : beyond;
+    const float4 beyond = tailAt(tails, PEL_TAIL_SECOND, fabs(x), end);
+    return x < 0.0f ? 0.5f * x * x * mass + 2.0f * tails[PEL_TAIL_SECOND] - beyond : beyond;
 }
 inline float4 thirdFrom(__global const float4* tails, const float x, const float4 mass, const float end) {
-    const float4 beyond = tailAt(tails, TAIL_THIRD, fabs(x), end);
-    return x < 0.0f ? -x * (x * x * (1.0f / 6.0f) * mass + 2.0f * tails[TAIL_SECOND]) + beyond : beyond;
+    const float4 beyond = tailAt(tails, PEL_TAIL_THIRD, fabs(x), end);
+    return x < 0.0f ? -x * (x * x * (1.0f / 6.0f) * mass + 2.0f * tails[PEL_TAIL_SECOND]) + beyond : beyond;
 }
 
 // Share of the ramp from -1 to y.
@@ -42,7 +42,7 @@ inline float4 rampOnSide(__global const float4* tails, const float zeta, const f
         const float half_ = 0.5f * (next - y), middle = 0.5f * (next + y);
         for (int q = 0; q < 2; ++q) {
             const float at = middle + half_ * (q ? 0.577350269f : -0.577350269f);
-            const float4 mass = tailInCell(tails, TAIL_MASS, sign * zeta + b * at, i, end);
+            const float4 mass = tailInCell(tails, PEL_TAIL_MASS, sign * zeta + b * at, i, end);
             sum += (0.75f * (1.0f - at * at) * half_) * mass;
         }
         y = next;
@@ -63,15 +63,15 @@ inline float4 farSide(__global const float4* tails, const float zeta, const floa
             r * (thirdFrom(tails, e1, mass, end) - thirdFrom(tails, e2, mass, end)));
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableShadowTexels(
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void table_shadow_texels(
     const TableShadowParams params, __global const float4* tails, __global float4* texels) {
     const uint begin = params.width / 2 + get_global_id(0) * PEL_COLUMNS;
     const uint y = get_global_id(1);
     const float row = (float)min(y, params.height - 1);
     const float rowValue = fma(row + 0.5f, params.reciprocalStep, params.reciprocalMin);
-    const float q = params.axis == LUT_AXIS_ROOT ? rowValue * rowValue : rowValue;
+    const float q = params.axis == PEL_LUT_AXIS_ROOT ? rowValue * rowValue : rowValue;
     const float b = 0.5f / (params.sharpening * q);
-    const float4 mass = 2.0f * tails[TAIL_MASS];
+    const float4 mass = 2.0f * tails[PEL_TAIL_MASS];
     // What is left of the light where the filter ends.
     float4 end = 0.0f;
     if (params.closedEnds && begin < params.width)
@@ -82,7 +82,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tableShadow
         const float column = (float)x + 0.5f, w = fmin(column / (float)params.width, 1.0f);
         // p - 1/2 = (sqrt w - sqrt(1 - w)) / 2 without its cancellation
         float z = (column - 0.5f * (float)params.width) / (float)params.width / (sqrt(w) + sqrt(1.0f - w));
-        if (params.axis == LUT_AXIS_ROOT)
+        if (params.axis == PEL_LUT_AXIS_ROOT)
             z = (column - 0.5f * (float)params.width) / (float)(max(params.width, 2u) - 1);
         z = fmin(z, 0.5f);
         float4 U = clamp(farSide(tails, z / q, b, mass, params.end), 0.0f, mass);

@@ -4,40 +4,40 @@
 // Results between passes: planes of one float per slot, 1/length (lib/mesh/principal.clh); NaN where nothing could
 // be measured. Such a slot stays out of its neighbours' means, and the last pass writes 0 for it, so that no
 // NaN ever spreads or leaves. One work-item: PEL_WIDTH slots (of plane get_global_id(1)); curvature_store:
-// one vertex of the caller. Variants: MESH_MAPPED 1: vertices find their slot in slotOf. MESH_STRIDE,
-// MESH_RUNS: lib/mesh/mesh_slots.clh. MESH_LISTED: lib/mesh/mesh_vertex.clh. MESH_PLANES, MESH_QUANTITY (a
+// one vertex of the caller. Variants: PEL_MESH_MAPPED 1: vertices find their slot in slotOf. PEL_MESH_STRIDE,
+// PEL_MESH_RUNS: lib/mesh/mesh_slots.clh. PEL_MESH_LISTED: lib/mesh/mesh_vertex.clh. MESH_PLANES, PEL_MESH_QUANTITY (a
 // PelCurvatureQuantity): what curvature_store reads and writes.
 
 #include "lib/mesh/mesh_ring.clh"
 
 // (min + max) / 2 of |dn| / |dp| over the edges of a slot [FaceWorks 1.0].
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_edge(
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_edge(
     uint slots, uint listed, __global const uint* list, __global const uint* slices,
     __global const uint* rings, __global const uint* runs, __global const float* positions, uint positionOffset,
     __global const float* normals, uint normalOffset, uint planeStride, __global float* curvature) {
-    const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
+    const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
-    RingCursor ring = ring_begin(first, slots, slices);
+    RingCursor ring = ringBegin(first, slots, slices);
     floatw px, py, pz, nx, ny, nz;
     positions += positionOffset;
     normals += normalOffset;
     gather3(positions, ring.last, ring.self, &px, &py, &pz);
     gather3(normals, ring.last, ring.self, &nx, &ny, &nz);
-    usable_normals(&nx, &ny, &nz);
+    usableNormals(&nx, &ny, &nz);
     // Squares order as their roots do: two roots at the end instead of two per edge.
     floatw low = INFINITY, high = -1.0f;
     for (; ring.row < ring.end; ++ring.row) {
-        const Slots other = ring_entry(&ring, rings, runs).slots;
+        const Slots other = ringEntry(&ring, rings, runs).slots;
         floatw dx, dy, dz, mx, my, mz;
         gather3(positions, ring.last, other, &dx, &dy, &dz);
         gather3(normals, ring.last, other, &mx, &my, &mz);
-        usable_normals(&mx, &my, &mz);
+        usableNormals(&mx, &my, &mz);
         dx -= px, dy -= py, dz -= pz;
         mx -= nx, my -= ny, mz -= nz;
         const floatw length2 = fma(dx, dx, fma(dy, dy, dz * dz));
         const floatw ratio = fma(mx, mx, fma(my, my, mz * mz)) / length2;
         // Fails for edges without length (fillers among them) and for whatever is not finite at either end.
-        const maskw usable = (length2 >= MESH_MIN_LENGTH2) & (length2 < INFINITY) & (ratio < INFINITY);
+        const maskw usable = (length2 >= PEL_MESH_MIN_LENGTH2) & (length2 < INFINITY) & (ratio < INFINITY);
         low = selectw(low, ratio, usable & (ratio < low));
         high = selectw(high, ratio, usable & (ratio > high));
     }
@@ -45,18 +45,18 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
 }
 
 // The mean over a slot's triangles of their other two slots' values, itself not included.
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_smooth(
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_smooth(
     uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
     __global const uint* runs, uint planeStride, __global const float* from, __global float* to) {
-    const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
+    const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     from += (size_t)get_global_id(1) * planeStride;
     to += (size_t)get_global_id(1) * planeStride;
-    RingCursor ring = ring_begin(first, slots, slices);
+    RingCursor ring = ringBegin(first, slots, slices);
     const floatw self = loadw(first, from);
     floatw sum = 0.0f, weight = 0.0f;
     for (; ring.row < ring.end; ++ring.row) {
-        const RingEntry entry = ring_entry(&ring, rings, runs);
+        const RingEntry entry = ringEntry(&ring, rings, runs);
         const floatw value = gather1(from, entry.slots);
         const floatw triangles = selectw((floatw)(2.0f), (floatw)(1.0f), as_intw(entry.bits) < 0);
         const maskw counts = (value == value) & (entry.slots.each != ring.self.each);
@@ -66,65 +66,65 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     storew(selectw(self, sum / weight, (self == self) & (weight > 0.0f)), first, to);
 }
 
-inline float finite_or_zero(float value) {
+inline float finiteOrZero(float value) {
     return isfinite(value) ? value : 0.0f;
 }
 
 // `planes` after smoothing, `estimated` as the estimator left them (for the directions).
-inline void store_quantity(uint slot, uint planeStride, __global const float* planes,
-                           __global const float* estimated, float scale, __global float* result) {
+inline void storeQuantity(uint slot, uint planeStride, __global const float* planes,
+                          __global const float* estimated, float scale, __global float* result) {
     const float first = planes[slot] * scale;
 #if MESH_PLANES > 1
     const float second = planes[(size_t)planeStride + slot] * scale;
 #endif
-#if MESH_QUANTITY == 0
-    *result = finite_or_zero(fabs(first));
-#elif MESH_QUANTITY == 1
-    *result = finite_or_zero(fmax(fabs(first), fabs(second)));
-#elif MESH_QUANTITY == 2
-    *result = finite_or_zero(hypot(first, second) * 0.70710678f);
-#elif MESH_QUANTITY == 3 || MESH_QUANTITY == 5
-    *result = finite_or_zero(first);
-#elif MESH_QUANTITY == 4
-    *result = finite_or_zero(first * second);
-#elif MESH_QUANTITY == 6
-    *result = finite_or_zero(second);
+#if PEL_MESH_QUANTITY == 0
+    *result = finiteOrZero(fabs(first));
+#elif PEL_MESH_QUANTITY == 1
+    *result = finiteOrZero(fmax(fabs(first), fabs(second)));
+#elif PEL_MESH_QUANTITY == 2
+    *result = finiteOrZero(hypot(first, second) * 0.70710678f);
+#elif PEL_MESH_QUANTITY == 3 || PEL_MESH_QUANTITY == 5
+    *result = finiteOrZero(first);
+#elif PEL_MESH_QUANTITY == 4
+    *result = finiteOrZero(first * second);
+#elif PEL_MESH_QUANTITY == 6
+    *result = finiteOrZero(second);
 #else
-    result[0] = finite_or_zero(first);
-    result[1] = finite_or_zero(second);
-#if MESH_QUANTITY == 8
+    result[0] = finiteOrZero(first);
+    result[1] = finiteOrZero(second);
+#if PEL_MESH_QUANTITY == 8
     for (uint plane = 2; plane < 8; ++plane) result[plane] = estimated[(size_t)plane * planeStride + slot];
 #endif
 #endif
 }
 
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_store(
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_store(
     __global const uint* slotOf, uint planeStride, __global const float* planes,
     __global const float* estimated, float scale, __global float* result, VertexLayout layout) {
     const uint vertex = get_global_id(0);
     if (vertex >= layout.count) return;
-#if MESH_MAPPED
+#if PEL_MESH_MAPPED
     const uint slot = slotOf[vertex];
 #else
     const uint slot = vertex;
 #endif
-    store_quantity(slot, planeStride, planes, estimated, scale,
-                   result + layout.offset + (size_t)vertex * layout.stride);
+    storeQuantity(slot, planeStride, planes, estimated, scale,
+                  result + layout.offset + (size_t)vertex * layout.stride);
 }
 
 // The same for the vertices of some slots: those of the listed slices whose bit is set in lanes[].
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_store_listed(
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_store_listed(
     uint slots, uint listed, __global const uint* list, __global const uint* lanes,
     __global const uint* memberOffsets, __global const uint* members, uint planeStride,
     __global const float* planes, __global const float* estimated, float scale, __global float* result,
     VertexLayout layout) {
-    const uint item = get_global_id(0), slot = mesh_slot(item, slots, listed, list);
-    if (slot >= slots || !(lanes[item / MESH_LANES] >> (item % MESH_LANES) & 1)) return;
+    const uint item = get_global_id(0), slot = meshSlot(item, slots, listed, list);
+    if (slot >= slots || !(lanes[item / PEL_MESH_LANES] >> (item % PEL_MESH_LANES) & 1)) return;
     result += layout.offset;
-#if MESH_MAPPED
+#if PEL_MESH_MAPPED
     for (uint m = memberOffsets[slot]; m < memberOffsets[slot + 1]; ++m)
-        store_quantity(slot, planeStride, planes, estimated, scale, result + (size_t)members[m] * layout.stride);
+        storeQuantity(slot, planeStride, planes, estimated, scale, result + (size_t)members[m] * layout.stride);
 #else
-    store_quantity(slot, planeStride, planes, estimated, scale, result + (size_t)slot * layout.stride);
+    storeQuantity(slot, planeStride, planes, estimated, scale, result + (size_t)slot * layout.stride);
 #endif
 }

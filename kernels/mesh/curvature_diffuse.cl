@@ -12,7 +12,7 @@
 //
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h); planes as in
 // curvature.cl. One work-item: PEL_WIDTH slots (of plane get_global_id(1) in diffuse_stage). Variants:
-// MESH_STRIDE, MESH_RUNS (lib/mesh/mesh_slots.clh), DIFFUSE_AREA.
+// PEL_MESH_STRIDE, PEL_MESH_RUNS (lib/mesh/mesh_slots.clh), DIFFUSE_AREA.
 
 #include "lib/mesh/mesh_triangle.clh"
 
@@ -20,14 +20,14 @@
 // of weight / area, 1/length^2. A slot whose rate exceeds the limit is slowed down to it, which keeps every stage stable on
 // slivers (with DIFFUSE_AREA by diffuse_limit, from weight / area). crease2: square of the change of normal at which weights
 // fall to 1/e; 0: none do.
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_weights(
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_weights(
     uint slots, uint listed, __global const uint* list, __global const uint* slices,
     __global const uint* rings, __global const uint* runs, __global const float* positions,
     uint positionOffset, __global const float* normals, uint normalOffset, float limit, float crease2,
     __global float* weights, __global float* rates) {
-    const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
+    const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
-    RingCursor ring = ring_begin(first, slots, slices);
+    RingCursor ring = ringBegin(first, slots, slices);
     const uint begin = ring.row;
     positions += positionOffset;
     normals += normalOffset;
@@ -41,7 +41,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
     RingWalk walk = {0, 0};
     uintw startRow = (uintw)(begin);
     for (; ring.row < ring.behind; ++ring.row) {
-        const RingStep step = ring_step(&ring, &walk, rings, runs);
+        const RingStep step = ringStep(&ring, &walk, rings, runs);
         Vec3w current;
         gather3(positions, ring.last, step.entry.slots, &current.x, &current.y, &current.z);
         current = sub3(current, origin);
@@ -50,7 +50,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
         const Vec3w between = sub3(previous, other), across = crossExact3(previous, other);
         const floatw doubled2 = dot3(across, across);
         const maskw triangle = step.triangle & finitew(doubled2) &
-                               (doubled2 > TRIANGLE_FLAT * dot3(previous, previous) * dot3(other, other));
+                               (doubled2 > PEL_TRIANGLE_FLAT * dot3(previous, previous) * dot3(other, other));
         const floatw doubled = sqrt(selectw((floatw)(1.0f), doubled2, triangle));
 #if DIFFUSE_AREA
         // What stands at a neighbour belongs to the edge to the other one, as the cotangents do.
@@ -60,17 +60,17 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
 #else
         const floatw atOther = selectw(zero, -dot3(other, between) / doubled, triangle);
         const floatw atPrevious = selectw(zero, dot3(previous, between) / doubled, triangle);
-        const floatw part = corner_area(previous, other, doubled);
+        const floatw part = cornerArea(previous, other, doubled);
 #endif
         area += selectw(zero, part, triangle & finitew(part));
         if (ring.row > begin) {
-            const uint at = (ring.row - 1) * MESH_LANES + ring.lane;
+            const uint at = (ring.row - 1) * PEL_MESH_LANES + ring.lane;
             storew(selectw(zero, pending + atOther, step.walking), at, weights);
         }
         const maskw closes = step.ends & step.triangle;
         if (anyw(closes)) {
 #define ADD_TO_START_(i, s) \
-    if (closes s) weights[startRow s * MESH_LANES + ring.lane + i] += atPrevious s;
+    if (closes s) weights[startRow s * PEL_MESH_LANES + ring.lane + i] += atPrevious s;
             PEL_EACH_LANE(ADD_TO_START_)
 #undef ADD_TO_START_
         }
@@ -82,16 +82,16 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
 
     Vec3w n;
     gather3(normals, ring.last, ring.self, &n.x, &n.y, &n.z);
-    usable_normals(&n.x, &n.y, &n.z);
+    usableNormals(&n.x, &n.y, &n.z);
     const floatw half_ = selectw(zero, 0.5f / area, area > zero);
     floatw rate = zero;
     for (ring.row = begin; ring.row < ring.end; ++ring.row) {
-        const uint at = ring.row * MESH_LANES + ring.lane;
+        const uint at = ring.row * PEL_MESH_LANES + ring.lane;
         floatw weight = loadw(at, weights) * half_;
         if (crease2 > 0.0f) {
             Vec3w m;
-            gather3(normals, ring.last, ring_entry(&ring, rings, runs).slots, &m.x, &m.y, &m.z);
-            usable_normals(&m.x, &m.y, &m.z);
+            gather3(normals, ring.last, ringEntry(&ring, rings, runs).slots, &m.x, &m.y, &m.z);
+            usableNormals(&m.x, &m.y, &m.z);
             const Vec3w turn = sub3(m, n);
             // Uneven weights bound values by their neighbours' only where none is negative.
             weight = fmax(weight, zero) * exp(-dot3(turn, turn) / crease2);
@@ -103,7 +103,7 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
 #if !DIFFUSE_AREA
     const floatw slowed = 1.0f / fmax((floatw)(limit), rate);
     for (uint row = begin; row < ring.end; ++row) {
-        const uint at = row * MESH_LANES + ring.lane;
+        const uint at = row * PEL_MESH_LANES + ring.lane;
         const floatw weight = loadw(at, weights);
         storew(selectw(zero, weight * slowed, weight != zero), at, weights);
     }
@@ -113,17 +113,17 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_we
 
 #if DIFFUSE_AREA
 // Slows an edge down as the faster one of its ends asks for: alike from both, so that nothing is lost between them.
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_limit(
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_limit(
     uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
     __global const uint* runs, float limit, __global float* weights, __global const float* rates) {
-    const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
+    const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
-    RingCursor ring = ring_begin(first, slots, slices);
+    RingCursor ring = ringBegin(first, slots, slices);
     const floatw own = fmax((floatw)(limit), loadw(first, rates));
     for (; ring.row < ring.end; ++ring.row) {
-        const uint at = ring.row * MESH_LANES + ring.lane;
+        const uint at = ring.row * PEL_MESH_LANES + ring.lane;
         const floatw weight = loadw(at, weights);
-        const floatw rate = fmax(own, gather1(rates, ring_entry(&ring, rings, runs).slots));
+        const floatw rate = fmax(own, gather1(rates, ringEntry(&ring, rings, runs).slots));
         storew(selectw((floatw)(0.0f), weight / rate, weight != 0.0f), at, weights);
     }
 }
@@ -131,23 +131,23 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_li
 
 // next = gain (current + L current / limit) - before, where gain is 2, or 1 for the first stage, which has nothing before;
 // sum += coefficient next, where the first stage begins with `begin` current. next may be before.
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void diffuse_stage(
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_stage(
     uint slots, uint listed, __global const uint* list, __global const uint* slices,
     __global const uint* rings, __global const uint* runs, __global const float* weights, uint planeStride,
     __global const float* current, __global const float* before, __global float* next, __global float* sum,
     int isFirst, float begin, float coefficient) {
-    const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
+    const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     const size_t plane = (size_t)get_global_id(1) * planeStride;
     current += plane, before += plane, next += plane, sum += plane;
-    RingCursor ring = ring_begin(first, slots, slices);
+    RingCursor ring = ringBegin(first, slots, slices);
     const floatw self = loadw(first, current);
     floatw change = 0.0f;
     for (; ring.row < ring.end; ++ring.row) {
-        const floatw difference = gather1(current, ring_entry(&ring, rings, runs).slots) - self;
-        const size_t at = (size_t)ring.row * MESH_LANES + ring.lane;
+        const floatw difference = gather1(current, ringEntry(&ring, rings, runs).slots) - self;
+        const size_t at = (size_t)ring.row * PEL_MESH_LANES + ring.lane;
         const floatw weight = loadw(at, weights);
-        PEL_PREFETCH(weights + at + ROWS_AHEAD * MESH_LANES);
+        PEL_PREFETCH(weights + at + PEL_ROWS_AHEAD * PEL_MESH_LANES);
         // NaN: nothing was measured there. A slot that has none itself keeps its NaN.
         change = selectw(change, fma(weight, difference, change), difference == difference);
     }

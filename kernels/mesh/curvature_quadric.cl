@@ -30,7 +30,7 @@
 //
 // One work-item: PEL_WIDTH slots.
 //
-// Variants: MESH_STRIDE, MESH_RUNS (lib/mesh/mesh_slots.clh), MESH_PLANES (lib/mesh/principal.clh).
+// Variants: PEL_MESH_STRIDE, PEL_MESH_RUNS (lib/mesh/mesh_slots.clh), MESH_PLANES (lib/mesh/principal.clh).
 
 #include "lib/mesh/mesh_frame.clh"
 
@@ -121,9 +121,9 @@ typedef struct Fit {
     floatw weight;
 } Fit;
 
-inline void add_point(Fit* fit, uintw slot, maskw counts, const Chart* chart, __global const float* positions) {
+inline void addPoint(Fit* fit, uintw slot, maskw counts, const Chart* chart, __global const float* positions) {
     Vec3w p;
-    gather3(positions, chart->last, slots_anywhere(slot), &p.x, &p.y, &p.z);
+    gather3(positions, chart->last, slotsAnywhere(slot), &p.x, &p.y, &p.z);
     p = scale3(sub3(p, chart->origin), chart->scale);
     const floatw zero = 0.0f;
     const floatw along = dot3(p, chart->u), across = dot3(p, chart->v), q = dot3(p, chart->height);
@@ -177,7 +177,7 @@ inline void assemble(Fit* fit) {
 __constant int ridgeShares[TERMS] = {1, 1, 1, 2, 1, 1, 3, 3, 1};
 
 // Determinant of the products of `count` terms from `first` on. At most four.
-inline floatw block_determinant(const Fit* fit, const int first, const int count) {
+inline floatw blockDeterminant(const Fit* fit, const int first, const int count) {
     floatw a[4][4], determinant = 1.0f;
 #pragma unroll
     for (int i = 0; i < count; ++i) {
@@ -201,7 +201,7 @@ inline maskw solve(Fit* fit, floatw ridge) {
     for (int i = 0; i < TERMS; ++i)
         fit->products[PRODUCT(i, i)] +=
             fit->weight * (float)ridgeShares[i] * (i < 5 ? (floatw)(RIDGE_QUADRATIC) : ridge);
-    const floatw quadraticAlone = block_determinant(fit, 2, 3), cubicAlone = block_determinant(fit, 5, 4);
+    const floatw quadraticAlone = blockDeterminant(fit, 2, 3), cubicAlone = blockDeterminant(fit, 5, 4);
 #pragma unroll
     for (int i = 0; i < TERMS; ++i) {
         floatw pivot = fit->products[PRODUCT(i, i)];
@@ -235,7 +235,7 @@ inline maskw solve(Fit* fit, floatw ridge) {
 
 // Coordinates in which second moments suu, suv, svv become size^2: their inverse root (Cholesky). `thick`: the smallest moment
 // that is believed.
-inline void shape_chart(Chart* chart, floatw suu, floatw suv, floatw svv, floatw thick, float size) {
+inline void shapeChart(Chart* chart, floatw suu, floatw suv, floatw svv, floatw thick, float size) {
     const floatw total = suu + svv, least = fmax(MOST_UNEVEN * total, thick) + 1e-20f;
     suu = fmax(suu, least);
     const floatw slope = suv / suu;
@@ -247,15 +247,15 @@ inline void shape_chart(Chart* chart, floatw suu, floatw suv, floatw svv, floatw
 }
 
 // The chart's scales from the ring's second moments in the tangent plane; false for a ring without extent.
-inline maskw scale_chart(Chart* chart, const RingCursor start, __global const uint* rings,
-                         __global const uint* runs, __global const float* positions) {
+inline maskw scaleChart(Chart* chart, const RingCursor start, __global const uint* rings,
+                        __global const uint* runs, __global const float* positions) {
     RingCursor ring = start;
     const floatw zero = 0.0f, one = 1.0f;
     floatw reach2 = zero, suu = zero, suv = zero, svv = zero, sun = zero, svn = zero, snn = zero, count = zero;
     maskw border = count > zero;
     for (; ring.row < ring.end; ++ring.row) {
-        const RingEntry entry = ring_entry(&ring, rings, runs);
-        border |= (entry.bits & (uintw)(MESH_SINGLE)) != 0;
+        const RingEntry entry = ringEntry(&ring, rings, runs);
+        border |= (entry.bits & (uintw)(PEL_MESH_SINGLE)) != 0;
         Vec3w p;
         gather3(positions, ring.last, entry.slots, &p.x, &p.y, &p.z);
         p = sub3(p, chart->origin);
@@ -269,7 +269,7 @@ inline maskw scale_chart(Chart* chart, const RingCursor start, __global const ui
         sun = fma(along, height, sun), svn = fma(across, height, svn), snn = fma(height, height, snn);
         count += selectw(zero, one, entry.slots.each != ring.self.each);
     }
-    const maskw spread = reach2 >= MESH_MIN_LENGTH2;
+    const maskw spread = reach2 >= PEL_MESH_MIN_LENGTH2;
     // In units of the ring's reach: powers up to the sixth must neither overflow nor vanish.
     reach2 = selectw(one, reach2, spread);
     chart->scale = 0.5f / sqrt(reach2);
@@ -288,25 +288,25 @@ inline maskw scale_chart(Chart* chart, const RingCursor start, __global const ui
     // A ring that is thinner than high is a sliver, or its normal is wrong, as where a triangle is folded over.
     chart->doubtful |= (suu < snn) | (fma(-suv, suv, suu * svv) < snn * suu);
     chart->farthest2 = FARTHEST2;
-    shape_chart(chart, suu, suv, svv, selectw(zero, snn, chart->replaced), CHART_SIZE);
+    shapeChart(chart, suu, suv, svv, selectw(zero, snn, chart->replaced), CHART_SIZE);
     return spread;
 }
 
-inline void orient_chart(Chart* chart, Vec3w normal) {
+inline void orientChart(Chart* chart, Vec3w normal) {
     chart->n = normal;
-    tangent_frame(normal, &chart->u, &chart->v);
+    tangentFrame(normal, &chart->u, &chart->v);
 }
 
 // Mean direction of the normals of the ring; NaN where they cancel out.
-inline Vec3w ring_normal(const RingCursor start, __global const uint* rings, __global const uint* runs,
-                         __global const float* normals) {
+inline Vec3w ringNormal(const RingCursor start, __global const uint* rings, __global const uint* runs,
+                        __global const float* normals) {
     RingCursor ring = start;
     Vec3w sum = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
     for (; ring.row < ring.end; ++ring.row) {
-        const Slots slots = ring_entry(&ring, rings, runs).slots;
+        const Slots slots = ringEntry(&ring, rings, runs).slots;
         Vec3w n;
         gather3(normals, ring.last, slots, &n.x, &n.y, &n.z);
-        usable_normals(&n.x, &n.y, &n.z);
+        usableNormals(&n.x, &n.y, &n.z);
         sum = select3(sum, add3(sum, n), finite3(n) & (slots.each != ring.self.each));
     }
     return scale3(sum, 1.0f / sqrt(dot3(sum, sum)));
@@ -316,10 +316,9 @@ typedef struct Moments {
     floatw uu, uv, vv, nn, weight;
 } Moments;
 
-inline void add_moments(Moments* m, uintw slot, maskw counts, const Chart* chart,
-                        __global const float* positions) {
+inline void addMoments(Moments* m, uintw slot, maskw counts, const Chart* chart, __global const float* positions) {
     Vec3w p;
-    gather3(positions, chart->last, slots_anywhere(slot), &p.x, &p.y, &p.z);
+    gather3(positions, chart->last, slotsAnywhere(slot), &p.x, &p.y, &p.z);
     p = scale3(sub3(p, chart->origin), chart->scale);
     const floatw length2 = dot3(p, p), zero = 0.0f;
     counts &= finitew(length2);
@@ -342,17 +341,17 @@ __attribute__((always_inline)) inline void walk_points(Fit* fit, Moments* moment
     const uintw none = (uintw)(0), one = (uintw)(1), near_steps = (uintw)(NEAR_STEPS);
     RingCursor ring = first;
     for (; ring.row < ring.end; ++ring.row) {
-        const uintw near_ = ring_entry(&ring, rings, runs).slots.each;
+        const uintw near_ = ringEntry(&ring, rings, runs).slots.each;
         const maskw real = (near_ != ring.self.each) & wanted;
         if (fit)
-            add_point(fit, near_, real, chart, positions);
+            addPoint(fit, near_, real, chart, positions);
         else
-            add_moments(moments, near_, real, chart, positions);
+            addMoments(moments, near_, real, chart, positions);
         // Each lane walks the ring of its own neighbour, in that one's slice, in which this slot stands `here`.
-        const uintw begin = gather_uint(slices, near_ / MESH_LANES), round = gather_uint(rounds, near_);
-        const uintw here = loadw((size_t)ring.row * MESH_LANES + ring.lane, links);
-        const uintw length = selectw(none, round & ~(uintw)(MESH_ROUND), real);
-        const maskw closed = real & ((round & (uintw)(MESH_ROUND)) != 0);
+        const uintw begin = gatherUint(slices, near_ / PEL_MESH_LANES), round = gatherUint(rounds, near_);
+        const uintw here = loadw((size_t)ring.row * PEL_MESH_LANES + ring.lane, links);
+        const uintw length = selectw(none, round & ~(uintw)(PEL_MESH_ROUND), real);
+        const maskw closed = real & ((round & (uintw)(PEL_MESH_ROUND)) != 0);
         // Closed: all but this slot, its two neighbours and the last one; with four in the ring just one is left.
         const uintw rest = selectw(selectw(none, one, length == 4), length - 4, length > 4);
         uintw steps = selectw(length, rest, closed);
@@ -368,47 +367,47 @@ __attribute__((always_inline)) inline void walk_points(Fit* fit, Moments* moment
                             long_);
             middle = selectw(steps, near_steps, long_ & closed);
         }
-        const uint longest = largest_lane(steps);
+        const uint longest = largestLane(steps);
         for (uint step = 0; step < longest; ++step) {
             const maskw inside = step < steps;
             uintw row = selectw(none, from + step + selectw((uintw)(3), none, step < middle), inside);
             row -= selectw(none, length, row >= length);
-            const uintw entry =
-                gather_uint(rings, (begin + selectw(none, row, inside)) * MESH_LANES + near_ % MESH_LANES);
-            const uintw far_ = selectw(ring.self.each, RING_SLOT(entry), inside);
+            const uintw entry = gatherUint(
+                rings, (begin + selectw(none, row, inside)) * PEL_MESH_LANES + near_ % PEL_MESH_LANES);
+            const uintw far_ = selectw(ring.self.each, PEL_RING_SLOT(entry), inside);
             const maskw counts = inside & (far_ != ring.self.each);
             if (fit)
-                add_point(fit, far_, counts, chart, positions);
+                addPoint(fit, far_, counts, chart, positions);
             else
-                add_moments(moments, far_, counts, chart, positions);
+                addMoments(moments, far_, counts, chart, positions);
         }
     }
 }
 
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_quadric(
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_quadric(
     uint slots, uint listed, __global const uint* list, __global const uint* slices,
     __global const uint* rings, __global const uint* runs, __global const float* positions,
     uint positionOffset, __global const float* normals, uint normalOffset, uint planeStride,
     __global float* planes, __global const uint* links, __global const uint* rounds) {
-    const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
+    const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
-    RingCursor ring = ring_begin(first, slots, slices);
+    RingCursor ring = ringBegin(first, slots, slices);
     positions += positionOffset;
     normals += normalOffset;
     Chart chart;
     chart.last = ring.last;
     chart.replaced = 0;
-    const SlotFrame frame = slot_frame(&ring, positions, normals);
+    const SlotFrame frame = slotFrame(&ring, positions, normals);
     chart.origin = frame.origin, chart.n = frame.n, chart.u = frame.u, chart.v = frame.v;
-    maskw spread = scale_chart(&chart, ring, rings, runs, positions) & frame.sound;
+    maskw spread = scaleChart(&chart, ring, rings, runs, positions) & frame.sound;
     const maskw doubtful = spread & chart.doubtful;
     if (anyw(doubtful)) {
-        const Vec3w mean = ring_normal(ring, rings, runs, normals);
+        const Vec3w mean = ringNormal(ring, rings, runs, normals);
         const maskw wrong = doubtful & (dot3(mean, chart.n) < WRONG_NORMAL);
         if (anyw(wrong)) {
             chart.replaced = wrong;
-            orient_chart(&chart, select3(chart.n, mean, wrong));
-            spread = scale_chart(&chart, ring, rings, runs, positions) & frame.sound;
+            orientChart(&chart, select3(chart.n, mean, wrong));
+            spread = scaleChart(&chart, ring, rings, runs, positions) & frame.sound;
         }
     }
 
@@ -435,8 +434,8 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
         poor &= finitew(spread2) & (spread2 > 0.0f);
         const floatw unit2 = WIDE_SPREAD2 / selectw((floatw)(1.0f), spread2, poor), part = unit2 / m.weight;
         Chart other = chart;
-        shape_chart(&other, m.uu * part, m.uv * part, m.vv * part,
-                    selectw((floatw)(0.0f), m.nn * part, chart.replaced), WIDE_SIZE);
+        shapeChart(&other, m.uu * part, m.uv * part, m.vv * part,
+                   selectw((floatw)(0.0f), m.nn * part, chart.replaced), WIDE_SIZE);
         chart.xx = selectw(chart.xx, other.xx, poor), chart.xy = selectw(chart.xy, other.xy, poor);
         chart.yy = selectw(chart.yy, other.yy, poor), chart.round = selectw(chart.round, other.round, poor);
         chart.scale = selectw(chart.scale, chart.scale * sqrt(unit2), poor);
@@ -462,5 +461,5 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     const floatw vv = vx * fma(xx, vx, 2.0f * xy * vy) + yy * vy * vy;
     const floatw uv = xx * ux * vx + xy * fma(ux, vy, uy * vx) + yy * uy * vy;
     const maskw measured = spread & finitew(uu) & finitew(uv) & finitew(vv);
-    store_principal(uu, uv, vv, tu, tv, measured, first, planeStride, planes);
+    storePrincipal(uu, uv, vv, tu, tv, measured, first, planeStride, planes);
 }

@@ -6,7 +6,7 @@
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h). Output:
 // lib/mesh/principal.clh. One work-item: PEL_WIDTH slots. Each triangle is solved once for each of its corners:
 // three times the arithmetic, but no memory between, no second pass, and nothing to add up atomically.
-// Variants: MESH_STRIDE, MESH_RUNS (lib/mesh/mesh_slots.clh), MESH_PLANES (lib/mesh/principal.clh).
+// Variants: PEL_MESH_STRIDE, PEL_MESH_RUNS (lib/mesh/mesh_slots.clh), MESH_PLANES (lib/mesh/principal.clh).
 
 #include "lib/mesh/mesh_frame.clh"
 #include "lib/mesh/mesh_triangle.clh"
@@ -24,13 +24,13 @@ __attribute__((always_inline)) inline Corner corner_load(Slots slots, uint last,
     Vec3w p;
     gather3(positions, last, slots, &p.x, &p.y, &p.z);
     gather3(normals, last, slots, &c.normal.x, &c.normal.y, &c.normal.z);
-    usable_normals(&c.normal.x, &c.normal.y, &c.normal.z);
+    usableNormals(&c.normal.x, &c.normal.y, &c.normal.z);
     c.offset = sub3(p, origin);
     c.usable = finite3(c.offset) & finite3(c.normal);
     return c;
 }
 
-inline Corner corner_select(const Corner f, const Corner t, maskw mask) {
+inline Corner cornerSelect(const Corner f, const Corner t, maskw mask) {
     Corner c;
     c.offset = select3(f.offset, t.offset, mask);
     c.normal = select3(f.normal, t.normal, mask);
@@ -49,7 +49,7 @@ __attribute__((always_inline)) inline void add_triangle(Form* form, Vec3w n, Vec
     const Vec3w ea = scale3(a.offset, scale), eb = scale3(b.offset, scale);
     const Vec3w across = cross3(ea, eb);
     const floatw doubled2 = dot3(across, across);
-    mask &= a.usable & b.usable & (doubled2 > TRIANGLE_FLAT * dot3(ea, ea) * dot3(eb, eb));
+    mask &= a.usable & b.usable & (doubled2 > PEL_TRIANGLE_FLAT * dot3(ea, ea) * dot3(eb, eb));
     const floatw doubled = sqrt(doubled2);
     // Orthonormal frame of the triangle, on the same side as the slot's normal where it has two.
     Vec3w m = scale3(across, 1.0f / doubled);
@@ -78,7 +78,7 @@ __attribute__((always_inline)) inline void add_triangle(Form* form, Vec3w n, Vec
     const Vec3w tu = add3(add3(scale3(u, cosine), cross3(axis, u)), scale3(axis, dot3(axis, u) * part));
     const Vec3w tv = add3(add3(scale3(v, cosine), cross3(axis, v)), scale3(axis, dot3(axis, v) * part));
     const floatw ux = dot3(tu, x), uy = dot3(tu, y), vx = dot3(tv, x), vy = dot3(tv, y);
-    const floatw area = corner_area(ea, eb, doubled);
+    const floatw area = cornerArea(ea, eb, doubled);
     const floatw suu = ux * fma(xx, ux, 2.0f * xy * uy) + yy * uy * uy;
     const floatw svv = vx * fma(xx, vx, 2.0f * xy * vy) + yy * vy * vy;
     const floatw suv = xx * ux * vx + xy * fma(ux, vy, uy * vx) + yy * uy * vy;
@@ -91,17 +91,17 @@ __attribute__((always_inline)) inline void add_triangle(Form* form, Vec3w n, Vec
     form->weight += w;
 }
 
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_tensor(
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_tensor(
     uint slots, uint listed, __global const uint* list, __global const uint* slices,
     __global const uint* rings, __global const uint* runs, __global const float* positions, uint positionOffset,
     __global const float* normals, uint normalOffset, uint planeStride, __global float* planes) {
-    const uint first = mesh_slot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
+    const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
-    RingCursor ring = ring_begin(first, slots, slices);
+    RingCursor ring = ringBegin(first, slots, slices);
     positions += positionOffset;
     normals += normalOffset;
     const Vec3w zero = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
-    const SlotFrame frame = slot_frame(&ring, positions, normals);
+    const SlotFrame frame = slotFrame(&ring, positions, normals);
     const Vec3w n = frame.n, u = frame.u, v = frame.v;
     const maskw sound = frame.sound;
 
@@ -113,21 +113,21 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void curvature_
     previous = start;
     RingWalk walk = {0, 0};
     for (; ring.row < ring.behind; ++ring.row) {
-        const RingStep step = ring_step(&ring, &walk, rings, runs);
+        const RingStep step = ringStep(&ring, &walk, rings, runs);
         const Corner current = corner_load(step.entry.slots, ring.last, frame.origin, positions, normals);
         const floatw length2 = dot3(current.offset, current.offset);
         scale = selectw(scale, 1.0f / sqrt(length2),
-                        !(scale > 0.0f) & (length2 >= MESH_MIN_LENGTH2) & finitew(length2));
+                        !(scale > 0.0f) & (length2 >= PEL_MESH_MIN_LENGTH2) & finitew(length2));
         // Inside a walk: the triangle to the neighbour before. At its end: the one back to its start, if it
         // is closed.
         if (anyw(step.triangle))
-            add_triangle(&form, n, u, v, previous, corner_select(current, start, step.ends),
+            add_triangle(&form, n, u, v, previous, cornerSelect(current, start, step.ends),
                          step.triangle & sound, scale);
-        start = corner_select(start, current, step.starts);
+        start = cornerSelect(start, current, step.starts);
         previous = current;
     }
     const maskw measured = sound & (form.weight > 0.0f);
     const floatw inverse = scale / form.weight;
-    store_principal(form.uu * inverse, form.uv * inverse, form.vv * inverse, u, v, measured, first,
-                    planeStride, planes);
+    storePrincipal(form.uu * inverse, form.uv * inverse, form.vv * inverse, u, v, measured, first,
+                   planeStride, planes);
 }

@@ -2,7 +2,7 @@
 //
 // Inputs: one-rings (shared/mesh.h). Outputs: links, beside the entries of the rings: the row, counted from its slice's first,
 // in which this slot stands in that neighbour's ring (the last one, where there are several; 0 for fillers); rounds, for each
-// slot: neighbours in its list, and MESH_ROUND where they are one closed walk of more than two.
+// slot: neighbours in its list, and PEL_MESH_ROUND where they are one closed walk of more than two.
 // Each edge is looked up in the shorter one of its two rings, by the slot that has the longer one: the hub of a fan has as
 // many neighbours as that has triangles.
 // One work-item: one slot.
@@ -10,42 +10,40 @@
 
 #include "shared/mesh.h"
 
-inline size_t entry_at(__global const uint* slices, uint slot, uint row) {
-    return (size_t)(slices[slot / MESH_LANES] + row) * MESH_LANES + slot % MESH_LANES;
+inline size_t entryAt(__global const uint* slices, uint slot, uint row) {
+    return (size_t)(slices[slot / PEL_MESH_LANES] + row) * PEL_MESH_LANES + slot % PEL_MESH_LANES;
 }
 
 // Neighbours in a slot's list: it ends with its slice, or with the slot itself.
-inline uint list_length(__global const uint* slices, __global const uint* rings, uint slot, uint most) {
-    const uint rows = min(slices[slot / MESH_LANES + 1] - slices[slot / MESH_LANES], most);
+inline uint listLength(__global const uint* slices, __global const uint* rings, uint slot, uint most) {
+    const uint rows = min(slices[slot / PEL_MESH_LANES + 1] - slices[slot / PEL_MESH_LANES], most);
     uint length = 0;
-    while (length < rows && (rings[entry_at(slices, slot, length)] & MESH_SLOT) != slot) ++length;
+    while (length < rows && (rings[entryAt(slices, slot, length)] & PEL_MESH_SLOT) != slot) ++length;
     return length;
 }
 
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_links(uint slots,
-                                                                                 __global const uint* slices,
-                                                                                 __global const uint* rings,
-                                                                                 __global uint* links,
-                                                                                 __global uint* rounds) {
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_links(
+    uint slots, __global const uint* slices, __global const uint* rings, __global uint* links,
+    __global uint* rounds) {
     const uint slot = get_global_id(0);
     if (slot >= slots) return;
-    const uint length = list_length(slices, rings, slot, 0xffffffffu);
+    const uint length = listLength(slices, rings, slot, 0xffffffffu);
     uint walks = 0, open = 0;
     for (uint row = 0; row < length; ++row) {
-        const uint entry = rings[entry_at(slices, slot, row)], near_ = entry & MESH_SLOT;
-        walks += (entry & MESH_START) != 0;
-        open |= entry & MESH_SINGLE;
-        const uint others = list_length(slices, rings, near_, length + 1);
+        const uint entry = rings[entryAt(slices, slot, row)], near_ = entry & PEL_MESH_SLOT;
+        walks += (entry & PEL_MESH_START) != 0;
+        open |= entry & PEL_MESH_SINGLE;
+        const uint others = listLength(slices, rings, near_, length + 1);
         if (others > length || (others == length && near_ > slot)) continue;  // left to the neighbour
         for (uint other = 0; other < others; ++other) {
-            const size_t at = entry_at(slices, near_, other);
-            if ((rings[at] & MESH_SLOT) != slot) continue;
+            const size_t at = entryAt(slices, near_, other);
+            if ((rings[at] & PEL_MESH_SLOT) != slot) continue;
             // Both ways. The last one of several stays, as the rows ascend.
             links[at] = row;
-            links[entry_at(slices, slot, row)] = other;
+            links[entryAt(slices, slot, row)] = other;
         }
     }
-    for (uint row = length; row < slices[slot / MESH_LANES + 1] - slices[slot / MESH_LANES]; ++row)
-        links[entry_at(slices, slot, row)] = 0;
-    rounds[slot] = length | (walks == 1 && !open && length > 2 ? MESH_ROUND : 0);
+    for (uint row = length; row < slices[slot / PEL_MESH_LANES + 1] - slices[slot / PEL_MESH_LANES]; ++row)
+        links[entryAt(slices, slot, row)] = 0;
+    rounds[slot] = length | (walks == 1 && !open && length > 2 ? PEL_MESH_ROUND : 0);
 }

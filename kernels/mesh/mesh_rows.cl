@@ -5,21 +5,21 @@
 //
 // Inputs: positions (length), normals (unit), one of each per vertex of the caller.
 // One work-item: one slot (mesh_rows), one vertex or slot (mesh_count).
-// Variants: MESH_MAPPED 1: a slot has members, one or several vertices of the caller. It stands at the first;
-// its normal is the mean direction of theirs. MESH_LISTED (lib/mesh/mesh_vertex.clh): mesh_rows.
+// Variants: PEL_MESH_MAPPED 1: a slot has members, one or several vertices of the caller. It stands at the first;
+// its normal is the mean direction of theirs. PEL_MESH_LISTED (lib/mesh/mesh_vertex.clh): mesh_rows.
 
 #include "lib/mesh/mesh_vertex.clh"
 #include "lib/width.clh"
 
 #define MEMBERS_AHEAD 64
 
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_rows(
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_rows(
     uint slots, uint listed, __global const uint* list, __global const uint* memberOffsets,
     __global const uint* members, __global const float* positions, VertexLayout positionLayout,
     __global const float* normals, VertexLayout normalLayout, __global float* rows) {
-    const uint slot = mesh_slot(get_global_id(0), slots, listed, list);
+    const uint slot = meshSlot(get_global_id(0), slots, listed, list);
     if (slot >= slots) return;
-#if MESH_MAPPED
+#if PEL_MESH_MAPPED
     const uint begin = memberOffsets[slot], end = memberOffsets[slot + 1], vertex = members[begin];
     // Members stand anywhere in the caller's memory; no processor foresees where.
     const uint ahead = members[min(begin + MEMBERS_AHEAD, positionLayout.count - 1)];
@@ -28,43 +28,43 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_rows(
 #else
     const uint vertex = slot;
 #endif
-    const float3 position = vertex_load3(positions, positionLayout, vertex);
-    float3 normal = mesh_usable_normal(vertex_load3(normals, normalLayout, vertex));
-#if MESH_MAPPED
+    const float3 position = vertexLoad3(positions, positionLayout, vertex);
+    float3 normal = meshUsableNormal(vertexLoad3(normals, normalLayout, vertex));
+#if PEL_MESH_MAPPED
     if (end - begin > 1) {
         float3 sum = (float3)(0.0f);
         for (uint m = begin; m < end; ++m) {
-            const float3 n = mesh_usable_normal(vertex_load3(normals, normalLayout, members[m]));
+            const float3 n = meshUsableNormal(vertexLoad3(normals, normalLayout, members[m]));
             if (n.x == n.x) sum += n;
         }
-        normal = dot(sum, sum) > 1e-6f ? sum / sqrt(dot(sum, sum)) : mesh_nan3();
+        normal = dot(sum, sum) > 1e-6f ? sum / sqrt(dot(sum, sum)) : meshNan3();
     }
 #endif
-    vstore8((float8)(mesh_usable_position(position), 0.0f, normal, 0.0f), slot, rows);
+    vstore8((float8)(meshUsablePosition(position), 0.0f, normal, 0.0f), slot, rows);
 }
 
 // Whole numbers only, so that the order of the additions does not show.
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void mesh_count(
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_count(
     uint vertices, __global const float* positions, VertexLayout positionLayout, __global const float* normals,
     VertexLayout normalLayout, uint slots, __global const uint* slices, __global const uint* rings,
     __global const float* slotPositions, VertexLayout slotLayout, __global MeshCounts* counts) {
     const uint i = get_global_id(0);
     if (i < vertices) {
-        const float3 p = mesh_usable_position(vertex_load3(positions, positionLayout, i));
-        const float3 n = mesh_usable_normal(vertex_load3(normals, normalLayout, i));
+        const float3 p = meshUsablePosition(vertexLoad3(positions, positionLayout, i));
+        const float3 n = meshUsableNormal(vertexLoad3(normals, normalLayout, i));
         if (p.x != p.x) atomic_inc(&counts->nonFinitePositions);
         if (n.x != n.x) atomic_inc(&counts->nonFiniteNormals);
     }
     if (i < slots) {
-        const float3 self = mesh_usable_position(vertex_load3(slotPositions, slotLayout, i));
+        const float3 self = meshUsablePosition(vertexLoad3(slotPositions, slotLayout, i));
         uint found = 0;
-        for (uint row = slices[i / MESH_LANES]; row < slices[i / MESH_LANES + 1]; ++row) {
-            const uint entry = rings[(size_t)row * MESH_LANES + i % MESH_LANES];
-            const uint other = entry & MESH_SLOT;
-            if (other <= i || (entry & MESH_REPEAT))
+        for (uint row = slices[i / PEL_MESH_LANES]; row < slices[i / PEL_MESH_LANES + 1]; ++row) {
+            const uint entry = rings[(size_t)row * PEL_MESH_LANES + i % PEL_MESH_LANES];
+            const uint other = entry & PEL_MESH_SLOT;
+            if (other <= i || (entry & PEL_MESH_REPEAT))
                 continue;  // each edge once, from its smaller end; no fillers
-            const float3 d = mesh_usable_position(vertex_load3(slotPositions, slotLayout, other)) - self;
-            if (dot(d, d) < MESH_MIN_LENGTH2) ++found;
+            const float3 d = meshUsablePosition(vertexLoad3(slotPositions, slotLayout, other)) - self;
+            if (dot(d, d) < PEL_MESH_MIN_LENGTH2) ++found;
         }
         if (found) atomic_add(&counts->zeroLengthEdges, found);
     }

@@ -2,50 +2,50 @@
 // edge, without the triangles where either is below 1e-6 of the largest of its kind.
 //
 // Inputs: triangles as the caller's vertex numbers, positions (length), UV coordinates (1).
-// One work-item: a fixed share of the triangles, every UV_SCALE_ITEMS-th; the shares and the order within
+// One work-item: a fixed share of the triangles, every PEL_UV_SCALE_ITEMS-th; the shares and the order within
 // them do not depend on the device, so that the result does not either. The host adds the shares in order.
 // uv_scale_largest must run first: its maxima decide what uv_scale_sum skips.
 
 #include "lib/mesh/mesh_vertex.clh"
 
-inline float edge_longest2(float3 a, float3 b, float3 c) {
+inline float edgeLongest2(float3 a, float3 b, float3 c) {
     return fmax(dot(b - a, b - a), fmax(dot(c - b, c - b), dot(a - c, a - c)));
 }
 
 // Squared longest edge and squared longest UV edge of a triangle; NaN or Inf if it has such vertices.
-inline float2 triangle_longest2(uint triangle, __global const uint* indices, __global const float* positions,
-                                VertexLayout positionLayout, __global const float* uvs, VertexLayout uvLayout) {
+inline float2 triangleLongest2(uint triangle, __global const uint* indices, __global const float* positions,
+                               VertexLayout positionLayout, __global const float* uvs, VertexLayout uvLayout) {
     const uint3 v = vload3(triangle, indices);
-    const float2 length2 = (float2)(edge_longest2(vertex_load3(positions, positionLayout, v.x),
-                                                  vertex_load3(positions, positionLayout, v.y),
-                                                  vertex_load3(positions, positionLayout, v.z)),
+    const float2 length2 = (float2)(edgeLongest2(vertexLoad3(positions, positionLayout, v.x),
+                                                 vertexLoad3(positions, positionLayout, v.y),
+                                                 vertexLoad3(positions, positionLayout, v.z)),
                                     0.0f);
     __global const float* uv = uvs + uvLayout.offset;
     const float2 a = vload2(0, uv + (size_t)v.x * uvLayout.stride);
     const float2 b = vload2(0, uv + (size_t)v.y * uvLayout.stride);
     const float2 c = vload2(0, uv + (size_t)v.z * uvLayout.stride);
     // A sum over all corners is NaN or Inf when one of them is, which fmax would hide.
-    const float3 total = vertex_load3(positions, positionLayout, v.x) +
-                         vertex_load3(positions, positionLayout, v.y) +
-                         vertex_load3(positions, positionLayout, v.z);
+    const float3 total = vertexLoad3(positions, positionLayout, v.x) +
+                         vertexLoad3(positions, positionLayout, v.y) +
+                         vertexLoad3(positions, positionLayout, v.z);
     if (!isfinite(total.x + total.y + total.z + a.x + a.y + b.x + b.y + c.x + c.y))
-        return (float2)(mesh_nan3().x);
-    return (float2)(length2.x, edge_longest2((float3)(a, 0.0f), (float3)(b, 0.0f), (float3)(c, 0.0f)));
+        return (float2)(meshNan3().x);
+    return (float2)(length2.x, edgeLongest2((float3)(a, 0.0f), (float3)(b, 0.0f), (float3)(c, 0.0f)));
 }
 
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void uv_scale_largest(
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void uv_scale_largest(
     uint triangles, __global const uint* indices, __global const float* positions,
     VertexLayout positionLayout, __global const float* uvs, VertexLayout uvLayout, __global float* largest) {
     const uint item = get_global_id(0);
     float2 high = (float2)(0.0f);
-    for (uint t = item; t < triangles; t += UV_SCALE_ITEMS) {
-        const float2 length2 = triangle_longest2(t, indices, positions, positionLayout, uvs, uvLayout);
+    for (uint t = item; t < triangles; t += PEL_UV_SCALE_ITEMS) {
+        const float2 length2 = triangleLongest2(t, indices, positions, positionLayout, uvs, uvLayout);
         if (all(isfinite(length2))) high = fmax(high, length2);
     }
     vstore2(high, item, largest);
 }
 
-__kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void uv_scale_sum(
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void uv_scale_sum(
     uint triangles, __global const uint* indices, __global const float* positions,
     VertexLayout positionLayout, __global const float* uvs, VertexLayout uvLayout, float smallestLength2,
     float smallestUv2, __global UvScaleShare* shares) {
@@ -56,8 +56,8 @@ __kernel __attribute__((reqd_work_group_size(MESH_GROUP, 1, 1))) void uv_scale_s
     float sum = 0.0f, lost = 0.0f;
     int exponents = 0;
     uint count = 0;
-    for (uint t = item; t < triangles; t += UV_SCALE_ITEMS) {
-        const float2 length2 = triangle_longest2(t, indices, positions, positionLayout, uvs, uvLayout);
+    for (uint t = item; t < triangles; t += PEL_UV_SCALE_ITEMS) {
+        const float2 length2 = triangleLongest2(t, indices, positions, positionLayout, uvs, uvLayout);
         if (!all(isfinite(length2)) || length2.x < smallestLength2 || length2.y < smallestUv2) continue;
         int e, uvE;
         const float term = log2(frexp(length2.x, &e) / frexp(length2.y, &uvE)) - lost;

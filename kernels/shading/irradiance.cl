@@ -5,8 +5,8 @@
 // Output: planes of RGB, NaN where an input is. Pixels of materials that scatter by tables (PEL_SCATTER_PREINTEGRATED) are left
 // as they are. One work-group: a run of tiles; one work-item: PEL_WIDTH pixels of a row at a time. Variants: as shade.cl.
 #include "lib/image/planes.clh"
-#include "lib/shading/scene.clh"
 #include "lib/shading/tiles.clh"
+#include "shading/scene.clh"
 
 // At PEL_WIDTH pixels from (x, y) on. Where no light arrives its shadow does not matter.
 static inline Vec3w arrivingLight(const Scene* scene, uint x, uint y) {

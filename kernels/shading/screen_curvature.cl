@@ -28,7 +28,7 @@ inline uintw loadObjectId(const int format, Span s) {
     }
 }
 
-inline void store_float(Span s, floatw value) {
+inline void storeFloat(Span s, floatw value) {
 #if PEL_WIDTH > 1
     if (!(PEL_FORMAT_CURVATURE & PEL_FMT_STRIDED)) {
         storew(value, 0, (__global float*)s.first);
@@ -51,7 +51,7 @@ typedef struct Pixel {
     uintw id;
 } Pixel;
 
-inline Pixel load_pixel(const Inputs* in, uint x, uint y) {
+inline Pixel loadPixel(const Inputs* in, uint x, uint y) {
     Pixel pixel;
     const Vec3w normal = loadNormal(PEL_FORMAT_NORMAL, imageSpan(in->normal, &in->frame->normal, x, y));
     const Span span = imageSpan(in->position, &in->frame->position, x, y);
@@ -94,26 +94,26 @@ inline ScreenPoint neighbour(const Pixel there, const Pixel here, maskw inside) 
     return point;
 }
 
-__kernel __attribute__((reqd_work_group_size(SCREEN_GROUP, 1, 1))) void screen_curvature(
+__kernel __attribute__((reqd_work_group_size(PEL_SCREEN_GROUP, 1, 1))) void screen_curvature(
     __global const ScreenCurvatureFrame* frame, __global uchar* normal, __global uchar* position,
     __global uchar* ids, __global uchar* curvature) {
     const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
     if (y >= frame->height) return;
     const uint x = vectorStart(get_global_id(0) % across * PEL_WIDTH, frame->width);
     const Inputs in = {frame, normal, position, ids};
-    const Pixel here = load_pixel(&in, x, y);
+    const Pixel here = loadPixel(&in, x, y);
     const Span out = imageSpan(curvature, &frame->curvature, x, y);
     floatw value = 0.0f;
     if (anyw(here.point.usable)) {
         // A vector beside the image would be outside of it: the same pixels once more, moved by a lane.
-        Pixel left = load_pixel(&in, max(x, 1u) - 1, y), right = here;
+        Pixel left = loadPixel(&in, max(x, 1u) - 1, y), right = here;
         if (x == 0) MOVE_LANES(left, LANES_UP);
         if (x + PEL_WIDTH < frame->width)
-            right = load_pixel(&in, x + 1, y);
+            right = loadPixel(&in, x + 1, y);
         else
             MOVE_LANES(right, LANES_DOWN);
-        const Pixel up = load_pixel(&in, x, max(y, 1u) - 1),
-                    down = load_pixel(&in, x, min(y + 1, frame->height - 1));
+        const Pixel up = loadPixel(&in, x, max(y, 1u) - 1),
+                    down = loadPixel(&in, x, min(y + 1, frame->height - 1));
         const intw column = lanesw() + (int)x;
         const maskw yes = (maskw)(-1);
         value = frame->scale * screenCurvature(here.point, neighbour(left, here, column > 0),
@@ -123,5 +123,5 @@ __kernel __attribute__((reqd_work_group_size(SCREEN_GROUP, 1, 1))) void screen_c
                                                frame->edge);
         value = selectw((floatw)(0.0f), value, finitew(value));
     }
-    store_float(out, value);
+    storeFloat(out, value);
 }

@@ -13,11 +13,11 @@
 #include "lib/shading/ggx.clh"
 #include "lib/shading/material_id.clh"
 #include "lib/shading/position.clh"
-#include "lib/shading/scene.clh"
 #include "lib/shading/shadow.clh"
 #include "lib/shading/specular.clh"
 #include "lib/shading/thickness.clh"
 #include "lib/shading/transmission.clh"
+#include "shading/scene.clh"
 #include "shared/shade.h"
 
 #define NEEDS_POSITION HAS(PEL_READ_POSITION)

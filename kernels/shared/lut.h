@@ -3,10 +3,10 @@
 #define PEL_SHARED_LUT
 
 // How texels are spread over the axes (PelLutAxis).
-#define LUT_AXIS_LINEAR 0
+#define PEL_LUT_AXIS_LINEAR 0
 // Rows: the root of the row value is linear. Columns of curvature tables: u = s |s|, s from -1 to 1 across; of shadow tables: the
 // position across the edge is linear. Both from end to end.
-#define LUT_AXIS_ROOT 1
+#define PEL_LUT_AXIS_ROOT 1
 
 // Texels are float4 (R, G, B, 0), row-major, rowTexels to a row, the row of the smallest curvature or of the
 // widest penumbra first. Behind the last column stands a copy of it, behind the last row likewise: a bilinear

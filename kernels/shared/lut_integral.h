@@ -56,15 +56,15 @@ typedef struct ShadowParams {
 
 // --- measured profiles (kernels/table_*.cl) ---
 
-// The line spread of a table and its integrals, within the cut, at distances end (i / TAIL_CELLS)^2, i = 0 ...
-// TAIL_CELLS: TAIL_VALUES float4 (R, G, B, 0) each.
-#define TAIL_CELLS 512
-#define TAIL_SPREAD 0  // P
-#define TAIL_MASS 1    // integral of P beyond
-#define TAIL_FIRST 2   // integral of (t - s) P beyond
-#define TAIL_SECOND 3  // ... of (t - s)^2 / 2 P
-#define TAIL_THIRD 4   // ... of (t - s)^3 / 6 P
-#define TAIL_VALUES 5
+// The line spread of a table and its integrals, within the cut, at distances end (i / PEL_TAIL_CELLS)^2, i = 0 ...
+// PEL_TAIL_CELLS: PEL_TAIL_VALUES float4 (R, G, B, 0) each.
+#define PEL_TAIL_CELLS 512
+#define PEL_TAIL_SPREAD 0  // P
+#define PEL_TAIL_MASS 1    // integral of P beyond
+#define PEL_TAIL_FIRST 2   // integral of (t - s) P beyond
+#define PEL_TAIL_SECOND 3  // ... of (t - s)^2 / 2 P
+#define PEL_TAIL_THIRD 4   // ... of (t - s)^3 / 6 P
+#define PEL_TAIL_VALUES 5
 
 // A column of the dark half.
 typedef struct TableColumn {

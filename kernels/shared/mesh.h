@@ -6,7 +6,7 @@
 #ifndef PEL_SHARED_MESH
 #define PEL_SHARED_MESH
 
-// One-rings lie in slices of MESH_LANES slots. A slice has as many rows as its longest list; a row holds one
+// One-rings lie in slices of PEL_MESH_LANES slots. A slice has as many rows as its longest list; a row holds one
 // neighbour of each of its slots side by side, so that a vector of slots, or neighbouring work-items, read
 // one contiguous piece. slices[i] is the first row of slice i, slices[count] the number of rows. Shorter
 // lists are filled up with the slot itself, which no real list contains; the lanes behind the last slot with
@@ -19,29 +19,29 @@
 // trail through the graph whose nodes are the neighbours and whose edges are the triangles). So a list holds
 // neighbours and triangles in the memory of the neighbours alone: an edge of two triangles is one entry, an
 // edge of one triangle an end of an open walk.
-#define MESH_LANES 8
-#define MESH_SINGLE \
-    0x80000000u                 // an end of an open walk: stands for one triangle of its edge, others for two
-#define MESH_START 0x40000000u  // the first entry of a walk
-#define MESH_FLIPPED 0x20000000u  // the triangle from this entry to the next has the opposite order
-#define MESH_REPEAT 0x10000000u   // the neighbour stands further up in this list already
-#define MESH_SLOT 0x0fffffffu     // the neighbour
+#define PEL_MESH_LANES 8
+#define PEL_MESH_SINGLE \
+    0x80000000u  // an end of an open walk: stands for one triangle of its edge, others for two
+#define PEL_MESH_START 0x40000000u    // the first entry of a walk
+#define PEL_MESH_FLIPPED 0x20000000u  // the triangle from this entry to the next has the opposite order
+#define PEL_MESH_REPEAT 0x10000000u   // the neighbour stands further up in this list already
+#define PEL_MESH_SLOT 0x0fffffffu     // the neighbour
 
-// Rows of large parts of many meshes, of grids nearly all, are runs: MESH_LANES entries that follow one another, with the same
+// Rows of large parts of many meshes, of grids nearly all, are runs: PEL_MESH_LANES entries that follow one another, with the same
 // flags. runs[row] is the first entry of such a row, or this; meshes with few of them have none.
-#define MESH_NO_RUN 0xffffffffu
+#define PEL_MESH_NO_RUN 0xffffffffu
 
-#define MESH_ROUND 0x80000000u  // of a slot's neighbours: they are one closed walk (mesh_links.cl)
+#define PEL_MESH_ROUND 0x80000000u  // of a slot's neighbours: they are one closed walk (mesh_links.cl)
 
 // Edges shorter than the root of this (a length squared) are too short to measure: their square is no normal
 // float.
-#define MESH_MIN_LENGTH2 1.17549435e-38f
+#define PEL_MESH_MIN_LENGTH2 1.17549435e-38f
 
 // A normal whose squared length is off by more than this is brought to unit length; nearer ones are taken as
 // they are, so that their last bits stay the caller's.
-#define MESH_UNIT_TOLERANCE 1e-3f
+#define PEL_MESH_UNIT_TOLERANCE 1e-3f
 
-#define MESH_GROUP 64  // work-items in a work-group of every mesh kernel
+#define PEL_MESH_GROUP 64  // work-items in a work-group of every mesh kernel
 
 // Where the caller's vertex data stands, in 4-byte words: element i begins at offset + i * stride.
 typedef struct VertexLayout {
@@ -60,7 +60,7 @@ typedef struct MeshCounts {
 } MeshCounts;
 
 // The triangles are dealt out to this many work-items, on every device, so that their sums come out the same.
-#define UV_SCALE_ITEMS 4096
+#define PEL_UV_SCALE_ITEMS 4096
 
 // The sum over a share of the triangles of log2(longest edge^2 / longest UV edge^2), in two parts.
 typedef struct UvScaleShare {

@@ -5,7 +5,7 @@
 
 // The table of a profile has this many rows per doubling of the distance. A row holds M(r) = integral of R(s) s ds from 0 to r
 // as RGBX, then its slope per row; M ends at 1 / 2 pi, or goes on beyond it where R is cut.
-#define SURFACE_ROWS 64
+#define PEL_SURFACE_ROWS 64
 
 // A set of triangles. Nodes stand in the order of a walk from the root, each before its children.
 typedef struct SurfaceNode {
@@ -14,10 +14,10 @@ typedef struct SurfaceNode {
     float weight[3];     // integral of E dA, length^2
     float accept2;       // length^2; from this squared distance on the centre stands for the set
     PelUint32 skip;      // node that follows when the children are left out
-    PelUint32 triangle;  // of a leaf; SURFACE_NONE: there are children
+    PelUint32 triangle;  // of a leaf; PEL_SURFACE_NONE: there are children
     PelUint32 pad[2];
 } SurfaceNode;
-#define SURFACE_NONE 0xffffffffu
+#define PEL_SURFACE_NONE 0xffffffffu
 
 typedef struct SurfaceTriangle {
     float corner[9];      // length

@@ -1,4 +1,4 @@
-// What kernels must not do though OpenCL C allows it, since a driver gets it wrong.
+// What kernels must not do though OpenCL C allows it, since a driver gets it wrong, and how their parts are named.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -55,4 +55,33 @@ TEST(KernelRules, NoFunctionChangesAStructureThatItTakesByValue) {
         }
     }
     EXPECT_GT(checked, 100);
+}
+
+// CONTRIBUTING.md, "Names".
+TEST(KernelRules, NamesFollowTheRule) {
+    const std::regex kernel(R"(__kernel[^{;]*?void\s+(\w+)\s*\()"),
+        function(R"(\n(?:static )?inline [\w ]+\*?\s(\w+)\()"), macro(R"(\n\s*#\s*define\s+(\w+))");
+    const std::regex entryName("[a-z0-9]+(_[a-z0-9]+)*"), functionName("(as_|convert_)?[a-z][a-zA-Z0-9]*"),
+        publicName("PEL_[A-Z0-9_]+|[a-z]+w|(as|convert)_[a-z]+w"), ownName("[A-Z][A-Z0-9_]*|kernel");
+    int checked = 0;
+    const fs::path root = fs::path(PELLUCID_SOURCE_DIR) / "kernels";
+    const auto check = [&](const fs::path& file, const std::string& text, const std::regex& what,
+                           const std::regex& rule, const char* form) {
+        for (std::sregex_iterator m(text.begin(), text.end(), what), end; m != end; ++m, ++checked)
+            EXPECT_TRUE(std::regex_match((*m)[1].str(), rule))
+                << file << ": " << (*m)[1] << " should be " << form;
+    };
+    for (const auto& entry : fs::recursive_directory_iterator(root)) {
+        const fs::path file = fs::relative(entry.path(), root);
+        const std::string folder = file.begin()->string();
+        if (!entry.is_regular_file()) continue;
+        const std::string text = "\n" + withoutComments(entry.path());
+        check(file, text, kernel, entryName, "snake_case");
+        check(file, text, function, functionName, "lowerCamelCase");
+        if (folder == "lib" || folder == "shared")
+            check(file, text, macro, publicName, "PEL_UPPER_CASE");
+        else
+            check(file, text, macro, ownName, "UPPER_CASE");
+    }
+    EXPECT_GT(checked, 500);
 }

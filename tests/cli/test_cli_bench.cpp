@@ -91,7 +91,7 @@ TEST_F(BenchCommand, ADriverThatHangsOrCrashesCostsOneOperation) {
         const Result result =
             run({"bench", "--quick", "--limit", row.limit, "--only", "table-shadow", "--only",
                  "table-specular", "-o", path("out")},
-                std::string("LD_PRELOAD='" BAD_DRIVER "' BAD_KERNEL=shadowTexels BAD_ENDING=") + row.ending);
+                std::string("LD_PRELOAD='" BAD_DRIVER "' BAD_KERNEL=shadow_texels BAD_ENDING=") + row.ending);
         ASSERT_EQ(result.exitCode, 0) << result.err;
         const auto report = nlohmann::json::parse(read(path("out/bench.json")));
         EXPECT_EQ(report.at("limit_s").get<double>(), std::stod(row.limit));
