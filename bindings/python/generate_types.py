@@ -84,7 +84,7 @@ class Translator:
         for name, (_, members) in enums.items():
             for short, _, _, full in members:
                 self.words[full] = f"{name[3:]}.{short}"
-        for name, (_, fields) in structs.items():
+        for _, fields in structs.values():
             for field, _, _, _ in fields:
                 self.words[field] = snake(field)
         self.pattern = re.compile(r"\b(\w+)\b")

@@ -15,7 +15,7 @@ def reader(name):
     try:
         return __import__(name)
     except ImportError:
-        raise unittest.SkipTest(f"{name} is not installed")
+        raise unittest.SkipTest(f"{name} is not installed") from None
 
 
 class Tables(unittest.TestCase):

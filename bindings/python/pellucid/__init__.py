@@ -24,6 +24,7 @@ from .shader import Shader, prefill_programs
 _number = _native.version()
 __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
 
-__all__ = ["Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile", "Scatter", "Shader",
-           "Vertices", "compare", "devices", "prefill_programs", "screen_curvature", "set_error_callback", "submit_screen_curvature",
-           "submit_surface_integral", "surface_integral", *_type_names]
+__all__ = [  # noqa: PLE0604
+    "Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile", "Scatter", "Shader",
+    "Vertices", "compare", "devices", "prefill_programs", "screen_curvature", "set_error_callback", "submit_screen_curvature",
+    "submit_surface_integral", "surface_integral", *_type_names]

@@ -76,11 +76,11 @@ def test_what_waiting_work_uses_is_kept_until_it_is_done(queue, sphere, kind):
     array = np.full({"table read": (8, 8, 3), "curvature": n}.get(kind, 64), 7, np.float32)
     gone = []
     weakref.finalize(array, gone.append, kind)
-    event = {"buffer read": lambda: buffer.submit_read(array, waits=waits),
-             "buffer write": lambda: buffer.submit_write(array, waits=waits),
-             "table read": lambda: table.submit_read("float", array, waits=waits),
-             "curvature": lambda: topology.submit_curvature(sphere.positions, sphere.normals, array, waits=waits)}[kind]()
-    del array
+    event = {"buffer read": lambda: buffer.submit_read(array, waits=waits),  # noqa: F821
+             "buffer write": lambda: buffer.submit_write(array, waits=waits),  # noqa: F821
+             "table read": lambda: table.submit_read("float", array, waits=waits),  # noqa: F821
+             "curvature": lambda: topology.submit_curvature(sphere.positions, sphere.normals, array, waits=waits)}[kind]()  # noqa: F821
+    del array  # noqa: F821
     gc.collect()
     assert not gone and not event.done
     gate.set_status(cl.command_execution_status.COMPLETE)

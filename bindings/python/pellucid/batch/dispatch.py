@@ -90,7 +90,7 @@ class Dispatcher:
             The output is full or gone; NoWorker: the scheduler is gone, or no worker came for longer than `patience`.
         """
         start = looked = alone = asked = time.monotonic()
-        for line, message in self._manifest.errors:
+        for _, message in self._manifest.errors:
             self._entry_failed(message)
         try:
             self._look_for_workers()

@@ -112,7 +112,7 @@ def _flush_folder(folder: Path) -> None:
         os.close(fd)
 
 
-@functools.lru_cache(maxsize=None)
+@functools.cache
 def _machine_tag() -> str:
     """Whose locks are seen here: those under this kernel. host/io/atomic_file.cpp makes the same."""
     try:
