@@ -37,7 +37,7 @@ def comment_before(text, position):
 def parse_enums(text):
     enums = {}
     for match in re.finditer(r"typedef enum (\w+) \{(.*?)\} \1;", text, re.S):
-        entries = re.findall(r"(PEL_\w+) = ([^,/\n]+?)\s*,?[ ]*(?:/\*(.*?)\*/)?\s*(?=\n|PEL_|\Z)", match.group(2), re.S)
+        entries = re.findall(r"(PEL_\w+) =\s*([^,/\n]+?)\s*,?[ ]*(?:/\*(.*?)\*/)?\s*(?=\n|PEL_|\Z)", match.group(2), re.S)
         names = [name for name, _, _ in entries]
         if not entries or len(names) != len(re.findall(r"PEL_\w+ =", match.group(2))):
             raise SystemExit(f"{match.group(1)}: an enumerator was not understood")
