@@ -3,6 +3,7 @@
 #include "mesh/curvature.h"
 #include "mesh/live_mesh.h"
 #include "mesh/mesh_normals.h"
+#include "mesh/mesh_orient.h"
 #include "mesh/mesh_topology.h"
 #include "mesh/uv_scale.h"
 
@@ -55,6 +56,18 @@ PelError pelMeshNormals(PelMeshTopology topology, const PelVertexView* positions
     });
 }
 
+PelError pelMeshOrient(const PelMeshTopologyDesc* desc, const float* normals, uint32_t normalStride,
+                       uint32_t* indices, PelMeshOrientation* found) {
+    return entry([&] {
+        const auto full = readStruct(desc, pelMeshTopologyDescDefaults(), "PelMeshTopologyDesc");
+        PelMeshOrientation counts = pelMeshOrientationDefaults();
+        if (found) writeStruct(found, counts, "PelMeshOrientation");  // fails before anything is written
+        const std::vector<uint32_t> turned = orientTriangles(full, normals, normalStride, counts);
+        if (!turned.empty()) std::copy(turned.begin(), turned.end(), &output(indices, "indices"));
+        if (found) writeStruct(found, counts, "PelMeshOrientation");
+    });
+}
+
 void pelMeshTopologyRetain(PelMeshTopology topology) {
     retainEntry<MeshTopology>(topology);
 }
@@ -85,6 +98,7 @@ PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* pa
         found.zeroLengthEdges = counts.zeroLengthEdges;
         found.nonFinitePositions = counts.nonFinitePositions;
         found.nonFiniteNormals = counts.nonFiniteNormals;
+        found.lowDegreeFits = counts.lowDegreeFits;
         writeStruct(report, found, "PelMeshReport");
     });
 }

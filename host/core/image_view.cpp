@@ -76,26 +76,39 @@ ImageView makeImageView(const PelImageDesc& desc, Device& device, const char* wh
     return view;
 }
 
-bool overlapsElsewhere(const ImageView& a, const ImageView& b) {
+namespace {
+
+// Whether the bytes from the first to the last pixel of either reach into those of the other.
+bool overlaps(const ImageView& a, const ImageView& b) {
     const Buffer::Place &inA = a.buffer->place(), &inB = b.buffer->place();
-    if (inA.whole != inB.whole) return false;
-    if (inA.offset + a.byteEnd() <= inB.offset + b.byteOffset ||
-        inB.offset + b.byteEnd() <= inA.offset + a.byteOffset)
-        return false;
+    return inA.whole == inB.whole && inA.offset + a.byteEnd() > inB.offset + b.byteOffset &&
+           inB.offset + b.byteEnd() > inA.offset + a.byteOffset;
+}
+
+// Whether pixels of both lie in the same places: interleaved components, or the very same image.
+bool pixelOnPixel(const ImageView& a, const ImageView& b) {
     // OpenCL leaves open what is seen through one cl_mem of what is written through another over the same
     // memory.
-    if (a.buffer->memory().get() != b.buffer->memory().get()) return true;
-    // Pixels of one and the same layout: interleaved components, or the very same image.
-    const bool samePixels =
-        a.pixelStride == b.pixelStride && a.rowStride == b.rowStride && !a.info().planar && !b.info().planar;
-    const uint64_t apart =
-        a.byteOffset > b.byteOffset ? a.byteOffset - b.byteOffset : b.byteOffset - a.byteOffset;
-    const uint64_t width = std::max(a.byteOffset + a.info().pixelBytes, b.byteOffset + b.info().pixelBytes) -
-                           std::min(a.byteOffset, b.byteOffset);
-    if (samePixels && width <= a.pixelStride) return false;
-    const bool samePlanes = a.info().planar && b.info().planar && apart == 0 && a.pixelStride == b.pixelStride &&
-                            a.rowStride == b.rowStride && a.planeStride == b.planeStride;
-    return !samePlanes;
+    if (a.buffer->memory().get() != b.buffer->memory().get()) return false;
+    if (a.pixelStride != b.pixelStride || a.rowStride != b.rowStride || a.info().planar != b.info().planar)
+        return false;
+    if (a.info().planar) return a.byteOffset == b.byteOffset && a.planeStride == b.planeStride;
+    return std::max(a.byteOffset + a.info().pixelBytes, b.byteOffset + b.info().pixelBytes) -
+               std::min(a.byteOffset, b.byteOffset) <=
+           a.pixelStride;
+}
+
+}  // namespace
+
+bool sharesBytes(const ImageView& a, const ImageView& b) {
+    if (!overlaps(a, b)) return false;
+    return !pixelOnPixel(a, b) || a.info().planar ||
+           (a.byteOffset + a.info().pixelBytes > b.byteOffset &&
+            b.byteOffset + b.info().pixelBytes > a.byteOffset);
+}
+
+bool overlapsElsewhere(const ImageView& a, const ImageView& b) {
+    return overlaps(a, b) && !pixelOnPixel(a, b);
 }
 
 }  // namespace pel

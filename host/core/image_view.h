@@ -35,8 +35,11 @@ struct ImageView {
 // `what` names the image in messages.
 ImageView makeImageView(const PelImageDesc& desc, Device& device, const char* what);
 
+// Whether a byte of a pixel of `a` is one of `b` too. Buffers over the same host memory, or parts of one cl_mem, are noticed.
+bool sharesBytes(const ImageView& a, const ImageView& b);
+
 // Whether writing `a` pixel by pixel could change pixels of `b` that are read later: they overlap, and not
-// pixel on pixel in one cl_mem. Buffers over the same host memory, or parts of one cl_mem, are noticed.
+// pixel on pixel in one cl_mem.
 bool overlapsElsewhere(const ImageView& a, const ImageView& b);
 
 }  // namespace pel

@@ -35,10 +35,9 @@ void checkImages(const ScatterImages& images) {
             invalidArgument("the ", name, " image is ", view->width, " x ", view->height, ", the output ",
                             images.out.width, " x ", images.out.height, "; all must have one size");
         // The irradiance may be written over pixel on pixel.
-        const bool touches = view->buffer->memory().get() == images.out.buffer->memory().get() &&
-                             view->byteOffset < images.out.byteEnd() && images.out.byteOffset < view->byteEnd();
-        if (touches && (slot != PEL_SLOT_ALBEDO || view->format != images.out.format ||
-                        overlapsElsewhere(images.out, *view)))
+        const bool same = view->format == images.out.format && view->byteOffset == images.out.byteOffset &&
+                          !overlapsElsewhere(images.out, *view);
+        if (sharesBytes(images.out, *view) && !(slot == PEL_SLOT_ALBEDO && same))
             invalidArgument(
                 "the output overlaps the ", name, " image, which is read",
                 slot == PEL_SLOT_ALBEDO ? "; only the same pixels in the same format may be written over" : "");

@@ -37,6 +37,7 @@ MeshAdjacency buildAdjacency(const std::vector<uint32_t>& triangles, uint32_t sl
         mesh.edges += edges.all;
         mesh.borderEdges += edges.border;
         mesh.nonManifoldEdges += edges.nonManifold;
+        mesh.inconsistentEdges += edges.inconsistent;
     }
     mesh.offsets.push_back(uint32_t(mesh.neighbours.size()));
     progress(1.0);

@@ -12,6 +12,7 @@ struct MeshAdjacency {
     uint32_t edges = 0;
     uint32_t borderEdges = 0;
     uint32_t nonManifoldEdges = 0;
+    uint32_t inconsistentEdges = 0;  // of two triangles that run along them the same way
 };
 
 // `triangles`: three slots each, all different and < slots. `progress` is told a fraction in [0, 1].

@@ -30,6 +30,7 @@ RingBuilder::Edges RingBuilder::build(uint32_t slot, Corner* corners, uint32_t c
             ++edges.all;
             edges.border += triangles == 1;
             edges.nonManifold += triangles > 2;
+            edges.inconsistent += triangles == 2 && ends_[node.next].backward == ends_[node.next + 1].backward;
         }
         return edges;
     }

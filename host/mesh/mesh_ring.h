@@ -14,6 +14,7 @@ class RingBuilder {
   public:
     struct Edges {
         uint32_t all = 0, border = 0, nonManifold = 0;  // to slots above `slot`
+        uint32_t inconsistent = 0;                      // of two triangles that run along them the same way
     };
     // Appends the list of `slot` to `out`. `corners` (count of them) may be reordered.
     Edges build(uint32_t slot, Corner* corners, uint32_t count, std::vector<uint32_t>& out);

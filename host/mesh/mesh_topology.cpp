@@ -4,9 +4,8 @@
 #include "mesh/mesh_weld.h"
 
 namespace pel {
-namespace {
 
-void checkDesc(const PelMeshTopologyDesc& desc) {
+void checkTopologyDesc(const PelMeshTopologyDesc& desc) {
     if (desc.weld != PEL_WELD_NONE && desc.weld != PEL_WELD_EXACT && desc.weld != PEL_WELD_TOLERANCE)
         invalidArgument("PelMeshTopologyDesc.weld is ", int(desc.weld), ", which is no PelWeld");
     if (desc.numVertices > PEL_MESH_SLOT)
@@ -26,8 +25,6 @@ void checkDesc(const PelMeshTopologyDesc& desc) {
                             "; the mesh has ", desc.numVertices, " vertices, numbered from 0");
 }
 
-}  // namespace
-
 cl::Memory MeshTopology::upload(const std::vector<uint32_t>& values) {
     if (values.empty()) return {};
     return device_->allocate(values.size() * sizeof(uint32_t), values.data());
@@ -36,7 +33,7 @@ cl::Memory MeshTopology::upload(const std::vector<uint32_t>& values) {
 Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopologyDesc& desc,
                                        PelMeshReport& report, const std::function<void(double)>& progress) {
     progress(0.0);
-    checkDesc(desc);
+    checkTopologyDesc(desc);
     MeshWeld weld = weldVertices(desc, [&](double fraction) { progress(0.2 * fraction); });
     progress(0.2);
 
@@ -73,6 +70,7 @@ Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopology
     report.edges = adjacency.edges;
     report.borderEdges = adjacency.borderEdges;
     report.nonManifoldEdges = adjacency.nonManifoldEdges;
+    report.inconsistentEdges = adjacency.inconsistentEdges;
 
     Ref<MeshTopology> topology = make<MeshTopology>(device);
     topology->report_ = report;

@@ -8,6 +8,9 @@
 
 namespace pel {
 
+// Throws for a count or an index that makes no mesh.
+void checkTopologyDesc(const PelMeshTopologyDesc& desc);
+
 class MeshTopology final : public Object {
   public:
     static constexpr Kind kind = Kind::meshTopology;

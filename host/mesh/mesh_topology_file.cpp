@@ -17,7 +17,7 @@ struct Header {
     PelMeshReport report;
 };
 constexpr char magic[8] = {'P', 'E', 'L', 'M', 'E', 'S', 'H', '\n'};
-constexpr uint32_t version = 1;
+constexpr uint32_t version = 2;
 
 // FNV-1a over words [Fowler, Noll & Vo]: finds damage, not malice; the checks below are for that.
 uint32_t checksumOf(const uint32_t* words, size_t count) {

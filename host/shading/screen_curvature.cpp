@@ -36,9 +36,7 @@ void checkScreenCurvature(const PelScreenCurvatureParams& params, const ScreenCu
                             ", the curvature image ", images.curvature.width, " x ", images.curvature.height,
                             "; all must have one size");
         // A pixel reads its neighbours: not even the same pixel may be written over.
-        if (view->buffer->memory().get() == images.curvature.buffer->memory().get() &&
-            view->byteOffset < images.curvature.byteEnd() && images.curvature.byteOffset < view->byteEnd() &&
-            (overlapsElsewhere(images.curvature, *view) || view->byteOffset == images.curvature.byteOffset))
+        if (sharesBytes(images.curvature, *view))
             invalidArgument("the curvature image overlaps the ", slotName(slot), " image, which is read");
     }
 }

@@ -56,7 +56,7 @@ typedef struct MeshCounts {
     unsigned int zeroLengthEdges;
     unsigned int nonFinitePositions;  // vertices of the caller
     unsigned int nonFiniteNormals;    // likewise; also zero normals
-    unsigned int pad;
+    unsigned int lowDegreeFits;       // slots; of the quadric estimator
 } MeshCounts;
 
 // The triangles are dealt out to this many work-items, on every device, so that their sums come out the same.

@@ -307,6 +307,16 @@ TEST(Scatter, SaysWhatIsWrong) {
               std::string::npos);
     EXPECT_NE(message([&] { return execute(&other, nullptr, &image); }).find("4 x 4"), std::string::npos);
     EXPECT_NE(message([&] { return execute(&image, nullptr, &image); }).find("overlaps"), std::string::npos);
+    const Buffer places(device(), p.positions);
+    const PelImageDesc at = pellucid::imageDesc(places, PEL_FORMAT_RGB32F, 8, 8);
+    EXPECT_EQ(execute(&at, nullptr, &image), PEL_SUCCESS) << pelGetErrorMessage();
+    // Over the positions' own memory by another name.
+    std::vector<float> host(3 * 64);
+    const Buffer first = Buffer::fromHost(device(), host.data(), host.size() * 4),
+                 second = Buffer::fromHost(device(), host.data(), host.size() * 4);
+    const PelImageDesc from = pellucid::imageDesc(first, PEL_FORMAT_RGB32F, 8, 8),
+                       to = pellucid::imageDesc(second, PEL_FORMAT_RGB32F, 8, 8);
+    EXPECT_NE(message([&] { return execute(&from, nullptr, &to); }).find("overlaps"), std::string::npos);
     PelScatterParams params = pelScatterParamsDefaults();
     params.targetError = notANumber;
     EXPECT_NE(message([&] {

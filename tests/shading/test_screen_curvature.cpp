@@ -282,6 +282,21 @@ TEST(ScreenCurvature, NamesWhatIsWrong) {
     const PelImageDesc other = imageDesc(b, PEL_FORMAT_RGB32F, 8, 7), over = imageDesc(b, PEL_FORMAT_R32F, 8, 8);
     EXPECT_NE(message(nullptr, &three, &other, nullptr, &one).find("one size"), std::string::npos);
     EXPECT_NE(message(nullptr, &three, &three, nullptr, &over).find("overlaps"), std::string::npos);
+    // A component of its own between others is no overlap, one of the normal's is, and so is the same memory by another name.
+    const Buffer both(device(), 8 * 8 * 16);
+    PelImageDesc four = imageDesc(both, PEL_FORMAT_RGB32F, 8, 8), part = imageDesc(both, PEL_FORMAT_R32F, 8, 8);
+    four.pixelStride = part.pixelStride = 16;
+    for (uint32_t component = 0; component < 4; ++component) {
+        part.byteOffset = 4 * component;
+        EXPECT_EQ(message(nullptr, &four, &three, nullptr, &part).find("overlaps") == std::string::npos,
+                  component == 3);
+    }
+    std::vector<float> host(3 * 64);
+    const Buffer first = Buffer::fromHost(device(), host.data(), host.size() * 4),
+                 second = Buffer::fromHost(device(), host.data(), 64 * 4);
+    const PelImageDesc n = imageDesc(first, PEL_FORMAT_RGB32F, 8, 8),
+                       c = imageDesc(second, PEL_FORMAT_R32F, 8, 8);
+    EXPECT_NE(message(nullptr, &n, &three, nullptr, &c).find("overlaps"), std::string::npos);
     PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
     params.edge = 0;
     EXPECT_NE(message(&params, &three, &three, nullptr, &one).find("edge"), std::string::npos);

@@ -127,10 +127,31 @@ pellucid::MeshTopology topologyFrom(const py::object& report,
     return pellucid::MeshTopology(std::exchange(made->handle, nullptr));
 }
 
+void bindOrient(py::module_& module) {
+    module.def("orient_mesh", [](uint32_t numVertices, uintptr_t indices, uint64_t numIndices, uint32_t weld,
+                                 float tolerance, uintptr_t positions, uint32_t positionStride,
+                                 uintptr_t normals, uint32_t normalStride, const py::object& found) {
+        PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
+        desc.numVertices = numVertices;
+        desc.indices = static_cast<const uint32_t*>(pointer(indices));
+        desc.numIndices = numIndices;
+        desc.weld = PelWeld(weld);
+        desc.weldTolerance = tolerance;
+        desc.positions = static_cast<const float*>(pointer(positions));
+        desc.positionStride = positionStride;
+        PelMeshOrientation* counts = structOf<PelMeshOrientation>(found);
+        call([&] {
+            return pelMeshOrient(&desc, static_cast<const float*>(pointer(normals)), normalStride,
+                                 static_cast<uint32_t*>(pointer(indices)), counts);
+        });
+    });
+}
+
 }  // namespace
 
 void bindMesh(py::module_& module) {
     bindLiveMesh(module);
+    bindOrient(module);
     bindScreen(module);
     bindSurfaceIntegral(module);
     using pellucid::MeshTopology;

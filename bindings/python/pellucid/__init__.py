@@ -15,7 +15,7 @@ from ._types import __all__ as _type_names
 from .device import Buffer, Device, Event, devices, set_error_callback
 from .live import LiveMesh, screen_curvature, submit_screen_curvature
 from .lut import Lut
-from .mesh import MeshTopology
+from .mesh import MeshTopology, orient_mesh
 from .profile import Profile
 from .reference import compare, submit_surface_integral, surface_integral
 from .scatter import Scatter
@@ -26,5 +26,5 @@ __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
 
 __all__ = [  # noqa: PLE0604
     "Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile", "Scatter", "Shader",
-    "Vertices", "compare", "devices", "prefill_programs", "screen_curvature", "set_error_callback", "submit_screen_curvature",
-    "submit_surface_integral", "surface_integral", *_type_names]
+    "Vertices", "compare", "devices", "orient_mesh", "prefill_programs", "screen_curvature", "set_error_callback",
+    "submit_screen_curvature", "submit_surface_integral", "surface_integral", *_type_names]

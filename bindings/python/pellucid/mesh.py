@@ -1,4 +1,4 @@
-"""Curvature and UV scale of meshes."""
+"""Curvature, orientation and UV scale of meshes."""
 from __future__ import annotations
 
 from collections.abc import Iterable
@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _flight, _native
 from ._arrays import Vertices, output_array, submit, vertex_view
 from ._struct import OfThisProcess, to_enum
-from ._types import CurvatureEstimator, CurvatureParams, CurvatureQuantity, MeshReport, SmoothingWeights, Weld
+from ._types import CurvatureEstimator, CurvatureParams, CurvatureQuantity, MeshOrientation, MeshReport, SmoothingWeights, Weld
 from .device import Device, Event, _handles
 
 
@@ -47,33 +47,12 @@ class MeshTopology(OfThisProcess):
     def __init__(self, device: Device, indices: ArrayLike, num_vertices: Optional[int] = None, *,
                  weld: Weld | str = Weld.NONE, positions: Optional[NDArray[np.float32]] = None,
                  weld_tolerance: float = 0.0) -> None:
-        triangles = np.asarray(indices)
-        if triangles.size and (triangles.dtype.kind not in "ui" or
-                               (triangles.dtype != np.uint32 and not 0 <= triangles.min() <= triangles.max() < 2**32)):
-            raise ValueError(f"indices are {triangles.dtype} from {triangles.min()} to {triangles.max()}; integers from 0 "
-                             "are needed")
-        packed = np.ascontiguousarray(triangles, np.uint32)
-        address, stride = 0, 0
-        if positions is not None:
-            if positions.dtype != np.float32 or positions.ndim != 2 or positions.shape[1] != 3:
-                raise ValueError(f"positions are {positions.dtype} of shape {positions.shape}; float32 of shape (n, 3) is "
-                                 "needed")
-            if len(positions) > 1 and (positions.strides[1] != 4 or positions.strides[0] <= 0):
-                positions = np.ascontiguousarray(positions)
-            address, stride = positions.ctypes.data, positions.strides[0] if len(positions) > 1 else 12
-            if num_vertices not in (None, len(positions)):
-                raise ValueError(f"num_vertices is {num_vertices} and positions has {len(positions)} rows")
-            num_vertices = len(positions)
-        if num_vertices is None:
-            raise ValueError("num_vertices or positions is needed")
-        if not 0 <= num_vertices < 2**32:
-            raise ValueError(f"num_vertices is {num_vertices}; it must be from 0 to {2**32 - 1}")
+        packed, held, stride, self.num_vertices = _triangles(indices, num_vertices, positions)
         self.device = device
-        self.num_vertices = int(num_vertices)
         self.report = MeshReport()
-        with _flight.kept(device._handle, packed, positions):
+        with _flight.kept(device._handle, packed, held):
             self._handle = _native.MeshTopology.create(device._handle, self.num_vertices, packed.ctypes.data, packed.size,
-                                                       int(to_enum(Weld, weld, "weld")), weld_tolerance, address, stride,
+                                                       int(to_enum(Weld, weld, "weld")), weld_tolerance, _address(held), stride,
                                                        self.report._data)
 
     @classmethod
@@ -189,6 +168,77 @@ class MeshTopology(OfThisProcess):
         scale: list[float] = []
         submit(self.device, views, [], lambda waits: scale.append(self._handle.uv_scale(p, u)))
         return scale[0]
+
+
+def orient_mesh(indices: ArrayLike, num_vertices: Optional[int] = None, *, positions: Optional[NDArray[np.float32]] = None,
+                normals: Optional[NDArray[np.float32]] = None, weld: Weld | str = Weld.NONE,
+                weld_tolerance: float = 0.0) -> tuple[NDArray[np.uint32], MeshOrientation]:
+    """Triangles turned so that the two of every edge run along it opposite ways.
+
+    Parts whose triangles agree already stay as they are. Of the others the outward side is the one that `normals` look to; where
+    they do not tell, and the part is closed and there are positions, the side away from its inside; else that of most of its
+    triangles. Nothing else in this package turns triangles.
+
+    Parameters
+    ----------
+    indices : (t, 3) or (3 t,) integers
+        Three per triangle.
+    num_vertices : int, optional
+        Needed without `positions`.
+    positions : (n, 3) float32, optional
+    normals : (n, 3) float32, optional
+        Only with positions.
+    weld, weld_tolerance
+        As in MeshTopology.
+
+    Returns
+    -------
+    oriented : uint32, of the shape of indices
+        A new array; the second and third index of some triangles have changed places.
+    found : MeshOrientation
+        What was turned, and what is left.
+    """
+    packed, held, stride, count = _triangles(indices, num_vertices, positions)
+    oriented = packed.copy()
+    given, normal_stride = (None, 0) if normals is None else _rows(normals, "normals", count)
+    found = MeshOrientation()
+    _native.orient_mesh(count, oriented.ctypes.data, oriented.size, int(to_enum(Weld, weld, "weld")), weld_tolerance,
+                        _address(held), stride, _address(given), normal_stride, found._data)
+    return oriented, found
+
+
+def _address(array: Optional[NDArray[Any]]) -> int:
+    return 0 if array is None else array.ctypes.data
+
+
+def _rows(array: NDArray[np.float32], name: str, count: Optional[int]) -> tuple[NDArray[np.float32], int]:
+    """(n, 3) float32 whose components follow one another, and the bytes from row to row."""
+    if array.dtype != np.float32 or array.ndim != 2 or array.shape[1] != 3:
+        raise ValueError(f"{name} are {array.dtype} of shape {array.shape}; float32 of shape (n, 3) is needed")
+    if count is not None and count != len(array):
+        raise ValueError(f"there are {count} vertices and {name} has {len(array)} rows")
+    if len(array) > 1 and (array.strides[1] != 4 or array.strides[0] <= 0):
+        array = np.ascontiguousarray(array)
+    return array, array.strides[0] if len(array) > 1 else 12
+
+
+def _triangles(indices: ArrayLike, num_vertices: Optional[int], positions: Optional[NDArray[np.float32]]
+               ) -> tuple[NDArray[np.uint32], Optional[NDArray[np.float32]], int, int]:
+    """Packed indices, positions in place with the bytes from row to row, and the number of vertices."""
+    triangles = np.asarray(indices)
+    if triangles.size and (triangles.dtype.kind not in "ui" or
+                           (triangles.dtype != np.uint32 and not 0 <= triangles.min() <= triangles.max() < 2**32)):
+        raise ValueError(f"indices are {triangles.dtype} from {triangles.min()} to {triangles.max()}; integers from 0 "
+                         "are needed")
+    stride = 0
+    if positions is not None:
+        positions, stride = _rows(positions, "positions", num_vertices)
+        num_vertices = len(positions)
+    if num_vertices is None:
+        raise ValueError("num_vertices or positions is needed")
+    if not 0 <= num_vertices < 2**32:
+        raise ValueError(f"num_vertices is {num_vertices}; it must be from 0 to {2**32 - 1}")
+    return np.ascontiguousarray(triangles, np.uint32), positions, stride, int(num_vertices)
 
 
 # Floats per vertex of the quantities that have more than one.

@@ -199,3 +199,27 @@ def test_read_only_results_are_refused(device, sphere):
 def test_bad_indices(device, indices, error):
     with pytest.raises(error):
         pel.MeshTopology(device, indices, 3)
+
+
+def test_orient_mesh_turns_what_disagrees(device, make_sphere):
+    mesh = make_sphere(2.0)
+    turned = mesh.triangles.copy()
+    wrong = np.random.default_rng(3).random(len(turned)) < 0.5
+    turned[wrong] = turned[wrong][:, [0, 2, 1]]
+    topology = pel.MeshTopology(device, turned, len(mesh.positions), weld="exact", positions=mesh.positions)
+    assert topology.report.inconsistent_edges > 0
+    for normals in (None, mesh.normals):
+        oriented, found = pel.orient_mesh(turned, positions=mesh.positions, normals=normals, weld="exact")
+        assert oriented.dtype == np.uint32 and found.triangles_turned == (oriented != turned).any(1).sum() > 0
+        assert found.inconsistent_edges == 0 and found.parts >= found.parts_turned == 1
+        faces = mesh.positions[oriented]
+        outward = np.einsum("ij,ij->i", np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]), faces.mean(1))
+        assert (outward >= 0).all()
+        report = pel.MeshTopology(device, oriented, weld="exact", positions=mesh.positions).report
+        assert report.inconsistent_edges == 0
+    flat, _ = pel.orient_mesh(turned.ravel(), len(mesh.positions))
+    assert flat.shape == turned.ravel().shape
+    with pytest.raises(ValueError, match="normals has 3 rows"):
+        pel.orient_mesh(turned, positions=mesh.positions, normals=mesh.normals[:3])
+    with pytest.raises(pel.PellucidError, match="together with PelMeshTopologyDesc.positions"):
+        pel.orient_mesh(turned, len(mesh.positions), normals=mesh.normals)

@@ -220,7 +220,12 @@ typedef enum PelFormat {
     PEL_FORMAT_PLANAR_RGB32F = 18 /* three float32 planes, planeStride bytes apart */
 } PelFormat;
 
-/* A view of an image inside a buffer, in the layout it already has. */
+/* A view of an image inside a buffer, in the layout it already has. Images that are read may share memory as they like. One
+ * that a shader writes may share it with others only pixel on pixel: in one buffer with the same strides, as the very same
+ * image or as other components of its pixels. What pelScreenCurvature and pelScatterExecute write may be other components
+ * too, but shares no byte with what they read, except that pelScatterExecute may write over its irradiance, in the same
+ * format. Any other overlap is PEL_ERROR_INVALID_ARGUMENT, also between buffers over the same host memory and parts of one
+ * cl_mem. */
 typedef struct PelImageDesc {
     uint32_t structSize;
     PelFormat format;
@@ -251,6 +256,10 @@ typedef struct PelMeshReport {
     uint32_t zeroLengthEdges;      /* too short to measure: skipped; set by curvature */
     uint32_t nonFinitePositions; /* NaN or Inf: edges to them are skipped, their own curvature is 0; set by curvature */
     uint32_t nonFiniteNormals; /* NaN, Inf or zero, likewise; set by curvature */
+    uint32_t inconsistentEdges; /* whose two triangles run along them the same way: one of the two faces the other side, so that
+                                   normals made from them cancel out (pelMeshOrient) */
+    uint32_t lowDegreeFits; /* unique positions around which too few others stand for a cubic, so that the quadric estimator
+                               fitted less there: estimates that may be far off; set by curvature */
 } PelMeshReport;
 
 typedef enum PelWeld { PEL_WELD_NONE = 0, PEL_WELD_EXACT = 1, PEL_WELD_TOLERANCE = 2 } PelWeld;
@@ -281,6 +290,28 @@ PEL_API void pelMeshTopologyRelease(PelMeshTopology topology);
 PEL_API PelError pelMeshTopologySave(PelMeshTopology topology, void* destination, size_t* size);
 PEL_API PelError pelMeshTopologyLoad(PelDevice device, const void* bytes, size_t size,
                                      PelMeshTopology* topology, PelMeshReport* report);
+
+/* What pelMeshOrient found and did. A part: triangles that hang together by edges that belong to two of them. */
+typedef struct PelMeshOrientation {
+    uint32_t structSize;
+    uint32_t trianglesTurned; /* whose second and third index changed places */
+    uint32_t parts;
+    uint32_t partsTurned;       /* with a triangle that was turned */
+    uint32_t inconsistentEdges; /* that are left: of parts with one side only, as a Moebius strip has */
+    uint32_t partsByNormals;    /* of partsTurned: whose side the normals told */
+    uint32_t partsByVolume;     /* whose side follows from their being closed */
+    uint32_t partsByMajority;   /* whose side is a guess: that of most of their triangles */
+} PelMeshOrientation;
+
+/* Turns triangles so that the two of every edge run along it opposite ways, as one surface has them. `indices`: desc->numIndices,
+ * written: those of desc, which they may be, with the second and third of some triangles exchanged. Parts whose triangles
+ * agree already stay as they are, whichever way they face. Of the others the outward side is the one that `normals` (xyz float32
+ * per vertex, normalStride bytes apart, 0: 12; or NULL) look to; where they do not tell, and the part is closed and desc has
+ * positions, the side away from its inside; else that of most of its triangles. Vertices are one by desc->weld. Nothing is
+ * turned unasked anywhere: pelMeshNormals and every estimator take triangles as they are. `found` may be NULL. Errors: as
+ * pelMeshTopologyCreate. */
+PEL_API PelError pelMeshOrient(const PelMeshTopologyDesc* desc, const float* normals, uint32_t normalStride,
+                               uint32_t* indices, PelMeshOrientation* found);
 
 /* Vertex data inside a buffer. */
 typedef struct PelVertexView {
@@ -333,8 +364,9 @@ typedef struct PelCurvatureParams {
                                  smoothingStages is given */
     float smoothingCrease; /* with a radius: angle between normals, radians, across which smoothing falls to 1/e, so
                                  that sharp features stay; 0: none stay */
-    uint32_t smoothingStages; /* with a radius: work spent, about 9 * radius / edge length; 0: chosen from the mesh. Too
-                                 few smooth less, never wrongly */
+    uint32_t smoothingStages; /* with a radius: work spent, about 9 * radius / edge length; 0: chosen from the mesh, and then
+                                 corrected for what its density alone takes from narrow shapes, which a given number is
+                                 not (docs/curvature.md). Too few smooth less */
     PelSmoothingWeights smoothingWeights; /* with a radius */
 } PelCurvatureParams;
 

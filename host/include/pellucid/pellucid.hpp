@@ -196,6 +196,14 @@ class MeshTopology : public Handle<PelMeshTopology, pelMeshTopologyRetain, pelMe
     }
 };
 
+// Writes the triangles to `indices`, turned where neighbours disagree; `normals` may be NULL.
+inline PelMeshOrientation orientMesh(const PelMeshTopologyDesc& desc, uint32_t* indices,
+                                     const float* normals = nullptr, uint32_t normalStride = 0) {
+    PelMeshOrientation found = pelMeshOrientationDefaults();
+    check(pelMeshOrient(&desc, normals, normalStride, indices, &found));
+    return found;
+}
+
 class LiveMesh : public Handle<PelLiveMesh, pelLiveMeshRetain, pelLiveMeshRelease> {
   public:
     using Handle::Handle;

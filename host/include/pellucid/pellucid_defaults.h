@@ -14,6 +14,7 @@ static inline PelDeviceInfo pelDeviceInfoDefaults(void) { PEL_ZEROED_(PelDeviceI
 static inline PelDeviceStats pelDeviceStatsDefaults(void) { PEL_ZEROED_(PelDeviceStats, s); return s; }
 static inline PelImageDesc pelImageDescDefaults(void) { PEL_ZEROED_(PelImageDesc, s); return s; }
 static inline PelMeshReport pelMeshReportDefaults(void) { PEL_ZEROED_(PelMeshReport, s); return s; }
+static inline PelMeshOrientation pelMeshOrientationDefaults(void) { PEL_ZEROED_(PelMeshOrientation, s); return s; }
 static inline PelMeshTopologyDesc pelMeshTopologyDescDefaults(void) { PEL_ZEROED_(PelMeshTopologyDesc, s); return s; }
 static inline PelCurvatureParams pelCurvatureParamsDefaults(void) {
     PEL_ZEROED_(PelCurvatureParams, s);
