@@ -1,12 +1,25 @@
 #include "page.h"
 
 #include <cmath>
+#include <cstdio>
 #include <set>
-#include <vector>
-
-#include "plot.h"
 
 namespace pellucid::bench {
+
+std::string shortNumber(double value) {
+    if (!std::isfinite(value)) return "–";
+    if (value == 0) return "0";
+    const double size = std::abs(value);
+    const char* pattern = size < 1e-3 || size >= 1e5 ? "%.2e"
+                          : size < 1                 ? "%.3f"
+                          : size < 10                ? "%.2f"
+                          : size < 100               ? "%.1f"
+                                                     : "%.0f";
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, pattern, value);
+    return buffer;
+}
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -17,10 +30,22 @@ h1 { font-size: 1.5em; } h2 { font-size: 1.2em; margin-top: 2em; } h3 { font-siz
 table { border-collapse: collapse; font-size: 13px; width: 100%; font-variant-numeric: tabular-nums; }
 th, td { padding: 3px 4px; border-bottom: 1px solid #ddd; text-align: right; white-space: nowrap; }
 th:first-child, td:first-child, td.text, th.text { text-align: left; } .wide { overflow-x: auto; }
-svg { width: 100%; height: auto; } svg text { font-size: 12px; fill: #222; } svg .title { font-size: 13px; }
-svg .grid { stroke: #e4e4e4; } svg .leader { stroke: #bbb; fill: none; }
-.key span { display: inline-block; width: .8em; height: .8em; margin: 0 .35em 0 1em; } .note { color: #555; font-size: 13px; }
+.first td { font-size: 16px; } .note { color: #555; font-size: 13px; }
 </style>)";
+
+std::string escapeHtml(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        const char* name = c == '&'    ? "&amp;"
+                           : c == '<'  ? "&lt;"
+                           : c == '>'  ? "&gt;"
+                           : c == '\'' ? "&#39;"
+                           : c == '"'  ? "&quot;"
+                                       : nullptr;
+        name ? void(out += name) : void(out += c);
+    }
+    return out;
+}
 
 double value(const Json& e, const char* key) {
     const auto found = e.find(key);
@@ -74,6 +99,38 @@ std::string truthList(const Json& device) {
     return html + ".</p>";
 }
 
+// Which device, how many frames a second, at what error: the question that the page is opened with.
+std::string framesTable(const Json& devices) {
+    struct Column {
+        const char *operation, *title;
+    };
+    static constexpr Column columns[] = {{"shade-10-percent", "skin on a tenth of the frame, 32 taps"},
+                                         {"shade-surface", "skin everywhere"},
+                                         {"shade-32-taps", "skin everywhere, 32 taps"}};
+    std::string head = "<tr><th>frames a second</th>", rows, size;
+    for (const Column& c : columns) head += std::string("<th>") + c.title + "</th>";
+    for (const Json& d : devices) {
+        rows += "<tr>" + cell(words(d, "name"));
+        double error = NAN;
+        for (const Column& c : columns) {
+            double frames = NAN;
+            for (const Json& e : d.at("operations")) {
+                if (words(e, "name") != c.operation || e.contains("failed")) continue;
+                frames = 1e3 / value(e, "median_ms");
+                error = std::fmax(error, value(e, "error_max"));
+                if (size.empty()) size = words(e, "what").substr(0, words(e, "what").find(','));
+            }
+            rows += cell(shortNumber(frames));
+        }
+        rows += cell(shortNumber(error)) + "</tr>";
+    }
+    if (size.empty()) return "";  // --only
+    return "<table class='first'>" + head + "<th>largest error</th></tr>" + rows +
+           "</table><p class='note'>Frames of " + size +
+           " pixels with one light, nothing else running. Error of linear radiance, against double "
+           "precision.</p>";
+}
+
 }  // namespace
 
 std::string htmlPage(const Json& report) {
@@ -83,9 +140,9 @@ std::string htmlPage(const Json& report) {
         "<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>pellucid bench</title>";
     html += style;
     html += "</head><body><h1>pellucid bench</h1><p>Version " + words(host, "pellucid") + ", " +
-            words(host, "date") + ", " + words(host, "cpu") + " with " +
-            std::to_string(host.value("cores", 0)) + " threads" +
-            (report.value("quick", false) ? ", <b>quick: small sizes, few repetitions</b>" : "") + ".</p>";
+            words(host, "date") + ", " + words(host, "cpu") + " with " + std::to_string(host.value("cores", 0)) +
+            " threads" + (report.value("quick", false) ? ", <b>quick: small sizes, few repetitions</b>" : "") +
+            ".</p>" + framesTable(devices);
     html +=
         "<p class='note'>Times are medians of blocking calls, cases interleaved in rounds; MAD is the median "
         "absolute deviation. "
@@ -109,29 +166,8 @@ std::string htmlPage(const Json& report) {
         "table and frame; warm "
         "start: the same again.</p>";
 
-    html += "<h2>Run time against error</h2><p class='key'>";
-    for (size_t i = 0; i < devices.size(); ++i)
-        html += std::string("<span style='background:") + seriesColor(int(i)) + "'></span>" +
-                words(devices[i], "name");
-    html += "</p>";
-    for (const char* group : {"mesh", "tables", "shading"}) {
-        std::vector<PlotPoint> points;
-        for (size_t i = 0; i < devices.size(); ++i)
-            for (const Json& e : devices[i].at("operations"))
-                if (e.at("group") == group && std::isfinite(value(e, "error_max")))
-                    points.push_back({value(e, "median_ms"), value(e, "error_max"), int(i), e.at("name")});
-        if (points.empty()) continue;
-        html += std::string("<h3>") + group + "</h3>" + scatterPlot(points, "run time, ms", "largest error");
-    }
-    for (size_t i = 0; i < devices.size(); ++i) {
-        const Json& d = devices[i];
+    for (const Json& d : devices)
         html += "<h2>" + words(d, "name") + "</h2>" + operationsTable(d) + truthList(d);
-        std::vector<PlotBar> bars;
-        for (const Json& e : d.at("operations"))
-            if (!e.contains("failed") && e.at("group") != "device")
-                bars.push_back({e.at("name"), value(e, "median_ms"), value(e, "mad_ms"), int(i)});
-        html += "<h3>Run time</h3>" + barPlot(bars, "ms, median and its absolute deviation");
-    }
     return html + "</body></html>\n";
 }
 

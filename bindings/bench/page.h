@@ -6,5 +6,6 @@
 namespace pellucid::bench {
 
 std::string htmlPage(const nlohmann::ordered_json& report);
+std::string shortNumber(double value);  // three digits
 
 }  // namespace pellucid::bench

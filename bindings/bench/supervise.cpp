@@ -8,7 +8,7 @@
 
 #include "case.h"
 #include "child_process.h"
-#include "plot.h"
+#include "page.h"
 
 namespace pellucid::bench {
 namespace {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "bench/compare.h"
+#include "bench/page.h"
 #include "cli_run.h"
 #include "tolerances.h"
 
@@ -72,7 +73,7 @@ TEST_F(BenchCommand, MeasuresTimeShareAndError) {
                                                "curvature-edge-smoothed", "table-shadow", "shade-plain"}));
     const std::string page = read(path("out/bench.html"));
     for (const std::string& name : names) EXPECT_TRUE(contains(page, "<td>" + name + "</td>"));
-    EXPECT_TRUE(contains(page, "<svg"));
+    EXPECT_FALSE(contains(page, "frames a second")) << "none of the frames that it speaks of was measured";
     for (const char* outside : {"http:", "https:", "<script", "<link", "<img"})
         EXPECT_FALSE(contains(page, outside)) << outside;
     // A report is the same as itself.
@@ -161,6 +162,20 @@ TEST_F(BenchCommand, VerdictsSurviveNoise) {
     const Result text = run({"bench", "compare", path("old.json"), path("new.json")});
     EXPECT_EQ(text.exitCode, 1);
     EXPECT_TRUE(contains(text.out, "1 slower"));
+}
+
+// The page of a report: which device, how many frames a second, at what error, before all else; and no mark-up from names.
+TEST_F(BenchCommand, ThePageAnswersItsQuestionFirst) {
+    Json made = Json::parse(report(20, 0.01, 3e-6, 1e10, "shade-surface"));
+    made["devices"][0]["name"] = "<D&'\">";
+    made["devices"][0]["operations"][0]["what"] = "64x32, 100 % skin";
+    const std::string page = pellucid::bench::htmlPage(made);
+    const size_t first = page.find("frames a second");
+    ASSERT_NE(first, std::string::npos);
+    EXPECT_LT(first, page.find("first use"));
+    EXPECT_TRUE(contains(
+        page, "<td>&lt;D&amp;&#39;&quot;&gt;</td><td>–</td><td>50.0</td><td>–</td><td>3.00e-06</td>"));
+    EXPECT_TRUE(contains(page, "Frames of 64x32 pixels"));
 }
 
 TEST_F(BenchCommand, SaysWhatIsWrong) {

@@ -1,4 +1,4 @@
-// The disks of thickness taps (bench/generate_disks.py): centred, as wide as the disk, evenly spread, and better than random
+// The disks of thickness taps (bench/shading/generate_disks.py): centred, as wide as the disk, evenly spread, and better than random
 // points at what they are for: how much of the disk lies on one side of an edge.
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Profiles as sources of tables: curvature by any form on the root axis, and shadow.
-#include "stability_tables.h"
+#include "tables.h"
 
 namespace stability {
 namespace {

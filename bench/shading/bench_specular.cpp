@@ -86,7 +86,7 @@ std::vector<float> readTable(uint32_t size) {
 cl_kernel makeKernel(const char* name, int term, int lanes) {
     void *context, *id;
     check(pelDeviceGetCl(device().get(), &context, &id, nullptr));
-    std::ifstream in(PELLUCID_SOURCE_DIR "/bench/specular_terms.cl");
+    std::ifstream in(PELLUCID_SOURCE_DIR "/bench/shading/specular_terms.cl");
     std::stringstream text;
     text << in.rdbuf();
     const std::string source = text.str();

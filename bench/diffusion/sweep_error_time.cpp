@@ -1,6 +1,6 @@
 // Run time against error of whole methods: every way to scatter, over its settings, on three scenes at the
 // usual radius and at four times that, against the surface integral. Writes one line of CSV per measurement;
-// bench/plot_error_time draws them.
+// bench/plot methods draws them.
 //
 //   sweep_error_time OUT.csv [PIXELS] [HEAD.obj]
 //

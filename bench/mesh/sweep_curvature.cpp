@@ -1,6 +1,6 @@
 // What matters to a mesh: the error of each estimator and smoothing against the time it takes, on tori of
 // rising size (radii 3 and 1), regular and irregular, with exact normals, with normals from the mesh, and
-// with noise of 2 % of the edges. One JSON line per case on stdout; bench/plot_curvature draws them.
+// with noise of 2 % of the edges. One JSON line per case on stdout; bench/plot curvature draws them.
 //   sweep_curvature [LARGEST]   vertices, default 200000
 #include <pellucid/pellucid.hpp>
 

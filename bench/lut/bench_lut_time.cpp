@@ -1,7 +1,7 @@
 // Error against time of a 512x512 table of form arc, skin, all on the same device: this library's kernels
 // with several node counts, and plain sampling with 16 to 4096 samples, texel by texel or with the profile's
 // samples made once a row. Times are device times; `max` is the largest error of 4000 texels against the
-// oracle. plot_lut_time.py draws the figure of docs/guide/luts.md from the JSON. Beside it, what the device can do:
+// oracle. `bench/plot lut` draws the figure of docs/guide/luts.md from the JSON. Beside it, what the device can do:
 // exponentials and bytes per second.
 #include <benchmark/benchmark.h>
 
@@ -14,7 +14,7 @@
 namespace {
 
 constexpr int side = bench::ArcTable::side;
-const std::string kernels = PELLUCID_SOURCE_DIR "/kernels/", own = PELLUCID_SOURCE_DIR "/bench/";
+const std::string kernels = PELLUCID_SOURCE_DIR "/kernels/", own = PELLUCID_SOURCE_DIR "/bench/lut/";
 
 bench::Runner& runner() {
     static bench::Runner runner;

@@ -67,7 +67,7 @@ def disk(count):
 
 def main():
     print("""// Taps of the thickness term: points of the unit disk, evenly spread, none near another, their mean in the centre.
-// Written by bench/generate_disks.py, which says how: do not edit.
+// Written by bench/shading/generate_disks.py, which says how: do not edit.
 #ifndef PEL_LIB_POISSON_DISK
 #define PEL_LIB_POISSON_DISK
 """)

@@ -1,5 +1,5 @@
 // Look-up tables of skin: every form and axis, shadow, specular.
-#include "stability_tables.h"
+#include "tables.h"
 
 namespace stability {
 namespace {

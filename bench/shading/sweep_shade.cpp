@@ -1,5 +1,5 @@
 // Error against time of the whole shading pass, over taps, size and type of the look-up tables, and storage formats, on the views
-// that `pellucid demo` wrote; bench/plot_shade draws it.
+// that `pellucid demo` wrote; bench/plot shade draws it.
 //
 //     sweep_shade [out/demo]    prints JSON, one object a line
 //

@@ -1,5 +1,5 @@
 // Tables as half floats and in the peer's eight bits: how far a code is from the nearest to the truth.
-#include "stability_tables.h"
+#include "tables.h"
 
 namespace stability {
 namespace {

@@ -1,7 +1,7 @@
 // The shading kernel, one program for all: each pixel of a frame has normals, place, curvature, shadow,
 // roughness and material of its own. The outputs show the terms one by one.
 #include "faceworks_material.h"
-#include "stability_vectors.h"
+#include "vectors.h"
 
 namespace stability {
 namespace {

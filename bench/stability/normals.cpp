@@ -1,5 +1,5 @@
 // Normal maps and their levels; positions from depth.
-#include "stability_vectors.h"
+#include "vectors.h"
 
 namespace stability {
 namespace {

@@ -1,6 +1,6 @@
 // Packed images, read and written: each pixel has codes of its own, shown by constant ambient light.
 #include "faceworks_material.h"
-#include "stability_vectors.h"
+#include "vectors.h"
 
 namespace stability {
 namespace {

@@ -1,7 +1,7 @@
 // Curvature of meshes by each estimator and in each quantity, normals, UV scale.
 #include "reference/curvature_quadric.h"
 
-#include "stability_meshes.h"
+#include "meshes.h"
 
 namespace stability {
 namespace {

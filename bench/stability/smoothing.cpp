@@ -1,5 +1,5 @@
 // Smoothing of curvature: uniform passes, and to a radius by either weights, with and without creases.
-#include "stability_meshes.h"
+#include "meshes.h"
 
 namespace stability {
 namespace {

@@ -1,5 +1,5 @@
 // Screen-space curvature of the demo's key view against per-vertex curvature, and what the difference does to the shaded
-// picture: numbers on stdout, docs/figures/screen_curvature.png by bench/screen_curvature_figure.
+// picture: numbers on stdout, docs/figures/screen_curvature.png by bench/shading/screen_curvature_figure.
 //   sweep_screen_curvature MESH DEMO_FOLDER SHADED_VERTEX.exr SHADED_SCREEN.exr FIGURE.png
 // MESH: the demo's. The two shaded pictures are of the same G-buffer, DEMO_FOLDER/key_gbuffer.exr.
 #include <pellucid/pellucid.hpp>

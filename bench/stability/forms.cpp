@@ -3,7 +3,7 @@
 #include "faceworks_material.h"
 #include "shading/shadow_form_scene.h"
 
-#include "stability_vectors.h"
+#include "vectors.h"
 
 namespace stability {
 namespace {
