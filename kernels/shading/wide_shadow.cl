@@ -18,11 +18,10 @@
 #define PEL_FLATTEST_COSINE 0.2f
 // Smaller filters would see texels come and go.
 #define PEL_LEAST_TEXELS 2.0f
-// Of sharp shadows: the same cosine, and the tolerance in texels, for light from straight above by what a texel is wide and what the
-// normal may be off (a facet of 6 degrees to the surface). docs/guide/shading.md, "Irradiance per pixel", has what others give.
+// Of sharp shadows: the same cosine, and the tolerance along the normal in texels. docs/guide/shading.md, "Irradiance per pixel", has
+// what others give.
 #define PEL_SHARP_FLATTEST 0.05f
-#define PEL_SHARP_OFFSET 0.1f
-#define PEL_SHARP_CURVE 0.1f
+#define PEL_SHARP_TEXELS 0.5f
 
 // PEL_WIDTH filters, one field after another.
 typedef struct Filters {
@@ -105,12 +104,6 @@ static inline maskw makeFilters(__global const PelWideShadow* light, Vec3w p, Ve
     return held & comparable(&r, p, n) & (radiusX < 1e6f) & (radiusY < 1e6f) & finitew(dzdx) & finitew(dzdy);
 }
 
-// How far before the tangent plane, in lengths along the light, another depth may be and still be the receiver's own. What the
-// surface is off its plane inside of the footprint, a mesh's facets among it, grows as texels do, and the flatter the light comes in.
-static inline floatw sharpTolerance(floatw texel, floatw tilt) {
-    return texel * tilt * fma(tilt, (floatw)(PEL_SHARP_CURVE), (floatw)(PEL_SHARP_OFFSET));
-}
-
 // The sharp shadow of the lanes of `left` that this map holds; those are taken out of `left`.
 static inline floatw sharpInMap(__global const PelWideShadow* light, __global const uchar* map, Vec3w p,
                                 Vec3w n, float perExponent, floatw shown, maskw* left) {
@@ -127,7 +120,10 @@ static inline floatw sharpInMap(__global const PelWideShadow* light, __global co
     s.dzdy = dot3(n, loadUniform3(light->down)) * tilt * r.texelV * r.zPerLength;
     // A float's last bits, of the largest depths that stand beside it, are no shadow.
     const floatw least = (fabs(r.z) + 1.0f) * 4e-7f;
-    const floatw tolerance = fmax(sharpTolerance(fmax(r.texelU, r.texelV), tilt) * fabs(r.zPerLength), least);
+    // How far before the tangent plane another depth may be and still be the receiver's own: what the surface is off its plane
+    // inside of the footprint, a mesh's facets among it, grows as texels do.
+    const floatw tolerance =
+        fmax(PEL_SHARP_TEXELS * fmax(r.texelU, r.texelV) * tilt * fabs(r.zPerLength), least);
     s.perTolerance = copysign(1.0f / tolerance, r.zPerLength);
     return selectw(shown, sharpShadow(PEL_FORMAT_SHADOW_MAP, map, &light->map, &s, perExponent, held), held);
 }
