@@ -1,78 +1,74 @@
-// Scattering alone against the surface integral of a head (mathematics, section 9), made by brute force
-// elsewhere.
+// Methods against the surface integral of a head (mathematics, section 9), made by brute force elsewhere.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 
+#include "diffusion/ruler_scene.h"
 #include "diffusion/scatter_scene.h"
-#include "io/image/image_file.h"
 #include "tolerances.h"
 
 using namespace scatter_scene;
 
 namespace {
 
-constexpr size_t side = 1536, coarse = 512;
-constexpr double albedo = 0.8;  // of the pictures that the tolerances are in
-
-struct Head {
-    Picture picture{side, side};
-    std::vector<float> integral;
-};
-
-// Positions are in cm, the camera stands at (0, -60, 0); a pixel of the ruler is 3 x 3 of these.
-Head load(const std::string& directory) {
-    const pellucid::io::Image image = pellucid::io::readImage(directory + "/head_side_1536.exr");
-    Head head;
-    const std::string position[] = {"Position.X", "Position.Y", "Position.Z"};
-    const std::string surface[] = {"Surface.R", "Surface.G", "Surface.B"};
-    head.picture.positions = image.interleaved(position);
-    head.integral = image.interleaved(surface);
-    const auto &e = image.channel("Irradiance.Y").pixels, &ids = image.channel("IndexOB.X").pixels;
-    for (size_t i = 0; i < head.picture.pixels(); ++i) {
-        head.picture.ids[i] = ids[i] > 0 ? 1 : 0;
-        std::fill_n(&head.picture.irradiance[3 * i], 3, e[i]);
-    }
-    // Of clip = (x, z, y + 60 - 1, y + 60): only where the camera stands matters.
-    float* m = head.picture.params.inverseViewProjection;
-    m[0] = m[9] = 1;
-    m[6] = -60, m[7] = 0, m[14] = 1;
-    return head;
+const char* folder(const char* name) {
+    return std::getenv(name);
 }
 
-// Root mean square per channel over the coarse pixels that are wholly covered, in 1e-4 of radiance.
-std::array<double, 3> error(const Head& head, const std::vector<float>& result) {
-    std::array<double, 3> sum{};
-    size_t count = 0;
-    for (size_t y = 0; y < coarse; ++y)
-        for (size_t x = 0; x < coarse; ++x) {
-            double mean[3] = {};
-            bool covered = true;
-            for (size_t k = 0; k < 9; ++k) {
-                const size_t i = (3 * y + k / 3) * side + 3 * x + k % 3;
-                covered &= head.picture.ids[i] != 0;
-                for (int c = 0; c < 3; ++c) mean[c] += (result[3 * i + c] - head.integral[3 * i + c]) / 9;
-            }
-            if (!covered) continue;
-            ++count;
-            for (int c = 0; c < 3; ++c) sum[c] += mean[c] * mean[c];
-        }
-    for (double& s : sum) s = 1e4 * albedo * std::sqrt(s / double(count));
-    return sum;
+// All settings at their defaults; shadows from the map, or those traced by ray. Of an albedo of 1.
+std::vector<float> shade(const ruler::Head& head, PelScattering scattering, float scale,
+                         const std::vector<float>& map) {
+    const auto side = uint32_t(head.side);
+    const Buffer positions(device(), head.positions), normals(device(), head.normals),
+        curvature(device(), head.curvature), ids(device(), head.ids),
+        texels(device(), map.empty() ? std::vector<float>(1) : map), irradiance(device(), head.irradiance),
+        out(device(), head.positions.size() * sizeof(float));
+    const auto rgb = [&](const Buffer& b) { return pellucid::imageDesc(b, PEL_FORMAT_RGB32F, side, side); };
+    pellucid::Shader shader(device());
+    PelShaderOptions options = pelShaderOptionsDefaults();
+    options.millimetresPerUnit = 10;
+    shader.set(options);
+    shader.set(PEL_SLOT_RADIANCE, rgb(out));
+    shader.set(PEL_SLOT_POSITION, rgb(positions));
+    shader.set(PEL_SLOT_NORMAL_SHADING, rgb(normals));
+    shader.set(PEL_SLOT_CURVATURE, pellucid::imageDesc(curvature, PEL_FORMAT_R32F, side, side));
+    shader.set(PEL_SLOT_MATERIAL, pellucid::imageDesc(ids, PEL_FORMAT_R8_UINT, side, side));
+    if (map.empty()) shader.set(PEL_SLOT_IRRADIANCE, rgb(irradiance));
+    const Profile profile = ruler::profile(scale);
+    PelMaterial material = pelMaterialDefaults();
+    std::fill_n(material.albedo, 3, 1.0f);
+    material.profile = profile.get();
+    material.scattering = scattering;
+    shader.setMaterial(1, material);
+    PelCamera camera = pelCameraDefaults();
+    ruler::standAt(camera.inverseViewProjection);
+    shader.set(camera);
+    PelLight light = ruler::light();
+    light.shadowFilterTexels = 48;
+    shader.set(std::vector<PelLight>{light});
+    if (!map.empty())
+        shader.set(0, PEL_LIGHT_SHADOW_MAP, pellucid::imageDesc(texels, PEL_FORMAT_R32F, 1024, 1024));
+    shader.commit();
+    shader.execute();
+    return out.readAll<float>();
+}
+
+void print(const char* what, const std::array<double, 3>& e) {
+    std::printf("%-40s %4.0f %4.0f %4.0f\n", what, e[0], e[1], e[2]);
 }
 
 }  // namespace
 
 TEST(ScatterRuler, HeadLitFromTheSide) {
-    const char* directory = std::getenv("PELLUCID_RULER_DIR");
+    const char* directory = folder("PELLUCID_RULER_DIR");
     if (!directory) GTEST_SKIP() << "PELLUCID_RULER_DIR is not set: no surface integral to compare with";
-    const Head head = load(directory);
-    // d of 0.29205, 0.10902 and 0.05411 mm: mean free path d s(A), s = 1.1 for the albedo 0.8 [Christensen
-    // and Burley 2015, eq. 6].
-    const float meanFreePath[] = {0.29205f * 1.1f, 0.10902f * 1.1f, 0.05411f * 1.1f},
-                white[] = {0.8f, 0.8f, 0.8f};
-    const Result result = run(head.picture, Profile::burley(meanFreePath, white), 0.1f);
-    const auto ours = error(head, result.scattered), lambert = error(head, head.picture.irradiance);
+    const ruler::Head head = ruler::load(directory);
+    Picture picture(ruler::side, ruler::side);
+    picture.positions = head.positions, picture.irradiance = head.irradiance, picture.ids = head.ids;
+    ruler::standAt(picture.params.inverseViewProjection);
+    const Result result = run(picture, ruler::profile(), 0.1f);
+    const auto ours = error(head, result.scattered), lambert = error(head, head.irradiance);
     const double most[] = {tolerance::rulerHeadRed, tolerance::rulerHeadGreen, tolerance::rulerHeadBlue};
     for (int c = 0; c < 3; ++c) {
         RecordProperty("channel" + std::to_string(c),
@@ -82,4 +78,27 @@ TEST(ScatterRuler, HeadLitFromTheSide) {
     }
     // Less than half of the pixels are worth a look.
     EXPECT_LT(result.stats.pixelsTapped, result.stats.pixelsCovered / 2);
+}
+
+// With nothing but a shadow map, and all settings at their defaults.
+TEST(ScatterRuler, HeadLitFromTheSideByItsShadowMap) {
+    const char *rulers = folder("PELLUCID_RULER_DIR"), *gbuffers = folder("PELLUCID_GBUFFER_DIR");
+    if (!rulers || !gbuffers) GTEST_SKIP() << "PELLUCID_RULER_DIR and PELLUCID_GBUFFER_DIR are not both set";
+    const ruler::Head usual = ruler::load(rulers), wide = ruler::fourfold(usual, rulers);
+    const std::vector<float> map = ruler::shadowMap(gbuffers);
+    for (const auto& [head, scale] : {std::pair{&usual, 1.0f}, {&wide, 4.0f}}) {
+        std::printf("radius x %g\n", double(scale));
+        const auto lambert = error(*head, head->irradiance);
+        print("Lambert, traced", lambert);
+        for (auto [name, method] : {std::pair{"none", PEL_SCATTERING_NONE},
+                                    {"pre-integrated", PEL_SCATTERING_PREINTEGRATED},
+                                    {"auto", PEL_SCATTERING_AUTO}}) {
+            if (method != PEL_SCATTERING_NONE)
+                print((std::string(name) + ", traced").c_str(), error(*head, shade(*head, method, scale, {})));
+            const auto e = error(*head, shade(*head, method, scale, map));
+            print(name, e);
+            for (int c = 0; c < 3 && method != PEL_SCATTERING_NONE; ++c)
+                EXPECT_LT(e[c], lambert[c]) << name << ", x " << scale << ", channel " << c;
+        }
+    }
 }
