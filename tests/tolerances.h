@@ -384,6 +384,7 @@ inline constexpr Tolerance scatterUnits{
 inline constexpr Tolerance rulerHeadRed{"rulerHeadRed", 40, "Lambert with ray-traced shadows: 85"};
 inline constexpr Tolerance rulerHeadGreen{"rulerHeadGreen", 14, "Lambert: 30"};
 inline constexpr Tolerance rulerHeadBlue{"rulerHeadBlue", 9, "Lambert: 14"};
+inline constexpr Tolerance rulerMapBlue{"rulerMapBlue", 34, "irradiance alone, from texels of 0.33 mm: 33"};
 
 // --- tables as BC6H ---
 inline constexpr Tolerance bc6hMax{
