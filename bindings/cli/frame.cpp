@@ -101,6 +101,7 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
     all.blurNormals |= scene.blurNormals;
     all.rotateTaps |= scene.rotateTaps;
     all.targetError = scene.targetError;
+    if (scene.frameIndex) all.frameIndex = scene.frameIndex;
     all.millimetresPerUnit = scene.unitMm;
     shader_.set(all);
     shader_.set(PEL_SLOT_RADIANCE,
@@ -120,6 +121,8 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
     for (const io::SceneMaterial& m : scene.materials) setMaterial(scene, m, luts);
     for (const io::SceneMaterial& m : scene.materials)
         if (!m.normalMap.empty()) setNormalMap(device, m.id, m.normalMap);
+    for (const io::SceneMaterial& m : scene.materials)
+        if (!m.scatteredTexture.empty()) setScatteredTexture(device, m.id, m.scatteredTexture);
     std::vector<PelLight> lights;
     for (const io::SceneLight& l : scene.lights) lights.push_back(l.light);
     shader_.set(lights);
@@ -198,6 +201,12 @@ void Frame::setNormalMap(const Device& device, uint32_t id, const std::string& f
         levels.push_back(imageDesc(inputs_.back(), PEL_FORMAT_RGB32F, uint32_t(level.width),
                                    uint32_t(level.height), level.byteOffset));
     shader_.setNormalMap(id, levels);
+}
+
+void Frame::setScatteredTexture(const Device& device, uint32_t id, const std::string& file) {
+    const io::Image image = io::readImage(file);
+    shader_.setScatteredTexture(
+        id, upload(device, image, colorChannels(file, image, "a scattered texture needs three")));
 }
 
 PelImageDesc Frame::measureCurvature(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene) {

@@ -49,6 +49,7 @@ class Frame {
   private:
     void setMaterial(const io::SceneFile& scene, const io::SceneMaterial& m, LutStore& luts);
     void setNormalMap(const Device& device, uint32_t id, const std::string& file);
+    void setScatteredTexture(const Device& device, uint32_t id, const std::string& file);
     // Curvature from normals and positions or depth of the G-buffer (pelScreenCurvature).
     PelImageDesc measureCurvature(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene);
     void setAmbientCube(const Device& device, const std::string& file);

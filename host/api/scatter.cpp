@@ -2,6 +2,7 @@
 
 #include "api/entry.h"
 #include "core/submission.h"
+#include "shading/image_slots.h"
 
 using namespace pel;
 
@@ -21,6 +22,25 @@ PelError pelScatterSetMaterial(PelScatter scatter, uint32_t id, PelProfile profi
     return entry([&] {
         const Ref<Scatter> object = fromHandle<Scatter>(scatter);
         object->setMaterial(id, profile ? fromHandle<Profile>(profile) : Ref<Profile>(), scale);
+    });
+}
+
+PelError pelScatterSetControls(PelScatter scatter, uint32_t id, const PelScatterControls* controls) {
+    return entry([&] {
+        const Ref<Scatter> object = fromHandle<Scatter>(scatter);
+        const auto defaults = pelScatterControlsDefaults();
+        object->setControls(id, controls ? readStruct(controls, defaults, "PelScatterControls") : defaults);
+    });
+}
+
+PelError pelScatterSetImage(PelScatter scatter, PelImageSlot slot, const PelImageDesc* image) {
+    return entry([&] {
+        const Ref<Scatter> object = fromHandle<Scatter>(scatter);
+        ImageView view;
+        if (image)
+            view = makeImageView(readStruct(image, pelImageDescDefaults(), "PelImageDesc"), object->device(),
+                                 uint32_t(slot) < PEL_SLOT_COUNT ? slotName(slot) : "further");
+        object->setImage(slot, view);
     });
 }
 

@@ -51,6 +51,15 @@ PelError pelShaderSetNormalMap(PelShader shader, uint32_t id, const PelImageDesc
     return entry([&] { fromHandle<Shader>(shader)->setNormalMap(id, levels, count); });
 }
 
+PelError pelShaderSetScatteredTexture(PelShader shader, uint32_t id, const PelImageDesc* texture) {
+    return entry([&] {
+        const Ref<Shader> s = fromHandle<Shader>(shader);
+        if (!texture) return s->setScatteredTexture(id, nullptr);
+        const PelImageDesc desc = readStruct(texture, pelImageDescDefaults(), "PelImageDesc");
+        s->setScatteredTexture(id, &desc);
+    });
+}
+
 PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t count) {
     return entry([&] { fromHandle<Shader>(shader)->setLights(lights, count); });
 }

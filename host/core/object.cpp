@@ -27,6 +27,8 @@ const char* kindName(Kind kind) {
             return "PelProfile";
         case Kind::scatter:
             return "PelScatter";
+        case Kind::textureScatter:
+            return "PelTextureScatter";
     }
     return "object";
 }

@@ -9,7 +9,18 @@
 
 namespace pel {
 
-enum class Kind { device, event, buffer, meshTopology, liveMesh, lut, shader, profile, scatter };
+enum class Kind {
+    device,
+    event,
+    buffer,
+    meshTopology,
+    liveMesh,
+    lut,
+    shader,
+    profile,
+    scatter,
+    textureScatter
+};
 const char* kindName(Kind kind);
 
 class Object {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "shading/check_settings.h"
 #include "shading/image_slots.h"
@@ -16,6 +17,9 @@ void checkParams(const PelScatterParams& params) {
     if (!(params.white > 0) || !std::isfinite(params.white))
         invalidArgument("PelScatterParams.white is ", params.white, "; a finite irradiance above 0 is needed");
     checkFinite("PelScatterParams", "inverseViewProjection", params.inverseViewProjection, 16);
+    if (params.accumulate)
+        fail(PEL_ERROR_UNSUPPORTED,
+             "PelScatterParams.accumulate is set, which this build of the library does not have");
 }
 
 void checkImages(const ScatterImages& images) {
@@ -51,6 +55,7 @@ void Scatter::setMaterial(uint32_t id, const Ref<Profile>& profile, float scale)
         invalidArgument("material ids are 1 to ", PEL_DIFFUSION_IDS - 1, ", not ", id);
     if (!profile) {
         materials_.erase(id);
+        controls_.erase(id);
         return;
     }
     if (!(scale >= 0) || !std::isfinite(scale))
@@ -62,6 +67,36 @@ void Scatter::setMaterial(uint32_t id, const Ref<Profile>& profile, float scale)
         materials_[id] = {profile, scale};
     else
         materials_.erase(id);  // nothing is scattered
+}
+
+void Scatter::setControls(uint32_t id, const PelScatterControls& c) {
+    if (!materials_.contains(id))
+        invalidArgument("material ", id, " is not set: pelScatterSetMaterial comes before its controls");
+    if (c.scattering != PEL_SCATTERING_SCREEN && c.scattering != PEL_SCATTERING_SEPARABLE)
+        invalidArgument("PelScatterControls.scattering is ", int(c.scattering),
+                        "; it must be PEL_SCATTERING_SCREEN or PEL_SCATTERING_SEPARABLE");
+    checkScatterControls("PelScatterControls", c.scatterTaps, c.albedoBefore, c.borderColor);
+    if (!(c.thinThickness >= 0) || !std::isfinite(c.thinThickness))
+        invalidArgument("PelScatterControls.thinThickness is ", c.thinThickness,
+                        "; a finite length of at least 0 is needed");
+    const PelScatterControls none = pelScatterControlsDefaults();
+    if (std::memcmp(&c, &none, sizeof none))
+        fail(PEL_ERROR_UNSUPPORTED,
+             "PelScatterControls other than the defaults are set, which this build of the library does not "
+             "have");
+    controls_[id] = c;
+}
+
+void Scatter::setImage(PelImageSlot slot, const ImageView& view) {
+    if (slot != PEL_SLOT_SCATTER_WEIGHT && slot != PEL_SLOT_IRRADIANCE_BACK && slot != PEL_SLOT_ALBEDO)
+        invalidArgument(
+            "image slot ", int(slot),
+            " is none that a PelScatter keeps: scatter weight, back irradiance or albedo would be");
+    if (view) checkImage(slot, view);
+    if (view)
+        fail(PEL_ERROR_UNSUPPORTED, "the ", slotName(slot),
+             " image is set, which this build of the library does not have");
+    images_[slot] = view;
 }
 
 void Scatter::execute(const PelScatterParams& params, const ScatterImages& images) {

@@ -11,6 +11,8 @@ class Scatter final : public Object {
 
     // A null profile removes the material.
     void setMaterial(uint32_t id, const Ref<Profile>& profile, float scale);
+    void setControls(uint32_t id, const PelScatterControls& controls);
+    void setImage(PelImageSlot slot, const ImageView& view);
     // Enqueues everything.
     void execute(const PelScatterParams& params, const ScatterImages& images);
     PelScatterStats stats();
@@ -21,6 +23,8 @@ class Scatter final : public Object {
     Ref<Device> device_;
     ScreenScatter screen_;
     std::map<uint32_t, ScreenScatter::Material> materials_;
+    std::map<uint32_t, PelScatterControls> controls_;
+    std::map<PelImageSlot, ImageView> images_;  // that executions read beside theirs
     std::vector<cl::Event> events_;
     bool executed_ = false;
     uint32_t pixels_ = 0;

@@ -169,13 +169,15 @@ void TomlReader::text(std::string_view key, std::string& value) {
     value = node->as_string()->get();
 }
 
-void TomlReader::texts(std::string_view key, std::vector<std::string>& values, size_t count) {
+void TomlReader::texts(std::string_view key, std::vector<std::string>& values, size_t most, size_t least) {
     const toml::node* node = find(key);
     if (!node) return;
-    const std::string wanted = count == 1 ? std::string("one channel name")
-                                          : "an array of " + std::to_string(count) + " channel names";
+    const std::string wanted = most == 1      ? std::string("one channel name")
+                               : least < most ? "an array of " + std::to_string(least) + " to " +
+                                                    std::to_string(most) + " channel names"
+                                              : "an array of " + std::to_string(most) + " channel names";
     values.clear();
-    if (node->is_string() && count == 1) {
+    if (node->is_string() && least == 1) {
         values.push_back(node->as_string()->get());
         return;
     }
@@ -184,7 +186,7 @@ void TomlReader::texts(std::string_view key, std::vector<std::string>& values, s
         if (!entry.is_string()) fail(key, "holds " + typeName(entry) + "; " + wanted + " would be right");
         values.push_back(entry.as_string()->get());
     }
-    if (values.size() != count) {
+    if (values.size() > most || values.size() < least) {
         fail(key, "has " + std::to_string(values.size()) + " names; " + wanted + " would be right");
     }
 }

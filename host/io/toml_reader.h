@@ -39,8 +39,8 @@ class TomlReader {
     void rows(std::string_view key, float* values, size_t rows, size_t columns);
     void integer(std::string_view key, uint32_t& value, uint32_t low, uint32_t high);
     void text(std::string_view key, std::string& value);
-    void texts(std::string_view key, std::vector<std::string>& values,
-               size_t count);  // one text will do for count 1
+    // From `least` to `most` of them; one text will do for 1.
+    void texts(std::string_view key, std::vector<std::string>& values, size_t most, size_t least);
 
     // One value or an array of them, not empty.
     void list(std::string_view key, std::vector<std::string>& values);

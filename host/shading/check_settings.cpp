@@ -107,6 +107,18 @@ void checkNormalMap(const std::vector<ImageView>& levels) {
     }
 }
 
+void checkScatterControls(const char* structure, uint32_t taps, float albedoBefore,
+                          const float (&borderColor)[3]) {
+    if (taps != 0 && (taps < 8 || taps > 256))
+        invalidArgument(structure, ".scatterTaps is ", taps, "; it must be 0, or between 8 and 256");
+    within(structure, {{"albedoBefore", albedoBefore, 0, 1}});
+    for (float share : borderColor) within(structure, {{"borderColor", share, 0, 1}});
+}
+
+void checkScatteredTexture(const ImageView& texture) {
+    checkContent(texture, Content::COLOR, "scattered texture");
+}
+
 void checkMaterial(const PelMaterial& m) {
     const char* name = "PelMaterial";
     checkFinite(name, "albedo", m.albedo, 3);
@@ -128,7 +140,9 @@ void checkMaterial(const PelMaterial& m) {
                   {"uvScale", m.uvScale, tiny, huge},
                   {"roughness2", m.roughness2, 0, huge},
                   {"lobeMix", m.lobeMix, 0, 1},
-                  {"deepScatterAmbient", m.deepScatterAmbient, 0, huge}});
+                  {"deepScatterAmbient", m.deepScatterAmbient, 0, huge},
+                  {"thinThickness", m.thinThickness, 0, huge}});
+    checkScatterControls(name, m.scatterTaps, m.albedoBefore, m.borderColor);
     if (unsigned(m.specularModel) >= PEL_MODELS)
         invalidArgument("PelMaterial.specularModel is ", int(m.specularModel),
                         ", which is none of PelSpecularModel");

@@ -11,6 +11,9 @@ void checkImage(PelImageSlot slot, const ImageView& view);
 void checkLightImage(PelLightSlot slot, const ImageView& view);
 void checkNormalMap(const std::vector<ImageView>& levels);
 void checkMaterial(const PelMaterial& material);
+void checkScatterControls(const char* structure, uint32_t taps, float albedoBefore,
+                          const float (&borderColor)[3]);
+void checkScatteredTexture(const ImageView& texture);
 void checkLight(const PelLight& light, uint32_t index);
 // A light's shadow map as it is at commit: its form, its images and the fields that they need
 // (check_shadow_map.cpp).

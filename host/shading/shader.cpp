@@ -5,6 +5,7 @@
 
 #include "shading/features.h"
 #include "shading/image_slots.h"
+#include "shading/scatter_controls.h"
 #include "shading/shade_variants.h"
 
 namespace pel {
@@ -37,6 +38,7 @@ void Shader::commit() {
 void Shader::allocate(uint32_t mostRows) {
     ShaderPlan plan = planOf(state_);
     checkMethods();
+    checkScattering(state_);
     // Old images go before new ones are made: both together would not keep to a budget. After a failure
     // nothing is held.
     committed_ = false;

@@ -21,6 +21,7 @@ class Shader final : public Object {
     void setImage(PelImageSlot slot, const PelImageDesc* image);
     void setMaterial(uint32_t id, const PelMaterial* material, Lut* curvatureLut, Lut* shadowLut);
     void setNormalMap(uint32_t id, const PelImageDesc* levels, uint32_t count);
+    void setScatteredTexture(uint32_t id, const PelImageDesc* texture);
     void setLights(const PelLight* lights, uint32_t count);
     void setLightImage(uint32_t light, PelLightSlot slot, const PelImageDesc* image);
     void setAmbient(const PelAmbient& ambient);

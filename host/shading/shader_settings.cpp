@@ -48,7 +48,7 @@ void Shader::setMaterial(uint32_t id, const PelMaterial* material, Lut* curvatur
     check(shadowLut, PEL_LUT_SHADOW, "shadow");
     const auto known = state_.materials.find(id);
     ShaderMaterial set =
-        known == state_.materials.end() ? ShaderMaterial() : known->second;  // which may have a normal map
+        known == state_.materials.end() ? ShaderMaterial() : known->second;  // which may have textures
     set.given = *material;
     set.profile = material->profile ? fromHandle<Profile>(material->profile) : Ref<Profile>();
     set.givenCurvatureLut = Ref(curvatureLut);
@@ -76,6 +76,20 @@ void Shader::setNormalMap(uint32_t id, const PelImageDesc* levels, uint32_t coun
     }
     checkNormalMap(views);
     found->second.normalMap = std::move(views);
+    committed_ = false;
+}
+
+void Shader::setScatteredTexture(uint32_t id, const PelImageDesc* texture) {
+    const auto found = state_.materials.find(id);
+    if (found == state_.materials.end())
+        invalidArgument("material ", id,
+                        " is not set: pelShaderSetMaterial comes before its scattered texture");
+    ImageView view;
+    if (texture) {
+        view = makeImageView(*texture, *device_, "scattered texture");
+        checkScatteredTexture(view);
+    }
+    found->second.scatteredTexture = view;
     committed_ = false;
 }
 

@@ -18,6 +18,7 @@ struct ShaderMaterial {
     Ref<Lut> curvatureLut, shadowLut, transmission;
     float gain[3];                     // length: direct light times 1 + gain * curvature
     std::vector<ImageView> normalMap;  // its levels, the finest first
+    ImageView scatteredTexture;
 };
 
 struct ShaderLight {

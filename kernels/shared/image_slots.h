@@ -37,7 +37,9 @@
     X(OUT_DEEP_SCATTER, 17, OUTPUT, COLOR_OUTPUT, 0, "deep_scatter", "deep scatter output", PEL_BITS_ALL_)                     \
     X(OUT_SPECULAR, 18, OUTPUT, COLOR_OUTPUT, 0, "specular", "specular output", PEL_BITS_ALL_)                                 \
     X(OUT_THICKNESS, 19, OUTPUT, SCALAR_OUTPUT, 0, "thickness", "thickness output", PEL_BITS_ALL_)                                \
-    X(IRRADIANCE, 20, SHADE, COLOR, 3, "irradiance", "irradiance", PEL_BIT_IRRADIANCE)
+    X(IRRADIANCE, 20, SHADE, COLOR, 3, "irradiance", "irradiance", PEL_BIT_IRRADIANCE)                                         \
+    X(SCATTER_WEIGHT, 21, PASS, SCALAR, 2, "scatter_weight", "scatter weight", 0)                                              \
+    X(IRRADIANCE_BACK, 22, PASS, COLOR, 3, "irradiance_back", "back irradiance", 0)
 // clang-format on
 
 // PEL_IMAGE_<NAME>, their count, and PEL_READ_<NAME>: the bits.

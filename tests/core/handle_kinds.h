@@ -160,6 +160,26 @@ inline const std::vector<Kind>& kinds() {
                 return pelShaderGetStats(h, &stats);
             },
             [](PelShader) { return [] { return true; }; }),  // nor these
+        kind<PelScatter>(
+            "PelScatter", pelScatterRetain, pelScatterRelease,
+            [] { return taken(Scatter(device()), pelScatterRetain); },
+            [](PelScatter h) {
+                PelScatterStats stats = pelScatterStatsDefaults();
+                return pelScatterGetStats(h, &stats);
+            },
+            [](PelScatter) { return [] { return true; }; }),
+        kind<PelTextureScatter>(
+            "PelTextureScatter", pelTextureScatterRetain, pelTextureScatterRelease,
+            [] {
+                PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
+                desc.width = desc.height = 1;
+                return taken(TextureScatter(device(), desc), pelTextureScatterRetain);
+            },
+            [](PelTextureScatter h) {
+                PelTextureScatterStats stats = pelTextureScatterStatsDefaults();
+                return pelTextureScatterGetStats(h, &stats);
+            },
+            [](PelTextureScatter) { return [] { return true; }; }),
         kind<PelProfile>(
             "PelProfile", pelProfileRetain, pelProfileRelease,
             [] { return taken(Profile::skin(), pelProfileRetain); },

@@ -96,6 +96,16 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     scene.lights[0].shadowMapChannel = "odd \"name\" \\ here";
     scene.blurNormals = 1;
     scene.rotateTaps = 1;
+    scene.frameIndex = 12;
+    scene.channels[PEL_SLOT_SCATTER_WEIGHT] = {"Mask.V"};
+    scene.channels[PEL_SLOT_IRRADIANCE_BACK] = {"B.R", "B.G", "B.B"};
+    PelMaterial& scattering = scene.materials[0].material;
+    scattering.scattering = PEL_SCATTERING_SEPARABLE;
+    scattering.scatterTaps = 33;
+    scattering.albedoBefore = 0.5f;
+    scattering.borderColor[1] = 0.25f;
+    scattering.thinThickness = 0.3f;
+    scene.materials[0].scatteredTexture = path("lit.exr");
     scene.ambientCube = path("sky.exr");
     scene.outputs[PEL_SLOT_OUT_SPECULAR] = path("parts/shine.exr");
     scene.outputs[PEL_SLOT_OUT_THICKNESS] = path("t.exr");

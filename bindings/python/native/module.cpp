@@ -21,6 +21,7 @@ PYBIND11_MODULE(_native, module) {
     bindMesh(module);
     bindProfile(module);
     bindScatter(module);
+    bindTextureScatter(module);
     bindLut(module);
     bindShader(module);
     bindCompare(module);

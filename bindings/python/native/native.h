@@ -161,6 +161,7 @@ void bindBuffer(py::module_& module);
 void bindMesh(py::module_& module);
 void bindProfile(py::module_& module);
 void bindScatter(py::module_& module);
+void bindTextureScatter(py::module_& module);
 void bindLut(py::module_& module);
 void bindShader(py::module_& module);
 void bindBatch(py::module_& module);

@@ -17,6 +17,17 @@ void bindScatter(py::module_& module) {
                      return pelScatterSetMaterial(s.get(), id, profile ? profile->get() : nullptr, scale);
                  });
              })
+        .def("set_controls",
+             [](const Scatter& s, uint32_t id, const py::object& controls) {
+                 call([&, c = structOf<PelScatterControls>(controls)] {
+                     return pelScatterSetControls(s.get(), id, c);
+                 });
+             })
+        .def("set_image",
+             [](const Scatter& s, uint32_t slot, const std::optional<ImageView>& image) {
+                 const PelImageDesc desc = image ? imageDesc(*image) : pelImageDescDefaults();
+                 call([&] { return pelScatterSetImage(s.get(), PelImageSlot(slot), image ? &desc : nullptr); });
+             })
         .def("execute",
              [](const Scatter& s, const py::object& params, const ImageView& irradiance,
                 const std::optional<ImageView>& positions, const std::optional<ImageView>& depth,

@@ -67,6 +67,11 @@ void bindShader(py::module_& module) {
                  for (const ImageView& level : levels) all.push_back(imageDesc(level));
                  locked(s, [&] { return pelShaderSetNormalMap(s.get(), id, all.data(), uint32_t(all.size())); });
              })
+        .def("set_scattered_texture",
+             [](const Shader& s, uint32_t id, const std::optional<ImageView>& texture) {
+                 const PelImageDesc desc = texture ? imageDesc(*texture) : pelImageDescDefaults();
+                 locked(s, [&] { return pelShaderSetScatteredTexture(s.get(), id, texture ? &desc : nullptr); });
+             })
         .def("set_lights",
              [](const Shader& s, const std::vector<py::object>& lights) {
                  std::vector<PelLight> all;

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._arrays import Image, submit
-from ._struct import OfThisProcess
-from ._types import ScatterParams, ScatterStats
+from ._struct import OfThisProcess, to_enum
+from ._types import ImageSlot, ScatterControls, ScatterParams, ScatterStats
 from .device import Device, Event, _filled, _handles
 from .profile import Profile
 
@@ -24,10 +24,30 @@ class Scatter(OfThisProcess):
     def __init__(self, device: Device) -> None:
         self.device = device
         self._handle = _native.Scatter.create(device._handle)
+        self._images: dict[ImageSlot, Image] = {}
 
     def set_material(self, id: int, profile: Optional[Profile], scale: float = 1.0) -> None:
         """Pixels of `id`, 1 to 255, scatter by `profile`, whose lengths count `scale` units of positions each; None: not at all."""
         self._handle.set_material(id, None if profile is None else profile._handle, scale)
+
+    def set_controls(self, id: int, controls: Optional[ScatterControls] = None, **fields: Any) -> None:
+        """How pixels of `id`, whose material is set, scatter: the controls, or the defaults with some `fields` of them changed."""
+        settings = ScatterControls() if controls is None else controls.copy()
+        for name, value in fields.items():
+            setattr(settings, name, value)
+        self._handle.set_controls(id, settings._data)
+
+    def set_image(self, slot: ImageSlot | str, image: Any) -> None:
+        """An image that executions read beside those they are given: "scatter_weight", "irradiance_back" or "albedo"; None
+        clears it. It stays the caller's, and is read at each execution."""
+        s = to_enum(ImageSlot, slot, "slot")
+        if image is not None and not isinstance(image, Image):
+            image = Image(self.device, image, _slot=s.name.lower())
+        self._handle.set_image(int(s), None if image is None else image._view.native)
+        if image is None:
+            self._images.pop(s, None)
+        else:
+            self._images[s] = image
 
     def execute(self, irradiance: Any, positions: Any = None, *, depth: Any = None, ids: Any = None,
                 out: Optional[NDArray[np.float32]] = None, params: Optional[ScatterParams] = None) -> NDArray[np.float32]:
@@ -67,8 +87,10 @@ class Scatter(OfThisProcess):
         natives: list[Any] = [None if x is None else x._view.native for x in images]
         e, p, d, i, o = natives
         views = [x._view for k, x in enumerate(images) if x is not None and not (in_place and k == 0)]
+        kept = list(self._images.values())
+        views += [x._view for x in kept]
         return Event(submit(self.device, views, _handles(waits),
-                            lambda w: self._handle.execute(settings._data, e, p, d, i, o, w), self))
+                            lambda w: self._handle.execute(settings._data, e, p, d, i, o, w), self, kept))
 
     def stats(self) -> ScatterStats:
         """What the last execution did."""

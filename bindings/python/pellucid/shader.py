@@ -105,10 +105,25 @@ class Shader(OfThisProcess):
         self._handle.set_normal_map(id, [image._view.native for image in images])
         return self
 
+    def set_scattered_texture(self, id: int, texture: Any) -> Shader:
+        """Sets the light that was scattered in the texture of material `id` (TextureScatter.execute), which materials of
+        scattering "texture" take in the place of their irradiance.
+
+        Parameters
+        ----------
+        id : int
+            A material that was set. The slot "uv" is needed too.
+        texture : array, Image or None
+            (height, width, 3 or 4), row 0 at v = 0; repeated beyond [0, 1]. Read at each execution; None removes it.
+        """
+        self._keep(("scattered_texture", id), texture, f"scattered texture of material {id}", False, False,
+                   lambda native: self._handle.set_scattered_texture(id, native))
+        return self
+
     def set_lights(self, lights: Sequence[Light]) -> Shader:
         """Replaces all lights, 0 to 64; images of lights beyond the count are cleared."""
         self._handle.set_lights([light._data for light in lights])
-        for key in [k for k in self._images if isinstance(k, tuple) and k[0] >= len(lights)]:
+        for key in [k for k in self._images if isinstance(k, tuple) and isinstance(k[0], int) and k[0] >= len(lights)]:
             del self._images[key]
         return self
 

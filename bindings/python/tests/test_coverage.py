@@ -37,7 +37,7 @@ def test_every_enumeration_and_structure_is_there():
     # Structures of pointers and handles, and what stands for them.
     arrays = {"PelImageDesc": pel.Image, "PelVertexView": pel.Vertices, "PelMeshTopologyDesc": pel.MeshTopology,
               "PelSubmit": pel.Event, "PelGaussian": pel.Profile.gaussians, "PelVertexRange": pel.LiveMesh.update,
-              "PelPrefill": pel.prefill_programs, "PelSurfaceIntegralDesc": pel.surface_integral}
+              "PelPrefill": pel.prefill_programs, "PelTextureScatterDesc": pel.TextureScatter, "PelSurfaceIntegralDesc": pel.surface_integral}
     names = re.findall(r"typedef (?:enum|struct) (Pel\w+) \{", text)
     assert len(names) > 35
     missing = [n for n in names if n not in arrays and not hasattr(pel, "ErrorCode" if n == "PelError" else n[3:])]
@@ -66,7 +66,8 @@ def test_every_native_function_is_used_and_described():
 def test_every_call_that_does_work_can_be_submitted():
     for owner, name in [(pel.MeshTopology, "curvature"), (pel.MeshTopology, "normals"), (pel.LiveMesh, "update"),
                         (pel.Buffer, "read"), (pel.Buffer, "write"), (pel.Lut, "read"), (pel, "screen_curvature"),
-                        (pel, "surface_integral")]:
+                        (pel, "surface_integral"), (pel.Scatter, "execute"), (pel.TextureScatter, "set_positions"),
+                        (pel.TextureScatter, "draw"), (pel.TextureScatter, "execute")]:
         submit = getattr(owner, f"submit_{name}")
         assert {"waits"} <= set(inspect.signature(submit).parameters), name
     assert "waits" in inspect.signature(pel.Shader.submit).parameters

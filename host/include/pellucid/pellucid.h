@@ -675,7 +675,13 @@ typedef enum PelImageSlot {
         20, /* RGB, irradiance / pi: all lights and the ambient, shadows sharp; no specular, no albedo. Read
                                        by materials that do not scatter by tables (PelMaterial.scattering); not set: made from
                                        lights, PEL_LIGHT_WIDE_SHADOW or shadow maps, and the ambient */
-    PEL_SLOT_COUNT = 21
+    PEL_SLOT_SCATTER_WEIGHT =
+        21, /* one or two components, 0 to 1. First: how much of the scattered light a pixel takes, the rest
+                                     is its own irradiance; 0: no scattering. Second: times the profile's radius. Both are clamped;
+                                     NaN is 0. Not set: 1 */
+    PEL_SLOT_IRRADIANCE_BACK = 22, /* RGB, as PEL_SLOT_IRRADIANCE: of the other side of a thin sheet
+                                      (PelMaterial.thinThickness). Not set: made from lights and ambient */
+    PEL_SLOT_COUNT = 23
 } PelImageSlot;
 
 /* The images of one light. */
@@ -803,6 +809,18 @@ typedef struct PelMaterial {
     float curvatureGain; /* how much more a body of curvature c reflects than a half-space of the same medium: direct
                                       light times 1 + curvatureGain * 1.38 * meanFreePath * c. Needs a profile that knows its
                                       mean free path; 0 */
+    uint32_t scatterTaps; /* 0, or 8 to 256. PEL_SCATTERING_SEPARABLE: taps of each of the two filters; 0: 25.
+                                      PEL_SCATTERING_SCREEN: taps on a disk, placed by the profile; 0: the whole profile. Other
+                                      methods have no use for it; 0 */
+    float albedoBefore; /* 0 to 1, m: irradiance is multiplied by albedo^m before it scatters and by albedo^(1 - m)
+                                      after: how much of the texture the scattering softens. For methods that scatter
+                                      irradiance; 0 */
+    float borderColor[3]; /* 0 to 1: share of the light that flows in from materials of other ids, where those scatter
+                                      too. 0: nothing; 1: as if there were no border. Nothing flows from materials that do not
+                                      scatter, such as eyes and teeth of PEL_SCATTERING_NONE; 0 */
+    float thinThickness; /* length. Above 0: the surface is a sheet this thick, a leaf or paper: light that falls on its
+                                      other side comes through as pelProfileTransmission says, times `transmission`, with the
+                                      shadow of this side. Needs a profile and a method that reads irradiance; 0 */
 } PelMaterial;
 
 /* Light from everywhere: E(n) = constant + sum of sh[i] * basis_i(n) over the 9 orthonormal real spherical harmonics of
@@ -872,6 +890,14 @@ typedef struct PelShaderStats {
                                     are lit or in shadow */
     uint64_t pixelsIrradiance;      /* whose irradiance was made */
     uint64_t pixelsByScattering[7]; /* shaded, by PelMaterial.scattering */
+    /* Methods that scatter irradiance per pixel. */
+    uint64_t tilesByScattering[7]; /* of 16 x 16 pixels, in which a method took taps: by the method. Methods that auto
+                                    chose count as themselves */
+    uint64_t pixelsScattered; /* that took taps */
+    uint64_t pixelsKept; /* that kept their irradiance, because it was right already or nothing was in reach */
+    uint64_t scatterTaps; /* pixels and blocks of pixels that were looked at, modulo 2^32 */
+    uint64_t pixelsByChoice[7]; /* of materials of PEL_SCATTERING_AUTO: by the method that was chosen for them; NONE: kept
+                                    their irradiance */
 } PelShaderStats;
 
 /* How the shading kernel finds its tiles. The same bits come out of each. */
@@ -900,6 +926,8 @@ typedef struct PelShaderOptions {
     float targetError; /* of methods that leave out what changes little: how much of white their result may be off, 0 to 1;
                                  0.002 */
     float millimetresPerUnit; /* of positions, > 0: profiles are in mm, every other length in the scene's unit; 1 */
+    uint32_t frameIndex; /* turns scattering taps that are placed at random another way in each frame, for hosts that
+                                 average frames. The same number gives the same bits; 0 */
 } PelShaderOptions;
 
 PEL_API PelError pelShaderCreate(PelDevice device, PelShader* shader);
@@ -918,6 +946,11 @@ PEL_API PelError pelShaderSetMaterial(PelShader shader, uint32_t id, const PelMa
  * log2(max(size * diffusionRadius, uvScale) / uvScale), but never sharper than the pixel's own level of detail. A count of 0
  * removes it. Source: FaceWorks 1.0. */
 PEL_API PelError pelShaderSetNormalMap(PelShader shader, uint32_t id, const PelImageDesc* levels, uint32_t count);
+/* Light that was scattered in the texture of material `id`, which must be set, by pelTextureScatterExecute or otherwise: RGB,
+ * float or half or unorm. Read by materials of PEL_SCATTERING_TEXTURE in the place of their irradiance: bilinear at PEL_SLOT_UV,
+ * which they need, texel centres at (i + 1/2) / size, row 0 at v = 0, repeated beyond [0, 1]. Read at each execution. NULL
+ * removes it. */
+PEL_API PelError pelShaderSetScatteredTexture(PelShader shader, uint32_t id, const PelImageDesc* texture);
 /* Replaces all lights, 0 to 64 of them; images of lights beyond the count are cleared. */
 PEL_API PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t count);
 PEL_API PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot,
@@ -1003,7 +1036,19 @@ typedef struct PelScatterParams {
     uint32_t everywhere; /* 1: leave nothing out anywhere; 0 */
     float inverseViewProjection[16]; /* clip to world, as in PelCamera. Needed with depth; with positions it tells surface seen at a
                                         grazing angle, and may be all zero; default */
+    uint32_t accumulate; /* 1: the result is added to `out`, which then is another image than the irradiance; 0 */
+    uint32_t frameIndex; /* as PelShaderOptions.frameIndex; 0 */
 } PelScatterParams;
+
+/* How a material of a PelScatter scatters, beside its profile. */
+typedef struct PelScatterControls {
+    uint32_t structSize;
+    PelScattering scattering; /* PEL_SCATTERING_SCREEN or PEL_SCATTERING_SEPARABLE; SCREEN */
+    uint32_t scatterTaps;     /* this and the next three as in PelMaterial */
+    float albedoBefore;
+    float borderColor[3];
+    float thinThickness; /* units of positions; needs PEL_SLOT_IRRADIANCE_BACK */
+} PelScatterControls;
 
 typedef struct PelScatterStats {
     uint32_t structSize;
@@ -1016,7 +1061,8 @@ typedef struct PelScatterStats {
     uint64_t tilesTapped;
     uint64_t taps; /* pixels and blocks of pixels that were looked at, modulo 2^32 */
     uint64_t scratchBytes;
-    double deviceMilliseconds; /* of devices that measure */
+    double deviceMilliseconds;     /* of devices that measure */
+    uint64_t tilesByScattering[7]; /* tapped, by PelScatterControls.scattering */
 } PelScatterStats;
 
 PEL_API PelError pelScatterCreate(PelDevice device, PelScatter* scatter);
@@ -1026,6 +1072,14 @@ PEL_API void pelScatterRelease(PelScatter scatter);
 /* Pixels of id 1 to 255 scatter by `profile`, whose lengths count `scale` units of positions each: 1 where positions are in mm, as
  * profiles are, 0.1 for cm; twice that for twice the radius; 0 or a NULL profile: not at all. The object keeps the profile alive. */
 PEL_API PelError pelScatterSetMaterial(PelScatter scatter, uint32_t id, PelProfile profile, float scale);
+
+/* How pixels of material `id`, which must be set, scatter; NULL: as by default. */
+PEL_API PelError pelScatterSetControls(PelScatter scatter, uint32_t id, const PelScatterControls* controls);
+
+/* An image that executions read beside those they are given, of the same size, until another or NULL takes its place:
+ * PEL_SLOT_SCATTER_WEIGHT; PEL_SLOT_IRRADIANCE_BACK; PEL_SLOT_ALBEDO, which the irradiance then is without: the result has it in
+ * it, and is radiance where irradiance was irradiance / pi. */
+PEL_API PelError pelScatterSetImage(PelScatter scatter, PelImageSlot slot, const PelImageDesc* image);
 
 /* `irradiance`: linear RGB, all lights together, shadows sharp, without or with albedo; `positions`: world, or `depth` with
  * params.inverseViewProjection and positions NULL; `ids`: of materials, 0 is background; NULL: everything is id 1. `out`: a float or
@@ -1039,6 +1093,79 @@ PEL_API PelError pelScatterExecute(PelScatter scatter, const PelScatterParams* p
 
 /* Of the last execution; waits for it. */
 PEL_API PelError pelScatterGetStats(PelScatter scatter, PelScatterStats* stats);
+
+/* ---- Scattering in texture space ---------------------------------------------------------------------------- */
+
+/* Irradiance of a mesh, drawn into its texture and scattered there: seen from nowhere, so that it may be kept while neither mesh
+ * nor light move. Keeps memory between executions. One thread at a time. Source: d'Eon and Luebke, GPU Gems 3, chapter 14;
+ * docs/mathematics.md, section 7. */
+typedef struct PelTextureScatterObject* PelTextureScatter;
+
+typedef struct PelTextureScatterDesc {
+    uint32_t structSize;
+    uint32_t width; /* texels, 1 to 16384 each */
+    uint32_t height;
+    uint32_t numVertices;
+    const uint32_t* indices; /* numIndices, three per triangle; read during the call only */
+    uint64_t numIndices;     /* a multiple of 3 */
+    const float* uvs; /* u, v per vertex, uvStride bytes apart, in [0, 1]; read during the call only. Where triangles lie over each
+                         other in the texture, the later one counts */
+    uint32_t uvStride; /* bytes; 0: 8 */
+} PelTextureScatterDesc;
+
+typedef struct PelTextureScatterParams {
+    uint32_t structSize;
+    PelProfile profile; /* NULL: skin */
+    float scale;        /* units of positions per unit of the profile, > 0: 0.1 for cm; 1 */
+    float albedoBefore; /* as in PelMaterial, with the albedo that the execution is given; 0 */
+    uint32_t albedoAfter; /* 1: the result is multiplied by albedo^(1 - albedoBefore); 0: whoever samples it does that, as a
+                             PelShader does; 0 */
+    uint32_t gaussians; /* 2 to 12: Gaussians that stand for a profile which is no sum of as many or fewer; 6 */
+} PelTextureScatterParams;
+
+typedef struct PelTextureScatterStats {
+    uint32_t structSize;
+    uint32_t launches; /* of the last execution */
+    uint64_t texelsTotal;
+    uint64_t texelsCovered; /* by a triangle */
+    uint64_t texelsInvalid; /* NaN or Inf in irradiance or albedo: count as not covered, and get 0 */
+    uint64_t tilesTotal;    /* of 16 x 16 texels */
+    uint64_t tilesBlurred;  /* with something covered, summed over Gaussians: the others cost nothing */
+    uint64_t gaussians;
+    double profileError; /* greatest difference, part of all light, between the profile and its Gaussians: of the light within any
+                            distance, over the channels */
+    uint64_t scratchBytes;
+    double deviceMilliseconds; /* of devices that measure */
+} PelTextureScatterStats;
+
+/* Errors: PEL_ERROR_INVALID_ARGUMENT for indices beyond the vertices, texture coordinates that are not finite (the message names the
+ * vertex) or a size that is no texture's. */
+PEL_API PelError pelTextureScatterCreate(PelDevice device, const PelTextureScatterDesc* desc,
+                                         PelTextureScatter* scatter);
+PEL_API void pelTextureScatterRetain(PelTextureScatter scatter);
+PEL_API void pelTextureScatterRelease(PelTextureScatter scatter);
+
+/* Where the vertices are: xyz float32, numVertices of them. Measures how the texture is stretched over the mesh. Comes before
+ * anything else, and again when the mesh moved. */
+PEL_API PelError pelTextureScatterSetPositions(PelTextureScatter scatter, const PelVertexView* positions,
+                                               const PelSubmit* submit);
+
+/* Draws three float32 per vertex into the texture, linear on triangles: irradiance per vertex, or positions and normals, from which
+ * a PelShader of PEL_SCATTERING_NONE and albedo 1 makes irradiance with all lights and shadow maps. `out`: RGB or RGBA, float or
+ * half, of the texture's size; texels in no triangle get 0, and those within a texel of one its value there, for what samples
+ * bilinearly. `unit` 1: values are normals, and made unit vectors again. */
+PEL_API PelError pelTextureScatterDraw(PelTextureScatter scatter, const PelVertexView* values, uint32_t unit,
+                                       const PelImageDesc* out, const PelSubmit* submit);
+
+/* `irradiance`: RGB, of the texture's size, the host's own or a drawn one; only texels in triangles count. `albedo`: likewise, or
+ * NULL: 1. `out`: RGB or RGBA, float or half, written, may be the irradiance: scattered irradiance, also within two texels round
+ * triangles. Across seams of the texture nothing flows; nothing darkens there either. `params` may be NULL. */
+PEL_API PelError pelTextureScatterExecute(PelTextureScatter scatter, const PelTextureScatterParams* params,
+                                          const PelImageDesc* irradiance, const PelImageDesc* albedo,
+                                          const PelImageDesc* out, const PelSubmit* submit);
+
+/* Of the last execution; waits for it. */
+PEL_API PelError pelTextureScatterGetStats(PelTextureScatter scatter, PelTextureScatterStats* stats);
 
 /* Groups of programs that do not depend on a G-buffer; bits of PelPrefill.groups. */
 typedef enum PelProgramGroup {

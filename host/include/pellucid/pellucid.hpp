@@ -324,6 +324,13 @@ class Scatter : public Handle<PelScatter, pelScatterRetain, pelScatterRelease> {
     void setMaterial(uint32_t id, const Profile& profile, float scale = 1) {
         check(pelScatterSetMaterial(h_, id, profile.get(), scale));
     }
+    // How an id that has a material scatters.
+    void setControls(uint32_t id, const PelScatterControls& controls) {
+        check(pelScatterSetControls(h_, id, &controls));
+    }
+    // PEL_SLOT_SCATTER_WEIGHT, _IRRADIANCE_BACK or _ALBEDO, for all executions from now on.
+    void set(PelImageSlot slot, const PelImageDesc& image) { check(pelScatterSetImage(h_, slot, &image)); }
+    void clear(PelImageSlot slot) { check(pelScatterSetImage(h_, slot, nullptr)); }
     // Any of positions, depth and ids may be NULL, but not both of the first two.
     void execute(const PelScatterParams& params, const PelImageDesc& irradiance,
                  const PelImageDesc* positions, const PelImageDesc* depth, const PelImageDesc* ids,
@@ -333,6 +340,31 @@ class Scatter : public Handle<PelScatter, pelScatterRetain, pelScatterRelease> {
     PelScatterStats stats() const {
         PelScatterStats stats = pelScatterStatsDefaults();
         check(pelScatterGetStats(h_, &stats));
+        return stats;
+    }
+};
+
+// Scattering in the texture of a mesh.
+class TextureScatter : public Handle<PelTextureScatter, pelTextureScatterRetain, pelTextureScatterRelease> {
+  public:
+    using Handle::Handle;
+    TextureScatter(const Device& device, const PelTextureScatterDesc& desc) {
+        check(pelTextureScatterCreate(device.get(), &desc, out()));
+    }
+    void setPositions(const PelVertexView& positions, const PelSubmit* submit = nullptr) {
+        check(pelTextureScatterSetPositions(h_, &positions, submit));
+    }
+    void draw(const PelVertexView& values, bool unit, const PelImageDesc& image,
+              const PelSubmit* submit = nullptr) {
+        check(pelTextureScatterDraw(h_, &values, unit, &image, submit));
+    }
+    void execute(const PelTextureScatterParams& params, const PelImageDesc& irradiance,
+                 const PelImageDesc* albedo, const PelImageDesc& scattered, const PelSubmit* submit = nullptr) {
+        check(pelTextureScatterExecute(h_, &params, &irradiance, albedo, &scattered, submit));
+    }
+    PelTextureScatterStats stats() const {
+        PelTextureScatterStats stats = pelTextureScatterStatsDefaults();
+        check(pelTextureScatterGetStats(h_, &stats));
         return stats;
     }
 };
@@ -391,6 +423,11 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
     Shader& setNormalMap(uint32_t id, const std::vector<PelImageDesc>& levels) {
         return done(pelShaderSetNormalMap(h_, id, levels.data(), uint32_t(levels.size())));
     }
+    // What PEL_SCATTERING_TEXTURE samples.
+    Shader& setScatteredTexture(uint32_t id, const PelImageDesc& texture) {
+        return done(pelShaderSetScatteredTexture(h_, id, &texture));
+    }
+    Shader& clearScatteredTexture(uint32_t id) { return done(pelShaderSetScatteredTexture(h_, id, nullptr)); }
     Shader& set(const std::vector<PelLight>& lights) {
         return done(pelShaderSetLights(h_, lights.data(), uint32_t(lights.size())));
     }

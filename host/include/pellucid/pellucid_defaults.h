@@ -61,6 +61,19 @@ static inline PelScatterParams pelScatterParamsDefaults(void) {
     s.white = 1.0f;
     return s;
 }
+static inline PelScatterControls pelScatterControlsDefaults(void) {
+    PEL_ZEROED_(PelScatterControls, s);
+    s.scattering = PEL_SCATTERING_SCREEN;
+    return s;
+}
+static inline PelTextureScatterDesc pelTextureScatterDescDefaults(void) { PEL_ZEROED_(PelTextureScatterDesc, s); return s; }
+static inline PelTextureScatterParams pelTextureScatterParamsDefaults(void) {
+    PEL_ZEROED_(PelTextureScatterParams, s);
+    s.scale = 1.0f;
+    s.gaussians = 6;
+    return s;
+}
+static inline PelTextureScatterStats pelTextureScatterStatsDefaults(void) { PEL_ZEROED_(PelTextureScatterStats, s); return s; }
 static inline PelScatterStats pelScatterStatsDefaults(void) { PEL_ZEROED_(PelScatterStats, s); return s; }
 static inline PelProfileInfo pelProfileInfoDefaults(void) { PEL_ZEROED_(PelProfileInfo, s); return s; }
 static inline PelLutInfo pelLutInfoDefaults(void) {

@@ -74,6 +74,14 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
                 if (scene.channels[slot].empty())
                     channels.fail(
                         key, "is missing; the normal map of material " + std::to_string(m.id) + " needs it");
+        if (m.material.scatterTaps > 0 && m.material.scatterTaps < 8)
+            throw FileError(scene.source,
+                            "'scatter_taps' is " + std::to_string(m.material.scatterTaps) +
+                                "; 0, or 8 to 256 would be right",
+                            m.line);
+        if (!m.scatteredTexture.empty() && scene.channels[PEL_SLOT_UV].empty())
+            channels.fail(
+                "uv", "is missing; the scattered texture of material " + std::to_string(m.id) + " needs it");
         for (PelLutKind kind : {PEL_LUT_CURVATURE, PEL_LUT_SHADOW}) {
             const std::string& name = kind == PEL_LUT_CURVATURE ? m.curvatureLut : m.shadowLut;
             if (name.empty() || scene.lut(name, kind)) continue;
@@ -113,6 +121,7 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
     if (version == 0) reader.fail("version", "is missing; this program writes and reads version 1");
     reader.integer("blur_normals", scene.blurNormals, 0, 1);
     reader.integer("rotate_taps", scene.rotateTaps, 0, 1);
+    reader.integer("frame_index", scene.frameIndex, 0, UINT32_MAX);
     reader.number("target_error", scene.targetError, Range::ZeroToOne);
     reader.number("unit_mm", scene.unitMm, Range::Positive);
     reader.table("camera", true, [&](TomlReader& r) { cameraKeys(r, scene.camera); });
@@ -143,6 +152,7 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
     }
     for (SceneMaterial& m : scene.materials) {
         if (m.profile.ends_with(".toml")) m.profile = (folder / m.profile).string();
+        if (!m.scatteredTexture.empty()) m.scatteredTexture = (folder / m.scatteredTexture).string();
         if (!m.normalMap.empty()) m.normalMap = (folder / m.normalMap).string();
     }
     if (!scene.ambientCube.empty()) scene.ambientCube = (folder / scene.ambientCube).string();

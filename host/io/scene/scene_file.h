@@ -31,6 +31,7 @@ struct SceneMaterial {
     std::string shadowLut;     // likewise; "": plain shadow
     std::string profile;  // a material's name or a profile file: what is left to defaults follows from it; "": none
     ScenePreset preset = ScenePreset::none;
+    std::string scatteredTexture;  // image of light that was scattered in texture space, linear; "": none
     std::string normalMap;  // image of tangent-space normals, x, y, z from 0 to 1 as in 8-bit files; "": none
     int line = 0;
 };
@@ -57,6 +58,7 @@ struct SceneFile {
     std::array<std::vector<std::string>, PEL_SLOT_COUNT> channels;  // of the G-buffer per image slot; empty: slot not set
     uint32_t blurNormals = 0;                                       // PelShaderOptions.blurNormals
     uint32_t rotateTaps = 0;                                        // PelShaderOptions.rotateTaps
+    uint32_t frameIndex = 0;                                        // PelShaderOptions.frameIndex
     float targetError = pelShaderOptionsDefaults().targetError;  // PelShaderOptions.targetError
     float unitMm = 1;                                            // PelShaderOptions.millimetresPerUnit
     std::string ambientCube;  // image of an irradiance cube map, six faces below or beside one another; "": none

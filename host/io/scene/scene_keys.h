@@ -1,6 +1,6 @@
 // The keys of a scene file, once: reader and writer both walk these lists. A visitor has
 //   number(key, float&, Range)   numbers(key, float*, count, Range)   rows(key, float*, rows, columns)
-//   integer(key, uint32_t&, low, high)   text(key, string&)   texts(key, vector<string>&, allowed counts)
+//   integer(key, uint32_t&, low, high)   text(key, string&)   texts(key, vector<string>&, most, least)
 //   choice(key, enum&, names)   table(key, isPresent, function)
 #pragma once
 #include <string_view>
@@ -58,7 +58,10 @@ void outputFileKeys(Visitor& v, Scene& scene) {
 
 template <class Visitor, class Scene>
 void channelKeys(Visitor& v, Scene& scene) {
-    for (const SlotKey& k : slotKeys) v.texts(k.key, scene.channels[k.slot], k.components);
+    for (const SlotKey& k : slotKeys) {
+        const size_t least = k.slot == PEL_SLOT_SCATTER_WEIGHT ? 1 : k.components;  // its radius may be left out
+        v.texts(k.key, scene.channels[k.slot], k.components, least);
+    }
 }
 
 template <class Visitor, class Camera>
@@ -145,6 +148,11 @@ void materialKeys(Visitor& v, Material& m) {
     v.number("lobe_mix", m.material.lobeMix, Range::ZeroToOne);
     v.number("deep_scatter_ambient", m.material.deepScatterAmbient, Range::NotNegative);
     v.choice("scattering", m.material.scattering, scatterings);
+    v.integer("scatter_taps", m.material.scatterTaps, 0, 256);
+    v.number("albedo_before", m.material.albedoBefore, Range::ZeroToOne);
+    v.numbers("border_color", m.material.borderColor, 3, Range::ZeroToOne);
+    v.number("thin_thickness", m.material.thinThickness, Range::NotNegative);
+    v.text("scattered_texture", m.scatteredTexture);
 }
 
 template <class Visitor, class Lut>

@@ -31,11 +31,11 @@ class TomlWriter {
     void text(std::string_view key, const std::string& value) {
         if (!value.empty()) line(key, quoted(value));
     }
-    void texts(std::string_view key, const std::vector<std::string>& values, size_t count) {
+    void texts(std::string_view key, const std::vector<std::string>& values, size_t, size_t) {
         if (values.empty()) return;
         std::string list;
         for (const std::string& value : values) list += (list.empty() ? "" : ", ") + quoted(value);
-        line(key, count == 1 ? list : "[" + list + "]");
+        line(key, values.size() == 1 ? list : "[" + list + "]");
     }
     template <class Enum>
     void choice(std::string_view key, Enum value, std::span<const std::string_view> names) {
@@ -85,6 +85,7 @@ void writeScene(const std::string& path, const SceneFile& scene) {
         "# A scene of `pellucid shade`. Lengths are in the unit of the G-buffer's positions.\nversion = 1\n";
     if (scene.blurNormals) TomlWriter(out).integer("blur_normals", scene.blurNormals, 0, 1);
     if (scene.rotateTaps) TomlWriter(out).integer("rotate_taps", scene.rotateTaps, 0, 1);
+    if (scene.frameIndex) TomlWriter(out).integer("frame_index", scene.frameIndex, 0, UINT32_MAX);
     if (scene.targetError != pelShaderOptionsDefaults().targetError)
         TomlWriter(out).number("target_error", scene.targetError, Range::ZeroToOne);
     if (scene.unitMm != 1) TomlWriter(out).number("unit_mm", scene.unitMm, Range::Positive);
