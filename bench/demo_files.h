@@ -2,6 +2,7 @@
 #pragma once
 #include <pellucid/pellucid.hpp>
 
+#include <algorithm>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -41,6 +42,13 @@ inline std::vector<float> curvature(const pellucid::Device& device, const pelluc
         out(device, n * sizeof(float));
     topology.curvature(params, vertexView(positions, n), vertexView(normals, n), vertexView(out, n));
     return out.readAll<float>();
+}
+
+// The demo's skin takes transmission from its profile. Measurements of thickness taps need deep scatter by a colour.
+inline PelMaterial withDeepScatter(PelMaterial material) {
+    constexpr float color[3] = {0.6f, 0.08f, 0.02f};
+    std::copy_n(color, 3, material.deepScatterColor);
+    return material;
 }
 
 }  // namespace demo

@@ -40,7 +40,7 @@ void firstFrame(benchmark::State& state, bool emptyCache) {
     const std::string old = before ? before : "";
     if (!emptyCache) inNewProcess();
     Stages sum;
-    int run = 0;
+    static int run = 0;  // repetitions have folders of their own
     for (auto _ : state) {
         if (emptyCache) {
             const std::string cache = scratch + "/cache" + std::to_string(run++);

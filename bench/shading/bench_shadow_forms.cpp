@@ -64,7 +64,7 @@ Prepared prepare(const View& v, const Form& form, bool outputs) {
         p.buffers.emplace_back(v.device, v.gbuffer.interleaved(names));
         p.shader.set(PelImageSlot(slot), imageDesc(p.buffers.back(), formats[names.size()], v.width, v.height));
     }
-    PelMaterial material = v.scene.materials.at(0).material;
+    PelMaterial material = demo::withDeepScatter(v.scene.materials.at(0).material);
     material.thicknessFilterRadius *= form.radiusScale;
     p.shader.setMaterial(1, material, v.curvatureLut, v.shadowLut);
     p.shader.set(v.scene.ambient).set(v.scene.camera).set({form.light});

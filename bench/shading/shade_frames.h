@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "baseline_shade.h"
+#include "demo_files.h"
 #include "faceworks_material.h"
 #include "io/image/image_file.h"
 #include "io/scene/scene_file.h"
@@ -103,10 +104,14 @@ inline std::vector<float> readDisk(int taps) {
     for (std::string line; std::getline(file, line);)
         if (line.find(start) != std::string::npos)
             while (std::getline(file, line) && line[0] != '}') {
-                float x = 0, y = 0;
-                std::sscanf(line.c_str(), " (float2)(%ff, %ff)", &x, &y);
-                disk.insert(disk.end(), {x, y});
+                for (size_t at = 0; (at = line.find("(float2)(", at)) != std::string::npos; ++at) {
+                    float x = 0, y = 0;
+                    std::sscanf(line.c_str() + at, "(float2)(%ff, %ff)", &x, &y);
+                    disk.insert(disk.end(), {x, y});
+                }
             }
+    if (disk.size() != 2 * size_t(taps))
+        throw std::runtime_error("no disk of this many taps in poisson_disk.clh");
     return disk;
 }
 
@@ -204,7 +209,7 @@ inline std::unique_ptr<Scene> readDemoView(const Device& device, const std::stri
     f.map = map.interleaved(std::vector{file.lights[0].shadowMapChannel});
     f.mapSize = map.width;
     s->light = file.lights[0].light;
-    s->material = file.materials.at(0).material;
+    s->material = demo::withDeepScatter(file.materials.at(0).material);
     s->ambient = file.ambient;
     s->camera = file.camera;
     fillSettings(*s);
