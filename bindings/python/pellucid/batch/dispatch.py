@@ -1,9 +1,8 @@
-"""Shares the entries of a manifest out among the workers of a Dask cluster, and believes none of them.
+"""Shares the entries of a manifest out among the workers of a Dask cluster.
 
-Each piece of work is pinned to one worker, so that it is known who has what since when: what a worker loses, garbles or sits on
-goes to another. Files are named by content and appear whole, so that doing an entry twice changes nothing; an entry counts
-once, when its file has been read back: by a worker that did not write it, whose check sum must be the writer's. Where the two
-differ, or there is no second worker, this process reads the file and decides which of them is wrong.
+Dask moves the work of a worker that dies, or that the scheduler has not heard of for its `worker-ttl`, to another one. What is added
+here: files are named by content and appear whole, so that doing an entry twice changes nothing; an entry counts once, when this
+process has read its file back; entries that were not done are tried again, in halves, by other workers than the one that failed.
 """
 from __future__ import annotations
 
@@ -13,18 +12,17 @@ import hashlib
 import itertools
 import pickle
 import queue
-import random
 import threading
 import time
 import uuid
 from collections import deque
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from typing import Any, Callable, Optional
+
+import distributed
 
 from .. import __version__
 from . import worker as work
-from .answers import is_there, sort_out, vouched_for
 from .manifest import Manifest
 from .report import BatchError, Display, NoWorker, Summary
 from .store import Store, StoreError
@@ -32,52 +30,49 @@ from .store import Store, StoreError
 PIECE_SECONDS = 0.5  # what a piece should take: long against Dask's milliseconds, short against a lost one
 LARGEST_PIECE = 1024  # entries
 ATTEMPTS = 3  # of an entry by itself, before it is to blame for the workers that it costs
-# A scheduler needs no package of ours to pass this on, and a worker without it says what it lacks instead of dying of what it reads.
-CALL = "getattr(__import__('pellucid.batch.worker', fromlist=['worker']), task)(*arguments)"
 ASK_AGAIN_SECONDS = 20  # a cluster that was asked for workers is asked for those that it lost; above Dask's 15 to notice
 
 
-@dataclass
-class _Piece:
-    """Entries to make or, where there is a writer, files of that one to read."""
+def on_worker(*arguments: Any) -> tuple[str, str, Any]:
+    """Runs there: who answers, what kind of answer it is, and the answer."""
+    import importlib
 
-    indices: list[int]
-    writer: str = ""
-    answers: list[dict[str, Any]] = field(default_factory=list)  # the writer's
-    tries: int = 0
+    import distributed
+
+    address = distributed.get_worker().address
+    try:
+        worker = importlib.import_module("pellucid.batch.worker")
+    except ImportError as e:
+        return address, "unfit", f"{e} (install pellucid[batch] in the environment of the workers)"
+    try:
+        return address, "made", worker.make_entries(*arguments)
+    except worker.UnfitWorker as e:
+        return address, "unfit", str(e)
+    except Exception as e:
+        return address, "garbage", f"{type(e).__name__}: {e}"
 
 
-@dataclass
-class _Worker:
-    address: str
-    threads: int
-    pieces: dict[Any, _Piece] = field(default_factory=dict)  # by future
-    making: int = 0  # of `pieces`
-    since: float = 0.0  # when it last showed life, or got work after having none
-    entry_seconds: Optional[float] = None
-    has_manifest: bool = False
+# It travels as code, so that a scheduler needs no package of ours and a worker without it can say what it lacks.
+on_worker.__module__ = "__main__"
 
 
 class Dispatcher:
     """One batch on one cluster; `run` does it."""
 
     def __init__(self, client: Any, manifest: Manifest, store: Store, *, timeout: float, jobs: int, patience: float,
-                 read_back: bool, device: str, display: Display, ask: Optional[Callable[[], None]] = None) -> None:
+                 read_back: bool, display: Display, ask: Optional[Callable[[], None]] = None) -> None:
         self._client, self._manifest, self._store, self._display = client, manifest, store, display
-        self._timeout, self._jobs, self._patience, self._device = timeout, jobs, patience, device
-        self._read_back, self._ask = read_back, ask
-        self._address = client.scheduler.address
-        self._packed = pickle.dumps(manifest)
-        self._digest = hashlib.sha256(self._packed).hexdigest()
+        self._timeout, self._jobs, self._patience, self._read_back, self._ask = timeout, jobs, patience, read_back, ask
         self._pending: deque[list[int]] = deque([list(range(len(manifest)))])
         self._open = set(range(len(manifest)))  # entries that nobody has finished
         self._attempts: dict[int, int] = {}
-        self._workers: dict[str, _Worker] = {}
-        self._usable: list[_Worker] = []
-        self._dismissed: dict[str, str] = {}  # address: why
-        self._events: queue.SimpleQueue[tuple[Any, ...]] = queue.SimpleQueue()
+        self._present: dict[str, int] = {}  # address: threads
+        self._barred: set[str] = set()
+        self._pieces: dict[Any, tuple[list[int], Optional[set[str]]]] = {}  # by future: entries, and who may make them
+        self._answers: queue.SimpleQueue[tuple[Any, Any]] = queue.SimpleQueue()
         self._names = (f"pellucid-{uuid.uuid4().hex[:8]}-{n}" for n in itertools.count())
         self._readers = ThreadPoolExecutor(8)
+        self._entry_seconds = 0.0
         self._last_trouble = ""
         self.summary = Summary(entries=len(manifest), duplicates=manifest.duplicates)
 
@@ -89,38 +84,42 @@ class Dispatcher:
         BatchError
             The output is full or gone; NoWorker: the scheduler is gone, or no worker came for longer than `patience`.
         """
-        start = looked = alone = asked = time.monotonic()
+        start = alone = asked = time.monotonic()
+        looked = 0.0
         for _, message in self._manifest.errors:
             self._entry_failed(message)
         try:
-            self._look_for_workers()
+            packed = pickle.dumps(self._manifest)
+            self._name = f"pellucid-{hashlib.sha256(packed).hexdigest()}"
+            distributed.Variable(self._name, client=self._client).set(packed)  # the scheduler keeps it; each worker asks once
             while self._open:
                 now = time.monotonic()
                 if now - looked > 0.5:
                     self._look_for_workers()
-                    self._look_for_hung(now)
                     looked = now
                 if self._ask and now - asked > ASK_AGAIN_SECONDS:
                     self._ask()
                     asked = now
-                if self._usable:
+                if set(self._present) - self._barred:
                     alone = now
                 elif now - alone > self._patience:
                     why = f"; the last trouble was: {self._last_trouble}" if self._last_trouble else ""
                     raise NoWorker(f"no worker for {self._patience:.0f} s{why}")
-                self._hand_out(now)
+                self._hand_out()
                 self._display.show(self.summary.entries - len(self._open))
                 with contextlib.suppress(queue.Empty):
-                    self._handle(*self._events.get(timeout=0.1))
+                    self._handle(*self._answers.get(timeout=0.1))
                     while True:
-                        self._handle(*self._events.get_nowait())
+                        self._handle(*self._answers.get_nowait())
+            with contextlib.suppress(NoWorker):
+                self._look_for_workers()  # who was lost last
         except BatchError as e:
             e.summary = self.summary
             raise
         finally:
             self._readers.shutdown(wait=False, cancel_futures=True)
             with contextlib.suppress(Exception):  # the scheduler may be gone
-                self._client.cancel([f for worker in self._workers.values() for f in worker.pieces], force=True)
+                self._client.cancel(list(self._pieces), force=True)
             self.summary.total_ms = 1e3 * (time.monotonic() - start)
             self.summary.per_second = self.summary.made / max(time.monotonic() - start, 1e-9)
             self._display.show(self.summary.entries - len(self._open), last=True)
@@ -132,58 +131,40 @@ class Dispatcher:
         try:
             present = self._client.nthreads()
         except (OSError, TimeoutError, asyncio.TimeoutError) as e:
-            raise NoWorker(f"the scheduler {self._address} does not answer any more ({e}); what is made is kept, and the same call goes on from "
-                           "there when a scheduler is back") from e
-        for address, threads in present.items():
-            if address not in self._workers:
-                self._workers[address] = _Worker(address, threads)
-        gone = [self._workers.pop(address) for address in set(self._workers) - set(present)]
-        for worker in gone:
-            if self._dismissed.pop(worker.address, None) is None:
-                self.summary.workers_lost += 1
-                self._trouble(f"worker {worker.address} is gone")
-        self._usable = [w for w in self._workers.values() if w.address not in self._dismissed]
-        for worker in gone:
-            self._take_back(worker)
+            raise NoWorker(f"the scheduler {self._client.scheduler.address} does not answer any more ({e}); what is made is kept, and the "
+                           "same call goes on from there when a scheduler is back") from e
+        for address in set(self._present) - set(present) - self._barred:
+            self.summary.workers_lost += 1
+            self._trouble(f"worker {address} is gone")
+        self._present = dict(present)
+        self._barred &= set(present)
+        # Dask would wait for workers that a piece was meant for.
+        for future, (_, may) in list(self._pieces.items()):
+            if may is not None and not may & set(present):
+                self._take_back(future)
 
-    def _look_for_hung(self, now: float) -> None:
-        for worker in list(self._usable):
-            if worker.pieces and now - worker.since > self._timeout:
-                self._dismiss(worker, f"worker {worker.address} did nothing for {self._timeout:g} s")
-
-    def _dismiss(self, worker: _Worker, why: str, restart: bool = True) -> None:
+    def _bar(self, address: str, why: str, restart: bool = True) -> None:
         """Gives it no more work; a nanny, where there is one, puts a fresh process in its place unless that would be no better."""
-        if worker.address in self._dismissed:
+        if address in self._barred:
             return
-        self._dismissed[worker.address] = why
-        self._usable = [w for w in self._usable if w is not worker]
+        self._barred.add(address)
         self.summary.workers_dismissed += 1
         self._trouble(why)
-        self._take_back(worker, blamed=restart)
+        with contextlib.suppress(Exception):  # the scheduler may be gone
+            keys = set(self._client.processing([address]).get(address, ()))
+            for future in [f for f in self._pieces if f.key in keys]:
+                self._take_back(future)
 
         def renew() -> None:
             with contextlib.suppress(Exception):
-                self._client.restart_workers([worker.address], timeout=30, raise_for_error=False)
+                self._client.restart_workers([address], timeout=30, raise_for_error=False)
 
         if restart:
             threading.Thread(target=renew, daemon=True).start()
 
-    def _take_back(self, worker: _Worker, blamed: bool = True) -> None:
-        pieces, worker.pieces, worker.making = worker.pieces, {}, 0
-        if pieces:
-            self._client.cancel(list(pieces), force=True)
-        for piece in pieces.values():
-            self._lost(piece, blamed)
-
-    def _lost(self, piece: _Piece, blamed: bool = True) -> None:
-        """Gives a piece to another worker. `blamed`: something in it may be why."""
-        if piece.writer:
-            piece.tries += 1
-            self._have_read(piece)
-        elif blamed:
-            self._again(piece.indices)
-        else:
-            self._pending.appendleft(piece.indices)
+    def _take_back(self, future: Any) -> None:
+        self._pending.appendleft(self._pieces.pop(future)[0])
+        self._client.cancel([future], force=True)
 
     def _trouble(self, message: str) -> None:
         self._last_trouble = message
@@ -191,59 +172,51 @@ class Dispatcher:
 
     # --- work goes out ---
 
-    def _hand_out(self, now: float) -> None:
-        for worker in sorted(self._usable, key=lambda w: w.making):
-            while self._pending and worker.making <= worker.threads:  # one waits while the others run
-                indices = self._next_piece(worker, len(self._usable))
-                if not indices:
-                    break
-                self._submit(worker, _Piece(indices), work.make_entries.__name__, self._device, self._jobs)
-
-    def _submit(self, worker: _Worker, piece: _Piece, task: str, *arguments: Any) -> None:
-        packed = None if worker.has_manifest else self._packed
-        worker.has_manifest = True
-        arguments = (self._digest, packed, __version__, piece.indices, self._store.out, *arguments)
-        future = self._client.submit(eval, CALL, {"task": task, "arguments": arguments}, key=next(self._names),
-                                     workers=[worker.address], allow_other_workers=False, pure=False, retries=0,
-                                     priority=1 if piece.writer else 0)
-        sent = time.monotonic()
-        if not worker.pieces:
-            worker.since = sent
-        worker.pieces[future] = piece
-        worker.making += not piece.writer
-
-        async def fetch() -> None:
-            try:
-                result = await self._client.gather(future, asynchronous=True)
-            except (Exception, asyncio.CancelledError) as e:  # also what cannot be unpickled
-                result = e
-            self._events.put(("answered", worker.address, future, sent, time.monotonic(), result))
-
-        # A worker that stops answering between its work and this must not stop the others.
-        self._client.loop.add_callback(fetch)
-
-    def _have_read(self, piece: _Piece) -> None:
-        """Finds a reader for files that a worker wrote: another one, on another machine where there is one, else this process."""
-        others = [w for w in random.sample(self._usable, min(4, len(self._usable))) if w.address != piece.writer]
-        if not others or piece.tries >= ATTEMPTS:
-            self._readers.submit(self._judge, piece.writer, piece.answers)
-            return
-        machine = piece.writer.rpartition(":")[0]
-        reader = min(others, key=lambda w: (w.address.rpartition(":")[0] == machine, len(w.pieces)))
-        self._submit(reader, piece, work.read_entries.__name__, self._jobs)
-
-    def _next_piece(self, worker: _Worker, workers: int) -> list[int]:
-        size = 4 if worker.entry_seconds is None else int(PIECE_SECONDS / max(worker.entry_seconds, 1e-6))
-        size = max(1, min(size, LARGEST_PIECE, -(-len(self._open) // (2 * workers))))
-        while self._pending:
+    def _hand_out(self) -> None:
+        usable = {a: n for a, n in self._present.items() if a not in self._barred}
+        may = set(usable) if self._barred else None
+        while self._pending and len(self._pieces) < 2 * sum(usable.values()):  # one waits while another runs
+            size = int(PIECE_SECONDS / self._entry_seconds) if self._entry_seconds else 4
+            size = max(1, min(size, LARGEST_PIECE, -(-len(self._open) // (2 * len(usable)))))
             head = self._pending.popleft()
-            piece, rest = head[:size], head[size:]
-            if rest:
-                self._pending.appendleft(rest)
-            piece = [i for i in piece if i in self._open]  # a late answer may have closed some
-            if piece:
-                return piece
-        return []
+            if head[size:]:
+                self._pending.appendleft(head[size:])
+            indices = [i for i in head[:size] if i in self._open]
+            if not indices:
+                continue
+            future = self._client.submit(on_worker, self._name, __version__, indices, self._store.out, self._jobs, self._timeout,
+                                         key=next(self._names), workers=sorted(may) if may else None, pure=False)
+            self._pieces[future] = indices, may
+            future.add_done_callback(self._answered)
+
+    def _answered(self, future: Any) -> None:
+        with contextlib.suppress(RuntimeError):  # the batch has ended
+            self._readers.submit(self._receive, future, self._pieces[future][0] if future in self._pieces else [])
+
+    def _receive(self, future: Any, indices: list[int]) -> None:
+        """On a thread of its own: fetches an answer and reads the files that it speaks of."""
+        try:
+            address, kind, answer = future.result()
+            if kind == "made":
+                try:
+                    answer = answer[0], [(a, self._check(a, indices)) for a in answer[1]]
+                except (LookupError, TypeError, ValueError):
+                    kind, answer = "garbage", f"no answer of a known form for {len(indices)} entries"
+            self._answers.put((future, (address, kind, answer)))
+        except BaseException as e:  # what Dask raises, an output that is gone
+            self._answers.put((future, e))
+
+    def _check(self, answer: dict[str, Any], indices: list[int]) -> bool:
+        """Whether an entry's file is there, whole, and what the worker says. Raises where the answer has no known form."""
+        index, what = answer["index"], answer["what"]
+        if index not in indices or what not in work.KINDS:
+            raise ValueError(what)
+        if what not in work.FILE_THERE:
+            return isinstance(answer["message"], str)
+        if not self._read_back:
+            return True
+        data = self._store.read(self._manifest.entries[index].file)
+        return data is not None and self._manifest.holds(index, data) and hashlib.sha256(data).hexdigest() == answer["sum"]
 
     def _again(self, indices: list[int]) -> None:
         """Hands entries out once more, in halves: one of them may be what costs the workers."""
@@ -252,9 +225,7 @@ class Dispatcher:
             return
         self.summary.retried += 1
         if len(indices) > 1:
-            middle = len(indices) // 2
-            self._pending.append(indices[:middle])
-            self._pending.append(indices[middle:])
+            self._pending.extend((indices[:len(indices) // 2], indices[len(indices) // 2:]))
             return
         (index,) = indices
         self._attempts[index] = self._attempts.get(index, 0) + 1
@@ -265,111 +236,61 @@ class Dispatcher:
 
     # --- answers come in ---
 
-    def _handle(self, what: str, *details: Any) -> None:
-        getattr(self, "_" + what)(*details)
-
-    def _answered(self, address: str, future: Any, sent: float, now: float, result: Any) -> None:
-        worker = self._workers.get(address)
-        if worker is None or future not in worker.pieces:
+    def _handle(self, future: Any, result: Any) -> None:
+        piece = self._pieces.pop(future, None)
+        if piece is None:
             return  # taken back before
-        piece = worker.pieces.pop(future)
-        worker.making -= not piece.writer
-        began, worker.since = max(worker.since, sent), now
-        if isinstance(result, BaseException):
-            self._raised(worker, piece, result, future.status)
-        elif piece.writer:
-            self._compare(address, piece, result)
+        indices = piece[0]
+        if isinstance(result, StoreError):
+            raise BatchError(str(result)) from result
+        if isinstance(result, (CancelledError, asyncio.CancelledError, OSError)):  # the scheduler is gone, or soon found to be
+            self._pending.appendleft(indices)
+            return
+        if isinstance(result, BaseException):  # KilledWorker, an answer that cannot be read, ...
+            self._trouble(f"work was lost: {type(result).__name__}: {result}")
+            self._again(indices)
+            return
+        address, kind, answer = result
+        if kind == "unfit":  # no entry is to blame, and a restart is no help
+            self._bar(address, f"worker {address} gets no work: {answer}", restart=False)
+            self._pending.appendleft(indices)
+        elif kind == "garbage":
+            self._bar(address, f"worker {address} gave garbage: {answer}")
+            self._again(indices)
         else:
-            worker.entry_seconds = max(now - began, 1e-6) / len(piece.indices)
-            self._made(worker, piece, result)
+            self._made(address, indices, *answer)
 
-    def _raised(self, worker: _Worker, piece: _Piece, error: BaseException, status: str) -> None:
-        if status != "error" or "KilledWorker" in type(error).__name__:
-            self._trouble(f"worker {worker.address} lost work")
-            self._lost(piece)
-        elif isinstance(error, (work.UnfitWorker, ImportError)):  # no entry is to blame, and a restart is no help
-            hint = " (install pellucid[batch] in the environment of the workers)" if isinstance(error, ImportError) else ""
-            self._dismiss(worker, f"worker {worker.address} gets no work: {error}{hint}", restart=False)
-            self._lost(piece, blamed=False)
-        else:
-            self._dismiss(worker, f"worker {worker.address} cannot work: {type(error).__name__}: {error}")
-            self._lost(piece)
-
-    def _made(self, worker: _Worker, piece: _Piece, answers: Any) -> None:
-        good, bad = sort_out(self._manifest, piece.indices, answers)
-        written, failed_here, broken = [], [], 0
-        for answer in good:
+    def _made(self, address: str, indices: list[int], seconds: float, answers: list[tuple[dict[str, Any], bool]]) -> None:
+        self._entry_seconds = max(seconds, 1e-3) / len(indices)
+        broken = 0
+        for answer, true in answers:
             index, what = answer["index"], answer["what"]
-            if index not in self._open:
-                continue  # another worker was as quick
             if what == work.NO_STORE:
-                raise BatchError(f"worker {worker.address}: {answer['message']}")
+                raise BatchError(f"worker {address}: {answer['message']}")
+            if index not in self._open or not true:
+                continue
             if what == work.BAD:
                 self._close_failed(index, answer["message"])
-            elif what in (work.NO_ROOM, work.DEVICE_FAILED):  # another device may do it
-                failed_here.append(index)
+            elif what in work.FILE_THERE:
+                self._close(address, index, what)
+            else:  # another device may do it
                 broken += what == work.DEVICE_FAILED
                 self._last_trouble = answer["message"]
-            elif what == work.NO_MANIFEST:
-                self._pending.append([index])
-                worker.has_manifest = False
-            else:
-                written.append(answer)
-        self._again(failed_here)
-        self._again(bad)
-        if bad:
-            self._dismiss(worker, f"worker {worker.address} gave garbage for {len(bad)} entries: no answer of a known form")
-        elif broken and broken == len(good):
-            self._dismiss(worker, f"worker {worker.address}: its device fails: {self._last_trouble}")
-        if written and self._read_back:
-            self._have_read(_Piece([a["index"] for a in written], worker.address, written))
-        elif written:
-            self._close(worker.address, written)
+        if lies := sum(not true for _, true in answers):
+            self._bar(address, f"worker {address} gave garbage for {lies} entries: files are not in {self._store.out}, or are not what it says "
+                      "that it wrote (all machines must see one and the same folder)")
+        elif broken and broken == len(answers):
+            self._bar(address, f"worker {address}: its device fails: {self._last_trouble}")
+        self._again([i for i in indices if i in self._open])
 
-    # --- no worker is believed ---
-
-    def _compare(self, reader: str, piece: _Piece, sums: Any) -> None:
-        said = vouched_for(piece.answers, sums)
-        self._close(piece.writer, [a for a, s in zip(piece.answers, said) if s])
-        doubtful = [(a, s) for a, s in zip(piece.answers, said) if not s]
-        if doubtful:
-            self._readers.submit(self._judge, piece.writer, [a for a, _ in doubtful], reader,
-                                 {a["index"] for a, s in doubtful if s is False})
-
-    def _judge(self, writer: str, answers: list[dict[str, Any]], reader: str = "", denied: Any = ()) -> None:
-        """On a thread of this process, which reads the files itself. `denied`: where the reader claims another check sum."""
-        try:
-            there = [is_there(self._manifest, self._store, a) for a in answers]
-        except StoreError as e:
-            self._events.put(("no_store", str(e)))
+    def _close(self, address: str, index: int, what: str) -> None:
+        self._open.discard(index)
+        if what == work.KEPT:
+            self.summary.kept += 1
         else:
-            self._events.put(("judged", writer, [a for a, t in zip(answers, there) if t],
-                              [a for a, t in zip(answers, there) if not t], reader, denied))
-
-    def _judged(self, writer: str, good: list[dict[str, Any]], bad: list[dict[str, Any]], reader: str, denied: Any) -> None:
-        self._close(writer, good)
-        self._again([a["index"] for a in bad])
-        if bad and writer in self._workers:
-            self._dismiss(self._workers[writer], f"worker {writer} gave garbage for {len(bad)} entries: {bad[0]['file']} is not in "
-                          f"{self._store.out}, or is not what it says that it wrote (all machines must see one and the same folder)")
-        lies = sum(a["index"] in denied for a in good)
-        if lies and reader in self._workers:
-            self._dismiss(self._workers[reader], f"worker {reader} misread {lies} files of others, such as {good[0]['file']}")
-
-    def _close(self, writer: str, answers: list[dict[str, Any]]) -> None:
-        for answer in answers:
-            if answer["index"] not in self._open:
-                continue  # counts once
-            self._open.discard(answer["index"])
-            if answer["what"] == work.KEPT:
-                self.summary.kept += 1
-            else:
-                self.summary.made += 1
-                self.summary.redone += answer["what"] == work.REDONE
-                self.summary.made_by[writer] = self.summary.made_by.get(writer, 0) + 1
-
-    def _no_store(self, message: str) -> None:
-        raise BatchError(message)
+            self.summary.made += 1
+            self.summary.redone += what == work.REDONE
+            self.summary.made_by[address] = self.summary.made_by.get(address, 0) + 1
 
     def _close_failed(self, index: int, message: str) -> None:
         self._open.discard(index)

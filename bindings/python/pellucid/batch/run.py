@@ -22,7 +22,7 @@ except ImportError as e:
 
 
 @contextlib.contextmanager
-def _local_client(count: Optional[int], selectors: Sequence[str]) -> Iterator[Any]:
+def _local_client(count: Optional[int], selectors: Sequence[str], timeout: float = 120.0) -> Iterator[Any]:
     """Processes of this machine, each with a device of its own by turns, restarted when they die."""
     chosen = list(selectors) or [str(i) for i in range(len(devices()))]
     if not chosen:
@@ -34,7 +34,7 @@ def _local_client(count: Optional[int], selectors: Sequence[str]) -> Iterator[An
             raise NoWorker(str(e)) from None
     if not selectors and os.environ.get("PELLUCID_DEVICE"):
         chosen = [os.environ["PELLUCID_DEVICE"]]
-    with dask.config.set({"distributed.admin.system-monitor.interval": "10s"}):
+    with dask.config.set({"distributed.admin.system-monitor.interval": "10s", "distributed.scheduler.worker-ttl": f"{timeout:g}s"}):
         workers = {i: {"cls": distributed.Nanny,
                        "options": {"host": "127.0.0.1", "nthreads": 1, "memory_limit": 0, "silence_logs": logging.CRITICAL,
                                    "preload": ["pellucid.batch.interrupt"],
@@ -59,9 +59,9 @@ def _connect(scheduler: Any) -> Any:
 
 
 @contextlib.contextmanager
-def _client(scheduler: Any, count: Optional[int], selectors: Sequence[str]) -> Iterator[Any]:
+def _client(scheduler: Any, count: Optional[int], selectors: Sequence[str], timeout: float) -> Iterator[Any]:
     if scheduler is None:
-        with _local_client(count, selectors) as client:
+        with _local_client(count, selectors, timeout) as client:
             yield client
     elif isinstance(scheduler, distributed.Client):
         yield scheduler
@@ -90,13 +90,14 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
         Without a scheduler: devices that the processes take by turns; all without it. On a cluster every worker takes
         its own, by its PELLUCID_DEVICE.
     timeout : seconds
-        A worker that has work and finishes nothing for that long is given up, and its work goes to another.
+        A worker whose device finishes nothing for that long is given up, and its work goes to another. Without a scheduler the same
+        holds for a process that answers nothing; a cluster's scheduler has its own limit, `distributed.scheduler.worker-ttl`.
     jobs : int
         Entries in flight per worker; 0: four per core.
     patience : seconds
         How long to wait when there is no worker.
     read_back : bool
-        False: believe the workers' check sums instead of having another worker, or this process, read every file once.
+        False: believe the workers' check sums instead of reading every file once.
     progress : bool
         On standard error.
 
@@ -127,8 +128,8 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
         raise BatchError(str(e)) from e
     from .dispatch import Dispatcher
 
-    with _client(scheduler, workers, device) as client:
+    with _client(scheduler, workers, device, timeout) as client:
         if ask:
             ask()
         return Dispatcher(client, manifest, store, timeout=timeout, jobs=jobs, patience=patience, read_back=read_back,
-                          device="", display=Display(len(manifest), quiet=not progress), ask=ask).run()
+                          display=Display(len(manifest), quiet=not progress), ask=ask).run()
