@@ -41,39 +41,6 @@ size_t distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-const char* rangeText(Range range) {
-    switch (range) {
-        case Range::Any:
-            return "a finite number";
-        case Range::NotNegative:
-            return "0 or more";
-        case Range::Positive:
-            return "more than 0";
-        case Range::AtLeastOne:
-            return "1 or more";
-        case Range::ZeroToOne:
-            return "from 0 to 1";
-    }
-    return "";
-}
-
-bool inRange(float x, Range range) {
-    if (!std::isfinite(x)) return false;
-    switch (range) {
-        case Range::Any:
-            return true;
-        case Range::NotNegative:
-            return x >= 0;
-        case Range::Positive:
-            return x > 0;
-        case Range::AtLeastOne:
-            return x >= 1;
-        case Range::ZeroToOne:
-            return x >= 0 && x <= 1;
-    }
-    return false;
-}
-
 }  // namespace
 
 toml::table parseToml(const std::string& file, const std::string& text) {
@@ -109,9 +76,9 @@ float TomlReader::toFloat(std::string_view key, const toml::node& node, Range ra
     if (!node.is_number()) fail(key, "is " + typeName(node) + "; a number would be right");
     const auto value = static_cast<float>(node.is_integer() ? static_cast<double>(node.as_integer()->get())
                                                             : node.as_floating_point()->get());
-    if (!inRange(value, range)) {
+    if (!range.holds(value)) {
         std::ostringstream text;
-        text << "is " << value << "; it must be " << rangeText(range);
+        text << "is " << value << "; it must be " << describe(range);
         fail(key, text.str());
     }
     return value;
@@ -148,17 +115,22 @@ void TomlReader::rows(std::string_view key, float* values, size_t rows, size_t c
                           std::to_string(columns) + "; " + wanted + " would be right");
         }
         for (size_t c = 0; c < columns; ++c)
-            values[r * columns + c] = toFloat(key, (*array[r].as_array())[c], Range::Any);
+            values[r * columns + c] = toFloat(key, (*array[r].as_array())[c], range::any);
     }
 }
 
-void TomlReader::integer(std::string_view key, uint32_t& value, uint32_t low, uint32_t high) {
+void TomlReader::integer(std::string_view key, uint32_t& value, Range range) {
     const toml::node* node = find(key);
     if (!node) return;
-    const std::string wanted = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+    const uint32_t low = uint32_t(range.least), high = range.most < 0x1p32f ? uint32_t(range.most) : UINT32_MAX;
+    const std::string special =
+                          std::isnan(range.special) ? "" : std::to_string(uint32_t(range.special)) + ", or ",
+                      wanted = special + "a whole number from " + std::to_string(low) + " to " +
+                               std::to_string(high);
     if (!node->is_integer()) fail(key, "is " + typeName(*node) + "; " + wanted + " would be right");
     const int64_t given = node->as_integer()->get();
-    if (given < low || given > high) fail(key, "is " + std::to_string(given) + "; it must be " + wanted);
+    if ((given < low || given > high) && (special.empty() || given != int64_t(range.special)))
+        fail(key, "is " + std::to_string(given) + "; it must be " + wanted);
     value = static_cast<uint32_t>(given);
 }
 

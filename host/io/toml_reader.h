@@ -37,7 +37,7 @@ class TomlReader {
     void number(std::string_view key, float& value, Range range);
     void numbers(std::string_view key, float* values, size_t count, Range range);
     void rows(std::string_view key, float* values, size_t rows, size_t columns);
-    void integer(std::string_view key, uint32_t& value, uint32_t low, uint32_t high);
+    void integer(std::string_view key, uint32_t& value, Range range);
     void text(std::string_view key, std::string& value);
     // From `least` to `most` of them; one text will do for 1.
     void texts(std::string_view key, std::vector<std::string>& values, size_t most, size_t least);

@@ -2,8 +2,8 @@
 #include "shading/check_settings.h"
 
 #include <cmath>
-#include <initializer_list>
 
+#include "core/check_range.h"
 #include "shading/image_slots.h"
 #include "shared/shade.h"
 
@@ -46,20 +46,6 @@ void checkContent(const ImageView& view, Content content, const char* what) {
     }
     if (right) invalidArgument("the ", what, " image has format ", view.info().name, "; it needs ", right);
 }
-
-struct Bound {
-    const char* field;
-    float value, least, most;
-};
-
-void within(const char* structure, std::initializer_list<Bound> bounds) {
-    for (const Bound& b : bounds)
-        if (!(b.value >= b.least && b.value <= b.most))
-            invalidArgument(structure, ".", b.field, " is ", b.value, "; it must be between ", b.least,
-                            " and ", b.most);
-}
-
-constexpr float tiny = 1e-6f, huge = 1e18f;
 
 bool isUnit(const float (&v)[3]) {
     const double length2 = double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2];
@@ -109,10 +95,9 @@ void checkNormalMap(const std::vector<ImageView>& levels) {
 
 void checkScatterControls(const char* structure, uint32_t taps, float albedoBefore,
                           const float (&borderColor)[3]) {
-    if (taps != 0 && (taps < 8 || taps > 256))
-        invalidArgument(structure, ".scatterTaps is ", taps, "; it must be 0, or between 8 and 256");
-    within(structure, {{"albedoBefore", albedoBefore, 0, 1}});
-    for (float share : borderColor) within(structure, {{"borderColor", share, 0, 1}});
+    checkRange(structure, "scatterTaps", taps, range::material::scatterTaps);
+    checkRange(structure, "albedoBefore", albedoBefore, range::material::albedoBefore);
+    checkRange(structure, "borderColor", borderColor, range::material::borderColor);
 }
 
 void checkScatteredTexture(const ImageView& texture) {
@@ -120,52 +105,22 @@ void checkScatteredTexture(const ImageView& texture) {
 }
 
 void checkMaterial(const PelMaterial& m) {
-    const char* name = "PelMaterial";
-    checkFinite(name, "albedo", m.albedo, 3);
-    checkFinite(name, "deepScatterColor", m.deepScatterColor, 3);
-    for (float blend : m.normalBlend)
-        if (blend != -1) within(name, {{"normalBlend", blend, 0, 1}});  // -1: the profile's
-    if (m.diffusionRadius != 0)
-        within(name, {{"diffusionRadius", m.diffusionRadius, tiny, huge}});  // 0: a table's or skin's
-    if (m.shadowFilterWidth != 0)
-        within(name, {{"shadowFilterWidth", m.shadowFilterWidth, tiny, huge}});  // 0: from the profile
-    within(name, {{"transmission", m.transmission, 0, huge},
-                  {"curvatureGain", m.curvatureGain, 0, huge},
-                  {"deepScatterRadius", m.deepScatterRadius, tiny, huge},
-                  {"deepScatterNormalOffset", m.deepScatterNormalOffset, -huge, huge},
-                  {"thicknessFilterRadius", m.thicknessFilterRadius, 0, 1},
-                  {"specular", m.specular, 0, huge},
-                  {"roughness", m.roughness, 0, huge},
-                  {"f0", m.f0, 0, 1},
-                  {"uvScale", m.uvScale, tiny, huge},
-                  {"roughness2", m.roughness2, 0, huge},
-                  {"lobeMix", m.lobeMix, 0, 1},
-                  {"deepScatterAmbient", m.deepScatterAmbient, 0, huge},
-                  {"thinThickness", m.thinThickness, 0, huge}});
-    checkScatterControls(name, m.scatterTaps, m.albedoBefore, m.borderColor);
+    const char* structure = "PelMaterial";
+    const PelMaterial& fields = m;
+    PEL_EACH_MATERIAL_RANGE(PEL_CHECK_RANGE)
     if (unsigned(m.specularModel) >= PEL_MODELS)
         invalidArgument("PelMaterial.specularModel is ", int(m.specularModel),
                         ", which is none of PelSpecularModel");
     if (unsigned(m.scattering) >= PEL_SCATTERS)
         invalidArgument("PelMaterial.scattering is ", int(m.scattering), ", which is none of PelScattering");
-    if (m.thicknessTaps != 0 && m.thicknessTaps != 8 && m.thicknessTaps != 16 && m.thicknessTaps != 32)
+    if (m.thicknessTaps & (m.thicknessTaps - 1))
         invalidArgument("PelMaterial.thicknessTaps is ", m.thicknessTaps, "; it must be 0, 8, 16 or 32");
 }
 
 void checkLight(const PelLight& l, uint32_t index) {
-    const std::string name = text("PelLight ", index);
-    checkFinite(name.c_str(), "color", l.color, 3);
-    for (float c : l.color) within(name.c_str(), {{"color", c, 0, huge}});
-    if (l.shadowFilterTexels != 0 && (l.shadowFilterTexels < 4 || l.shadowFilterTexels > 256))
-        invalidArgument(name, ".shadowFilterTexels is ", l.shadowFilterTexels,
-                        "; it must be 0, or between 4 and 256");
-    within(name.c_str(), {{"shadowBias", l.shadowBias, 0, huge},
-                          {"shadowSoftness", l.shadowSoftness, 1e-3f, huge},
-                          {"shadowConeSlope", l.shadowConeSlope, 0, huge},
-                          {"shadowMinDeviation", l.shadowMinDeviation, 0, huge},
-                          {"shadowBleeding", l.shadowBleeding, 0, 0.999f}});
-    if (l.shadowCascades > PEL_CASCADES)
-        invalidArgument(name, ".shadowCascades is ", l.shadowCascades, "; ", PEL_CASCADES, " are the most");
+    const std::string name = text("PelLight ", index), &structure = name;
+    const PelLight& fields = l;
+    PEL_EACH_LIGHT_RANGE(PEL_CHECK_RANGE)
     if (unsigned(l.shadowContent) >= PEL_CONTENTS)
         invalidArgument(name, ".shadowContent is ", int(l.shadowContent),
                         ", which is none of PelShadowContent");
@@ -181,13 +136,15 @@ void checkLight(const PelLight& l, uint32_t index) {
                             "); it must be of unit length");
     } else {
         checkFinite(name.c_str(), "position", l.position, 3);
-        within(name.c_str(), {{"range", l.range, 0, huge}});
+        PEL_EACH_PLACED_LIGHT_RANGE(PEL_CHECK_RANGE)
     }
     if (l.type == PEL_LIGHT_SPOT) {
         checkFinite(name.c_str(), "spotDirection", l.spotDirection, 3);
         if (!isUnit(l.spotDirection)) invalidArgument(name, ".spotDirection must be of unit length");
-        within(name.c_str(), {{"spotCosOuter", l.spotCosOuter, -1, 1}});
-        within(name.c_str(), {{"spotCosInner", l.spotCosInner, l.spotCosOuter, 1}});
+        PEL_EACH_SPOT_RANGE(PEL_CHECK_RANGE)
+        if (l.spotCosInner < l.spotCosOuter)
+            invalidArgument(name, ".spotCosInner is ", l.spotCosInner, "; it must be at least spotCosOuter, ",
+                            l.spotCosOuter);
     }
 }
 
@@ -210,8 +167,9 @@ void checkCamera(const PelCamera& camera) {
 
 void checkOptions(const PelShaderOptions& options) {
     checkFinite("PelShaderOptions", "invalidColor", options.invalidColor, 3);
-    within("PelShaderOptions", {{"targetError", options.targetError, 0, 1}});
-    within("PelShaderOptions", {{"millimetresPerUnit", options.millimetresPerUnit, tiny, huge}});
+    const char* structure = "PelShaderOptions";
+    const PelShaderOptions& fields = options;
+    PEL_EACH_OPTION_RANGE(PEL_CHECK_RANGE)
     if (options.tileLists > PEL_TILES_NO_LIST)
         invalidArgument("PelShaderOptions.tileLists is ", int(options.tileLists),
                         ", which is none of PelTileLists");

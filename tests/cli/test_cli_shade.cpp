@@ -82,7 +82,7 @@ TEST_F(Shade, BadScenesNameFileAndLine) {
         expectRefused(command("bad.toml"), 3, "bad.toml:" + std::to_string(line) + ": ");
         expectRefused(command("bad.toml"), 3, message);
     };
-    refused("roughness = ", "roughness = -", "must be more than 0");
+    refused("roughness = ", "roughness = -", "must be 0 or more");
     refused("diffusion_radius", "difusion_radius", "did you mean 'diffusion_radius'?");
     refused("roughness = 0.3", "roughness = \"low\"", "is a string; a number would be right");
     expectRefused(command("none.toml"), 3, "none.toml: cannot be read");

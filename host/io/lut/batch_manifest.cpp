@@ -50,20 +50,20 @@ Request readRequest(TomlReader& reader) {
     reader.list("form", r.forms);
     reader.list("axis", r.axes);
     reader.list("encoding", r.encodings);
-    reader.list("diffusion_radius", r.radii, Range::Positive);
+    reader.list("diffusion_radius", r.radii, range::positive);
     std::vector<float> sides(r.sizes.begin(), r.sizes.end());
-    reader.list("size", sides, Range::AtLeastOne);
+    reader.list("size", sides, range::atLeastOne);
     r.sizes.clear();
     for (float side : sides) {
         if (side > 16384 || side != float(uint32_t(side)))
             reader.fail("size", "holds a side that is no whole number from 1 to 16384");
         r.sizes.push_back(uint32_t(side));
     }
-    reader.number("radius_min", r.curvature.radiusMin, Range::Positive);
-    reader.number("radius_max", r.curvature.radiusMax, Range::Positive);
-    reader.number("width_min", r.shadow.widthMin, Range::Positive);
-    reader.number("width_max", r.shadow.widthMax, Range::Positive);
-    reader.number("sharpening", r.shadow.sharpening, Range::AtLeastOne);
+    reader.number("radius_min", r.curvature.radiusMin, range::positive);
+    reader.number("radius_max", r.curvature.radiusMax, range::positive);
+    reader.number("width_min", r.shadow.widthMin, range::positive);
+    reader.number("width_max", r.shadow.widthMax, range::positive);
+    reader.number("sharpening", r.shadow.sharpening, range::atLeastOne);
     if (r.curvature.radiusMin > r.curvature.radiusMax)
         reader.fail("radius_min", "is greater than radius_max");
     if (r.shadow.widthMin > r.shadow.widthMax) reader.fail("width_min", "is greater than width_max");

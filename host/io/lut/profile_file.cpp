@@ -31,8 +31,8 @@ Profile gaussians(TomlReader& reader, float unit) {
         PelGaussian g{};
         need(r, "variance", "gaussians");
         need(r, "weight", "gaussians");
-        r.number("variance", g.variance, Range::Positive);
-        r.numbers("weight", g.weight, 3, Range::NotNegative);
+        r.number("variance", g.variance, range::positive);
+        r.numbers("weight", g.weight, 3, range::notNegative);
         g.variance *= unit * unit;
         all.push_back(g);
     });
@@ -46,12 +46,12 @@ Profile burley(TomlReader& reader, float unit) {
                 reader.fail(key,
                             "cannot stand beside 'distance', which is what it would give; leave one out");
         float distance[3];
-        threeNumbers(reader, "distance", distance, Range::Positive, "burley", unit);
+        threeNumbers(reader, "distance", distance, range::positive, "burley", unit);
         return Profile::burleyDistance(distance);
     }
     float path[3], albedo[3];
-    threeNumbers(reader, "mean_free_path", path, Range::Positive, "burley", unit);
-    threeNumbers(reader, "albedo", albedo, Range::ZeroToOne, "burley", 1);
+    threeNumbers(reader, "mean_free_path", path, range::positive, "burley", unit);
+    threeNumbers(reader, "albedo", albedo, range::zeroToOne, "burley", 1);
     PelBurleyFit fit = PEL_BURLEY_DIFFUSE_TRANSMISSION;
     reader.choice("fit", fit, fits);
     return Profile::burley(path, albedo, fit);
@@ -59,10 +59,10 @@ Profile burley(TomlReader& reader, float unit) {
 
 Profile dipole(TomlReader& reader, float unit) {
     float absorption[3], scattering[3], eta = 1.3f;
-    threeNumbers(reader, "absorption", absorption, Range::Positive, "dipole", 1 / unit);
-    threeNumbers(reader, "reduced_scattering", scattering, Range::Positive, "dipole", 1 / unit);
+    threeNumbers(reader, "absorption", absorption, range::positive, "dipole", 1 / unit);
+    threeNumbers(reader, "reduced_scattering", scattering, range::positive, "dipole", 1 / unit);
     need(reader, "eta", "dipole");
-    reader.number("eta", eta, Range::AtLeastOne);
+    reader.number("eta", eta, range::atLeastOne);
     return Profile::dipole(absorption, scattering, eta);
 }
 
@@ -73,8 +73,8 @@ Profile table(TomlReader& reader, float unit) {
         float distance = 0, value[3];
         need(r, "distance", "table");
         need(r, "value", "table");
-        r.number("distance", distance, Range::NotNegative);
-        r.numbers("value", value, 3, Range::NotNegative);
+        r.number("distance", distance, range::notNegative);
+        r.numbers("value", value, 3, range::notNegative);
         distances.push_back(distance * unit);
         values.insert(values.end(), value, value + 3);
     });

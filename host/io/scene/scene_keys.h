@@ -1,17 +1,19 @@
 // The keys of a scene file, once: reader and writer both walk these lists. A visitor has
 //   number(key, float&, Range)   numbers(key, float*, count, Range)   rows(key, float*, rows, columns)
-//   integer(key, uint32_t&, low, high)   text(key, string&)   texts(key, vector<string>&, most, least)
+//   integer(key, uint32_t&, Range)   text(key, string&)   texts(key, vector<string>&, most, least)
 //   choice(key, enum&, names)   table(key, isPresent, function)
 #pragma once
 #include <string_view>
 
 #include "io/scene/scene_file.h"
 #include "shared/choices.h"
+#include "shared/field_ranges.h"
 #include "shared/image_slots.h"
 
 namespace pellucid::io {
 
-enum class Range { Any, NotNegative, Positive, AtLeastOne, ZeroToOne };
+using Range = pel::FieldRange;
+namespace range = pel::range;
 
 #define PELLUCID_KEY(name, number, key) key,
 constexpr std::string_view lightTypes[] = {PEL_EACH_LIGHT_TYPE(PELLUCID_KEY)};
@@ -66,13 +68,13 @@ void channelKeys(Visitor& v, Scene& scene) {
 
 template <class Visitor, class Camera>
 void cameraKeys(Visitor& v, Camera& camera) {
-    v.numbers("position", camera.position, 3, Range::Any);
-    v.numbers("inverse_view_projection", camera.inverseViewProjection, 16, Range::Any);
+    v.numbers("position", camera.position, 3, range::any);
+    v.numbers("inverse_view_projection", camera.inverseViewProjection, 16, range::any);
 }
 
 template <class Visitor, class Scene>
 void ambientKeys(Visitor& v, Scene& scene) {
-    v.numbers("constant", scene.ambient.constant, 3, Range::NotNegative);
+    v.numbers("constant", scene.ambient.constant, 3, range::any);
     v.rows("sh", scene.ambient.sh[0], 9, 3);
     v.text("cube", scene.ambientCube);
 }
@@ -82,76 +84,77 @@ void shadowMapKeys(Visitor& v, Light& l) {
     v.text("file", l.shadowMapFile);
     v.text("channel", l.shadowMapChannel);
     v.choice("projection", l.light.shadowProjection, shadowProjections);
-    v.numbers("world_to_shadow", l.light.worldToShadow, 16, Range::Any);
-    v.number("depth_range", l.light.shadowDepthRange, Range::Any);
-    v.number("depth_a", l.light.shadowDepthA, Range::Any);
-    v.number("depth_b", l.light.shadowDepthB, Range::Any);
-    v.integer("filter_texels", l.light.shadowFilterTexels, 0, 256);
-    v.number("bias", l.light.shadowBias, Range::NotNegative);
-    v.number("softness", l.light.shadowSoftness, Range::Positive);
-    v.number("cone_slope", l.light.shadowConeSlope, Range::NotNegative);
+    v.numbers("world_to_shadow", l.light.worldToShadow, 16, range::any);
+    v.number("depth_range", l.light.shadowDepthRange, range::any);
+    v.number("depth_a", l.light.shadowDepthA, range::any);
+    v.number("depth_b", l.light.shadowDepthB, range::any);
+    v.integer("filter_texels", l.light.shadowFilterTexels, range::light::shadowFilterTexels);
+    v.number("bias", l.light.shadowBias, range::light::shadowBias);
+    v.number("softness", l.light.shadowSoftness, range::light::shadowSoftness);
+    v.number("cone_slope", l.light.shadowConeSlope, range::light::shadowConeSlope);
     v.choice("content", l.light.shadowContent, shadowContents);
     v.text("second_channel", l.secondChannel);
-    v.number("exponent", l.light.shadowExponent, Range::Any);
-    v.number("min_deviation", l.light.shadowMinDeviation, Range::NotNegative);
-    v.number("bleeding", l.light.shadowBleeding, Range::ZeroToOne);
-    v.integer("cascades", l.light.shadowCascades, 0, 4);
+    v.number("exponent", l.light.shadowExponent, range::any);
+    v.number("min_deviation", l.light.shadowMinDeviation, range::light::shadowMinDeviation);
+    v.number("bleeding", l.light.shadowBleeding, range::light::shadowBleeding);
+    v.integer("cascades", l.light.shadowCascades, range::light::shadowCascades);
     for (uint32_t i = 0; i < 3; ++i)
         v.table(cascadeKeys[i], i + 1 < l.light.shadowCascades, [&](auto& inner) {
             inner.text("file", l.cascades[i].file);
             inner.text("channel", l.cascades[i].channel);
             inner.text("second_channel", l.cascades[i].secondChannel);
-            inner.numbers("world_to_shadow", l.light.cascadeToShadow[i], 16, Range::Any);
-            inner.number("depth_range", l.light.cascadeDepthRange[i], Range::Any);
+            inner.numbers("world_to_shadow", l.light.cascadeToShadow[i], 16, range::any);
+            inner.number("depth_range", l.light.cascadeDepthRange[i], range::any);
         });
 }
 
 template <class Visitor, class Light>
 void lightKeys(Visitor& v, Light& l) {
     v.choice("type", l.light.type, lightTypes);
-    v.numbers("to_light", l.light.toLight, 3, Range::Any);
-    v.numbers("position", l.light.position, 3, Range::Any);
-    v.numbers("spot_direction", l.light.spotDirection, 3, Range::Any);
-    v.number("spot_cos_inner", l.light.spotCosInner, Range::Any);
-    v.number("spot_cos_outer", l.light.spotCosOuter, Range::Any);
-    v.numbers("color", l.light.color, 3, Range::NotNegative);
-    v.number("range", l.light.range, Range::NotNegative);
+    v.numbers("to_light", l.light.toLight, 3, range::any);
+    v.numbers("position", l.light.position, 3, range::any);
+    v.numbers("spot_direction", l.light.spotDirection, 3, range::any);
+    v.number("spot_cos_inner", l.light.spotCosInner, range::light::spotCosInner);
+    v.number("spot_cos_outer", l.light.spotCosOuter, range::light::spotCosOuter);
+    v.numbers("color", l.light.color, 3, range::light::color);
+    v.number("range", l.light.range, range::light::range);
     v.text("wide_shadow", l.wideShadow);
     v.table("shadow_map", !l.shadowMapFile.empty(), [&](auto& inner) { shadowMapKeys(inner, l); });
 }
 
 template <class Visitor, class Material>
 void materialKeys(Visitor& v, Material& m) {
-    v.integer("id", m.id, 1, 255);
+    v.integer("id", m.id, {1, 255});
     v.text("curvature_lut", m.curvatureLut);
     v.text("shadow_lut", m.shadowLut);
     v.text("profile", m.profile);
     v.choice("preset", m.preset, scenePresets);
-    v.number("transmission", m.material.transmission, Range::NotNegative);
-    v.number("curvature_gain", m.material.curvatureGain, Range::NotNegative);
-    v.numbers("albedo", m.material.albedo, 3, Range::NotNegative);
-    v.number("diffusion_radius", m.material.diffusionRadius, Range::NotNegative);
-    v.numbers("normal_blend", m.material.normalBlend, 3, Range::ZeroToOne);
-    v.number("shadow_filter_width", m.material.shadowFilterWidth, Range::NotNegative);
-    v.numbers("deep_scatter_color", m.material.deepScatterColor, 3, Range::NotNegative);
-    v.number("deep_scatter_radius", m.material.deepScatterRadius, Range::Positive);
-    v.number("deep_scatter_normal_offset", m.material.deepScatterNormalOffset, Range::NotNegative);
-    v.number("thickness_filter_radius", m.material.thicknessFilterRadius, Range::NotNegative);
-    v.integer("thickness_taps", m.material.thicknessTaps, 0, 32);
-    v.number("specular", m.material.specular, Range::NotNegative);
-    v.number("roughness", m.material.roughness, Range::Positive);
-    v.number("f0", m.material.f0, Range::ZeroToOne);
+    v.number("transmission", m.material.transmission, range::material::transmission);
+    v.number("curvature_gain", m.material.curvatureGain, range::material::curvatureGain);
+    v.numbers("albedo", m.material.albedo, 3, range::material::albedo);
+    v.number("diffusion_radius", m.material.diffusionRadius, range::material::diffusionRadius);
+    v.numbers("normal_blend", m.material.normalBlend, 3, range::material::normalBlend);
+    v.number("shadow_filter_width", m.material.shadowFilterWidth, range::material::shadowFilterWidth);
+    v.numbers("deep_scatter_color", m.material.deepScatterColor, 3, range::material::deepScatterColor);
+    v.number("deep_scatter_radius", m.material.deepScatterRadius, range::material::deepScatterRadius);
+    v.number("deep_scatter_normal_offset", m.material.deepScatterNormalOffset,
+             range::material::deepScatterNormalOffset);
+    v.number("thickness_filter_radius", m.material.thicknessFilterRadius, range::material::thicknessFilterRadius);
+    v.integer("thickness_taps", m.material.thicknessTaps, range::material::thicknessTaps);
+    v.number("specular", m.material.specular, range::material::specular);
+    v.number("roughness", m.material.roughness, range::material::roughness);
+    v.number("f0", m.material.f0, range::material::f0);
     v.text("normal_map", m.normalMap);
-    v.number("uv_scale", m.material.uvScale, Range::Positive);
+    v.number("uv_scale", m.material.uvScale, range::material::uvScale);
     v.choice("specular_model", m.material.specularModel, specularModels);
-    v.number("roughness2", m.material.roughness2, Range::Positive);
-    v.number("lobe_mix", m.material.lobeMix, Range::ZeroToOne);
-    v.number("deep_scatter_ambient", m.material.deepScatterAmbient, Range::NotNegative);
+    v.number("roughness2", m.material.roughness2, range::material::roughness2);
+    v.number("lobe_mix", m.material.lobeMix, range::material::lobeMix);
+    v.number("deep_scatter_ambient", m.material.deepScatterAmbient, range::material::deepScatterAmbient);
     v.choice("scattering", m.material.scattering, scatterings);
-    v.integer("scatter_taps", m.material.scatterTaps, 0, 256);
-    v.number("albedo_before", m.material.albedoBefore, Range::ZeroToOne);
-    v.numbers("border_color", m.material.borderColor, 3, Range::ZeroToOne);
-    v.number("thin_thickness", m.material.thinThickness, Range::NotNegative);
+    v.integer("scatter_taps", m.material.scatterTaps, range::material::scatterTaps);
+    v.number("albedo_before", m.material.albedoBefore, range::material::albedoBefore);
+    v.numbers("border_color", m.material.borderColor, 3, range::material::borderColor);
+    v.number("thin_thickness", m.material.thinThickness, range::material::thinThickness);
     v.text("scattered_texture", m.scatteredTexture);
 }
 
@@ -162,11 +165,11 @@ void curvatureLutKeys(Visitor& v, Lut& l) {
     v.choice("form", l.info.curvature.form, curvatureForms);
     v.choice("axis", l.info.curvature.axis, lutAxes);
     v.text("profile", l.profile);
-    v.integer("width", l.info.curvature.width, 1, 16384);
-    v.integer("height", l.info.curvature.height, 1, 16384);
-    v.number("diffusion_radius", l.info.curvature.diffusionRadius, Range::NotNegative);
-    v.number("radius_min", l.info.curvature.radiusMin, Range::Positive);
-    v.number("radius_max", l.info.curvature.radiusMax, Range::Positive);
+    v.integer("width", l.info.curvature.width, range::curvatureLut::width);
+    v.integer("height", l.info.curvature.height, range::curvatureLut::height);
+    v.number("diffusion_radius", l.info.curvature.diffusionRadius, range::curvatureLut::diffusionRadius);
+    v.number("radius_min", l.info.curvature.radiusMin, range::curvatureLut::radiusMin);
+    v.number("radius_max", l.info.curvature.radiusMax, range::curvatureLut::radiusMax);
 }
 
 template <class Visitor, class Lut>
@@ -174,14 +177,14 @@ void shadowLutKeys(Visitor& v, Lut& l) {
     v.text("name", l.name);
     v.text("file", l.file);
     v.text("profile", l.profile);
-    v.integer("width", l.info.shadow.width, 1, 16384);
-    v.integer("height", l.info.shadow.height, 1, 16384);
-    v.number("diffusion_radius", l.info.shadow.diffusionRadius, Range::NotNegative);
-    v.number("width_min", l.info.shadow.widthMin, Range::Positive);
-    v.number("width_max", l.info.shadow.widthMax, Range::Positive);
-    v.number("sharpening", l.info.shadow.sharpening, Range::AtLeastOne);
+    v.integer("width", l.info.shadow.width, range::shadowLut::width);
+    v.integer("height", l.info.shadow.height, range::shadowLut::height);
+    v.number("diffusion_radius", l.info.shadow.diffusionRadius, range::shadowLut::diffusionRadius);
+    v.number("width_min", l.info.shadow.widthMin, range::shadowLut::widthMin);
+    v.number("width_max", l.info.shadow.widthMax, range::shadowLut::widthMax);
+    v.number("sharpening", l.info.shadow.sharpening, range::shadowLut::sharpening);
     v.choice("axis", l.info.shadow.axis, lutAxes);
-    v.integer("closed_ends", l.info.shadow.closedEnds, 0, 1);
+    v.integer("closed_ends", l.info.shadow.closedEnds, range::shadowLut::closedEnds);
 }
 
 }  // namespace pellucid::io

@@ -15,9 +15,9 @@ class TomlWriter {
     explicit TomlWriter(std::string& out, std::string name = "") : out_(out), name_(std::move(name)) {}
 
     void number(std::string_view key, float value, Range) { line(key, shown(value)); }
-    // Below its range a value stands for a default that has no number of its own.
+    // All of them with the special meaning: the default, which older readers do not know as numbers.
     void numbers(std::string_view key, const float* values, size_t count, Range range) {
-        if (range == Range::Any || std::all_of(values, values + count, [](float v) { return v >= 0; }))
+        if (!std::all_of(values, values + count, [&](float v) { return v == range.special; }))
             line(key, shown(values, count));
     }
     void rows(std::string_view key, const float* values, size_t rows, size_t columns) {
@@ -25,9 +25,7 @@ class TomlWriter {
         for (size_t r = 0; r < rows; ++r) text += "    " + shown(values + r * columns, columns) + ",\n";
         line(key, text + "]");
     }
-    void integer(std::string_view key, uint32_t value, uint32_t, uint32_t) {
-        line(key, std::to_string(value));
-    }
+    void integer(std::string_view key, uint32_t value, Range) { line(key, std::to_string(value)); }
     void text(std::string_view key, const std::string& value) {
         if (!value.empty()) line(key, quoted(value));
     }
@@ -83,12 +81,13 @@ class TomlWriter {
 void writeScene(const std::string& path, const SceneFile& scene) {
     std::string out =
         "# A scene of `pellucid shade`. Lengths are in the unit of the G-buffer's positions.\nversion = 1\n";
-    if (scene.blurNormals) TomlWriter(out).integer("blur_normals", scene.blurNormals, 0, 1);
-    if (scene.rotateTaps) TomlWriter(out).integer("rotate_taps", scene.rotateTaps, 0, 1);
-    if (scene.frameIndex) TomlWriter(out).integer("frame_index", scene.frameIndex, 0, UINT32_MAX);
+    if (scene.blurNormals) TomlWriter(out).integer("blur_normals", scene.blurNormals, {0, 1});
+    if (scene.rotateTaps) TomlWriter(out).integer("rotate_taps", scene.rotateTaps, {0, 1});
+    if (scene.frameIndex) TomlWriter(out).integer("frame_index", scene.frameIndex, range::notNegative);
     if (scene.targetError != pelShaderOptionsDefaults().targetError)
-        TomlWriter(out).number("target_error", scene.targetError, Range::ZeroToOne);
-    if (scene.unitMm != 1) TomlWriter(out).number("unit_mm", scene.unitMm, Range::Positive);
+        TomlWriter(out).number("target_error", scene.targetError, range::options::targetError);
+    if (scene.unitMm != 1)
+        TomlWriter(out).number("unit_mm", scene.unitMm, range::options::millimetresPerUnit);
     const auto table = [&](const std::string& header, const std::string& name, auto&& function) {
         out += "\n" + header + "\n";
         TomlWriter writer(out, name);

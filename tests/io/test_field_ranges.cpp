@@ -1,0 +1,116 @@
+// One table says which values a field may have (kernels/shared/field_ranges.h): the library and the scene file take and refuse the
+// same ones, at both ends of each range and beyond.
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "io/file_error.h"
+#include "io/scene/scene_file.h"
+#include "io_files.h"
+#include "pellucid/pellucid.hpp"
+#include "shared/field_ranges.h"
+
+using namespace pellucid;
+
+namespace {
+
+std::string snake(std::string_view name) {
+    std::string out;
+    for (const char c : name)
+        c >= 'A' && c <= 'Z' ? void((out += '_') += char(c - 'A' + 'a')) : void(out += c);
+    return out;
+}
+
+template <class T>
+void fill(T& field, float value) {
+    if constexpr (std::is_array_v<T>)
+        std::fill(std::begin(field), std::end(field), value);
+    else
+        field = T(value);
+}
+
+// As a file says it.
+template <class T>
+std::string said(float value) {
+    char number[32];
+    std::snprintf(number, sizeof number, std::is_integral_v<std::remove_extent_t<T>> ? "%.0f" : "%.9e",
+                  double(value));
+    const std::string one = number;
+    return std::is_array_v<T> ? "[" + one + ", " + one + ", " + one + "]" : one;
+}
+
+template <class T>
+std::vector<float> tried(const pel::FieldRange& r) {
+    const float inf = std::numeric_limits<float>::infinity();
+    std::vector<float> values{r.least, r.most};
+    if (!std::isnan(r.special)) values.push_back(r.special);
+    if (std::is_integral_v<T>) {
+        values.insert(values.end(), {r.least - 1, r.most + 1});
+        std::erase_if(values, [](float v) { return v < 0; });
+    } else {
+        values.insert(values.end(), {std::nextafter(r.least, -inf), std::nextafter(r.most, inf), -1, 0});
+        std::erase_if(values, [](float v) { return !std::isfinite(v); });
+    }
+    return values;
+}
+
+bool accepts(const std::function<void()>& body) {
+    try {
+        body();
+        return true;
+    } catch (const Error&) {
+    } catch (const io::FileError&) {
+    }
+    return false;
+}
+
+int fields = 0;
+
+template <class T>
+void expectSame(const std::string& name, const pel::FieldRange& range, const std::function<bool(float)>& library,
+                const std::function<std::string(const std::string&)>& scene) {
+    ++fields;
+    for (const float value : tried<T>(range)) {
+        const bool right = range.holds(value) && !(name == "thicknessTaps" && (int(value) & (int(value) - 1)));
+        EXPECT_EQ(library(value), right) << name << " = " << value << ": the library";
+        const std::string text = scene(snake(name) + " = " + said<T>(value) + "\n");
+        EXPECT_EQ(accepts([&] { io::parseScene("scene.toml", text); }), right) << name << " = " << value << "\n"
+                                                                               << text;
+    }
+}
+
+}  // namespace
+
+TEST(FieldRanges, LibraryAndSceneFileAgree) {
+    const Device device("");
+    const Profile profile =
+        Profile::named("marble");  // one that knows its mean free path, which a curvature gain needs
+    const std::string head =
+        "version = 1\n[channels]\nposition = [\"x\", \"y\", \"z\"]\nnormal_shading = [\"a\", \"b\", "
+        "\"c\"]\nmaterial = [\"i\"]\n";
+    const auto material = [&](const std::string& line) { return head + "[[material]]\nid = 1\n" + line; };
+    ASSERT_TRUE(accepts([&] { io::parseScene("scene.toml", material("")); })) << "the scene around the field";
+#define CHECK(field, least, most, special)                             \
+    expectSame<decltype(PelMaterial::field)>(                          \
+        #field, pel::range::material::field,                           \
+        [&](float value) {                                             \
+            PelMaterial m = pelMaterialDefaults();                     \
+            m.profile = profile.get();                                 \
+            fill(m.field, value);                                      \
+            return accepts([&] { Shader(device).setMaterial(1, m); }); \
+        },                                                             \
+        material);
+    PEL_EACH_MATERIAL_RANGE(CHECK)
+#undef CHECK
+    EXPECT_GT(fields, 20);
+}
+
+TEST(FieldRanges, EachRangeIsSaidInWords) {
+    using pel::describe;
+    EXPECT_EQ(describe(pel::range::material::f0), "from 0 to 1");
+    EXPECT_EQ(describe(pel::range::material::normalBlend), "-1, or from 0 to 1");
+    EXPECT_EQ(describe(pel::range::material::roughness), "0 or more, and at most 1e+18");
+    EXPECT_EQ(describe(pel::range::material::diffusionRadius), "0, or 1e-06 or more, and at most 1e+18");
+    EXPECT_EQ(describe(pel::range::curvatureLut::radiusMin), "more than 0");
+    EXPECT_EQ(describe(pel::range::any), "a finite number");
+}
