@@ -1,5 +1,6 @@
 // pellucid demo: the whole chain on a real mesh. Load, curvature, look-up tables, G-buffer of the stand-in
 // host, shading, pictures.
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 
@@ -12,6 +13,21 @@
 
 namespace pellucid::cli {
 namespace {
+
+// The OBJ file of the head that the demo shows when no mesh is named.
+std::string standardHead() {
+    const char* named = std::getenv("PELLUCID_DEMO_MESH");
+    if (named && *named) return named;
+    std::error_code error;
+    const std::filesystem::path bin = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+    for (const char* folder : {"../share/pellucid/heads", "../../../data/heads"}) {  // installed; build/PRESET/bin
+        const std::filesystem::path head = bin / folder / "head_female.obj";
+        if (std::filesystem::exists(head, error)) return head.lexically_normal().string();
+    }
+    throw UsageError(
+        "no mesh given, and the head that comes with pellucid is not in its share/pellucid/heads; name an "
+        "OFF, OBJ, PLY or STL file");
+}
 
 constexpr float headHeight = 240;  // mm, chin to crown of an adult with some neck
 
@@ -51,7 +67,7 @@ DemoHead loadMeshAsHead(Run& run, const Arguments& a) {
 }
 
 DemoHead loadHead(Run& run, const Arguments& a) {
-    return hasHeadParts(a.mesh) ? loadDemoHead(a.mesh, a.subdivide.value_or(2)) : loadMeshAsHead(run, a);
+    return demo::hasHeadParts(a.mesh) ? demo::loadDemoHead(a.mesh, a.subdivide.value_or(2)) : loadMeshAsHead(run, a);
 }
 
 // A portrait with key, fill and rim light, and one with the key light behind an ear.

@@ -99,10 +99,10 @@ std::vector<io::SceneMaterial> materialsOf(const DemoHead& head) {
     materials[0].material = skin();
     materials[0].profile = profileName;
     if (materials.size() > 1) {
-        materials[DEMO_EYES - 1].material = glossy(0.6f, 0.08f);
-        materials[DEMO_TEETH - 1].material = glossy(0.5f, 0.15f);
-        materials[DEMO_TONGUE - 1].material = glossy(0.4f, 0.2f);
-        materials[DEMO_CUT - 1].material = glossy(0, 1);
+        materials[demo::DEMO_EYES - 1].material = glossy(0.6f, 0.08f);
+        materials[demo::DEMO_TEETH - 1].material = glossy(0.5f, 0.15f);
+        materials[demo::DEMO_TONGUE - 1].material = glossy(0.4f, 0.2f);
+        materials[demo::DEMO_CUT - 1].material = glossy(0, 1);
     }
     return materials;
 }

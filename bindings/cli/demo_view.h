@@ -2,12 +2,14 @@
 #pragma once
 #include <string>
 
-#include "demo_head.h"
 #include "frame.h"
+#include "head/demo_head.h"
 #include "sample/camera.h"
 #include "sample/scene.h"
 
 namespace pellucid::cli {
+
+using demo::DemoHead;
 
 struct DemoView {
     std::string name;

@@ -7,7 +7,7 @@
 #include "sample/camera.h"
 #include "sample/look.h"
 
-namespace pellucid::cli {
+namespace pellucid::demo {
 
 // Material ids of the demo.
 enum DemoMaterial : uint32_t { DEMO_SKIN = 1, DEMO_EYES = 2, DEMO_TEETH = 3, DEMO_TONGUE = 4, DEMO_CUT = 5 };
@@ -22,12 +22,9 @@ struct DemoHead {
     sample::Bounds frame;  // what the picture shows: a neck that was cut off is left out
 };
 
-// The OBJ file of the head that the demo shows when no mesh is named. Throws UsageError when it is nowhere.
-std::string standardHead();
-
 // `levels`: Catmull-Clark.
 DemoHead loadDemoHead(const std::string& path, int levels);
 // True if `path` is an OBJ file with a part "skin".
 bool hasHeadParts(const std::string& path);
 
-}  // namespace pellucid::cli
+}  // namespace pellucid::demo

@@ -1,13 +1,11 @@
-#include "demo_head.h"
+#include "head/demo_head.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
-#include "command.h"
 #include "io/mesh/mesh_parts.h"
 
-namespace pellucid::cli {
+namespace pellucid::demo {
 namespace {
 
 using sample::Bounds;
@@ -61,24 +59,7 @@ std::vector<sample::Tint> tintsOf(const io::PartedMesh& head, const Bounds (&eye
     return tints;
 }
 
-std::vector<std::filesystem::path> headFolders() {
-    std::error_code error;
-    const std::filesystem::path bin = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-    return {bin / "../share/pellucid/heads", bin / "../../../data/heads"};  // installed; build/PRESET/bin
-}
-
 }  // namespace
-
-std::string standardHead() {
-    const char* named = std::getenv("PELLUCID_DEMO_MESH");
-    if (named && *named) return named;
-    for (const std::filesystem::path& folder : headFolders())
-        if (std::error_code error; std::filesystem::exists(folder / "head_female.obj", error))
-            return (folder / "head_female.obj").lexically_normal().string();
-    throw UsageError(
-        "no mesh given, and the head that comes with pellucid is not in its share/pellucid/heads; name an "
-        "OFF, OBJ, PLY or STL file");
-}
 
 bool hasHeadParts(const std::string& path) {
     if (std::filesystem::path(path).extension() != ".obj") return false;
@@ -129,4 +110,4 @@ DemoHead loadDemoHead(const std::string& path, int levels) {
     return out;
 }
 
-}  // namespace pellucid::cli
+}  // namespace pellucid::demo

@@ -1,0 +1,159 @@
+// The extension module pellucid._files: meshes and images from files, and the heads of the demo.
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <cstring>
+
+#include "head/demo_head.h"
+#include "io/file_error.h"
+#include "io/image/image_file.h"
+#include "io/image/image_format.h"
+#include "io/image/tone_map.h"
+#include "io/mesh/mesh_file.h"
+
+namespace py = pybind11;
+
+namespace {
+
+using namespace pellucid;
+
+template <class T>
+py::array_t<T> array(const std::vector<T>& values, std::vector<py::ssize_t> shape) {
+    py::array_t<T> result(std::move(shape));
+    if (!values.empty()) std::memcpy(result.mutable_data(), values.data(), values.size() * sizeof(T));
+    return result;
+}
+
+template <class T>
+py::array_t<T> rows(const std::vector<T>& values, py::ssize_t columns) {
+    return array(values, {py::ssize_t(values.size()) / columns, columns});
+}
+
+std::vector<double> list(sample::Vec3 v) {
+    return {v.x, v.y, v.z};
+}
+
+py::dict toDict(const io::MeshData& mesh) {
+    py::dict d;
+    d["positions"] = rows(mesh.positions, 3);
+    d["normals"] = mesh.normals.empty() ? py::object(py::none()) : rows(mesh.normals, 3);
+    d["uvs"] = mesh.uvs.empty() ? py::object(py::none()) : rows(mesh.uvs, 2);
+    d["triangles"] = rows(mesh.triangles, 3);
+    d["warnings"] = mesh.warnings;
+    return d;
+}
+
+py::dict loadMesh(const std::string& path, int levels, bool normals) {
+    io::MeshData mesh;
+    {
+        const py::gil_scoped_release free;
+        mesh = io::loadMesh(path);
+        if (levels > 0) io::loopSubdivide(mesh, levels);
+        if (normals && mesh.normals.empty()) io::computeNormals(mesh);
+    }
+    return toDict(mesh);
+}
+
+// One of the project's heads, or None for a mesh without its parts. The albedo of a vertex holds its look and tints.
+py::object loadHead(const std::string& path, int levels) {
+    demo::DemoHead head;
+    std::vector<float> albedo;
+    std::vector<uint32_t> ids;
+    {
+        const py::gil_scoped_release free;
+        if (!demo::hasHeadParts(path)) return py::none();
+        head = demo::loadDemoHead(path, levels);
+        ids.assign(head.mesh.vertexCount(), demo::DEMO_SKIN);  // parts share no vertices
+        for (size_t c = 0; c < head.mesh.triangles.size(); ++c) ids[head.mesh.triangles[c]] = head.materials[c / 3];
+        for (size_t v = 0; v < ids.size(); ++v) {
+            const sample::Look& look = head.looks[ids[v] - 1];
+            sample::LinearColor color{look.albedo[0], look.albedo[1], look.albedo[2]};
+            if (look.kind == sample::Look::Kind::Skin)
+                for (const sample::Tint& tint : head.tints) {
+                    const float* p = &head.mesh.positions[3 * v];
+                    const sample::LinearColor factor = tint.at({p[0], p[1], p[2]});
+                    for (int c = 0; c < 3; ++c) color[c] *= factor[c];
+                }
+            albedo.insert(albedo.end(), {float(color[0]), float(color[1]), float(color[2])});
+        }
+    }
+    py::dict d = toDict(head.mesh);
+    d["albedo"] = rows(albedo, 3);
+    d["ids"] = array(ids, {py::ssize_t(ids.size())});
+    d["up"] = list(head.pose.up);
+    d["front"] = list(head.pose.front);
+    d["low"] = list(head.frame.low);
+    d["high"] = list(head.frame.high);
+    py::list eyes;
+    for (const sample::EyeLook& eye : head.eyes) {
+        py::dict e;
+        e["centre"] = list(eye.centre);
+        e["gaze"] = list(eye.gaze);
+        e["radius"] = eye.radius;
+        e["iris_radius"] = eye.irisRadius;
+        e["pupil_radius"] = eye.pupilRadius;
+        e["sclera"] = eye.sclera;
+        e["iris"] = eye.iris;
+        eyes.append(e);
+    }
+    d["eyes"] = eyes;
+    return d;
+}
+
+py::tuple readImage(const std::string& path) {
+    io::Image image;
+    {
+        const py::gil_scoped_release free;
+        image = io::readImage(path);
+    }
+    py::dict channels;
+    for (const io::Channel& c : image.channels)
+        channels[py::str(c.name)] = array(c.pixels, {py::ssize_t(image.height), py::ssize_t(image.width)});
+    py::dict attributes;
+    for (const auto& [name, value] : image.attributes) attributes[py::str(name)] = py::cast(value);
+    return py::make_tuple(channels, attributes);
+}
+
+using Pixels = py::array_t<float, py::array::c_style | py::array::forcecast>;
+using Bytes = py::array_t<uint8_t, py::array::c_style>;
+
+void writeExr(const std::string& path, const std::vector<std::string>& names, const Pixels& pixels, bool half) {
+    io::Image image;
+    image.height = int(pixels.shape(0));
+    image.width = int(pixels.shape(1));
+    const std::span<const float> values(pixels.data(), size_t(pixels.size()));
+    const py::gil_scoped_release free;
+    image.addInterleaved(names, values, half ? io::ChannelType::Half : io::ChannelType::Float);
+    io::writeExr(path, image);
+}
+
+void writeBytes(const std::string& path, const Bytes& pixels, bool srgb) {
+    const int height = int(pixels.shape(0)), width = int(pixels.shape(1)), channels = int(pixels.shape(2));
+    const std::span<const uint8_t> values(pixels.data(), size_t(pixels.size()));
+    const py::gil_scoped_release free;
+    io::writeImage8(path, width, height, channels, values, srgb);
+}
+
+Bytes toneMapped(const Pixels& rgb, float exposure, float shoulder) {
+    std::vector<uint8_t> bytes;
+    {
+        const std::span<const float> values(rgb.data(), size_t(rgb.size()));
+        const py::gil_scoped_release free;
+        bytes = io::toSrgb8(values, {exposure, shoulder});
+    }
+    return array(bytes, {rgb.shape(), rgb.shape() + rgb.ndim()});
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_files, module) {
+    module.doc() = "Meshes and images from files, for the Python files of this package alone.";
+    py::register_exception<io::FileError>(module, "FileError", PyExc_OSError);
+    module.def("load_mesh", &loadMesh);
+    module.def("load_head", &loadHead);
+    module.def("read_image", &readImage);
+    module.def("write_exr", &writeExr);
+    module.def("write_bytes", &writeBytes);
+    module.def("tone_mapped", &toneMapped);
+}

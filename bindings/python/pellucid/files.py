@@ -1,0 +1,115 @@
+"""Meshes and images from files, and pictures to look at.
+
+A module of its own: it needs the package built where OpenMesh and OpenImageIO are installed (Debian: libopenmesh-dev,
+libopenimageio-dev).
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+try:
+    from . import _files
+except ImportError as error:
+    raise ImportError("this build of pellucid reads no files: install libopenmesh-dev, libopenimageio-dev and libtomlplusplus-dev "
+                      f"(or their equivalents) and build the package again ({error})") from error
+
+FileError = _files.FileError
+
+
+@dataclass
+class Mesh:
+    """Triangles, and what is known of their vertices. Lengths are those of the file."""
+
+    positions: NDArray[np.float32]                     # (n, 3)
+    normals: NDArray[np.float32]                       # (n, 3), unit
+    triangles: NDArray[np.uint32]                      # (m, 3)
+    uvs: Optional[NDArray[np.float32]] = None          # (n, 2)
+    ids: Optional[NDArray[np.uint32]] = None           # (n,), of materials; None: all 1
+    albedo: Optional[NDArray[np.float32]] = None       # (n, 3), linear
+    up: tuple[float, float, float] = (0.0, 0.0, 1.0)   # unit, towards the crown of a head
+    front: tuple[float, float, float] = (0.0, -1.0, 0.0)
+    low: tuple[float, float, float] = (0.0, 0.0, 0.0)  # of the box to be shown
+    high: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    eyes: list[dict[str, Any]] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    source: str = ""
+
+
+def standard_head(which: str = "female") -> Path:
+    """The OBJ file of one of the two heads that come with the package, "female" or "male"."""
+    for folder in (Path(__file__).parent / "heads", *(p / "data/heads" for p in Path(__file__).parents)):
+        if (folder / f"head_{which}.obj").exists():
+            return folder / f"head_{which}.obj"
+    raise FileNotFoundError(f"the head {which!r} did not come with the package; name an OFF, OBJ, PLY or STL file")
+
+
+def load_mesh(path: Any, subdivide: Optional[int] = None, up: str = "auto") -> Mesh:
+    """Reads an OFF, OBJ, PLY or STL file.
+
+    Parameters
+    ----------
+    path : str or path
+    subdivide : int, optional
+        Levels of subdivision: Catmull-Clark for the heads of the package (2), Loop for other meshes (0).
+    up : str
+        "y", "z", or "auto": y for OBJ files, z for the others.
+
+    Raises
+    ------
+    FileError
+        A file that is missing or damaged; the message names the line where there is one.
+    """
+    if up not in ("auto", "y", "z"):
+        raise ValueError(f"up is {up!r}; it must be 'auto', 'y' or 'z'")
+    name = str(path)
+    head = _files.load_head(name, 2 if subdivide is None else subdivide) if name.lower().endswith(".obj") else None
+    if head is not None:
+        return Mesh(**{k: tuple(v) if k in ("up", "front", "low", "high") else v for k, v in head.items()}, source=name)
+    d = _files.load_mesh(name, subdivide or 0, True)
+    y = up == "y" or (up == "auto" and name.lower().endswith(".obj"))
+    used = d["positions"][np.unique(d["triangles"])]
+    return Mesh(d["positions"], d["normals"], d["triangles"], d["uvs"], source=name, warnings=d["warnings"],
+                up=(0.0, 1.0, 0.0) if y else (0.0, 0.0, 1.0), front=(0.0, 0.0, 1.0) if y else (0.0, -1.0, 0.0),
+                low=tuple(map(float, used.min(0))), high=tuple(map(float, used.max(0))))
+
+
+def read_image(path: Any) -> dict[str, NDArray[np.float32]]:
+    """The channels of an EXR, PNG, JPEG, TGA or BMP file by their full names, (height, width) each; integers come as 0 to 1."""
+    return dict(_files.read_image(str(path))[0])
+
+
+def write_image(path: Any, image: ArrayLike, *, exposure: float = 1.0, shoulder: float = 0.8, half: bool = False,
+                channels: Optional[list[str]] = None) -> None:
+    """Writes linear radiance, complete or not at all.
+
+    Parameters
+    ----------
+    path : str or path
+        .exr: the numbers as they are. .png, .tga, .bmp: a picture to look at, as `tonemap` makes it.
+    image : (height, width, 3) floats, or (height, width, n) for EXR
+        uint8 of 1, 3 or 4 channels is written to .png, .tga and .bmp as it is.
+    channels : list of str, optional
+        Names for EXR; "R", "G", "B" for three, "Y" for one.
+    """
+    name, pixels = str(path), np.asarray(image)
+    if pixels.ndim == 2:
+        pixels = pixels[..., None]
+    if pixels.ndim != 3:
+        raise ValueError(f"the image has the shape {pixels.shape}; (height, width, channels) is needed")
+    if name.lower().endswith(".exr"):
+        names = channels or {1: ["Y"], 3: ["R", "G", "B"], 4: ["R", "G", "B", "A"]}.get(pixels.shape[2])
+        if names is None or len(names) != pixels.shape[2]:
+            raise ValueError(f"{pixels.shape[2]} channels need as many names")
+        _files.write_exr(name, names, pixels, half)
+    else:
+        _files.write_bytes(name, np.ascontiguousarray(pixels if pixels.dtype == np.uint8 else tonemap(pixels, exposure, shoulder)), True)
+
+
+def tonemap(radiance: ArrayLike, exposure: float = 1.0, shoulder: float = 0.8) -> NDArray[np.uint8]:
+    """Linear RGB of any shape to sRGB bytes: proportional to radiance up to `shoulder`, then towards white. NaN is black."""
+    return np.asarray(_files.tone_mapped(np.asarray(radiance, np.float32), exposure, shoulder))

@@ -1,0 +1,129 @@
+"""A deferred renderer in OpenGL 3.3 (moderngl on EGL; llvmpipe where there is no GPU).
+
+One thread makes a Renderer and uses it: an OpenGL context belongs to its thread.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import moderngl
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..conventions import light_from_view_projection
+from ..files import Mesh
+from . import shaders
+from .camera import look_at, parallel, unit
+
+
+@dataclass
+class GBuffer:
+    """Images as Pellucid takes them, row 0 on top; float32, views of what OpenGL wrote."""
+
+    position: NDArray[np.float32]          # (h, w, 3), world
+    material: NDArray[np.float32]          # (h, w), id, 0 background
+    normal_geometric: NDArray[np.float32]  # (h, w, 3)
+    curvature: NDArray[np.float32]         # (h, w)
+    normal_shading: NDArray[np.float32]    # (h, w, 3)
+    albedo: NDArray[np.float32]            # (h, w, 3)
+
+
+class Renderer:
+    """Draws a mesh into the images of a G-buffer, and from its lights into shadow maps."""
+
+    def __init__(self) -> None:
+        try:
+            self.context = moderngl.create_standalone_context(backend="egl", require=330)
+        except Exception as error:  # moderngl raises bare Exceptions
+            raise RuntimeError("OpenGL 3.3 through EGL is needed: install libegl1 and libgl1-mesa-dri "
+                               f"(or a GPU's driver); {error}") from error
+        self._gbuffer_program = self.context.program(shaders.GBUFFER_VERTEX, shaders.GBUFFER_FRAGMENT)
+        self._shadow_program = self.context.program(shaders.SHADOW_VERTEX, shaders.SHADOW_FRAGMENT)
+        self._targets: dict[Any, Any] = {}
+        self._memory: list[NDArray[np.float32]] = []
+        self._arrays: list[Any] = []
+        self.mesh: Mesh | None = None
+
+    @property
+    def name(self) -> str:
+        return str(self.context.info["GL_RENDERER"])
+
+    def set_mesh(self, mesh: Mesh, curvature: ArrayLike, millimetres_per_unit: float = 1.0,
+                 albedo: ArrayLike = (0.76, 0.54, 0.44)) -> None:
+        """Takes a mesh and its curvature per vertex (1/length). `albedo`: of meshes that have none."""
+        n = len(mesh.positions)
+        vertices = np.empty((n, 11), np.float32)
+        vertices[:, 0:3] = mesh.positions
+        vertices[:, 3:6] = mesh.normals
+        vertices[:, 6:9] = np.asarray(albedo, np.float32) if mesh.albedo is None else mesh.albedo
+        vertices[:, 9] = 1 if mesh.ids is None else mesh.ids
+        vertices[:, 10] = curvature
+        for old in self._arrays:
+            old.release()
+        buffer = self.context.buffer(vertices.tobytes())
+        indices = self.context.buffer(np.ascontiguousarray(mesh.triangles, np.uint32).tobytes())
+        self._draw = self.context.vertex_array(
+            self._gbuffer_program, [(buffer, "3f 3f 3f 2f", "in_position", "in_normal", "in_albedo", "in_material")], indices)
+        self._draw_shadow = self.context.vertex_array(self._shadow_program, [(buffer, "3f 32x", "in_position")], indices)
+        self._arrays = [self._draw, self._draw_shadow, buffer, indices]
+        self.mesh = mesh
+        used = mesh.positions[np.unique(mesh.triangles)] if len(mesh.triangles) else np.zeros((1, 3), np.float32)
+        low, high = used.min(0).astype(float), used.max(0).astype(float)
+        self.centre, self.radius = (low + high) / 2, max(float(np.linalg.norm(high - low)) / 2, 1e-6)
+        self._mm = millimetres_per_unit
+
+    def _target(self, width: int, height: int) -> Any:
+        if self._targets.get("size") != (width, height):
+            for old in self._targets.get("all", []):
+                old.release()
+            textures = [self.context.texture((width, height), 4, dtype="f4") for _ in range(4)]
+            depth = self.context.depth_renderbuffer((width, height))
+            frame = self.context.framebuffer(textures, depth)
+            self._targets = {"size": (width, height), "all": [frame, *textures, depth], "frame": frame}
+            self._memory = [np.empty((height, width, 4), np.float32) for _ in range(4)]
+        return self._targets["frame"]
+
+    def gbuffer(self, view_projection: ArrayLike, width: int, height: int, pores: float = 0.1) -> GBuffer:
+        """Draws the mesh. The images stay as they are until the next call of the same size, and change then."""
+        assert self.mesh is not None
+        frame = self._target(width, height)
+        frame.use()
+        frame.clear(0.0, 0.0, 0.0, 0.0)
+        self.context.enable_only(moderngl.DEPTH_TEST)
+        program = self._gbuffer_program
+        turned = np.diag([1.0, -1.0, 1.0, 1.0]) @ np.asarray(view_projection, np.float64)
+        program["clip"].write(turned.T.astype("f4").tobytes())
+        program["pores"].value, program["mm"].value = pores, self._mm
+        eyes = self.mesh.eyes[:2]
+        program["eyes"].value = len(eyes)
+        if eyes:
+            pad = [*eyes, eyes[-1]][:2]
+            program["eye_centre"].value = [tuple(e["centre"]) for e in pad]
+            program["eye_gaze"].value = [tuple(e["gaze"]) for e in pad]
+            program["eye_size"].value = [(e["radius"], e["iris_radius"], e["pupil_radius"]) for e in pad]
+            program["sclera"].value, program["iris"].value = tuple(eyes[0]["sclera"]), tuple(eyes[0]["iris"])
+        self._draw.render()
+        for attachment, memory in enumerate(self._memory):
+            frame.read_into(memory, components=4, attachment=attachment, dtype="f4")
+        position, geometric, shading, albedo = self._memory
+        return GBuffer(position[..., :3], position[..., 3], geometric[..., :3], geometric[..., 3], shading[..., :3], albedo[..., :3])
+
+    def shadow_map(self, to_light: ArrayLike, size: int, up: ArrayLike = (0.0, 1.0, 0.0)) -> tuple[NDArray[np.float32], Any]:
+        """Depth seen from a distant light, (size, size), and the Light that describes it. The map encloses the whole mesh."""
+        assert self.mesh is not None
+        direction, r = unit(to_light), 1.02 * self.radius
+        matrix = parallel(r, 0.0, 2 * r) @ look_at(self.centre + direction * r, self.centre, up)
+        key = ("shadow", size)
+        if key not in self.__dict__.setdefault("_shadow_targets", {}):
+            texture = self.context.texture((size, size), 1, dtype="f4")
+            self._shadow_targets[key] = self.context.framebuffer([texture], self.context.depth_renderbuffer((size, size)))
+        frame = self._shadow_targets[key]
+        frame.use()
+        frame.clear(1.0, 1.0, 1.0, 1.0)
+        self.context.enable_only(moderngl.DEPTH_TEST)
+        self._shadow_program["clip"].write(matrix.T.astype("f4").tobytes())
+        self._draw_shadow.render()
+        depth = np.empty((size, size), np.float32)
+        frame.read_into(depth, components=1, dtype="f4")
+        return depth, light_from_view_projection(matrix, first_row="bottom")

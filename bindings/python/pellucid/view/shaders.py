@@ -1,0 +1,89 @@
+"""GLSL 3.30 of the viewer's renderer."""
+
+GBUFFER_VERTEX = """
+#version 330 core
+uniform mat4 clip;           // world to clip space, y turned round: the first row of the image is its top
+in vec3 in_position, in_normal, in_albedo;
+in vec2 in_material;         // id, curvature
+out vec3 position, normal, albedo;
+out float curvature;
+flat out float id;
+void main() {
+    position = in_position; normal = in_normal; albedo = in_albedo;
+    id = in_material.x; curvature = in_material.y;
+    gl_Position = clip * vec4(in_position, 1.0);
+}
+"""
+
+# Pores and folds are gradients of smooth noise in space, faded out where a pixel is wider than they are.
+GBUFFER_FRAGMENT = """
+#version 330 core
+#define EYES 2
+uniform float pores;          // root mean square slope, about
+uniform float mm;             // millimetres per unit
+uniform int eyes;
+uniform vec3 eye_centre[EYES], eye_gaze[EYES];
+uniform vec3 eye_size[EYES];  // radius of ball, iris, pupil
+uniform vec3 sclera, iris;
+in vec3 position, normal, albedo;
+in float curvature;
+flat in float id;
+layout(location = 0) out vec4 out_position;   // xyz, id
+layout(location = 1) out vec4 out_geometric;  // Ng, curvature
+layout(location = 2) out vec4 out_shading;    // N, 0
+layout(location = 3) out vec4 out_albedo;
+
+vec3 hash(vec3 p) {
+    uvec3 q = uvec3(ivec3(p)) * uvec3(1597334673u, 3812015801u, 2798796415u);
+    uint n = (q.x ^ q.y ^ q.z) * 1597334673u;
+    return vec3(uvec3(n, n * 16807u, n * 48271u) >> 8) / 8388608.0 - 1.0;
+}
+// Gradient of trilinear-smooth noise.
+vec3 slope(vec3 p) {
+    vec3 i = floor(p), f = p - i, u = f * f * (3.0 - 2.0 * f);
+    vec3 s = vec3(0.0);
+    for (int k = 0; k < 8; ++k) {
+        vec3 c = vec3(k & 1, (k >> 1) & 1, k >> 2);
+        vec3 w = mix(1.0 - u, u, c);
+        s += w.x * w.y * w.z * hash(i + c);
+    }
+    return s;
+}
+vec3 eye_color(vec3 p) {
+    int e = eyes > 1 && distance(p, eye_centre[1]) < distance(p, eye_centre[0]) ? 1 : 0;
+    float along = clamp(dot(normalize(p - eye_centre[e]), eye_gaze[e]), -1.0, 1.0);
+    float r = eye_size[e].x * acos(along), blend = 0.06 * eye_size[e].x;
+    vec3 c = iris * (1.0 - 0.6 * smoothstep(0.75 * eye_size[e].y, eye_size[e].y, r));
+    c = mix(c, sclera, smoothstep(eye_size[e].y - 0.3 * blend, eye_size[e].y + blend, r));
+    return mix(vec3(0.01), c, smoothstep(eye_size[e].z - 0.2 * blend, eye_size[e].z + 0.2 * blend, r));
+}
+void main() {
+    vec3 ng = normalize(normal), n = ng, color = albedo;
+    float pixel = length(fwidth(position)) * mm;
+    if (id == 1.0 && pores > 0.0) {
+        vec3 p = position * mm;
+        float fine = 1.0 - smoothstep(0.3, 0.9, pixel), coarse = 1.0 - smoothstep(1.5, 5.0, pixel);
+        vec3 bump = 1.6 * fine * slope(p / 0.7) + 0.5 * coarse * slope(p / 4.0);
+        n = normalize(ng - pores * (bump - ng * dot(ng, bump)));
+    } else if (id == 2.0 && eyes > 0) {
+        color = eye_color(position);
+    }
+    out_position = vec4(position, id);
+    out_geometric = vec4(ng, curvature);
+    out_shading = vec4(n, 0.0);
+    out_albedo = vec4(color, 1.0);
+}
+"""
+
+SHADOW_VERTEX = """
+#version 330 core
+uniform mat4 clip;
+in vec3 in_position;
+void main() { gl_Position = clip * vec4(in_position, 1.0); }
+"""
+
+SHADOW_FRAGMENT = """
+#version 330 core
+layout(location = 0) out float depth;
+void main() { depth = gl_FragCoord.z; }
+"""
