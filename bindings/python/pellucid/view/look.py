@@ -57,7 +57,8 @@ def _lamps() -> list[Lamp]:
 class Look:
     """Materials, lights and how the picture is shown. Lengths in mm."""
 
-    profile: str = "skin"            # of the library, or a profile file
+    profile: str = "skin"            # of the library, or "custom"
+    distance: tuple[float, float, float] = (0.29, 0.11, 0.054)  # mm, of "custom": Burley's d per channel
     radius_scale: float = 1.0        # times the profile's lengths
     method: str = "auto"
     target_error: float = 0.002      # of white, what `auto` may be off
@@ -90,7 +91,7 @@ class Look:
         for key in values:
             if key not in known:
                 raise ValueError(f"a look has no {key!r}; it has {', '.join(sorted(known))}")
-        look = cls(**{k: tuple(v) if k == "albedo" else v for k, v in values.items() if k != "lamps"})
+        look = cls(**{k: tuple(v) if k in ("albedo", "distance") else v for k, v in values.items() if k != "lamps"})
         if "lamps" in values:
             look.lamps = [Lamp(**{k: tuple(v) if k == "color" else v for k, v in lamp.items()}) for lamp in values["lamps"]]
         return look

@@ -50,11 +50,11 @@ def reference(session: Session, look: Look, width: int, height: int) -> NDArray[
     """Diffuse radiance of the skin that is seen, (height, width, 3); 0 elsewhere. Kept until light, camera or profile change."""
     g = session.gbuffer(width, height)
     lights = [(lamp.azimuth, lamp.elevation, lamp.color, lamp.intensity, lamp.shadow, lamp.on) for lamp in look.lamps]
-    key = (session._drawn, lights, look.ambient, look.profile, look.radius_scale, look.shadow_size)
+    key = (session._drawn, lights, look.ambient, look.profile, look.distance, look.radius_scale, look.shadow_size)
     if session._reference is None or session._reference[0] != key:
         mesh, seen = session.mesh, g.material == SKIN
         triangles = mesh.triangles if mesh.ids is None else mesh.triangles[mesh.ids[mesh.triangles[:, 0]] == SKIN]
-        profile = session.profile(look.profile)
+        profile = session.profile(look)
         scattered = np.zeros((height, width, 3), np.float32)
         if seen.any() and len(triangles):
             scattered[seen] = surface_integral(session.device, mesh.positions, triangles, vertex_irradiance(session, look),

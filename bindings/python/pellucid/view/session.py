@@ -66,6 +66,7 @@ class Session:
         self.look = Look()
         self.other: Optional[Look] = None  # on the right of the wipe
         self.wipe = 0.5
+        self.count = False  # fill every counter of the shader, at some cost
         self._passes: dict[str, _Pass] = {}
         self._maps: dict[Any, ShadowMap] = {}
         self._profiles: dict[str, Profile] = {}
@@ -100,10 +101,13 @@ class Session:
             self._maps[key] = ShadowMap(*self.renderer.shadow_map(self.to_light(lamp), size, self.mesh.up))
         return self._maps[key]
 
-    def profile(self, name: str) -> Profile:
-        if name not in self._profiles:
-            self._profiles[name] = Profile.named(name)
-        return self._profiles[name]
+    def profile(self, look: Look) -> Profile:
+        key = f"custom {look.distance}" if look.profile == "custom" else look.profile
+        if key not in self._profiles:
+            while len(self._profiles) > 32:
+                self._profiles.pop(next(iter(self._profiles)))
+            self._profiles[key] = Profile.burley_distance(look.distance, "custom") if look.profile == "custom" else Profile.named(key)
+        return self._profiles[key]
 
     def camera(self, aspect: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Eye, and world to clip space in OpenGL's convention."""
@@ -111,10 +115,12 @@ class Session:
             self.renderer.centre - self.centre)), aspect)
 
     def gbuffer(self, width: int, height: int) -> GBuffer:
-        eye, matrix = self.camera(width / height)
-        state = (matrix.tobytes(), width, height, self.look.pores)
+        _, matrix = self.camera(width / height)
+        # The reference has the mesh's own normals.
+        pores = 0.0 if self.look.mode in ("error", "reference") else self.look.pores
+        state = (matrix.tobytes(), width, height, pores)
         if self._drawn != state:
-            self._gbuffer = self.renderer.gbuffer(matrix, width, height, self.look.pores)
+            self._gbuffer = self.renderer.gbuffer(matrix, width, height, pores)
             self._drawn = state
         assert self._gbuffer is not None
         return self._gbuffer
@@ -127,7 +133,7 @@ class Session:
                     "lobe_mix": look.lobe_mix, "specular_model": "ggx" if look.ggx else "ksk"}
         skin = Material(scattering=look.method, **specular)
         if look.method != "none" or look.transmission > 0:
-            skin.profile = self.profile(look.profile)
+            skin.profile = self.profile(look)
             skin.transmission = look.transmission
             if look.radius_scale != 1:
                 skin.diffusion_radius = skin.profile.info.radius * look.radius_scale / self.mm
@@ -202,7 +208,8 @@ class Session:
         p.tell("ambient", look.ambient, lambda: s.set_ambient(Ambient(constant=[look.ambient] * 3)))
         eye, _ = self.camera(width / height)
         p.tell("camera", eye.tobytes(), lambda: s.set_camera(Camera(position=eye)))
-        p.tell("options", look.target_error, lambda: s.set_options(target_error=look.target_error, millimetres_per_unit=self.mm))
+        p.tell("options", (look.target_error, self.count), lambda: s.set_options(
+            target_error=look.target_error, millimetres_per_unit=self.mm, count_pixels=int(self.count)))
         if not p.told.get("committed"):
             s.commit()
             p.told["committed"] = True

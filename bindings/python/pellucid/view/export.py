@@ -1,0 +1,117 @@
+"""Writes what is shown as files: a G-buffer and a scene that `pellucid shade` renders to the same bits, pictures, the look, C++."""
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..files import write_image
+from .look import SKIN, Look
+
+if TYPE_CHECKING:
+    from .session import Session
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, str):
+        return json.dumps(value)
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return "[" + ", ".join(_toml(v) for v in np.asarray(value).ravel().tolist()) + "]"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return repr(float(value)) if isinstance(value, float) else str(value)
+
+
+def _lines(**values: Any) -> str:
+    return "".join(f"{key} = {_toml(value)}\n" for key, value in values.items())
+
+
+def scene_text(session: Session, look: Look, width: int, height: int) -> str:
+    """The scene file of the picture; floats keep their bits."""
+    eye, _ = session.camera(width / height)
+    profile = "profile.toml" if look.profile == "custom" else look.profile
+    text = _lines(version=1, unit_mm=float(session.mm), target_error=float(np.float32(look.target_error))) + "\n[channels]\n"
+    for key, name, components in (("material", "Id", "I"), ("position", "Position", "XYZ"), ("normal_geometric", "NormalGeometric", "XYZ"),
+                                  ("normal_shading", "NormalShading", "XYZ"), ("curvature", "Curvature", "V"), ("albedo", "Albedo", "RGB")):
+        names = [f"{name}.{c}" for c in components]
+        text += _lines(**{key: names if len(names) > 1 else names[0]}).replace("'", '"')
+    text += "\n[camera]\n" + _lines(position=np.float32(eye)) + "\n[ambient]\n" + _lines(constant=np.float32([look.ambient] * 3))
+    for i, (light, map) in enumerate(session.lights(look)):
+        text += "\n[[light]]\n" + _lines(type="directional", to_light=light.to_light, color=light.color)
+        if map is not None:
+            text += "[light.shadow_map]\n" + _lines(file=f"shadow_{i}.exr", channel="Z", projection="parallel",
+                                                    world_to_shadow=light.world_to_shadow, depth_range=light.shadow_depth_range)
+    for id, m in session.materials(look).items():
+        text += "\n[[material]]\n" + _lines(id=id, scattering=m.scattering.name.lower())
+        if m.profile is not None:
+            text += _lines(profile=profile, transmission=m.transmission, diffusion_radius=m.diffusion_radius)
+        text += _lines(thickness_taps=m.thickness_taps, specular=m.specular, roughness=m.roughness, f0=m.f0,
+                       specular_model=m.specular_model.name.lower(), roughness2=m.roughness2, lobe_mix=m.lobe_mix)
+    return text
+
+
+def profile_text(look: Look) -> str:
+    """The profile file of the look's own profile."""
+    return _lines(name="custom", kind="burley", unit="mm", source="made in the viewer", distance=[float(np.float32(d)) for d in look.distance])
+
+
+def snippet(session: Session, look: Look) -> str:
+    """C++ that sets the same material and lights; images are the host's."""
+    skin = session.materials(look)[SKIN]
+    lines = ['#include <pellucid/pellucid.hpp>', "", "void setLook(pellucid::Shader& shader) {"]
+    if skin.profile is not None:
+        made = ("pellucid::Profile::named(" + json.dumps(look.profile) + ")" if look.profile != "custom" else
+                "pellucid::Profile::burleyDistance({" + ", ".join(f"{d:.6g}f" for d in look.distance) + "}, \"custom\")")
+        lines.append(f"    const pellucid::Profile profile = {made};  // mm")
+    lines += ["    PelMaterial skin = pelMaterialDefaults();", f"    skin.scattering = PEL_SCATTERING_{skin.scattering.name};"]
+    if skin.profile is not None:
+        lines += ["    skin.profile = profile.get();", f"    skin.diffusionRadius = {skin.diffusion_radius:.6g}f;  // 0: the profile's own",
+                  f"    skin.transmission = {skin.transmission:.6g}f;"]
+    lines += [f"    skin.specular = {skin.specular:.6g}f;", f"    skin.roughness = {skin.roughness:.6g}f;", f"    skin.f0 = {skin.f0:.6g}f;",
+              f"    skin.specularModel = PEL_SPECULAR_{skin.specular_model.name};", "    shader.setMaterial(1, skin);", "",
+              "    std::vector<PelLight> lights;"]
+    for light, _ in session.lights(look):
+        to, color = (", ".join(f"{v:.6g}f" for v in values) for values in (light.to_light, light.color))
+        lines += ["    {", "        PelLight light = pelLightDefaults();",
+                  f"        for (int c = 0; c < 3; ++c) light.toLight[c] = std::array{{{to}}}[c], light.color[c] = std::array{{{color}}}[c];",
+                  "        lights.push_back(light);", "    }"]
+    lines += ["    shader.set(lights);", "    PelShaderOptions options = pelShaderOptionsDefaults();",
+              f"    options.targetError = {look.target_error:.6g}f;", f"    options.millimetresPerUnit = {session.mm:.6g}f;",
+              "    shader.set(options);", "}", ""]
+    return "\n".join(["#include <array>", "#include <vector>", *lines])
+
+
+def export(session: Session, folder: Any, width: int = 1280, height: int = 720) -> list[Path]:
+    """Writes scene.toml, gbuffer.exr, shadow_N.exr, picture.png, picture.exr, look.json and look.cpp into `folder`.
+
+    ``pellucid shade gbuffer.exr --scene scene.toml -o again.exr`` there gives picture.exr again.
+    """
+    out = Path(folder)
+    out.mkdir(parents=True, exist_ok=True)
+    look = session.look.copy()
+    look.albedo = tuple(look.albedo)  # type: ignore[assignment]
+    mode, session.look.mode = session.look.mode, "final"
+    try:
+        radiance = session.radiance(look, width, height)
+        g = session.gbuffer(width, height)
+        albedo = np.where(g.material[..., None] == SKIN, np.minimum(g.albedo * np.asarray(look.albedo, np.float32), 1.0), g.albedo)
+        values = np.concatenate([g.material[..., None], g.position, g.normal_geometric, g.normal_shading, g.curvature[..., None], albedo], 2)
+        names = ["Id.I", *(f"{n}.{c}" for n in ("Position", "NormalGeometric", "NormalShading") for c in "XYZ"), "Curvature.V",
+                 *(f"Albedo.{c}" for c in "RGB")]
+        write_image(out / "gbuffer.exr", values, channels=names)
+        for i, (_, map) in enumerate(session.lights(look)):
+            if map is not None:
+                write_image(out / f"shadow_{i}.exr", map.depth, channels=["Z"])
+        write_image(out / "picture.exr", radiance)
+        write_image(out / "picture.png", radiance, exposure=look.exposure, shoulder=look.shoulder)
+        texts = {"scene.toml": scene_text(session, look, width, height), "look.json": json.dumps(look.to_dict(), indent=2) + "\n",
+                 "look.cpp": snippet(session, look)}
+        if look.profile == "custom":
+            texts["profile.toml"] = profile_text(look)
+        for name, text in texts.items():
+            (out / name).write_text(text, encoding="utf-8")
+    finally:
+        session.look.mode = mode
+    return sorted(out.iterdir())
