@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "io/mesh/mesh_parts.h"
@@ -27,6 +28,9 @@ class Cutter {
                     const float x = (*array)[3 * size_t(a) + k], y = (*array)[3 * size_t(b) + k];
                     array->push_back(float(x + t * (y - x)));
                 }
+            float* n = &mesh_.normals[mesh_.normals.size() - 3];
+            const double length = std::hypot(n[0], n[1], n[2]);
+            for (size_t k = 0; k < 3 && length > 0; ++k) n[k] = float(n[k] / length);
         }
         return entry->second;
     }
@@ -41,11 +45,12 @@ class Cutter {
 // A fan from the middle of the rim, with vertices of its own.
 void closeRim(PartedMesh& mesh, const std::vector<std::array<uint32_t, 2>>& rim, const float (&normal)[3],
               uint32_t part) {
+    const double length = std::hypot(normal[0], normal[1], normal[2]);
     MeshData& data = mesh.mesh;
     const auto copy = [&](const double(&p)[3]) {
         for (size_t k = 0; k < 3; ++k) {
             data.positions.push_back(float(p[k]));
-            data.normals.push_back(-normal[k]);
+            data.normals.push_back(float(-normal[k] / length));
         }
         return uint32_t(data.vertexCount() - 1);
     };

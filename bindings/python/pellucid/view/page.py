@@ -137,8 +137,7 @@ class Page:
                     setattr(owner, attribute, float(e.value))
                     self.viewer.changed(moving=True)
 
-            ui.slider(min=low, max=high, step=step, value=getattr(owner, attribute), on_change=change).props("dense").mark(
-                marker or attribute)
+            ui.slider(min=low, max=high, step=step, value=getattr(owner, attribute), on_change=change).props(f"dense data-pel=slider-{marker or attribute}")
 
     def select(self, name: str, options: Any, attribute: str, then: Callable[[], None] = lambda: None) -> None:
         def change(e: events.ValueChangeEventArguments) -> None:
@@ -146,15 +145,14 @@ class Page:
             then()
             self.viewer.changed()
 
-        ui.select(options, value=getattr(self.look, attribute), label=name, on_change=change).props("dense options-dense").classes(
-            "w-full").mark(attribute)
+        ui.select(options, value=getattr(self.look, attribute), label=name, on_change=change).props(f"dense options-dense data-pel={attribute}").classes("w-full")
 
     def switch(self, name: str, owner: Any, attribute: str, marker: str = "") -> None:
         def change(e: events.ValueChangeEventArguments) -> None:
             setattr(owner, attribute, bool(e.value))
             self.viewer.changed()
 
-        ui.switch(name, value=getattr(owner, attribute), on_change=change).props("dense").classes("text-xs").mark(marker or attribute)
+        ui.switch(name, value=getattr(owner, attribute), on_change=change).props(f"dense data-pel={marker or attribute}").classes("text-xs")
 
     def color(self, name: str, owner: Any, attribute: str, marker: str = "") -> None:
         def change(e: events.ValueChangeEventArguments) -> None:
@@ -162,7 +160,7 @@ class Page:
                 setattr(owner, attribute, _linear(e.value))
                 self.viewer.changed()
 
-        ui.color_input(name, value=_hex(getattr(owner, attribute)), on_change=change).props("dense").classes("w-full").mark(marker or attribute)
+        ui.color_input(name, value=_hex(getattr(owner, attribute)), on_change=change).props(f"dense data-pel={marker or attribute}").classes("w-full")
 
     # ---- Panel -------------------------------------------------------------------------------------------------------
 
@@ -171,8 +169,7 @@ class Page:
         with self.panel:
             ui.label("Pellucid").classes("text-lg")
             with ui.row().classes("w-full no-wrap"):
-                ui.select(list(PRESETS), label="Preset", on_change=lambda e: self.preset(e.value)).props("dense options-dense").classes(
-                    "w-full").mark("preset")
+                ui.select(list(PRESETS), label="Preset", on_change=lambda e: self.preset(e.value)).props("dense options-dense data-pel=preset").classes("w-full")
             self.select("Picture", MODES, "mode")
             self.slider("Exposure", self.look, "exposure", 0.1, 4, 0.05)
             self.slider("Shoulder", self.look, "shoulder", 0.3, 1, 0.05)
@@ -219,8 +216,7 @@ class Page:
             ui.label(name).classes("text-xs").style("width:8.5rem")
             ui.label().classes("text-xs text-right").style("width:3.2rem").bind_text_from(
                 self.look, attribute, backward=lambda v: f"{v[c]:.3g}")
-            ui.slider(min=low, max=high, step=step, value=getattr(self.look, attribute)[c], on_change=change).props("dense").mark(
-                f"{attribute}-{c}")
+            ui.slider(min=low, max=high, step=step, value=getattr(self.look, attribute)[c], on_change=change).props(f"dense data-pel=slider-{attribute}-{c}")
 
     def lights(self) -> None:
         self.slider("Ambient", self.look, "ambient", 0, 1, 0.01)
@@ -272,9 +268,9 @@ class Page:
 
         ui.label("Keeps the settings of now on the right of a line; change them on the left. Alt and drag moves the line.").classes("text-xs")
         with ui.row():
-            ui.button("Keep", on_click=keep).props("dense").mark("wipe-keep")
-            ui.button("Swap", on_click=swap).props("dense").mark("wipe-swap")
-            ui.button("Drop", on_click=drop).props("dense").mark("wipe-drop")
+            ui.button("Keep", on_click=keep).props("dense data-pel=wipe-keep")
+            ui.button("Swap", on_click=swap).props("dense data-pel=wipe-swap")
+            ui.button("Drop", on_click=drop).props("dense data-pel=wipe-drop")
         self.slider("Line", self.viewer.session, "wipe", 0, 1, 0.01)
 
     def work(self) -> None:
@@ -284,7 +280,7 @@ class Page:
                 ui.label(name).classes("text-xs").style("width:6rem")
                 self.bars[name] = ui.linear_progress(value=0, show_value=False).style("flex:1")
                 self.bars[name + " ms"] = ui.label().classes("text-xs text-right").style("width:4rem")
-        self.counts = ui.label().classes("text-xs").style("white-space:pre-line").mark("counts")
+        self.counts = ui.label().classes("text-xs").style("white-space:pre-line").props("data-pel=counts")
 
         def count(e: events.ValueChangeEventArguments) -> None:
             self.viewer.session.count = bool(e.value)
@@ -330,9 +326,9 @@ class Page:
             async def head(which: str = which) -> None:
                 await self.load(files.standard_head(which))
 
-            ui.button(f"Head, {which}", on_click=head).props("dense").classes("w-full").mark(f"head-{which}")
+            ui.button(f"Head, {which}", on_click=head).props(f"dense data-pel=head-{which}").classes("w-full")
         ui.upload(label="Drop an OFF, OBJ, PLY or STL file here", auto_upload=True, on_upload=dropped, max_file_size=1 << 30).props(
-            "dense flat").classes("w-full").mark("upload")
+            "dense flat data-pel=upload").classes("w-full")
 
         async def restart() -> None:
             try:
@@ -340,7 +336,7 @@ class Page:
             except Exception as error:
                 ui.notify(f"{error}", type="negative", multi_line=True, close_button=True, timeout=0)
 
-        ui.button("Open the device again", on_click=restart).props("dense flat").classes("w-full").mark("restart")
+        ui.button("Open the device again", on_click=restart).props("dense flat data-pel=restart").classes("w-full")
 
     def preset(self, name: str) -> None:
         if name not in PRESETS:
@@ -375,10 +371,10 @@ class Page:
             ui.download(await self.viewer.on_thread(make), "pellucid.png")
             self.viewer.changed()
 
-        ui.button("Scene, G-buffer, pictures, C++ (.zip)", on_click=everything).props("dense").classes("w-full").mark("export")
-        ui.button("Picture (.png, 1920 x 1080)", on_click=picture).props("dense").classes("w-full").mark("picture")
+        ui.button("Scene, G-buffer, pictures, C++ (.zip)", on_click=everything).props("dense data-pel=export").classes("w-full")
+        ui.button("Picture (.png, 1920 x 1080)", on_click=picture).props("dense data-pel=picture").classes("w-full")
         ui.button("Look (.json)", on_click=lambda: ui.download(json.dumps(self.look.to_dict(), indent=2).encode(), "look.json")).props(
-            "dense").classes("w-full").mark("look")
+            "dense data-pel=look").classes("w-full")
 
         async def read(e: events.UploadEventArguments) -> None:
             try:
@@ -389,7 +385,7 @@ class Page:
             self.build()
             self.viewer.changed()
 
-        ui.upload(label="Read a look (.json)", auto_upload=True, on_upload=read).props("dense flat").classes("w-full").mark("look-upload")
+        ui.upload(label="Read a look (.json)", auto_upload=True, on_upload=read).props("dense flat data-pel=look-upload").classes("w-full")
 
 
 def serve(viewer: Viewer) -> None:

@@ -1,0 +1,74 @@
+"""Meshes and images from files."""
+import numpy as np
+import pytest
+
+files = pytest.importorskip("pellucid.files", reason="this build reads no files")
+
+
+def test_a_head_comes_with_the_package():
+    mesh = files.load_mesh(files.standard_head(), subdivide=1)
+    n = len(mesh.positions)
+    assert mesh.triangles.max() == n - 1
+    assert mesh.ids.shape == (n,) and set(np.unique(mesh.ids)) == {1, 2, 3, 4, 5}
+    assert mesh.albedo.shape == (n, 3) and 0 < mesh.albedo.min() and mesh.albedo.max() < 1.1
+    assert np.allclose(np.linalg.norm(mesh.normals, axis=1), 1, atol=1e-4)
+    assert mesh.up == (0, 1, 0) and mesh.front == (0, 0, 1)
+    assert len(mesh.eyes) == 2 and mesh.eyes[0]["radius"] == pytest.approx(14, abs=3)  # mm
+    finer = files.load_mesh(files.standard_head("male"))
+    assert len(finer.triangles) > 3 * len(mesh.triangles)
+
+
+def test_a_mesh_of_ones_own(tmp_path):
+    path = tmp_path / "tetrahedron.off"
+    path.write_text("OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
+    mesh = files.load_mesh(path)
+    assert mesh.positions.shape == (4, 3) and mesh.triangles.shape == (4, 3)
+    assert mesh.up == (0, 0, 1) and files.load_mesh(path, up="y").up == (0, 1, 0)
+    assert mesh.low == (0, 0, 0) and mesh.high == (1, 1, 1)
+    assert len(files.load_mesh(path, subdivide=2).triangles) == 4 * 16
+    with pytest.raises(ValueError, match="'auto', 'y' or 'z'"):
+        files.load_mesh(path, up="x")
+    with pytest.raises(files.FileError, match="missing.off"):
+        files.load_mesh(tmp_path / "missing.off")
+    path.write_text("OFF\n4 4 0\n0 0 0\n1 0\n")
+    with pytest.raises(files.FileError, match="tetrahedron.off"):
+        files.load_mesh(path)
+
+
+def test_images_come_back(tmp_path):
+    rng = np.random.default_rng(3)
+    image = rng.uniform(0, 4, (5, 7, 3)).astype(np.float32)
+    files.write_image(tmp_path / "a.exr", image)
+    back = files.read_image(tmp_path / "a.exr")
+    assert all(np.array_equal(back[c], image[..., i]) for i, c in enumerate("RGB"))
+    files.write_image(tmp_path / "z.exr", image[..., 0], channels=["Z"])
+    assert np.array_equal(files.read_image(tmp_path / "z.exr")["Z"], image[..., 0])
+    files.write_image(tmp_path / "h.exr", image, half=True)
+    assert np.array_equal(files.read_image(tmp_path / "h.exr")["R"], image[..., 0].astype(np.float16).astype(np.float32))
+    files.write_image(tmp_path / "a.png", image, exposure=0.25)
+    bytes_ = files.tonemap(image, 0.25)
+    assert bytes_.dtype == np.uint8 and bytes_.shape == image.shape
+    assert np.array_equal(np.rint(files.read_image(tmp_path / "a.png")["G"] * 255), bytes_[..., 1])
+    files.write_image(tmp_path / "b.png", bytes_)
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+
+
+def test_tone_mapping_is_srgb_below_the_shoulder():
+    x = np.array([0, 0.0031308, 0.18, 0.5, 0.8, np.nan, -1, 1e30], np.float32)
+    y = files.tonemap(np.stack([x, x, x], 1))[:, 0]
+    srgb = np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.maximum(x, 1e-9) ** (1 / 2.4) - 0.055)
+    assert np.array_equal(y[:5], np.rint(255 * srgb[:5]))
+    assert y[5] == 0 and y[6] == 0 and y[7] == 255
+
+
+def test_wrong_use_says_what_would_be_right(tmp_path):
+    with pytest.raises(ValueError, match=r"\(height, width, channels\)"):
+        files.write_image(tmp_path / "a.exr", np.zeros(3))
+    with pytest.raises(ValueError, match="5 channels need as many names"):
+        files.write_image(tmp_path / "a.exr", np.zeros((2, 2, 5)))
+    with pytest.raises(files.FileError, match="a.xyz"):
+        files.write_image(tmp_path / "a.xyz", np.zeros((2, 2, 3)))
+    with pytest.raises(files.FileError, match="nowhere"):
+        files.write_image(tmp_path / "nowhere" / "a.png", np.zeros((2, 2, 3)))
+    with pytest.raises(files.FileError):
+        files.read_image(tmp_path / "missing.exr")
