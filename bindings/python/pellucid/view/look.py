@@ -50,7 +50,7 @@ class Lamp:
 
 def _lamps() -> list[Lamp]:
     return [Lamp("Key", 55.0, 30.0, (1.0, 0.95, 0.88), 1.0), Lamp("Fill", -50.0, 10.0, (0.8, 0.9, 1.0), 0.15, shadow=False),
-            Lamp("Rim", 165.0, 25.0, (1.0, 0.97, 0.92), 0.9)]
+            Lamp("Rim", 160.0, 15.0, (1.0, 0.97, 0.92), 0.5)]
 
 
 @dataclass
