@@ -67,7 +67,8 @@ DemoHead loadMeshAsHead(Run& run, const Arguments& a) {
 }
 
 DemoHead loadHead(Run& run, const Arguments& a) {
-    return demo::hasHeadParts(a.mesh) ? demo::loadDemoHead(a.mesh, a.subdivide.value_or(2)) : loadMeshAsHead(run, a);
+    return demo::hasHeadParts(a.mesh) ? demo::loadDemoHead(a.mesh, a.subdivide.value_or(2))
+                                      : loadMeshAsHead(run, a);
 }
 
 // A portrait with key, fill and rim light, and one with the key light behind an ear.

@@ -186,7 +186,8 @@ TEST_F(SceneFileTest, WrongTypesAndValuesNameLineKeyAndWhatIsRight) {
                  at("diffusion_radius") + "'diffusion_radius' in [[material]] is a string; a number"));
     EXPECT_TRUE(contains(errorOf("diffusion_radius = 2.7", "diffusion_radius = -2.7"),
                          "is -2.7; it must be 0, or 1e-06 or more"));
-    EXPECT_TRUE(contains(errorOf("diffusion_radius = 2.7", "diffusion_radius = nan"), "must be 0, or 1e-06 or more"));
+    EXPECT_TRUE(
+        contains(errorOf("diffusion_radius = 2.7", "diffusion_radius = nan"), "must be 0, or 1e-06 or more"));
     EXPECT_TRUE(contains(errorOf("specular = 1.5", "f0 = 1.5"), "is 1.5; it must be from 0 to 1"));
     EXPECT_TRUE(contains(errorOf("color = [1, 0.95, 0.9]", "color = [1, -0.95, 0.9]"),
                          "is -0.95; it must be 0 or more"));

@@ -65,7 +65,8 @@ py::object loadHead(const std::string& path, int levels) {
         if (!demo::hasHeadParts(path)) return py::none();
         head = demo::loadDemoHead(path, levels);
         ids.assign(head.mesh.vertexCount(), demo::DEMO_SKIN);  // parts share no vertices
-        for (size_t c = 0; c < head.mesh.triangles.size(); ++c) ids[head.mesh.triangles[c]] = head.materials[c / 3];
+        for (size_t c = 0; c < head.mesh.triangles.size(); ++c)
+            ids[head.mesh.triangles[c]] = head.materials[c / 3];
         for (size_t v = 0; v < ids.size(); ++v) {
             const sample::Look& look = head.looks[ids[v] - 1];
             sample::LinearColor color{look.albedo[0], look.albedo[1], look.albedo[2]};
