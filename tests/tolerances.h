@@ -141,6 +141,11 @@ inline constexpr Tolerance scatteredRms{
     "of the local curvedness, RMS: what is wanted of 20,000 scattered vertices; 0.02 to 0.15 % measured"};
 inline constexpr Tolerance scatteredWorst{"scatteredWorst", 0.1,
                                           "the largest of them: what is wanted; 0.2 to 6 % measured"};
+inline constexpr Tolerance scatteredPassesRms{
+    "scatteredPassesRms", 0.012,
+    "RMS after the two default passes, against the surface: 0.001 to 0.96 % measured"};
+inline constexpr Tolerance scatteredPassesWorst{"scatteredPassesWorst", 0.08,
+                                                "the largest of them: 0.006 to 6.1 % measured"};
 inline constexpr Tolerance slenderTorus{
     "slenderTorus", 0.02,
     "largest, cells 1 : 25: float positions over the square of the shorter edge, 0.0039 at distance 4"};

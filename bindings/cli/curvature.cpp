@@ -21,6 +21,7 @@ struct Arguments {
                                        smoothingWeights = "cotangent";
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     double creaseDegrees = 0;
+    bool orient = false;
     std::vector<float> range;  // of colours: low, high; empty: from the values
 };
 
@@ -83,8 +84,11 @@ void run(const Arguments& a) {
     params.smoothingWeights = weights.at(a.smoothingWeights);
     params.smoothingCrease = float(a.creaseDegrees * 3.14159265358979 / 180);
     Run run(a.run);
-    io::MeshData mesh = io::loadMesh(a.mesh);
+    io::MeshLoadOptions load;
+    load.orient = a.orient;
+    io::MeshData mesh = io::loadMesh(a.mesh, load);
     for (const std::string& warning : mesh.warnings) run.warn(warning);
+    if (a.orient) run.report["triangles_turned"] = mesh.trianglesTurned;
     if (mesh.normals.empty()) {
         io::computeNormals(mesh);
         run.note("no normals in " + a.mesh + ": they were made from its triangles");
@@ -138,6 +142,7 @@ void addCurvature(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--weld", a->weld, "vertices at one place are one: none, exact, or within a length")
         ->capture_default_str();
+    command->add_flag("--orient", a->orient, "turns triangles that face another way than their neighbours");
     command
         ->add_option("--smooth-radius", a->params.smoothingRadius,
                      "smooths to a radius in the mesh's unit of length, whatever its density")

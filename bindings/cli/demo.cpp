@@ -37,6 +37,7 @@ struct Arguments {
     uint32_t smoothing = 2;
     std::optional<int> subdivide;
     float height = headHeight;
+    bool orient = false;
 };
 
 // Most OBJ files have y up, most scans in the other formats z.
@@ -47,7 +48,9 @@ bool yIsUp(const Arguments& a) {
 // Somebody's mesh: all of it is skin.
 DemoHead loadMeshAsHead(Run& run, const Arguments& a) {
     DemoHead head;
-    head.mesh = io::loadMesh(a.mesh);
+    io::MeshLoadOptions load;
+    load.orient = a.orient;
+    head.mesh = io::loadMesh(a.mesh, load);
     io::MeshData& mesh = head.mesh;
     for (const std::string& warning : mesh.warnings) run.warn(warning);
     const bool y = yIsUp(a);
@@ -182,6 +185,8 @@ void addDemo(CLI::App& app) {
         "mesh", a->mesh,
         "OFF, OBJ, PLY or STL file (default: a head that comes with pellucid, or $PELLUCID_DEMO_MESH)");
     command->add_option("-o,--output", a->output, "folder for the pictures")->capture_default_str();
+    command->add_flag("--orient", a->orient,
+                      "of a mesh: turns triangles that face another way than their neighbours");
     command->add_option("--size", a->size, "pixels, WxH")->capture_default_str();
     command->add_option("--height", a->height, "mm that the mesh is scaled to, along its up axis")
         ->check(CLI::PositiveNumber)

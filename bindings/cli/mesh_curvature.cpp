@@ -35,6 +35,8 @@ void reportMesh(Run& run, const PelMeshReport& r) {
     run.report["unique_positions"] = r.uniquePositions;
     run.report["edges"] = r.edges;
     run.report["border_edges"] = r.borderEdges;
+    run.report["inconsistent_edges"] = r.inconsistentEdges;  // the reader has warned of them
+    run.report["low_degree_fits"] = r.lowDegreeFits;
     const struct {
         const char* key;
         uint32_t count;

@@ -24,12 +24,11 @@ void linkRings(MeshTopology& topology) {
     topology.linked = true;
 }
 
+// Beside what estimators have counted in `memory`.
 MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, const VertexView& given,
-                       const SlotData& data) {
+                       const SlotData& data, const cl::Memory& memory) {
     const VertexView& normals = given.memory ? given : positions;
     Device& device = topology.device();
-    const MeshCounts none{};
-    const cl::Memory memory = device.allocate(sizeof none, &none);
     cl::Launch count(device.programs().get("mesh/mesh_rows.cl", mapping(topology)), "mesh_count");
     count.arg(topology.vertices());
     count.arg(positions.memory).arg(positions.layout).arg(normals.memory).arg(normals.layout);
@@ -105,7 +104,7 @@ cl::Defines passDefines(const MeshTopology& topology, const PelCurvatureParams& 
 }
 
 void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params, const SlotData& data,
-                       const cl::Memory& planes, const Rows& rows) {
+                       const cl::Memory& planes, const Rows& rows, const cl::Memory& counts) {
     cl::Defines defines = passDefines(topology, params, data.stride);
     defines["PEL_MESH_LISTED"] = listed(rows);
     const char* kernel = estimatorKernel(params.estimator);
@@ -123,7 +122,7 @@ void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params,
     if (params.estimator == PEL_CURVATURE_QUADRIC) {
         linkRings(topology);
         estimate.arg(topology.scratch(MeshTopology::scratchLinks, 0));
-        estimate.arg(topology.scratch(MeshTopology::scratchRounds, 0));
+        estimate.arg(topology.scratch(MeshTopology::scratchRounds, 0)).arg(counts);
     }
     launchRows(topology, estimate, rows, width(topology.device()));
 }
@@ -149,7 +148,9 @@ void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, con
     const Scratch scratch = scratchOf(topology);
     const SlotData data = gatherBySlot(topology, positions, normals, scratch);
     const cl::Memory estimated = scratch(MeshTopology::scratchFrom, planeBytes * planes);
-    estimateCurvature(topology, params, data, estimated, {});
+    const MeshCounts none{};
+    const cl::Memory counted = counts ? topology.device().allocate(sizeof none, &none) : cl::Memory{};
+    estimateCurvature(topology, params, data, estimated, {}, counted);
 
     SlotPlanes values{std::min(planes, 2u), planeStride, estimated, {}, {}, {}};
     if (params.smoothingPasses > 0 || params.smoothingRadius > 0)
@@ -159,7 +160,7 @@ void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, con
     smoothUniform(topology, passDefines(topology, params, data.stride), params.smoothingPasses, values);
     if (diffusion.passes() > 0) smoothToRadius(topology, data, diffusion, values, scratch);
     storeQuantity(topology, params, data.stride, values.from, estimated, curvature, nullptr);
-    if (counts) *counts = countFaults(topology, positions, normals, data);
+    if (counts) *counts = countFaults(topology, positions, normals, data, counted);
 }
 
 }  // namespace pel

@@ -80,8 +80,8 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
     fresh_ = true;  // until everything is enqueued
     madeNormals_ = !normals.memory;
     target_ = curvature;
-    const uint32_t ownReach = params_.estimator == PEL_CURVATURE_QUADRIC ? 2 : 1;
-    estimateReach_ = madeNormals_ ? 2 : ownReach;  // the neighbours' normals, which are made of their rings
+    // Quadric: the three-ring, if need be. Else the ring; normals that are made come from the neighbours' rings.
+    estimateReach_ = params_.estimator == PEL_CURVATURE_QUADRIC ? 3 : madeNormals_ ? 2 : 1;
 
     const Scratch scratch = [&](MeshTopology::Scratch which, size_t bytes) -> const cl::Memory& {
         return keep(scratch_[which], bytes);

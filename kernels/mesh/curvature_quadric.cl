@@ -18,15 +18,16 @@
 //
 // Where a ring is small among larger triangles, or thinner than the two-ring, most of that lies outside of what the ring says
 // is near, and what is left does not tell nine numbers. Such slots are fitted once more, to all of the two-ring in
-// coordinates that its own moments give.
+// coordinates that its own moments give. Positions are known to float rounding only, and where points stand so that H would
+// be off by more than that allows, the fit is done again too; if that does not help, to the rings of all these points.
 //
 // Of a ring of many neighbours (the hub of a fan, seen from its rim) only the nearest on either side are walked.
 //
 // What the points leave open (fewer than nine, all on a line) a ridge decides, towards a quadric and then a plane; a
-// term whose pivot is lost to rounding is dropped. The result is always finite.
+// term whose pivot is lost to rounding is dropped. The result is always finite. Such slots are counted.
 //
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h), links and rounds (mesh_links.cl).
-// Output: lib/mesh/principal.clh.
+// Output: lib/mesh/principal.clh; counts->lowDegreeFits, where counts is not NULL.
 //
 // One work-item: PEL_WIDTH slots.
 //
@@ -72,6 +73,18 @@
 #define WIDE_FARTHEST2 16.0f
 #define WIDE_SPREAD2 0.72f  // mean square of a point's distance, in units of the wide chart
 
+// Heights are taken for known to ROUNDING of the position's part along the normal: a float's root mean square error. Where that
+// moves H by more than NOISE_SHARE of the fit's curvedness, by more than NOISE_LEAST over the reach (planes need no more), and by
+// more than NOISE_REGULAR heights over the square of the reach (regular rings: 1 to 2, and nothing else helps them), the points are
+// too few. Measured on red-green refined random Delaunay meshes of 15,000 vertices: the worst vertex from 23 % to below 10.
+#define ROUNDING 2.98e-8f
+#define NOISE_SHARE 0.01f
+#define NOISE_LEAST 3e-5f
+#define NOISE_REGULAR 3.0f
+
+// Rings of the two-ring's points that are longer than this are not walked.
+#define LONGEST_FURTHER 36
+
 // Of longer rings than twice this and four, so many neighbours of neighbours are walked to either side.
 #define NEAR_STEPS 16
 
@@ -110,6 +123,7 @@ typedef struct Chart {
     floatw ridge;         // of the cubic terms
     floatw scale, xx, xy, yy;
     floatw round, farthest2;
+    floatw reach;    // of the ring
     maskw replaced;  // the normal is the ring's mean
     uint last;       // slot of the mesh
 } Chart;
@@ -118,7 +132,10 @@ typedef struct Fit {
     floatw moments[MONOMIALS];  // sum of weight x^a y^b
     floatw right[TERMS];        // sum of weight z term; in the end the solution
     floatw products[PRODUCTS];  // lower triangle of the normal equations, row by row
-    floatw weight;
+    floatw weight, weight2;  // sums of weight, of single ones no more than a regular one's, and of weight^2
+    floatw ones[2];          // sums of weight x and weight y
+    floatw noise;            // in the end: error of H for an error 1 of every height, in the fit's units
+    maskw low;  // of a quadratic or cubic term the points tell less than the ridge inside of a mesh does
 } Fit;
 
 inline void addPoint(Fit* fit, uintw slot, maskw counts, const Chart* chart, __global const float* positions) {
@@ -138,6 +155,8 @@ inline void addPoint(Fit* fit, uintw slot, maskw counts, const Chart* chart, __g
     const floatw z = selectw(zero, q * flat2 * (softened * inverse), counts);
     const floatw weight = selectw(zero, bent * inverse, counts);
     fit->weight += fmin(weight, (floatw)(1.0f / WEIGHT_SOFTENING));
+    fit->weight2 = fma(weight, weight, fit->weight2);
+    fit->ones[0] = fma(weight, x, fit->ones[0]), fit->ones[1] = fma(weight, y, fit->ones[1]);
     // weight x^a, then times y as often as the degree allows.
     floatw column = weight;
 #pragma unroll
@@ -195,8 +214,19 @@ inline floatw blockDeterminant(const Fit* fit, const int first, const int count)
 
 // Cholesky without roots, in place; the solution replaces the right side. A pivot that is lost to rounding
 // drops its term. Set where the points do not tell terms apart.
-inline maskw solve(Fit* fit, floatw ridge) {
+inline maskw solve(Fit* fit, const Chart* chart) {
     floatw inverse[TERMS], quadratic = 1.0f, cubic = 1.0f;
+    const floatw ridge = chart->ridge;
+    // H as a sum over terms, and what heights of 1 everywhere would be fitted to (the slot's own error moves all of them).
+    floatw trace[TERMS], ones[TERMS], own = 0.0f, square = 0.0f;
+#pragma unroll
+    for (int i = 0; i < TERMS; ++i) {
+        trace[i] = 0.0f;
+        ones[i] = i < 2 ? fit->ones[i] : factor[i] * fit->moments[MONOMIAL(TERM_X(i), TERM_Y(i))];
+    }
+    trace[2] = 0.5f * chart->xx * chart->xx, trace[3] = chart->xx * chart->xy;
+    trace[4] = 0.5f * fma(chart->xy, chart->xy, chart->yy * chart->yy);
+    fit->low = 0;
 #pragma unroll
     for (int i = 0; i < TERMS; ++i)
         fit->products[PRODUCT(i, i)] +=
@@ -215,14 +245,23 @@ inline maskw solve(Fit* fit, floatw ridge) {
                 sum = fma(-fit->products[PRODUCT(i, k)] * inverse[k], fit->products[PRODUCT(j, k)], sum);
             fit->products[PRODUCT(i, j)] = sum;
             pivot = fma(-sum * inverse[j], sum, pivot);
-            fit->right[i] = fma(-sum * inverse[j], fit->right[j], fit->right[i]);
+            const floatw part = -sum * inverse[j];
+            fit->right[i] = fma(part, fit->right[j], fit->right[i]);
+            trace[i] = fma(part, trace[j], trace[i]), ones[i] = fma(part, ones[j], ones[i]);
+        }
+        if (i >= 2) {
+            const floatw added =
+                (float)ridgeShares[i] * (i < 5 ? (floatw)(2.0f * RIDGE_QUADRATIC) : ridge + RIDGE_CUBIC);
+            fit->low |= !(pivot > fit->weight * added);
         }
         if (i >= 5)
             cubic *= pivot;
         else if (i >= 2)
             quadratic *= pivot;
         inverse[i] = selectw((floatw)(0.0f), 1.0f / pivot, pivot > 1e-7f * whole);
+        own = fma(trace[i] * inverse[i], ones[i], own), square = fma(trace[i] * inverse[i], trace[i], square);
     }
+    fit->noise = sqrt(fma(own, own, square * fit->weight2 / fmax(fit->weight, 1e-20f)));
 #pragma unroll
     for (int i = TERMS - 1; i >= 0; --i) {
         floatw sum = fit->right[i];
@@ -272,7 +311,8 @@ inline maskw scaleChart(Chart* chart, const RingCursor start, __global const uin
     const maskw spread = reach2 >= PEL_MESH_MIN_LENGTH2;
     // In units of the ring's reach: powers up to the sixth must neither overflow nor vanish.
     reach2 = selectw(one, reach2, spread);
-    chart->scale = 0.5f / sqrt(reach2);
+    chart->reach = sqrt(reach2);
+    chart->scale = 0.5f / chart->reach;
     // The moments' inverse square root (Cholesky): with it the ring is as wide as long.
     const floatw inverse = 1.0f / (reach2 * fmax(count, one));
     suu *= inverse, suv *= inverse, svv *= inverse, sun *= inverse, svn *= inverse, snn *= inverse;
@@ -316,13 +356,14 @@ typedef struct Moments {
     floatw uu, uv, vv, nn, weight;
 } Moments;
 
-inline void addMoments(Moments* m, uintw slot, maskw counts, const Chart* chart, __global const float* positions) {
+inline void addMoments(Moments* m, uintw slot, maskw counts, const Chart* chart, int alike,
+                       __global const float* positions) {
     Vec3w p;
     gather3(positions, chart->last, slotsAnywhere(slot), &p.x, &p.y, &p.z);
     p = scale3(sub3(p, chart->origin), chart->scale);
     const floatw length2 = dot3(p, p), zero = 0.0f;
     counts &= finitew(length2);
-    const floatw weight = selectw(zero, 1.0f / (WEIGHT_SOFTENING + length2), counts);
+    const floatw weight = selectw(zero, alike ? (floatw)(1.0f) : 1.0f / (WEIGHT_SOFTENING + length2), counts);
     const floatw along = selectw(zero, dot3(p, chart->u), counts),
                  across = selectw(zero, dot3(p, chart->v), counts);
     const floatw height = selectw(zero, dot3(p, chart->height), counts);
@@ -331,64 +372,159 @@ inline void addMoments(Moments* m, uintw slot, maskw counts, const Chart* chart,
     m->weight += weight;
 }
 
-// All points of the two-ring into the fit or, without one, into the moments; of the lanes in `wanted`.
-__attribute__((always_inline)) inline void walk_points(Fit* fit, Moments* moments, const Chart* chart,
-                                                       const RingCursor first, maskw wanted,
-                                                       __global const uint* slices,
-                                                       __global const uint* rings, __global const uint* runs,
-                                                       __global const uint* links, __global const uint* rounds,
-                                                       __global const float* positions) {
+// What a mesh is walked by, and into what: the fit or, without one, the moments.
+typedef struct Walk {
+    __global const uint *slices, *rings, *runs, *links, *rounds;
+    __global const float* positions;
+    const Chart* chart;
+    Fit* fit;
+    Moments* moments;
+    int alike;  // moments: whether all points weigh alike
+} Walk;
+
+__attribute__((always_inline)) inline void take(const Walk* walk, uintw slot, maskw counts) {
+    if (walk->fit)
+        addPoint(walk->fit, slot, counts, walk->chart, walk->positions);
+    else
+        addMoments(walk->moments, slot, counts, walk->chart, walk->alike, walk->positions);
+}
+
+// Each lane walks the ring of its own neighbour `around`, in that one's slice, in which this slot stands `here`.
+typedef struct Steps {
+    uintw around, begin, length, from, middle, count;
+} Steps;
+
+inline Steps stepsRound(const Walk* walk, uintw around, uintw here, maskw real) {
     const uintw none = (uintw)(0), one = (uintw)(1), near_steps = (uintw)(NEAR_STEPS);
+    Steps s;
+    s.around = around;
+    s.begin = gatherUint(walk->slices, around / PEL_MESH_LANES);
+    const uintw round = gatherUint(walk->rounds, around);
+    s.length = selectw(none, round & ~(uintw)(PEL_MESH_ROUND), real);
+    const maskw closed = real & ((round & (uintw)(PEL_MESH_ROUND)) != 0);
+    // Closed: all but this slot, its two neighbours and the last one; with four in the ring just one is left.
+    const uintw rest = selectw(selectw(none, one, s.length == 4), s.length - 4, s.length > 4);
+    s.count = selectw(s.length, rest, closed);
+    s.from = selectw(none, here + 2, closed);
+    // Past the part that is left out in the middle of a long one: this slot and its two neighbours.
+    const maskw long_ = s.length > 2 * NEAR_STEPS + 4;
+    s.middle = s.count;
+    if (anyw(long_)) {
+        const uintw before = here - min(here, near_steps);
+        const uintw wrapped = selectw(none, s.length, here < NEAR_STEPS + 1);
+        s.from = selectw(s.from, selectw(before, here + wrapped - 1 - NEAR_STEPS, closed), long_);
+        s.count = selectw(s.count,
+                          selectw(min(2 * near_steps + 1, s.length - before), 2 * near_steps, closed), long_);
+        s.middle = selectw(s.count, near_steps, long_ & closed);
+    }
+    return s;
+}
+
+inline uintw entryOf(const Walk* walk, uintw slot, uintw begin, uintw row) {
+    return PEL_RING_SLOT(gatherUint(walk->rings, (begin + row) * PEL_MESH_LANES + slot % PEL_MESH_LANES));
+}
+
+// `inside`: the lanes that take this step.
+inline uintw stepTo(const Walk* walk, const Steps* s, uint step, maskw inside) {
+    const uintw none = (uintw)(0);
+    uintw row = selectw(none, s->from + step + selectw((uintw)(3), none, step < s->middle), inside);
+    row -= selectw(none, s->length, row >= s->length);
+    return entryOf(walk, s->around, s->begin, selectw(none, row, inside));
+}
+
+// All points of the two-ring, of the lanes in `wanted`.
+__attribute__((always_inline)) inline void walkPoints(const Walk* walk, const RingCursor first, maskw wanted) {
     RingCursor ring = first;
     for (; ring.row < ring.end; ++ring.row) {
-        const uintw near_ = ringEntry(&ring, rings, runs).slots.each;
+        const uintw near_ = ringEntry(&ring, walk->rings, walk->runs).slots.each;
         const maskw real = (near_ != ring.self.each) & wanted;
-        if (fit)
-            addPoint(fit, near_, real, chart, positions);
-        else
-            addMoments(moments, near_, real, chart, positions);
-        // Each lane walks the ring of its own neighbour, in that one's slice, in which this slot stands `here`.
-        const uintw begin = gatherUint(slices, near_ / PEL_MESH_LANES), round = gatherUint(rounds, near_);
-        const uintw here = loadw((size_t)ring.row * PEL_MESH_LANES + ring.lane, links);
-        const uintw length = selectw(none, round & ~(uintw)(PEL_MESH_ROUND), real);
-        const maskw closed = real & ((round & (uintw)(PEL_MESH_ROUND)) != 0);
-        // Closed: all but this slot, its two neighbours and the last one; with four in the ring just one is left.
-        const uintw rest = selectw(selectw(none, one, length == 4), length - 4, length > 4);
-        uintw steps = selectw(length, rest, closed);
-        uintw from = selectw(none, here + 2, closed);
-        // Past the part that is left out in the middle of a long one: this slot and its two neighbours.
-        const maskw long_ = length > 2 * NEAR_STEPS + 4;
-        uintw middle = steps;
-        if (anyw(long_)) {
-            const uintw before = here - min(here, near_steps);
-            const uintw wrapped = selectw(none, length, here < NEAR_STEPS + 1);
-            from = selectw(from, selectw(before, here + wrapped - 1 - NEAR_STEPS, closed), long_);
-            steps = selectw(steps, selectw(min(2 * near_steps + 1, length - before), 2 * near_steps, closed),
-                            long_);
-            middle = selectw(steps, near_steps, long_ & closed);
-        }
-        const uint longest = largestLane(steps);
+        take(walk, near_, real);
+        const uintw here = loadw((size_t)ring.row * PEL_MESH_LANES + ring.lane, walk->links);
+        const Steps s = stepsRound(walk, near_, here, real);
+        const uint longest = largestLane(s.count);
         for (uint step = 0; step < longest; ++step) {
-            const maskw inside = step < steps;
-            uintw row = selectw(none, from + step + selectw((uintw)(3), none, step < middle), inside);
-            row -= selectw(none, length, row >= length);
-            const uintw entry = gatherUint(
-                rings, (begin + selectw(none, row, inside)) * PEL_MESH_LANES + near_ % PEL_MESH_LANES);
-            const uintw far_ = selectw(ring.self.each, PEL_RING_SLOT(entry), inside);
-            const maskw counts = inside & (far_ != ring.self.each);
-            if (fit)
-                addPoint(fit, far_, counts, chart, positions);
-            else
-                addMoments(moments, far_, counts, chart, positions);
+            const maskw inside = step < s.count;
+            const uintw far_ = selectw(ring.self.each, stepTo(walk, &s, step, inside), inside);
+            take(walk, far_, inside & (far_ != ring.self.each));
         }
     }
 }
 
+// The same, and behind each point its whole ring: points of the three-ring, some several times.
+__attribute__((always_inline)) inline void walkFurther(const Walk* walk, const RingCursor first, maskw wanted) {
+    const uintw none = (uintw)(0);
+    RingCursor ring = first;
+    for (; ring.row < ring.end; ++ring.row) {
+        const uintw near_ = ringEntry(&ring, walk->rings, walk->runs).slots.each;
+        const maskw real = (near_ != ring.self.each) & wanted;
+        const uintw here = loadw((size_t)ring.row * PEL_MESH_LANES + ring.lane, walk->links);
+        const Steps s = stepsRound(walk, near_, here, real);
+        const uint longest = largestLane(s.count);
+        for (uint step = 0; step <= longest; ++step) {
+            const maskw inside = step == 0 ? real : real & (step - 1 < s.count);
+            const uintw there = step == 0 ? near_ : stepTo(walk, &s, step - 1, inside);
+            const uintw point = selectw(ring.self.each, there, inside);
+            const maskw counts = inside & (point != ring.self.each);
+            const uintw begin = gatherUint(walk->slices, point / PEL_MESH_LANES);
+            uintw length = selectw(none, gatherUint(walk->rounds, point) & ~(uintw)(PEL_MESH_ROUND), counts);
+            length = selectw(length, none, length > LONGEST_FURTHER);
+            const uint rows = largestLane(length);
+            for (uint row = 0; row <= rows; ++row) {
+                const maskw behind = row == 0 ? counts : counts & (row - 1 < length);
+                const uintw at =
+                    row == 0 ? point : entryOf(walk, point, begin, selectw(none, (uintw)(row - 1), behind));
+                take(walk, at, behind & (at != ring.self.each));
+            }
+        }
+    }
+}
+
+// From the moments of points to coordinates in which these are WIDE_SPREAD2 away in the mean, of the lanes in `wanted`; those that
+// have such.
+inline maskw widenChart(Chart* chart, const Moments* m, maskw wanted) {
+    const floatw spread2 = (m->uu + m->vv) / m->weight;
+    wanted &= finitew(spread2) & (spread2 > 0.0f);
+    const floatw unit2 = WIDE_SPREAD2 / selectw((floatw)(1.0f), spread2, wanted), part = unit2 / m->weight;
+    Chart other = *chart;
+    shapeChart(&other, m->uu * part, m->uv * part, m->vv * part,
+               selectw((floatw)(0.0f), m->nn * part, chart->replaced), WIDE_SIZE);
+    chart->xx = selectw(chart->xx, other.xx, wanted), chart->xy = selectw(chart->xy, other.xy, wanted);
+    chart->yy = selectw(chart->yy, other.yy, wanted), chart->round = selectw(chart->round, other.round, wanted);
+    chart->scale = selectw(chart->scale, chart->scale * sqrt(unit2), wanted);
+    chart->farthest2 = WIDE_FARTHEST2;
+    return wanted;
+}
+
+// Whether rounding of positions moves H by too much.
+inline maskw isNoisy(const Fit* fit, const Chart* chart) {
+    const floatw x = chart->n.x * chart->origin.x, y = chart->n.y * chart->origin.y,
+                 z = chart->n.z * chart->origin.z;
+    const floatw unit = chart->reach * chart->scale, amplified = fit->noise * unit * unit;
+    const floatw noise = amplified * ROUNDING * sqrt(fma(x, x, fma(y, y, z * z))) / chart->reach;
+    const floatw fxx = fit->right[2], fxy = fit->right[3], fyy = fit->right[4];
+    const floatw uu = chart->xx * fma(chart->xx, fxx, 2.0f * chart->xy * fxy) + chart->xy * chart->xy * fyy;
+    const floatw uv = chart->yy * fma(chart->xx, fxy, chart->xy * fyy), vv = chart->yy * chart->yy * fyy;
+    const floatw bent = unit * sqrt(0.5f * fma(uu, uu, fma(2.0f * uv, uv, vv * vv)));
+    return (noise > NOISE_LEAST) & (noise > NOISE_SHARE * bent) & (amplified > NOISE_REGULAR);
+}
+
+// How many lanes of the `slots` that begin at `first` are set.
+inline uint countLanes(maskw mask, uint first, uint slots) {
+    const uintw one = selectw((uintw)(0), (uintw)(1), mask & ((uintw)(first) + as_uintw(lanesw()) < slots));
+#if PEL_WIDTH == 1
+    return one;
+#else
+    const uint4 four = one.lo + one.hi;
+    const uint2 two = four.lo + four.hi;
+    return two.x + two.y;
+#endif
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_quadric(
     uint slots, uint listed, __global const uint* list, __global const uint* slices,
-    __global const uint* rings, __global const uint* runs, __global const float* positions,
-    uint positionOffset, __global const float* normals, uint normalOffset, uint planeStride,
-    __global float* planes, __global const uint* links, __global const uint* rounds) {
+    __global const uint* rings, __global const uint* runs, __global const float* positions, uint positionOffset,
+    __global const float* normals, uint normalOffset, uint planeStride, __global float* planes,
+    __global const uint* links, __global const uint* rounds, __global MeshCounts* counts) {
     const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
     if (first >= slots) return;
     RingCursor ring = ringBegin(first, slots, slices);
@@ -412,35 +548,40 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
     }
 
     Fit fit;
+    Moments moments;
+    const Walk intoFit = {slices, rings, runs, links, rounds, positions, &chart, &fit, 0, 0};
     floatw best[5];
-    maskw poor = spread;
-    for (int wide = 0; wide < 2; ++wide) {
+    maskw poor = spread, low = spread, moved = spread;
+    for (int attempt = 0; attempt < 3; ++attempt) {
 #pragma unroll
         for (int i = 0; i < MONOMIALS; ++i) fit.moments[i] = 0.0f;
 #pragma unroll
         for (int i = 0; i < TERMS; ++i) fit.right[i] = 0.0f;
-        fit.weight = 0.0f;
-        walk_points(&fit, 0, &chart, ring, poor, slices, rings, runs, links, rounds, positions);
+        fit.weight = fit.weight2 = fit.ones[0] = fit.ones[1] = 0.0f;
+        if (attempt < 2)
+            walkPoints(&intoFit, ring, poor);
+        else
+            walkFurther(&intoFit, ring, poor);
         assemble(&fit);
-        const maskw unsure = solve(&fit, chart.ridge);
+        const maskw unsure = solve(&fit, &chart);
 #pragma unroll
-        for (int i = 0; i < 5; ++i) best[i] = wide ? selectw(best[i], fit.right[i], poor) : fit.right[i];
-        poor &= unsure | (chart.round < LEAST_ROUND);
-        if (wide || !anyw(poor)) break;
-        Moments m = {0.0f, 0.0f, 0.0f, 0.0f, 1e-20f};
-        walk_points(0, &m, &chart, ring, poor, slices, rings, runs, links, rounds, positions);
-        // In units in which the points are WIDE_SPREAD2 away in the mean.
-        const floatw spread2 = (m.uu + m.vv) / m.weight;
-        poor &= finitew(spread2) & (spread2 > 0.0f);
-        const floatw unit2 = WIDE_SPREAD2 / selectw((floatw)(1.0f), spread2, poor), part = unit2 / m.weight;
-        Chart other = chart;
-        shapeChart(&other, m.uu * part, m.uv * part, m.vv * part,
-                   selectw((floatw)(0.0f), m.nn * part, chart.replaced), WIDE_SIZE);
-        chart.xx = selectw(chart.xx, other.xx, poor), chart.xy = selectw(chart.xy, other.xy, poor);
-        chart.yy = selectw(chart.yy, other.yy, poor), chart.round = selectw(chart.round, other.round, poor);
-        chart.scale = selectw(chart.scale, chart.scale * sqrt(unit2), poor);
-        chart.farthest2 = WIDE_FARTHEST2;
+        for (int i = 0; i < 5; ++i) best[i] = attempt ? selectw(best[i], fit.right[i], poor) : fit.right[i];
+        low = selectw(low, fit.low, poor) & spread;
+        const maskw noisy = isNoisy(&fit, &chart);
+        // What a ridge decides is not moved by noise, and not right for that.
+        poor &= attempt ? noisy | (unsure & moved) : noisy | unsure | (chart.round < LEAST_ROUND);
+        moved = noisy;
+        if (attempt == 2 || !anyw(poor)) break;
+        moments.uu = moments.uv = moments.vv = moments.nn = 0.0f, moments.weight = 1e-20f;
+        const Walk intoMoments = {slices,    rings,  runs, links,    rounds,
+                                  positions, &chart, 0,    &moments, attempt};
+        if (attempt)
+            walkFurther(&intoMoments, ring, poor);
+        else
+            walkPoints(&intoMoments, ring, poor);
+        poor = widenChart(&chart, &moments, poor);
     }
+    if (counts && anyw(low)) atomic_add(&counts->lowDegreeFits, countLanes(low, first, slots));
 
     // Back to derivatives of the height, in units of the reach, by the tangent vectors.
     const floatw fx = best[0], fxx = best[2], fxy = best[3];

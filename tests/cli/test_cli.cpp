@@ -201,6 +201,32 @@ TEST_F(Cli, WhatCanBeRepairedIsCounted) {
     for (float v : values) EXPECT_TRUE(std::isfinite(v));
 }
 
+TEST_F(Cli, TrianglesThatFaceAnotherWayAreToldOrTurned) {
+    std::ifstream file(icosahedron());
+    std::string text(std::istreambuf_iterator<char>(file), {});
+    text.replace(text.find("3 0 11 5\n"), 8, "3 0 5 11");
+    const std::string mesh = write("turned.off", text);
+    const auto report = [&](std::vector<std::string> more, int exitCode) {
+        std::vector<std::string> all = {"curvature", mesh, "-o", path("c.npy"), "--json"};
+        all.insert(all.end(), more.begin(), more.end());
+        const Result result = run(all);
+        EXPECT_EQ(result.exitCode, exitCode) << result.err;
+        return exitCode ? nlohmann::json() : result.json();
+    };
+    nlohmann::json told = report({}, 0);
+    EXPECT_EQ(told.at("inconsistent_edges"), 3);
+    EXPECT_EQ(told.at("low_degree_fits"), 12) << "two rings of five tell no cubic";
+    ASSERT_EQ(told.at("warnings").size(), 1u);
+    EXPECT_EQ(told.at("warnings")[0].get<std::string>().find("1 triangle faces another way"), 0u);
+    report({"--strict"}, 3);
+    told = report({"--orient", "--strict"}, 0);
+    EXPECT_EQ(told.at("inconsistent_edges"), 0);
+    EXPECT_EQ(told.at("triangles_turned"), 1);
+    const auto values = npy::read<float>(path("c.npy")).data;
+    EXPECT_EQ(run({"curvature", icosahedron(), "-o", path("whole.npy")}).exitCode, 0);
+    EXPECT_EQ(values, npy::read<float>(path("whole.npy")).data);
+}
+
 TEST_F(Cli, BadMeshesAreRefusedWithTheirPlace) {
     const auto refused = [&](const std::string& name, const std::string& text, const std::string& message) {
         expectRefused({"curvature", write(name, text), "-o", path("c.npy")}, 3, message);

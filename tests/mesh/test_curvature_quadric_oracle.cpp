@@ -116,27 +116,46 @@ std::vector<std::pair<std::string, reference::Mesh>> meshes() {
                      tessellate(monkeySaddle(2), sized(24, 10), sized(17, 8), irregular).mesh);
     orient(all.back().second);
     addNoise(all.back().second, 0.05, 6);
+    // So far away that rounding of positions shows: the three-ring.
+    const FlatMesh refined = redGreen(delaunay(uniformPoints(sized(400, 120), 5)), 0.3, 2);
+    all.emplace_back("refined ellipsoid, far away", lifted(refined, ellipsoidCap(1, 1.5, 2)).mesh);
+    for (Vec3& p : all.back().second.positions) p = p + Vec3{30, 40, -20};
     return all;
 }
 
-std::vector<float> measured(const Mesh& mesh, PelCurvatureQuantity quantity, uint32_t floats) {
+Result measure(const Mesh& mesh, PelCurvatureQuantity quantity, uint32_t floats) {
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     params.estimator = PEL_CURVATURE_QUADRIC;
     params.quantity = quantity;
     params.smoothingPasses = 0;
-    return curvature(mesh, topologyDesc(mesh), params, floats).values;
+    return curvature(mesh, topologyDesc(mesh), params, floats);
+}
+
+std::vector<float> measured(const Mesh& mesh, PelCurvatureQuantity quantity, uint32_t floats) {
+    return measure(mesh, quantity, floats).values;
 }
 
 }  // namespace
 
 TEST(CurvatureQuadricOracle, AllQuantities) {
     std::set<size_t> valences;
-    size_t borders = 0, replaced = 0, wide = 0;
+    size_t borders = 0, replaced = 0, wide = 0, wider = 0, lowOfAll = 0;
     for (const auto& [name, given] : meshes()) {
         SCOPED_TRACE(name);
         const Pair pair = pairOf(given);
         const auto expected = reference::quadricCurvature(pair.exact);
-        const auto frames = measured(pair.mesh, PEL_QUANTITY_FRAME, 8);
+        const Result frame = measure(pair.mesh, PEL_QUANTITY_FRAME, 8);
+        const auto& frames = frame.values;
+        size_t low = 0, unsure = 0;
+        for (const auto& k : expected)
+            if (std::min(k.margin, k.lowMargin) < tolerance::quadricDecision)
+                ++unsure;
+            else
+                low += k.low;
+        EXPECT_GE(frame.report.lowDegreeFits, low);
+        EXPECT_LE(frame.report.lowDegreeFits, low + unsure);
+        EXPECT_LE(unsure, expected.size() / sized<size_t>(25, 8));
+        lowOfAll += low;
         const auto means = measured(pair.mesh, PEL_QUANTITY_MEAN, 1),
                    gaussians = measured(pair.mesh, PEL_QUANTITY_GAUSSIAN, 1);
         double largest = 0;
@@ -157,6 +176,7 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
             borders += k.border;
             replaced += k.replaced;
             wide += k.wide;
+            wider += k.wider;
             const float* f = &frames[8 * v];
             const reference::Vec3 d1{f[2], f[3], f[4]}, d2{f[5], f[6], f[7]};
             const double errors[5] = {
@@ -183,6 +203,8 @@ TEST(CurvatureQuadricOracle, AllQuantities) {
     EXPECT_GT(borders, 100u);
     EXPECT_GT(replaced, 5u);
     EXPECT_GT(wide, 500u);
+    EXPECT_GT(wider, 20u);
+    EXPECT_GT(lowOfAll, 50u);
 }
 
 // Neither does a result depend on where the tangent frame's axes point: the ridge that decides at borders weighs all

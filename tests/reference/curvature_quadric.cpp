@@ -66,6 +66,15 @@ std::map<int, int> twoRing(const std::vector<Neighbourhood>& all, int vertex) {
     return counts;
 }
 
+// The points of the two-ring and, as often as they come up, the rings of these, if those have at most 36 neighbours.
+std::map<int, int> threeRing(const std::vector<Neighbourhood>& all, int vertex, const std::map<int, int>& two) {
+    std::map<int, int> counts = two;
+    for (const auto& [point, count] : two)
+        for (int f : all[point].ring)
+            if (f != vertex && all[point].ring.size() <= 36) counts[f] += count;
+    return counts;
+}
+
 struct Frame {
     Vec3 u, v, n;
 };
@@ -171,14 +180,15 @@ void principal(QuadricCurvature& out, const Frame& frame, double hu, double hv, 
     out.secondDirection = cross(out.normal, out.firstDirection);
 }
 
-// All points as wide as long, near ones weighing more.
-void widen(Chart& chart, const Mesh& mesh, const std::map<int, int>& points, int vertex, bool replaced) {
+// All points as wide as long, near ones weighing more, or all alike.
+void widen(Chart& chart, const Mesh& mesh, const std::map<int, int>& points, int vertex, bool replaced,
+           bool alike) {
     double uu = 0, uv = 0, vv = 0, nn = 0, total = 0;
     for (const auto& [point, count] : points) {
         const Vec3 p = (mesh.positions[point] - mesh.positions[vertex]) / chart.unit;
         const double u = dot(p, chart.frame.u), v = dot(p, chart.frame.v);
         const double n = dot(p, chart.frame.n) - chart.slopeU * u - chart.slopeV * v;
-        const double weight = count / (0.05 + dot(p, p));
+        const double weight = alike ? count : count / (0.05 + dot(p, p));
         uu += weight * u * u, uv += weight * u * v, vv += weight * v * v, nn += weight * n * n, total += weight;
     }
     // Its unit makes the mean square of the distance 0.72.
@@ -210,9 +220,26 @@ double distinct(const std::array<std::array<double, 9>, 9>& a) {
                     determinant(a, 0, 9) / (five * determinant(a, 5, 9)));
 }
 
+// Of the quadratic and cubic terms the one that the points tell least of, beside the ones before it: what it adds to the sum of
+// squares, of which `added` times its share is the ridge's, in parts of the ridge inside of a mesh.
+double leastTold(std::array<std::array<double, 9>, 9> a, double total, bool border) {
+    double least = 1e30;
+    for (size_t i = 0; i < 9; ++i) {
+        const double ridge = i < 5 ? 1e-7 : 1e-5, added = i >= 5 && border ? 1e-3 : ridge;
+        const double share = i == 3 ? 2 : i == 6 || i == 7 ? 3 : 1;
+        if (i >= 2) least = std::min(least, (a[i][i] / (total * share) - added) / ridge);
+        for (size_t k = i + 1; k < 9; ++k)
+            for (size_t j = 9; j-- > i;) a[k][j] -= a[k][i] / a[i][i] * a[i][j];
+    }
+    return least;
+}
+
 struct Fit {
     std::array<double, 9> solution{};
+    double told = 0;
     double distinct = 0;
+    double noise =
+        0;  // error of H for an error 1 of every height and of the vertex's own, times the square of the reach
     int points = 0;
 };
 
@@ -221,7 +248,8 @@ Fit fitTo(const Mesh& mesh, const std::map<int, int>& points, const Chart& chart
     Fit fit;
     std::array<std::array<double, 9>, 9> matrix{};
     std::array<double, 9> right{};
-    double total = 0;
+    double total = 0, weights2 = 0;
+    std::array<double, 9> ones{};
     for (const auto& [point, count] : points) {
         const Vec3 p = (mesh.positions[point] - mesh.positions[vertex]) / chart.unit;
         const double u = dot(p, chart.frame.u), v = dot(p, chart.frame.v);
@@ -235,9 +263,11 @@ Fit fitTo(const Mesh& mesh, const std::map<int, int>& points, const Chart& chart
         const double terms[9] = {
             x, y, x * x / 2, x * y, y * y / 2, x * x * x / 6, x * x * y / 2, x * y * y / 2, y * y * y / 6};
         total += count * std::min(weight, 20.0);
+        weights2 += count * weight * weight;
         ++fit.points;
         for (int i = 0; i < 9; ++i) {
             right[i] += count * weight * z * terms[i];
+            ones[i] += count * weight * terms[i];
             for (int j = 0; j < 9; ++j) matrix[i][j] += count * weight * terms[i] * terms[j];
         }
     }
@@ -246,8 +276,36 @@ Fit fitTo(const Mesh& mesh, const std::map<int, int>& points, const Chart& chart
     for (int i = 0; i < 9; ++i) matrix[i][i] += total * often[i] * (i < 5 ? 1e-7 : border ? 1e-3 : 1e-5);
     if (!(total > 0)) return fit;
     fit.distinct = distinct(matrix);
+    fit.told = leastTold(matrix, total, border);
     fit.solution = solve(matrix, right);
+    // Of the error of heights, what the sum of squares leaves to H.
+    std::array<double, 9> trace{};
+    trace[2] = chart.xu * chart.xu / 2, trace[3] = chart.xu * chart.yu;
+    trace[4] = (chart.yu * chart.yu + chart.yv * chart.yv) / 2;
+    const std::array<double, 9> part = solve(matrix, trace);
+    double square = 0;
+    double own = 0;
+    for (int i = 0; i < 9; ++i) square += part[i] * trace[i], own += part[i] * ones[i];
+    fit.noise = std::sqrt(square * weights2 / total + own * own) * std::pow(chart.reach / chart.unit, 2);
+
     return fit;
+}
+
+// Whether float rounding of positions, which moves heights by 2^-25 (root mean square) of what the position has along the normal,
+// moves H by too much. What is far from one of the thresholds decides however near another one is.
+bool isNoisy(const Fit& fit, const Chart& chart, Vec3 at, double& margin) {
+    const Vec3 n = chart.frame.n;
+    const double noise =
+        fit.noise * std::ldexp(1, -25) * length(Vec3{n.x * at.x, n.y * at.y, n.z * at.z}) / chart.reach;
+    const auto& s = fit.solution;
+    const double xu = chart.xu, yu = chart.yu, yv = chart.yv, part = chart.reach / chart.unit;
+    const double uu = xu * xu * s[2] + 2 * xu * yu * s[3] + yu * yu * s[4], uv = yv * (xu * s[3] + yu * s[4]),
+                 vv = yv * yv * s[4];
+    const double bent = part * std::sqrt((uu * uu + 2 * uv * uv + vv * vv) / 2);
+    const double over[] = {noise / 3e-5, noise / (0.01 * bent), fit.noise / 3};
+    const double least = std::min({over[0], over[1], over[2]});
+    nearer(margin, least, 1);
+    return least > 1;
 }
 
 }  // namespace
@@ -278,17 +336,29 @@ std::vector<QuadricCurvature> quadricCurvature(const Mesh& mesh) {
             chart = chartOf(mesh, ring, vertex, normalized(sum), true);
         }
 
-        const std::map<int, int> points = twoRing(all, vertex);
+        std::map<int, int> points = twoRing(all, vertex);
         double fine = 1;  // of the narrow fit, which does not count where it is not used
         Fit fit = fitTo(mesh, points, chart, vertex, out.border, fine);
         nearer(out.margin, fit.distinct, 1e-3);
         nearer(out.margin, chart.round, 0.1);
-        if (fit.distinct < 1e-3 || chart.round < 0.1) {
+        bool noisy = isNoisy(fit, chart, mesh.positions[vertex], out.margin);
+        if (noisy || fit.distinct < 1e-3 || chart.round < 0.1) {
             out.wide = true;
-            widen(chart, mesh, points, vertex, out.replaced);
+            widen(chart, mesh, points, vertex, out.replaced, false);
+            fine = 1;
+            fit = fitTo(mesh, points, chart, vertex, out.border, fine);
+            if (noisy) nearer(out.margin, fit.distinct, 1e-3);
+            noisy = isNoisy(fit, chart, mesh.positions[vertex], out.margin) || (noisy && fit.distinct < 1e-3);
+            out.wider = noisy;
+        }
+        if (out.wider) {
+            points = threeRing(all, vertex, points);
+            widen(chart, mesh, points, vertex, out.replaced, true);
             fine = 1;
             fit = fitTo(mesh, points, chart, vertex, out.border, fine);
         }
+        nearer(out.lowMargin, fit.told, 1);
+        out.low = fit.told < 1;
         out.margin = std::min(out.margin, fine);
         out.points = fit.points;
         const std::array<double, 9>& s = fit.solution;

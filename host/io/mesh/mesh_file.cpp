@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <pellucid/pellucid.hpp>
 
 #include "io/file_error.h"
 #include "io/image/color_map.h"
@@ -90,6 +91,30 @@ void checkNormals(MeshData& mesh) {
                             " missing, zero or not finite");
 }
 
+// Neighbours that face opposite ways: turned, or told.
+void checkOrder(MeshData& mesh, bool orient) {
+    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
+    desc.numVertices = static_cast<uint32_t>(mesh.vertexCount());
+    desc.indices = mesh.triangles.data();
+    desc.numIndices = mesh.triangles.size();
+    desc.weld = PEL_WELD_EXACT;
+    desc.positions = mesh.positions.data();
+    std::vector<uint32_t> turned(mesh.triangles.size());
+    const PelMeshOrientation found =
+        orientMesh(desc, turned.data(), mesh.normals.empty() ? nullptr : mesh.normals.data());
+    const std::string triangles = counted(found.trianglesTurned, "triangle faces", "triangles face");
+    if (orient) {
+        mesh.triangles = std::move(turned);
+        mesh.trianglesTurned = found.trianglesTurned;
+    } else if (found.trianglesTurned > 0)
+        mesh.warnings.push_back(triangles +
+                                " another way than the neighbours: normals made from them cancel out");
+    if (found.inconsistentEdges > 0)
+        mesh.warnings.push_back("a surface with one side only: at " +
+                                counted(found.inconsistentEdges, "edge", "edges") +
+                                " the two triangles face opposite ways whichever is turned");
+}
+
 }  // namespace
 
 MeshData loadMesh(const std::string& path, const MeshLoadOptions& options) {
@@ -130,6 +155,7 @@ MeshData decodeMesh(const std::string& path, const std::string& text, const Mesh
         throw FileError(path, "has " + counted(mesh.vertexCount(), "vertex", "vertices") +
                                   " but no face with three corners; a surface was expected");
     }
+    checkOrder(mesh, options.orient);
     return mesh;
 }
 

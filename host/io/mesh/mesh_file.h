@@ -14,6 +14,7 @@ struct MeshData {
     std::vector<float> uvs;           // u, v per vertex, or empty
     std::vector<uint32_t> triangles;  // three indices each; polygons come as fans round their first corner
     std::vector<uint32_t> splitFrom;  // vertices beyond the file's own, made at UV seams: which one each copies
+    size_t trianglesTurned = 0;       // by MeshLoadOptions.orient
     std::vector<std::string> warnings;  // what was left out or repaired, one sentence each
     std::string source;                 // the file, for messages
 
@@ -26,6 +27,9 @@ struct MeshLoadOptions {
     // file's own vertices (see splitFrom), so that a renderer can use them. False: UVs that differ are an
     // average nobody wants, so none are loaded, and the vertices are exactly the file's.
     bool splitUvSeams = false;
+    // Turns triangles that face another way than their neighbours (pelMeshOrient, by the file's normals if it has some). False:
+    // they stay, with a warning.
+    bool orient = false;
 };
 
 // Parses with OpenMesh, but keeps every face, also those that make an edge non-manifold, which an OpenMesh
@@ -36,7 +40,7 @@ MeshData loadMesh(const std::string& path, const MeshLoadOptions& options = {});
 MeshData decodeMesh(const std::string& path, const std::string& text, const MeshLoadOptions& options = {});
 
 // Unit normals: face normals weighted with the corner's angle, summed over all vertices at the same position,
-// so that seams do not show. Vertices of no triangle get (0, 0, 1).
+// so that seams do not show; where they face opposite ways they cancel out. Vertices of no triangle get (0, 0, 1).
 void computeNormals(MeshData& mesh);
 
 // `levels` times four triangles from one, with OpenMesh's Loop scheme; UVs are interpolated linearly, normals
