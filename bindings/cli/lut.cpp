@@ -3,6 +3,10 @@
 #include "io/lut/profile_file.h"
 
 #include "command.h"
+#include "io/atomic_file.h"
+#include "io/image/image_file.h"
+#include "io/image/tone_map.h"
+#include "shade_picture.h"
 
 namespace pellucid::cli {
 namespace {
@@ -36,15 +40,25 @@ Profile takeProfile(const Arguments& arguments, Desc& desc) {
     return profile;
 }
 
+// A picture of the table to look at: its values as linear light, from 0 to 1.
+void writeTablePicture(const std::string& path, const Lut& lut, uint32_t width, uint32_t height) {
+    io::ToneMap plain;
+    plain.curve = io::ToneCurve::none;
+    io::writeImage8(path, int(width), int(height), 3, io::toSrgb8(lut.read<float>(PEL_LUT_FLOAT), plain));
+}
+
 template <class Desc>
 void integrate(Arguments& arguments, Desc& desc) {
     parseSize(arguments.size, desc.width, desc.height);
     const bool bc6h = arguments.encoding == "bc6h";
+    const bool picture = arguments.encoding.empty() && isPicture(arguments.output);
     std::optional<PelLutEncoding> encoding;
     if (!arguments.encoding.empty() && !bc6h) encoding = encodings.at(arguments.encoding);
     try {
         if (bc6h)
             io::checkLutPathBc6h(arguments.output);
+        else if (picture)
+            io::checkWritable(arguments.output);
         else
             encoding = io::checkLutPath(arguments.output, encoding);
     } catch (const std::exception& e) {  // before any work: the output is the user's choice
@@ -57,9 +71,15 @@ void integrate(Arguments& arguments, Desc& desc) {
         const io::TexelError error = io::writeLutBc6h(arguments.output, lut);
         run.report["encoding_error_max"] = error.max;
         run.report["encoding_error_rms"] = error.rms;
+    } else if (picture) {
+        writeTablePicture(arguments.output, lut, desc.width, desc.height);
     } else {
         io::writeLut(arguments.output, lut, encoding);
     }
+    static constexpr const char* names[] = {"float", "half", "faceworks8"};  // PelLutEncoding
+    run.report["encoding"] = bc6h      ? "bc6h"
+                             : picture ? "picture: sRGB, to look at; engines need --encoding"
+                                       : names[*encoding];
     run.report["width"] = desc.width;
     run.report["height"] = desc.height;
     run.report["texels"] = uint64_t(desc.width) * desc.height;
@@ -74,7 +94,9 @@ void addCommon(CLI::App& command, Arguments& a) {
     command.add_option("--size", a.size, "texels, WxH")->capture_default_str();
     command
         .add_option("--encoding", a.encoding,
-                    "float, half, faceworks8, or bc6h for .dds and .ktx2 (default: by the file's kind)")
+                    "float, half, faceworks8 (.png, .bmp, .tga for engines), or bc6h for .dds and .ktx2 "
+                    "(default: float for .exr "
+                    "and .npy, half for .dds and .ktx2; a .png without it is a picture to look at)")
         ->check(CLI::IsMember({"float", "half", "faceworks8", "bc6h"}));
     addRunOptions(command, a.run);
 }

@@ -8,14 +8,16 @@
 #include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/scene/scene_keys.h"
+#include "shade_picture.h"
 
 namespace pellucid::cli {
 namespace {
 
 struct Arguments {
     Run::Options run;
-    std::string gbuffer, scene, output;
-    std::vector<std::string> parts;
+    std::string gbuffer, scene, output, picture;
+    std::vector<std::string> parts, show{"final"};
+    io::ToneMap tone;
     bool stats = false;
     uint64_t scratchMib = 0;
 };
@@ -23,7 +25,7 @@ struct Arguments {
 // The files to write beside radiance: those of the scene, and those of --outputs, named after -o.
 std::vector<std::pair<PelImageSlot, std::string>> outputFiles(const Arguments& a, const io::SceneFile& scene) {
     std::vector<std::pair<PelImageSlot, std::string>> files;
-    const std::string stem = a.output.substr(0, a.output.size() - 4);
+    const std::string stem = a.output.substr(0, a.output.rfind('.'));
     for (const auto& [slot, key] : io::outputKeys) {
         if (!scene.outputs[slot].empty()) files.emplace_back(slot, scene.outputs[slot]);
         for (const std::string& part : a.parts)
@@ -66,17 +68,27 @@ void warnOfInvalid(Run& run, const PelShaderStats& stats) {
 
 void run(const Arguments& a) {
     try {
-        io::requireExtension(a.output, {"exr"});
+        io::requireExtension(a.output, {"exr", "png", "jpg", "jpeg", "bmp", "tga"});
         io::checkWritable(a.output);
+        if (!a.picture.empty()) {
+            io::requireExtension(a.picture, {"png", "jpg", "jpeg", "bmp", "tga"});
+            io::checkWritable(a.picture);
+        }
     } catch (const io::FileError& e) {
         throw UsageError(e.what());
     }
+    const std::string picture = isPicture(a.output) ? a.output : a.picture;
+    if (picture.empty() && a.show != std::vector<std::string>{"final"})
+        throw UsageError(
+            "--show: parts are shown in a picture; name one with --picture, or write -o to a .png");
+    if (picture == a.output && !a.picture.empty())
+        throw UsageError("--picture: -o is a picture already; write -o to an .exr, or leave --picture out");
     Run run(a.run);
     const io::SceneFile scene = io::readScene(a.scene);
     const io::Image gbuffer = io::readImage(a.gbuffer);
     const auto files = outputFiles(a, scene);
     std::vector<PelImageSlot> outputs;
-    std::set<std::string> distinct{a.output};
+    std::set<std::string> distinct{a.output, a.picture};
     for (const auto& [slot, file] : files) {
         if (outputs.empty() || outputs.back() != slot) outputs.push_back(slot);
         io::requireExtension(file, {"exr"});
@@ -84,6 +96,11 @@ void run(const Arguments& a) {
             throw io::FileError(file, "would be written twice; give each output a name of its own");
         io::checkWritable(file);
     }
+    if (!picture.empty())
+        for (const std::string& part : a.show)
+            if (const PelImageSlot slot = slotOfPart(part);
+                slot != PEL_SLOT_RADIANCE && std::ranges::find(outputs, slot) == outputs.end())
+                outputs.push_back(slot);
     LutStore luts(run.device());
     PelShaderOptions options = pelShaderOptionsDefaults();
     options.countPixels = a.stats;
@@ -97,9 +114,11 @@ void run(const Arguments& a) {
         for (std::string line; std::getline(warnings, line);) run.warn(line);
         for (const std::string& sentence : unlikely(gbuffer, scene)) run.warn(sentence);
         warnOfInvalid(run, stats);
-        writeRadiance(a.output, gbuffer.width, gbuffer.height, frame.radiance());
+        if (picture != a.output) writeRadiance(a.output, gbuffer.width, gbuffer.height, frame.radiance());
+        if (!picture.empty()) writeShadePicture(picture, gbuffer, frame, a.show, a.tone);
         for (const auto& [slot, file] : files) writeOutput(file, slot, gbuffer, frame);
         run.report["output"] = a.output;
+        if (!a.picture.empty()) run.report["picture"] = a.picture;
         for (const auto& [slot, file] : files) run.report["outputs"].push_back(file);
         run.report["width"] = gbuffer.width;
         run.report["height"] = gbuffer.height;
@@ -129,7 +148,16 @@ void addShade(CLI::App& app) {
     auto a = std::make_shared<Arguments>();
     command->add_option("gbuffer", a->gbuffer, "multi-layer EXR")->required();
     command->add_option("--scene", a->scene, "scene file (TOML): lights, materials, which channel is what")->required();
-    command->add_option("-o,--output", a->output, "EXR to write: radiance R, G, B")->required();
+    command
+        ->add_option(
+            "-o,--output", a->output,
+            "file to write: .exr for radiance R, G, B; .png, .jpg, .bmp or .tga for a picture to look at")
+        ->required();
+    command->add_option("--picture", a->picture, "picture to write beside an .exr");
+    addToneOptions(*command, a->tone);
+    command->add_option("--show", a->show, "what the picture shows, side by side (default: final)")
+        ->delimiter(',')
+        ->check(CLI::IsMember(showableParts()));
     command
         ->add_option("--outputs", a->parts,
                      "parts of the picture to write beside it, as OUT_diffuse.exr and so on")

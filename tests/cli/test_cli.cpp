@@ -276,26 +276,43 @@ TEST_F(Cli, LutFilesHoldTheLibrarysTexels) {
     EXPECT_EQ(bytes.shape, (std::vector<size_t>{10, 24, 4}));
     EXPECT_EQ(bytes.data, expected.read<uint8_t>(PEL_LUT_FACEWORKS8));
     for (const char* name : {"b.png", "b.bmp"}) {
-        make(name, "");
+        make(name, "faceworks8");
         const io::Image image = io::readImage(path(name));
         ASSERT_EQ(image.channels.size(), 4u);
         for (size_t i = 0; i < bytes.data.size(); ++i) {
             ASSERT_EQ(std::lround(255 * image.channels[i % 4].pixels[i / 4]), bytes.data[i]) << name << ' ' << i;
         }
     }
-    EXPECT_EQ(
-        run({"lut", "curvature", "--size", "24x10", "--radius-min", "0.5", "-o", path("c.png"), "--json"})
-            .json()
-            .at("clipped_texels"),
-        [&] {
-            desc = pelCurvatureLutDescDefaults();
-            desc.width = 24;
-            desc.height = 10;
-            desc.radiusMin = 0.5;
-            return Lut(device, desc).clippedTexels();
-        }());
+    EXPECT_EQ(run({"lut", "curvature", "--size", "24x10", "--radius-min", "0.5", "--encoding", "faceworks8",
+                   "-o", path("c.png"), "--json"})
+                  .json()
+                  .at("clipped_texels"),
+              [&] {
+                  desc = pelCurvatureLutDescDefaults();
+                  desc.width = 24;
+                  desc.height = 10;
+                  desc.radiusMin = 0.5;
+                  return Lut(device, desc).clippedTexels();
+              }());
     make("h.exr", "half");
     EXPECT_EQ(io::readImage(path("h.exr")).channels[0].type, io::ChannelType::Half);
+}
+
+// A .png that no encoding was asked for is there to be looked at, and the report says so.
+TEST_F(Cli, ATableAsAPictureHasTheTablesValues) {
+    const Result result = run({"lut", "shadow", "--size", "16x8", "-o", path("look.png"), "--json"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_TRUE(contains(result.json().at("encoding"), "picture"));
+    ASSERT_EQ(run({"lut", "shadow", "--size", "16x8", "-o", path("t.exr"), "--json"}).json().at("encoding"),
+              "float");
+    const io::Image picture = io::readImage(path("look.png")), table = io::readImage(path("t.exr"));
+    ASSERT_EQ(picture.channels.size(), 3u);
+    for (const char* c : {"R", "G", "B"})
+        for (size_t i = 0; i < 16 * 8; ++i) {
+            const double x = std::clamp(double(table.channel(c).pixels[i]), 0.0, 1.0);
+            const double srgb = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+            EXPECT_NEAR(255 * picture.channel(c).pixels[i], 255 * srgb, 0.51) << c << i;
+        }
 }
 
 TEST_F(Cli, ShadowLutAndItsFlags) {

@@ -28,6 +28,58 @@ TEST_F(Shade, PlainLightIsAlbedoTimesCosine) {
     }
 }
 
+TEST_F(Shade, APictureToLookAt) {
+    std::vector<std::string> arguments = command();
+    ASSERT_EQ(run(arguments).exitCode, 0);
+    const io::Image radiance = io::readImage(path("o.exr"));
+    for (const std::string name : {"p.png", "p.jpg", "p.bmp", "p.tga"}) {
+        arguments = command();
+        arguments[5] = path(name);
+        arguments.insert(arguments.end(), {"--exposure", "0.5", "--tonemap", "none"});
+        const Result result = run(arguments);
+        ASSERT_EQ(result.exitCode, 0) << result.err;
+        const io::Image picture = io::readImage(path(name));
+        ASSERT_EQ(picture.width, width);
+        ASSERT_EQ(picture.channels.size(), 3u);
+        if (name == "p.jpg") continue;  // close to it only
+        for (const char* c : {"R", "G", "B"})
+            for (size_t i = 0; i < radiance.pixelCount(); ++i) {
+                const double x = std::min(0.5 * radiance.channel(c).pixels[i], 1.0);
+                const double srgb = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+                EXPECT_NEAR(255 * picture.channel(c).pixels[i], 255 * srgb, 0.51) << name << c << i;
+            }
+    }
+}
+
+TEST_F(Shade, APictureBesideTheRadianceShowsParts) {
+    std::vector<std::string> arguments = command();
+    arguments.insert(arguments.end(),
+                     {"--picture", path("p.png"), "--show", "final,diffuse,specular", "--tonemap", "filmic"});
+    const Result result = run(arguments);
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_TRUE(io::readImage(path("o.exr")).has("R"));
+    const io::Image sheet = io::readImage(path("p.png"));
+    EXPECT_GT(sheet.width, 3 * width);
+    EXPECT_GT(sheet.height, height);
+}
+
+TEST_F(Shade, PicturesThatCannotBeAreRefused) {
+    const auto refused = [&](std::vector<std::string> more, const std::string& message) {
+        std::vector<std::string> arguments = command();
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        expectRefused(arguments, 2, message);
+    };
+    refused({"--show", "diffuse"}, "--picture");
+    refused({"--picture", path("p.exr")}, ".png");
+    refused({"--picture", path("p.png"), "--tonemap", "hollywood"}, "tonemap");
+    refused({"--picture", path("p.png"), "--exposure", "0"}, "exposure");
+    refused({"--picture", path("p.png"), "--show", "final,nothing"}, "show");
+    std::vector<std::string> arguments = command();
+    arguments[5] = path("o.png");
+    arguments.insert(arguments.end(), {"--picture", path("p.png")});
+    expectRefused(arguments, 2, "-o is a picture already");
+}
+
 // A frame of NaN is no black picture that nobody speaks of.
 TEST_F(Shade, InvalidPixelsAreCountedAndWarnedOf) {
     const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()};

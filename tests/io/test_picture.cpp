@@ -45,6 +45,43 @@ TEST(ToneMap, IsProportionalBelowTheShoulderAndSmoothAbove) {
     EXPECT_EQ(toneMapped(INFINITY, map), 1.0f);
 }
 
+TEST(ToneMap, CurvesRiseFromBlackToWhite) {
+    for (const ToneCurve curve : {ToneCurve::none, ToneCurve::soft, ToneCurve::filmic, ToneCurve::agxLike}) {
+        ToneMap map;
+        map.curve = curve;
+        uint8_t last = 0;
+        for (float x = 0; x < 64; x = 1.1f * x + 1e-4f) {
+            const std::vector<uint8_t> grey = toSrgb8(std::vector<float>{x, x, x}, map);
+            EXPECT_EQ(grey[0], grey[1]);
+            EXPECT_EQ(grey[1], grey[2]);
+            EXPECT_GE(grey[0], last) << x;
+            last = grey[0];
+        }
+        EXPECT_GT(last, 250) << int(curve);
+        const std::vector<float> bad{NAN, -1, -INFINITY, INFINITY, INFINITY, INFINITY};
+        const std::vector<uint8_t> shown = toSrgb8(bad, map);
+        EXPECT_EQ(shown[3], 255) << int(curve);
+        if (curve != ToneCurve::agxLike)
+            EXPECT_EQ((std::vector<uint8_t>{shown[0], shown[1], shown[2]}), (std::vector<uint8_t>{0, 0, 0}));
+    }
+}
+
+// Figures of the sources: Hable's page maps its white, 11.2 after twice the exposure, to 1; middle grey gets half the code
+// values of AgX.
+TEST(ToneMap, CurvesHitTheirSourcesPoints) {
+    ToneMap map;
+    map.curve = ToneCurve::filmic;
+    EXPECT_EQ(toSrgb8(std::vector<float>{5.6f}, map)[0], 255);
+    EXPECT_LT(toSrgb8(std::vector<float>{4.0f}, map)[0], 255);
+    map.curve = ToneCurve::agxLike;
+    EXPECT_NEAR(toSrgb8(std::vector<float>{0.18f, 0.18f, 0.18f}, map)[0], 127.5, 0.6);
+    EXPECT_EQ(toSrgb8(std::vector<float>{0.18f * 90.6f, 0.18f * 90.6f, 0.18f * 90.6f}, map)[0], 255);  // 6.5 stops above
+    // A saturated light turns paler the brighter it is.
+    const auto dim = toSrgb8(std::vector<float>{0.2f, 0, 0}, map),
+               bright = toSrgb8(std::vector<float>{20, 0, 0}, map);
+    EXPECT_GT(dim[0] - dim[1], bright[0] - bright[1]);
+}
+
 TEST(ToneMap, BytesAreSrgb) {
     const float rgb[] = {0.0f, 0.0031308f, 0.18f, 0.5f, 0.8f, INFINITY};
     // 0.18 is sRGB 0.4614, 0.5 is 0.7354, 0.8 is 0.9063 (IEC 61966-2-1).

@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "head/demo_head.h"
@@ -136,12 +137,15 @@ void writeBytes(const std::string& path, const Bytes& pixels, bool srgb) {
     io::writeImage8(path, width, height, channels, values, srgb);
 }
 
-Bytes toneMapped(const Pixels& rgb, float exposure, float shoulder) {
+Bytes toneMapped(const Pixels& rgb, float exposure, float shoulder, const std::string& curve) {
+    const auto known = std::ranges::find(io::toneCurves, curve);
+    if (known == std::end(io::toneCurves))
+        throw py::value_error("curve is '" + curve + "'; it must be soft, none, filmic or agx-like");
     std::vector<uint8_t> bytes;
     {
         const std::span<const float> values(rgb.data(), size_t(rgb.size()));
         const py::gil_scoped_release free;
-        bytes = io::toSrgb8(values, {exposure, shoulder});
+        bytes = io::toSrgb8(values, {exposure, shoulder, io::ToneCurve(known - std::begin(io::toneCurves))});
     }
     return array(bytes, {rgb.shape(), rgb.shape() + rgb.ndim()});
 }

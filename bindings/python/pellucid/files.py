@@ -83,8 +83,8 @@ def read_image(path: Any) -> dict[str, NDArray[np.float32]]:
     return dict(_files.read_image(str(path))[0])
 
 
-def write_image(path: Any, image: ArrayLike, *, exposure: float = 1.0, shoulder: float = 0.8, half: bool = False,
-                channels: Optional[list[str]] = None) -> None:
+def write_image(path: Any, image: ArrayLike, *, exposure: float = 1.0, shoulder: float = 0.8, curve: str = "soft",
+                half: bool = False, channels: Optional[list[str]] = None) -> None:
     """Writes linear radiance, complete or not at all.
 
     Parameters
@@ -107,9 +107,14 @@ def write_image(path: Any, image: ArrayLike, *, exposure: float = 1.0, shoulder:
             raise ValueError(f"{pixels.shape[2]} channels need as many names")
         _files.write_exr(name, names, pixels, half)
     else:
-        _files.write_bytes(name, np.ascontiguousarray(pixels if pixels.dtype == np.uint8 else tonemap(pixels, exposure, shoulder)), True)
+        _files.write_bytes(name, np.ascontiguousarray(pixels if pixels.dtype == np.uint8 else tonemap(pixels, exposure, shoulder, curve)), True)
 
 
-def tonemap(radiance: ArrayLike, exposure: float = 1.0, shoulder: float = 0.8) -> NDArray[np.uint8]:
-    """Linear RGB of any shape to sRGB bytes: proportional to radiance up to `shoulder`, then towards white. NaN is black."""
-    return np.asarray(_files.tone_mapped(np.asarray(radiance, np.float32), exposure, shoulder))
+def tonemap(radiance: ArrayLike, exposure: float = 1.0, shoulder: float = 0.8, curve: str = "soft") -> NDArray[np.uint8]:
+    """Linear RGB, (..., 3), to sRGB bytes.
+
+    curve : str
+        "soft": proportional to radiance up to `shoulder`, then towards white; "none": cut at 1; "filmic" [Hable 2010];
+        "agx-like" [after Sobotka 2022]. NaN is black.
+    """
+    return np.asarray(_files.tone_mapped(np.asarray(radiance, np.float32), exposure, shoulder, curve))

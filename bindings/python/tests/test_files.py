@@ -59,6 +59,10 @@ def test_tone_mapping_is_srgb_below_the_shoulder():
     srgb = np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.maximum(x, 1e-9) ** (1 / 2.4) - 0.055)
     assert np.array_equal(y[:5], np.rint(255 * srgb[:5]))
     assert y[5] == 0 and y[6] == 0 and y[7] == 255
+    grey = np.full((4, 3), 0.18, np.float32)
+    assert files.tonemap(grey, curve="agx-like").tolist() == [[128] * 3] * 4
+    with pytest.raises(ValueError, match="soft, none, filmic or agx-like"):
+        files.tonemap(grey, curve="sepia")
 
 
 def test_wrong_use_says_what_would_be_right(tmp_path):

@@ -156,13 +156,16 @@ void writeExr(const std::string& path, const Image& image) {
 
 void writeImage8(const std::string& path, int width, int height, int channels,
                  std::span<const uint8_t> pixels, bool srgb) {
-    requireExtension(path, {"png", "bmp", "tga"});
+    const std::string extension = requireExtension(path, {"png", "jpg", "jpeg", "bmp", "tga"});
+    const bool jpeg = extension == "jpg" || extension == "jpeg";
+    if (jpeg && channels == 4) throw FileError(path, "JPEG holds no alpha; 1 or 3 channels do");
     if (pixels.size() !=
         static_cast<size_t>(width) * static_cast<size_t>(height) * static_cast<size_t>(channels)) {
         throw std::invalid_argument("writeImage8: the number of bytes does not fit the size");
     }
     ImageSpec spec(width, height, channels, TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", srgb ? "sRGB" : "Linear");
+    if (jpeg) spec.attribute("CompressionQuality", 95);
     spec.attribute("oiio:UnassociatedAlpha", 1);  // else some writers divide the colours by alpha
     writeWithOiio(path, spec, TypeDesc::UINT8, pixels.data());
 }

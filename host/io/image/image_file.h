@@ -63,8 +63,8 @@ Image decodeImage(const std::string& path, std::string bytes,
 // their bits.
 void writeExr(const std::string& path, const Image& image);
 
-// Writes interleaved 8-bit pixels (1, 3 or 4 channels) as .png, .bmp or .tga, the bytes as they are. `srgb`
-// says only what a PNG should declare the bytes to be: sRGB-encoded, or linear.
+// Writes interleaved 8-bit pixels (1, 3 or 4 channels) as .png, .bmp or .tga, the bytes as they are, or
+// (1 or 3 channels) as .jpg. `srgb` says only what a PNG should declare the bytes to be: sRGB-encoded, or linear.
 void writeImage8(const std::string& path, int width, int height, int channels,
                  std::span<const uint8_t> pixels, bool srgb = true);
 

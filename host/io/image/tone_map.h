@@ -2,23 +2,33 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace pellucid::io {
 
+enum class ToneCurve {
+    soft,    // displayed values are proportional to radiance up to the shoulder, and approach 1 above it
+    none,    // proportional to 1, cut there
+    filmic,  // a toe and a long shoulder, per channel [Hable, Filmic Tonemapping Operators, 2010]
+    agxLike  // an S over stops, after colours were drawn towards grey: bright ones lose their colour, as on film
+             // [after Sobotka's AgX, 2022]
+};
+constexpr std::string_view toneCurves[] = {"soft", "none", "filmic", "agx-like"};  // ToneCurve
+
 struct ToneMap {
     float exposure = 1.0f;  // multiplies radiance
-    // Displayed values below it are proportional to radiance, so that pictures can be compared; above it they
-    // approach 1.
-    float shoulder = 0.8f;
+    float shoulder = 0.8f;  // of `soft`
+    ToneCurve curve = ToneCurve::soft;
 };
 
-// The displayed value, still linear, of one channel: x = exposure * radiance up to the shoulder s, then
-// s + (1 - s) t / (1 + t) with t = (x - s) / (1 - s): continuous with its slope. NaN and negative values give
-// 0.
+// The displayed value, still linear, of one channel by `soft`: x = exposure * radiance up to the shoulder s,
+// then s + (1 - s) t / (1 + t) with t = (x - s) / (1 - s): continuous with its slope. NaN and negative values
+// give 0.
 float toneMapped(float radiance, const ToneMap& map);
 
-// RGB float (interleaved) to sRGB bytes, rounded to nearest.
+// RGB float (interleaved) to sRGB bytes, rounded to nearest. NaN and negative values count as 0, Inf as the
+// largest float.
 std::vector<uint8_t> toSrgb8(std::span<const float> rgb, const ToneMap& map = {});
 
 }  // namespace pellucid::io

@@ -105,7 +105,7 @@ def export(session: Session, folder: Any, width: int = 1280, height: int = 720) 
             if map is not None:
                 write_image(out / f"shadow_{i}.exr", map.depth, channels=["Z"])
         write_image(out / "picture.exr", radiance)
-        write_image(out / "picture.png", radiance, exposure=look.exposure, shoulder=look.shoulder)
+        write_image(out / "picture.png", radiance, exposure=look.exposure, shoulder=look.shoulder, curve=look.curve)
         texts = {"scene.toml": scene_text(session, look, width, height), "look.json": json.dumps(look.to_dict(), indent=2) + "\n",
                  "look.cpp": snippet(session, look)}
         if look.profile == "custom":

@@ -75,7 +75,8 @@ class Look:
     lamps: list[Lamp] = field(default_factory=_lamps)
     shadow_size: int = 1024          # texels a side
     exposure: float = 1.0
-    shoulder: float = 0.8
+    curve: str = "soft"              # tone mapping
+    shoulder: float = 0.8            # of "soft"
     mode: str = "final"
 
     def copy(self) -> Look:

@@ -172,6 +172,7 @@ class Page:
                 ui.select(list(PRESETS), label="Preset", on_change=lambda e: self.preset(e.value)).props("dense options-dense data-pel=preset").classes("w-full")
             self.select("Picture", MODES, "mode")
             self.slider("Exposure", self.look, "exposure", 0.1, 4, 0.05)
+            self.select("Tone mapping", {"soft": "Soft", "none": "None", "filmic": "Filmic", "agx-like": "AgX-like"}, "curve")
             self.slider("Shoulder", self.look, "shoulder", 0.3, 1, 0.05)
             with ui.expansion("Material", value=True).classes("w-full"):
                 self.material()
@@ -342,7 +343,7 @@ class Page:
         if name not in PRESETS:
             return
         old, new = self.look, Look.from_dict(PRESETS[name])
-        for keep in ("lamps", "ambient", "shadow_size", "exposure", "shoulder", "mode", "target_error"):
+        for keep in ("lamps", "ambient", "shadow_size", "exposure", "curve", "shoulder", "mode", "target_error"):
             setattr(new, keep, getattr(old, keep))
         self.viewer.session.look = new
         self.build()

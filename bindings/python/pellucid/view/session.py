@@ -260,7 +260,7 @@ class Session:
         else:
             shown = p.outputs["radiance"]
         linear = mode in ("final", "lambert", "diffuse", "specular", "deep_scatter", "irradiance", "reference", "albedo")
-        return files.tonemap(shown, look.exposure if linear else 1.0, look.shoulder if linear else 1.0), p
+        return (files.tonemap(shown, look.exposure, look.shoulder, look.curve) if linear else files.tonemap(shown, curve="none")), p
 
     def frame(self, width: int, height: int, small: bool = False) -> Frame:
         """The picture of now. `small`: while something moves; shadow maps are of half the size."""

@@ -1,0 +1,76 @@
+#include "shade_picture.h"
+
+#include <algorithm>
+
+#include "io/image/picture.h"
+#include "io/scene/scene_keys.h"
+
+namespace pellucid::cli {
+namespace {
+
+constexpr float longest = 30;  // mm of thickness; hardly anything comes through more of skin
+
+}  // namespace
+
+std::vector<std::string> showableParts() {
+    std::vector<std::string> parts{"final"};
+    for (const io::OutputKey& output : io::outputKeys) parts.emplace_back(output.key);
+    return parts;
+}
+
+PelImageSlot slotOfPart(const std::string& part) {
+    for (const io::OutputKey& output : io::outputKeys)
+        if (part == output.key) return output.slot;
+    return PEL_SLOT_RADIANCE;
+}
+
+bool isPicture(const std::string& path) {
+    return std::ranges::any_of(
+        std::initializer_list<const char*>{".png", ".jpg", ".jpeg", ".bmp", ".tga"}, [&](std::string ending) {
+            return path.size() > ending.size() &&
+                   std::equal(ending.begin(), ending.end(), path.end() - ptrdiff_t(ending.size()),
+                              [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
+        });
+}
+
+void writeShadePicture(const std::string& path, const io::Image& gbuffer, const Frame& frame,
+                       const std::vector<std::string>& parts, const io::ToneMap& tone) {
+    std::vector<io::Tile> tiles;
+    for (const std::string& part : parts) {
+        const PelImageSlot slot = slotOfPart(part);
+        if (slot == PEL_SLOT_OUT_THICKNESS) {
+            const std::vector<float> lengths = frame.output(slot);
+            const io::Picture map = io::colored(gbuffer.width, gbuffer.height, lengths, 0, longest, lengths);
+            const io::Picture bar = io::colorBar(map.width, 0, longest, "length", 1);
+            io::Picture both(map.width, map.height + bar.height);
+            both.paste(0, 0, map);
+            both.paste(0, map.height, bar);
+            tiles.push_back({part, both});
+        } else {
+            tiles.push_back(
+                {part, io::Picture(gbuffer.width, gbuffer.height,
+                                   io::toSrgb8(slot == PEL_SLOT_RADIANCE ? frame.radiance() : frame.output(slot),
+                                               tone))});
+        }
+    }
+    const io::Picture whole = tiles.size() == 1 ? tiles[0].picture : io::contactSheet(tiles, int(tiles.size()));
+    io::writeImage8(path, whole.width, whole.height, 3, whole.rgb);
+}
+
+void addToneOptions(CLI::App& command, io::ToneMap& tone) {
+    command.add_option("--exposure", tone.exposure, "of pictures: multiplies radiance")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    std::map<std::string, io::ToneCurve> curves;
+    for (size_t i = 0; i < std::size(io::toneCurves); ++i)
+        curves[std::string(io::toneCurves[i])] = io::ToneCurve(i);
+    command
+        .add_option("--tonemap", tone.curve,
+                    "of pictures: soft (true to radiance up to 0.8, then a shoulder), none (cut at 1), "
+                    "filmic or agx-like "
+                    "(default: soft)")
+        ->transform(CLI::CheckedTransformer(curves, CLI::ignore_case).description(""))
+        ->option_text("CURVE");
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,27 @@
+// What `shade` writes to be looked at.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "frame.h"
+#include "io/image/tone_map.h"
+
+namespace pellucid::cli {
+
+// What can be shown; "final", then the output slots by their keys.
+std::vector<std::string> showableParts();
+// The slot of a part; PEL_SLOT_RADIANCE of "final".
+PelImageSlot slotOfPart(const std::string& part);
+
+// True for the extensions of pictures to look at: png, jpg, jpeg, bmp, tga.
+bool isPicture(const std::string& path);
+
+// The parts side by side, labelled where there is more than one, lengths as colours with a bar. `frame` was shaded with their
+// slots as outputs.
+void writeShadePicture(const std::string& path, const io::Image& gbuffer, const Frame& frame,
+                       const std::vector<std::string>& parts, const io::ToneMap& tone);
+
+// --exposure and --tonemap.
+void addToneOptions(CLI::App& command, io::ToneMap& tone);
+
+}  // namespace pellucid::cli
