@@ -7,7 +7,7 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _flight, _native
+from . import _flight, _native, _show
 from ._arrays import output_array
 from ._struct import OfThisProcess, to_enum
 from ._types import CurvatureLutDesc, LutEncoding, LutInfo, ShadowLutDesc, SpecularLutDesc
@@ -130,6 +130,24 @@ class Lut(OfThisProcess):
         result, event = self._submit_read(encoding, out, ())
         event.wait()
         return result
+
+    def __repr__(self) -> str:
+        info = self.info
+        size = getattr(info, info.kind.name.lower())
+        return f"<pellucid.Lut {info.kind.name.lower()}, {size.width} x {size.height}, {info.profile or 'no profile'}>"
+
+    def _repr_png_(self) -> bytes:
+        return _show.png(_show.srgb(self.read()))
+
+    def plot(self, ax: Optional[Any] = None) -> Any:
+        """Shows the table with its axes; returns matplotlib's axes (new ones without `ax`)."""
+        info, ax = self.info, _show.axes(ax)
+        across, down = {"CURVATURE": ("N.L", "curvature"), "SHADOW": ("shadow", "1 / penumbra width"),
+                        "SPECULAR": ("n.h", "roughness")}[info.kind.name]
+        ax.imshow(_show.srgb(self.read()), aspect="auto", extent=(-1 if across == "N.L" else 0, 1, 1, 0))
+        ax.set_xlabel(across)
+        ax.set_ylabel(f"{down}, from its smallest to its largest")
+        return ax
 
     def read_bc6h(self) -> tuple[NDArray[np.uint8], float, float]:
         """The texels as unsigned BC6H, one byte per texel, as graphics hardware samples it; waits.

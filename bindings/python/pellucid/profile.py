@@ -2,11 +2,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any, Optional
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _native
+from . import _native, _show
 from ._struct import OfThisProcess, to_enum
 from ._types import BurleyFit, ProfileInfo
 from .device import _filled
@@ -104,3 +105,31 @@ class Profile(OfThisProcess):
         radial, spread = np.empty((len(d), 3)), np.empty((len(d), 3))
         self._handle.evaluate(d.ctypes.data, len(d), radial.ctypes.data, spread.ctypes.data)
         return radial, spread
+
+    def __repr__(self) -> str:
+        info = self.info
+        return f"<pellucid.Profile {info.name or 'unnamed'}: {info.kind.name.lower()}, radius {info.radius:.4g}>"
+
+    def plot(self, ax: Optional[Any] = None) -> Any:
+        """Shows how much light leaves at each distance, 2 pi r R(r), per channel; returns matplotlib's axes (new ones without `ax`)."""
+        ax = _show.axes(ax)
+        distances = np.linspace(1e-3, 0.6, 300) * self.info.reach
+        radial, _ = self.evaluate(distances)
+        for c, name in enumerate(("red", "green", "blue")):
+            ax.plot(distances, 2 * np.pi * distances * radial[:, c], color=name, label=name)
+        ax.set_xlabel("distance (mm for profiles of the library)")
+        ax.set_ylabel("light per distance")
+        ax.set_title(self.info.name)
+        ax.legend()
+        return ax
+
+    def _repr_png_(self) -> Optional[bytes]:
+        try:
+            figure = self.plot().figure
+        except ImportError:
+            return None
+        import io
+
+        data = io.BytesIO()
+        figure.savefig(data, format="png", dpi=90)
+        return data.getvalue()

@@ -1,0 +1,48 @@
+"""How objects show themselves."""
+import io
+import sys
+
+import numpy as np
+import pytest
+
+import pellucid as pel
+from pellucid import _show
+
+Image = pytest.importorskip("PIL.Image", reason="pillow is not installed")
+
+
+def pixels(png):
+    return np.asarray(Image.open(io.BytesIO(png)))
+
+
+def test_png_bytes_are_read_by_others():
+    image = np.random.default_rng(2).integers(0, 256, (7, 5, 3), np.uint8)
+    assert np.array_equal(pixels(_show.png(image)), image)
+    assert _show.srgb([0, 0.0031308, 0.5, 1, 9, -1, np.nan]).tolist() == [0, 10, 188, 255, 255, 0, 0]
+
+
+def test_a_table_shows_its_texels(device):
+    lut = pel.Lut.curvature(device, width=16, height=8)
+    assert repr(lut) == "<pellucid.Lut curvature, 16 x 8, skin>"
+    assert np.array_equal(pixels(lut._repr_png_()), _show.srgb(lut.read()))
+    assert "specular" in repr(pel.Lut.specular(device, width=4, height=4))
+
+
+def test_plots(device):
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed")
+    profile = pel.Profile.named("jade")
+    assert repr(profile).startswith("<pellucid.Profile jade: burley, radius 5.57")
+    axes = profile.plot()
+    assert [line.get_color() for line in axes.lines] == ["red", "green", "blue"]
+    r, y = axes.lines[0].get_data()
+    assert 0.75 < np.trapezoid(y, r) < 1.01  # nearly all of the light
+    assert pixels(profile._repr_png_()).std() > 5
+    assert pel.Lut.shadow(device, width=8, height=8).plot().get_xlabel() == "shadow"
+    assert profile.plot(axes) is axes and len(axes.lines) == 6
+
+
+def test_without_matplotlib_it_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    with pytest.raises(ImportError, match=r"pellucid\[plot\]"):
+        pel.Profile.skin().plot()
+    assert pel.Profile.skin()._repr_png_() is None
