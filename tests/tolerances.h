@@ -390,6 +390,11 @@ inline constexpr Tolerance rulerHeadRed{"rulerHeadRed", 40, "Lambert with ray-tr
 inline constexpr Tolerance rulerHeadGreen{"rulerHeadGreen", 14, "Lambert: 30"};
 inline constexpr Tolerance rulerHeadBlue{"rulerHeadBlue", 9, "Lambert: 14"};
 inline constexpr Tolerance rulerMapBlue{"rulerMapBlue", 34, "irradiance alone, from texels of 0.33 mm: 33"};
+inline constexpr Tolerance scatterTapsRms{
+    "scatterTapsRms", 2e-3,
+    "taps that round to another pixel, where the profile's table ends a node further out"};
+inline constexpr Tolerance scatterTapsMost{"scatterTapsMost", 4e-2, "the same, of the worst pixel"};
+inline constexpr Tolerance scatterManyTaps{"scatterManyTaps", 6e-3, "256 taps on a disk against every pixel"};
 
 // --- tables as BC6H ---
 inline constexpr Tolerance bc6hMax{

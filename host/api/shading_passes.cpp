@@ -7,9 +7,10 @@ namespace pel {
 
 // A pass reads what those before it made.
 std::span<const PassKind> shadingPasses() {
-    static const PassKind passes[] = {ambientCubePass, classifyTilesPass, blurNormalsPass,
-                                      normalMapPass,   shadowBoundsPass,  wideShadowPass,
-                                      irradiancePass,  scatterPass,       shadePass};
+    static const PassKind passes[] = {
+        ambientCubePass, classifyTilesPass, blurNormalsPass,    normalMapPass, shadowBoundsPass,
+        wideShadowPass,  irradiancePass,    prepareScatterPass, diskPass,      separablePass,
+        scatterPass,     weighScatterPass,  shadePass};
     return passes;
 }
 

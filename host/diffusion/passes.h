@@ -4,6 +4,6 @@
 
 namespace pel {
 
-extern const PassKind scatterPass;
+extern const PassKind prepareScatterPass, diskPass, separablePass, scatterPass, weighScatterPass;
 
 }  // namespace pel

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "diffusion/scatter_material.h"
 #include "shading/check_settings.h"
 #include "shading/image_slots.h"
+#include "shading/scratch_image.h"
 
 namespace pel {
 namespace {
@@ -17,9 +18,6 @@ void checkParams(const PelScatterParams& params) {
     if (!(params.white > 0) || !std::isfinite(params.white))
         invalidArgument("PelScatterParams.white is ", params.white, "; a finite irradiance above 0 is needed");
     checkFinite("PelScatterParams", "inverseViewProjection", params.inverseViewProjection, 16);
-    if (params.accumulate)
-        fail(PEL_ERROR_UNSUPPORTED,
-             "PelScatterParams.accumulate is set, which this build of the library does not have");
 }
 
 void checkImages(const ScatterImages& images) {
@@ -79,11 +77,6 @@ void Scatter::setControls(uint32_t id, const PelScatterControls& c) {
     if (!(c.thinThickness >= 0) || !std::isfinite(c.thinThickness))
         invalidArgument("PelScatterControls.thinThickness is ", c.thinThickness,
                         "; a finite length of at least 0 is needed");
-    const PelScatterControls none = pelScatterControlsDefaults();
-    if (std::memcmp(&c, &none, sizeof none))
-        fail(PEL_ERROR_UNSUPPORTED,
-             "PelScatterControls other than the defaults are set, which this build of the library does not "
-             "have");
     controls_[id] = c;
 }
 
@@ -93,40 +86,159 @@ void Scatter::setImage(PelImageSlot slot, const ImageView& view) {
             "image slot ", int(slot),
             " is none that a PelScatter keeps: scatter weight, back irradiance or albedo would be");
     if (view) checkImage(slot, view);
-    if (view)
-        fail(PEL_ERROR_UNSUPPORTED, "the ", slotName(slot),
-             " image is set, which this build of the library does not have");
     images_[slot] = view;
+}
+
+// The methods that materials take, and what lies before and after them.
+Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImages& images) const {
+    Plan plan;
+    plan.weight = image(PEL_SLOT_SCATTER_WEIGHT);
+    const ImageView albedo = image(PEL_SLOT_ALBEDO), back = image(PEL_SLOT_IRRADIANCE_BACK);
+    plan.finishes = params.accumulate || albedo;
+    plan.other.after = albedo ? 1.0f : 0.0f;
+    for (const auto& [id, material] : materials_) {
+        const auto found = controls_.find(id);
+        const PelScatterControls c = found == controls_.end() ? pelScatterControlsDefaults() : found->second;
+        plan.sources.set(id);
+        const bool lines = c.scattering == PEL_SCATTERING_SEPARABLE, taps = lines || c.scatterTaps > 0;
+        if (taps)
+            (lines ? plan.lines : plan.disk)[id] = {material.profile,
+                                                    material.scale,
+                                                    scatterTapsOf(c.scattering, c.scatterTaps),
+                                                    {c.borderColor[0], c.borderColor[1], c.borderColor[2]}};
+        else
+            plan.screen[id] = material;
+        if (!taps && (c.borderColor[0] > 0 || c.borderColor[1] > 0 || c.borderColor[2] > 0))
+            fail(PEL_ERROR_UNSUPPORTED, "material ", id,
+                 " has a borderColor and no taps; separable, and screen with scatterTaps of 8 to 256, let "
+                 "light "
+                 "flow over borders");
+        if (!taps && plan.weight && plan.weight.info().components > 1)
+            fail(PEL_ERROR_UNSUPPORTED,
+                 "the scatter weight image has a second component, the radius, and material ", id,
+                 " has no taps; separable, and screen with scatterTaps of 8 to 256, take it");
+        if (c.thinThickness > 0 && !back)
+            invalidArgument("material ", id, " has a thinThickness of ", c.thinThickness,
+                            ", and there is no back irradiance image, whose light would come through");
+        if (c.albedoBefore > 0 && !albedo)
+            invalidArgument("material ", id, " has an albedoBefore of ", c.albedoBefore,
+                            ", and there is no albedo image");
+        PelBlendMaterial blend{};
+        blend.before = c.albedoBefore;
+        blend.after = albedo ? 1 - c.albedoBefore : 0.0f;
+        const Rgb through = throughSheet(*material.profile, material.scale, c.thinThickness);
+        for (int k = 0; k < 3; ++k) blend.through[k] = float(through[k]);
+        blend.weighs = !taps && plan.weight;
+        plan.blend[id] = blend;
+        plan.prepares |= c.albedoBefore > 0 || c.thinThickness > 0;
+        plan.finishes |= blend.weighs != 0;
+    }
+    for (PelImageSlot slot : {PEL_SLOT_SCATTER_WEIGHT, PEL_SLOT_ALBEDO, PEL_SLOT_IRRADIANCE_BACK}) {
+        const ImageView view = image(slot);
+        if (!view) continue;
+        if (view.width != images.out.width || view.height != images.out.height)
+            invalidArgument("the ", slotName(slot), " image is ", view.width, " x ", view.height,
+                            ", the output ", images.out.width, " x ", images.out.height,
+                            "; all must have one size");
+        if (sharesBytes(images.out, view))
+            invalidArgument("the output overlaps the ", slotName(slot), " image, which is read");
+    }
+    if (params.accumulate && sharesBytes(images.out, images.irradiance))
+        invalidArgument(
+            "PelScatterParams.accumulate is set and the output is the irradiance: what would be added to "
+            "is read");
+    return plan;
+}
+
+ImageView Scatter::image(PelImageSlot slot) const {
+    const auto found = images_.find(slot);
+    return found == images_.end() ? ImageView() : found->second;
+}
+
+// A picture of the library's own.
+ImageView Scatter::scratch(size_t index, const ImageView& like) {
+    resize(scratch_[index], device_, size_t(like.width) * like.height * 3 * sizeof(float));
+    return scratchImage(scratch_[index], like, PEL_FORMAT_PLANAR_RGB32F);
 }
 
 void Scatter::execute(const PelScatterParams& params, const ScatterImages& images) {
     checkParams(params);
     checkImages(images);
+    const Plan plan = planOf(params, images);
     ScatterView view;
     std::copy_n(params.inverseViewProjection, 16, view.inverseViewProjection);
     view.tolerance = params.targetError * params.white;
     view.everywhere = params.everywhere != 0;
-    screen_.prepare(materials_, images, view);
     events_.clear();
-    screen_.enqueue(images, events_);
+    counts_ = {};
     pixels_ = images.out.width * images.out.height;
     executed_ = true;
+    ScatterImages now = images;
+    if (plan.prepares) {
+        const BlendImages blend{images.irradiance,
+                                {},
+                                images.ids,
+                                image(PEL_SLOT_IRRADIANCE_BACK),
+                                {},
+                                image(PEL_SLOT_ALBEDO),
+                                scratch(0, images.out)};
+        before_.prepare(plan.blend, plan.other, blend, false);
+        before_.enqueuePreparation(blend, events_);
+        now.irradiance = blend.out;
+    }
+    const ImageView arriving = now.irradiance;
+    // Each method takes the picture that the one before it left; the last one writes the output.
+    int left = int(!plan.disk.empty()) + int(!plan.lines.empty()) + int(!plan.screen.empty());
+    size_t next = 1;
+    const auto target = [&] {
+        now.out = --left == 0 && !plan.finishes ? images.out : scratch(next, images.out);
+        next = 3 - next;
+    };
+    const auto gather = [&](GatherScatter& method, const std::map<uint32_t, GatherScatter::Material>& materials,
+                            PelScattering scattering) {
+        if (materials.empty()) return;
+        target();
+        const GatherImages all{now, plan.weight};
+        method.prepare(materials, plan.sources, all, view, params.frameIndex);
+        method.enqueue(all, events_);
+        counts_.push_back({scattering, [&method] { return method.counts(); }});
+        now.irradiance = now.out;
+    };
+    gather(disk_, plan.disk, PEL_SCATTERING_SCREEN);
+    gather(lines_, plan.lines, PEL_SCATTERING_SEPARABLE);
+    if (!plan.screen.empty() || counts_.empty()) {  // also where nothing scatters: the picture is copied
+        if (plan.screen.empty()) left = 1;
+        target();
+        screen_.prepare(plan.screen, now, view);
+        screen_.enqueue(now, events_);
+        counts_.push_back({PEL_SCATTERING_SCREEN, [this] { return screen_.counts(); }});
+        now.irradiance = now.out;
+    }
+    if (!plan.finishes) return;
+    const BlendImages blend{arriving,    now.irradiance,         images.ids, {},
+                            plan.weight, image(PEL_SLOT_ALBEDO), images.out};
+    after_.prepare(plan.blend, plan.other, blend, params.accumulate != 0);
+    after_.enqueueFinish(blend, events_);
 }
 
 PelScatterStats Scatter::stats() {
     device_->finish();
     PelScatterStats stats = pelScatterStatsDefaults();
-    stats.scratchBytes = screen_.bytes();
+    stats.scratchBytes = screen_.bytes() + disk_.bytes() + lines_.bytes();
+    for (const Ref<Buffer>& buffer : scratch_) stats.scratchBytes += buffer ? buffer->bytes() : 0;
     if (!executed_) return stats;
-    const ScatterCounts counts = screen_.counts();
     stats.pixelsTotal = pixels_;
-    stats.pixelsCovered = counts.pixelsCovered;
-    stats.pixelsTapped = counts.pixelsTapped;
-    stats.pixelsInvalid = counts.invalid;
-    stats.tilesCovered = counts.tilesCovered;
-    stats.tilesTapped = counts.tilesTapped;
-    stats.taps = counts.taps;
-    stats.launches = events_.size();
+    for (const auto& [scattering, read] : counts_) {
+        const ScatterCounts counts = read();
+        stats.pixelsCovered += counts.pixelsCovered;
+        stats.pixelsTapped += counts.pixelsTapped;
+        stats.pixelsInvalid += counts.invalid;
+        stats.tilesCovered += counts.tilesCovered;
+        stats.tilesTapped += counts.tilesTapped;
+        stats.tilesByScattering[scattering] += counts.tilesTapped;
+        stats.taps += counts.taps;
+    }
+    stats.launches = uint32_t(events_.size());
     for (const cl::Event& event : events_) stats.deviceMilliseconds += eventMilliseconds(event);
     return stats;
 }

@@ -1,5 +1,10 @@
 // PelScatter: scattering alone, for hosts that light their own frames.
 #pragma once
+#include <array>
+#include <functional>
+
+#include "diffusion/blend_scatter.h"
+#include "diffusion/gather_scatter.h"
 #include "diffusion/screen_scatter.h"
 
 namespace pel {
@@ -7,7 +12,14 @@ namespace pel {
 class Scatter final : public Object {
   public:
     static constexpr Kind kind = Kind::scatter;
-    explicit Scatter(Ref<Device> device) : Object(kind), device_(device), screen_(std::move(device)) {}
+    explicit Scatter(Ref<Device> device)
+        : Object(kind),
+          device_(device),
+          screen_(device),
+          disk_(device, GatherScatter::Form::disk),
+          lines_(device, GatherScatter::Form::lines),
+          before_(device),
+          after_(std::move(device)) {}
 
     // A null profile removes the material.
     void setMaterial(uint32_t id, const Ref<Profile>& profile, float scale);
@@ -19,12 +31,29 @@ class Scatter final : public Object {
     Device& device() const { return *device_; }
 
   private:
+    struct Plan {
+        std::map<uint32_t, ScreenScatter::Material> screen;
+        std::map<uint32_t, GatherScatter::Material> disk, lines;
+        GatherScatter::Ids sources;
+        ImageView weight;
+        std::map<uint32_t, PelBlendMaterial> blend;
+        PelBlendMaterial other{};  // of ids that do not scatter
+        bool prepares = false, finishes = false;
+    };
     ~Scatter() override = default;
+    Plan planOf(const PelScatterParams& params, const ScatterImages& images) const;
+    ImageView image(PelImageSlot slot) const;
+    ImageView scratch(size_t index, const ImageView& like);
+
     Ref<Device> device_;
     ScreenScatter screen_;
+    GatherScatter disk_, lines_;
+    BlendScatter before_, after_;
+    std::array<Ref<Buffer>, 3> scratch_;
     std::map<uint32_t, ScreenScatter::Material> materials_;
     std::map<uint32_t, PelScatterControls> controls_;
     std::map<PelImageSlot, ImageView> images_;  // that executions read beside theirs
+    std::vector<std::pair<PelScattering, std::function<ScatterCounts()>>> counts_;  // of the methods that ran
     std::vector<cl::Event> events_;
     bool executed_ = false;
     uint32_t pixels_ = 0;

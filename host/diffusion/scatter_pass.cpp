@@ -4,8 +4,7 @@
 #include <optional>
 
 #include "diffusion/passes.h"
-#include "diffusion/screen_scatter.h"
-#include "shading/features.h"
+#include "diffusion/scatter_material.h"
 #include "shading/scratch_image.h"
 
 namespace pel {
@@ -14,16 +13,7 @@ namespace {
 constexpr uint32_t methods = 1u << PEL_SCATTERING_SCREEN | 1u << PEL_SCATTERING_AUTO;
 
 bool scatters(const ShaderMaterial& material) {
-    return methods >> material.params.scattering & 1;
-}
-
-// By its profile, that of its curvature table, or skin's, stretched to its diffusion radius.
-ScreenScatter::Material profileOf(const ShaderMaterial& material) {
-    Ref<Profile> profile = material.profile        ? material.profile
-                           : material.curvatureLut ? material.curvatureLut->profile()
-                                                   : Profile::skin();
-    const double radius = profile->radius();
-    return {std::move(profile), material.params.diffusionRadius / radius};
+    return methods >> material.params.scattering & 1 && !scattersOnDisk(material);
 }
 
 class ScatterPass final : public Pass {
@@ -33,7 +23,10 @@ class ScatterPass final : public Pass {
     }
 
     // Neighbours may be as far away as the profile reaches.
-    PassScratch scratch(const ShaderPlan&) const override { return {3 * sizeof(float), 0, 0, true}; }
+    PassScratch scratch(const ShaderPlan& plan) const override {
+        const ImageView& frame = plan.state.images[PEL_SLOT_RADIANCE];
+        return {3 * sizeof(float), ScreenScatter::bytesFor(frame.width, frame.height), 0, true};
+    }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
         auto& images = plan.state.images;
@@ -66,11 +59,15 @@ class ScatterPass final : public Pass {
 
     void enqueue(PassWork& work) override { scatter_->enqueue(images_, work.events); }
 
+    void addStats(Device&, const ShaderPlan&, uint64_t, PelShaderStats& stats) const override {
+        addScatterCounts(scatter_->counts(), PEL_SCATTERING_SCREEN, stats);
+    }
+
   private:
     Ref<Buffer> out_;
     ScatterImages images_;
     std::map<uint32_t, ScreenScatter::Material> materials_;
-    std::optional<ScreenScatter> scatter_;
+    mutable std::optional<ScreenScatter> scatter_;
 };
 
 }  // namespace

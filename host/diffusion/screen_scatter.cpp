@@ -8,10 +8,7 @@
 #include "shading/shading_constants.h"
 
 namespace pel {
-namespace {
 
-// The point that a perspective matrix maps to infinite depth. Returns false for parallel views and where
-// there is no matrix.
 bool eyeOf(const float inverse[16], float eye[3]) {
     const float w = inverse[14];
     if (!(std::abs(w) > 1e-20f)) return false;
@@ -25,8 +22,8 @@ bool samePixels(const ImageView& a, const ImageView& b) {
            a.planeStride == b.planeStride;
 }
 
+namespace {
 enum Program { SURFACE, REDUCE, CLASSIFY, SCATTER };
-
 }  // namespace
 
 void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
@@ -54,18 +51,30 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
     materials_ = materials;
 }
 
-void ScreenScatter::describeLevels(uint32_t width, uint32_t height) {
+// Returns the floats of all of them.
+static uint64_t layOutLevels(uint32_t width, uint32_t height, PelPyramidLevel (&levels)[PEL_PYRAMID_LEVELS]) {
     uint64_t floats = 0;
-    for (PelPyramidLevel& level : frame_.level) {
+    for (PelPyramidLevel& level : levels) {
         const uint32_t stride = (width + 15) / 16 * 16 + 3 * PEL_PYRAMID_GUARD;
         if (floats > UINT32_MAX)
-            fail(PEL_ERROR_OUT_OF_MEMORY, "a picture of ", frame_.width, " x ", frame_.height,
+            fail(PEL_ERROR_OUT_OF_MEMORY, "a picture of ", levels[0].width, " x ", levels[0].height,
                  " is too large to scatter");
         level = {uint32_t(floats), stride, width, height};
         floats += uint64_t(height + 2 * PEL_PYRAMID_ROWS) * PEL_PYRAMID_PLANES * stride;
         width = (width + 1) / 2, height = (height + 1) / 2;
     }
-    const size_t bytes = (floats + 2 * PEL_PYRAMID_GUARD) * sizeof(float);
+    return floats + 2 * PEL_PYRAMID_GUARD;
+}
+
+uint64_t ScreenScatter::bytesFor(uint32_t width, uint32_t height) {
+    PelPyramidLevel levels[PEL_PYRAMID_LEVELS];
+    return layOutLevels(width, height, levels) * sizeof(float) +
+           uint64_t((width + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE) *
+               ((height + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE) * sizeof(cl_uint);
+}
+
+void ScreenScatter::describeLevels(uint32_t width, uint32_t height) {
+    const size_t bytes = layOutLevels(width, height, frame_.level) * sizeof(float);
     if (bytes == pyramidBytes_ && !std::memcmp(frame_.level, sent_.level, sizeof frame_.level)) return;
     pyramid_ = cl::Memory();
     pyramidBytes_ = 0;

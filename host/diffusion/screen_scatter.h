@@ -20,6 +20,11 @@ struct ScatterView {
     bool everywhere = false;               // leave nothing out
 };
 
+// The point that a perspective matrix maps to infinite depth. Returns false for parallel views and where
+// there is no matrix.
+bool eyeOf(const float inverse[16], float eye[3]);
+bool samePixels(const ImageView& a, const ImageView& b);
+
 struct ScatterCounts {
     uint32_t tilesCovered, tilesTapped, pixelsCovered, pixelsTapped, taps, invalid;
 };
@@ -43,6 +48,8 @@ class ScreenScatter {
     // Programs come from the device's cache.
     void enqueue(const ScatterImages& images, std::vector<cl::Event>& events);
     ScatterCounts counts();
+    // That a picture takes, beside tables.
+    static uint64_t bytesFor(uint32_t width, uint32_t height);
     size_t bytes() const { return pyramidBytes_ + nodeBytes_ + tileBytes_; }
 
   private:

@@ -114,6 +114,11 @@ bool makesIrradiance(const ShaderState& state) {
            std::ranges::any_of(state.materials, [](const auto& m) { return readsIrradiance(m.second); });
 }
 
+bool makesLightFromBehind(const ShaderState& state, uint32_t features) {
+    return features & PEL_FEATURE_MAKE_IRRADIANCE && !state.images[PEL_SLOT_IRRADIANCE_BACK] &&
+           std::ranges::any_of(state.materials, [](const auto& m) { return m.second.params.thinThickness > 0; });
+}
+
 // By irradiance that has to be made, or by specular light beside it.
 static bool takesSharpShadows(const ShaderState& state) {
     return makesIrradiance(state) || std::ranges::any_of(state.materials, [](const auto& m) {

@@ -19,6 +19,8 @@ inline bool readsIrradiance(const ShaderMaterial& material) {
 }
 // Whether that has to be made, which takes sharp shadows.
 bool makesIrradiance(const ShaderState& state);
+// Whether light from behind thin sheets is made: where the host gives it, it is added later.
+bool makesLightFromBehind(const ShaderState& state, uint32_t features);
 // Whether PelAmbient gives no light; there may be a cube map beside it.
 bool isBlack(const PelAmbient& ambient);
 

@@ -1,6 +1,7 @@
 // Irradiance per pixel of the materials whose diffuse light comes from it, where the caller gave none. What
 // scatters it runs between this pass and the shading kernel: it reads PEL_SLOT_IRRADIANCE, and puts its own
 // result into that slot of the plan.
+#include "shading/features.h"
 #include "shading/launch_ranges.h"
 #include "shading/passes.h"
 #include "shading/scene_arguments.h"
@@ -23,6 +24,7 @@ class Irradiance final : public Pass {
         cl::Defines defines =
             sceneDefines(device, plan.state,
                          plan.features & (PEL_FEATURE_SHADOW | PEL_FEATURE_AMBIENT | PEL_FEATURE_AMBIENT_CUBE));
+        defines["PEL_THIN"] = text(int(makesLightFromBehind(plan.state, plan.features)));
         defines["PEL_PASS_GROUP"] = text(tileGroup(device));
         return {{{"shading/irradiance.cl"}, defines}};
     }

@@ -117,6 +117,11 @@ void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const 
                 "; 0 would be right");
         material.gain[c] = float(m.curvatureGain * reflectionGain * info.meanFreePath[c] / unit);
     }
+    const double stretch =
+        profile ? m.diffusionRadius / profile->radius() : 1;  // of its lengths, in the scene's unit
+    const Rgb through =
+        profile && m.thinThickness > 0 ? profile->shape().transmission(m.thinThickness / stretch) : Rgb{};
+    for (int c = 0; c < 3; ++c) material.through[c] = float(m.transmission * through[c]);
     material.params = m;
 }
 

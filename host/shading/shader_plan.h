@@ -37,6 +37,7 @@ struct ShaderPlan {
     cl::Memory tileLists;       // lists of tiles; none without a material image
     cl::Memory ambientNodes;    // of the ambient cube
     uint32_t scratchPlane = 0;  // floats from plane to plane of images that passes make (scratch_planes.h)
+    ImageView arriving;         // irradiance before it is scattered, where a pass needs it later
     std::vector<FilteredLight> filteredLights;
     std::vector<BoundedMap> boundedMaps;
     cl::Memory bounds;

@@ -16,6 +16,7 @@ struct ShaderMaterial {
     Ref<Lut> givenCurvatureLut, givenShadowLut;
     PelMaterial params;  // with what it leaves to defaults filled in (shading/material.h), as are
     Ref<Lut> curvatureLut, shadowLut, transmission;
+    float through[3];                  // share of the light on a sheet's other side
     float gain[3];                     // length: direct light times 1 + gain * curvature
     std::vector<ImageView> normalMap;  // its levels, the finest first
     ImageView scatteredTexture;

@@ -169,6 +169,8 @@ std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(const ShaderSt
         to.diffusionRadius = m.diffusionRadius;
         to.shadowFilterWidth = readsIrradiance(from) ? 0 : m.shadowFilterWidth;
         to.scattering = m.scattering;
+        to.albedoAfter = readsIrradiance(from) && m.scattering != PEL_SCATTERING_NONE ? 1 - m.albedoBefore : 1;
+        copy(to.through, from.through);
         to.specularModel = m.specularModel;
         to.roughness2 = m.roughness2;
         to.lobeMix = m.lobeMix;

@@ -31,6 +31,7 @@ cl::ProgramKey wideShadowKey(const Device& device, const ShaderPlan& plan) {
     defines["PEL_FORMAT_SHADOW_MAP"] = text(map);
     defines["PEL_SHADOW_CONTENT"] = text(content);
     defines["PEL_BOUNDS"] = text(int(!plan.boundedMaps.empty()));
+    defines["PEL_THIN"] = text(int(makesLightFromBehind(plan.state, plan.features)));
     cl::ProgramKey key{{"shading/wide_shadow.cl"}, defines};
     if (!plan.boundedMaps.empty()) {
         key.files.push_back("shading/shadow_bounds.cl");

@@ -9,7 +9,8 @@
 #include "shading/scene.clh"
 
 // At PEL_WIDTH pixels from (x, y) on. Where no light arrives its shadow does not matter.
-static inline Vec3w arrivingLight(const Scene* scene, uint x, uint y) {
+static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMaterial* materials, uintw id,
+                                  maskw wanted, uint x, uint y) {
     __global const PelShadeFrame* frame = scene->frame;
     const Vec3w n = loadNormal(PEL_FORMAT_NORMAL_SHADING, SPAN(NORMAL_SHADING));
     Vec3w p = n;
@@ -21,13 +22,33 @@ static inline Vec3w arrivingLight(const Scene* scene, uint x, uint y) {
         if (PEL_FORMAT_AMBIENT_OCCLUSION)
             e = scale3(e, loadScalar(PEL_FORMAT_AMBIENT_OCCLUSION, SPAN(AMBIENT_OCCLUSION)));
     }
+#if PEL_THIN
+    // Of sheets the other side too, with the shadow of this one.
+#define PEL_RED_(k, s) (wanted s ? materials[id s].through[0] : 0.0f)
+#define PEL_GREEN_(k, s) (wanted s ? materials[id s].through[1] : 0.0f)
+#define PEL_BLUE_(k, s) (wanted s ? materials[id s].through[2] : 0.0f)
+    const Vec3w through = vec3(PEL_LANES(PEL_RED_), PEL_LANES(PEL_GREEN_), PEL_LANES(PEL_BLUE_));
+#undef PEL_RED_
+#undef PEL_GREEN_
+#undef PEL_BLUE_
+    if (HAS(PEL_BIT_AMBIENT)) {
+        Vec3w behind = mul3(through, ambientAlong(scene, scale3(n, (floatw)(-1.0f))));
+        if (PEL_FORMAT_AMBIENT_OCCLUSION)
+            behind = scale3(behind, loadScalar(PEL_FORMAT_AMBIENT_OCCLUSION, SPAN(AMBIENT_OCCLUSION)));
+        e = add3(e, behind);
+    }
+#endif
     for (uint i = 0; i < frame->lights; ++i) {
         __global const PelShadeLight* light = &scene->lights[i];
         const LightSample sample = sampleLight(light, p);
         const floatw w = loadWideShadow(scene, light, x, y);
         valid &= finitew(w);
-        e = add3(
-            e, scale3(loadUniform3(light->color), sample.strength * satw(dot3(n, sample.direction)) * satw(w)));
+        const Vec3w color = loadUniform3(light->color);
+        const floatw cosine = dot3(n, sample.direction), arrives = sample.strength * satw(w);
+        e = add3(e, scale3(color, arrives * satw(cosine)));
+#if PEL_THIN
+        e = add3(e, scale3(mul3(color, through), arrives * satw(-cosine)));
+#endif
     }
     const floatw none = NAN;
     return select3(vec3(none, none, none), e, valid);
@@ -54,7 +75,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void make_i
             const maskw wanted = PEL_LANES(PEL_SCATTERS_) > 0.0f;
 #undef PEL_SCATTERS_
             if (!anyw(wanted)) continue;
-            storePlanes(out, plane, scratchIndex(frame, first, y), arrivingLight(&scene, first, y), wanted);
+            storePlanes(out, plane, scratchIndex(frame, first, y),
+                        arrivingLight(&scene, materials, id, wanted, first, y), wanted);
             if (HAS(PEL_BIT_COUNT)) lit += countw(wanted);
         }
     }

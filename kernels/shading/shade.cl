@@ -299,6 +299,11 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
     }
 }
 
+static inline Vec3w albedoAfter(Vec3w albedo, float power) {
+    return vec3(pow(max0w(albedo.x), (floatw)(power)), pow(max0w(albedo.y), (floatw)(power)),
+                pow(max0w(albedo.z), (floatw)(power)));
+}
+
 // Pixels of one material, `active`.
 static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMaterial* material, Pixels* p,
                                   uint x, uint y, maskw active, Parts* parts, Vec3w* specularPart,
@@ -311,11 +316,17 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
     p->valid &= ((p->spoiled & material->needs) == 0) | notw(active);
     Vec3w diffuse = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = diffuse;
     parts->diffuse = parts->deepScatter = diffuse;
+    Vec3w before = diffuse;  // light that albedo is in
     parts->thickness = 0.0f;
     parts->measured = PEL_FORMAT_THICKNESS != 0;
     if (PEL_FORMAT_THICKNESS && PEL_FORMAT_OUT_THICKNESS) parts->thickness = p->thickness;
     if (scattered) {
-        diffuse = p->irradiance;
+        if (material->albedoAfter == 1.0f)
+            diffuse = p->irradiance;
+        else  // a part of the albedo is in it
+            before =
+                mul3(p->irradiance, albedoAfter(PEL_FORMAT_ALBEDO ? p->albedo : loadUniform3(material->albedo),
+                                                material->albedoAfter));
         if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = diffuse;
     } else if (HAS(PEL_BIT_AMBIENT)) {
         diffuse = ambientOfPixels(scene, vload3(0, material->normalBlend), p);
@@ -345,10 +356,11 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
         addLight(scene, material, light, p, w, active & p->valid, scattered, &diffuse, &specular, parts, counts);
     }
     const Vec3w albedo = PEL_FORMAT_ALBEDO ? p->albedo : loadUniform3(material->albedo);
-    if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = mul3(parts->diffuse, albedo);
+    if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = add3(mul3(parts->diffuse, albedo), before);
     if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = mul3(parts->deepScatter, albedo);
     *specularPart = specular;
-    return add3(mul3(albedo, diffuse), specular);
+    const Vec3w radiance = add3(mul3(albedo, diffuse), specular);
+    return HAS(PEL_BIT_IRRADIANCE) ? add3(radiance, before) : radiance;
 }
 
 // Writes one colour beside radiance.

@@ -151,8 +151,16 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
             const maskw active = (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id);
             if (!anyw(active)) continue;
             const Vec3w p = loadPosition(frame, position, depth, first, y);
-            const Vec3w n =
+            Vec3w n =
                 loadNormal(PEL_FORMAT_NORMAL, imageSpan(normal, &frame->images[PEL_NORMAL_SLOT], first, y));
+#if PEL_THIN
+            // Of a sheet that is lit from its other side that side's plane is the same.
+#define PEL_SHEET_(k, s) (active s && materials[id s].through[0] > 0.0f ? 1.0f : 0.0f)
+            const maskw sheet = PEL_LANES(PEL_SHEET_) > 0.0f;
+#undef PEL_SHEET_
+            const floatw facing = dot3(n, sampleLight(&lights[lightIndex], p).direction);
+            n = scale3(n, selectw((floatw)(1.0f), (floatw)(-1.0f), sheet & (facing < 0.0f)));
+#endif
             // Ids without a material may lie beyond the table.
 #define PEL_WIDTH_(k, s) (active s ? materials[id s].shadowFilterWidth : 1.0f)
             floatw width = PEL_LANES(PEL_WIDTH_);

@@ -89,6 +89,8 @@ typedef struct PelShadeMaterial {
     float gain[3];         // length: direct light times 1 + gain * curvature; all 0: none
     PelUint32 needs;       // PEL_BIT_...: features that this material asks for
     PelUint32 scattering;  // PelScattering
+    float albedoAfter;     // power of albedo that scattered irradiance is multiplied by
+    float through[3];      // share of the light on a sheet's other side
     PelUint32 variants;    // bit i: variant i of the shading kernel has all of them
 } PelShadeMaterial;
 
@@ -141,7 +143,7 @@ typedef struct PelShadeLight {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelShadeImage) == 32 && sizeof(PelShadeLut) == 40);
 static_assert(sizeof(PelShadeFrame) == 4 * (8 + 8 + 3 + 16 + 27 + 3 + 1) + PEL_IMAGE_SLOTS * 32);
-static_assert(sizeof(PelShadeMaterial) == 4 * 34 + 3 * sizeof(PelShadeLut));
+static_assert(sizeof(PelShadeMaterial) == 4 * 38 + 3 * sizeof(PelShadeLut));
 static_assert(sizeof(PelShadeCascade) == 4 * (16 + 4) + 32);
 static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64 + 8 + PEL_CASCADES * sizeof(PelShadeCascade));
 #endif

@@ -282,11 +282,13 @@ inline std::vector<reference::Vec2> diskTaps(uint32_t count) {
     const std::string start = "pelDisk" + std::to_string(count) + "[";
     for (std::string line; std::getline(file, line);)
         if (line.find(start) != std::string::npos)
-            while (std::getline(file, line) && line[0] != '}') {
-                double x = 0, y = 0;
-                EXPECT_EQ(std::sscanf(line.c_str(), " (float2)(%lff, %lff)", &x, &y), 2) << line;
-                taps.push_back({x, y});
-            }
+            while (std::getline(file, line) && line[0] != '}')
+                for (size_t at = line.find("(float2)"); at != std::string::npos;
+                     at = line.find("(float2)", at + 1)) {
+                    double x = 0, y = 0;
+                    EXPECT_EQ(std::sscanf(line.c_str() + at, "(float2)(%lff, %lff)", &x, &y), 2) << line;
+                    taps.push_back({x, y});
+                }
     EXPECT_EQ(taps.size(), count);
     return taps;
 }

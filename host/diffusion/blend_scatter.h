@@ -1,0 +1,39 @@
+// What lies before and after the methods of scattering (kernels/diffusion/blend_scatter.cl).
+#pragma once
+#include <map>
+#include <vector>
+
+#include "core/image_view.h"
+#include "lut/profile.h"
+#include "shared/blend.h"
+
+namespace pel {
+
+// Images of one size; those that are not there are empty.
+struct BlendImages {
+    ImageView irradiance, scattered, ids, back, weight, albedo, out;
+};
+
+class BlendScatter {
+  public:
+    explicit BlendScatter(Ref<Device> device) : device_(std::move(device)) {}
+    // `other`: of ids that have none.
+    void prepare(const std::map<uint32_t, PelBlendMaterial>& materials, const PelBlendMaterial& other,
+                 const BlendImages& images, bool accumulate);
+    std::vector<cl::ProgramKey> programs(const BlendImages& images) const;
+    void enqueuePreparation(const BlendImages& images, std::vector<cl::Event>& events);
+    void enqueueFinish(const BlendImages& images, std::vector<cl::Event>& events);
+
+  private:
+    void launch(cl::Launch& launch, const BlendImages& images, std::vector<cl::Event>& events);
+
+    Ref<Device> device_;
+    PelBlendFrame sent_{};
+    cl::Memory frame_, materials_;
+    std::vector<PelBlendMaterial> sentMaterials_;
+};
+
+// What a sheet lets through; `thickness` in the unit of positions, `scale` of the profile in it.
+Rgb throughSheet(const Profile& profile, double scale, double thickness);
+
+}  // namespace pel

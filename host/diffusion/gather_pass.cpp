@@ -1,0 +1,91 @@
+// The shader's passes of materials that scatter by taps: on a disk (PEL_SCATTERING_SCREEN with scatterTaps), and separably
+// (PEL_SCATTERING_SEPARABLE). They take irradiance from its slot of the plan, and put what is scattered there.
+#include <algorithm>
+#include <optional>
+
+#include "diffusion/gather_scatter.h"
+#include "diffusion/passes.h"
+#include "diffusion/scatter_material.h"
+#include "shading/scratch_image.h"
+
+namespace pel {
+namespace {
+
+using Form = GatherScatter::Form;
+
+template <Form form>
+class GatherPass final : public Pass {
+  public:
+    static bool needed(const ShaderPlan& plan) {
+        return std::ranges::any_of(plan.state.materials, [](const auto& m) { return takes(m.second); });
+    }
+
+    // Neighbours may be as far away as the profile reaches.
+    PassScratch scratch(const ShaderPlan&) const override {
+        return {3 * sizeof(float) + GatherScatter::pixelBytes(form), 0, 0, true};
+    }
+
+    void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
+        auto& images = plan.state.images;
+        ImageView& slot = images[PEL_SLOT_IRRADIANCE];
+        const ImageView& frame = images[PEL_SLOT_RADIANCE];
+        resize(out_, device, size_t(frame.width) * frame.height * 3 * sizeof(float));
+        images_.of = {slot, images[PEL_SLOT_POSITION],
+                      images[PEL_SLOT_POSITION] ? ImageView() : images[PEL_SLOT_DEPTH],
+                      images[PEL_SLOT_MATERIAL], scratchImage(out_, frame, PEL_FORMAT_PLANAR_RGB32F)};
+        images_.weight = images[PEL_SLOT_SCATTER_WEIGHT];
+        slot = images_.of.out;
+        if (!scatter_) scatter_.emplace(device, form);
+        materials_.clear();
+        sources_.reset();
+        for (const auto& [id, material] : plan.state.materials) {
+            if (scattersIrradiance(material)) sources_.set(id);
+            if (!takes(material) || !(material.params.diffusionRadius > 0)) continue;
+            const PelMaterial& m = material.params;
+            const ScreenScatter::Material profile = profileOf(material);
+            materials_[id] = {profile.profile,
+                              profile.scale,
+                              scatterTapsOf(m.scattering, m.scatterTaps),
+                              {m.borderColor[0], m.borderColor[1], m.borderColor[2]}};
+        }
+    }
+    size_t bytes() const override { return (out_ ? out_->bytes() : 0) + (scatter_ ? scatter_->bytes() : 0); }
+
+    std::vector<cl::ProgramKey> programs(const Device&, const ShaderPlan&) const override {
+        return scatter_->programs(images_);
+    }
+
+    size_t upload(Device&, ShaderPlan& plan) override {
+        ScatterView view;
+        std::copy_n(plan.state.camera.inverseViewProjection, 16, view.inverseViewProjection);
+        view.everywhere = plan.state.options.disableSkipping != 0;
+        scatter_->prepare(materials_, sources_, images_, view, plan.state.options.frameIndex);
+        return 0;
+    }
+
+    void enqueue(PassWork& work) override { scatter_->enqueue(images_, work.events); }
+
+    void addStats(Device&, const ShaderPlan&, uint64_t, PelShaderStats& stats) const override {
+        addScatterCounts(scatter_->counts(),
+                         form == Form::disk ? PEL_SCATTERING_SCREEN : PEL_SCATTERING_SEPARABLE, stats);
+    }
+
+  private:
+    static bool takes(const ShaderMaterial& material) {
+        return form == Form::disk ? scattersOnDisk(material)
+                                  : material.params.scattering == PEL_SCATTERING_SEPARABLE;
+    }
+
+    Ref<Buffer> out_;
+    GatherImages images_;
+    std::map<uint32_t, GatherScatter::Material> materials_;
+    GatherScatter::Ids sources_;
+    mutable std::optional<GatherScatter> scatter_;
+};
+
+}  // namespace
+
+constinit const PassKind diskPass = passKind<GatherPass<Form::disk>>(1u << PEL_SCATTERING_SCREEN);
+constinit const PassKind separablePass = passKind<GatherPass<Form::lines>>(1u << PEL_SCATTERING_SEPARABLE);
+
+}  // namespace pel

@@ -1,0 +1,198 @@
+#include "diffusion/gather_scatter.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "diffusion/gather_taps.h"
+#include "shading/launch_ranges.h"
+#include "shading/scratch_image.h"
+#include "shading/shading_constants.h"
+
+namespace pel {
+namespace {
+
+// As the device reads a table.
+Rgb densityAt(const ProfileNodes& nodes, float distance2) {
+    const int32_t last = int32_t((nodes.table.nodes - 1) << PEL_PROFILE_NODE_BITS) - 1;
+    const int32_t bits = std::clamp(std::bit_cast<int32_t>(distance2) - int32_t(nodes.table.firstBits), 0, last);
+    const size_t at = 4 * size_t(bits >> PEL_PROFILE_NODE_BITS);
+    const double f = double(bits & ((1 << PEL_PROFILE_NODE_BITS) - 1)) / (1 << PEL_PROFILE_NODE_BITS);
+    Rgb density;
+    for (size_t c = 0; c < 3; ++c)
+        density[c] = nodes.values[at + c] + f * (double(nodes.values[at + 4 + c]) - nodes.values[at + c]);
+    return density;
+}
+
+// Line spreads in the place of R.
+void takeLineSpread(ProfileNodes& nodes, const ProfileShape& shape, double scale) {
+    for (uint32_t k = 0; k + 1 < nodes.table.nodes; ++k) {
+        const uint32_t bits = nodes.table.firstBits + (k << PEL_PROFILE_NODE_BITS);
+        const Rgb p = shape.lineSpread(std::sqrt(double(std::bit_cast<float>(bits))) / scale);
+        for (int c = 0; c < 3; ++c) nodes.values[4 * k + c] = float(p[c] / scale);
+    }
+}
+
+void lookAlong(PelGatherFrame& frame, const float inverse[16]) {
+    std::fill_n(frame.origin, 3, 0.0f);
+    std::fill_n(frame.direction, 3, 0.0f);
+    frame.view = PEL_VIEW_UNKNOWN;
+    if (eyeOf(inverse, frame.origin)) {
+        frame.view = PEL_VIEW_POINT;
+        return;
+    }
+    const double x = inverse[2], y = inverse[6], z = inverse[10], length = std::sqrt(x * x + y * y + z * z);
+    if (inverse[14] != 0 || !(length > 0) || !std::isfinite(length)) return;
+    frame.view = PEL_VIEW_DIRECTION;
+    frame.direction[0] = float(x / length);
+    frame.direction[1] = float(y / length);
+    frame.direction[2] = float(z / length);
+}
+
+enum Program { SURFACE, GATHER };
+
+}  // namespace
+
+void GatherScatter::sendMaterials(const std::map<uint32_t, Material>& materials) {
+    std::fill_n(frame_.materialOf, PEL_DIFFUSION_IDS, 0);
+    std::vector<Material> distinct;
+    for (const auto& [id, material] : materials) {
+        auto found = std::find(distinct.begin(), distinct.end(), material);
+        if (found == distinct.end()) found = distinct.insert(found, material);
+        frame_.materialOf[id] = uint32_t(found - distinct.begin()) + 1;
+    }
+    if (materials == materials_ && described_) return;
+    std::vector<PelGatherMaterial> described;
+    std::vector<PelGatherTap> taps;
+    std::vector<float> values;
+    for (const Material& material : distinct) {
+        const ProfileShape& shape = material.profile->shape();
+        ProfileNodes nodes = profileNodes(shape, material.scale);
+        const double reach = nodes.table.reach;
+        if (form_ == Form::lines) takeLineSpread(nodes, shape, material.scale);
+        PelGatherMaterial m{};
+        m.table = nodes.table;
+        m.table.offset = uint32_t(values.size() / 4);
+        values.insert(values.end(), nodes.values.begin(), nodes.values.end());
+        m.firstTap = uint32_t(taps.size()), m.taps = material.taps;
+        std::vector<PelGatherTap> placed = form_ == Form::disk
+                                               ? diskTaps(shape, material.scale, reach, material.taps)
+                                               : lineTaps(shape, material.scale, reach, material.taps);
+        for (PelGatherTap& tap : placed) {
+            const Rgb density = densityAt(nodes, tap.place2);
+            for (int c = 0; c < 3; ++c)
+                tap.perDensity[c] = density[c] > 0 ? float(tap.share[c] / density[c]) : 0.0f;
+            m.farthest = std::max(m.farthest, std::sqrt(tap.place2));
+        }
+        taps.insert(taps.end(), placed.begin(), placed.end());
+        std::copy_n(material.border.begin(), 3, m.border);
+        m.anyBorder = std::ranges::any_of(material.border, [](float b) { return b > 0; });
+        described.push_back(m);
+    }
+    if (described.empty()) described.emplace_back(), taps.emplace_back(), values.resize(8);
+    const size_t bytes[] = {described.size() * sizeof described[0], taps.size() * sizeof taps[0],
+                            values.size() * sizeof(float)};
+    described_ = device_->allocate(bytes[0], described.data());
+    taps_ = device_->allocate(bytes[1], taps.data());
+    nodes_ = device_->allocate(bytes[2], values.data());
+    tableBytes_ = bytes[0] + bytes[1] + bytes[2];
+    materials_ = materials;
+}
+
+void GatherScatter::prepare(const std::map<uint32_t, Material>& materials, const Ids& sources,
+                            const GatherImages& images, const ScatterView& view, uint32_t frameIndex) {
+    const ScatterImages& of = images.of;
+    frame_.width = of.irradiance.width, frame_.height = of.irradiance.height;
+    frame_.tilesX = (frame_.width + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
+    frame_.tilesY = (frame_.height + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE;
+    lookAlong(frame_, view.inverseViewProjection);
+    frame_.frameIndex = frameIndex;
+    frame_.everywhere = view.everywhere;
+    frame_.inPlace = samePixels(of.irradiance, of.out);
+    std::copy_n(view.inverseViewProjection, 16, frame_.inverseViewProjection);
+    frame_.irradiance = describeImage(of.irradiance);
+    frame_.position = describeImage(of.positions ? of.positions : of.depth);
+    frame_.ids = describeImage(of.ids);
+    frame_.weight = describeImage(images.weight);
+    frame_.out = describeImage(of.out);
+    std::fill(std::begin(frame_.sources), std::end(frame_.sources), 0u);
+    for (uint32_t id = 0; id < PEL_DIFFUSION_IDS; ++id)
+        if (sources[id] || materials.contains(id)) frame_.sources[id / 32] |= 1u << id % 32;
+    sendMaterials(materials);
+    const size_t pixels = size_t(frame_.width) * frame_.height, pointBytes = pixels * pixelBytes(form_),
+                 tileBytes = size_t(frame_.tilesX) * frame_.tilesY * sizeof(cl_uint);
+    if (pointBytes != pointBytes_) {
+        points_ = rows_ = cl::Memory();
+        pointBytes_ = 0;
+        points_ = device_->allocate(pixels * PEL_GATHER_FLOATS * sizeof(float));
+        if (form_ == Form::lines) rows_ = device_->allocate(pixels * 4 * sizeof(float));
+        pointBytes_ = pointBytes;
+    }
+    if (tileBytes != tileBytes_) tiles_ = device_->allocate(tileBytes), tileBytes_ = tileBytes;
+    if (!counters_) counters_ = device_->allocate(PEL_DIFFUSION_COUNTERS * sizeof(cl_uint));
+    if (!frameMemory_)
+        frameMemory_ = device_->allocate(sizeof frame_, &frame_);
+    else if (std::memcmp(&frame_, &sent_, sizeof frame_))
+        device_->write(frameMemory_.get(), 0, sizeof frame_, &frame_, true);
+    sent_ = frame_;
+}
+
+std::vector<cl::ProgramKey> GatherScatter::programs(const GatherImages& images) const {
+    const ScatterImages& of = images.of;
+    const auto code = [&](const ImageView& view) { return text(formatCode(view, 1)); };
+    const std::string one = text(1);
+    const cl::Defines inputs{
+        {"PEL_WIDTH", one},
+        {"PEL_FORMAT_IRRADIANCE", code(of.irradiance)},
+        {"PEL_FORMAT_POSITION", code(of.positions)},
+        {"PEL_FORMAT_DEPTH", of.positions ? text(0) : code(of.depth)},
+        {"PEL_FORMAT_MATERIAL", code(of.ids)},
+        {"PEL_FORMAT_SCATTER_WEIGHT", code(images.weight)},
+        {"PEL_WEIGHT_COMPONENTS", text(images.weight ? images.weight.info().components : 0)}};
+    const cl::Defines outputs{
+        {"PEL_WIDTH", one}, {"PEL_FORMAT_IRRADIANCE", code(of.irradiance)}, {"PEL_FORMAT_OUT", code(of.out)}};
+    return {{{"diffusion/gather_surface.cl"}, inputs},
+            {{form_ == Form::disk ? "diffusion/scatter_disk.cl" : "diffusion/scatter_separable.cl"}, outputs}};
+}
+
+void GatherScatter::enqueue(const GatherImages& images, std::vector<cl::Event>& events) {
+    std::vector<cl::Program> programs;
+    for (const cl::ProgramKey& key : this->programs(images)) programs.push_back(device_->programs().get(key));
+    const ScatterImages& of = images.of;
+    const auto launch = [&](cl::Launch& launch, size_t items) {
+        events.push_back(device_->launch(launch, {{items, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}}));
+    };
+    device_->fill(counters_.get(), 0, PEL_DIFFUSION_COUNTERS * sizeof(cl_uint), 0);
+    cl::Launch points(programs[SURFACE], "gather_points");
+    points.arg(frameMemory_).arg(memoryOf(of.irradiance)).arg(memoryOf(of.positions ? of.positions : of.depth));
+    points.arg(memoryOf(of.ids)).arg(memoryOf(images.weight)).arg(points_).arg(counters_);
+    launch(points, size_t(PEL_ROW_PARTS) * frame_.height);
+    const size_t tiles = size_t(frame_.tilesX) * frame_.tilesY;
+    cl::Launch areas(programs[SURFACE], "gather_areas");
+    areas.arg(frameMemory_).arg(points_).arg(described_).arg(tiles_).arg(counters_);
+    launch(areas, tiles);
+    const size_t items = std::min<size_t>(tiles, 64 * size_t(device_->info().computeUnits)) * PEL_DIFFUSION_GROUP;
+    const auto gather = [&](const char* kernel, auto&& arguments) {
+        cl::Launch one(programs[GATHER], kernel);
+        one.arg(frameMemory_).arg(points_).arg(described_).arg(taps_).arg(nodes_).arg(tiles_);
+        arguments(one);
+        one.arg(counters_);
+        launch(one, items);
+    };
+    const auto results = [&](cl::Launch& l) { l.arg(memoryOf(of.irradiance)).arg(memoryOf(of.out)); };
+    if (form_ == Form::disk) return gather("scatter_disk", results);
+    gather("filter_rows", [&](cl::Launch& l) { l.arg(rows_); });
+    gather("filter_columns", [&](cl::Launch& l) {
+        l.arg(rows_);
+        results(l);
+    });
+}
+
+ScatterCounts GatherScatter::counts() {
+    ScatterCounts counts{};
+    if (counters_) device_->read(counters_.get(), 0, sizeof counts, &counts, true);
+    return counts;
+}
+
+}  // namespace pel

@@ -1,0 +1,59 @@
+// Irradiance of a picture scattered by a few taps: on a disk (kernels/diffusion/scatter_disk.cl) or along two lines
+// (scatter_separable.cl).
+#pragma once
+#include <bitset>
+#include <map>
+#include <vector>
+
+#include "diffusion/profile_table.h"
+#include "diffusion/screen_scatter.h"
+#include "shared/gather.h"
+
+namespace pel {
+
+struct GatherImages {
+    ScatterImages of;
+    ImageView weight;  // may be empty
+};
+
+class GatherScatter {
+  public:
+    enum class Form { disk, lines };
+    GatherScatter(Ref<Device> device, Form form) : device_(std::move(device)), form_(form) {}
+
+    struct Material {
+        Ref<Profile> profile;
+        double scale;
+        uint32_t taps;
+        std::array<float, 3> border;
+        bool operator==(const Material& other) const {
+            return profile.get() == other.profile.get() && scale == other.scale && taps == other.taps &&
+                   border == other.border;
+        }
+    };
+    using Ids = std::bitset<PEL_DIFFUSION_IDS>;
+    // Makes memory and sends constants where they changed. `sources`: ids whose light may flow over borders.
+    void prepare(const std::map<uint32_t, Material>& materials, const Ids& sources,
+                 const GatherImages& images, const ScatterView& view, uint32_t frameIndex);
+    std::vector<cl::ProgramKey> programs(const GatherImages& images) const;
+    // Programs come from the device's cache.
+    void enqueue(const GatherImages& images, std::vector<cl::Event>& events);
+    ScatterCounts counts();
+    size_t bytes() const { return pointBytes_ + tableBytes_ + tileBytes_; }
+    // That a picture takes, beside tables.
+    static uint64_t pixelBytes(Form form) {
+        return (PEL_GATHER_FLOATS + (form == Form::lines ? 4 : 0)) * sizeof(float);
+    }
+
+  private:
+    void sendMaterials(const std::map<uint32_t, Material>& materials);
+
+    Ref<Device> device_;
+    const Form form_;
+    std::map<uint32_t, Material> materials_;
+    PelGatherFrame frame_{}, sent_{};
+    cl::Memory frameMemory_, described_, taps_, nodes_, points_, rows_, tiles_, counters_;
+    size_t pointBytes_ = 0, tableBytes_ = 0, tileBytes_ = 0;
+};
+
+}  // namespace pel

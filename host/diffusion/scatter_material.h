@@ -1,0 +1,30 @@
+// What methods that scatter irradiance ask of a material.
+#pragma once
+#include "diffusion/screen_scatter.h"
+#include "shading/features.h"
+
+namespace pel {
+
+// Its profile, that of its curvature table, or skin's, stretched to its diffusion radius.
+ScreenScatter::Material profileOf(const ShaderMaterial& material);
+
+// Whether its irradiance is scattered, by whatever method.
+inline bool scattersIrradiance(const ShaderMaterial& material) {
+    return readsIrradiance(material) && material.params.scattering != PEL_SCATTERING_NONE;
+}
+// By taps on a disk, not by the whole profile.
+inline bool scattersOnDisk(const ShaderMaterial& material) {
+    return material.params.scattering == PEL_SCATTERING_SCREEN && material.params.scatterTaps > 0;
+}
+// By taps at all.
+inline bool scattersByTaps(const ShaderMaterial& material) {
+    return scattersOnDisk(material) || material.params.scattering == PEL_SCATTERING_SEPARABLE;
+}
+// What 0 stands for.
+inline uint32_t scatterTapsOf(PelScattering scattering, uint32_t taps) {
+    return taps || scattering != PEL_SCATTERING_SEPARABLE ? taps : 25;
+}
+
+void addScatterCounts(const ScatterCounts& counts, PelScattering scattering, PelShaderStats& stats);
+
+}  // namespace pel

@@ -1,0 +1,149 @@
+// The surface under each pixel for methods that gather by taps (shared/gather.h; docs/mathematics.md, section 10).
+//
+// Inputs: images of irradiance, of positions (length) or depth, of ids (0 is background), of weights and radii. Output: PEL_GATHER_FLOATS floats a
+// pixel. Two launches: gather_points copies what the caller's images hold, gather_areas measures from pixel to pixel and says
+// which tiles have something to gather. One work-item is one pixel, or one tile. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH,
+// PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SCATTER_WEIGHT (0: all 1).
+#include "lib/diffusion/gather.clh"
+#include "lib/image/image.clh"
+#include "lib/shading/position.clh"
+
+// Surface seen at a steeper angle than this cosine counts with the area it would have at it: what a pixel's normal says of its
+// whole area is wrong where the surface turns away inside of the pixel.
+#define LEAST_COSINE 0.25f
+
+static inline float clampedShare(float v) {
+    return v >= 0.0f ? fmin(v, 1.0f) : 0.0f;  // NaN: 0
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void gather_points(
+    __global const PelGatherFrame* frame, __global uchar* irradiance, __global uchar* position,
+    __global uchar* ids, __global uchar* weight, __global float* points, __global uint* counters) {
+    const uint y = get_global_id(0) / PEL_ROW_PARTS, part = get_global_id(0) % PEL_ROW_PARTS;
+    if (y >= frame->height) return;
+    uint covered = 0, invalid = 0;
+    const uint end = (uint)((ulong)frame->width * (part + 1) / PEL_ROW_PARTS);
+    for (uint x = (uint)((ulong)frame->width * part / PEL_ROW_PARTS); x < end; ++x) {
+        uint id = 1;
+#if PEL_FORMAT_MATERIAL
+        id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &frame->ids, x, y));
+#endif
+        if (id >= PEL_DIFFUSION_IDS || !(frame->sources[id >> 5] >> (id & 31) & 1u)) id = 0;
+        float4 p = (float4)(0.0f), e = (float4)(0.0f), pixel = (float4)(0.0f, 0.0f, 1.0f, 1.0f);
+        if (id) {
+            const Span span = imageSpan(position, &frame->position, x, y);
+#if PEL_FORMAT_POSITION
+            const Vec3w at = loadColor(PEL_FORMAT_POSITION, span);
+#else
+            const Vec3w at = positionFromDepth(frame->inverseViewProjection, frame->width, frame->height, x,
+                                               y, loadScalar(PEL_FORMAT_DEPTH, span));
+#endif
+            const Vec3w light =
+                loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y));
+            const bool gathers = frame->materialOf[id] != 0, sound = finite3(at) && finite3(light);
+            covered += gathers, invalid += gathers && !sound;
+            if (sound) {
+                p = (float4)(at.x - frame->origin[0], at.y - frame->origin[1], at.z - frame->origin[2], 0.0f);
+                e = (float4)(light.x, light.y, light.z, 0.0f);
+#if PEL_FORMAT_SCATTER_WEIGHT
+                const Span span = imageSpan(weight, &frame->weight, x, y);
+                pixel.w = clampedShare(loadScalar(PEL_FORMAT_SCATTER_WEIGHT, span));
+#if PEL_WEIGHT_COMPONENTS > 1
+                pixel.z = clampedShare(gatherComponent(PEL_FORMAT_SCATTER_WEIGHT, span, 1));
+#endif
+#endif
+            } else {
+                id = 0;
+            }
+        }
+        e.w = as_float(id);
+        __global float* to = points + PEL_GATHER_FLOATS * ((size_t)y * frame->width + x);
+        vstore4(p, 0, to + PEL_GATHER_POINT);
+        vstore4(e, 0, to + PEL_GATHER_LIGHT);
+        vstore4(pixel, 0, to + PEL_GATHER_PIXEL);
+    }
+    if (covered) atomic_add(&counters[PEL_COUNT_PIXELS_COVERED], covered);
+    if (invalid) atomic_add(&counters[PEL_COUNT_IRRADIANCE_INVALID], invalid);
+}
+
+typedef struct Step {
+    float3 v;
+    float length2;  // FLT_MAX: there is none
+} Step;
+
+// The shorter of the steps to the neighbours that are of the same object: the longer one may lead off the surface.
+static inline Step shorterStep(__global const float* points, size_t here, long to, bool before, bool after,
+                               float3 p, uint id) {
+    Step step = {(float3)(0.0f), FLT_MAX};
+    for (int side = -1; side <= 1; side += 2) {
+        if (!(side < 0 ? before : after)) continue;
+        const size_t at = (size_t)((long)here + side * to);
+        if (as_uint(gathered(points, at, PEL_GATHER_LIGHT).w) != id) continue;
+        const float3 v = (gathered(points, at, PEL_GATHER_POINT).xyz - p) * (float)side;
+        const float length2 = dot(v, v);
+        if (length2 < step.length2) step.v = v, step.length2 = length2;
+    }
+    return step;
+}
+
+// The part of a step that is across the view.
+static inline float across(__global const PelGatherFrame* frame, float3 p, float3 step) {
+    float3 view = (float3)(frame->direction[0], frame->direction[1], frame->direction[2]);
+    if (frame->view == PEL_VIEW_POINT) view = p * rsqrt(fmax(dot(p, p), FLT_MIN));
+    if (frame->view != PEL_VIEW_UNKNOWN) step -= view * dot(step, view);
+    return sqrt(dot(step, step));
+}
+
+static inline void measurePixel(__global const PelGatherFrame* frame, __global float* points, uint x, uint y) {
+    const size_t here = (size_t)y * frame->width + x;
+    const float3 p = gathered(points, here, PEL_GATHER_POINT).xyz;
+    const uint id = as_uint(gathered(points, here, PEL_GATHER_LIGHT).w);
+    const Step right = shorterStep(points, here, 1, x > 0, x + 1 < frame->width, p, id);
+    const Step down = shorterStep(points, here, (long)frame->width, y > 0, y + 1 < frame->height, p, id);
+    const bool noRight = right.length2 == FLT_MAX, noDown = down.length2 == FLT_MAX;
+    if (noRight && noDown) return;  // a lone pixel has no size
+    const float3 normal = cross(right.v, down.v);
+    float area = sqrt(dot(normal, normal));
+    float wide = across(frame, p, right.v), high = across(frame, p, down.v);
+    if (noRight) wide = high, area = down.length2;  // a line of pixels counts as facing the camera
+    if (noDown) high = wide, area = right.length2;
+    if (frame->view == PEL_VIEW_UNKNOWN) wide = high = fmin(wide, high);
+    area = fmin(area, wide * high * (1.0f / LEAST_COSINE));
+    if (!isfinite(area) || !isfinite(wide) || !isfinite(high) || !(area > 0.0f)) return;
+    __global float* to = points + PEL_GATHER_FLOATS * here;
+    to[PEL_GATHER_POINT + 3] = area;
+    to[PEL_GATHER_PIXEL] = wide, to[PEL_GATHER_PIXEL + 1] = high;
+}
+
+// A tile: PEL_TILE_GATHERS, PEL_TILE_LIT.
+__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void gather_areas(
+    __global const PelGatherFrame* frame, __global float* points, __global const PelGatherMaterial* materials,
+    __global uint* tiles, __global uint* counters) {
+    const uint tile = get_global_id(0);
+    if (tile >= frame->tilesX * frame->tilesY) return;
+    const uint left = tile % frame->tilesX * PEL_DIFFUSION_TILE, top = tile / frame->tilesX * PEL_DIFFUSION_TILE;
+    bool gathers = false, covered = false, lit = false;
+    for (uint y = top; y < min(top + PEL_DIFFUSION_TILE, frame->height); ++y)
+        for (uint x = left; x < min(left + PEL_DIFFUSION_TILE, frame->width); ++x) {
+            const size_t at = PEL_GATHER_FLOATS * ((size_t)y * frame->width + x);
+            const uint id = as_uint(points[at + PEL_GATHER_LIGHT + 3]);
+            if (!id) continue;
+            lit = true;
+            measurePixel(frame, points, x, y);
+            const uint material = frame->materialOf[id];
+            if (!material) continue;
+            covered = true;
+            const float4 pixel = vload4(0, points + at + PEL_GATHER_PIXEL);
+            // Where all taps would fall into the pixel itself, irradiance is right as it is.
+            const float radius = materials[material - 1].farthest * pixel.z;
+            const bool wide = radius > fmin(pixel.x, pixel.y) || frame->everywhere;
+            if (pixel.w > 0.0f && pixel.x > 0.0f && wide) {
+                gathers = true;
+            } else {
+                points[at + PEL_GATHER_PIXEL + 2] = -pixel.z;  // read by others alone
+            }
+        }
+    tiles[tile] = (gathers ? PEL_TILE_GATHERS : 0) | (lit ? PEL_TILE_LIT : 0);
+    if (covered) atomic_inc(&counters[PEL_COUNT_TILES_COVERED]);
+    if (gathers) atomic_inc(&counters[PEL_COUNT_TILES_TAPPED]);
+}

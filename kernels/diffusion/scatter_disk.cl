@@ -1,0 +1,86 @@
+// Irradiance scattered under the surface, gathered by a few taps on a disk round each pixel (docs/mathematics.md, section 10,
+// "Screen space"). Taps lie where the profile has its light, on a disk across the view; a tap brings the share of the light of its
+// place on the disk, times what R is at its true distance to what it is on the disk, times the surface of its pixel to that of the disk.
+//
+// Input: the surface (gather_surface.cl), taps and profiles. Output: an image like the irradiance's; pixels of the same value where
+// nothing was to be done. One work-group takes tiles, one work-item columns of their pixels. Variants: PEL_FORMAT_IRRADIANCE,
+// PEL_FORMAT_OUT.
+#include "lib/diffusion/gather.clh"
+#include "lib/image/image.clh"
+
+static inline float4 gatherDisk(__global const PelGatherFrame* frame, __global const float* points,
+                                __global const PelGatherMaterial* m, __global const PelGatherTap* taps,
+                                __global const float* nodes, uint x, uint y, uint* taken) {
+    const size_t here = (size_t)y * frame->width + x;
+    const float4 p = gathered(points, here, PEL_GATHER_POINT), e = gathered(points, here, PEL_GATHER_LIGHT),
+                 pixel = gathered(points, here, PEL_GATHER_PIXEL);
+    const uint id = as_uint(e.w);
+    const PelProfileTable table = m->table;
+    const float turn = 6.28318531f * turnOf(x, y, frame->frameIndex);
+    const float cosine = cos(turn), sine = sin(turn);
+    const uint set = ((x & 1u) + 2u * (y & 1u) + frame->frameIndex) % PEL_GATHER_TURNS;
+    const float perX = 1.0f / pixel.x, perY = 1.0f / pixel.y, perArea = perX * perY;
+    float4 light = (float4)(0.0f), weight = (float4)(0.0f), missing = (float4)(0.0f);
+    for (uint i = m->firstTap + set * m->taps, end = i + m->taps; i < end; ++i) {
+        const float a = taps[i].place[0] * pixel.z, b = taps[i].place[1] * pixel.z;
+        const int dx = (int)floor((cosine * a - sine * b) * perX + 0.5f),
+                  dy = (int)floor((sine * a + cosine * b) * perY + 0.5f);
+        const float4 share = shareOf(&taps[i]);
+        const int tx = (int)x + dx, ty = (int)y + dy;
+        if (!dx && !dy) {
+            light += share * e, weight += share;
+            continue;
+        }
+        if (tx < 0 || ty < 0 || tx >= (int)frame->width || ty >= (int)frame->height) {
+            missing += share;
+            continue;
+        }
+        ++*taken;
+        const size_t there = (size_t)ty * frame->width + tx;
+        const float4 q = gathered(points, there, PEL_GATHER_POINT),
+                     f = gathered(points, there, PEL_GATHER_LIGHT);
+        const float4 flows = flow(m, id, as_uint(f.w));
+        const float3 between = q.xyz - p.xyz;
+        const float u = (float)dx * pixel.x, v = (float)dy * pixel.y;
+        const float stretch = dot(between, between) / (u * u + v * v);
+        const float4 brings = flows * tapBrings(nodes, table, &taps[i], stretch) * (q.w * perArea);
+        light += brings * f, weight += brings;
+        if (!(flows.x + flows.y + flows.z > 0.0f)) missing += share;
+    }
+    light += missing * e, weight += missing;
+    const float4 scattered = select(light / weight, e, isless(weight, (float4)(1e-6f)));
+    return e + pixel.w * (scattered - e);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_disk(
+    __global const PelGatherFrame* frame, __global const float* points,
+    __global const PelGatherMaterial* materials, __global const PelGatherTap* taps, __global const float* nodes,
+    __global const uint* tiles, __global uchar* irradiance, __global uchar* out, __global uint* counters) {
+    const uint count = frame->tilesX * frame->tilesY;
+    uint pixels = 0, taken = 0;
+    for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
+        const bool gathers = tiles[tile] & PEL_TILE_GATHERS;
+        if (!gathers && frame->inPlace) continue;
+        const uint left = tile % frame->tilesX * PEL_DIFFUSION_TILE,
+                   top = tile / frame->tilesX * PEL_DIFFUSION_TILE;
+        for (uint item = get_local_id(0); item < PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE;
+             item += PEL_DIFFUSION_GROUP) {
+            const uint x = left + item % PEL_DIFFUSION_TILE, y = top + item / PEL_DIFFUSION_TILE;
+            if (x >= frame->width || y >= frame->height) continue;
+            const size_t at = PEL_GATHER_FLOATS * ((size_t)y * frame->width + x);
+            const uint id = gathers ? as_uint(points[at + PEL_GATHER_LIGHT + 3]) : 0;
+            const uint material = frame->materialOf[id];
+            const Span to = imageSpan(out, &frame->out, x, y);
+            if (material && points[at + PEL_GATHER_PIXEL + 2] > 0.0f) {
+                const float4 s = gatherDisk(frame, points, &materials[material - 1], taps, nodes, x, y, &taken);
+                storeColor(PEL_FORMAT_OUT, to, vec3(s.x, s.y, s.z), 1);
+                ++pixels;
+            } else if (!frame->inPlace) {
+                storeColor(PEL_FORMAT_OUT, to,
+                           loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y)), 1);
+            }
+        }
+    }
+    if (pixels) atomic_add(&counters[PEL_COUNT_PIXELS_TAPPED], pixels);
+    if (taken) atomic_add(&counters[PEL_COUNT_TAPS], taken);
+}

@@ -1,0 +1,160 @@
+// Irradiance scattered under the surface by two filters, along the rows of the picture and then along its columns, by the line spread
+// of the profile [Jimenez et al. 2015; docs/mathematics.md, section 10, "Separable"]. A tap stands for a piece of the line; where the
+// surface leaves the plane across the view, it counts by what the line spread is at its true distance.
+//
+// Input: the surface (gather_surface.cl), pieces and line spreads. Output: filter_rows: irradiance and -, four floats a pixel;
+// filter_columns: an image like the irradiance's; pixels of the same value where nothing was to be done. One work-group takes tiles, one
+// work-item columns of their pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT.
+#include "lib/diffusion/gather.clh"
+#include "lib/image/image.clh"
+
+typedef struct Line {
+    __global const PelGatherFrame* frame;
+    __global const float* points;
+    __global const float* light;  // per pixel, `lightStride` floats apart
+    uint lightStride;
+    __global const PelGatherMaterial* material;
+    __global const float* nodes;
+    long step;        // pixels from one to the next
+    int first, last;  // that lie on the line, from the own one
+    float size;       // length of a pixel
+    size_t here;
+    float3 p;
+    uint id;
+    float4 own;
+} Line;
+
+typedef struct LineSums {
+    float4 light, weight;
+} LineSums;
+
+// Adds what pixel `k` of the line brings for a share of the light. Returns 1 if it was looked at.
+static inline uint addPixel(const Line* line, __global const PelGatherTap* tap, int k, float part,
+                            LineSums* sums) {
+    const float4 share = part * shareOf(tap);
+    if (k < line->first || k > line->last || k == 0) {
+        sums->light += share * line->own, sums->weight += share;
+        return 0;
+    }
+    const size_t there = (size_t)((long)line->here + k * line->step);
+    const float4 q = gathered(line->points, there, PEL_GATHER_POINT);
+    const uint other = as_uint(gathered(line->points, there, PEL_GATHER_LIGHT).w);
+    if (other != line->id && (!other || !line->material->anyBorder)) {  // its light may not even be there
+        sums->light += share * line->own, sums->weight += share;
+        return 1;
+    }
+    const float4 flows = flow(line->material, line->id, other);
+    const float3 between = q.xyz - line->p;
+    const float plane = (float)k * line->size;
+    const float4 brings =
+        part * flows *
+        tapBrings(line->nodes, line->material->table, tap, dot(between, between) / (plane * plane));
+    sums->light += brings * vload4(0, line->light + there * line->lightStride);
+    sums->weight += brings;
+    // What does not flow is the pixel's own.
+    const float4 kept = select((float4)(0.0f), share, flows <= 0.0f);
+    sums->light += kept * line->own, sums->weight += kept;
+    return 1;
+}
+
+static inline float4 filterLine(const Line* line, __global const PelGatherTap* taps, float radius, uint* taken) {
+    LineSums sums;
+    sums.light = sums.weight = (float4)(0.0f);
+    const float perPixel = radius / line->size;
+    for (uint i = line->material->firstTap, end = i + line->material->taps; i < end; ++i) {
+        // A piece narrower than a pixel lies in at most two; of a wider one its middle pixel's width is read.
+        const float a = taps[i].place[0] * perPixel, b = taps[i].place[1] * perPixel, middle = 0.5f * (a + b),
+                    half_ = 0.5f * fmin(b - a, 1.0f);
+        const int first = (int)floor(middle - half_ + 0.5f), last = (int)floor(middle + half_ + 0.5f);
+        const float beyond = last > first ? (middle + half_ - (float)last + 0.5f) / (2.0f * half_) : 0.0f;
+        *taken += addPixel(line, &taps[i], first, 1.0f - beyond, &sums);
+        if (last > first) *taken += addPixel(line, &taps[i], last, beyond, &sums);
+    }
+    return select(sums.light / sums.weight, line->own, isless(sums.weight, (float4)(1e-6f)));
+}
+
+// Scattered along the row (`down` 0) or the column of a pixel that has a material.
+static inline float4 filterPixel(__global const PelGatherFrame* frame, __global const float* points,
+                                 __global const float* light, uint lightStride,
+                                 __global const PelGatherMaterial* material, __global const PelGatherTap* taps,
+                                 __global const float* nodes, uint x, uint y, bool down, uint* taken) {
+    Line line;
+    line.frame = frame, line.points = points, line.light = light, line.lightStride = lightStride;
+    line.material = material, line.nodes = nodes;
+    line.here = (size_t)y * frame->width + x;
+    const float4 pixel = gathered(points, line.here, PEL_GATHER_PIXEL);
+    const float radius = fabs(pixel.z);
+    line.step = down ? (long)frame->width : 1;
+    line.first = -(int)(down ? y : x);
+    line.last = (int)(down ? frame->height - 1 - y : frame->width - 1 - x);
+    line.size = down ? pixel.y : pixel.x;
+    line.p = gathered(points, line.here, PEL_GATHER_POINT).xyz;
+    line.id = as_uint(gathered(points, line.here, PEL_GATHER_LIGHT).w);
+    line.own = vload4(0, light + line.here * lightStride);
+    return filterLine(&line, taps, radius, taken);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void filter_rows(
+    __global const PelGatherFrame* frame, __global const float* points,
+    __global const PelGatherMaterial* materials, __global const PelGatherTap* taps,
+    __global const float* nodes, __global const uint* tiles, __global float* rows, __global uint* counters) {
+    const uint count = frame->tilesX * frame->tilesY;
+    uint taken = 0;
+    for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
+        if (!tiles[tile]) continue;
+        const uint left = tile % frame->tilesX * PEL_DIFFUSION_TILE,
+                   top = tile / frame->tilesX * PEL_DIFFUSION_TILE;
+        for (uint item = get_local_id(0); item < PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE;
+             item += PEL_DIFFUSION_GROUP) {
+            const uint x = left + item % PEL_DIFFUSION_TILE, y = top + item / PEL_DIFFUSION_TILE;
+            if (x >= frame->width || y >= frame->height) continue;
+            const size_t at = (size_t)y * frame->width + x;
+            float4 light = gathered(points, at, PEL_GATHER_LIGHT);
+            const uint material = frame->materialOf[as_uint(light.w)];
+            const float4 pixel = gathered(points, at, PEL_GATHER_PIXEL);
+            // Also of pixels that are not scattered themselves: others read them in the other filter.
+            if (material && pixel.x > 0.0f && pixel.z != 0.0f)
+                light = filterPixel(frame, points, points + PEL_GATHER_LIGHT, PEL_GATHER_FLOATS,
+                                    &materials[material - 1], taps, nodes, x, y, false, &taken);
+            vstore4(light, at, rows);
+        }
+    }
+    if (taken) atomic_add(&counters[PEL_COUNT_TAPS], taken);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void filter_columns(
+    __global const PelGatherFrame* frame, __global const float* points,
+    __global const PelGatherMaterial* materials, __global const PelGatherTap* taps,
+    __global const float* nodes, __global const uint* tiles, __global const float* rows,
+    __global uchar* irradiance, __global uchar* out, __global uint* counters) {
+    const uint count = frame->tilesX * frame->tilesY;
+    uint pixels = 0, taken = 0;
+    for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
+        const bool gathers = tiles[tile] & PEL_TILE_GATHERS;
+        if (!gathers && frame->inPlace) continue;
+        const uint left = tile % frame->tilesX * PEL_DIFFUSION_TILE,
+                   top = tile / frame->tilesX * PEL_DIFFUSION_TILE;
+        for (uint item = get_local_id(0); item < PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE;
+             item += PEL_DIFFUSION_GROUP) {
+            const uint x = left + item % PEL_DIFFUSION_TILE, y = top + item / PEL_DIFFUSION_TILE;
+            if (x >= frame->width || y >= frame->height) continue;
+            const size_t at = (size_t)y * frame->width + x;
+            const float4 light = gathered(points, at, PEL_GATHER_LIGHT);
+            const uint material = gathers ? frame->materialOf[as_uint(light.w)] : 0;
+            const float4 pixel = gathered(points, at, PEL_GATHER_PIXEL);
+            const Span to = imageSpan(out, &frame->out, x, y);
+            if (material && pixel.z > 0.0f) {
+                const float4 s = filterPixel(frame, points, rows, 4, &materials[material - 1], taps, nodes, x,
+                                             y, true, &taken);
+                const float4 mixed = light + pixel.w * (s - light);
+                storeColor(PEL_FORMAT_OUT, to, vec3(mixed.x, mixed.y, mixed.z), 1);
+                ++pixels;
+            } else if (!frame->inPlace) {
+                storeColor(PEL_FORMAT_OUT, to,
+                           loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y)), 1);
+            }
+        }
+    }
+    if (pixels) atomic_add(&counters[PEL_COUNT_PIXELS_TAPPED], pixels);
+    if (taken) atomic_add(&counters[PEL_COUNT_TAPS], taken);
+}

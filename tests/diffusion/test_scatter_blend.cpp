@@ -1,0 +1,203 @@
+// What lies before and after the methods of scattering: albedo before and after, light from behind thin sheets, weights, and adding.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "diffusion/scatter_scene.h"
+#include "tolerances.h"
+
+using namespace scatter_scene;
+
+namespace {
+
+// A picture through a shader, and what a test changes of it.
+struct Frame {
+    Picture picture;
+    std::vector<float> normals, albedo, weight, back;
+    PelMaterial material = pelMaterialDefaults();
+    Profile profile = Profile::skin();
+    std::vector<PelLight> lights;
+    bool giveIrradiance = true;
+
+    explicit Frame(Picture p) : picture(std::move(p)), normals(picture.positions.size()) {
+        for (size_t i = 0; i < picture.pixels(); ++i) normals[3 * i + 2] = 1;
+        material.profile = profile.get();
+        std::fill_n(material.albedo, 3, 1.0f);
+    }
+    std::vector<float> shade(PelShaderStats* stats = nullptr) const {
+        const Picture& p = picture;
+        pellucid::Shader shader(device());
+        std::vector<Buffer> kept;
+        const auto set = [&](PelImageSlot slot, const auto& values, PelFormat format) {
+            kept.emplace_back(device(), values);
+            shader.set(slot, pellucid::imageDesc(kept.back(), format, p.width, p.height));
+        };
+        set(PEL_SLOT_RADIANCE, std::vector<float>(p.positions.size()), PEL_FORMAT_RGB32F);
+        const Buffer out = kept.back();
+        set(PEL_SLOT_POSITION, p.positions, PEL_FORMAT_RGB32F);
+        set(PEL_SLOT_NORMAL_SHADING, normals, PEL_FORMAT_RGB32F);
+        set(PEL_SLOT_MATERIAL, p.ids, PEL_FORMAT_R8_UINT);
+        if (giveIrradiance) set(PEL_SLOT_IRRADIANCE, p.irradiance, PEL_FORMAT_RGB32F);
+        if (!albedo.empty()) set(PEL_SLOT_ALBEDO, albedo, PEL_FORMAT_RGB32F);
+        if (!weight.empty()) set(PEL_SLOT_SCATTER_WEIGHT, weight, PEL_FORMAT_R32F);
+        if (!back.empty()) set(PEL_SLOT_IRRADIANCE_BACK, back, PEL_FORMAT_RGB32F);
+        shader.setMaterial(1, material);
+        shader.set(lights);
+        PelCamera camera = pelCameraDefaults();
+        shader.set(camera);
+        shader.commit();
+        shader.execute();
+        if (stats) *stats = shader.stats();
+        return out.readAll<float>();
+    }
+};
+
+Picture stripes() {
+    return plane(96, 48, 0.3, [](double x, double) { return Vec3{x > 14 ? 1.0 : 0.1, 0.5, x / 30}; });
+}
+
+const PelScattering methods[] = {PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN, PEL_SCATTERING_AUTO};
+
+}  // namespace
+
+TEST(ScatterBlend, AlbedoBeforeAndAfter) {
+    for (PelScattering method : methods) {
+        Frame f(stripes());
+        f.material.scattering = method;
+        std::vector<float> albedo;
+        for (size_t i = 0; i < f.picture.positions.size(); ++i)
+            albedo.push_back(0.25f + 0.5f * float(i / 30 % 2));
+        const auto plain = f.shade();
+        // One colour: however it is split, the same.
+        std::fill_n(f.material.albedo, 3, 0.36f);
+        for (float m : {0.0f, 0.5f, 1.0f}) {
+            f.material.albedoBefore = m;
+            const auto result = f.shade();
+            for (size_t i = 0; i < result.size(); ++i) ASSERT_NEAR(result[i], 0.36f * plain[i], 1e-3) << m;
+        }
+        // All of it before: what scattering alone gives of irradiance times albedo.
+        Frame product = f;
+        for (size_t i = 0; i < albedo.size(); ++i) product.picture.irradiance[i] *= albedo[i];
+        product.material.albedoBefore = 0;
+        std::fill_n(product.material.albedo, 3, 1.0f);
+        f.albedo = albedo;
+        f.material.albedoBefore = 1;
+        const auto before = f.shade(), expected = product.shade();
+        for (size_t i = 0; i < before.size(); ++i) ASSERT_NEAR(before[i], expected[i], 1e-6) << i;
+        // None of it: as ever.
+        f.material.albedoBefore = 0;
+        const auto after = f.shade();
+        for (size_t i = 0; i < after.size(); ++i) ASSERT_NEAR(after[i], albedo[i] * plain[i], 1e-6) << i;
+        // Black stays black but for what flows in before.
+        std::fill(f.albedo.begin() + 3 * 96 * 20, f.albedo.begin() + 3 * 96 * 24, 0.0f);
+        EXPECT_EQ(f.shade()[3 * (96 * 21 + 80)], 0.0f);
+        f.material.albedoBefore = 1;
+        EXPECT_GT(f.shade()[3 * (96 * 21 + 80)], 0.0f);
+    }
+}
+
+TEST(ScatterBlend, WeightsMix) {
+    for (PelScattering method : methods) {
+        Frame f(stripes());
+        f.material.scattering = method;
+        const auto whole = f.shade();
+        for (size_t i = 0; i < f.picture.pixels(); ++i) f.weight.push_back(float(i % 5) / 4);
+        const auto some = f.shade();
+        for (size_t i = 0; i < some.size(); ++i) {
+            const float w = f.weight[i / 3], e = f.picture.irradiance[i];
+            ASSERT_NEAR(some[i], e + w * (whole[i] - e), 1e-6) << i;
+        }
+    }
+}
+
+// A leaf with the light behind it: what a slab of its thickness lets through, however it scatters then.
+TEST(ScatterBlend, ThinSheetsLetLightThrough) {
+    const double thickness = 0.4;
+    const auto through = Profile::skin().transmission({thickness});
+    for (PelScattering method : {PEL_SCATTERING_NONE, PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN}) {
+        Frame f(stripes());
+        f.giveIrradiance = false;
+        f.material.scattering = method;
+        f.material.thinThickness = float(thickness);
+        PelLight light = pelLightDefaults();
+        light.toLight[1] = 0.6f, light.toLight[2] = -0.8f;
+        light.color[1] = 2;
+        f.lights = {light};
+        const auto result = f.shade();
+        for (size_t i = 0; i < result.size(); ++i)
+            ASSERT_NEAR(result[i], 0.8 * light.color[i % 3] * through[i % 3], 1e-5) << i;
+        f.material.transmission = 0.5f;
+        EXPECT_NEAR(f.shade()[0], 0.4 * through[0], 1e-5);
+        f.material.thinThickness = 0;
+        EXPECT_EQ(f.shade()[0], 0.0f);
+        // The host's own light of the other side.
+        f.giveIrradiance = true;
+        f.material.transmission = 1;
+        f.material.thinThickness = float(thickness);
+        for (float& e : f.picture.irradiance) e = 0.1f;
+        f.back.assign(f.picture.irradiance.size(), 0.7f);
+        EXPECT_NEAR(f.shade()[0], 0.1 + 0.7 * through[0], 1e-5);
+    }
+    Frame wrong(stripes());
+    wrong.material.thinThickness = 1;
+    EXPECT_THROW(wrong.shade(), pellucid::Error);  // by tables
+}
+
+TEST(ScatterBlend, AloneAddsAndMultiplies) {
+    const Picture p = stripes();
+    const auto plain = run(p, Profile::skin()).scattered;
+    for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE}) {
+        Scatter scatter(device());
+        scatter.setMaterial(1, Profile::skin());
+        PelScatterControls c = pelScatterControlsDefaults();
+        c.scattering = method;
+        c.thinThickness = 0.4f;
+        scatter.setControls(1, c);
+        std::vector<float> albedo(p.irradiance.size(), 0.5f), back(p.irradiance.size(), 0.3f);
+        const Buffer e(device(), p.irradiance), x(device(), p.positions), a(device(), albedo),
+            b(device(), back), out(device(), std::vector<float>(p.irradiance.size(), 2.0f));
+        const auto rgb = [&](const Buffer& buffer) {
+            return pellucid::imageDesc(buffer, PEL_FORMAT_RGB32F, p.width, p.height);
+        };
+        const PelImageDesc positions = rgb(x);
+        PelScatterParams params = pelScatterParamsDefaults();
+        params.accumulate = 1;
+        EXPECT_THROW(scatter.execute(params, rgb(e), &positions, nullptr, nullptr, rgb(out)), pellucid::Error);
+        scatter.set(PEL_SLOT_ALBEDO, rgb(a));
+        scatter.set(PEL_SLOT_IRRADIANCE_BACK, rgb(b));
+        scatter.execute(params, rgb(e), &positions, nullptr, nullptr, rgb(out));
+        const auto through = Profile::skin().transmission({double(c.thinThickness)});
+        const auto result = out.readAll<float>();
+        for (size_t i = 0; i < result.size(); ++i)
+            ASSERT_NEAR(result[i], 2 + 0.5 * (plain[i] + 0.3 * through[i % 3]), 5e-2) << i;
+        EXPECT_NEAR(result[3 * (96 * 24 + 90)], 2 + 0.5 * (1 + 0.3 * through[0]), 1e-3);
+        EXPECT_THROW(scatter.execute(params, rgb(e), &positions, nullptr, nullptr, rgb(e)), pellucid::Error);
+        // All of the albedo before is the same where it is one colour.
+        c.albedoBefore = 1;
+        scatter.setControls(1, c);
+        const std::vector<float> two(p.irradiance.size(), 2.0f);
+        out.write(two.data(), two.size() * sizeof(float));
+        scatter.execute(params, rgb(e), &positions, nullptr, nullptr, rgb(out));
+        const auto again = out.readAll<float>();
+        for (size_t i = 0; i < again.size(); ++i) ASSERT_NEAR(again[i], result[i], 1e-3) << i;
+    }
+}
+
+TEST(ScatterBlend, SaysWhatItCannot) {
+    const auto error = [](const std::function<void(PelMaterial&)>& change, bool radius = false) {
+        Frame f(stripes());
+        f.material.scattering = PEL_SCATTERING_SCREEN;
+        change(f.material);
+        if (radius) f.weight.assign(1, 0);
+        try {
+            f.shade();
+        } catch (const pellucid::Error& e) {
+            return std::string(e.what());
+        }
+        return std::string();
+    };
+    EXPECT_EQ(error([](PelMaterial& m) { m.scatterTaps = 16, m.borderColor[0] = 1; }), "");
+    EXPECT_NE(error([](PelMaterial& m) { m.borderColor[0] = 1; }).find("scatterTaps of 8 to 256"),
+              std::string::npos);
+    EXPECT_NE(error([](PelMaterial& m) { m.thinThickness = 1; }).find("thinThickness"), std::string::npos);
+}

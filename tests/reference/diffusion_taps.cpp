@@ -1,0 +1,247 @@
+#include "reference/diffusion_taps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace reference {
+namespace {
+
+constexpr double mostGain = 8, leastCosine = 0.25;
+
+bool finite(Vec3 v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// A rising function as a table, with its inverse by bisection.
+class Rising {
+  public:
+    Rising(double end, const std::function<Rgb(double, double)>& added) : end_(end), values_{Rgb{}} {
+        for (int i = 0; i < count; ++i) values_.push_back(values_.back() + added(at(i), at(i + 1)));
+        const Rgb all = values_.back();
+        for (Rgb& v : values_)
+            for (int c = 0; c < 3; ++c) v[c] /= all[c];
+    }
+    Rgb value(double x) const {
+        const double t = std::cbrt(std::clamp(x / end_, 0.0, 1.0)) * count;
+        const int i = std::min(int(t), count - 1);
+        const double f = (x - at(i)) / (at(i + 1) - at(i));
+        return (1 - f) * values_[i] + f * values_[i + 1];
+    }
+    double mean(double x) const {
+        const Rgb v = value(x);
+        return (v.x + v.y + v.z) / 3;
+    }
+    static double inverse(double end, double wanted, const std::function<double(double)>& of) {
+        double low = 0, high = end;
+        for (int k = 0; k < 60; ++k) {
+            const double middle = (low + high) / 2;
+            (of(middle) < wanted ? low : high) = middle;
+        }
+        return (low + high) / 2;
+    }
+
+  private:
+    static constexpr int count = 3000;
+    double at(int i) const { return end_ * std::pow(double(i) / count, 3); }
+    double end_;
+    std::vector<Rgb> values_;
+};
+
+struct Surface {
+    Vec3 p;
+    double area = 0, pixel = 0;
+    bool there = false;
+};
+
+// Steps across a view along z; every pixel of a picture is as wide as high.
+Surface surfaceAt(const ScatterPicture& s, int x, int y) {
+    const auto sound = [&](int u, int v) {
+        return u >= 0 && v >= 0 && u < s.width && v < s.height && s.ids[s.at(u, v)] &&
+               finite(s.positions[s.at(u, v)]) && finite(s.irradiance[s.at(u, v)]);
+    };
+    Surface result;
+    if (!sound(x, y)) return result;
+    result.p = s.positions[s.at(x, y)];
+    result.there = true;
+    result.area = surfaceArea(s, x, y);
+    double wide = 0;
+    for (const auto& [dx, dy] : {std::pair{1, 0}, {0, 1}}) {
+        double shortest = INFINITY;
+        Vec3 step{};
+        for (int side : {-1, 1}) {
+            const int u = x + side * dx, v = y + side * dy;
+            if (!sound(u, v) || s.ids[s.at(u, v)] != s.ids[s.at(x, y)]) continue;
+            const Vec3 d = s.positions[s.at(u, v)] - result.p;
+            if (length(d) < shortest) shortest = length(d), step = d;
+        }
+        if (std::isfinite(shortest)) wide = std::max(wide, std::hypot(step.x, step.y));
+    }
+    result.pixel = wide;
+    result.area = std::min(result.area, wide * wide / leastCosine);
+    return result;
+}
+
+std::vector<Surface> surfaces(const ScatterPicture& s) {
+    std::vector<Surface> all;
+    for (int y = 0; y < s.height; ++y)
+        for (int x = 0; x < s.width; ++x) all.push_back(surfaceAt(s, x, y));
+    return all;
+}
+
+double at(const std::vector<double>& values, size_t i) {
+    return values.empty() ? 1 : values[i];
+}
+
+Rgb ratio(Rgb a, Rgb b, double gain) {
+    Rgb r;
+    for (int c = 0; c < 3; ++c) r[c] = b[c] > 0 ? std::min(a[c] / b[c], mostGain) * gain : 0;
+    return r;
+}
+
+Rgb mixed(const TapScene& s, size_t i, Rgb light, Rgb weight) {
+    const Rgb own = s.picture.irradiance[i];
+    Rgb result;
+    for (int c = 0; c < 3; ++c)
+        result[c] = own[c] + at(s.weights, i) * ((weight[c] > 0 ? light[c] / weight[c] : own[c]) - own[c]);
+    return result;
+}
+
+}  // namespace
+
+std::vector<Rgb> scatterOnDisk(const TapScene& s, const Profile& profile) {
+    const ScatterPicture& picture = s.picture;
+    const double reach = scatterReach(profile);
+    const Rising light(reach, [&](double a, double b) {
+        return enclosedEnergy(profile, b) - (a > 0 ? enclosedEnergy(profile, a) : Rgb{});
+    });
+    const auto quantile = [&](double part) {
+        return Rising::inverse(reach, part, [&](double r) {
+            const Rgb v = light.value(r);
+            return std::min({v.x, v.y, v.z});
+        });
+    };
+    std::vector<double> ends{0};
+    for (int i = 1; i < s.taps; ++i) ends.push_back(quantile(double(i) / s.taps));
+    ends.push_back(reach);
+    const std::vector<Surface> all = surfaces(picture);
+    std::vector<Rgb> result = picture.irradiance;
+    for (int set = 0; set < 4; ++set) {
+        std::vector<double> radii;
+        for (int i = 0; i < s.taps; ++i) radii.push_back(quantile((i + (set + 0.5) / 4) / s.taps));
+        for (int y = 0; y < picture.height; ++y)
+            for (int x = 0; x < picture.width; ++x) {
+                if ((x % 2 + 2 * (y % 2) + s.frame) % 4 != set) continue;
+                const size_t here = picture.at(x, y);
+                const Surface& own = all[here];
+                const double wide = at(s.radii, here);
+                if (!own.there || !(own.pixel > 0) || !(wide > 0)) continue;
+                const uint32_t turn =
+                    uint32_t(x) * 3242174889u + uint32_t(y) * 2447445414u + uint32_t(s.frame) * 2654435769u;
+                Rgb sum{}, weights{};
+                for (int i = 0; i < s.taps; ++i) {
+                    const double angle = std::numbers::pi * (3 - std::sqrt(5.0)) * i +
+                                         2 * std::numbers::pi * turn / 4294967296.0;
+                    const int dx = int(std::floor(wide * radii[i] * std::cos(angle) / own.pixel + 0.5)),
+                              dy = int(std::floor(wide * radii[i] * std::sin(angle) / own.pixel + 0.5));
+                    const Rgb share = light.value(ends[i + 1]) - light.value(ends[i]);
+                    const int u = x + dx, v = y + dy;
+                    const bool inside = u >= 0 && v >= 0 && u < picture.width && v < picture.height;
+                    Rgb brings = share, e = picture.irradiance[here];
+                    if (inside && (dx || dy) && all[picture.at(u, v)].there) {
+                        const size_t there = picture.at(u, v);
+                        const Rgb flows = picture.ids[there] == picture.ids[here] ? Rgb{1, 1, 1} : s.border;
+                        if (flows.x + flows.y + flows.z > 0) {
+                            const double stretch =
+                                length(all[there].p - own.p) / (std::hypot(dx, dy) * own.pixel);
+                            brings = share * flows *
+                                     ratio(profile.radial(radii[i] * stretch), profile.radial(radii[i]),
+                                           all[there].area / (own.pixel * own.pixel));
+                            if (radii[i] * stretch > reach) brings = Rgb{};
+                            e = picture.irradiance[there];
+                        }
+                    }
+                    sum = sum + brings * e;
+                    weights = weights + brings;
+                }
+                result[here] = mixed(s, here, sum, weights);
+            }
+    }
+    return result;
+}
+
+std::vector<Rgb> scatterSeparably(const TapScene& s, const Profile& profile) {
+    const ScatterPicture& picture = s.picture;
+    const double reach = scatterReach(profile);
+    const Rising half(reach, [&](double a, double b) {
+        return 0.5 * (b - a) *
+               (profile.lineSpread((a + b) / 2 - (b - a) / std::sqrt(12.0)) +
+                profile.lineSpread((a + b) / 2 + (b - a) / std::sqrt(12.0)));
+    });
+    // Half of the pieces by light, half by the root of length.
+    std::vector<double> ends;
+    for (int i = 0; i <= s.taps; ++i) {
+        const double t = 2.0 * i / s.taps - 1;
+        ends.push_back(std::copysign(
+            i == 0 || i == s.taps
+                ? reach
+                : Rising::inverse(reach, std::abs(t),
+                                  [&](double x) { return 0.5 * half.mean(x) + 0.5 * std::sqrt(x / reach); }),
+            t));
+    }
+    const std::vector<Surface> all = surfaces(picture);
+    const auto filtered = [&](const std::vector<Rgb>& from, int dx, int dy, bool weigh) {
+        std::vector<Rgb> result = weigh ? picture.irradiance : from;
+        for (int y = 0; y < picture.height; ++y)
+            for (int x = 0; x < picture.width; ++x) {
+                const size_t here = picture.at(x, y);
+                const Surface& own = all[here];
+                const double wide = at(s.radii, here);
+                if (!own.there || !(own.pixel > 0) || !(wide > 0)) continue;
+                Rgb sum{}, weights{};
+                const auto add = [&](int k, double part, const Rgb& share, double middle) {
+                    const int u = x + k * dx, v = y + k * dy;
+                    Rgb brings = part * share, e = from[here];
+                    const bool inside = u >= 0 && v >= 0 && u < picture.width && v < picture.height;
+                    if (k && inside && all[picture.at(u, v)].there) {
+                        const size_t there = picture.at(u, v);
+                        const Rgb flows = picture.ids[there] == picture.ids[here] ? Rgb{1, 1, 1} : s.border;
+                        const double stretch = length(all[there].p - own.p) / (std::abs(k) * own.pixel);
+                        const Rgb gain = std::abs(middle) * stretch > reach
+                                             ? Rgb{}
+                                             : ratio(profile.lineSpread(std::abs(middle) * stretch),
+                                                     profile.lineSpread(std::abs(middle)), 1);
+                        for (int c = 0; c < 3; ++c) {
+                            brings[c] *= flows[c] > 0 ? flows[c] * gain[c] : 1;
+                            if (flows[c] > 0) e[c] = from[there][c];
+                        }
+                    }
+                    sum = sum + brings * e;
+                    weights = weights + brings;
+                };
+                for (int i = 0; i < s.taps; ++i) {
+                    const double a = ends[i] * wide / own.pixel, b = ends[i + 1] * wide / own.pixel;
+                    const double middle = (a + b) / 2, reachOf = std::min(b - a, 1.0) / 2;
+                    const int first = int(std::floor(middle - reachOf + 0.5)),
+                              last = int(std::floor(middle + reachOf + 0.5));
+                    Rgb share;
+                    const Rgb before = half.value(std::abs(ends[i])), after = half.value(std::abs(ends[i + 1]));
+                    for (int c = 0; c < 3; ++c)
+                        share[c] =
+                            0.5 * (std::copysign(after[c], ends[i + 1]) - std::copysign(before[c], ends[i]));
+                    const double beyond = last > first ? (middle + reachOf - (last - 0.5)) / (2 * reachOf) : 0;
+                    add(first, 1 - beyond, share, (ends[i] + ends[i + 1]) / 2);
+                    if (last > first) add(last, beyond, share, (ends[i] + ends[i + 1]) / 2);
+                }
+                if (weigh)
+                    result[here] = mixed(s, here, sum, weights);
+                else
+                    for (int c = 0; c < 3; ++c) result[here][c] = sum[c] / weights[c];
+            }
+        return result;
+    };
+    return filtered(filtered(picture.irradiance, 1, 0, false), 0, 1, true);
+}
+
+}  // namespace reference
