@@ -304,7 +304,7 @@ inline constexpr Tolerance publishedWidth{"publishedWidth", 6e-4,
 inline constexpr Tolerance publishedWeights{"publishedWeights", 1e-12,
                                             "the published weights add up to 1 in each channel"};
 
-// --- the stand-in renderer, against analytic surfaces; lengths in mm on a sphere of radius 50 ---
+// --- the sample renderer, against analytic surfaces; lengths in mm on a sphere of radius 50 ---
 inline constexpr Tolerance samplePosition{"samplePosition", 1e-4,
                                           "mm: float vertices and images at coordinates up to 300"};
 inline constexpr Tolerance sampleFromDepth{

@@ -101,8 +101,8 @@ class Runner {
 // A 512x512 table of form arc, skin, r = 1 to 100 mm, linear axis.
 struct ArcTable {
     static constexpr int side = 512;
-    CurvatureParams params{side,           side, 6, PEL_LUT_AXIS_LINEAR, 0.01f * 2.7f, 0.99f * 2.7f / side,
-                           float(10 / 2.7)};
+    CurvatureLutParams params{side,           side, 6, PEL_LUT_AXIS_LINEAR, 0.01f * 2.7f, 0.99f * 2.7f / side,
+                              float(10 / 2.7)};
     std::vector<LutGaussian> gaussians{
         {0.080f / 2.7f, 0.233f, 0.455f, 0.649f}, {0.220f / 2.7f, 0.100f, 0.336f, 0.344f},
         {0.432f / 2.7f, 0.118f, 0.198f, 0},      {0.753f / 2.7f, 0.113f, 0.007f, 0.007f},

@@ -8,17 +8,17 @@
 #include "lib/width.clh"
 #include "shared/lut_integral.h"
 
-inline float sampleReach(const CurvatureParams params, const uint y, float* curvature) {
+inline float sampleReach(const CurvatureLutParams params, const uint y, float* curvature) {
     *curvature = fma((float)y + 0.5f, params.rowStep, params.rowMin);
     return fmin(params.cut, M_PI_F / *curvature);
 }
 
-inline floatw columnAngle(const CurvatureParams params, const uint x) {
+inline floatw columnAngle(const CurvatureLutParams params, const uint x) {
     const floatw column = convert_floatw((intw)((int)x) + lanesw()) + 0.5f;
     return acos(clamp(fma(column, 2.0f / (float)params.width, (floatw)(-1.0f)), -1.0f, 1.0f));
 }
 
-inline void storeRow(__global float* texels, const CurvatureParams params, const uint x, const uint y,
+inline void storeRow(__global float* texels, const CurvatureLutParams params, const uint x, const uint y,
                      const floatw r, const floatw g, const floatw b) {
     float red[PEL_WIDTH], green[PEL_WIDTH], blue[PEL_WIDTH];
     storew(r, 0, red);
@@ -28,7 +28,7 @@ inline void storeRow(__global float* texels, const CurvatureParams params, const
         vstore3((float3)(red[lane], green[lane], blue[lane]), (size_t)y * params.width + x + lane, texels);
 }
 
-__kernel void sampledTexels(const CurvatureParams params, __global const LutGaussian* gaussians,
+__kernel void sampledTexels(const CurvatureLutParams params, __global const LutGaussian* gaussians,
                             const uint samples, __global float* texels) {
     const uint x = get_global_id(0) * PEL_WIDTH, y = get_global_id(1);
     float curvature;
@@ -50,7 +50,7 @@ __kernel void sampledTexels(const CurvatureParams params, __global const LutGaus
     storeRow(texels, params, x, y, r * step, g * step, b * step);
 }
 
-__kernel void sampledSpread(const CurvatureParams params, __global const LutGaussian* gaussians,
+__kernel void sampledSpread(const CurvatureLutParams params, __global const LutGaussian* gaussians,
                             const uint samples, __global float4* spread) {
     const uint i = get_global_id(0), y = get_global_id(1);
     float curvature;
@@ -67,8 +67,8 @@ __kernel void sampledSpread(const CurvatureParams params, __global const LutGaus
     spread[(size_t)y * samples + i] = P;
 }
 
-__kernel void sampledFromRow(const CurvatureParams params, __global const float4* spread, const uint samples,
-                             __global float* texels) {
+__kernel void sampledFromRow(const CurvatureLutParams params, __global const float4* spread,
+                             const uint samples, __global float* texels) {
     const uint x = get_global_id(0) * PEL_WIDTH, y = get_global_id(1);
     const floatw theta = columnAngle(params, x);
     floatw r = 0.0f, g = 0.0f, b = 0.0f;

@@ -1,4 +1,4 @@
-// One thing that `pellucid bench` measures, and where they all come from.
+// One measurement of `pellucid bench`, and the lists of all of them.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -24,10 +24,10 @@ struct Case {
     double bytes = 0, operations = 0;
     std::function<void()> run;     // returns when the result is there
     std::function<Error()> error;  // of the last run's result; empty: nothing to compare
-    std::string truth;             // what the error is measured against, and in which unit
+    std::string truth;             // what the result is compared with, and in which unit
 };
 
-// Making a case may take memory and time, and may fail on a device that lacks something.
+// Making a case may need memory and time, and may fail on a device that lacks something.
 struct Factory {
     std::string name, group;
     std::function<Case()> make;

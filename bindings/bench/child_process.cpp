@@ -37,7 +37,7 @@ ChildProcess::ChildProcess(std::vector<std::string> command,
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0)
         throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
-    // Everything that takes memory before the fork: this process has the driver's threads, which may hold locks.
+    // Allocates everything before the fork: this process has the driver's threads, which may hold locks.
     std::vector<std::string> variables;
     for (char** entry = environ; *entry; ++entry) {
         const std::string name(*entry, std::strcspn(*entry, "="));

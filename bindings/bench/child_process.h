@@ -1,4 +1,4 @@
-// A program in a process of its own, heard line by line, for as long as one is willing to wait.
+// A program in a process of its own, read line by line, with a limit on waiting.
 #pragma once
 #include <sys/types.h>
 
@@ -11,18 +11,19 @@ namespace pellucid::bench {
 
 class ChildProcess {
   public:
-    // `environment`: set there beside this process's own. Not `loud`: what it says on standard error is thrown away.
+    // `environment`: variables added to this process's own. Without `loud` its standard error is discarded.
     ChildProcess(std::vector<std::string> command,
                  const std::vector<std::pair<std::string, std::string>>& environment, bool loud);
     ~ChildProcess();  // ends it
     ChildProcess(const ChildProcess&) = delete;
 
-    // The next line of its standard output: `heard`; `ended`: there is no more; `silent`: none within so many seconds, or
-    // `cancelled` returned true.
+    // The next line of its standard output: `heard`; `ended`: there are no more; `silent`: none within so
+    // many seconds, or `cancelled` returned true.
     enum class Answer { heard, ended, silent };
     Answer next(std::string& line, double seconds, const std::function<bool()>& cancelled);
 
-    // Waits for its end. "" when all went well, else "ended by signal 11 (Segmentation fault)" and the like.
+    // Waits for its end. "" if all went well, otherwise "ended by signal 11 (Segmentation fault)" and the
+    // like.
     std::string ending();
 
   private:

@@ -87,7 +87,7 @@ Json compareReports(const Json& before, const Json& after) {
         }
         std::map<std::string, const Json*> byName;
         for (const Json& e : old->at("operations")) byName[e.at("name")] = &e;
-        // What the machine itself does differently from then.
+        // How much the machine itself changed since then.
         double machine = 0;
         for (const char* key : {"copy_bytes_per_second", "operations_per_second"}) {
             const double ratio = value(device, key) / value(*old, key);

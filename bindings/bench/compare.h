@@ -1,12 +1,12 @@
-// Two reports of `pellucid bench` against each other.
+// Compares two reports of `pellucid bench`.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
 
 namespace pellucid::bench {
 
-// The report that a text is: an object with an array "devices", nested no deeper than any report. Anything else is discarded
-// (is_discarded()).
+// The report in a text: an object with an array "devices", nested no deeper than any report. Anything else is
+// discarded (is_discarded()).
 nlohmann::ordered_json parseReport(const std::string& text);
 
 // {"devices": [{"name", "machine", "operations": [{"name", "old_ms", "new_ms", "ratio", "noise",

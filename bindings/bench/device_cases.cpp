@@ -1,4 +1,4 @@
-// What a device can do at most: copies and multiply-adds written for it alone.
+// The limits of a device: copies and multiply-adds written only to measure them.
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
@@ -23,8 +23,8 @@ __kernel void copy16(__global const float16* a, __global float16* b) { b[get_glo
         out[get_global_id(0)] = SUM_##T(s);                                    \
     }
 #define SUM_float(s) s
-// Of all lanes, and from another start in each work-item: a compiler leaves out what nobody reads, and does once what is
-// everywhere the same.
+// The sum of all lanes, with another start in each work-item: compilers leave out unused results, and compute
+// equal ones once.
 #define SUM_float8(s) dot(s.lo + s.hi, (float4)(1.0f))
 #define SUM_float16(s) dot(s.lo.lo + s.lo.hi + s.hi.lo + s.hi.hi, (float4)(1.0f))
 CHAINS(float, chains1)

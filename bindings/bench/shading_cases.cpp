@@ -72,11 +72,11 @@ struct Variant {
     uint32_t taps = 0, lights = 1, coverage = 100;  // coverage: percent of the rows, from the top
 };
 
-// What a variant sets, for the device and for the oracle alike.
+// The settings of a variant, for the device and for the oracle.
 struct Pass {
     std::shared_ptr<Frame> frame;
     Variant variant;
-    // The oracle takes these as they are.
+    // The oracle takes these unchanged.
     PelMaterial material = [] {
         PelMaterial m = pelMaterialDefaults();
         m.diffusionRadius = 2.7f;

@@ -26,7 +26,7 @@ std::string noResult(const Request& request) {
     return "no result within " + shortNumber(request.limitSeconds) + " s";
 }
 
-// What one process came to.
+// The result of one process.
 struct Outcome {
     Json report;                     // null: it did not get there
     Json at;                         // {"begin", "group", "preparing"} of the case that it was at
@@ -51,7 +51,7 @@ Outcome runApart(const Request& request, const std::set<std::string>& without, b
     Outcome outcome;
     std::string line;
     for (;;) {
-        // To start and open the device is no case.
+        // Starting and opening the device is not a case.
         const double limit =
             outcome.at.is_null() ? std::max(request.limitSeconds, startSeconds) : request.limitSeconds;
         const Answer answer = child.next(line, limit, request.cancelled);
@@ -79,7 +79,7 @@ Outcome runApart(const Request& request, const std::set<std::string>& without, b
 Json measureCasesApart(const Request& request) {
     std::set<std::string> without, tried;
     Json lost = Json::array();
-    // After a loss the rest is tried case by case, then those that are left are measured together.
+    // After a loss the rest is tried case by case, then the remaining ones are measured together.
     for (bool trying = false;;) {
         std::set<std::string> leftOut = without;
         if (trying) leftOut.insert(tried.begin(), tried.end());
@@ -100,7 +100,7 @@ Json measureCasesApart(const Request& request) {
         const std::string name = outcome.at.at("begin");
         if (request.progress) request.progress(name + ": " + outcome.why);
         lost.push_back({{"name", name}, {"group", outcome.at.at("group")}, {"failed", outcome.why}});
-        // The process did not come to any case, or to one that it was told to leave out.
+        // The process did not reach any case, or reached one that it was told to leave out.
         if (name == "start" || !without.insert(name).second)
             return {{"copy_bytes_per_second", Json()}, {"operations_per_second", Json()}, {"operations", lost}};
         trying = outcome.at.at("preparing");

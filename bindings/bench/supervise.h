@@ -1,4 +1,4 @@
-// The measuring of a device in processes of its own, so that nothing in it can stop the rest.
+// Measures a device in processes of its own, so that a failure there cannot stop the rest.
 #pragma once
 #include "measure.h"
 

@@ -111,7 +111,7 @@ void runBatch(const Arguments& arguments) {
     std::error_code error;
     std::filesystem::create_directories(arguments.folder, error);
     if (error || !std::filesystem::is_directory(arguments.folder))
-        throw io::FileError(arguments.folder, "is no folder and cannot be made one");
+        throw io::FileError(arguments.folder, "is not a folder and cannot be made one");
     std::signal(SIGINT, [](int signal) {
         interrupted = true;  // the entries in flight are finished; a second Ctrl-C kills
         std::signal(signal, SIG_DFL);

@@ -43,7 +43,7 @@ Rgb readRgb(const std::string& path, const std::string& layer, float scale) {
         const auto& s = array.shape;
         if (!(s.size() == 2 || (s.size() == 3 && (s[2] == 1 || s[2] == 3))) || s[0] * s[1] == 0)
             throw io::FileError(
-                path, "is no picture: an array of height x width, or with 1 or 3 channels, is needed");
+                path, "is not a picture: an array of height x width, or with 1 or 3 channels, is needed");
         out.height = int(s[0]), out.width = int(s[1]);
         const size_t channels = s.size() == 3 ? s[2] : 1;
         for (size_t i = 0; i < s[0] * s[1]; ++i)

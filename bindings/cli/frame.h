@@ -24,7 +24,7 @@ class LutStore {
     std::vector<std::pair<std::pair<std::string, PelLutKind>, Lut>> faceworks_;  // by the profile's name
 };
 
-// Depth images of shadow maps by file, in memory or read on demand.
+// Shadow maps by file, already in memory.
 using ShadowMaps = std::map<std::string, io::Image>;
 
 class Frame {
@@ -62,7 +62,8 @@ class Frame {
     uint64_t inputBytes_ = 0;
 };
 
-// Sentences about sizes that can hardly be meant: depth that is no device depth, bodies that cannot be of their materials' profiles.
+// Sentences about sizes that are probably wrong: depth that is not device depth, bodies whose size does not
+// match their profile.
 std::vector<std::string> unlikely(const io::Image& gbuffer, const io::SceneFile& scene);
 
 // Writes RGB radiance as R, G, B of a float EXR, lengths as Thickness.V.

@@ -27,10 +27,10 @@ struct Arguments {
     PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
     PelShadowLutDesc shadow = pelShadowLutDescDefaults();
     PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
-    CLI::Option* radius = nullptr;  // --diffusion-radius of the table that is asked for
+    CLI::Option* radius = nullptr;  // --diffusion-radius of the requested table
 };
 
-// Without a radius of its own, a table of another material than skin takes the material's.
+// Without a radius a table of a material other than skin takes the material's radius.
 template <class Desc>
 Profile takeProfile(const Arguments& arguments, Desc& desc) {
     const Profile profile = io::findProfile(arguments.profile).profile;
@@ -61,7 +61,7 @@ void integrate(Arguments& arguments, Desc& desc) {
             io::checkWritable(arguments.output);
         else
             encoding = io::checkLutPath(arguments.output, encoding);
-    } catch (const std::exception& e) {  // before any work: the output is the user's choice
+    } catch (const std::exception& e) {  // before any work: the user chose the output
         throw UsageError(e.what());
     }
     Run run(arguments.run);

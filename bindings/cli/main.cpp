@@ -19,7 +19,8 @@ int fail(ExitCode code, const char* message) {
     return code;
 }
 
-// CLI11 would only say that a subcommand is required. Also of those that have some and need one, such as `lut`.
+// CLI11 would only say that a subcommand is required. Also for subcommands that need one themselves, such as
+// `lut`.
 void checkSubcommand(const CLI::App& app, int argc, char** argv, const std::string& path = "") {
     if (argc < 2 || argv[1][0] == '-' || app.get_require_subcommand_min() == 0) return;
     std::string names;
@@ -31,15 +32,15 @@ void checkSubcommand(const CLI::App& app, int argc, char** argv, const std::stri
     throw UsageError("there is no subcommand '" + path + argv[1] + "'; there are " + names);
 }
 
-// Of standard output: a report that nobody gets is no success.
+// Closes standard output: if the report cannot be written, the command has failed.
 int finish(int code) {
     const bool written = std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout);
     return written ? code
                    : fail(exitBadInput, "standard output cannot be written: the report is not complete");
 }
 
-// Descriptors 0 to 2 are taken, or the first file to be opened would be what everybody prints to. One that
-// was closed fails still.
+// Opens file descriptors 0 to 2 if they are closed. Otherwise the first file opened would receive everything
+// that is printed. Writing to one that was closed still fails.
 void holdStandardStreams() {
     for (int fd = 0; fd < 3; ++fd)
         if (::fcntl(fd, F_GETFD) < 0 && ::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY) != fd)
@@ -50,7 +51,7 @@ void holdStandardStreams() {
 
 int main(int argc, char** argv) {
     holdStandardStreams();
-    std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error like a full disk
+    std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes becomes an error like a full disk
     CLI::App app("Subsurface scattering for deferred renderers on OpenCL", "pellucid");
     app.require_subcommand(1);
     app.set_version_flag("--version", std::to_string(PEL_VERSION_MAJOR) + "." + std::to_string(PEL_VERSION_MINOR) +
@@ -84,7 +85,7 @@ int main(int argc, char** argv) {
     } catch (const io::FileError& e) {
         return fail(exitBadInput, e.what());
     } catch (const Error& e) {
-        // The library's own complaints about arguments are wrong use; all others are the device's.
+        // The library refuses wrong arguments: wrong use. All its other errors are the device's.
         const bool use = e.code() == PEL_ERROR_INVALID_ARGUMENT || e.code() == PEL_ERROR_INVALID_STATE;
         return fail(use ? exitWrongUse : exitNoDevice, e.what());
     } catch (const std::exception& e) {

@@ -1,4 +1,4 @@
-// Curvature of a loaded mesh on the device, as `curvature` and `demo` need it.
+// Curvature of a loaded mesh on the device, for `curvature` and `demo`.
 #pragma once
 #include <vector>
 
@@ -17,14 +17,14 @@ struct MeshWeldChoice {
     float tolerance = 0;  // in the mesh's unit of length, PEL_WELD_TOLERANCE only
 };
 
-// Throws InputError, naming the file, when the library refuses the mesh.
+// Throws InputError with the file's name if the library refuses the mesh.
 MeshCurvature meshCurvature(Run& run, const io::MeshData& mesh, const PelCurvatureParams& params,
                             const MeshWeldChoice& weld = {});
 
 // Adds the counts of the mesh to the report, and a warning for each thing that was skipped.
 void reportMesh(Run& run, const PelMeshReport& report);
 
-// The value that a share (0 to 1) of the values does not exceed; 0 for none.
+// The value that the given share (0 to 1) of the values does not exceed; 0 if there are none.
 float percentile(std::vector<float> values, double share);
 
 }  // namespace pellucid::cli

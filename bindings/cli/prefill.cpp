@@ -1,4 +1,4 @@
-// pellucid prefill: builds programs before they are needed; the driver's cache on disk keeps them.
+// pellucid prefill (warm-up): builds programs before they are needed. The driver's cache on disk keeps them.
 #include <set>
 
 #include "frame.h"
@@ -14,7 +14,7 @@ struct Arguments {
     uint32_t threads = 0;
 };
 
-// A black image of the least size that is read as a frame's is, with these channels.
+// A black image of the smallest size that is read as a frame's is, with these channels.
 io::Image blank(const std::set<std::string>& channels, int height = 2) {
     io::Image image;
     image.width = 16;
@@ -24,7 +24,7 @@ io::Image blank(const std::set<std::string>& channels, int height = 2) {
     return image;
 }
 
-// Shades such a frame: what is in files beside the scene is read, but for shadow maps.
+// Shades such a frame. Files beside the scene are read, except shadow maps.
 void prefillScene(const Device& device, const std::string& path) {
     const io::SceneFile scene = io::readScene(path);
     std::set<std::string> channels;
@@ -84,14 +84,15 @@ void run(const Arguments& a) {
 
 void addPrefill(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "prefill", "Build OpenCL programs ahead of their first use, for the driver's cache");
+        "prefill", "Warm-up: build OpenCL programs before their first use, for the driver's cache");
     auto a = std::make_shared<Arguments>();
     command->add_option("scene", a->scenes, "scene files (TOML) that `pellucid shade` will be given");
     command->add_flag("--luts", a->luts, "look-up tables of sums of Gaussians");
-    command->add_flag("--table-luts", a->tableLuts, "look-up tables of measured profiles");
+    command->add_flag("--table-luts", a->tableLuts, "look-up tables of tabulated profiles");
     command->add_flag("--curvature", a->curvature, "curvature of meshes");
     command
-        ->add_option("--threads", a->threads, "that build at a time; 0: one per core. PoCL builds one by one")
+        ->add_option("--threads", a->threads,
+                     "number that build at the same time; 0: one per core. PoCL builds one by one")
         ->capture_default_str();
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });

@@ -84,7 +84,7 @@ void show(const Arguments& a) {
                     lineSpread[3 * i + 2]);
 }
 
-// Six decades of R and P against distance up to four radii, logarithmic upwards.
+// Six decades of R and P against distance up to four radii, with a logarithmic vertical axis.
 void plot(const Arguments& a) {
     if (io::requireExtension(a.output, {"png"}).empty()) return;
     io::checkWritable(a.output);

@@ -1,4 +1,4 @@
-// pellucid reference: what a picture should be, the surface integral over the mesh itself.
+// pellucid reference: the true picture, by the surface integral over the mesh.
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +27,7 @@ float unitOf(const Arguments& a, const io::SceneFile& scene) {
     return a.unit > 0 ? a.unit : scene.unitMm;
 }
 
-// What one material scatters by.
+// How one material scatters.
 struct Diffusion {
     Profile profile;
     float unit = 1;                    // mm per unit of positions
@@ -72,7 +72,7 @@ sample::Vec3 at(const sample::Mesh& mesh, const sample::SurfacePoint& p) {
     return sum;
 }
 
-// Positions of a picture, brought to the mesh: a point above a facet would get less than its due.
+// Moves positions of a picture to the mesh: a point above a facet would receive too little light.
 Points pointsOf(Run& run, const sample::Scene& scene, const std::vector<float>& positions,
                 std::vector<size_t> pixels) {
     Points points;
@@ -284,11 +284,10 @@ void addReference(CLI::App& app) {
         ->expected(3);
     command
         ->add_option("--subdivide", a->subdivide,
-                     "levels of subdivision before anything else: Catmull-Clark of OBJ files, Loop of others")
+                     "levels of subdivision, done first: Catmull-Clark of OBJ files, Loop of others")
         ->check(CLI::Range(0, 6))
         ->capture_default_str();
-    command->add_option("--part", a->part,
-                        "group of an OBJ file that scatters; the others only throw shadows");
+    command->add_option("--part", a->part, "group of an OBJ file that scatters; the others only cast shadows");
     command
         ->add_option("--finest", a->finest,
                      "length to which triangles are split at the edges of shadows (default: a quarter of the "

@@ -42,7 +42,7 @@ void writeOutput(const std::string& path, PelImageSlot slot, const io::Image& gb
                                                                       frame.output(slot));
 }
 
-// What the scene asks for and will not get.
+// Warns of settings that have no effect.
 void warnOfNothing(Run& run, const io::SceneFile& scene, const std::vector<PelImageSlot>& outputs,
                    uint32_t features) {
     for (const io::SceneMaterial& m : scene.materials)
@@ -133,7 +133,7 @@ void run(const Arguments& a) {
         }
         if (a.stats) run.report["stats"] = toJson(stats);
     } catch (const Error& e) {
-        // What the library refuses here came from the two files.
+        // If the library refuses something here, it came from the two files.
         if (e.code() == PEL_ERROR_INVALID_ARGUMENT)
             throw InputError(a.gbuffer + " with " + a.scene + ": " + e.what());
         throw;

@@ -11,7 +11,7 @@ void Stages::add(const std::string& name, double wallMilliseconds, double device
                      "of");
     const Stage& s = stages_.emplace_back(Stage{name, unit, wallMilliseconds, deviceMilliseconds, count, bytes});
     std::fprintf(stderr, "%-38s %9.1f", name.c_str(), s.wall);
-    // Nothing rather than 0 where a stage has no such thing.
+    // Blank instead of 0 if a stage has no such value.
     s.device > 0 ? std::fprintf(stderr, " %10.2f", s.device) : std::fprintf(stderr, " %10s", "");
     s.bytes > 0 ? std::fprintf(stderr, " %8.1f", double(s.bytes) * 1e-6) : std::fprintf(stderr, " %8s", "");
     if (count > 0)

@@ -1,5 +1,5 @@
-// The table of stages that a long command prints on stderr, a line as each ends: what it took, moved and got
-// done.
+// The table of stages that a long command prints on stderr, one line at the end of each: time, bytes and
+// items.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -14,8 +14,8 @@ class Stages {
   public:
     explicit Stages(const Run& run) : run_(run) {}
 
-    // Runs `work` as a stage and measures wall and device time. `count` things of kind `unit` were done,
-    // `bytes` were read and written; both are counted by the caller.
+    // Runs `work` as a stage and measures wall and device time. The caller counts the work: `count` items of
+    // kind `unit`, and `bytes` read and written.
     template <class Work>
     void measure(const std::string& name, uint64_t count, const char* unit, uint64_t bytes, Work&& work) {
         const double device = run_.deviceMilliseconds();
@@ -35,7 +35,7 @@ class Stages {
         std::string name, unit;
         double wall, device;  // ms
         uint64_t count, bytes;
-        // Per second of device time where there is any, else of wall time.
+        // Per second of device time if there is any, otherwise of wall time.
         double perSecond(double what) const {
             return what * 1000 / std::max(device > 0 ? device : wall, 1e-6);
         }

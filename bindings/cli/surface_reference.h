@@ -10,12 +10,12 @@
 
 namespace pellucid::cli {
 
-// A scene's lights, all of which throw shadows, and its ambient light, which does not.
+// A scene's lights, which all cast shadows, and its ambient light, which does not.
 sample::Lighting lightingOf(const io::SceneFile& scene);
 
 struct ReferenceMesh {
     io::MeshData mesh;
-    std::vector<uint32_t> materials;  // per triangle: 1 scatters, 2 only throws shadows; empty: all scatter
+    std::vector<uint32_t> materials;  // per triangle: 1 scatters, 2 only casts shadows; empty: all scatter
 };
 
 // `subdivide` levels: Catmull-Clark of OBJ files, Loop of others. `part`: the only group of an OBJ file that

@@ -1,4 +1,4 @@
-// What every C entry point does: run, and turn an exception into an error code and a message.
+// What every C entry point does: run the call, and turn an exception into an error code and a message.
 #pragma once
 #include <new>
 
@@ -26,7 +26,7 @@ PelError entry(Body&& body) noexcept {
     }
 }
 
-// Retain and Release: NULL does nothing, and an error has no way out but the message and the callback.
+// Retain and Release: NULL does nothing. An error can only be reported by the message and the callback.
 template <class T>
 void retainEntry(const void* handle) noexcept {
     if (handle) entry([&] { retainHandle(handle, T::kind); });
@@ -37,14 +37,14 @@ void releaseEntry(const void* handle) noexcept {
     if (handle) entry([&] { releaseHandle(handle, T::kind); });
 }
 
-// Throws when an output parameter is missing.
+// Throws if an output parameter is NULL.
 template <class T>
 T& output(T* pointer, const char* name) {
     if (!pointer) invalidArgument(name, " is where the result goes: it must not be NULL");
     return *pointer;
 }
 
-// A handle of what `make` makes, which is not called when there is nowhere to put it.
+// A handle of what `make` returns. `make` is not called if there is nowhere to put the handle.
 template <class Handle, class Make>
 void handOut(Handle* to, const char* name, const Make& make) {
     Handle& place = output(to, name);

@@ -6,7 +6,7 @@ using namespace pel;
 
 namespace {
 
-// What every call that makes a table from a description does; `make` is the operation of lut/luts.h.
+// What every call that makes a table from a description does. `make` is the operation of lut/luts.h.
 template <class Desc>
 PelError createLut(PelDevice device, const Desc* desc, const Desc& defaults, const char* name, PelLut* lut,
                    const PelSubmit* submit, Ref<Lut> (*make)(Ref<Device>, const Desc&)) {
@@ -28,7 +28,7 @@ PelError pelCurvatureLutCreate(PelDevice device, const PelCurvatureLutDesc* desc
     return createLut(
         device, desc, pelCurvatureLutDescDefaults(), "PelCurvatureLutDesc", lut, submit,
         +[](Ref<Device> d, const PelCurvatureLutDesc& request) {
-            return integrateCurvatureLut(std::move(d), request);  // at its usual quality
+            return integrateCurvatureLut(std::move(d), request);  // with its usual number of nodes
         });
 }
 

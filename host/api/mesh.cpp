@@ -61,7 +61,8 @@ PelError pelMeshOrient(const PelMeshTopologyDesc* desc, const float* normals, ui
     return entry([&] {
         const auto full = readStruct(desc, pelMeshTopologyDescDefaults(), "PelMeshTopologyDesc");
         PelMeshOrientation counts = pelMeshOrientationDefaults();
-        if (found) writeStruct(found, counts, "PelMeshOrientation");  // fails before anything is written
+        if (found)
+            writeStruct(found, counts, "PelMeshOrientation");  // an error comes before anything is written
         const std::vector<uint32_t> turned = orientTriangles(full, normals, normalStride, counts);
         if (!turned.empty()) std::copy(turned.begin(), turned.end(), &output(indices, "indices"));
         if (found) writeStruct(found, counts, "PelMeshOrientation");
@@ -89,7 +90,7 @@ PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* pa
         const VertexView n = normals ? view(normals, "normals", 3) : VertexView{};
         const VertexView out = view(curvature, "curvature", quantityFloats(full.quantity));
         PelMeshReport found = mesh->report();
-        if (report) writeStruct(report, found, "PelMeshReport");  // fails before any work does
+        if (report) writeStruct(report, found, "PelMeshReport");  // an error comes before any work
         MeshCounts counts{};
         Submission submission(mesh->device(), submit);
         meshCurvature(*mesh, full, p, n, out, report ? &counts : nullptr);

@@ -11,7 +11,7 @@ PelError pelPrefillPrograms(PelDevice device, const PelPrefill* work, uint32_t* 
         constexpr uint32_t known = PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABLE_LUTS | PEL_PROGRAMS_CURVATURE;
         if (w.groups & ~known)
             invalidArgument("PelPrefill.groups is ", w.groups,
-                            ", which has bits that are none of PelProgramGroup");
+                            ", which has bits that are not in PelProgramGroup");
         if (w.numShaders && !w.shaders)
             invalidArgument("PelPrefill.shaders is NULL but numShaders is ", w.numShaders);
         PrefillJobs jobs = prefillGroups(d, w.groups);

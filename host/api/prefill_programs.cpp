@@ -12,7 +12,7 @@
 namespace pel {
 namespace {
 
-constexpr uint32_t texels = 16;  // a side of the least table
+constexpr uint32_t texels = 16;  // a side of the smallest table
 
 PelCurvatureLutDesc smallCurvatureLut(PelCurvatureForm form) {
     PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
@@ -42,7 +42,7 @@ void lutJobs(const Ref<Device>& device, PrefillJobs& jobs) {
     });
 }
 
-// A profile that no sum of Gaussians describes.
+// A profile that is not a sum of Gaussians.
 void tableLutJobs(const Ref<Device>& device, PrefillJobs& jobs) {
     const std::vector<float> radii{0, 1, 3}, values{1, 1, 1, 0.5, 0.4, 0.3, 0, 0, 0};
     const Ref<Profile> profile = Profile::table(radii.data(), values.data(), uint32_t(radii.size()));
@@ -77,7 +77,7 @@ struct SmallMesh {
         desc.positions = positions;
         desc.weld = welded ? PEL_WELD_EXACT : PEL_WELD_NONE;
         PelMeshReport report = pelMeshReportDefaults();
-        // On a thread of its own, where the caller's callback is not to be called.
+        // For other threads, where the caller's callback must not be called.
         topology = MeshTopology::create(device, desc, report, [](double) {});
         memory = device->allocate(sizeof positions, positions);
     }
@@ -151,7 +151,7 @@ void runPrefill(Device& device, const PrefillJobs& jobs, uint32_t threads) {
             }
             try {
                 workers.emplace_back(work);
-            } catch (...) {  // fewer threads will do
+            } catch (...) {  // fewer threads are enough
                 std::lock_guard lock(mutex);
                 --running;
                 if (workers.empty()) throw;
@@ -162,7 +162,7 @@ void runPrefill(Device& device, const PrefillJobs& jobs, uint32_t threads) {
         std::lock_guard lock(mutex);
         if (!failure) failure = std::current_exception();
     }
-    // The callback is called on this thread alone, and not while the lock is held.
+    // The callback is called on this thread only, and never while the lock is held.
     std::unique_lock lock(mutex);
     for (size_t told = 0; running > 0;) {
         changed.wait(lock, [&] { return running == 0 || (done > told && !failure); });

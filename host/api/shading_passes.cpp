@@ -5,7 +5,7 @@
 
 namespace pel {
 
-// A pass reads what those before it made.
+// A pass reads what earlier passes made.
 std::span<const PassKind> shadingPasses() {
     static const PassKind passes[] = {
         ambientCubePass, classifyTilesPass, blurNormalsPass,    normalMapPass, shadowBoundsPass,

@@ -33,7 +33,7 @@ uint64_t limitBytes() {
     return uint64_t(value) << 20;
 }
 
-// A CPU's name does not tell its instructions: virtual machines hide some of them.
+// A CPU's name does not tell which instructions it has: virtual machines hide some of them.
 std::string instructionSet() {
     std::ifstream file("/proc/cpuinfo");
     for (std::string line; std::getline(file, line);)
@@ -41,7 +41,7 @@ std::string instructionSet() {
     return {};
 }
 
-// Drivers' settings that change what they compile, and none that say where it is kept.
+// Settings of drivers that change what they compile. Settings that say where it is kept are left out.
 std::string settings() {
     static constexpr const char* prefixes[] = {"CL_CONFIG_", "POCL_", "RUSTICL_", "LP_", "GALLIVM_", "IGC_"};
     std::vector<std::string> found;
@@ -99,7 +99,7 @@ Program BinaryCache::load(const std::string& source, const std::string& options)
 
 bool BinaryCache::store(const Program& program, const std::string& source, const std::string& options) const {
     if (!files_) return false;
-    // A program of a context of several devices has a place for each.
+    // A program of a context with several devices has an entry for each.
     cl_uint count = 0;
     if (clGetProgramInfo(program.get(), CL_PROGRAM_NUM_DEVICES, sizeof count, &count, nullptr) != CL_SUCCESS ||
         !count)

@@ -15,7 +15,7 @@ class BinaryCache {
 
     // Empty when there is none, or the driver refuses it.
     Program load(const std::string& source, const std::string& options) const;
-    // False when it could not be kept.
+    // False if it could not be stored.
     bool store(const Program& program, const std::string& source, const std::string& options) const;
 
   private:

@@ -19,10 +19,11 @@ namespace pel::cl {
 namespace fs = std::filesystem;
 namespace {
 
-// Before the binary, in the machine's byte order: another machine's is no match.
+// Header before the binary, in the machine's byte order: a file of a machine with another order does not
+// match.
 struct Header {
     char magic[8] = {'P', 'E', 'L', 'B', 'I', 'N', '0', '1'};
-    uint64_t name[2] = {};      // of the file: a renamed one is refused
+    uint64_t name[2] = {};      // of the file: a renamed file is refused
     uint64_t bytes = 0;         // of the binary
     uint64_t checkSum[2] = {};  // of the binary
     bool operator==(const Header&) const = default;
@@ -95,7 +96,7 @@ fs::path binaryFolder() {
 
 std::optional<std::string> BinaryFiles::load(const Digest& name) const {
     if (!whyNotPrivate(folder_).empty()) return {};
-    const File file(pathOf(name), O_RDONLY | O_NONBLOCK);  // a pipe of that name would have us wait
+    const File file(pathOf(name), O_RDONLY | O_NONBLOCK);  // opening a pipe of that name would block
     struct stat status {};
     Header header;
     if (!file || ::fstat(file.fd(), &status) != 0 || !S_ISREG(status.st_mode) ||
@@ -105,14 +106,15 @@ std::optional<std::string> BinaryFiles::load(const Digest& name) const {
     if (uint64_t(status.st_size) != sizeof header + header.bytes || header.bytes > limit_) return {};
     std::string binary(header.bytes, '\0');
     if (!file.read(binary.data(), binary.size()) || header != headerOf(name, binary)) return {};
-    ::futimens(file.fd(), nullptr);  // the oldest go first, by use
+    ::futimens(file.fd(), nullptr);  // the least recently used go first
     return binary;
 }
 
 bool BinaryFiles::store(const Digest& name, const std::string& binary) const {
     if (binary.empty() || binary.size() > limit_) return false;
     if (!makePrivateFolder(folder_) || !whyNotPrivate(folder_).empty()) return false;
-    // Under a name of its own until it is whole: other processes write and read the same programs.
+    // Written under a temporary name and renamed when complete: other processes write and read the same
+    // programs.
     static std::atomic<unsigned> counter{0};
     const fs::path path = pathOf(name), temporary = folder_ / text(".", path.filename().string(), ".",
                                                                    ::getpid(), "-", counter++, ".tmp");
@@ -149,7 +151,7 @@ void BinaryFiles::trim() const {
         std::error_code gone;  // by another process
         const Kept file{at->path(), at->last_write_time(gone), at->file_size(gone)};
         if (gone) continue;
-        // What a process that was killed left behind.
+        // Files that a killed process left behind.
         if (isTemporary(name)) {
             if (fs::file_time_type::clock::now() - file.used > std::chrono::hours(1))
                 fs::remove(file.path, gone);

@@ -8,17 +8,18 @@
 
 namespace pel::cl {
 
-// Where the environment wants them: PELLUCID_CACHE_DIR, else pellucid in XDG_CACHE_HOME or ~/.cache. Empty: nowhere.
+// The folder that the environment names: PELLUCID_CACHE_DIR, else pellucid in XDG_CACHE_HOME or ~/.cache.
+// Empty: none.
 std::filesystem::path binaryFolder();
 
-// A folder of one file per program. Whatever goes wrong with a file is no error: the program is then compiled.
+// A folder with one file per program. A fault of a file is never an error: the program is then compiled.
 class BinaryFiles {
   public:
-    // The oldest files go when there are more than `limit` bytes.
+    // The oldest files are deleted when there are more than `limit` bytes.
     BinaryFiles(std::filesystem::path folder, uint64_t limit) : folder_(std::move(folder)), limit_(limit) {}
 
-    // What was stored under this name; nothing if it is not there, not whole, or another user's (it is machine code that
-    // this process will run; root's is taken).
+    // The binary stored under this name. Empty if the file is missing, incomplete, or belongs to another
+    // user: it is machine code that this process will run. Files of root are accepted.
     std::optional<std::string> load(const Digest& name) const;
     bool store(const Digest& name, const std::string& binary) const;
 

@@ -1,4 +1,4 @@
-// 128-bit FNV-1a [Fowler, Noll, Vo; draft-eastlake-fnv]: names and check sums of compiled programs.
+// 128-bit FNV-1a [Fowler, Noll, Vo; draft-eastlake-fnv]: names and checksums of compiled programs.
 #pragma once
 #include <cstdint>
 #include <cstdio>
@@ -13,7 +13,7 @@ class Digest {
         for (const char c : bytes) state_ = (state_ ^ static_cast<unsigned char>(c)) * prime;
         return *this;
     }
-    // With its length, so that neighbours cannot trade bytes.
+    // Includes the length, so that bytes cannot move between neighbouring values.
     Digest& addPart(std::string_view part) { return add(std::to_string(part.size()) + ":").add(part); }
 
     uint64_t high() const { return uint64_t(state_ >> 64); }

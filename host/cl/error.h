@@ -1,4 +1,4 @@
-// The one exception that crosses the library's layers; host/api turns it into a PelError and a message.
+// The one exception type that crosses the library's layers. host/api turns it into a PelError and a message.
 #pragma once
 #include <pellucid/pellucid.h>
 

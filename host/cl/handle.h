@@ -1,4 +1,4 @@
-// Counted ownership of OpenCL objects, and the check of OpenCL's return codes.
+// Reference-counted ownership of OpenCL objects, and the check of OpenCL's return codes.
 #pragma once
 #include <CL/cl.h>
 

@@ -13,8 +13,9 @@ namespace pel::cl {
 namespace {
 
 constexpr size_t page = 4096, cacheLine = 128;
-constexpr size_t mapped = 32 << 20;  // from here on memory of its own: zero already, and given back at once
-constexpr size_t unasked = 16 << 20;  // how much may be allocated without asking what is left, which takes 100 us
+constexpr size_t mapped =
+    32 << 20;  // from this size on memory has a mapping of its own: it is zero at first and returned to the system at once
+constexpr size_t unasked = 16 << 20;  // may be allocated without asking how much is left, which takes 100 us
 
 std::atomic<uint64_t> inUse{0};
 
@@ -48,7 +49,8 @@ class Block {
     [[noreturn]] void none() const {
         fail(PEL_ERROR_OUT_OF_MEMORY, "the system has no ", bytes_, " bytes of memory for a buffer");
     }
-    // Pages that come only when they are touched would be promised twice, and whoever touches the last dies.
+    // Touch the pages now. The system promises more pages than it has, and ends the process that touches the
+    // last one.
     void commit() {
 #ifdef MADV_HUGEPAGE
         (void)::madvise(at_, bytes_, MADV_HUGEPAGE);
@@ -62,7 +64,7 @@ class Block {
     void* at_ = nullptr;
 };
 
-// Asks what is left once enough has been allocated to matter.
+// Asks how much memory is left, once enough has been allocated to matter.
 void checkNow(size_t bytes) {
     static std::atomic<uint64_t> since{0};
     if (since.fetch_add(bytes, std::memory_order_relaxed) + bytes < unasked) return;

@@ -1,20 +1,21 @@
-// Device memory on devices that compute in the host's: the library allocates it, since PoCL ends the process
-// when it cannot.
+// Device memory on devices that compute in the host's memory: the library allocates it, because PoCL ends the
+// process when an allocation fails.
 #pragma once
 #include "cl/handle.h"
 
 namespace pel::cl {
 
-// A buffer in place over memory of ours, which goes with the cl_mem, whoever holds that last. Holds
-// `initial`, or zeros if `zeros`, else anything. Throws PEL_ERROR_OUT_OF_MEMORY.
+// A buffer over memory that the library allocates. The memory is freed with the last reference to the cl_mem,
+// whoever holds it. It contains `initial`, or zeros if `zeros`, else anything. Throws
+// PEL_ERROR_OUT_OF_MEMORY.
 Memory createInHostMemory(cl_context context, size_t bytes, const void* initial, bool zeros);
 
-// Throws PEL_ERROR_OUT_OF_MEMORY when so many bytes more would leave the machine, the process's control group
-// or its address space (ulimit -v) without the rest that drivers and others need: nobody gets an error when
-// they run out.
+// Throws PEL_ERROR_OUT_OF_MEMORY if so many more bytes would use what drivers and others need of the machine,
+// of the process's control group or of its address space (ulimit -v). When that is used up, processes end
+// without an error.
 void requireMemory(uint64_t bytes, const char* what);
 
-// Bytes of such memory that are in use.
+// Bytes of such memory in use.
 uint64_t hostMemoryInUse();
 
 }  // namespace pel::cl

@@ -16,7 +16,7 @@ std::string_view find(std::string_view name) {
 void expand(std::string_view name, std::set<std::string_view>& seen, std::string& out) {
     static constexpr std::string_view directive = "#include \"";
     std::string_view rest = find(name);
-    // #line keeps compiler messages pointing at the file that a reader can open.
+    // With #line, compiler messages name the file that a reader can open.
     out += text("#line 1 \"", name, "\"\n");
     for (int line = 1; !rest.empty(); ++line) {
         const size_t end = std::min(rest.find('\n'), rest.size() - 1);

@@ -12,10 +12,10 @@ struct KernelFile {
 };
 
 std::span<const KernelFile> kernelFiles();
-const char* kernelsHash();  // changes with any byte of any file
+const char* kernelsHash();  // changes when any byte of any file changes
 
-// The files, one after the other, with their #include "..." lines replaced by the files they name (relative to kernels/), each
-// once.
+// The files one after another. Each #include "..." line is replaced by the file that it names (relative to
+// kernels/), once per file.
 std::string kernelSource(std::span<const std::string> names);
 
 }  // namespace pel::cl

@@ -7,8 +7,8 @@
 
 namespace pel::cl {
 
-// `items` work-items in each dimension, rounded up to whole work-groups of `group` (a kernel's
-// reqd_work_group_size): kernels test their index against the item count that they get as an argument.
+// `items` work-items in each dimension, rounded up to whole work-groups of `group` (the kernel's
+// reqd_work_group_size). Kernels compare their index with the item count, which they get as an argument.
 struct Range {
     std::array<size_t, 3> items{1, 1, 1};
     std::array<size_t, 3> group{1, 1, 1};
@@ -16,7 +16,7 @@ struct Range {
 
 class Launch {
   public:
-    // A fresh cl_kernel: making one costs about a microsecond and needs no lock.
+    // A new cl_kernel: making one costs about a microsecond and needs no lock.
     Launch(const Program& program, const char* kernel);
 
     Launch& arg(cl_mem memory) { return raw(&memory, sizeof memory); }
@@ -28,7 +28,7 @@ class Launch {
         return raw(&value, sizeof value);
     }
 
-    // No launch happens (and an empty event returns) when a dimension has no items.
+    // If a dimension has no items, nothing is launched and the event is empty.
     Event enqueue(cl_command_queue queue, const Range& range);
 
   private:

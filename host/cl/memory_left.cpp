@@ -44,7 +44,7 @@ uint64_t leftInMachine() {
     return memory == unlimited ? unlimited : memory + field(path, "SwapFree:", 0);
 }
 
-// Of the control groups that this process is in: the least. Files in the page cache can be dropped.
+// The least of the control groups that this process is in. Files in the page cache can be dropped.
 uint64_t leftInGroups() {
     uint64_t left = unlimited;
     std::ifstream file("/proc/self/cgroup");
@@ -58,8 +58,8 @@ uint64_t leftInGroups() {
         for (std::string group = line.substr(second + 1);; group.resize(group.rfind('/'))) {
             while (group.ends_with('/')) group.pop_back();
             const std::string at = root + group + "/";
-            const uint64_t limit =
-                number(at + (old ? "memory.limit_in_bytes" : "memory.max"), unlimited);  // "max": no number
+            const uint64_t limit = number(at + (old ? "memory.limit_in_bytes" : "memory.max"),
+                                          unlimited);  // "max" is not a number: no limit
             const uint64_t used = number(at + (old ? "memory.usage_in_bytes" : "memory.current"), 0);
             const uint64_t cached = field(at + "memory.stat", old ? "total_inactive_file" : "inactive_file", 0);
             if (limit != unlimited) left = std::min(left, leftOf(limit, leftOf(used, cached)));

@@ -22,8 +22,8 @@ constexpr const char* missingPackage =
     "no OpenCL device was found: install a driver, for example PoCL for the CPU (Debian: apt-get install "
     "pocl-opencl-icd), or the one of your GPU's vendor";
 
-// PoCL says that it has no device at all when it cannot write to the folder that POCL_CACHE_DIR names. What is wrong with that
-// folder; "" for nothing.
+// PoCL reports no device at all if it cannot write to the folder that POCL_CACHE_DIR names. Returns what is
+// wrong with that folder, "" for nothing.
 std::string poclFolderTrouble() {
     namespace fs = std::filesystem;
     const char* folder = std::getenv("POCL_CACHE_DIR");
@@ -60,7 +60,7 @@ std::string list(const std::vector<PelDeviceInfo>& devices) {
     return out;
 }
 
-// Better devices have more peak arithmetic; clock and units are all that OpenCL tells about it.
+// Better devices have more peak arithmetic. OpenCL tells only the clock and the number of units.
 uint64_t strength(const PelDeviceInfo& d) {
     const uint64_t kind = d.type == PEL_DEVICE_GPU ? 2 : d.type == PEL_DEVICE_CPU ? 1 : 0;
     return kind << 48 | uint64_t(d.computeUnits) * std::max(1u, d.clockMhz);
@@ -92,8 +92,8 @@ bool isPocl(cl_device_id device) {
 
 bool keepsPrograms(cl_device_id device) {
     const std::string platform = platformName(device);
-    // PoCL would compile everything once more to make binaries; NVIDIA has ~/.nv/ComputeCache; Oclgrind
-    // compiles next to nothing.
+    // Drivers whose programs this library does not keep. PoCL would compile everything once more to make
+    // binaries, NVIDIA has ~/.nv/ComputeCache, Oclgrind compiles next to nothing.
     return platform == pocl || platform == "NVIDIA CUDA" || platform == "Oclgrind";
 }
 
@@ -107,13 +107,13 @@ std::string infoString(cl_device_id device, cl_device_info what) {
 
 std::vector<cl_device_id> allDevices() {
     claimProcess();
-    // Loaders load their drivers at the first call, and to a second one that comes meanwhile ocl-icd says
-    // that there are none, or crashes. Never destroyed: devices may be made while the process ends.
+    // Loaders load their drivers at the first call. If a second call comes meanwhile, ocl-icd reports no
+    // platforms, or crashes. The lock is never destroyed: devices may be made while the process ends.
     static std::mutex& loading = *new std::mutex;
     std::lock_guard lock(loading);
     choosePoclCache();
     cl_uint count = 0;
-    // A loader without platforms answers with an error; that is no failure here.
+    // A loader without platforms returns an error. Here it means an empty list.
     if (clGetPlatformIDs(0, nullptr, &count) != CL_SUCCESS || count == 0) return {};
     std::vector<cl_platform_id> platforms(count);
     check(clGetPlatformIDs(count, platforms.data(), nullptr), "clGetPlatformIDs");
@@ -152,9 +152,9 @@ PelDeviceInfo describe(cl_device_id device, uint32_t index) {
     const std::string platform = platformName(device);
     copyText(d.platform, platform);
 
-    // CPUs vectorise explicit vector types, GPUs vectorise across work-items (docs/dataflow.md, "Widths"). So
-    // does a driver that has no vectors on a CPU (rusticl on llvmpipe): each lane would be eight there.
-    // Intel's prefers 1 and has 16, and with those shading is up to twice as fast as with 8.
+    // CPUs vectorise explicit vector types, GPUs vectorise across work-items (docs/dataflow.md, "Widths"). A
+    // driver without vectors on a CPU (rusticl on llvmpipe) gets one lane, since it would make eight of each.
+    // Intel's driver prefers 1 but has 16 lanes, with which shading is up to twice as fast as with 8.
     const uint32_t lanes =
         std::max(d.preferredFloatWidth, info<cl_uint>(device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT));
     d.mathWidth = d.type != PEL_DEVICE_CPU || lanes <= 1 ? 1 : lanes >= 16 ? 16 : 8;

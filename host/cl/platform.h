@@ -1,4 +1,4 @@
-// Which OpenCL devices there are, which one is meant, and what is peculiar about it.
+// Lists OpenCL devices, selects one, and knows the workarounds that each needs.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace pel::cl {
 
-// Every device of every platform, GPUs and CPUs alike, in the order OpenCL lists them.
+// Every device of every platform, GPUs and CPUs, in the order in which OpenCL lists them.
 std::vector<cl_device_id> allDevices();
 
 // Describes a device; index is its position in allDevices(), or UINT32_MAX.
@@ -18,7 +18,7 @@ uint32_t selectDevice(const char* selector);
 
 bool isPocl(cl_device_id device);
 
-// Whether its driver keeps compiled programs on disk, or they are not worth keeping.
+// Whether the driver keeps compiled programs on disk itself, or they are not worth keeping.
 bool keepsPrograms(cl_device_id device);
 
 std::string platformName(cl_device_id device);

@@ -23,7 +23,7 @@ fs::path& folderInUse() {
 
 bool setByUs = false;
 
-// "" when PoCL may use it.
+// "" if PoCL may use it.
 std::string whyNot(const fs::path& folder) {
     if (!makePrivateFolder(folder)) return text(folder.string(), " cannot be made");
     if (const std::string why = whyNotPrivate(folder); !why.empty()) return why;
@@ -32,13 +32,13 @@ std::string whyNot(const fs::path& folder) {
     return {};
 }
 
-// For this process alone, and gone with it.
+// A folder for this process alone, deleted at its end.
 fs::path temporaryFolder(std::string& why) {
     const char* base = std::getenv("TMPDIR");
     for (const fs::path& parent : {fs::path(base ? base : ""), fs::path("/tmp"), fs::path("/dev/shm")}) {
         if (!parent.is_absolute()) continue;
         std::string name = parent / "pellucid-pocl-XXXXXX";
-        if (!::mkdtemp(name.data())) {  // which no one else can enter
+        if (!::mkdtemp(name.data())) {  // nobody else can enter it
             why += text("; ", parent.string(), " takes no new folder");
             continue;
         }

@@ -1,22 +1,24 @@
-// Where PoCL keeps compiled kernels. Left alone, it ends the process over a damaged file or a full disk, and
-// without HOME it runs whatever lies in a folder of fixed name in /tmp, where anybody may have put it.
+// Where PoCL keeps compiled kernels. By default PoCL ends the process if a file there is damaged or the disk
+// is full, and without HOME it runs whatever is in a folder of fixed name in /tmp, where anybody may have put
+// it.
 #pragma once
 #include <filesystem>
 
 namespace pel::cl {
 
-// Before drivers are loaded: sets POCL_CACHE_DIR to a private folder of ours that works, unless the user has
-// set it. Throws PEL_ERROR_DEVICE when there is none. Once per process.
+// To be called before drivers are loaded: sets POCL_CACHE_DIR to a private folder of this library, unless the
+// user has set it. Throws PEL_ERROR_DEVICE if no folder works. Runs once per process.
 void choosePoclCache();
 
-// After devices were listed, when PoCL has read it: takes POCL_CACHE_DIR away again if choosePoclCache set it. Programs that this
-// one starts choose for themselves; a folder for this process alone may be gone by then, and made again by somebody else.
+// To be called after devices were listed, when PoCL has read the variable: removes POCL_CACHE_DIR again if
+// choosePoclCache set it. Programs that this process starts choose for themselves; a folder for this process
+// alone may be gone by then, and made again by somebody else.
 void poclCacheIsChosen();
 
-// Before a program is built by PoCL. Throws PEL_ERROR_DEVICE when it could not write its files.
+// To be called before PoCL builds a program. Throws PEL_ERROR_DEVICE if PoCL could not write its files.
 void checkPoclCache();
 
-// Deletes programs with files that are not whole, of which PoCL would die. Returns how many.
+// Deletes programs whose files are incomplete, which would crash PoCL. Returns how many.
 unsigned removeDamagedPrograms(const std::filesystem::path& folder);
 
 }  // namespace pel::cl

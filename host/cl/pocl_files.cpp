@@ -1,4 +1,4 @@
-// Files of PoCL's cache that are not whole: a disk was full, a machine lost power.
+// Incomplete files of PoCL's cache: a disk was full, or a machine lost power.
 #include <elf.h>
 #include <sys/stat.h>
 
@@ -12,19 +12,18 @@ namespace pel::cl {
 namespace fs = std::filesystem;
 namespace {
 
-// A shared library whose section headers, which come last, are there.
+// Whether a shared library has its section headers, which come last.
 bool wholeElf(std::ifstream& file, uint64_t size) {
     Elf64_Ehdr header;
     if (!file.read(reinterpret_cast<char*>(&header), sizeof header) ||
         std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0)
         return false;
-    if (header.e_ident[EI_CLASS] != ELFCLASS64) return true;  // not ours to judge
+    if (header.e_ident[EI_CLASS] != ELFCLASS64) return true;  // another kind of file
     return header.e_shoff <= size && uint64_t(header.e_shnum) * header.e_shentsize <= size - header.e_shoff;
 }
 
-// LLVM bitcode (llvm.org/docs/BitCodeFormat.html): after the magic number, blocks that say how long they are,
-// to the end of the file. A block begins with a word of its kind and a word with the number of words that
-// follow.
+// LLVM bitcode (llvm.org/docs/BitCodeFormat.html): a magic number, then blocks up to the end of the file. A
+// block begins with a word for its kind and a word with the number of words that follow.
 bool wholeBitcode(std::ifstream& file, uint64_t size) {
     char magic[4];
     if (!file.read(magic, sizeof magic) || std::memcmp(magic, "BC\xC0\xDE", 4) != 0) return false;
@@ -47,11 +46,11 @@ bool whole(const fs::path& path, uint64_t size) {
 
 }  // namespace
 
-// PoCL's folders: two letters, the rest of a program's hash, and in that program.bc and a .so for each kernel
-// and size.
+// PoCL's folders: two letters, then the rest of a program's hash; in that program.bc, and a .so for each
+// kernel and size.
 unsigned removeDamagedPrograms(const fs::path& folder) {
-    // What was whole at the last look and has not been written since is passed over. A file may be being
-    // written just now.
+    // Skips files that were complete at the last check and have not been written since, and files that may be
+    // being written right now.
     const fs::path stamp = folder / "checked";
     const auto now = fs::file_time_type::clock::now();
     std::error_code error;

@@ -25,7 +25,7 @@ std::string homeInSystem() {
 std::string whyNotPrivate(const fs::path& part, bool last) {
     struct stat status {};
     if (::stat(part.c_str(), &status) != 0) return text(part.string(), " cannot be looked at");
-    if (!S_ISDIR(status.st_mode)) return text(part.string(), " is no folder");
+    if (!S_ISDIR(status.st_mode)) return text(part.string(), " is not a folder");
     if (status.st_uid != 0 && status.st_uid != ::geteuid())
         return text(part.string(), " belongs to user ", status.st_uid, ", not to user ", ::geteuid());
     const bool ofOthers = status.st_mode & (S_IWGRP | S_IWOTH);
@@ -59,7 +59,7 @@ std::string whyNotPrivate(const fs::path& folder) {
     std::error_code error;
     const fs::path named = fs::absolute(folder, error).lexically_normal(), real = fs::canonical(folder, error);
     if (error) return text(folder.string(), " cannot be looked at");
-    // Links may lead elsewhere: who may exchange a link matters as much as who may write where it leads.
+    // A link may lead elsewhere: who may replace the link matters as much as who may write to its target.
     for (const fs::path& whole : {named, real}) {
         fs::path part;
         for (const fs::path& piece : whole) {

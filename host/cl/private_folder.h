@@ -1,4 +1,4 @@
-// Folders for machine code that this process will run: nobody else may write there.
+// Private folders: they hold machine code that this process will run, so nobody else may write there.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -6,20 +6,20 @@
 
 namespace pel::cl {
 
-// This user's folders for caches, the wanted one first: XDG_CACHE_HOME, ~/.cache by HOME, ~/.cache by the
-// user's entry in the system. Relative ones are ignored, as the XDG base directory specification asks for.
-// They need not exist.
+// This user's cache folders, the preferred one first: XDG_CACHE_HOME, ~/.cache by HOME, ~/.cache by the
+// user's entry in the system. Relative paths are ignored, as the XDG base directory specification says. They
+// need not exist.
 std::vector<std::filesystem::path> cacheHomes();
 
-// Makes the folder and what is missing above it, for this user alone. False when that cannot be done.
+// Makes the folder and its missing parents, for this user alone. False if that is not possible.
 bool makePrivateFolder(const std::filesystem::path& folder);
 
-// Why others could change what lies in a folder, or exchange the folder; "" when they cannot. It and all
-// above it must be this user's or root's; others may write above it only where they cannot rename what is not
-// theirs (as in /tmp).
+// The reason why others could change files in the folder or replace the folder; "" if they cannot. The folder
+// and all its parents must belong to this user or root. Others may write to a parent only if they cannot
+// rename files of other users there (as in /tmp).
 std::string whyNotPrivate(const std::filesystem::path& folder);
 
-// Bytes that may still be written there; 0 where nothing can be.
+// Bytes that can still be written there; 0 if none.
 uint64_t roomIn(const std::filesystem::path& folder);
 
 }  // namespace pel::cl

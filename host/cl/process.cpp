@@ -11,9 +11,9 @@
 namespace pel::cl {
 namespace {
 
-std::atomic<pid_t> owner{0};  // 0: nobody yet
-// 1 in the owner; Linux clears it in a fork, however that came about. NULL where there is no such memory.
-// Reading it takes a nanosecond, asking for the process's number several hundred on virtual machines.
+std::atomic<pid_t> owner{0};  // 0: no process yet
+// 1 in the owner. Linux clears it in every fork. NULL if there is no such memory. Reading it takes a
+// nanosecond; asking for the process number takes several hundred on virtual machines.
 std::atomic<std::atomic<uint32_t>*> mark{nullptr};
 
 std::atomic<uint32_t>* makeMark() {
@@ -37,7 +37,7 @@ void claimProcess() {
     pid_t nobody = 0;
     if (owner.load(std::memory_order_acquire) == nobody && owner.compare_exchange_strong(nobody, ::getpid()))
         mark.store(makeMark(),
-                   std::memory_order_release);  // until then, and without one, numbers are compared
+                   std::memory_order_release);  // until then, and without one, process numbers are compared
     checkProcess();
 }
 

@@ -25,8 +25,8 @@ Program ProgramCache::get(const ProgramKey& wanted) {
     if (!slot) slot = std::make_shared<Entry>();
     const std::shared_ptr<Entry> entry = slot;
     lock.unlock();
-    // Who asks for the same program waits here for whoever builds it; after a failure the next one tries
-    // again.
+    // A thread that asks for a program which another thread is building waits here. After a failure the next
+    // one tries again.
     std::lock_guard building(entry->building);
     if (entry->program) return entry->program;
     const auto start = std::chrono::steady_clock::now();
@@ -60,7 +60,7 @@ Program ProgramCache::build(const std::vector<std::string>& files, const std::st
 
 Program ProgramCache::compile(const std::string& source, const std::vector<std::string>& files,
                               const std::string& options) const {
-    if (isPocl(device_)) {  // which ends the process where it cannot go on
+    if (isPocl(device_)) {  // PoCL ends the process if it cannot write
         checkPoclCache();
         requireMemory(0, "compiling a program");
     }

@@ -1,4 +1,5 @@
-// Programs built for one device, each once, by kernel file and options; or loaded from disk (cl/binary_cache.h).
+// Programs for one device: each is built once per kernel file and options, or loaded from disk
+// (cl/binary_cache.h).
 #pragma once
 #include <map>
 #include <memory>
@@ -10,12 +11,12 @@
 
 namespace pel::cl {
 
-// Compile-time choices of a program, NAME=VALUE. Structure only (features, formats, counts); numbers are
+// Compile-time choices of a program, NAME=VALUE. Only structure (features, formats, counts); numbers are
 // kernel arguments.
 using Defines = std::map<std::string, std::string>;
 
-// What makes a program: kernel files, one after the other, each file that they include once; and choices. Two requests of
-// one meaning are equal.
+// What a program is made of: kernel files, one after another, each included file once; and the choices. Equal
+// requests compare equal.
 struct ProgramKey {
     std::vector<std::string> files;
     Defines defines;
@@ -26,13 +27,13 @@ class ProgramCache {
   public:
     ProgramCache(Context context, cl_device_id device, uint32_t mathWidth);
 
-    // Thread-safe; different programs are built at the same time by threads that ask for them, where the driver can do that.
-    // PEL_WIDTH (the device's math width) is defined unless `defines` says otherwise.
+    // Thread-safe. Different programs are built at the same time by the threads that ask for them, if the
+    // driver can do that. PEL_WIDTH (the device's math width) is defined unless `defines` does so.
     Program get(const ProgramKey& key);
     Program get(const std::string& file, const Defines& defines) { return get(ProgramKey{{file}, defines}); }
 
     struct Counts {
-        uint32_t built = 0;   // loaded ones included
+        uint32_t built = 0;   // includes loaded ones
         uint32_t loaded = 0;  // from binaries on disk
         uint32_t stored = 0;  // there
         double milliseconds = 0;

@@ -4,8 +4,8 @@ namespace pel {
 
 Buffer::Buffer(Ref<Device> device, cl::Memory memory, size_t bytes)
     : Object(kind), device_(std::move(device)), memory_(std::move(memory)), bytes_(bytes) {
-    // Where the bytes lie, for other buffers may be views of the same: of host memory, or of a cl_mem that
-    // this is a part of.
+    // Where the bytes are: in host memory, or in a cl_mem of which this one is a part. Other buffers may be
+    // views of the same bytes.
     void* host = nullptr;
     cl_mem whole = nullptr;
     size_t offset = 0;

@@ -1,4 +1,5 @@
-// Memory that both sides know: the library's own, the caller's host memory in place, or the caller's cl_mem.
+// Memory that host and device share: the library's own, the caller's host memory in place, or the caller's
+// cl_mem.
 #pragma once
 #include "core/device.h"
 
@@ -15,7 +16,7 @@ class Buffer final : public Object {
     size_t bytes() const { return bytes_; }
     const cl::Memory& memory() const { return memory_; }
 
-    // Where byte 0 lies. Two buffers with one `whole` lie in the same memory, NULL being the host's.
+    // Where byte 0 is. Two buffers with the same `whole` are in the same memory; NULL means host memory.
     struct Place {
         cl_mem whole = nullptr;
         uint64_t offset = 0;

@@ -133,7 +133,7 @@ void Device::finish() {
 PelDeviceStats Device::stats() {
     finish();
     std::lock_guard lock(mutex_);
-    foldEvents();  // but for what other threads submitted meanwhile
+    foldEvents();  // except launches that other threads submitted meanwhile
     PelDeviceStats result = stats_;
     const cl::ProgramCache::Counts programs = programs_.counts();
     result.programsBuilt = programs.built;
@@ -143,7 +143,7 @@ PelDeviceStats Device::stats() {
     return result;
 }
 
-// Adds the time of finished launches to the total and forgets them; unfinished ones are kept.
+// Adds the time of finished launches to the total and forgets them. Unfinished ones are kept.
 void Device::foldEvents() {
     std::vector<cl::Event> kept;
     for (cl::Event& event : pending_) {

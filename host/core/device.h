@@ -22,18 +22,18 @@ class Device final : public Object {
     cl_command_queue queue() const { return queue_.get(); }
     cl::ProgramCache& programs() { return programs_; }
 
-    // Enqueues on the in-order queue and counts it. Returns the launch's event (empty for an empty range).
+    // Enqueues on the in-order queue and counts the launch. Returns its event (empty for an empty range).
     cl::Event launch(cl::Launch& launch, const cl::Range& range);
 
-    // Device memory, uninitialised unless `initial` is given (copied during the call).
+    // Device memory: a copy of `initial`, or uninitialised.
     cl::Memory allocate(size_t bytes, const void* initial = nullptr);
     cl::Memory allocateZeros(size_t bytes);
     void countTransfer(size_t toDevice, size_t toHost);
-    // Non-NULL `destination`/`source`; blocking ones return when the bytes are there.
+    // `destination` and `source` are not NULL. Blocking calls return when the bytes are copied.
     void read(cl_mem memory, size_t offset, size_t bytes, void* destination, bool blocking);
     void write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking);
 
-    // Enqueues: `bytes`, a multiple of 4, from `offset` on become copies of `word`.
+    // Enqueues: fills `bytes`, a multiple of 4, from `offset` on with copies of `word`.
     void fill(cl_mem memory, size_t offset, size_t bytes, uint32_t word);
 
     void finish();
@@ -41,7 +41,7 @@ class Device final : public Object {
 
     bool hasProgress();
     void setProgress(PelProgressCallback callback, void* user);
-    // Tells the caller how far long work is; throws PEL_ERROR_CANCELLED when the caller wants no more of it.
+    // Reports progress of long work to the caller. Throws PEL_ERROR_CANCELLED if the callback cancels.
     void progress(double fraction, const char* what);
 
     Device(cl::Context context, cl_device_id id, cl::Queue queue, const PelDeviceInfo& info);

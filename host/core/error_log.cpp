@@ -12,7 +12,7 @@ PelErrorCallback callback = nullptr;
 void* callbackUser = nullptr;
 thread_local std::string message;
 
-// Another thread may have held the lock when this process was forked: nobody would ever give it back.
+// If another thread held the lock when this process was forked, nobody would ever release it.
 std::unique_lock<std::mutex> lockCallback() {
     std::unique_lock lock(callbackMutex, std::defer_lock);
     if (cl::isFork())
@@ -26,7 +26,7 @@ void keep(const char* what) noexcept {
     try {
         message = what;
     } catch (...) {
-        message.clear();  // out of memory while saying so: the code still tells
+        message.clear();  // out of memory for the message: the code is still returned
     }
 }
 
@@ -44,7 +44,7 @@ const char* lastErrorMessage() {
 
 PelError report(PelError code, const char* what) noexcept {
     keep(what);
-    // What fails inside the callback is told to nobody: it might fail again and again.
+    // An error inside the callback is not reported to the callback again: it might fail again and again.
     thread_local bool telling = false;
     if (telling) return code;
     PelErrorCallback call;
@@ -58,7 +58,7 @@ PelError report(PelError code, const char* what) noexcept {
     telling = true;
     try {
         call(user, code, what);
-    } catch (...) {  // no exception leaves through C
+    } catch (...) {  // no exception may leave through C
     }
     telling = false;
     keep(what);

@@ -7,7 +7,7 @@ namespace pel {
 
 void setErrorCallback(PelErrorCallback callback, void* user);
 const char* lastErrorMessage();
-// Keeps the message for this thread, tells the callback, returns the code.
+// Stores the message for this thread, calls the callback, returns the code.
 PelError report(PelError code, const char* message) noexcept;
 
 }  // namespace pel

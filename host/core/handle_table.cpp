@@ -8,9 +8,9 @@
 namespace pel {
 namespace {
 
-// A handle's bits, from the lowest: one, the place, its generation, a mark. An odd number is no address of an
-// object, and with the mark it is no address at all on 64-bit processors: nobody's pointer is taken for a
-// handle, and none is followed.
+// The bits of a handle, from the lowest: one, the index of the slot, its generation, a mark. An odd number is
+// not the address of an object, and with the mark it is no address at all on 64-bit processors. So no pointer
+// is mistaken for a handle, and none is dereferenced.
 constexpr bool wide = sizeof(void*) == 8;
 constexpr int placeBits = wide ? 24 : 14, generationBits = wide ? 32 : 15, markBits = wide ? 7 : 2;
 constexpr int generationShift = 1 + placeBits, markShift = generationShift + generationBits;
@@ -21,19 +21,19 @@ constexpr uint64_t mask(int bits) {
     return (uint64_t(1) << bits) - 1;
 }
 
-// Neighbouring places begin with generations far apart, so that a handle plus a little is none. After 2^31
-// objects (2^14) a place is given up: it would begin again with handles that there were.
+// Neighbouring slots begin with generations far apart, so that a handle plus a small number is not a handle.
+// After 2^31 objects (2^14 on 32 bits) a slot is retired: it would repeat old handles.
 constexpr uint64_t uses = uint64_t(1) << (generationBits - 1);
 uint64_t firstGeneration(uint64_t place) {
     return place * 0x9e3779b1u & (uses - 1);
 }
 
 struct Slot {
-    // Holders in the lower half, looks-up in the middle of their work in the upper. 0: the place is free. Who
-    // brings it there lets go of the object, and nobody raises it from there but addHandle.
+    // Lower half: the callers' count. Upper half: look-ups in progress. 0: the slot is free. The thread that
+    // brings it to 0 releases the object, and only addHandle raises it from there.
     std::atomic<uint64_t> counts{0};
     std::atomic<uint64_t> handle{0};
-    Object* object = nullptr;  // of whoever holds a count
+    Object* object = nullptr;  // used by threads that hold a count
     uint64_t generation = 0;   // of the next handle; under the table's lock
 };
 constexpr uint64_t holder = 1, visitor = uint64_t(1) << 32, mostHolders = uint64_t(1) << 31;
@@ -59,7 +59,7 @@ class HandleTable {
         return handle;
     }
 
-    // The object's slot with a visitor more, whom leave() takes away again.
+    // Finds the object's slot and counts one more look-up in progress; leave() ends it.
     Slot& visit(const void* pointer, Kind kind) {
         if (!pointer) invalidArgument("a ", kindName(kind), " is needed here, not NULL");
         const uint64_t handle = reinterpret_cast<uintptr_t>(pointer);
@@ -71,7 +71,7 @@ class HandleTable {
             if (holders(counts) == 0) gone(*slot, handle, kind);
         } while (!slot->counts.compare_exchange_weak(counts, counts + visitor, std::memory_order_acquire,
                                                      std::memory_order_relaxed));
-        // Only now does the slot stay what it is: it may have been given to another object just before.
+        // Only now is the slot stable: it may have been given to another object just before.
         if (slot->handle.load(std::memory_order_relaxed) != handle) {
             leave(*slot);
             gone(*slot, handle, kind);
@@ -93,7 +93,7 @@ class HandleTable {
                 invalidArgument("this ", kindName(kind), " was retained ", holders(counts), " times");
         } while (!slot.counts.compare_exchange_weak(counts, counts + holder, std::memory_order_relaxed));
     }
-    // The visitor that the caller of this is keeps the slot meanwhile.
+    // The look-up of the calling function keeps the slot meanwhile.
     void dropHolder(Slot& slot, Kind kind) {
         uint64_t counts = slot.counts.load(std::memory_order_relaxed);
         do {
@@ -108,7 +108,7 @@ class HandleTable {
   private:
     static constexpr uint32_t chunkSlots = 2048, chunks = (1u << placeBits) / chunkSlots, none = UINT32_MAX;
 
-    // nullptr for a place that was never made.
+    // nullptr for a slot that was never made.
     Slot* find(uint32_t place) const {
         Slot* const chunk = chunks_[place / chunkSlots].load(std::memory_order_acquire);
         return chunk ? &chunk[place % chunkSlots] : nullptr;
@@ -131,7 +131,8 @@ class HandleTable {
 
     void lower(Slot& slot, uint64_t by) {
         if (slot.counts.fetch_sub(by, std::memory_order_acq_rel) != by) return;
-        // The last one out. The object goes after the lock: it may be a device, which waits, or hold others.
+        // The last one releases the object after the lock is free: it may be a device, which waits, or hold
+        // other objects.
         Object* const object = slot.object;
         {
             std::lock_guard lock(mutex_);
@@ -148,14 +149,14 @@ class HandleTable {
     }
 
     [[noreturn]] static void unknown(uint64_t handle, Kind kind) {
-        invalidArgument("this is no ", kindName(kind), ": ", reinterpret_cast<void*>(uintptr_t(handle)),
-                        " was never given out");
+        invalidArgument("this is not a ", kindName(kind), ": ", reinterpret_cast<void*>(uintptr_t(handle)),
+                        " was never returned by the library");
     }
     [[noreturn]] static void released(uint64_t handle, Kind kind) {
         invalidArgument("this ", kindName(kind),
                         " was released already: ", reinterpret_cast<void*>(uintptr_t(handle)));
     }
-    // For a handle that its slot does not hold.
+    // The error for a handle that its slot does not hold.
     [[noreturn]] void gone(const Slot& slot, uint64_t handle, Kind kind) {
         const uint64_t place = handle >> 1 & mask(placeBits),
                        generation = handle >> generationShift & mask(generationBits);
@@ -167,14 +168,14 @@ class HandleTable {
         unknown(handle, kind);
     }
 
-    std::atomic<Slot*> chunks_[chunks] = {};  // chunks stay: looking one up needs no lock
+    std::atomic<Slot*> chunks_[chunks] = {};  // chunks are never freed: a look-up needs no lock
     std::atomic<uint64_t> live_{0};
     std::mutex mutex_;  // of the rest
     std::unique_ptr<uint32_t[]> nextFree_[chunks];
     uint32_t free_ = none, grown_ = 0;
 };
 
-// Never destroyed: handles may be released by other static objects on the way out.
+// Never destroyed: other static objects may release handles at the end of the process.
 HandleTable& table() {
     static HandleTable& t = *new HandleTable;
     return t;

@@ -1,20 +1,21 @@
-// The C handles. A handle is no address but a place in a table and the generation of that place: none is
-// given out twice in a process, so that a released, mistaken or invented one is an error and never another
-// object. Looking one up takes no lock.
+// The C handles. A handle is not an address but the index of a slot and the generation of that slot. The same
+// handle is never returned twice in a process, so a released, mistaken or invented handle is an error and
+// never another object. A look-up takes no lock.
 #pragma once
 #include "core/object.h"
 
 namespace pel {
 
-// A new handle that the caller holds once; the reference passes to the table. Throws PEL_ERROR_OUT_OF_MEMORY.
+// A new handle with a caller's count of 1. The table takes over the reference. Throws
+// PEL_ERROR_OUT_OF_MEMORY.
 void* addHandle(Ref<Object> object);
-// The object, held for as long as the caller of this keeps the Ref. Throws PEL_ERROR_INVALID_ARGUMENT with
-// the reason unless the handle is held by somebody and of that kind.
+// The object, alive for as long as the caller keeps the Ref. Throws PEL_ERROR_INVALID_ARGUMENT with the
+// reason if the handle is not in use or of another kind.
 Ref<Object> lookUpHandle(const void* handle, Kind kind);
-// One more holder, or one less; errors as above. The last to go lets go of the object.
+// Raises or lowers the callers' count; errors as above. At 0 the table releases the object.
 void retainHandle(const void* handle, Kind kind);
 void releaseHandle(const void* handle, Kind kind);
-// How many handles callers hold now, each counted once however often it was retained.
+// Number of handles in use, each counted once however often it was retained.
 uint64_t liveHandles();
 
 template <class T>
@@ -27,7 +28,8 @@ Handle toHandle(Ref<T> object) {
     return reinterpret_cast<Handle>(addHandle(Ref<Object>::adopt(object.detach())));
 }
 
-// For structures of the C interface that the library itself fills: a handle that lasts as long as this.
+// For structures of the C interface that the library itself fills: a handle that lives as long as this
+// object.
 template <class Handle, class T>
 class LentHandle {
   public:

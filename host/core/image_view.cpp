@@ -31,7 +31,8 @@ uint64_t ImageView::byteEnd() const {
 ImageView makeImageView(const PelImageDesc& desc, Device& device, const char* what) {
     const FormatInfo* format = formatInfo(desc.format);
     if (!format)
-        invalidArgument("the ", what, " image has format ", int(desc.format), ", which is none of PelFormat");
+        invalidArgument("the ", what, " image has format ", int(desc.format),
+                        ", which is not a value of PelFormat");
     if (desc.width == 0 || desc.height == 0 || desc.width > 16384 || desc.height > 16384)
         invalidArgument("the ", what, " image is ", desc.width, " x ", desc.height,
                         "; both must be between 1 and 16384");
@@ -78,16 +79,16 @@ ImageView makeImageView(const PelImageDesc& desc, Device& device, const char* wh
 
 namespace {
 
-// Whether the bytes from the first to the last pixel of either reach into those of the other.
+// Whether the byte ranges of the two images overlap, from first to last pixel.
 bool overlaps(const ImageView& a, const ImageView& b) {
     const Buffer::Place &inA = a.buffer->place(), &inB = b.buffer->place();
     return inA.whole == inB.whole && inA.offset + a.byteEnd() > inB.offset + b.byteOffset &&
            inB.offset + b.byteEnd() > inA.offset + a.byteOffset;
 }
 
-// Whether pixels of both lie in the same places: interleaved components, or the very same image.
+// Whether pixels of both have the same addresses: interleaved components, or the same image.
 bool pixelOnPixel(const ImageView& a, const ImageView& b) {
-    // OpenCL leaves open what is seen through one cl_mem of what is written through another over the same
+    // OpenCL does not define what is read through one cl_mem of what is written through another over the same
     // memory.
     if (a.buffer->memory().get() != b.buffer->memory().get()) return false;
     if (a.pixelStride != b.pixelStride || a.rowStride != b.rowStride || a.info().planar != b.info().planar)

@@ -1,4 +1,4 @@
-// A checked view of an image in a buffer: what a PelImageDesc says, with its defaults filled in.
+// A checked view of an image in a buffer: a PelImageDesc with its defaults filled in.
 #pragma once
 #include "core/buffer.h"
 
@@ -15,7 +15,7 @@ struct FormatInfo {
     uint32_t pixelBytes;
     bool planar;
 };
-// nullptr for PEL_FORMAT_UNDEFINED and numbers that are no format.
+// nullptr for PEL_FORMAT_UNDEFINED and for numbers that are not formats.
 const FormatInfo* formatInfo(PelFormat format);
 
 struct ImageView {
@@ -26,19 +26,20 @@ struct ImageView {
 
     explicit operator bool() const { return bool(buffer); }
     const FormatInfo& info() const { return *formatInfo(format); }
-    // The bytes from the first to behind the last.
+    // Bytes from the first to one past the last.
     uint64_t byteEnd() const;
     bool tightlyPacked() const { return pixelStride == info().pixelBytes; }
 };
 
-// Checks format, alignment, strides and that everything lies inside the buffer, which must be of `device`;
-// `what` names the image in messages.
+// Checks format, alignment and strides, that all pixels are inside the buffer, and that the buffer is of
+// `device`. `what` names the image in messages.
 ImageView makeImageView(const PelImageDesc& desc, Device& device, const char* what);
 
-// Whether a byte of a pixel of `a` is one of `b` too. Buffers over the same host memory, or parts of one cl_mem, are noticed.
+// Whether `a` and `b` share a byte of a pixel. Also finds buffers over the same host memory and parts of one
+// cl_mem.
 bool sharesBytes(const ImageView& a, const ImageView& b);
 
-// Whether writing `a` pixel by pixel could change pixels of `b` that are read later: they overlap, and not
+// Whether writing `a` pixel by pixel could change pixels of `b` that are read later: they overlap, but not
 // pixel on pixel in one cl_mem.
 bool overlapsElsewhere(const ImageView& a, const ImageView& b);
 

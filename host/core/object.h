@@ -1,5 +1,5 @@
-// Counted objects. What the library itself holds is counted here; what callers hold, in the table of handles
-// (core/handle_table.h), so that no caller can let go of what another one, or the library, still uses.
+// Reference-counted objects. References of the library are counted here, the caller's in the handle table
+// (core/handle_table.h). So no caller can release what another one, or the library, still uses.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -32,7 +32,7 @@ class Object {
         if (count_.fetch_sub(1, std::memory_order_acq_rel) == 1) delete this;
     }
     Kind objectKind() const { return kind_; }
-    // How many there are in the process, those included that only other objects hold.
+    // How many exist in the process, including those that only other objects hold.
     static uint64_t alive();
 
   protected:

@@ -1,5 +1,5 @@
 // Structures that cross the C interface carry their size, so that callers built with an older or newer header
-// fit.
+// work.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace pel {
 
-// Whether `size` bytes of T are whole fields, more than structSize: an older header's structure ends where a
-// field of this one ends, or where the next begins. A newer one's is longer, by whole numbers.
+// Whether `size` bytes of T are whole fields, more than structSize. An older header's structure ends where a
+// field of this one ends, or where the next begins. A newer one's is longer, by a multiple of 4 bytes.
 template <class T>
 bool isWholeStruct(uint32_t size);
 
@@ -32,11 +32,11 @@ bool isWholeStruct(uint32_t size);
 template <class T>
 void checkStructSize(uint32_t size, const char* name) {
     if (size > 1u << 16 || !isWholeStruct<T>(size))
-        invalidArgument(name, ".structSize is ", size, ", which is no size that ", name, " has or had; it is ",
+        invalidArgument(name, ".structSize is ", size, ", which is not its size in any version; it is ",
                         sizeof(T), " in this version: start from the pel...Defaults() function of ", name);
 }
 
-// The caller's structure over `defaults`; fields that its header did not have keep their defaults.
+// Copies the caller's structure over `defaults`. Fields that its header did not have keep their defaults.
 template <class T>
 T readStruct(const T* from, T defaults, const char* name) {
     if (!from) invalidArgument("a ", name, " is needed, not NULL");

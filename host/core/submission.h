@@ -1,5 +1,5 @@
-// PelEvent, and the frame round every call that does work: wait first, then enqueue, then block or hand out
-// an event.
+// PelEvent, and the steps of every call that does work: wait first, then enqueue, then block or return an
+// event.
 #pragma once
 #include "core/device.h"
 
@@ -19,8 +19,8 @@ class Event final : public Object {
     cl::Event event_;
 };
 
-// Construct before the first command of a call, finish() after the last. The queue is in order, so that
-// commands between the two need no event lists of their own.
+// Construct it before the first command of a call, and call finish() after the last. The queue is in order,
+// so commands between them need no event lists of their own.
 class Submission {
   public:
     Submission(Device& device, const PelSubmit* submit);

@@ -22,12 +22,12 @@ namespace pellucid::io {
 namespace fs = std::filesystem;
 namespace {
 
-// Seconds since the last write after which a temporary file is nobody's: a writer that this program's locks
-// would show, and others.
+// Seconds since the last write after which a temporary file counts as abandoned: for writers whose locks this
+// program can see, and for others.
 constexpr double lockedAge = 60, foreignAge = 86400;
 
-// Whose locks are ours to see: those under this kernel, containers included. 8 hexadecimal digits.
-// bindings/python/pellucid/batch/ store.py makes the same.
+// The machine whose locks this program can see: everything under this kernel, including containers. 8
+// hexadecimal digits. bindings/python/pellucid/batch/ store.py makes the same.
 const std::string& machineTag() {
     static const std::string tag = [] {
         std::string name;
@@ -42,7 +42,7 @@ const std::string& machineTag() {
     return tag;
 }
 
-// 64 bits that nobody can foresee.
+// 64 random bits that nobody can predict.
 std::string randomDigits() {
     uint64_t bits = 0;
     if (::getentropy(&bits, sizeof bits) != 0)
@@ -58,7 +58,7 @@ std::string temporaryName(const std::string& name) {
     return temporary += path.extension().string().substr(0, 40);
 }
 
-// The machine of a temporary file; "" for another name.
+// The machine that a temporary file's name contains; "" for other names.
 std::string machineOf(const std::string& name) {
     constexpr size_t tag = 8, random = 16, all = 1 + tag + 1 + random;
     const size_t end = name.rfind(".tmp");
@@ -72,7 +72,7 @@ std::string machineOf(const std::string& name) {
                                                                                          : "";
 }
 
-// A folder, to name files in it and to flush it. Where it may not be listed it can still hold files.
+// A folder, to name files in it and to flush it. Files can be written to it even if it cannot be listed.
 int openFolder(const std::string& path) {
     const int fd = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     return fd >= 0 || errno != EACCES ? fd : ::open(path.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
@@ -83,7 +83,7 @@ std::string folderOf(const std::string& path) {
     return parent.empty() ? "." : parent;
 }
 
-// Whether names in this folder are on the disk. Some file systems cannot flush folders, and say so.
+// Flushes the names in this folder to the disk. Some file systems cannot flush folders, and report that.
 bool flushed(int fd) {
     return ::fsync(fd) == 0 || errno == EINVAL || errno == EBADF || errno == ENOTSUP;
 }
@@ -113,7 +113,7 @@ AtomicFile::AtomicFile(std::string target)
         errno = why;
         fail();
     }
-    ::flock(file_, LOCK_EX | LOCK_NB);  // where there are no locks, age alone tells
+    ::flock(file_, LOCK_EX | LOCK_NB);  // without locks only the age decides
 }
 
 AtomicFile::~AtomicFile() {
@@ -140,7 +140,7 @@ void AtomicFile::write(const void* bytes, size_t count) {
 
 void AtomicFile::commit(bool folderToo) {
     if (::fsync(file_) != 0) fail();
-    // Network file systems may tell only now that they are full. The lock stays with the second descriptor.
+    // Network file systems may report only now that they are full. The second descriptor keeps the lock.
     const int locked = ::fcntl(file_, F_DUPFD_CLOEXEC, 0);
     if (locked < 0) fail();
     const int closed = ::close(file_);
@@ -191,7 +191,7 @@ size_t removeAbandonedFiles(const std::string& path) {
 }
 
 void checkWritable(const std::string& path) {
-    const AtomicFile probe(path);  // making a file there is the only sure test; its destructor removes it
+    const AtomicFile probe(path);  // making a file there is the only sure test; the destructor removes it
     removeAbandonedFiles(folderOf(path));
 }
 

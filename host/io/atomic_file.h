@@ -1,5 +1,5 @@
-// The one way to a file on the disk: it appears complete or not at all, and what stood there before stays
-// until then.
+// The only way in which this program writes files: a file appears complete or not at all, and the previous
+// file stays until then.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace pellucid::io {
 
-// A file under a temporary name beside its target: of random letters, made anew and never through a link,
-// locked while its writer lives. write() puts it on the disk, commit() gives it its name and flushes the
-// folder. Without commit() the destructor removes it.
+// A file under a temporary, random name beside its target: newly made, never through a link, and locked while
+// its writer lives. write() adds to it, commit() renames it and flushes the folder. Without commit() the
+// destructor removes it.
 class AtomicFile {
   public:
-    // Throws FileError when the folder is missing or may not be written to, or when a folder, a pipe or a
-    // device has this name.
+    // Throws FileError if the folder is missing or not writable, or if a folder, a pipe or a device has this
+    // name.
     explicit AtomicFile(std::string target);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
@@ -21,8 +21,8 @@ class AtomicFile {
 
     // Appends; throws FileError (disk full, …).
     void write(const void* bytes, size_t count);
-    // Waits for the disk, renames, and waits until the folder is there too; throws FileError. Of many files in one folder each may leave
-    // the folder out, and flushFolder() be called for all.
+    // Waits for the disk, renames, and waits until the folder is on the disk too; throws FileError. When many
+    // files go to one folder, each may leave the folder out, and flushFolder() is called once for all.
     void commit(bool folderToo = true);
 
   private:
@@ -31,19 +31,19 @@ class AtomicFile {
     int folder_ = -1, file_ = -1;
 };
 
-// All of it: an AtomicFile written and committed.
+// All steps: an AtomicFile, written and committed.
 void writeWholeFile(const std::string& path, std::string_view bytes);
 
-// Waits until the names in a folder are on the disk, where the file system can do that; throws FileError.
+// Waits until the names in a folder are on the disk, if the file system can do that; throws FileError.
 void flushFolder(const std::string& path);
 
-// Removes what programs that were killed left in a folder: temporary files that nobody locks any more, a
-// minute after they were last written, and those of other machines, whose locks are not seen everywhere,
-// after a day. Returns how many.
+// Removes what killed programs left in a folder: temporary files that nobody locks, a minute after they were
+// last written; and those of other machines, whose locks are not visible everywhere, after a day. Returns how
+// many.
 size_t removeAbandonedFiles(const std::string& folder);
 
-// Throws FileError unless a file can be created or replaced at `path`: call it before long work, not after.
-// Removes abandoned files beside it.
+// Throws FileError unless a file can be created or replaced at `path`; call it before long work. Removes
+// abandoned files beside it.
 void checkWritable(const std::string& path);
 
 }  // namespace pellucid::io

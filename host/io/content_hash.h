@@ -1,4 +1,4 @@
-// 64-bit FNV-1a [Fowler, Noll, Vo]: names of files by what is in them.
+// 64-bit FNV-1a [Fowler, Noll, Vo]: names of files from their content.
 #pragma once
 #include <cstdint>
 #include <cstdio>

@@ -1,4 +1,4 @@
-// The one exception of host/io: a file that cannot be read, or cannot be written.
+// The one exception of host/io: a file that cannot be read or written.
 #pragma once
 #include <stdexcept>
 #include <string>
@@ -15,7 +15,7 @@ class FileError : public std::runtime_error {
           line_(line) {}
 
     const std::string& file() const { return file_; }
-    int line() const { return line_; }  // 1-based; 0 when the trouble has no line
+    int line() const { return line_; }  // 1-based; 0 if no line is to blame
 
   private:
     static std::string place(std::string file, int line) {

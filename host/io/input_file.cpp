@@ -51,7 +51,7 @@ std::string kindOf(mode_t mode) {
 int opened(const std::string& path, uint64_t& bytes) {
     const std::string other = otherThanFile(path);
     if (other.empty()) {
-        // Had it become a pipe meanwhile, opening it must not wait for its writer.
+        // If it has become a pipe meanwhile, opening it must not wait for a writer.
         const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
         if (fd < 0) unreadable(path);
         struct stat status {};
@@ -106,7 +106,7 @@ std::string readWholeFile(const std::string& path, uint64_t limit) {
     };
     if (bytes > limit) refuse(bytes);
     std::string text;
-    // One byte more than its size, so that the end is seen; files of /proc have no size.
+    // One byte more than its size, to notice the end; files of /proc have no size.
     text.resize(size_t(bytes) + 1);
     size_t filled = 0;
     for (;;) {

@@ -1,4 +1,4 @@
-// Files that are read: whole, and of a size that was checked first.
+// Input files: read completely, after their size was checked.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,25 +9,25 @@
 namespace pellucid::io {
 
 // Most bytes that one input may have, on the disk and again as floats in memory: PELLUCID_INPUT_LIMIT_MIB,
-// 2048 MiB without it. Throws FileError when the variable is no whole number from 1 on.
+// 2048 MiB without it. Throws FileError if the variable is not a whole number of at least 1.
 uint64_t inputLimit();
 
-// How a message tells a number of bytes, in MiB, and what would raise the limit.
+// A number of bytes for messages, in MiB, and what raises the limit.
 std::string tooLarge(double bytes, uint64_t limit);
 
-// Texts that are parsed into trees (scenes, profiles, manifests, reports) may have this many bytes: in memory
-// they take some thirty times as much.
+// Most bytes of texts that are parsed into trees (scenes, profiles, manifests, reports): in memory they take
+// some thirty times as much.
 inline constexpr uint64_t textLimit = uint64_t{16} << 20;
 
-// The whole file. Throws FileError when it is missing, unreadable, no regular file (a folder, a pipe, a
-// device), or larger than `limit` bytes, which is found out before anything is read.
+// The whole file. Throws FileError if it is missing, unreadable, not a regular file (a folder, a pipe, a
+// device), or larger than `limit` bytes. The size is checked before anything is read.
 std::string readWholeFile(const std::string& path, uint64_t limit = inputLimit());
 
-// Throws FileError when there is no such file, it is no regular file, or unreadable.
+// Throws FileError if the file does not exist, is not a regular file, or is unreadable.
 void checkReadable(const std::string& path);
 
-// What a path is instead of a regular file: "a folder", "a pipe", "a device", "a socket"; "" for a regular
-// file and for nothing at all. Follows links.
+// What a path is if it is not a regular file: "a folder", "a pipe", "a device", "a socket". "" for a regular
+// file and for a path that does not exist. Follows links.
 std::string otherThanFile(const std::string& path);
 
 // The extension in lower case, without the dot; "" if there is none.

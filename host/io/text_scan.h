@@ -12,12 +12,12 @@ namespace pellucid::io {
 
 class TextScan {
   public:
-    // `comment` starts what is left out of a line, '\n' for nothing. `linesBefore`: of the file, when `text`
-    // is its rest.
+    // `comment` begins a comment, '
+    // ' for none. `linesBefore`: lines of the file before `text`.
     TextScan(std::string path, std::string_view text, char comment = '#', int linesBefore = 0)
         : path_(std::move(path)), rest_(text), comment_(comment), line_(linesBefore) {}
 
-    // The next line that has words, split at blanks; comments are left out. False at the end.
+    // The next line that has words, split at blanks, without comments. False at the end.
     bool nextLine() {
         while (!rest_.empty()) {
             ++line_;
@@ -35,7 +35,7 @@ class TextScan {
     int line() const { return line_; }
     [[noreturn]] void fail(const std::string& message) const { throw FileError(path_, message, line_); }
 
-    // Word i of the line as a finite number; `what` names it in the error.
+    // Word i of the line as a finite number. `what` names it in the error.
     float number(size_t i, std::string_view what) const {
         if (i >= words_.size()) {
             fail(std::string(what) + " is missing: the line has " + std::to_string(words_.size()) +
@@ -43,7 +43,7 @@ class TextScan {
         }
         float value = 0;
         if (!parse(words_[i], value))
-            fail(std::string(what) + " '" + std::string(words_[i]) + "' is no number that fits a float");
+            fail(std::string(what) + " '" + std::string(words_[i]) + "' is not a number that fits a float");
         if (!std::isfinite(value)) {
             fail(std::string(what) + " is '" + std::string(words_[i]) +
                  "'; a finite number is needed (the mesh cannot be measured there)");
@@ -53,7 +53,8 @@ class TextScan {
 
     long long integer(std::string_view word, std::string_view what) const {
         long long value = 0;
-        if (!parse(word, value)) fail(std::string(what) + " '" + std::string(word) + "' is no whole number");
+        if (!parse(word, value))
+            fail(std::string(what) + " '" + std::string(word) + "' is not a whole number");
         return value;
     }
 

@@ -1,4 +1,4 @@
-// How deep a TOML file nests, found out before toml++ parses it: it makes, and takes down again, a table for
+// The nesting depth of a TOML file, checked before toml++ parses it. toml++ makes and destroys a table for
 // each part of a key by recursion, and a key may have any number of parts.
 #include <string_view>
 
@@ -15,8 +15,8 @@ class Depth {
   public:
     Depth(const std::string& file, std::string_view text) : file_(file), text_(text) {}
 
-    // Dots and brackets outside of strings and comments. Numbers have a dot or two of their own, which is far
-    // from the limit.
+    // Dots and brackets outside strings and comments. Numbers contain a dot or two, which is far from the
+    // limit.
     void check() {
         while (at_ < text_.size()) {
             const char c = text_[at_];

@@ -51,7 +51,7 @@ toml::table parseToml(const std::string& file, const std::string& text) {
     try {
         return toml::parse(text, file);
     } catch (const toml::parse_error& error) {
-        throw FileError(file, "is no TOML: " + std::string(error.description()),
+        throw FileError(file, "is not TOML: " + std::string(error.description()),
                         static_cast<int>(error.source().begin.line));
     }
 }
@@ -111,7 +111,7 @@ void TomlReader::rows(std::string_view key, float* values, size_t rows, size_t c
         fail(key, "has " + std::to_string(array.size()) + " rows; " + wanted + " would be right");
     for (size_t r = 0; r < rows; ++r) {
         if (!array[r].is_array() || array[r].as_array()->size() != columns) {
-            fail(key, "has a row " + std::to_string(r) + " (counted from 0) that is no array of " +
+            fail(key, "has a row " + std::to_string(r) + " (counted from 0) that is not an array of " +
                           std::to_string(columns) + "; " + wanted + " would be right");
         }
         for (size_t c = 0; c < columns; ++c)

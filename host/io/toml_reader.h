@@ -1,4 +1,4 @@
-// Reads one TOML table key by key, and knows which keys it was asked for: the rest are errors.
+// Reads one TOML table key by key. Keys that nobody asked for are errors.
 #pragma once
 
 // Damaged text breaks some of toml++'s assertions, which NDEBUG has the compiler take for granted; the checks behind them say what
@@ -21,10 +21,10 @@
 
 namespace pellucid::io {
 
-// Throws FileError, with the line, where keys have more than 16 parts or brackets nest more than 16 deep.
+// Throws FileError with the line if keys have more than 16 parts or brackets nest more than 16 deep.
 void checkTomlDepth(const std::string& file, std::string_view text);
 
-// Parses the text of `file`; throws FileError with the line where it is no TOML, nests too deep, or has more
+// Parses the text of `file`. Throws FileError with the line if it is not TOML, nests too deep, or has more
 // than textLimit bytes.
 toml::table parseToml(const std::string& file, const std::string& text);
 
@@ -39,7 +39,7 @@ class TomlReader {
     void rows(std::string_view key, float* values, size_t rows, size_t columns);
     void integer(std::string_view key, uint32_t& value, Range range);
     void text(std::string_view key, std::string& value);
-    // From `least` to `most` of them; one text will do for 1.
+    // From `least` to `most` of them. One text is enough for 1.
     void texts(std::string_view key, std::vector<std::string>& values, size_t most, size_t least);
 
     // One value or an array of them, not empty.
@@ -61,10 +61,10 @@ class TomlReader {
         }
     }
 
-    // The tables [[key]], in order; each is given to `function(reader)` and then finished.
+    // The tables [[key]], in order. Each is passed to `function(reader)` and then finished.
     void tables(std::string_view key, const std::function<void(TomlReader&)>& function);
 
-    // The same, but what is wrong in one table goes to `failed` and the others are read all the same.
+    // The same, but errors in one table go to `failed`, and the others are still read.
     void tablesApart(std::string_view key, const std::function<void(TomlReader&)>& function,
                      const std::function<void(const FileError&)>& failed);
 
@@ -75,7 +75,7 @@ class TomlReader {
     [[noreturn]] void fail(std::string_view key, const std::string& message) const;
 
   private:
-    const toml::node* find(std::string_view key);  // remembers that the key is known
+    const toml::node* find(std::string_view key);  // marks the key as known
     float toFloat(std::string_view key, const toml::node& node, Range range) const;
     void choiceIndex(std::string_view key, uint32_t& index, std::span<const std::string_view> names);
     const toml::table* subTable(std::string_view key);

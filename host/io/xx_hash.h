@@ -1,5 +1,5 @@
 // XXH64 with seed 0 [Collet, xxHash fast digest algorithm, specification 0.1.1]: eight bytes at a time, for
-// check sums of whole files.
+// checksums of whole files.
 #pragma once
 #include <bit>
 #include <cstdint>

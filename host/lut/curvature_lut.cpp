@@ -6,7 +6,7 @@
 #include "lut/lut_check.h"
 #include "lut/lut_terms.h"
 #include "lut/luts.h"
-#include "lut/table_luts.h"
+#include "lut/tabulated_luts.h"
 
 namespace pel {
 namespace {
@@ -26,8 +26,9 @@ std::vector<LutColumn> columnsOf(uint32_t width, PelLutAxis axis, int nodes) {
     return columns;
 }
 
-CurvatureParams paramsOf(const PelCurvatureLutDesc& desc, double curvatureMin, double curvatureMax, size_t terms) {
-    CurvatureParams params{};
+CurvatureLutParams paramsOf(const PelCurvatureLutDesc& desc, double curvatureMin, double curvatureMax,
+                            size_t terms) {
+    CurvatureLutParams params{};
     params.width = desc.width;
     params.height = desc.height;
     params.gaussians = uint32_t(terms);
@@ -54,11 +55,11 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
                  curvatureMax = rowLimit(desc.radiusMin, radius);
     const Profile& profile = *lut->profile();
     if (profile.terms().empty()) {
-        integrateTableCurvature(*lut, curvatureMin, curvatureMax);
+        integrateTabulatedCurvature(*lut, curvatureMin, curvatureMax);
         return lut;
     }
     std::vector<LutGaussian> terms = deviceTerms(profile, curvatureMax);
-    // 1/d has no finite integral along a ring: what is left of the ratio is its limit, a point.
+    // 1/d has no finite integral along a ring. The limit of the ratio is a point.
     if (profile.shape().singular() && (desc.form == PEL_FORM_RING || desc.form == PEL_FORM_HALF_RING))
         terms = {{float(1e-8 / std::max(1.0, curvatureMax)), 1, 1, 1}};
 
@@ -76,7 +77,7 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
                      columns = upload(*device, columnWeights);
     const size_t record = 2 * quality.nodes + 5;
     const cl::Memory rows = device->allocate(record * desc.height * sizeof(cl_float4));
-    const CurvatureParams params = paramsOf(desc, curvatureMin, curvatureMax, terms.size());
+    const CurvatureLutParams params = paramsOf(desc, curvatureMin, curvatureMax, terms.size());
 
     cl::Launch rowLaunch(program, "curvature_rows");
     rowLaunch.arg(params).arg(gaussians).arg(nodes).arg(rows);

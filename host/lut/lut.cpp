@@ -16,7 +16,7 @@ PelProfile profileHandle(const PelLutInfo& info) {
                                           : nullptr;
 }
 
-// Fills in what a description may leave to defaults: the profile, its name and the diffusion radius.
+// Fills in the defaults of a description: the profile, its name and the diffusion radius.
 PelLutInfo resolved(PelLutInfo info, const Profile& profile) {
     if (profileHandle(info)) {
         std::memset(info.profile, 0, sizeof info.profile);
@@ -56,8 +56,8 @@ LutLayout layoutOf(const PelLutInfo& info) {
     const bool root = layout.axis == PEL_LUT_AXIS_ROOT;
     const double first = root ? std::sqrt(1 / longest) : 1 / longest;
     const double last = root ? std::sqrt(1 / shortest) : 1 / shortest;
-    // Linear rows have their values in the middle of texels, as FaceWorks has it; root rows reach the ends of
-    // the axis, so that no look-up within the range is clamped.
+    // On the linear axis values are in the middle of texels, as in FaceWorks. On the square-root axis they
+    // reach the ends of the axis, so that no look-up within the range is clamped.
     const double rows = root ? layout.height - 1.0 : layout.height;
     const double scale = last > first ? rows / (last - first) : 0.0;
     layout.rowMin = float(root && scale > 0 ? first - 0.5 / scale : first);

@@ -1,4 +1,4 @@
-// PelLut: texels in device memory and the request that they answer.
+// PelLut: texels in device memory, and the description they were made from.
 #pragma once
 #include "core/device.h"
 #include "lut/profile.h"
@@ -10,17 +10,17 @@ class Lut final : public Object {
   public:
     static constexpr Kind kind = Kind::lut;
 
-    // Allocates the texels, uninitialised. `info` must be valid (lut/lut_check.h); its profile is retained,
-    // and defaults in it (no profile, radius 0) are resolved.
+    // Allocates the texels, uninitialised. `info` must be valid (lut/lut_check.h). Its profile is retained,
+    // and its defaults (no profile, radius 0) are filled in.
     Lut(Ref<Device> device, const PelLutInfo& info);
 
     Device& device() const { return *device_; }
     const PelLutInfo& info() const { return info_; }
-    // Never null; for specular tables without meaning.
+    // Never null. Without meaning for specular tables.
     const Ref<Profile>& profile() const { return profile_; }
-    // Sizes, row axis and radius as kernels take them, by value.
+    // Sizes, row axis and radius, as kernels take them by value.
     const LutLayout& layout() const { return layout_; }
-    // float4 texels in the arrangement that shared/lut.h describes.
+    // float4 texels, arranged as shared/lut.h says.
     const cl::Memory& texels() const { return texels_; }
     uint32_t width() const { return layout_.width; }
     uint32_t height() const { return layout_.height; }

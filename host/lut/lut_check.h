@@ -1,5 +1,5 @@
-// Whether a LUT description makes sense; throws PEL_ERROR_INVALID_ARGUMENT with the field, its value and what
-// would be right.
+// Checks a LUT description. Throws PEL_ERROR_INVALID_ARGUMENT with the field, its value and what would be
+// right.
 #pragma once
 #include "lut/lut.h"
 

@@ -10,8 +10,9 @@ double rowLimit(double length, double diffusionRadius) {
     return std::clamp(diffusionRadius / length, 1e-9, 1e9);
 }
 
-// A Gaussian narrower than 1e-8 of the profile and of the table's smallest radius changes no texel by more:
-// it is kept from 0, where its density has no value. Terms that weigh nothing in any channel are left out.
+// A Gaussian narrower than 1e-8 of the profile and of the table's smallest radius changes no texel by more
+// than that. It is widened to that, since its density has no value at 0. Terms without weight in any channel
+// are left out.
 std::vector<LutGaussian> deviceTerms(const Profile& profile, double steepestRow) {
     std::vector<LutGaussian> terms;
     for (const GaussianTerm& term : profile.terms()) {
@@ -37,7 +38,8 @@ std::vector<LutNode> meshOfNodes(int nodes) {
     return mesh;
 }
 
-// From u = -1 on: linear columns in the middle of texels, root columns from end to end (lut/lut.cpp).
+// From u = -1 on. Linear columns are in the middle of texels, columns of the square-root axis run from end to
+// end (lut/lut.cpp).
 double columnElevation(uint32_t x, uint32_t width, PelLutAxis axis) {
     const double s = width > 1 ? 1 - 2.0 * x / (width - 1) : 0;
     return axis == PEL_AXIS_ROOT ? s * s : 1 - (x + 0.5) * 2 / width;

@@ -8,14 +8,14 @@
 
 namespace pel {
 
-// 1/length times the diffusion radius, kept inside of what float arithmetic on squares bears; beyond, tables
-// are at their limits anyway.
+// 1/length times the diffusion radius, limited to what float arithmetic on squares can hold. Tables are at
+// their limits beyond.
 double rowLimit(double length, double diffusionRadius);
 
-// FaceWorks ends its integrals at 10 mm of a profile of radius 2.7 mm.
+// FaceWorks ends its integrals at 10 mm for a profile of radius 2.7 mm.
 constexpr double profileCut = 10 / 2.7;  // diffusion radii
 
-// Narrow Gaussians first; empty for a table.
+// Narrow Gaussians first; empty for a tabulated profile.
 std::vector<LutGaussian> deviceTerms(const Profile& profile, double steepestRow);
 
 // Angles (pi/2) (j/nodes)^4, j = 0 ... nodes.
@@ -25,7 +25,8 @@ double nodeAngle(int j, int nodes);
 // N.L from 0 to 1 of a column of the unlit half: |u|.
 double columnElevation(uint32_t x, uint32_t width, PelLutAxis axis);
 
-// First row's upper edge and step, of the row value in 1/diffusion radii or its root.
+// Upper edge of the first row, and step from row to row, of the row value in 1/diffusion radii or its square
+// root.
 struct RowAxis {
     double min, step;
 };

@@ -4,14 +4,15 @@
 
 namespace pel {
 
-// Nodes of a curvature row and Gauss points between two of them (1 to 3). 64 and 2 leave about 1e-7.
+// Nodes of a curvature row, and Gauss points between two of them (1 to 3). 64 and 2 leave an error of about
+// 1e-7.
 struct CurvatureQuality {
     int nodes = 64;
     int points = 2;
 };
 
-// Each throws PEL_ERROR_INVALID_ARGUMENT, naming the field, for a description outside of what pellucid.h
-// documents; work is enqueued, not waited for.
+// Each throws PEL_ERROR_INVALID_ARGUMENT with the name of the field if a description is outside what
+// pellucid.h documents. Work is enqueued, not waited for.
 Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& desc,
                                const CurvatureQuality& quality = {});
 Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc);

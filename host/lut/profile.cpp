@@ -73,9 +73,9 @@ Profile::Profile(PelProfileKind profileKind, double radius, std::unique_ptr<Prof
 
 Ref<Profile> Profile::skin() {
     // d'Eon and Luebke, GPU Gems 3, chapter 14: the six-Gaussian fit to a three-layer skin model, by its
-    // sigmas in mm as FaceWorks takes them. (The variances printed beside them are their squares, rounded:
-    // 3e-5 in a table.) FaceWorks takes 2.7 mm, not the widest sigma of 2.722 mm, for the profile's radius;
-    // so do all tables made with it.
+    // sigmas in mm as FaceWorks has them. (The variances printed beside them are their rounded squares, which
+    // makes a difference of 3e-5 in a table.) FaceWorks uses 2.7 mm for the profile's radius, not the widest
+    // sigma of 2.722 mm; so do all tables made with it.
     std::vector<GaussianTerm> terms{
         {0.080 * 0.080, {0.233, 0.455, 0.649}}, {0.220 * 0.220, {0.100, 0.336, 0.344}},
         {0.432 * 0.432, {0.118, 0.198, 0.0}},   {0.753 * 0.753, {0.113, 0.007, 0.007}},

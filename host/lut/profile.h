@@ -18,22 +18,22 @@ struct GaussianTerm {
     Rgb weight;
 };
 
-// A shape of its own behind each kind; lengths in the profile's unit.
+// The implementation of a kind of profile; lengths in the profile's unit.
 class ProfileShape {
   public:
     virtual ~ProfileShape() = default;
-    virtual Rgb radial(double distance) const = 0;      // energy per area, > 0 away
+    virtual Rgb radial(double distance) const = 0;      // energy per area, > 0
     virtual Rgb lineSpread(double distance) const = 0;  // energy per length
     virtual Rgb width() const = 0;                      // standard deviation of the line spread, length
-    // The sum of Gaussians that stands for the profile on the device, variances rising; exact for skin and
+    // The sum of Gaussians that represents the profile on the device, variances rising. Exact for skin and
     // gaussians, within 1e-6 for burley and dipole, empty for tables.
     virtual std::vector<GaussianTerm> gaussians() const { return {}; }
-    // Where a table's radial bends, length, rising; empty for all others.
+    // Distances where the radial profile of a table bends, length, rising; empty for other kinds.
     virtual std::vector<double> knots() const { return {}; }
-    virtual bool singular() const { return false; }  // radial grows like 1/d
+    virtual bool singular() const { return false; }  // the radial profile grows like 1/d
     // The share of R beyond a distance; > 0.
     virtual Rgb transmission(double distance) const = 0;
-    virtual Rgb meanFreePath() const { return {}; }  // length; 0: not known
+    virtual Rgb meanFreePath() const { return {}; }  // length; 0: unknown
 };
 
 class Profile final : public Object {
@@ -57,7 +57,7 @@ class Profile final : public Object {
     }
     void setName(const char* name);
     void setSource(const char* source) { source_ = source; }  // static storage; before the profile is used
-    // Length within which all but a thousandth of the light of each channel leaves again.
+    // Length within which all but a thousandth of the light of each channel leaves.
     double reach() const;
 
     Profile(PelProfileKind profileKind, double radius, std::unique_ptr<ProfileShape> shape);
@@ -68,12 +68,12 @@ class Profile final : public Object {
     double radius_;  // length
     std::unique_ptr<ProfileShape> shape_;
     std::vector<GaussianTerm> terms_;
-    mutable std::mutex nameMutex_;  // of the name alone, which may change
+    mutable std::mutex nameMutex_;  // guards the name only, which may change
     std::string name_;
     const char* source_ = "";
 };
 
-// Sums of Gaussians, in any order and scale; weights are scaled to 1 per channel.
+// Sums of Gaussians, in any order and scale. Weights are scaled to a sum of 1 per channel.
 class GaussianShape : public ProfileShape {
   public:
     explicit GaussianShape(std::vector<GaussianTerm> terms);

@@ -74,7 +74,7 @@ Ref<Profile> namedProfile(const char* name) {
         profile->setSource(entry.source);
         return profile;
     }
-    invalidArgument("'", name, "' is no material of the library (", known, ")");
+    invalidArgument("'", name, "' is not a material of the library (", known, ")");
 }
 
 }  // namespace pel

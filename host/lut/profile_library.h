@@ -1,4 +1,4 @@
-// The library of materials.
+// The library of named materials.
 #pragma once
 #include <span>
 
@@ -17,7 +17,7 @@ struct LibraryProfile {
 // "skin" first.
 std::span<const LibraryProfile> profileLibrary();
 
-// Throws PEL_ERROR_INVALID_ARGUMENT, listing the library, for a name that is not in it.
+// Throws PEL_ERROR_INVALID_ARGUMENT, with a list of the library, for an unknown name.
 Ref<Profile> namedProfile(const char* name);
 
 }  // namespace pel

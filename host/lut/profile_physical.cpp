@@ -1,7 +1,6 @@
-// Profiles that follow from a medium's optical properties: Christensen-Burley and the classical dipole. Both
-// are exact mixtures of Gaussians, exp(-b d)/d = 2/sqrt(pi) int_0^inf exp(-d^2 t^2 - b^2/4t^2) dt, which the
-// trapezoid rule in log t turns into sums that converge faster than any power of the step: that is how they
-// reach the device.
+// Profiles from a medium's optical properties: Christensen-Burley and the classical dipole. Both are exact
+// mixtures of Gaussians, exp(-b d)/d = 2/sqrt(pi) int_0^inf exp(-d^2 t^2 - b^2/4t^2) dt. The trapezoid rule
+// in log t turns that into sums that converge faster than any power of the step; the device uses these sums.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,7 +11,7 @@ namespace pel {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-// Step of the trapezoid rule in log t: leaves errors of the order of exp(-pi^2 / 2 step) = 3e-9.
+// Step of the trapezoid rule in log t: the error is of the order of exp(-pi^2 / 2 step) = 3e-9.
 constexpr double mixtureStep = 0.25;
 constexpr const char* channelNames[] = {"red", "green", "blue"};
 
@@ -69,15 +68,15 @@ class BurleyShape final : public ProfileShape {
     static std::vector<GaussianTerm> mixtureOf(const Rgb& decay) {
         const double widest = std::max({decay[0], decay[1], decay[2]});
         const double narrowest = std::min({decay[0], decay[1], decay[2]});
-        // exp(-b^2/4t^2) vanishes below the first; above the last 1e-6 of the energy is left out, and scaled
-        // back in.
+        // Below the first t, exp(-b^2/4t^2) vanishes. Above the last one 1e-6 of the energy is left out, and
+        // the rest is scaled to make up for it.
         return mixture(1 / (3 * widest) / 12, 1.5e5 / narrowest, [&](int c, double t) {
             const double b = 1 / decay[c], x = b / (2 * t);
             return (std::exp(-x * x) + std::exp(-x * x / 9)) * b / t;
         });
     }
     Rgb decay_;         // length, the shorter of the two decay lengths
-    Rgb meanFreePath_;  // length; 0: not known
+    Rgb meanFreePath_;  // length; 0: unknown
     std::vector<GaussianTerm> terms_;
 };
 

@@ -4,7 +4,7 @@
 #include "lut/lut_check.h"
 #include "lut/lut_terms.h"
 #include "lut/luts.h"
-#include "lut/table_luts.h"
+#include "lut/tabulated_luts.h"
 
 namespace pel {
 
@@ -20,14 +20,14 @@ Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
     const double reciprocalMin = rowLimit(desc.widthMax, radius),
                  reciprocalMax = rowLimit(desc.widthMin, radius);
     if (profile.terms().empty()) {
-        integrateTableShadow(*lut, reciprocalMin, reciprocalMax);
+        integrateTabulatedShadow(*lut, reciprocalMin, reciprocalMax);
         return lut;
     }
     const std::vector<LutGaussian> terms = deviceTerms(profile, reciprocalMax);
     const RowAxis axis = rowAxis(desc.axis, desc.height, reciprocalMin, reciprocalMax);
-    ShadowParams params{desc.width,          desc.height,     uint32_t(terms.size()), float(axis.min),
-                        float(axis.step),    desc.sharpening, float(profileCut),      {},
-                        uint32_t(desc.axis), desc.closedEnds};
+    ShadowLutParams params{desc.width,          desc.height,     uint32_t(terms.size()), float(axis.min),
+                           float(axis.step),    desc.sharpening, float(profileCut),      {},
+                           uint32_t(desc.axis), desc.closedEnds};
     for (int channel = 0; channel < 3; ++channel) {
         double mass = 0;
         for (const GaussianTerm& term : profile.terms())

@@ -11,7 +11,7 @@ const char* estimatorKernel(PelCurvatureEstimator estimator) {
                                                : "curvature_quadric";
 }
 
-// What the quadric estimator needs to know about neighbours' neighbours: found out for the first call.
+// What the quadric estimator must know about the neighbours of neighbours. Made at the first call.
 void linkRings(MeshTopology& topology) {
     const cl::Memory& links =
         topology.scratch(MeshTopology::scratchLinks, topology.ringEntries() * sizeof(uint32_t));
@@ -37,7 +37,8 @@ MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, cons
     device.launch(count, over(topology.vertices()));
     MeshCounts counts;
     device.read(memory.get(), 0, sizeof counts, &counts, true);
-    if (!given.memory) counts.nonFiniteNormals = 0;  // they are made, and what they lack is in the positions
+    if (!given.memory)
+        counts.nonFiniteNormals = 0;  // normals are made, so their faults are those of the positions
     return counts;
 }
 
@@ -50,10 +51,10 @@ uint32_t quantityFloats(PelCurvatureQuantity quantity) {
 void checkCurvatureParams(const PelCurvatureParams& params) {
     if (params.estimator < PEL_CURVATURE_EDGE || params.estimator > PEL_CURVATURE_QUADRIC)
         invalidArgument("PelCurvatureParams.estimator is ", int(params.estimator),
-                        ", which is no PelCurvatureEstimator");
+                        ", which is not a value of PelCurvatureEstimator");
     if (params.quantity < PEL_QUANTITY_ABSOLUTE || params.quantity > PEL_QUANTITY_FRAME)
         invalidArgument("PelCurvatureParams.quantity is ", int(params.quantity),
-                        ", which is no PelCurvatureQuantity");
+                        ", which is not a value of PelCurvatureQuantity");
     if (params.estimator == PEL_CURVATURE_EDGE && params.quantity != PEL_QUANTITY_ABSOLUTE)
         invalidArgument("the edge estimator measures PEL_QUANTITY_ABSOLUTE only, not quantity ",
                         int(params.quantity), ": take the tensor or the quadric estimator");
@@ -68,7 +69,7 @@ void checkCurvatureParams(const PelCurvatureParams& params) {
                         "; an angle from 0 to pi is needed");
     if (params.smoothingWeights < PEL_SMOOTHING_COTANGENT || params.smoothingWeights > PEL_SMOOTHING_AREA)
         invalidArgument("PelCurvatureParams.smoothingWeights is ", int(params.smoothingWeights),
-                        ", which is no PelSmoothingWeights");
+                        ", which is not a value of PelSmoothingWeights");
     if (params.smoothingStages > 4000)
         invalidArgument("PelCurvatureParams.smoothingStages is ", params.smoothingStages,
                         "; 0 (chosen from the mesh) to 4000 are allowed");
@@ -109,9 +110,9 @@ void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params,
     defines["PEL_MESH_LISTED"] = listed(rows);
     const char* kernel = estimatorKernel(params.estimator);
     const bool edge = params.estimator == PEL_CURVATURE_EDGE;
-    if (!edge) {  // neither what is stored nor the mapping makes another program of these
+    if (!edge) {  // stored quantity and mapping do not change these programs
         defines.erase("PEL_MESH_MAPPED");
-        defines["PEL_MESH_RUNS"] = "0";  // they compute far more than they read
+        defines["PEL_MESH_RUNS"] = "0";  // they compute much more than they read
         defines.erase("PEL_MESH_QUANTITY");
     }
     cl::Launch estimate(
@@ -155,7 +156,7 @@ void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, con
     SlotPlanes values{std::min(planes, 2u), planeStride, estimated, {}, {}, {}};
     if (params.smoothingPasses > 0 || params.smoothingRadius > 0)
         values.to = scratch(MeshTopology::scratchTo, planeBytes * values.planes);
-    // Before the uniform passes, whose result is not lost when this throws.
+    // Before the uniform passes: if this throws, nothing of them is lost.
     const Diffusion diffusion = planDiffusion(topology, data, params, scratch);
     smoothUniform(topology, passDefines(topology, params, data.stride), params.smoothingPasses, values);
     if (diffusion.passes() > 0) smoothToRadius(topology, data, diffusion, values, scratch);

@@ -10,7 +10,7 @@ uint32_t quantityFloats(PelCurvatureQuantity quantity);  // per vertex
 uint32_t planesOf(PelCurvatureQuantity quantity);  // that the passes carry (kernels/lib/mesh/principal.clh)
 uint32_t planeStrideOf(const MeshTopology& topology);  // floats
 
-// The steps of a curvature, for those who do not take all of them (mesh/live_mesh.cpp). `counts`: a MeshCounts, or empty.
+// The steps of a curvature, for callers that take only some of them (mesh/live_mesh.cpp). `counts`: a MeshCounts, or empty.
 cl::Defines passDefines(const MeshTopology& topology, const PelCurvatureParams& params, uint32_t stride);
 void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params, const SlotData& data,
                        const cl::Memory& planes, const Rows& rows, const cl::Memory& counts = {});
@@ -18,7 +18,8 @@ void storeQuantity(MeshTopology& topology, const PelCurvatureParams& params, uin
                    const cl::Memory& smoothed, const cl::Memory& estimated, const VertexView& curvature,
                    Rows::Work* work);
 
-// `normals` empty: they are made from the positions. Enqueues everything. With `counts`, waits and fills it.
+// If `normals` is empty they are made from the positions. Enqueues everything. With `counts`, waits and fills
+// it.
 void meshCurvature(MeshTopology& topology, const PelCurvatureParams& params, const VertexView& positions,
                    const VertexView& normals, const VertexView& curvature, MeshCounts* counts);
 

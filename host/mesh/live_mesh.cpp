@@ -1,8 +1,8 @@
-// Which rows an update works on. A changed vertex reaches, in edges: its own gathered row (0), normals that
-// are made and smoothing weights (1, weights at creases and those by areas one more), estimates (`estimateReach_`), and each
-// smoothing pass one further. The estimates of all other rows are still there; the values between passes are
-// not kept, so that pass p of P works on P - p rows more than it must, from which the last pass draws. Rows
-// are dealt out in whole slices.
+// Which rows an update works on. Distances are in edges. A changed vertex reaches: its own gathered row (0);
+// normals that are made, and smoothing weights (1; one more at creases and for area weights); estimates
+// (`estimateReach_`); and one more for each smoothing pass. The estimates of all other rows are kept. Values
+// between passes are not kept, so pass p of P works on P - p more rows than it must, from which the later
+// passes read. Work is done in whole slices of rows.
 #include "mesh/live_mesh.h"
 
 namespace pel {
@@ -45,7 +45,7 @@ void LiveMesh::find(const std::vector<PelVertexRange>& changed) {
     listed_ = false;
     reach_ = reacher_->reach(changed, stored + (passes_ > 0 ? passes_ - 1 : 0), stored);
     changed_ = changed;
-    // Copied here and now: the queue, which may be busy, has no part in it.
+    // Copied now: the queue may be busy and is not used for this.
     const auto upload = [&](const std::vector<uint32_t>& values) {
         stats_.bytesUploaded += values.size() * sizeof(uint32_t);
         return values.empty() ? cl::Memory()
@@ -80,7 +80,7 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
     fresh_ = true;  // until everything is enqueued
     madeNormals_ = !normals.memory;
     target_ = curvature;
-    // Quadric: the three-ring, if need be. Else the ring; normals that are made come from the neighbours' rings.
+    // Quadric: up to the three-ring. Otherwise the ring; normals that are made depend on the neighbours' rings.
     estimateReach_ = params_.estimator == PEL_CURVATURE_QUADRIC ? 3 : madeNormals_ ? 2 : 1;
 
     const Scratch scratch = [&](MeshTopology::Scratch which, size_t bytes) -> const cl::Memory& {
@@ -102,7 +102,7 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
     const Diffusion diffusion = planDiffusion(topology, data, params_, scratch);
     passes_ = params_.smoothingPasses + diffusion.passes();
     estimateCurvature(topology, params_, data, estimated, rowsUpTo(estimateReach_, estimates));
-    // Another target has nothing yet: smoothing and storing begin anew from the estimates.
+    // Another target holds nothing yet: smoothing and storing start again from the estimates.
     const uint32_t farthest = elsewhere ? UINT32_MAX / 2 : estimateReach_ + passes_;
     const auto rowsOfPass = [&](uint32_t pass) { return rowsUpTo(farthest + passes_ - 1 - pass, smoothing); };
     smoothUniform(topology, passDefines(topology, params_, data.stride), params_.smoothingPasses, values,

@@ -1,4 +1,4 @@
-// PelLiveMesh: curvature of a mesh of which a part moves.
+// PelLiveMesh: curvature of a mesh when only a part of it moves.
 #pragma once
 #include <memory>
 
@@ -33,11 +33,11 @@ class LiveMesh final : public Object {
     PelCurvatureParams params_;
     std::mutex mutex_;  // guards the rest
     std::unique_ptr<MeshReacher> reacher_;
-    // What the update before left: values of the estimator, gathered rows, normals, weights.
+    // Results of the previous update: values of the estimator, gathered rows, normals, weights.
     Memory scratch_[MeshTopology::scratchCount], estimated_, spare_;
     bool fresh_ = true, madeNormals_ = false;
     VertexView target_;
-    // The list of the last change, for the next one of the same vertices.
+    // The list of the last change, for a next change of the same vertices.
     std::vector<PelVertexRange> changed_;
     MeshReach reach_;
     bool listed_ = false;

@@ -45,13 +45,13 @@ MeshAdjacency buildAdjacency(const std::vector<uint32_t>& triangles, uint32_t sl
 }
 
 bool isScattered(const std::vector<uint32_t>& triangles, uint32_t slots) {
-    // Below this many slots everything stays in the second-level cache anyway.
+    // With fewer slots than this everything stays in the second-level cache.
     constexpr uint32_t fewSlots = 16384;
     if (slots < fewSlots || triangles.empty()) return false;
     double distance = 0;
     for (size_t t = 0; t < triangles.size(); t += 3)
         distance += std::abs(double(triangles[t]) - double(triangles[t + 1]));
-    // Random numbers are slots / 3 apart, a grid's root(slots).
+    // Random numbers are slots / 3 apart on average, those of a grid root(slots).
     return distance / double(triangles.size() / 3) > slots / 16.0;
 }
 
@@ -109,7 +109,8 @@ std::vector<uint32_t> findRuns(const std::vector<uint32_t>& rows) {
     for (size_t r = 0; r < runs.size(); ++r) {
         const uint32_t* row = rows.data() + r * PEL_MESH_LANES;
         uint32_t lane = 1;
-        // Flags stand above the slot, and the last slot is below PEL_MESH_SLOT: a sum never reaches them.
+        // Flags are above the slot's bits, and the last slot is below PEL_MESH_SLOT, so a sum never reaches
+        // the flags.
         while (lane < PEL_MESH_LANES && row[lane] == row[0] + lane) ++lane;
         if (lane == PEL_MESH_LANES) runs[r] = row[0], ++found;
     }

@@ -12,18 +12,18 @@ struct MeshAdjacency {
     uint32_t edges = 0;
     uint32_t borderEdges = 0;
     uint32_t nonManifoldEdges = 0;
-    uint32_t inconsistentEdges = 0;  // of two triangles that run along them the same way
+    uint32_t inconsistentEdges = 0;  // edges whose two triangles run along them in the same direction
 };
 
-// `triangles`: three slots each, all different and < slots. `progress` is told a fraction in [0, 1].
+// `triangles`: three slots each, all different and < slots. `progress` gets a fraction in [0, 1].
 MeshAdjacency buildAdjacency(const std::vector<uint32_t>& triangles, uint32_t slots,
                              const std::function<void(double)>& progress);
 
-// Whether neighbours stand so far apart in memory that every access misses the caches.
+// Whether neighbours are so far apart in memory that every access misses the caches.
 bool isScattered(const std::vector<uint32_t>& triangles, uint32_t slots);
 
-// A new number for each slot, so that neighbours are near each other: breadth first from the first slot of
-// each part.
+// A new number for each slot, so that neighbours get close numbers: breadth first from the first slot of each
+// part.
 std::vector<uint32_t> breadthFirstNumbers(const MeshAdjacency& adjacency);
 
 // The lists in the layout that shared/mesh.h describes.
@@ -33,7 +33,7 @@ struct MeshSlices {
 };
 MeshSlices sliceAdjacency(const MeshAdjacency& adjacency);
 
-// The runs among the rows (shared/mesh.h); empty where fewer than half of them are.
+// The runs among the rows (shared/mesh.h); empty if fewer than half of the rows are runs.
 std::vector<uint32_t> findRuns(const std::vector<uint32_t>& rows);
 
 }  // namespace pel

@@ -21,8 +21,8 @@ double spanOfStages(uint32_t stages) {
 }
 
 std::vector<float> heatCoefficients(uint32_t stages, double span, double correction) {
-    // Cosine sums over Chebyshev points, twice as many as there are terms: what is aliased is far below what
-    // is left out.
+    // Cosine sums over Chebyshev points, twice as many as there are terms. The aliasing error is then far
+    // below the truncation error.
     const size_t points = 2 * (size_t(stages) + 8);
     std::vector<double> cosines(4 * points), terms(stages + 1);
     for (size_t i = 0; i < cosines.size(); ++i)

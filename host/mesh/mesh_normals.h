@@ -5,9 +5,9 @@
 
 namespace pel {
 
-// `normals` empty: they are made from the positions. `moved`: slots whose vertices are gathered; `turned`:
-// those whose normals are made, the neighbours of these as well. What other rows of the scratch memory hold
-// stays.
+// If `normals` is empty they are made from the positions. `moved`: slots whose vertices are gathered.
+// `turned`: slots whose normals are made, including the neighbours of moved ones. Other rows of the scratch
+// memory keep their values.
 SlotData gatherBySlot(MeshTopology& topology, const VertexView& positions, const VertexView& normals,
                       const Scratch& scratch, const Rows& moved = {}, const Rows& turned = {});
 

@@ -14,8 +14,8 @@ namespace {
 
 constexpr uint32_t none = UINT32_MAX;
 
-// Share of the largest possible sum from which on normals, or a volume, are believed to tell a side: true ones reach 0.5 to
-// 1, sums of both signs at random about 1 / root(triangles).
+// Normals, or a volume, are trusted to tell the side from this share of the largest possible sum on. Right
+// ones reach 0.5 to 1; sums of random signs reach about 1 / root(triangles).
 constexpr double believed = 0.1;
 
 using Vec = std::array<double, 3>;
@@ -30,7 +30,7 @@ double dot(const Vec& a, const Vec& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Three floats per vertex, somewhere in the caller's memory.
+// Three floats per vertex in the caller's memory.
 struct Vectors {
     const char* begin;
     size_t stride;
@@ -47,8 +47,9 @@ Vectors vectorsAt(const float* begin, uint32_t stride, const char* name) {
     return {reinterpret_cast<const char*>(begin), stride ? stride : 3 * sizeof(float)};
 }
 
-// Across side s (corner s % 3 to the next one of triangle s / 3): 2 * the other triangle, plus 1 where that runs along it the
-// same way; none where there is no other triangle, or more than one.
+// Across side s (from corner s % 3 to the next corner of triangle s / 3): 2 * the other triangle, plus 1 if
+// that triangle runs along the side in the same direction. `none` if there is no other triangle, or more than
+// one.
 std::vector<uint32_t> findAcross(const std::vector<uint32_t>& slots, uint32_t slotCount) {
     const auto low = [&](uint32_t s) { return std::min(slots[s], slots[s % 3 == 2 ? s - 2 : s + 1]); };
     const auto high = [&](uint32_t s) { return std::max(slots[s], slots[s % 3 == 2 ? s - 2 : s + 1]); };
@@ -56,7 +57,7 @@ std::vector<uint32_t> findAcross(const std::vector<uint32_t>& slots, uint32_t sl
         const uint32_t* t = &slots[s / 3 * 3];
         return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
     };
-    // Sides by their lower end, then those of each end by the higher one.
+    // Sides sorted by their lower end, then by the higher one.
     std::vector<uint32_t> begins(size_t(slotCount) + 2), sides;
     for (uint32_t s = 0; s < slots.size(); ++s)
         if (!repeats(s)) ++begins[size_t(low(s)) + 2];
@@ -114,13 +115,13 @@ class Orienter {
         return indices;
     }
 
-    // Edges that no turning mends.
+    // Edges that no reversal repairs.
     uint32_t left() const { return left_; }
 
   private:
     enum State : uint8_t { open, keep, turn };
 
-    // The part of a triangle, and which of its triangles run another way than that one; true if none does.
+    // The part of a triangle, and which of its triangles run in the other direction. True if none does.
     bool collect(uint32_t first) {
         part_.assign(1, first);
         state_[first] = keep;
@@ -146,7 +147,7 @@ class Orienter {
         return turns == 0;
     }
 
-    // Whether the triangles that keep their order are those to be turned.
+    // Whether the triangles that keep their order are the ones to reverse.
     bool otherSide(PelMeshOrientation& found) const {
         if (const int side = normals_.begin ? sideOfNormals() : 0) {
             ++found.partsByNormals;
@@ -166,7 +167,8 @@ class Orienter {
         return state_[t] == turn ? Vec{-n[0], -n[1], -n[2]} : n;
     }
 
-    // 1: the triangles as state_ has them look the way of what is summed up, -1: the other way, 0: it does not tell.
+    // 1: the triangles in the order of state_ face the direction of the summed vector; -1: the opposite
+    // direction; 0: undecided.
     template <class Term>
     int sideOf(Term term) const {
         double sum = 0, all = 0;

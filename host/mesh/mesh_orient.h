@@ -1,4 +1,4 @@
-// Triangles of one surface in one order.
+// Gives all triangles of a surface the same orientation.
 #pragma once
 #include <pellucid/pellucid.h>
 
@@ -7,7 +7,8 @@
 
 namespace pel {
 
-// desc's indices, with triangles turned as pelMeshOrient says. `normals`: xyz per vertex, normalStride bytes apart, or NULL.
+// desc's indices, with triangles reversed as pelMeshOrient says. `normals`: xyz per vertex, normalStride
+// bytes apart, or NULL.
 std::vector<uint32_t> orientTriangles(const PelMeshTopologyDesc& desc, const float* normals,
                                       uint32_t normalStride, PelMeshOrientation& found);
 

@@ -1,4 +1,4 @@
-// What every pass over a topology's slots shares.
+// What all passes over a topology's slots share.
 #pragma once
 #include <functional>
 
@@ -11,7 +11,7 @@ inline cl::Range over(size_t items) {
     return {{items, 1, 1}, {PEL_MESH_GROUP, 1, 1}};
 }
 
-// Mesh passes take a slice of slots at a time where wide arithmetic pays, else one slot.
+// Mesh passes take a slice of slots at a time where wide arithmetic pays, otherwise one slot.
 inline uint32_t width(const Device& device) {
     return device.info().mathWidth > 1 ? PEL_MESH_LANES : 1;
 }
@@ -24,7 +24,7 @@ struct Rows {
     struct Work {
         uint64_t launches = 0, rows = 0;
     };
-    Work* work = nullptr;  // where launches over these rows are counted, if anybody wants to know
+    Work* work = nullptr;  // where launches over these rows are counted; may be NULL
 };
 
 inline std::string listed(const Rows& rows) {
@@ -49,7 +49,7 @@ inline void ringArguments(const MeshTopology& topology, cl::Launch& launch, cons
     launch.arg(topology.slices()).arg(topology.rings()).arg(topology.runs());
 }
 
-// Whether a pass may read rows as runs: where that has been measured to pay.
+// Whether a pass may read rows as runs: true where measurements showed a gain.
 inline std::string haveRuns(const MeshTopology& topology) {
     return topology.runs() && width(topology.device()) > 1 ? "1" : "0";
 }
@@ -65,7 +65,7 @@ struct SlotData {
     uint32_t stride;
 };
 
-// Device memory by use, made when it is first needed.
+// Device memory by purpose, made when first needed.
 using Scratch = std::function<const cl::Memory&(MeshTopology::Scratch, size_t bytes)>;
 
 inline Scratch scratchOf(MeshTopology& topology) {

@@ -62,7 +62,7 @@ MeshReach MeshReacher::reach(const std::vector<PelVertexRange>& changed, uint32_
         front.swap(next);
     }
     if (result.upTo.size() > stored) {
-        std::vector<uint32_t>& place = sliceMarks_;  // of each slice in the list; marks of no round to come
+        std::vector<uint32_t>& place = sliceMarks_;  // of each slice in the list; marks are not from a later round
         for (uint32_t i = 0; i < result.upTo[stored]; ++i) place[result.slices[i]] = i;
         result.lanes.resize(result.upTo[stored]);
         for (uint32_t slot : near)

@@ -1,15 +1,15 @@
-// How far a change of some vertices reaches: slots by their distance from them, counted in edges.
+// How far a change of vertices reaches: slots by their distance from the changed ones, in edges.
 #pragma once
 #include "mesh/mesh_topology.h"
 
 namespace pel {
 
-// The slices that hold a slot of distance <= d are the first `upTo[d]` of `slices`; a level that would be
-// most of the mesh is left out with all that follow.
+// The first `upTo[d]` of `slices` are the slices that hold a slot of distance <= d. A level that would be
+// most of the mesh is left out, with all later ones.
 struct MeshReach {
     std::vector<uint32_t> slices;
     std::vector<uint32_t> upTo;
-    std::vector<uint32_t> lanes;  // per slice of the first levels up to `stored`: bit i, slot i of it is that near
+    std::vector<uint32_t> lanes;  // per slice of the first levels up to `stored`: bit i is set if its slot i is that near
     uint64_t storedSlots = 0;
 };
 
@@ -27,7 +27,7 @@ class MeshReacher {
     }
     uint32_t slots_, round_ = 0;
     std::vector<uint32_t> slices_, rings_, slotOf_;
-    std::vector<uint32_t> slotMarks_, sliceMarks_;  // the round that came by last
+    std::vector<uint32_t> slotMarks_, sliceMarks_;  // the round that visited it last
 };
 
 }  // namespace pel

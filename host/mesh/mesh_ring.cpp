@@ -8,13 +8,13 @@
 namespace pel {
 namespace {
 
-// Beyond this many triangles a search per step costs more than sorting.
+// With more triangles than this, sorting costs less than a search per step.
 constexpr uint32_t largestFan = 24;
 
 }  // namespace
 
 bool RingBuilder::End::operator<(const End& b) const {
-    // Forward first: a walk follows the triangles' own order as long as it can.
+    // Forward first: a walk follows the order of the triangles as long as possible.
     return std::tie(node, backward, other, triangle) < std::tie(b.node, b.backward, b.other, b.triangle);
 }
 
@@ -42,10 +42,10 @@ RingBuilder::Edges RingBuilder::build(uint32_t slot, Corner* corners, uint32_t c
     return edges;
 }
 
-// The ordinary vertex: one fan of triangles, all of the same order. False, and nothing appended, for any
-// other.
+// The usual vertex: one fan of triangles, all in the same order. For any other vertex returns false and
+// appends nothing.
 bool RingBuilder::buildFan(Corner* corners, uint32_t count, std::vector<uint32_t>& out) {
-    // Start where no triangle leads to, or, if there is no such place, at the smallest neighbour: the list
+    // Start at the corner that no triangle leads to, or at the smallest neighbour if there is none: the list
     // must not depend on the order of the triangles.
     uint32_t first = UINT32_MAX, entrances = 0;
     for (uint32_t a = 0; a < count; ++a) {
@@ -81,13 +81,13 @@ RingBuilder::Node& RingBuilder::node(uint32_t slot) {
                              [](const Node& n, uint32_t s) { return n.slot < s; });
 }
 
-// Any set of triangles. A walk that starts where an odd number of triangles is left ends at another such
-// place; when there are none of these, every walk comes back to its start.
+// Any set of triangles. A walk that starts at a corner with an odd number of triangles ends at another such
+// corner. When there are none, every walk returns to its start.
 void RingBuilder::buildTrails(const Corner* corners, uint32_t count, std::vector<uint32_t>& out) {
     ends_.clear();
     nodes_.clear();
     used_.assign(count, 0);
-    std::vector<uint32_t> order(count);  // the triangles sorted, so that their order in the mesh does not matter
+    std::vector<uint32_t> order(count);  // sorted triangles, so that their order in the mesh does not matter
     for (uint32_t t = 0; t < count; ++t) order[t] = t;
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         return std::tie(corners[a].from, corners[a].to) < std::tie(corners[b].from, corners[b].to);

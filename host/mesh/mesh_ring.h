@@ -5,7 +5,7 @@
 
 namespace pel {
 
-// The other two corners of a triangle at a slot, in the triangle's order.
+// The other two corners of a triangle at a slot, in the order of the triangle.
 struct Corner {
     uint32_t from, to;
 };
@@ -14,7 +14,7 @@ class RingBuilder {
   public:
     struct Edges {
         uint32_t all = 0, border = 0, nonManifold = 0;  // to slots above `slot`
-        uint32_t inconsistent = 0;                      // of two triangles that run along them the same way
+        uint32_t inconsistent = 0;  // edges whose two triangles run along them in the same direction
     };
     // Appends the list of `slot` to `out`. `corners` (count of them) may be reordered.
     Edges build(uint32_t slot, Corner* corners, uint32_t count, std::vector<uint32_t>& out);
@@ -23,13 +23,13 @@ class RingBuilder {
     bool buildFan(Corner* corners, uint32_t count, std::vector<uint32_t>& out);
     void buildTrails(const Corner* corners, uint32_t count, std::vector<uint32_t>& out);
 
-    // One end of a triangle's edge opposite to the slot.
+    // One end of the edge that is opposite to the slot in a triangle.
     struct End {
         uint32_t node, backward, other, triangle;
         bool operator<(const End& b) const;
     };
     struct Node {
-        uint32_t slot, next, end;  // its ends that may still be free: next to end
+        uint32_t slot, next, end;  // ends that may still be free: next to end
         uint32_t free;             // how many of them are
         bool visited;
     };

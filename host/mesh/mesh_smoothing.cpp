@@ -18,7 +18,7 @@ cl::Program program(const MeshTopology& topology, const SlotData& data, const Ro
                                              {"PEL_WIDTH", std::to_string(width(topology.device()))}});
 }
 
-// Weights over a limit of rates (none: 0); returns the memory that holds them.
+// Weights, limited to a largest rate (0: no limit). Returns the memory that holds them.
 const cl::Memory& makeWeights(MeshTopology& topology, const SlotData& data, PelSmoothingWeights kind,
                               float limit, float crease2, const Scratch& scratch, const Rows& rows) {
     const cl::Memory& weights = scratch(MeshTopology::scratchWeights, topology.ringEntries() * sizeof(float));
@@ -39,9 +39,9 @@ const cl::Memory& makeWeights(MeshTopology& topology, const SlotData& data, PelS
     return weights;
 }
 
-// The largest rate that is believed, so that slivers do not set the price for everybody, and the middle one.
-// By cotangents all but the worst percent of the slots: the rest gets heavier by its slivers only. By areas,
-// where it would conduct less, hardly any.
+// The largest rate that is used, and the median rate. The limit keeps slivers from setting the number of
+// stages for the whole mesh. Cotangent weights are limited for the worst percent of the slots, which only
+// makes those slots slower. Area weights would conduct less, so hardly any are limited.
 MeshTopology::DiffusionRates measureRates(MeshTopology& topology, const SlotData& data,
                                           PelSmoothingWeights kind, const Scratch& scratch) {
     makeWeights(topology, data, kind, 0.0f, 0.0f, scratch, {});
@@ -93,10 +93,10 @@ Diffusion planDiffusion(MeshTopology& topology, const SlotData& data, const PelC
                             " stages on a mesh this fine; at most ", mostStages, " are done");
         if (!(span > 0)) return diffusion;
         diffusion.limit = rates.most;
-        // Vertices of the middle rate are sqrt(4 / rate) apart.
+        // Vertices with the median rate are sqrt(4 / rate) apart.
         diffusion.coefficients = heatCoefficients(uint32_t(wanted), span, 0.25 * rates.most / rates.middle);
     }
-    // The normal turns by 2 sin(angle / 2) in length.
+    // A normal that turns by `angle` changes by a vector of length 2 sin(angle / 2).
     const float turn = 2.0f * std::sin(0.5f * params.smoothingCrease);
     diffusion.turn2 = turn * turn;
     return diffusion;

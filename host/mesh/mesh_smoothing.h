@@ -5,8 +5,8 @@
 
 namespace pel {
 
-// Planes of one value per slot, planeStride apart, in two memories that take turns; `from` holds the values.
-// With a `spare` the first values stay where they are, and the spare takes their memory's turn.
+// Planes of one value per slot, planeStride apart, in two memories that are used in turn; `from` holds the
+// values. With a `spare` the first values are kept, and the spare takes the place of their memory.
 struct SlotPlanes {
     uint32_t planes, planeStride;
     cl::Memory from, to, spare, before;
@@ -23,13 +23,14 @@ using RowsOfPass = std::function<Rows(uint32_t pass)>;
 void smoothUniform(MeshTopology& topology, const cl::Defines& defines, uint32_t count, SlotPlanes& values,
                    const RowsOfPass& rows = {});
 
-// Passes of a smoothing to a radius, and how they go. Waits the first time if params say nothing of stages.
+// The passes of a smoothing to a radius. Waits for the device the first time, if params do not give the
+// number of stages.
 struct Diffusion {
-    float limit = 0, turn2 = 0;       // of rates, 1/length^2; square of the normal's change at a crease
-    std::vector<float> coefficients;  // of the Chebyshev polynomials from degree 0 on; none: nothing is to be done
+    float limit = 0, turn2 = 0;       // of rates, 1/length^2; square of the change of the normal at a crease
+    std::vector<float> coefficients;  // of the Chebyshev polynomials from degree 0 on; empty: nothing to do
     PelSmoothingWeights weights = PEL_SMOOTHING_COTANGENT;
     uint32_t passes() const { return coefficients.empty() ? 0 : uint32_t(coefficients.size()) - 1; }
-    // How many edges farther than themselves changed positions reach into the weights.
+    // By how many edges changed positions change weights beyond the changed vertices.
     uint32_t weightReach(bool madeNormals) const {
         return (madeNormals && turn2 > 0 ? 2 : 1) + (weights == PEL_SMOOTHING_AREA ? 1 : 0);
     }
@@ -37,7 +38,7 @@ struct Diffusion {
 Diffusion planDiffusion(MeshTopology& topology, const SlotData& data, const PelCurvatureParams& params,
                         const Scratch& scratch);
 
-// `weighed`: rows whose weights are to be made.
+// `weighed`: rows whose weights are computed.
 void smoothToRadius(MeshTopology& topology, const SlotData& data, const Diffusion& diffusion, SlotPlanes& values,
                     const Scratch& scratch, const Rows& weighed = {}, const RowsOfPass& rows = {});
 

@@ -7,7 +7,7 @@ namespace pel {
 
 void checkTopologyDesc(const PelMeshTopologyDesc& desc) {
     if (desc.weld != PEL_WELD_NONE && desc.weld != PEL_WELD_EXACT && desc.weld != PEL_WELD_TOLERANCE)
-        invalidArgument("PelMeshTopologyDesc.weld is ", int(desc.weld), ", which is no PelWeld");
+        invalidArgument("PelMeshTopologyDesc.weld is ", int(desc.weld), ", which is not a value of PelWeld");
     if (desc.numVertices > PEL_MESH_SLOT)
         fail(PEL_ERROR_UNSUPPORTED, desc.numVertices, " vertices are more than a topology holds (",
              PEL_MESH_SLOT, "): split the mesh");
@@ -60,7 +60,7 @@ Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopology
     MeshAdjacency adjacency =
         buildAdjacency(triangles, weld.slots, [&](double fraction) { progress(0.3 + 0.4 * fraction); });
     if (isScattered(triangles, weld.slots)) {
-        // Passes then work in an order of their own; only the first and the last one know the caller's.
+        // Passes then work in an order of their own. Only the first and the last pass use the caller's order.
         const std::vector<uint32_t> numbers = breadthFirstNumbers(adjacency);
         renumberSlots(weld, numbers);
         for (uint32_t& slot : triangles) slot = numbers[slot];

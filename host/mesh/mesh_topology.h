@@ -1,5 +1,5 @@
-// What a mesh's indices say, analysed once and kept on the device; and the scratch memory of the passes over
-// it.
+// The analysis of a mesh's indices, made once and kept on the device; and the scratch memory of the passes
+// over it.
 #pragma once
 #include <functional>
 
@@ -8,17 +8,17 @@
 
 namespace pel {
 
-// Throws for a count or an index that makes no mesh.
+// Throws if a count or an index is wrong.
 void checkTopologyDesc(const PelMeshTopologyDesc& desc);
 
 class MeshTopology final : public Object {
   public:
     static constexpr Kind kind = Kind::meshTopology;
-    // `progress` is told a fraction in [0, 1].
+    // `progress` gets a fraction in [0, 1].
     static Ref<MeshTopology> create(Ref<Device> device, const PelMeshTopologyDesc& desc,
                                     PelMeshReport& report, const std::function<void(double)>& progress);
 
-    // Everything that was analysed, as bytes of this machine's order; load() checks all of it.
+    // The whole analysis as bytes in this machine's order. load() checks all of it.
     std::vector<char> save() const;
     static Ref<MeshTopology> load(Ref<Device> device, const void* bytes, size_t size);
 
@@ -26,22 +26,22 @@ class MeshTopology final : public Object {
     uint32_t vertices() const { return report_.vertices; }
     uint32_t slots() const { return report_.uniquePositions; }
     uint32_t triangles() const { return report_.triangles; }
-    // Slots are not simply the caller's vertices: slotOf, memberOffsets and members say how they belong
-    // together.
+    // Whether slots differ from the caller's vertices. slotOf, memberOffsets and members then map them to
+    // each other.
     bool mapped() const { return bool(slotOf_); }
     const PelMeshReport& report() const { return report_; }
 
-    // Device arrays; empty when they would have no elements. Those of the mapping are empty unless mapped().
+    // Device arrays; empty if they have no elements. Those of the mapping are empty unless mapped().
     const cl::Memory& indices() const { return indices_; }  // the caller's, three vertices per triangle
     const cl::Memory& slotOf() const { return slotOf_; }
     const cl::Memory& memberOffsets() const { return memberOffsets_; }
     const cl::Memory& members() const { return members_; }
     const cl::Memory& slices() const { return slices_; }
     const cl::Memory& rings() const { return rings_; }
-    const cl::Memory& runs() const { return runs_; }  // empty also where there are few
+    const cl::Memory& runs() const { return runs_; }  // also empty if there are few
 
     // Memory between the passes of one call, at least `bytes` long, kept for the next call. The queue is in
-    // order, so that calls may share it as long as each enqueues its passes together: hold lock() meanwhile.
+    // order, so calls may share it if each enqueues its passes together: hold lock() meanwhile.
     enum Scratch {
         scratchRows,
         scratchFrom,
@@ -58,15 +58,15 @@ class MeshTopology final : public Object {
     std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
     const cl::Memory& scratch(Scratch which, size_t bytes);
 
-    // Entries of the rings, fillers included.
+    // Entries of the rings, including fillers.
     size_t ringEntries() const { return ringEntries_; }
-    // How fast the finest parts of the mesh even out, and its middle, 1/length^2, by weights; 0: not measured yet. Guarded by
-    // lock().
+    // The largest and the median smoothing rate of the mesh, 1/length^2, by weights; 0: not measured yet.
+    // Guarded by lock().
     struct DiffusionRates {
         float most = 0, middle = 0;
     };
     DiffusionRates diffusionRates[2];
-    // Links and rounds (mesh_links.cl) are in their scratch memory, or queued. Guarded likewise.
+    // Whether links and rounds (mesh_links.cl) are in their scratch memory, or queued. Guarded by lock().
     bool linked = false;
 
     explicit MeshTopology(Ref<Device> device) : Object(kind), device_(std::move(device)) {}

@@ -1,5 +1,5 @@
-// A topology as bytes: a header, then its arrays one after the other. Loading trusts nothing: kernels follow
-// these numbers without a test of their own.
+// A topology as bytes: a header, then its arrays one after another. Loading checks everything, because
+// kernels follow these numbers without checks of their own.
 #include <algorithm>
 #include <cstring>
 
@@ -11,15 +11,15 @@ namespace {
 
 struct Header {
     char magic[8];
-    uint32_t version;   // of this layout; also tells byte orders apart
+    uint32_t version;   // of this layout; also distinguishes byte orders
     uint32_t words[6];  // of the arrays, in the order that save() writes them
-    uint32_t checksum;  // of everything behind the header
+    uint32_t checksum;  // of everything after the header
     PelMeshReport report;
 };
 constexpr char magic[8] = {'P', 'E', 'L', 'M', 'E', 'S', 'H', '\n'};
 constexpr uint32_t version = 2;
 
-// FNV-1a over words [Fowler, Noll & Vo]: finds damage, not malice; the checks below are for that.
+// FNV-1a over words [Fowler, Noll & Vo]: finds damage. The checks below find wrong values.
 uint32_t checksumOf(const uint32_t* words, size_t count) {
     uint32_t hash = 2166136261u;
     for (size_t i = 0; i < count; ++i) hash = (hash ^ words[i]) * 16777619u;

@@ -27,7 +27,7 @@ class Positions {
     size_t stride_;
 };
 
-// Chains of vertices by the cell of space they stand in; a table twice as long as there are vertices.
+// Chains of the vertices of each cell of space, in a hash table twice as long as there are vertices.
 class CellTable {
   public:
     explicit CellTable(uint32_t vertices) : next_(vertices, none) {
@@ -40,7 +40,7 @@ class CellTable {
         next_[vertex] = head;
         head = vertex;
     }
-    // The smallest vertex of the cell's chain that `matches`; other cells may share the chain.
+    // The smallest vertex of the cell's chain that `matches`. Other cells may share the chain.
     template <class Matches>
     uint32_t find(const Cell& cell, Matches&& matches) const {
         uint32_t found = none;

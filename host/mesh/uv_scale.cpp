@@ -6,7 +6,7 @@
 namespace pel {
 namespace {
 
-// Mathematics, section 5: a triangle below this part of the mesh's largest edge or UV edge is skipped.
+// Mathematics, section 5: triangles below this share of the mesh's largest edge or UV edge are skipped.
 constexpr float smallestPart = 1e-6f;
 
 }  // namespace
@@ -52,7 +52,7 @@ float meshUvScale(MeshTopology& topology, const VertexView& positions, const Ver
     if (triangles == 0)
         invalidArgument("no triangle has both an edge and a UV edge of at least ", smallestPart,
                         " of the mesh's largest");
-    // The shares hold logarithms of squares.
+    // The partial sums hold logarithms of squares.
     return float(std::exp2(0.5 * log2Sum / double(triangles)));
 }
 

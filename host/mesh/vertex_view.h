@@ -10,7 +10,8 @@ struct VertexView {
     VertexLayout layout{};
 };
 
-// Throws unless the view holds `count` vertices, as `owner` does, of `components` floats inside a buffer of `device`.
+// Throws unless the view holds `count` vertices (as many as `owner` has) of `components` floats inside a
+// buffer of `device`.
 VertexView checkedView(const PelVertexView* view, const char* name, const Device& device, uint32_t count,
                        uint32_t components, const char* owner = "the topology");
 

@@ -1,4 +1,4 @@
-// The view of the stand-in renderer, and where to put camera and light round a head.
+// The view of the sample renderer, and where to put camera and light round a head.
 #pragma once
 #include "sample/mesh.h"
 #include "sample/vector.h"

@@ -1,4 +1,4 @@
-// What colour the surfaces of the stand-in renderer have: skin with redder places, eyes, teeth.
+// What colour the surfaces of the sample renderer have: skin with redder places, eyes, teeth.
 #pragma once
 #include <array>
 #include <vector>

@@ -1,4 +1,4 @@
-// Triangle meshes as the stand-in renderer takes them, and analytic ones for tests. Lengths are in mm by
+// Triangle meshes as the sample renderer takes them, and analytic ones for tests. Lengths are in mm by
 // habit; any unit serves when it is used throughout.
 #pragma once
 #include <cstdint>

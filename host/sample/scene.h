@@ -1,4 +1,4 @@
-// A mesh made ready for ray tracing. The stand-in renderer's only contact with Embree.
+// A mesh made ready for ray tracing. The sample renderer's only contact with Embree.
 #pragma once
 #include <cstdint>
 #include <memory>

@@ -1,4 +1,4 @@
-// Small double-precision vectors and matrices of the stand-in renderer.
+// Small double-precision vectors and matrices of the sample renderer.
 #pragma once
 #include <array>
 #include <cmath>

@@ -9,15 +9,15 @@
 //              integrate first; for a Gaussian, with k = (r/sigma)^2: exp(-k) int cos^2(h) exp(k cos h cos t)
 //              dh, a function of k cos t.
 // At the angle phi = theta - pi/2 behind the terminator (u = -sin phi) such a convolution obeys D'' + D =
-// K(phi) + K(pi - phi), so that a row is one sweep from phi = pi/2 to 0 over E with E(pi/2) = E'(pi/2) = 0,
-// all terms positive:
+// K(phi) + K(pi - phi). So a row is one sweep from phi = pi/2 to 0 over E with E(pi/2) = E'(pi/2) = 0; all
+// terms are positive:
 //   unlit side   D(-u) = E + back u        back  = 2 int_0^{pi/2} K(pi - t) cos t dt
 //   lit side     D(+u) = E + front u       front = 2 int_0^{pi/2} K(t) cos t dt
-// front is close to the kernel's mass, which has a closed form (or is 1), less 2 int K (1 - cos t): no
-// cancellation. For the sphere front - back is the mean of cos t, coth k - 1/k for a Gaussian. E is kept at N
-// + 1 nodes (pi/2) (j/N)^4 with its slope, and cubic between them: the error of such an interpolation, about
-// 1e-3 sigma (h/sigma)^4, is then about the same for every width sigma of K, so one mesh serves all rows and
-// profiles.
+// front is close to the kernel's mass, which has a closed form (or is 1), minus 2 int K (1 - cos t): no
+// cancellation. For the sphere front - back is the mean of cos t, coth k - 1/k for a Gaussian. E and its
+// slope are kept at N + 1 nodes (pi/2) (j/N)^4, and E is cubic between them. The error of such an
+// interpolation, about 1e-3 sigma (h/sigma)^4, is about the same for every width sigma of K, so one mesh
+// serves all rows and profiles.
 //
 // Variants: PEL_WIDTH; PEL_FORM, as PelCurvatureForm; PEL_GROUP, work-items in a group; PEL_NODES, N;
 // PEL_POINTS, Gauss points per mesh interval (1 to 3); PEL_COLUMNS, columns per work-item of curvature_texels.
@@ -98,8 +98,8 @@ inline floatw latitudeFront(const floatw z) {
     return selectw(high * sqrt(t), low, z < 6.0f);
 }
 
-// int cos^2(h) exp(-z cos h) dh over the half circle, 0 <= z <= 18, to 1e-6 of exp(z)/z: it comes times k
-// exp(-k), k >= z.
+// int cos^2(h) exp(-z cos h) dh over the half circle, 0 <= z <= 18, to 1e-6 of exp(z)/z, because it is
+// multiplied by k exp(-k), k >= z.
 inline floatw latitudeBack(const floatw z) {
     const floatw x = fmin(z, 18.0f);
     floatw sum = fma(x, (floatw)(-1.38030712e-10f), (floatw)(1.08690017e-8f));
@@ -124,7 +124,7 @@ inline Rgb kernelAt(__global const LutGaussian* gaussians, const uint first, con
     for (uint g = first; g < end; ++g) {
         const LutGaussian G = gaussians[g];
 #if PEL_FORM == FORM_SPHERE
-        // In sigmas; as small as 1e-6 light is even, and the same limit stands where the sum is normalised.
+        // In sigmas. At 1e-6 light is already even; the same limit is used where the sum is normalised.
         const floatw x = clamp(radius / G.sigma, 1e-6f, 1e8f);
 #else
         const floatw x = fmin(radius / G.sigma, 1e8f);
@@ -150,7 +150,7 @@ inline Rgb kernelAt(__global const LutGaussian* gaussians, const uint first, con
 
 // One work-item: PEL_WIDTH rows, one per lane.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_rows(
-    const CurvatureParams params, __global const LutGaussian* gaussians, __constant LutNode* nodes,
+    const CurvatureLutParams params, __global const LutGaussian* gaussians, __constant LutNode* nodes,
     __global float4* rows) {
     const uint firstRow = get_global_id(0) * PEL_WIDTH;
     if (firstRow >= params.height) return;
@@ -175,13 +175,14 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
     for (int j = PEL_NODES - 1; j >= 0; --j) {
         const LutNode node = nodes[j];
         const float step = nodes[j + 1].angle - node.angle;
-        // Narrow Gaussians come first in the list: in front those join as phi falls, behind those leave.
+        // Narrow Gaussians come first in the list. Going down in phi, Gaussians join in front and leave
+        // behind.
         while (front > 0 && anyw(REACH * gaussians[front - 1].sigma * curvature > node.angle)) --front;
         while (behind < params.gaussians &&
                !anyw(REACH * gaussians[behind].sigma * curvature > M_PI_F - nodes[j + 1].angle))
             ++behind;
 
-        // Over the step the turn by its angle, then what the kernel adds.
+        // Over one step: the rotation by its angle, plus what the kernel adds.
         const float step2 = step * step;
         const float s = step * (1.0f - step2 * (1.0f / 6.0f) * (1.0f - step2 * (1.0f / 20.0f)));
         const float c = 1.0f - step2 * 0.5f * (1.0f - step2 * (1.0f / 12.0f));
@@ -223,7 +224,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
                 back = rgbFma(k, weight * cosine, back);
                 mass = rgbFma(k, weight, mass);
 #if PEL_FORM != FORM_ARC
-                // front is 1 less what does not arrive there, and that includes all of the back
+                // front is 1 minus the light that does not arrive there, which includes all of back
                 missing = rgbFma(k, weight, missing);
 #endif
             }
@@ -265,23 +266,23 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
     back = (Rgb){2.0f * back.r * scale.r, 2.0f * back.g * scale.g, 2.0f * back.b * scale.b};
     frontTotal = (Rgb){fma(mean.r, scale.r, back.r), fma(mean.g, scale.g, back.g), fma(mean.b, scale.b, back.b)};
 #else
-    // A kernel too narrow for the mesh has no mass on it: it is a point, and E is 0.
+    // A kernel narrower than the mesh has no mass on it: it is a point, and E is 0.
     scale = (Rgb){0.5f / fmax(mass.r, 1e-30f), 0.5f / fmax(mass.g, 1e-30f), 0.5f / fmax(mass.b, 1e-30f)};
     back = (Rgb){2.0f * back.r * scale.r, 2.0f * back.g * scale.g, 2.0f * back.b * scale.b};
     frontTotal = (Rgb){1.0f - 2.0f * missing.r * scale.r, 1.0f - 2.0f * missing.g * scale.g,
                        1.0f - 2.0f * missing.b * scale.b};
 #endif
-    // What is all but 0 there may come out below it: no texel may.
+    // Values that are nearly 0 may come out negative by rounding. No texel may be negative.
     back = (Rgb){fmax(back.r, 0.0f), fmax(back.g, 0.0f), fmax(back.b, 0.0f)};
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES + 2, back);
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES + 3, frontTotal);
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES + 4, scale);
 }
 
-// One work-item: PEL_COLUMNS columns of the unlit half of one row, and their mirror images in the lit half.
-// The row behind the last is a copy of it, and the column behind the last likewise (shared/lut.h).
+// One work-item: PEL_COLUMNS columns of the unlit half of one row, and their mirror images in the lit half. A
+// copy of the last row and of the last column follows (shared/lut.h).
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_texels(
-    const CurvatureParams params, __global const float4* rows, __global const LutColumn* columns,
+    const CurvatureLutParams params, __global const float4* rows, __global const LutColumn* columns,
     __global float4* texels) {
     const uint unlit = (params.width + 1) / 2;
     const uint first = get_global_id(0) * PEL_COLUMNS;
@@ -300,7 +301,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_t
         E = fma((float4)(column.slope0), node[1], E);
         E = fma((float4)(column.value1), node[2], E);
         E = fma((float4)(column.slope1), node[3], E);
-        // A cubic may dip below 0 by rounding where E has all but vanished.
+        // A cubic may dip below 0 by rounding where E is nearly 0.
         E = fmax(E, 0.0f) * scale;
         line[x] = fma((float4)(column.elevation), back, E);
         line[params.width - 1 - x] = fma((float4)(column.elevation), front, E);

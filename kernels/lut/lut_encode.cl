@@ -1,7 +1,8 @@
-// LUT texels (float4, with a copied column and row, shared/lut.h) packed for the host: row-major, without the
-// copies. Section 2 and 3 of the mathematics define the 8-bit encodings, which are those of FaceWorks.
+// Packs the texels of a look-up table (float4, with a copied column and row, shared/lut.h) for the host, in
+// the encodings of sections 2 and 3 of the mathematics.
 //
-// One work-item: one texel, but for count_clipped. Variants: PEL_GROUP, work-items in a group.
+// Inputs: the texels. Output: rows without the copies. One work-item: one texel; one row in count_clipped.
+// Variants: PEL_GROUP, work-items in a group.
 #include "lib/lut/lut_lookup.clh"
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_float(const LutLayout lut,
@@ -20,7 +21,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_half
     vstore_half3_rte(texels[(size_t)y * lut.rowTexels + x].xyz, (size_t)y * lut.width + x, packed);
 }
 
-// sat(2 (D - max0(u)) + 1/2): what scattering changes, doubled, about the middle grey. Linear.
+// sat(2 (D - max0(u)) + 1/2): the change by scattering, doubled, around middle grey. Linear.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_curvature_bytes(
     const LutLayout lut, __global const float4* texels, __global uchar* packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
@@ -31,7 +32,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_curv
     vstore4(convert_uchar4_sat_rte(residual * 255.0f), (size_t)y * lut.width + x, packed);
 }
 
-// One work-item: one row. Texels that the above clips in some channel.
+// One work-item: one row. Counts texels that the encoding above clips in some channel.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void count_clipped(const LutLayout lut,
                                                                                    __global const float4* texels,
                                                                                    __global uint* clipped) {
@@ -46,7 +47,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void count_clipp
     if (found) atomic_add(clipped, found);
 }
 
-// The peer fades the first twenty-fifth of the columns to black, then stores sRGB.
+// FaceWorks fades the first twenty-fifth of the columns to black, then stores sRGB.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_shadow_bytes(
     const LutLayout lut, __global const float4* texels, __global uchar* packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
@@ -59,7 +60,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_shad
     vstore4(convert_uchar4_sat_rte(encoded * 255.0f), (size_t)y * lut.width + x, packed);
 }
 
-// Specular tables are kept as they are, like those of d'Eon and Luebke.
+// Specular tables are stored unchanged, like those of d'Eon and Luebke.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_bytes(const LutLayout lut,
                                                                                   __global const float4* texels,
                                                                                   __global uchar* packed) {

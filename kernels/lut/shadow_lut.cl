@@ -1,8 +1,9 @@
 // Shadow LUT of a sum of Gaussians (section 3 of the mathematics).
 //
-// Lengths in diffusion radii. At distance z = zeta q from the middle of the edge (z = p - 1/2) the sharpened
-// shadow is a smoothstep of half width b = 1/(2 k q) about -zeta. The table is odd about the middle, T(z) +
-// T(-z) = mass, so that only the far side z >= 0 is integrated: U = mass - T, a sum of positive terms. For
+// Lengths are in diffusion radii. At distance z = zeta q from the middle of the edge (z = p - 1/2) the
+// sharpened shadow is a smoothstep of half width b = 1/(2 k q) about -zeta. The table is odd about the
+// middle, T(z) + T(-z) = mass. So only the far side z >= 0 is integrated: U = mass - T, a sum of positive
+// terms. For
 // one Gaussian, with beta = b/sigma, e1 = (zeta - b)/sigma, e2 = (zeta + b)/sigma and the repeated integrals
 // i_n of the normal tail,
 //   U = 3/(2 beta^2) (i2(e1) + i2(e2)) - 3/(2 beta^3) (i3(e1) - i3(e2))            beta >= 1
@@ -11,8 +12,8 @@
 // Between and beyond the kinks the tails are 0 or 1 and cost nothing. The part of the profile beyond the cut
 // is taken off again where it weighs anything.
 //
-// Columns are even in w, or in p on the axis of roots, where rows are even in the root of q. With closed ends T is rescaled to
-// (T - T(0)) / (T(1) - T(0)) per row.
+// Columns are linear in w; on the square-root axis they are linear in p, and rows in the root of q. With
+// closed ends T is rescaled to (T - T(0)) / (T(1) - T(0)) per row.
 //
 // Variants: PEL_WIDTH; PEL_GROUP, work-items in a group; PEL_COLUMNS, columns per work-item, a multiple of
 // PEL_WIDTH.
@@ -38,8 +39,8 @@ inline floatw thirdTail(const floatw x, const floatw Q, const floatw density) {
     return (1.0f / 6.0f) * (fma(x, x, (floatw)(2.0f)) * density - x * fma(x, x, (floatw)(3.0f)) * Q);
 }
 
-// Integral of smoothstep((x + beta - xi) / 2 beta) over the normal density beyond x = cut: what a cut profile
-// lacks.
+// Integral of smoothstep((x + beta - xi) / 2 beta) over the normal density beyond x = cut: the part that a
+// cut profile does not have.
 inline floatw beyondCut(const floatw xi, const float beta, const float cut, const floatw e1, const floatw e2,
                         const floatw i2e1, const floatw i3e1, const floatw i2e2, const floatw i3e2) {
     floatw density;
@@ -118,7 +119,7 @@ inline floatw farSide(const floatw zeta, const float b, const LutGaussian G, con
     floatw lost = cutTail;
     if (anyw(e2 > cut)) lost = beyondCut(xi, beta, cut, e1, e2, i2e1, i3e1, i2e2, i3e2);
     if (anyw(e1 < -cut)) {
-        // Mirrored, 1 - smoothstep turns the other end into the same problem: light lacks Q there, less this.
+        // Mirrored: 1 - smoothstep turns the other end into the same problem, where light loses Q minus this.
         lost += cutTail - beyondCut(-xi, beta, cut, -e2, -e1, secondTail(-e2, 1.0f - Q2, density2),
                                     thirdTail(-e2, 1.0f - Q2, density2), secondTail(-e1, 1.0f - Q1, density1),
                                     thirdTail(-e1, 1.0f - Q1, density1));
@@ -145,8 +146,8 @@ inline Far farSideOfAll(__global const LutGaussian* gaussians, const uint count,
     return U;
 }
 
-// `end`: U where the filter ends, of which every texel is relieved (closed ends); 0: of nothing. A profile so wide that next to
-// nothing is left between the ends is straight there: 1/2 - z.
+// `end`: U where the filter ends. It is subtracted from every texel (closed ends); 0: nothing is subtracted.
+// A profile so wide that almost nothing is left between the ends is straight there: 1/2 - z.
 inline void storeTexels(__global float4* line, const uint width, const uint x, const floatw r, const floatw g,
                         const floatw b, const floatw z, const float3 mass, const float3 end, const int closed) {
     float across[PEL_WIDTH];
@@ -157,7 +158,8 @@ inline void storeTexels(__global float4* line, const uint width, const uint x, c
     storew(g, 0, green);
     storew(b, 0, blue);
     for (uint lane = 0; lane < PEL_WIDTH && x + lane < width; ++lane) {
-        // A tail that has all but vanished may come out below 0 by rounding: no texel may, on either side.
+        // A tail that is nearly 0 may come out negative by rounding. No texel may be negative, on either
+        // side.
         float3 U = clamp((float3)(red[lane], green[lane], blue[lane]), (float3)(0.0f), mass);
         float3 lit = mass - U;
         if (closed) {
@@ -171,10 +173,10 @@ inline void storeTexels(__global float4* line, const uint width, const uint x, c
     }
 }
 
-// One work-item: PEL_COLUMNS columns of the lit half of one row, and their mirror images. The row behind the
-// last is a copy of it, and the column behind the last likewise (shared/lut.h).
+// One work-item: PEL_COLUMNS columns of the lit half of one row, and their mirror images. A copy of the last
+// row and of the last column follows (shared/lut.h).
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadow_texels(
-    const ShadowParams params, __global const LutGaussian* gaussians, __global float4* texels) {
+    const ShadowLutParams params, __global const LutGaussian* gaussians, __global float4* texels) {
     const uint begin = params.width / 2 + get_global_id(0) * PEL_COLUMNS;
     const uint y = get_global_id(1);
     const float row = (float)min(y, params.height - 1);

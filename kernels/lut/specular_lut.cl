@@ -1,8 +1,8 @@
 // Specular LUT (section 4 of the mathematics): Beckmann's distribution P(n.h, m) = exp(-tan^2 a / m^2) / (m^2
 // cos^4 a) as P^0.1 / 2, over n.h and m from 0 to 1 at texel centres.
 //
-// One work-item: one texel; the row behind the last is a copy of it, and the column behind the last likewise.
-// Variants: PEL_GROUP, work-items in a group.
+// Output: texels, followed by a copy of the last row and column. One work-item: one texel. Variants:
+// PEL_GROUP, work-items in a group.
 #include "shared/lut.h"
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void specular_texels(const LutLayout lut,
@@ -10,7 +10,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void specular_te
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x > lut.width) return;
     const float cosine = ((float)min(x, lut.width - 1) + 0.5f) / (float)lut.width;
-    // 1 - cosine by itself: taken from 1 it would lose what a narrow lobe divides by m^2.
+    // 1 - cosine is computed directly: subtracting from 1 would lose the digits that a narrow lobe divides by
+    // m^2.
     const float beside = ((float)(lut.width - 1 - min(x, lut.width - 1)) + 0.5f) / (float)lut.width;
     const float m = ((float)min(y, lut.height - 1) + 0.5f) / (float)lut.height;
     // In logarithms: near grazing angles and for small m both factors leave the range of float.

@@ -1,9 +1,9 @@
 // Curvature at the vertices of a mesh and its uniform smoothing (mathematics, section 5).
 //
-// Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h).
-// Results between passes: planes of one float per slot, 1/length (lib/mesh/principal.clh); NaN where nothing could
-// be measured. Such a slot stays out of its neighbours' means, and the last pass writes 0 for it, so that no
-// NaN ever spreads or leaves. One work-item: PEL_WIDTH slots (of plane get_global_id(1)); curvature_store:
+// Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h). Results between passes:
+// planes of one float per slot, 1/length (lib/mesh/principal.clh), NaN if nothing could be measured. Such a
+// slot is left out of its neighbours' means, and the last pass writes 0 for it, so no NaN spreads or is
+// returned. One work-item: PEL_WIDTH slots (of plane get_global_id(1)); curvature_store:
 // one vertex of the caller. Variants: PEL_MESH_MAPPED 1: vertices find their slot in slotOf. PEL_MESH_STRIDE,
 // PEL_MESH_RUNS: lib/mesh/mesh_slots.clh. PEL_MESH_LISTED: lib/mesh/mesh_vertex.clh. MESH_PLANES, PEL_MESH_QUANTITY (a
 // PelCurvatureQuantity): what curvature_store reads and writes.

@@ -1,27 +1,29 @@
 // Curvature by a local polynomial through the two-ring of each slot (mathematics, section 5): heights over the tangent
-// plane of the given normal, fitted by least squares with slope, quadratic and cubic terms. The slope re-estimates the
-// normal; the cubic terms take what would otherwise lean the quadratic ones on irregular meshes, and are not used
-// further. Positions alone decide: a normal only says which way the height is; one that is far off its ring's, as where
-// a sliver was folded over by noise, is replaced by the mean of its neighbours'.
+// plane of the given normal, fitted by least squares with slope, quadratic and cubic terms. The slope
+// corrects the normal. The cubic terms absorb what would otherwise disturb the quadratic ones on irregular
+// meshes, and are not used further. Only positions are measured: the normal says which direction is up. A
+// normal that is far off the normals of its ring, as where noise folded a sliver over, is replaced by their
+// mean.
 //
-// Heights are bent first: q becomes q r^2 / (r^2 + q^2), r being the distance along the plane. A circle through the slot
-// that touches the plane, q = k (r^2 + q^2) / 2, then is exactly the parabola k r^2 / 2, so that spheres and cylinders
-// leave no terms of fourth order, which a fit of third order would mistake for quadratic ones: the more, the longer its
-// cells. The plane must touch the surface for that. The ring's own slope, where it is no small one, is taken off before,
-// and the bending fades out where the ring is steep in spite of it.
+// Heights are bent first: q becomes q r^2 / (r^2 + q^2), r being the distance along the plane. A circle
+// through the slot that touches the plane, q = k (r^2 + q^2) / 2, then becomes exactly the parabola k r^2 /
+// 2. So spheres and cylinders leave no terms of fourth order, which a fit of third order would take for
+// quadratic ones, the more, the longer the cells are. The plane must touch the surface for that: the slope of
+// the ring, unless it is small, is taken off first, and the bending fades out where the ring is still steep.
 //
-// The two-ring is walked as the rings of the ring. Where those are closed, their walks begin behind the slot's own
-// neighbours and leave out the last vertex, which the next walk begins with: each vertex of the two-ring then counts
-// once. Some count several times: at borders; where triangles are in no consistent order; and the one vertex behind a
-// neighbour of four, which stays in though the next walk begins with it (on meshes of four and eight neighbours that
-// takes up to a sixth off the error).
+// The two-ring is walked as the rings of the ring. Where those are closed, their walks begin after the slot's
+// own neighbours and leave out the last vertex, with which the next walk begins, so each vertex of the
+// two-ring counts once. Some count several times: at borders; where triangles are not consistently oriented;
+// and the one vertex behind a neighbour with four neighbours, which is kept although the next walk begins
+// with it (on meshes of four and eight neighbours that takes up to a sixth off the error).
 //
 // Where a ring is small among larger triangles, or thinner than the two-ring, most of that lies outside of what the ring says
 // is near, and what is left does not tell nine numbers. Such slots are fitted once more, to all of the two-ring in
 // coordinates that its own moments give. Positions are known to float rounding only, and where points stand so that H would
 // be off by more than that allows, the fit is done again too; if that does not help, to the rings of all these points.
 //
-// Of a ring of many neighbours (the hub of a fan, seen from its rim) only the nearest on either side are walked.
+// Of a ring with many neighbours (the hub of a fan, seen from its rim) only the nearest on either side are
+// walked.
 //
 // What the points leave open (fewer than nine, all on a line) a ridge decides, towards a quadric and then a plane; a
 // term whose pivot is lost to rounding is dropped. The result is always finite. Such slots are counted.
@@ -41,32 +43,36 @@
 
 // A point at distance r, in units of twice the ring's reach, weighs 1 / (this + r^2): near points tell about
 // the slot, far ones about its surroundings. Measured on tori against equal weights: 10 to 25 % less error.
-// Times how round the ring is (1: as wide as long): across slivers, near points must tell about bending across, or what bends
-// along them in fourth order counts as that. On tori of cells 1 : 125 that takes the error from 40 % to below 0.1.
+// It is multiplied by the roundness of the ring (1: as wide as long): across slivers, near points must tell
+// about the bending across, otherwise terms of fourth order along them count as that. On tori with cells of 1
+// : 125 that takes the error from 40 % to below 0.1.
 #define WEIGHT_SOFTENING 0.05f
 
-// Added to the diagonal, in parts of the total weight: decides where too few points do, towards a plane
-// and then towards a quadric, and stays below the noise of float positions elsewhere.
+// Added to the diagonal, relative to the total weight. It decides where there are too few points, towards a
+// plane and then towards a quadric, and stays below the noise of float positions elsewhere.
 #define RIDGE_QUADRATIC 1e-7f
 #define RIDGE_CUBIC 1e-5f
 
-// The same on a border, where a two-ring has three rows of vertices only, which leave a cubic across it open. On smooth
-// surfaces ten times more or less gain on some meshes what they lose on others; with RIDGE_CUBIC, noise of 2 % of an
-// edge is two to four times as large.
+// The same on a border, where a two-ring has only three rows of vertices, which do not determine a cubic
+// across the border. On smooth surfaces ten times more or less is better on some meshes and worse on others;
+// with RIDGE_CUBIC, noise of 2 % of an edge is two to four times as large.
 #define RIDGE_CUBIC_BORDER 1e-3f
 
-// Root mean square of a coordinate over a round ring, in units of its reach: such a ring keeps its shape.
+// Root mean square of a coordinate over a round ring, in units of its reach, so that such a ring keeps its
+// shape.
 #define CHART_SIZE 0.70710678f
 
-// Square of the chart's radius beyond which a point is no neighbour: a round two-ring has radius 1. Next to a vertex of
-// many neighbours (the pole of a sphere) the two-ring is a wide circle, of which only the near part tells.
+// Square of the chart's radius beyond which a point is ignored; a round two-ring has radius 1. Next to a
+// vertex with many neighbours (the pole of a sphere) the two-ring is a wide circle, of which only the near
+// part is useful.
 #define FARTHEST2 4.0f
 
-// The product of one minus the squared canonical correlations [Hotelling 1936] of cubic terms with lower ones, or of quadratic
-// with linear ones, over the points. Below this the points do not tell them apart, and the fit is done again; or where the ring
-// is less round than LEAST_ROUND. Then it takes all of the two-ring, as wide as long with a root mean square of WIDE_SIZE a
-// coordinate, near points weighing more. Measured on random Delaunay, poked and red-green meshes: from 3 to 120 % RMS down to
-// 0.1; regular meshes have 0.02.
+// The product of one minus the squared canonical correlations [Hotelling 1936] of cubic terms with lower
+// ones, or of quadratic with linear ones, over the points. Below this limit the points cannot distinguish the
+// terms, and the fit is done again; also where the ring is less round than LEAST_ROUND. The second fit takes
+// all of the two-ring, as wide as long, with a root mean square of WIDE_SIZE per coordinate, and near points
+// weigh more. Measured on random Delaunay, poked and red-green meshes: from 3 to 120 % RMS down to 0.1;
+// regular meshes have 0.02.
 #define POOR_TERMS 1e-3f
 #define LEAST_ROUND 0.1f
 #define WIDE_SIZE 0.5f
@@ -88,18 +94,19 @@
 // Of longer rings than twice this and four, so many neighbours of neighbours are walked to either side.
 #define NEAR_STEPS 16
 
-// The ring's slope is fitted with this much of the squared reach on the diagonal, so that across slivers the curvature
-// along them does not count as slope; slopes well below MIN_SLOPE are the surface's own and stay.
+// The ring's slope is fitted with this share of the squared reach on the diagonal, so that across slivers the
+// curvature along them does not count as slope. Slopes well below MIN_SLOPE are the surface's own and are
+// kept.
 #define SLOPE_RIDGE 0.03f
 #define MIN_SLOPE 0.05f
 
-// Squared height over squared width of a ring at which bending is down to a half: 16 degrees of tilt, or a
-// cap of edge / radius 0.4.
+// Squared height over squared width of a ring at which the bending is halved: 16 degrees of tilt, or a cap of
+// edge / radius 0.4.
 #define STEEP 0.04f
 
-// A ring steeper than this, or with a slope whose square is above that, lets the normal be compared with its neighbours';
-// a cosine below WRONG_NORMAL (8 degrees) replaces it. Measured with normals from meshes whose jitter folds triangles: half
-// the error on tori, a tenth on cones.
+// If a ring is steeper than this, or its squared slope is above that, the normal is compared with its
+// neighbours'. If the cosine is below WRONG_NORMAL (8 degrees) it is replaced. Measured with normals from
+// meshes whose jitter folds triangles: half the error on tori, a tenth on cones.
 #define STEEP_DOUBTFUL 0.05f
 #define SLOPE2_DOUBTFUL 0.01f
 #define WRONG_NORMAL 0.99f
@@ -112,13 +119,14 @@
 #define MONOMIAL(a, b) (((a) + (b)) * ((a) + (b) + 1) / 2 - 3 + (b))  // of x^a y^b, a + b >= 2
 #define MONOMIALS 25
 
-// From offsets to the coordinates of the fit: x = xx X, y = xy X + yy Y, z = scale * bent height, with X and Y along the
-// tangent vectors. They are as long along the ring as across it, so that slivers fit as well as other triangles: in
-// coordinates of one unit the sixth powers of a short direction would drown in the rounding of a long one's.
+// From offsets to the coordinates of the fit: x = xx X, y = xy X + yy Y, z = scale * bent height, with X and
+// Y along the tangent vectors. The ring is as long as wide in them, so that slivers fit as well as other
+// triangles. In coordinates of one unit the sixth powers of a short direction would be lost in the rounding
+// of a long one's.
 typedef struct Chart {
     Vec3w origin, u, v, n;
     Vec3w height;         // n without the ring's slope: dot3 with it gives q
-    floatw su, sv, bend;  // that slope; how much of the bending is done, 0 to 1
+    floatw su, sv, bend;  // that slope; share of the bending, 0 to 1
     maskw doubtful;       // the normal may be wrong
     floatw ridge;         // of the cubic terms
     floatw scale, xx, xy, yy;
@@ -191,8 +199,8 @@ inline void assemble(Fit* fit) {
     }
 }
 
-// How often a term's derivative stands among all of its order (uv and vu, ...): the ridge's sum of squares is that of all, which
-// does not change when the chart is turned.
+// How many partial derivatives of an order equal this one (uv and vu, ...). The ridge's sum of squares is
+// over all of them, so it does not change when the chart is rotated.
 __constant int ridgeShares[TERMS] = {1, 1, 1, 2, 1, 1, 3, 3, 1};
 
 // Determinant of the products of `count` terms from `first` on. At most four.
@@ -272,8 +280,8 @@ inline maskw solve(Fit* fit, const Chart* chart) {
     return !(quadratic >= POOR_TERMS * quadraticAlone) | !(cubic >= POOR_TERMS * cubicAlone);
 }
 
-// Coordinates in which second moments suu, suv, svv become size^2: their inverse root (Cholesky). `thick`: the smallest moment
-// that is believed.
+// Coordinates in which second moments suu, suv, svv become size^2: their inverse root (Cholesky). `thick`:
+// the smallest moment that is trusted.
 inline void shapeChart(Chart* chart, floatw suu, floatw suv, floatw svv, floatw thick, float size) {
     const floatw total = suu + svv, least = fmax(MOST_UNEVEN * total, thick) + 1e-20f;
     suu = fmax(suu, least);
@@ -285,7 +293,7 @@ inline void shapeChart(Chart* chart, floatw suu, floatw suv, floatw svv, floatw 
     chart->round = fmin((floatw)(1.0f), 4.0f * suu * rest / (total * total));
 }
 
-// The chart's scales from the ring's second moments in the tangent plane; false for a ring without extent.
+// The chart's scales from the ring's second moments in the tangent plane. False for a ring without extent.
 inline maskw scaleChart(Chart* chart, const RingCursor start, __global const uint* rings,
                         __global const uint* runs, __global const float* positions) {
     RingCursor ring = start;
@@ -309,7 +317,7 @@ inline maskw scaleChart(Chart* chart, const RingCursor start, __global const uin
         count += selectw(zero, one, entry.slots.each != ring.self.each);
     }
     const maskw spread = reach2 >= PEL_MESH_MIN_LENGTH2;
-    // In units of the ring's reach: powers up to the sixth must neither overflow nor vanish.
+    // In units of the ring's reach: powers up to the sixth must neither overflow nor underflow.
     reach2 = selectw(one, reach2, spread);
     chart->reach = sqrt(reach2);
     chart->scale = 0.5f / chart->reach;
@@ -325,7 +333,7 @@ inline maskw scaleChart(Chart* chart, const RingCursor start, __global const uin
     const floatw steepness = snn / (suu + svv + 1e-20f), steep = steepness / STEEP;
     chart->doubtful = (steepness > STEEP_DOUBTFUL) | (slope2 > SLOPE2_DOUBTFUL);
     chart->bend = 1.0f / fma(steep, steep, one);
-    // A ring that is thinner than high is a sliver, or its normal is wrong, as where a triangle is folded over.
+    // A ring that is thinner than high is a sliver, or its normal is wrong because a triangle is folded over.
     chart->doubtful |= (suu < snn) | (fma(-suv, suv, suu * svv) < snn * suu);
     chart->farthest2 = FARTHEST2;
     shapeChart(chart, suu, suv, svv, selectw(zero, snn, chart->replaced), CHART_SIZE);

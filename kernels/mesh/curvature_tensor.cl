@@ -4,8 +4,8 @@
 // of the triangle's area that lies nearest to the slot.
 //
 // Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h). Output:
-// lib/mesh/principal.clh. One work-item: PEL_WIDTH slots. Each triangle is solved once for each of its corners:
-// three times the arithmetic, but no memory between, no second pass, and nothing to add up atomically.
+// lib/mesh/principal.clh. One work-item: PEL_WIDTH slots. Each triangle is solved once for each of its
+// corners: three times the arithmetic, but no memory traffic, no second pass and no atomic sums.
 // Variants: PEL_MESH_STRIDE, PEL_MESH_RUNS (lib/mesh/mesh_slots.clh), MESH_PLANES (lib/mesh/principal.clh).
 
 #include "lib/mesh/mesh_frame.clh"
@@ -45,13 +45,13 @@ typedef struct Form {
 // Adds triangle (slot, a, b), whose corners' order does not matter.
 __attribute__((always_inline)) inline void add_triangle(Form* form, Vec3w n, Vec3w u, Vec3w v, Corner a,
                                                         Corner b, maskw mask, floatw scale) {
-    // In units of about the ring, so that products of lengths stay in the range of float.
+    // In units of about the ring's size, so that products of lengths stay in the range of float.
     const Vec3w ea = scale3(a.offset, scale), eb = scale3(b.offset, scale);
     const Vec3w across = cross3(ea, eb);
     const floatw doubled2 = dot3(across, across);
     mask &= a.usable & b.usable & (doubled2 > PEL_TRIANGLE_FLAT * dot3(ea, ea) * dot3(eb, eb));
     const floatw doubled = sqrt(doubled2);
-    // Orthonormal frame of the triangle, on the same side as the slot's normal where it has two.
+    // Orthonormal frame of the triangle, on the side of the slot's normal.
     Vec3w m = scale3(across, 1.0f / doubled);
     m = scale3(m, selectw((floatw)(1.0f), (floatw)(-1.0f), dot3(m, n) < 0.0f));
     const Vec3w x = scale3(ea, inverseRootw(dot3(ea, ea))), y = cross3(m, x);
@@ -72,7 +72,7 @@ __attribute__((always_inline)) inline void add_triangle(Form* form, Vec3w n, Vec
     const floatw xx = (rx * fma(trace, r, -q * q) - rxy * q * r + ry * q * q) * inverse;
     const floatw xy = (-rx * q * r + rxy * p * r - ry * p * q) * inverse;
     const floatw yy = (rx * q * q - rxy * p * q + ry * fma(trace, p, -q * q)) * inverse;
-    // The slot's tangent vectors, turned with its normal onto the triangle's (Rodrigues).
+    // The slot's tangent vectors, rotated with its normal onto the triangle's (Rodrigues).
     const Vec3w axis = cross3(n, m);
     const floatw cosine = dot3(n, m), part = 1.0f / (1.0f + cosine);
     const Vec3w tu = add3(add3(scale3(u, cosine), cross3(axis, u)), scale3(axis, dot3(axis, u) * part));
@@ -82,7 +82,7 @@ __attribute__((always_inline)) inline void add_triangle(Form* form, Vec3w n, Vec
     const floatw suu = ux * fma(xx, ux, 2.0f * xy * uy) + yy * uy * uy;
     const floatw svv = vx * fma(xx, vx, 2.0f * xy * vy) + yy * vy * vy;
     const floatw suv = xx * ux * vx + xy * fma(ux, vy, uy * vx) + yy * uy * vy;
-    // Nothing of what a sliver without area divided by nothing may get in.
+    // A sliver without area gives 0 / 0, which must not be added.
     mask &= finitew(area) & finitew(suu) & finitew(suv) & finitew(svv);
     const floatw w = selectw((floatw)(0.0f), area, mask);
     form->uu = selectw(form->uu, fma(w, suu, form->uu), mask);

@@ -1,12 +1,13 @@
-// Where each slot stands in its neighbours' rings, so that a pass over the two-ring need not search for it.
+// Finds the place of each slot in its neighbours' rings, so that a pass over the two-ring need not search for
+// it.
 //
-// Inputs: one-rings (shared/mesh.h). Outputs: links, beside the entries of the rings: the row, counted from its slice's first,
-// in which this slot stands in that neighbour's ring (the last one, where there are several; 0 for fillers); rounds, for each
-// slot: neighbours in its list, and PEL_MESH_ROUND where they are one closed walk of more than two.
-// Each edge is looked up in the shorter one of its two rings, by the slot that has the longer one: the hub of a fan has as
-// many neighbours as that has triangles.
-// One work-item: one slot.
-// Variants: none. It runs once for a topology.
+// Inputs: one-rings (shared/mesh.h). Outputs: links, parallel to the entries of the rings: the row, counted
+// from the first of its slice, at which this slot is in that neighbour's ring (the last one if there are
+// several; 0 for fillers); rounds, for each slot: the number of neighbours in its list, with PEL_MESH_ROUND
+// if they are one closed walk of more than two.
+// Each edge is looked up in the shorter one of its two rings, by the slot that has the longer one: the hub of
+// a fan has as many neighbours as the fan has triangles.
+// One work-item: one slot. Variants: none. It runs once for a topology.
 
 #include "shared/mesh.h"
 
@@ -38,7 +39,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_l
         for (uint other = 0; other < others; ++other) {
             const size_t at = entryAt(slices, near_, other);
             if ((rings[at] & PEL_MESH_SLOT) != slot) continue;
-            // Both ways. The last one of several stays, as the rows ascend.
+            // In both directions. Of several places the last one stays, because rows ascend.
             links[at] = row;
             links[entryAt(slices, slot, row)] = other;
         }

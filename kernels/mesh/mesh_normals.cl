@@ -33,7 +33,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_n
         Vec3w current;
         gather3(positions, ring.last, step.entry.slots, &current.x, &current.y, &current.z);
         current = sub3(current, origin);
-        // 1 to 2 long, so that no product leaves the range of float; an edge without length stays 0.
+        // Scaled to a length of 1 to 2, so that no product leaves the range of float. An edge without length
+        // stays 0.
         const floatw length2 = dot3(current, current);
         const maskw long_ = (length2 >= PEL_MESH_MIN_LENGTH2) & finitew(length2);
         current = select3(none, scale3(current, exactScalew(length2)), long_);

@@ -1,12 +1,13 @@
-// Gathers the caller's positions and normals into one packed row per slot, where slots are not the caller's
-// vertices in their order or these are not packed; and counts what is wrong with the data when asked to. A
-// row is 8 floats: position x y z 0, normal x y z 0; what cannot be used (NaN, Inf, normals without
-// direction) is NaN in it.
+// Gathers the caller's positions and normals into one packed row per slot, for meshes whose slots are not the
+// caller's vertices in their order, or whose data are not packed. Also counts faults of the data on request.
+// A row is 8 floats: position x y z 0, normal x y z 0. Unusable values (NaN, Inf, normals without direction)
+// become NaN.
 //
 // Inputs: positions (length), normals (unit), one of each per vertex of the caller.
 // One work-item: one slot (mesh_rows), one vertex or slot (mesh_count).
-// Variants: PEL_MESH_MAPPED 1: a slot has members, one or several vertices of the caller. It stands at the first;
-// its normal is the mean direction of theirs. PEL_MESH_LISTED (lib/mesh/mesh_vertex.clh): mesh_rows.
+// Variants: PEL_MESH_MAPPED 1: a slot has members, one or several vertices of the caller. Its position is
+// that of the first; its normal is the mean direction of theirs. PEL_MESH_LISTED (lib/mesh/mesh_vertex.clh):
+// mesh_rows.
 
 #include "lib/mesh/mesh_vertex.clh"
 #include "lib/width.clh"
@@ -21,7 +22,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_r
     if (slot >= slots) return;
 #if PEL_MESH_MAPPED
     const uint begin = memberOffsets[slot], end = memberOffsets[slot + 1], vertex = members[begin];
-    // Members stand anywhere in the caller's memory; no processor foresees where.
+    // Members may be anywhere in the caller's memory, so prefetching does not help.
     const uint ahead = members[min(begin + MEMBERS_AHEAD, positionLayout.count - 1)];
     PEL_PREFETCH(positions + positionLayout.offset + (size_t)ahead * positionLayout.stride);
     PEL_PREFETCH(normals + normalLayout.offset + (size_t)ahead * normalLayout.stride);
@@ -43,7 +44,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_r
     vstore8((float8)(meshUsablePosition(position), 0.0f, normal, 0.0f), slot, rows);
 }
 
-// Whole numbers only, so that the order of the additions does not show.
+// Whole numbers only, so that the order of additions does not matter.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void mesh_count(
     uint vertices, __global const float* positions, VertexLayout positionLayout, __global const float* normals,
     VertexLayout normalLayout, uint slots, __global const uint* slices, __global const uint* rings,

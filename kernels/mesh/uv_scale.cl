@@ -2,8 +2,8 @@
 // edge, without the triangles where either is below 1e-6 of the largest of its kind.
 //
 // Inputs: triangles as the caller's vertex numbers, positions (length), UV coordinates (1).
-// One work-item: a fixed share of the triangles, every PEL_UV_SCALE_ITEMS-th; the shares and the order within
-// them do not depend on the device, so that the result does not either. The host adds the shares in order.
+// One work-item: a fixed share of the triangles, every PEL_UV_SCALE_ITEMS-th. The shares and the order within
+// them are the same on every device, and so is the result. The host adds the shares in order.
 // uv_scale_largest must run first: its maxima decide what uv_scale_sum skips.
 
 #include "lib/mesh/mesh_vertex.clh"
@@ -24,7 +24,7 @@ inline float2 triangleLongest2(uint triangle, __global const uint* indices, __gl
     const float2 a = vload2(0, uv + (size_t)v.x * uvLayout.stride);
     const float2 b = vload2(0, uv + (size_t)v.y * uvLayout.stride);
     const float2 c = vload2(0, uv + (size_t)v.z * uvLayout.stride);
-    // A sum over all corners is NaN or Inf when one of them is, which fmax would hide.
+    // A sum over all corners is NaN or Inf if one of them is; fmax would hide that.
     const float3 total = vertexLoad3(positions, positionLayout, v.x) +
                          vertexLoad3(positions, positionLayout, v.y) +
                          vertexLoad3(positions, positionLayout, v.z);

@@ -1,4 +1,5 @@
-// Formats of images: the one list of them. PelFormat of pellucid.h is checked against it (host/core/image_view.cpp).
+// Formats of images. This list is the only one; PelFormat of pellucid.h is checked against it
+// (host/core/image_view.cpp).
 #ifndef PEL_SHARED_FORMATS
 #define PEL_SHARED_FORMATS
 
@@ -30,8 +31,8 @@
     PEL_FMT_##name = number,
 enum { PEL_EACH_FORMAT(PEL_FORMAT_NUMBER_) PEL_FMT_NONE = 0 };
 
-// Added to a format whose pixels are not tightly packed, not aligned, or fewer in a row than the math width:
-// such pixels are read one by one, tight ones in vectors.
+// Added to a format whose pixels are not tightly packed, not aligned, or fewer in a row than the math width.
+// Such pixels are read one by one, packed ones in vectors.
 #define PEL_FMT_STRIDED 32
 
 #endif

@@ -1,10 +1,11 @@
-// The images of a G-buffer: the one list of them, from which names, checks, keys of scene files, programs and the arguments of
-// shade.cl come. pellucid.h's PelImageSlot, which documents them, is checked against it (host/shading/image_slots.cpp).
+// The images of a G-buffer. This list is the only one: names, checks, keys of scene files, programs and the
+// arguments of shade.cl are made from it. PelImageSlot in pellucid.h, which documents them, is checked
+// against it (host/shading/image_slots.cpp).
 #ifndef PEL_SHARED_IMAGE_SLOTS
 #define PEL_SHARED_IMAGE_SLOTS
 #include "shared/features.h"
 
-// Features whose terms read the blurred normal, or the geometric one where it is not there.
+// Features whose terms read the blurred normal, or the geometric one if there is no blurred one.
 #define PEL_BITS_BLURRED_ \
     (PEL_BIT_DIRECT_SCATTER | PEL_BIT_AMBIENT | PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER)
 #define PEL_BITS_POSITION_ (PEL_BIT_SPECULAR | PEL_BIT_THICKNESS_TAPS | PEL_BIT_POSITIONAL)

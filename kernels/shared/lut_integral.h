@@ -1,6 +1,6 @@
 // What the LUT integrators share with the host: the nodes of the curvature rows and the parameters of both
-// kernels. All lengths are in units of the LUT's diffusion radius, so that no radius, however small or large,
-// leaves the range of float.
+// kernels. All lengths are in units of the LUT's diffusion radius, so that no radius leaves the range of
+// float.
 #ifndef PEL_SHARED_LUT_INTEGRAL
 #define PEL_SHARED_LUT_INTEGRAL
 
@@ -31,7 +31,7 @@ typedef struct LutColumn {
     int node;
 } LutColumn;
 
-typedef struct CurvatureParams {
+typedef struct CurvatureLutParams {
     unsigned int width;
     unsigned int height;
     unsigned int gaussians;
@@ -39,9 +39,9 @@ typedef struct CurvatureParams {
     float rowMin;       // curvature, 1/diffusion radii, or its root, at the upper edge of row 0
     float rowStep;      // per row
     float cut;          // length at which the kernel of form arc ends, diffusion radii; 10/2.7
-} CurvatureParams;
+} CurvatureLutParams;
 
-typedef struct ShadowParams {
+typedef struct ShadowLutParams {
     unsigned int width;
     unsigned int height;
     unsigned int gaussians;
@@ -52,9 +52,9 @@ typedef struct ShadowParams {
     float mass[3];            // of the cut profile, per channel
     unsigned int axis;        // LUT_AXIS_...
     unsigned int closedEnds;  // rows are rescaled to run from 0 to 1
-} ShadowParams;
+} ShadowLutParams;
 
-// --- measured profiles (kernels/table_*.cl) ---
+// --- tabulated profiles (kernels/lut/tabulated_*.cl) ---
 
 // The line spread of a table and its integrals, within the cut, at distances end (i / PEL_TAIL_CELLS)^2, i = 0 ...
 // PEL_TAIL_CELLS: PEL_TAIL_VALUES float4 (R, G, B, 0) each.
@@ -72,7 +72,7 @@ typedef struct TableColumn {
     float elevation;  // its sine, |N.L|
 } TableColumn;
 
-typedef struct TableCurvatureParams {
+typedef struct TabulatedCurvatureLutParams {
     unsigned int width;
     unsigned int height;
     unsigned int axis;      // LUT_AXIS_...
@@ -81,26 +81,26 @@ typedef struct TableCurvatureParams {
     unsigned int slots;     // nodes that a row's record has room for
     unsigned int firstRow;  // of this launch
     unsigned int rows;      // of this launch
-    float rowMin;           // as in CurvatureParams
+    float rowMin;           // as in CurvatureLutParams
     float rowStep;
     float end;  // where the tails end, diffusion radii
-} TableCurvatureParams;
+} TabulatedCurvatureLutParams;
 
-// Which points stand for the table on the sphere of a row.
+// Which points represent the profile on the sphere of a row.
 typedef struct TablePoints {
     unsigned int first;
     unsigned int count;
 } TablePoints;
 
-typedef struct TableShadowParams {
+typedef struct TabulatedShadowLutParams {
     unsigned int width;
     unsigned int height;
-    float reciprocalMin;  // as in ShadowParams
+    float reciprocalMin;  // as in ShadowLutParams
     float reciprocalStep;
     float sharpening;
     float end;                // where the tails end, diffusion radii
     unsigned int axis;        // LUT_AXIS_...
     unsigned int closedEnds;  // rows are rescaled to run from 0 to 1
-} TableShadowParams;
+} TabulatedShadowLutParams;
 
 #endif

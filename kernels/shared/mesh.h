@@ -6,44 +6,44 @@
 #ifndef PEL_SHARED_MESH
 #define PEL_SHARED_MESH
 
-// One-rings lie in slices of PEL_MESH_LANES slots. A slice has as many rows as its longest list; a row holds one
-// neighbour of each of its slots side by side, so that a vector of slots, or neighbouring work-items, read
-// one contiguous piece. slices[i] is the first row of slice i, slices[count] the number of rows. Shorter
-// lists are filled up with the slot itself, which no real list contains; the lanes behind the last slot with
-// the last slot.
+// One-rings are in slices of PEL_MESH_LANES slots. A slice has as many rows as its longest list. A row holds
+// one neighbour of each of its slots side by side, so that a vector of slots, or neighbouring work-items,
+// read one contiguous piece. slices[i] is the first row of slice i, slices[count] the number of rows. Shorter
+// lists are filled up with the slot itself, which no real list contains; lanes after the last slot are filled
+// with the last slot.
 //
-// A list walks round its slot from triangle to triangle: two entries that follow one another are the other
-// two corners of a triangle, in the triangle's own order. A walk that comes back to its first entry is closed
-// (its last entry and its first are a triangle too); one that ends at a border is open. An ordinary vertex
-// has one walk; any other set of triangles falls into several, each triangle in just one of them (an Euler
-// trail through the graph whose nodes are the neighbours and whose edges are the triangles). So a list holds
-// neighbours and triangles in the memory of the neighbours alone: an edge of two triangles is one entry, an
-// edge of one triangle an end of an open walk.
+// A list goes round its slot from triangle to triangle: two successive entries are the other two corners of a
+// triangle, in the triangle's own order. A walk that returns to its first entry is closed (its last and first
+// entries are a triangle too). A walk that ends at a border is open. An ordinary vertex has one walk. Any
+// other set of triangles is split into several, each triangle in exactly one of them (an Euler trail through
+// the graph whose nodes are the neighbours and whose edges are the triangles). So a list holds neighbours and
+// triangles in the memory of the neighbours alone: an edge of two triangles is one entry, an edge of one
+// triangle is an end of an open walk.
 #define PEL_MESH_LANES 8
 #define PEL_MESH_SINGLE \
-    0x80000000u  // an end of an open walk: stands for one triangle of its edge, others for two
+    0x80000000u  // an end of an open walk: its edge has one triangle, edges of others have two
 #define PEL_MESH_START 0x40000000u    // the first entry of a walk
 #define PEL_MESH_FLIPPED 0x20000000u  // the triangle from this entry to the next has the opposite order
-#define PEL_MESH_REPEAT 0x10000000u   // the neighbour stands further up in this list already
+#define PEL_MESH_REPEAT 0x10000000u   // the neighbour occurs earlier in this list
 #define PEL_MESH_SLOT 0x0fffffffu     // the neighbour
 
-// Rows of large parts of many meshes, of grids nearly all, are runs: PEL_MESH_LANES entries that follow one another, with the same
-// flags. runs[row] is the first entry of such a row, or this; meshes with few of them have none.
+// Large parts of many meshes, and nearly all of grids, have rows that are runs: PEL_MESH_LANES successive
+// entries with the same flags. runs[row] is the first entry of such a row, or this. Meshes with few runs have
+// none.
 #define PEL_MESH_NO_RUN 0xffffffffu
 
 #define PEL_MESH_ROUND 0x80000000u  // of a slot's neighbours: they are one closed walk (mesh_links.cl)
 
-// Edges shorter than the root of this (a length squared) are too short to measure: their square is no normal
-// float.
+// Edges whose squared length is below this are too short to measure: their square is not a normal float.
 #define PEL_MESH_MIN_LENGTH2 1.17549435e-38f
 
-// A normal whose squared length is off by more than this is brought to unit length; nearer ones are taken as
-// they are, so that their last bits stay the caller's.
+// A normal whose squared length is off by more than this is brought to unit length. Others are used
+// unchanged, so that their last bits stay the caller's.
 #define PEL_MESH_UNIT_TOLERANCE 1e-3f
 
 #define PEL_MESH_GROUP 64  // work-items in a work-group of every mesh kernel
 
-// Where the caller's vertex data stands, in 4-byte words: element i begins at offset + i * stride.
+// Where the caller's vertex data are, in 4-byte words: element i begins at offset + i * stride.
 typedef struct VertexLayout {
     unsigned int count;   // vertices
     unsigned int offset;  // words
@@ -51,15 +51,15 @@ typedef struct VertexLayout {
     unsigned int pad;
 } VertexLayout;
 
-// What a pass over the data found, beside the results.
+// Counts of faults that a pass found in the data, beside the results.
 typedef struct MeshCounts {
     unsigned int zeroLengthEdges;
     unsigned int nonFinitePositions;  // vertices of the caller
-    unsigned int nonFiniteNormals;    // likewise; also zero normals
+    unsigned int nonFiniteNormals;    // also zero normals; vertices of the caller
     unsigned int lowDegreeFits;       // slots; of the quadric estimator
 } MeshCounts;
 
-// The triangles are dealt out to this many work-items, on every device, so that their sums come out the same.
+// The triangles are divided among this many work-items on every device, so that their sums are the same.
 #define PEL_UV_SCALE_ITEMS 4096
 
 // The sum over a share of the triangles of log2(longest edge^2 / longest UV edge^2), in two parts.

@@ -1,4 +1,4 @@
-// Constants of one pass over the screen, laid out alike on host and device.
+// Constants of a pass over the screen, with the same layout on host and device.
 #ifndef PEL_SHARED_SCREEN
 #define PEL_SHARED_SCREEN
 #include "shared/shade.h"

@@ -168,7 +168,7 @@ TEST_F(NpyRead, DamagedFilesAreRefused) {
         std::string text = good;
         return text.replace(text.find(from), from.size(), to);
     };
-    refused("", "is no .npy file");
+    refused("", "is not an .npy file");
     refused(good.substr(0, 40), "cut off in its header");
     refused(good.substr(0, good.size() - 1), "holds 15 bytes");
     refused(good + "x", "holds 17 bytes");

@@ -165,7 +165,7 @@ TEST_F(ImageFile, NpyHoldsShapeTypeAndBytes) {
 TEST_F(ImageFile, BadFilesAndBadTargets) {
     EXPECT_TRUE(contains(messageOf<FileError>([&] { readImage(path("no.exr")); }), "No such file"));
     EXPECT_TRUE(
-        contains(messageOf<FileError>([&] { readImage(write("t.exr", "not an image")); }), "is no OpenEXR"));
+        contains(messageOf<FileError>([&] { readImage(write("t.exr", "not an image")); }), "is not OpenEXR"));
     Image image = makeImage(64, 64);
     image.channels = {{"Z", ChannelType::Float, std::vector<float>(64 * 64)}};
     for (size_t i = 0; i < image.channels[0].pixels.size(); ++i)

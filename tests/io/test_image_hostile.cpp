@@ -116,11 +116,11 @@ TEST_F(HostileImage, OtherFormatsAreRefusedWhateverTheirName) {
         EXPECT_TRUE(contains(refusal(std::string("a.") + extension, bytes),
                              "known here: .exr, .png, .jpg, .jpeg, .tga, .bmp"));
         for (const char* name : {"a.exr", "a.png", "a.jpg", "a.bmp"})
-            EXPECT_TRUE(contains(refusal(name, bytes), "whatever its name says")) << extension;
+            EXPECT_TRUE(contains(refusal(name, bytes), "although its name says")) << extension;
         EXPECT_NE(refusal("a.tga", bytes), "") << extension;
     }
     EXPECT_TRUE(contains(refusal("a.exr", written("png")),
-                         "is no OpenEXR, whatever its name says: its content is PNG"));
+                         "is not OpenEXR, although its name says so: its content is PNG"));
     EXPECT_TRUE(contains(refusal("a.png", Exr().bytes()), "its content is OpenEXR"));
     EXPECT_TRUE(contains(refusal("a.exr", ""), "its beginning is another"));
     EXPECT_TRUE(contains(refusal("a", Exr().bytes()), "has no extension"));
@@ -161,7 +161,7 @@ TEST_F(HostileImage, HeadersThatLie) {
     refused([](Exr& e) { e.flags = 0x800; }, "deep pixels");
     refused([](Exr& e) { e.tile = {0, 16}; }, "tiles are empty");
     refused([](Exr& e) { e.tile = {1u << 31, 1u << 31}; }, "more than the limit");
-    refused([](Exr& e) { e.more = Exr::attribute("dataWindow", "box2i", "short"); }, "is no box2i");
+    refused([](Exr& e) { e.more = Exr::attribute("dataWindow", "box2i", "short"); }, "is not a box2i");
     refused(
         [](Exr& e) {
             e.more = Exr::attribute("dataWindow", "box2i",

@@ -1,4 +1,4 @@
-// The stand-in renderer's G-buffer against surfaces whose every pixel is known.
+// The sample renderer's G-buffer against surfaces whose every pixel is known.
 #include <gtest/gtest.h>
 
 #include <algorithm>

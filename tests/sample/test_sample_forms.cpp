@@ -1,4 +1,4 @@
-// The stand-in renderer's cube maps and cascades, against a sphere.
+// The sample renderer's cube maps and cascades, against a sphere.
 #include <gtest/gtest.h>
 
 #include <numbers>

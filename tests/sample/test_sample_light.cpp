@@ -1,4 +1,4 @@
-// The stand-in renderer's shadow maps, wide shadow filter and sky.
+// The sample renderer's shadow maps, wide shadow filter and sky.
 #include <gtest/gtest.h>
 
 #include <numbers>

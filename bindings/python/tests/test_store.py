@@ -105,7 +105,7 @@ def test_temporary_names_are_random_locked_and_never_followed(store, tmp_path, m
 
 def test_what_is_no_file_is_not_replaced(store, tmp_path):
     os.mkfifo(tmp_path / "pipe.exr")
-    with pytest.raises(StoreError, match="is no file"):
+    with pytest.raises(StoreError, match="is not a file"):
         store.write("pipe.exr", b"new")
 
 

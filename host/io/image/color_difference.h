@@ -1,4 +1,4 @@
-// Colour differences as eyes see them.
+// Colour differences as people see them.
 #pragma once
 #include <array>
 

@@ -24,7 +24,7 @@ bool displayable(const Rgb& c) {
     return std::all_of(c.begin(), c.end(), [](double x) { return x >= 0.0 && x <= 1.0; });
 }
 
-// Lightness and hue as asked, chroma as much as sRGB can show, at most `chroma`.
+// Lightness and hue as given; as much chroma as sRGB can show, at most `chroma`.
 Rgb shown(double lightness, double hueDegrees, double chroma) {
     const double hue = hueDegrees * std::numbers::pi / 180.0;
     double low = 0.0, high = chroma;
@@ -40,7 +40,7 @@ Rgb shown(double lightness, double hueDegrees, double chroma) {
 constexpr size_t tableSize = 257;
 using Table = std::array<std::array<float, 3>, tableSize>;
 
-// `color(t)` for t in [0, 1], sRGB-encoded, so that what is interpolated is close to even in what is seen.
+// `color(t)` for t in [0, 1], sRGB-encoded, so that interpolation is nearly even to the eye.
 template <class Color>
 Table makeTable(Color&& color) {
     Table table;

@@ -61,7 +61,7 @@ class Check {
         while (const auto a = header.next()) {
             const auto need = [&](std::string_view type, size_t size) {
                 if (a->type != type || a->value.size() < size)
-                    damaged("its attribute " + std::string(a->name) + " is no " + std::string(type));
+                    damaged("its attribute " + std::string(a->name) + " is not a " + std::string(type));
             };
             if (a->name == "channels") {
                 need("chlist", 1);
@@ -92,9 +92,9 @@ class Check {
         return part;
     }
 
-    // Names, each with type and sampling, and an empty name behind them.
+    // Names, each with type and sampling, ended by an empty name.
     size_t channelsOf(std::string_view list) const {
-        constexpr size_t facts = 16;  // bytes behind a name
+        constexpr size_t facts = 16;  // bytes after a name
         for (size_t count = 0, at = 0; at < list.size(); ++count) {
             if (list[at] == '\0') return count;
             const size_t end = list.find('\0', at);

@@ -1,5 +1,5 @@
-// The header of an OpenEXR file, read and checked before a library allocates what it says [OpenEXR File
-// Layout].
+// The header of an OpenEXR file, checked before a library allocates memory for what it announces [OpenEXR
+// File Layout].
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -8,17 +8,17 @@
 
 namespace pellucid::io {
 
-// Reads attributes one after the other; everything is held against the end of the file.
+// Reads attributes one after another. Everything is checked against the end of the file.
 class ExrAttributes {
   public:
-    static constexpr size_t start = 8;  // behind magic and version
+    static constexpr size_t start = 8;  // after magic number and version
     explicit ExrAttributes(std::string_view file, size_t at = start) : file_(file), at_(at) {}
 
     struct Attribute {
         std::string_view name, type, value;
         size_t valueAt;
     };
-    std::optional<Attribute> next();  // none at the end of the header, or where the file is damaged
+    std::optional<Attribute> next();  // none at the end of the header, or if the file is damaged
     bool atEnd() const { return at_ < file_.size() && file_[at_] == '\0'; }
     size_t position() const { return at_; }
 
@@ -29,8 +29,8 @@ class ExrAttributes {
 };
 
 // Throws FileError unless all parts have channels, windows and tiles that a file of this length can hold, and
-// whose pixels take no more than `limit` bytes as floats, those of the display window or of the data window,
-// whichever are more.
+// whose pixels take at most `limit` bytes as floats, in the display window or the data window, whichever is
+// larger.
 void checkExrHeader(const std::string& path, std::string_view file, uint64_t limit);
 
 }  // namespace pellucid::io

@@ -1,4 +1,4 @@
-// How far two pictures are apart, as numbers.
+// Differences between two pictures, as numbers.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -10,23 +10,23 @@
 namespace pellucid::io {
 
 struct ImageDifference {
-    size_t pixels = 0;             // that were compared
+    size_t pixels = 0;             // compared pixels
     std::array<double, 3> rmse{};  // per channel
     std::array<double, 3> mean{};  // of a - b, signed
     std::array<double, 3> p99{};   // of |a - b|, per channel
-    std::array<double, 3> most{};  // likewise
+    std::array<double, 3> most{};  // per channel
     double rmseAll = 0;            // over all channels
     double psnr = 0;               // dB, of a white of 1 over rmseAll; infinite for equal pictures
     double deltaEMean = 0, deltaE99 = 0, deltaEMost = 0;  // CIEDE2000, values as linear sRGB
 };
 
-// `a`, `b`: RGB per pixel, interleaved, as many values. Only pixels whose `mask` is not 0 count (empty: all);
-// those with a NaN or Inf in either picture do not, and are added to `invalid`. Throws std::invalid_argument
-// for lengths that do not fit.
+// `a`, `b`: RGB per pixel, interleaved, of equal length. Only pixels whose `mask` is not 0 count (empty:
+// all). Pixels with NaN or Inf in either picture do not count; they are added to `invalid`. Throws
+// std::invalid_argument for lengths that do not match.
 ImageDifference compareImages(std::span<const float> a, std::span<const float> b,
                               std::span<const uint8_t> mask = {}, size_t* invalid = nullptr);
 
-// Sub-sets of a picture of a lit surface, bits that may stand together. Errors of scattering live in the
+// Sub-sets of a picture of a lit surface; bits that may be combined. Errors of scattering are mostly in the
 // first three.
 enum Subset : uint8_t { SUBSET_UNLIT = 1, SUBSET_TERMINATOR = 2, SUBSET_PENUMBRA = 4, SUBSET_REST = 8 };
 
@@ -35,7 +35,7 @@ struct SubsetInputs {
     std::span<const float> positions;  // xyz per pixel
     std::span<const float> normals;    // unit xyz per pixel
     std::span<const float> toLight;    // unit xyz per pixel
-    std::span<const float> visible;  // 1 lit, 0 in a cast shadow; anything where N.L <= 0. Empty: no penumbra is known
+    std::span<const float> visible;  // 1 lit, 0 in a cast shadow; any value where N.L <= 0. Empty: penumbrae are unknown
     std::span<const uint8_t> covered;  // 0: background
     float reach = 1;  // length, 1 mm: how far from the edge of a cast shadow its penumbra goes
 };

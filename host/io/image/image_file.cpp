@@ -35,7 +35,7 @@ void setAttribute(ImageSpec& spec, const std::string& name, const Attribute& val
         spec.attribute(name, *s);
     } else {
         const auto& v = std::get<std::vector<float>>(value);
-        if (v.size() == 16) {  // the one array of floats that EXR keeps beside vectors of 2 to 4
+        if (v.size() == 16) {  // the one array of floats, beside vectors of 2 to 4, that OpenImageIO writes to EXR
             spec.attribute(name, TypeMatrix44, v.data());
         } else if (v.size() >= 2 && v.size() <= 4) {
             const auto aggregate = static_cast<TypeDesc::AGGREGATE>(v.size());
@@ -46,7 +46,7 @@ void setAttribute(ImageSpec& spec, const std::string& name, const Attribute& val
     }
 }
 
-// Encodes in memory, so that whatever can go wrong on a disk goes wrong in one place.
+// Encodes in memory, so that disk errors can only happen in one place.
 void writeWithOiio(const std::string& path, const ImageSpec& spec, TypeDesc type, const void* pixels) {
     std::vector<unsigned char> bytes;
     Filesystem::IOVecOutput memory(bytes);
@@ -120,7 +120,7 @@ void writeExr(const std::string& path, const Image& image) {
     const size_t count = image.channels.size();
     if (count == 0 || image.pixelCount() == 0) throw std::invalid_argument("writeExr: the image is empty");
     ImageSpec spec(image.width, image.height, static_cast<int>(count), TypeDesc::FLOAT);
-    // Same input, same bytes: OpenImageIO would put the time of writing here.
+    // The same input must give the same bytes: OpenImageIO would write the time here.
     spec.attribute("DateTime", "");
     spec.attribute("compression", "zip");
     spec.attribute("oiio:ColorSpace", "Linear");
@@ -135,7 +135,7 @@ void writeExr(const std::string& path, const Image& image) {
         spec.channelformats.push_back(c.type == ChannelType::Half ? TypeDesc::HALF : TypeDesc::FLOAT);
         pixelBytes += c.type == ChannelType::Half ? 2 : 4;
     }
-    // Each pixel in the types of its channels, so that nothing is converted on the way.
+    // Each pixel in the types of its channels, so that nothing is converted.
     std::vector<char> native(pixelBytes * image.pixelCount());
     size_t offset = 0;
     for (const Channel& c : image.channels) {

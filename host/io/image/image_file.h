@@ -37,7 +37,7 @@ struct Image {
     const Channel& channel(const std::string& name) const;
     bool has(const std::string& name) const;  // channel() would find exactly one
 
-    // Those channels side by side in each pixel: names.size() * width * height values.
+    // Those channels interleaved: names.size() * width * height values.
     std::vector<float> interleaved(std::span<const std::string> names) const;
 
     // Appends channels from interleaved values (names.size() * width * height of them).
@@ -48,11 +48,11 @@ struct Image {
 };
 
 // Reads all parts and channels of an .exr, .png, .jpg, .tga or .bmp file at full precision (8- and 16-bit
-// integers come as 0 to 1, colours as they are stored, whatever alpha). Each part is placed by its data
-// window into the display window; pixels outside its data window are 0, those outside the display window are
-// dropped. `check` sees size, attributes and the channels' names before any pixel is read, and throws where
-// the image is not what is wanted. Throws FileError: missing, broken or deep file, another format, parts of
-// different display windows, more than `limit` bytes of pixels as floats.
+// integers become 0 to 1; colours are not multiplied by alpha). Each part is placed by its data window in the
+// display window: pixels outside its data window are 0, pixels outside the display window are dropped.
+// `check` sees size, attributes and channel names before any pixel is read, and throws if the image is not
+// the wanted one. Throws FileError: missing, broken or deep file, another format, parts with different
+// display windows, more than `limit` bytes of pixels as floats.
 Image readImage(const std::string& path, const std::function<void(const Image&)>& check = {},
                 uint64_t limit = inputLimit());
 // The same from the bytes of a file; `path` is for messages and names the format.
@@ -63,8 +63,8 @@ Image decodeImage(const std::string& path, std::string bytes,
 // their bits.
 void writeExr(const std::string& path, const Image& image);
 
-// Writes interleaved 8-bit pixels (1, 3 or 4 channels) as .png, .bmp or .tga, the bytes as they are, or
-// (1 or 3 channels) as .jpg. `srgb` says only what a PNG should declare the bytes to be: sRGB-encoded, or linear.
+// Writes interleaved 8-bit pixels (1, 3 or 4 channels) as .png, .bmp or .tga without changing the bytes, or
+// (1 or 3 channels) as .jpg. `srgb` only says what a PNG declares the bytes to be: sRGB-encoded, or linear.
 void writeImage8(const std::string& path, int width, int height, int channels,
                  std::span<const uint8_t> pixels, bool srgb = true);
 

@@ -50,8 +50,8 @@ std::string png(const std::string& path, std::string_view file, uint64_t limit) 
     throw FileError(path, "is damaged or cut off: it has no end");
 }
 
-// Segments [ITU-T T.81, annex B]: a marker and, but for a few, a length. Left out: comments and applications'
-// data, but JFIF's and Adobe's, which say what the channels are.
+// Segments [ITU-T T.81, annex B]: a marker and, with few exceptions, a length. Left out: comments and
+// application data, except those of JFIF and Adobe, which say what the channels are.
 std::string jpeg(const std::string& path, std::string_view file, uint64_t limit) {
     std::string kept(file.substr(0, 2));
     for (size_t at = 2;;) {
@@ -72,11 +72,12 @@ std::string jpeg(const std::string& path, std::string_view file, uint64_t limit)
         const bool application = marker >= 0xe0 && marker <= 0xef && marker != 0xe0 && marker != 0xee;
         if (!application && marker != 0xfe) kept.append(file.substr(at, length));
         at += length;
-        if (marker == 0xda) return kept.append(file.substr(at));  // the pixels, and what follows them
+        if (marker == 0xda) return kept.append(file.substr(at));  // the pixels and everything after them
     }
 }
 
-// The header of 18 bytes [Truevision TGA 2.0]; the footer that leads to thumbnails and the like is cut off.
+// The header of 18 bytes [Truevision TGA 2.0]. The footer, which leads to thumbnails and the like, is cut
+// off.
 std::string tga(const std::string& path, std::string_view file, uint64_t limit) {
     constexpr size_t header = 18, footer = 26;
     if (file.size() < header) cutOff(path);
@@ -89,8 +90,7 @@ std::string tga(const std::string& path, std::string_view file, uint64_t limit) 
     const bool map = mapped ? mapType == 1 && mapCount > 0 &&
                                   (mapBits == 15 || mapBits == 16 || mapBits == 24 || mapBits == 32)
                             : mapType <= 1;
-    if (!(mapped || grey || color) || !depth || !map)
-        throw FileError(path, "is no TGA of a kind that is known");
+    if (!(mapped || grey || color) || !depth || !map) throw FileError(path, "is not a TGA of a known kind");
     const uint32_t width = littleEndian(file, 12, 2), height = littleEndian(file, 14, 2);
     checkImageSize(path, width, height, 4, limit);
     const double stored = type < 8 ? double(width) * height * ((bits + 7) / 8) : 1;
@@ -116,7 +116,7 @@ std::string bmp(const std::string& path, std::string file, uint64_t limit) {
 struct Known {
     std::string_view extension, name;
     const char* reader;
-    std::string_view beginning;  // of the content; TGA has none
+    std::string_view beginning;  // that the content begins with; TGA has none
 };
 constexpr Known formats[] = {{"exr", "OpenEXR", "openexr", "\x76\x2f\x31\x01"sv},
                              {"png", "PNG", "png", "\x89PNG\r\n\x1a\n"sv},
@@ -145,10 +145,10 @@ ImageFormat imageFormat(const std::string& path, std::string bytes, uint64_t lim
         if (k.extension == extension) named = &k;
         if (!found && !k.beginning.empty() && bytes.starts_with(k.beginning)) found = &k;
     }
-    // A TGA may begin with anything, the letters of another format among it: its own check decides.
+    // A TGA may begin with any bytes, including the letters of another format: its own check decides.
     if (!named->beginning.empty() && (!found || found->name != named->name))
         throw FileError(
-            path, "is no " + std::string(named->name) + ", whatever its name says: " +
+            path, "is not " + std::string(named->name) + ", although its name says so: " +
                       (found ? "its content is " + std::string(found->name) : "its beginning is another"));
     ImageFormat format{named->reader, {}};
     if (named->name == "OpenEXR") {

@@ -1,4 +1,4 @@
-// Reading of images: OpenImageIO decodes from memory what imageFormat() let pass.
+// Reading of images: OpenImageIO decodes from memory what imageFormat() accepted.
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -97,14 +97,15 @@ void readPixels(Image& image, ImageInput& input, int part, size_t first) {
 Image decodeImage(const std::string& path, std::string bytes, const std::function<void(const Image&)>& check,
                   uint64_t limit) {
     ImageFormat format = imageFormat(path, std::move(bytes), limit);
-    // Its own limit is not to come before ours.
+    // OpenImageIO's own limit must not apply before ours.
     OIIO::attribute("limits:imagesize_MB", int(std::min<uint64_t>(limit >> 20, INT_MAX)));
     Filesystem::IOMemReader memory(format.bytes.data(), format.bytes.size());
     auto input = ImageInput::create(format.reader);
     ImageSpec first, config;
-    config.attribute("oiio:UnassociatedAlpha", 1);  // else colours come multiplied by alpha
+    config.attribute("oiio:UnassociatedAlpha", 1);  // otherwise colours come multiplied by alpha
     if (!input || !input->set_ioproxy(&memory) || !input->open(path, first, config))
-        throw FileError(path, "is no image that can be read: " + (input ? input->geterror() : OIIO::geterror()));
+        throw FileError(
+            path, "is not an image that can be read: " + (input ? input->geterror() : OIIO::geterror()));
     int parts = 0;
     while (input->seek_subimage(parts, 0)) ++parts;
     Image image;

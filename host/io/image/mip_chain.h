@@ -10,8 +10,9 @@ struct MipLevel {
     size_t byteOffset = 0;  // of its first texel in `texels`
 };
 
-// RGB float32 texels of all levels, one behind the other, the finest first. Each texel of a level is the mean of the two or
-// three (where a side is odd) times as many that it covers: normals get shorter where they differ, as they should.
+// RGB float32 texels of all levels, one after another, the finest first. Each texel of a level is the mean of
+// the texels that it covers: two, or three where a side is odd, in each direction. Means of different normals
+// are shorter than 1, as they should be.
 struct MipChain {
     std::vector<MipLevel> levels;
     std::vector<float> texels;

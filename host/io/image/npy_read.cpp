@@ -38,7 +38,8 @@ void convert(const char* from, std::vector<float>& to) {
 
 NpyArray readNpy(const std::string& path) {
     const std::string file = readWholeFile(path);
-    if (file.size() < 12 || file.compare(0, 6, "\x93NUMPY") != 0) throw FileError(path, "is no .npy file");
+    if (file.size() < 12 || file.compare(0, 6, "\x93NUMPY") != 0)
+        throw FileError(path, "is not an .npy file");
     const auto byte = [&](size_t i) { return size_t(static_cast<unsigned char>(file[i])); };
     const size_t version = byte(6), preamble = version == 1 ? 10 : 12;
     if (version < 1 || version > 2)
@@ -66,7 +67,7 @@ NpyArray readNpy(const std::string& path) {
         size_t extent = 0;
         const auto read = std::from_chars(at, end, extent);
         if (read.ec != std::errc() || extent > mostValues || (extent > 0 && count > mostValues / extent))
-            throw FileError(path, "has the shape (" + shape + "), which is none or too large");
+            throw FileError(path, "has the shape (" + shape + "), which is invalid or too large");
         array.shape.push_back(extent);
         count *= extent;
         at = read.ptr;

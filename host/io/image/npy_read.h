@@ -1,4 +1,4 @@
-// NumPy arrays in.
+// Reads NumPy arrays.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -11,8 +11,8 @@ struct NpyArray {
     std::vector<float> values;  // C order
 };
 
-// Little-endian float16, float32, float64 or uint8 (0 to 255 as they are), C order. Throws FileError:
-// missing, damaged or cut off file, another type or order.
+// Little-endian float16, float32, float64 or uint8 (values 0 to 255 unchanged), C order. Throws FileError:
+// missing, damaged or truncated file, another type or order.
 NpyArray readNpy(const std::string& path);
 
 }  // namespace pellucid::io

@@ -20,10 +20,11 @@ struct Picture {
     Picture(int width, int height, std::vector<uint8_t> rgb);
 
     void paint(int x, int y, Srgb8 color);  // outside the picture: nothing
-    // Copies `other` with its upper left corner at (x, y); what sticks out is dropped.
+    // Copies `other` with its upper left corner at (x, y); parts outside are dropped.
     void paste(int x, int y, const Picture& other);
-    // Writes text in DejaVu Sans with its upper left corner at (x, y), textHeight(scale) pixels high. Without that font (Debian's
-    // fonts-dejavu-core) nothing is written: pictures do not fail for the sake of a label. Returns the x after it.
+    // Writes text in DejaVu Sans with its upper left corner at (x, y), textHeight(scale) pixels high. Without
+    // that font (Debian's fonts-dejavu-core) nothing is written: a missing label must not fail a picture.
+    // Returns the x after it.
     int write(int x, int y, std::string_view text, Srgb8 color, int scale = 1);
 };
 

@@ -43,7 +43,7 @@ class Bytes {
     std::vector<char> data_;
 };
 
-// What the two formats differ in.
+// The differences between the two formats.
 struct FormatFacts {
     uint32_t blockSide, blockBytes;  // texels; bytes of a block (or texel)
     uint32_t dxgi, vulkan, typeSize;
@@ -110,7 +110,7 @@ void writeKtx2(const std::string& path, const Texture& t, const std::map<std::st
     constexpr uint32_t headerSize = 80, levelIndexSize = 24;
     const FormatFacts f = factsOf(t.format);
     const Bytes descriptor = formatDescriptor(t.format);
-    Bytes pairs;  // a map is sorted, as the format wants the keys
+    Bytes pairs;  // a map is sorted, as the format requires for keys
     for (const auto& [key, value] : keyValues) {
         pairs.add(uint32_t(key.size() + value.size() + 2)).text(key).zeros(1).text(value).zeros(1).align(4);
     }

@@ -1,4 +1,4 @@
-// From linear radiance to bytes that a screen shows.
+// Converts linear radiance to bytes for a screen.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -6,7 +6,7 @@
 
 namespace pellucid::io {
 
-// Integrates, reads back and encodes; waits for this entry alone, so that several threads keep a device busy.
+// Integrates, reads back and encodes. Waits for this entry only, so that several threads keep a device busy.
 // Throws pellucid::Error.
 std::string makeEntryFile(const Device& device, const BatchEntry& entry);
 

@@ -22,7 +22,7 @@ constexpr size_t mostEntries = 1'000'000, mostProfileBytes = size_t{64} << 20;
 
 constexpr std::string_view encodingNames[] = {"float", "half"};  // PelLutEncoding
 
-// What a [[lut]] or [[grid]] says; a grid has several of the lists.
+// What a [[lut]] or [[grid]] table contains; a grid has several values in some lists.
 struct Request {
     PelLutKind kind = PEL_LUT_CURVATURE;
     std::vector<std::string> profiles{"skin"}, forms{"arc"}, axes{"linear"}, encodings{"half"};
@@ -56,7 +56,7 @@ Request readRequest(TomlReader& reader) {
     r.sizes.clear();
     for (float side : sides) {
         if (side > 16384 || side != float(uint32_t(side)))
-            reader.fail("size", "holds a side that is no whole number from 1 to 16384");
+            reader.fail("size", "holds a side that is not a whole number from 1 to 16384");
         r.sizes.push_back(uint32_t(side));
     }
     reader.number("radius_min", r.curvature.radiusMin, range::positive);
@@ -70,7 +70,7 @@ Request readRequest(TomlReader& reader) {
     return r;
 }
 
-// Floats to the bit, so that equal keys mean equal requests.
+// Floats by their bits, so that equal keys mean equal requests.
 struct Key {
     std::ostringstream out;
     Key() {
@@ -86,13 +86,13 @@ struct Key {
 
 class Expansion {
   public:
-    // `folder`: where profile files are; without it, they are in the manifest already.
+    // `folder`: where profile files are; if empty, the manifest has them already.
     Expansion(BatchManifest& manifest, std::optional<std::filesystem::path> folder)
         : manifest_(manifest), folder_(std::move(folder)) {}
 
     void add(TomlReader& reader) {
         const Request r = readRequest(reader);
-        reader.finish();  // an unknown key spoils the entry before any table is taken from it
+        reader.finish();  // an unknown key makes the entry an error before any table is taken from it
         refuseTooMany(reader, r);
         for (const std::string& encoding : r.encodings)
             for (uint32_t side : r.sizes) {
@@ -114,14 +114,14 @@ class Expansion {
     }
 
   private:
-    // A profile and the part of the key that it gives: its numbers, not its name alone, since a changed file
-    // is another request.
+    // A profile and its part of the key: its numbers, not only its name, since a changed file is another
+    // request.
     struct Known {
         Profile profile;
         std::string key;
     };
 
-    // Before anything is expanded: five short lists can ask for more tables than fit any memory.
+    // Before anything is expanded: five short lists can ask for more tables than fit in memory.
     void refuseTooMany(const TomlReader& reader, const Request& r) {
         double asked = double(r.encodings.size()) * double(r.sizes.size());
         if (r.kind != PEL_LUT_SPECULAR) asked *= double(r.profiles.size()) * double(r.radii.size());
@@ -212,7 +212,7 @@ class Expansion {
     std::optional<std::filesystem::path> folder_;
     std::map<std::string, Known> known_;
     std::set<std::string> files_;
-    double asked_ = 0;  // tables, those that are asked for twice too
+    double asked_ = 0;  // tables, including repeated ones
     size_t profileBytes_ = 0;
 };
 

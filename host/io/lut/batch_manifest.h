@@ -13,9 +13,9 @@ struct BatchEntry {
     PelLutInfo info;          // kind and description; profile handles are those of `profile`
     Profile profile;          // empty for specular tables
     PelLutEncoding encoding;  // float or half
-    std::string key;          // all that determines the texels, as text
-    std::string file;  // name: kind and hash of the key; entries that ask for the same thing have the same
-    int line;          // of the manifest
+    std::string key;          // everything that determines the texels, as text
+    std::string file;         // name: kind and hash of the key; equal requests have equal names
+    int line;                 // of the manifest
 };
 
 struct BatchError {
@@ -25,14 +25,14 @@ struct BatchError {
 
 struct BatchManifest {
     std::vector<BatchEntry> entries;              // in order, each file once
-    std::vector<BatchError> errors;               // entries that make no sense; the others stand
-    size_t duplicates = 0;                        // left out because an entry before asks for the same
+    std::vector<BatchError> errors;               // wrong entries; the others are valid
+    size_t duplicates = 0;                        // left out because an earlier entry asks for the same
     std::string text;                             // of the manifest
     std::map<std::string, std::string> profiles;  // text of each profile file that it names
 };
 
-// Throws FileError when the file is no manifest at all; entries that are wrong come back as errors. Profile
-// files are found relative to the manifest.
+// Throws FileError if the file is not a manifest. Wrong entries are returned as errors. Profile files are
+// found relative to the manifest.
 BatchManifest readManifest(const std::string& path);
 
 // The same without reading any file: `path` is for messages, `profiles` as in BatchManifest.

@@ -15,8 +15,8 @@
 namespace pellucid::io {
 namespace {
 
-// How many entries can be in flight with the file handles that are left: each needs its folder, its file and
-// one for the lock, and the driver some for its programs.
+// How many entries can be in flight with the file handles that are left. Each needs handles for its folder,
+// its file and its lock, and the driver needs some for its programs.
 size_t jobsForHandles() {
     constexpr rlim_t perJob = 3, others = 32;
     rlimit limit{};
@@ -42,7 +42,7 @@ BatchRun::BatchRun(const BatchManifest& manifest, BatchOptions options)
         ++active_;
         try {
             workers_.emplace_back([this, device = i % options_.devices.size()] { work(device); });
-        } catch (const std::system_error&) {  // fewer threads will do
+        } catch (const std::system_error&) {  // fewer threads are enough
             --active_;
             if (i == 0) throw;
             break;
@@ -74,11 +74,11 @@ void BatchRun::work(size_t device) {
         const BatchEntry& entry = manifest_.entries[i];
         try {
             handle(entry, device);
-        } catch (const Error& e) {  // something about this entry; all others may be fine
+        } catch (const Error& e) {  // an error of this entry; others may be fine
             std::lock_guard lock(mutex_);
             if (options_.failed) options_.failed(entry, e.what());
             ++failed_;
-        } catch (...) {  // the folder is full or gone: no entry will fare better
+        } catch (...) {  // the folder is full or gone: no entry can succeed
             std::lock_guard lock(mutex_);
             if (!fatal_) fatal_ = std::current_exception();
             stopped_ = true;
@@ -97,7 +97,7 @@ void BatchRun::handle(const BatchEntry& entry, size_t device) {
     const std::string bytes = make(entry, device);
     AtomicFile file(path);
     file.write(bytes.data(), bytes.size());
-    file.commit(false);  // the folder once for all, in finish(): a name that a power cut takes is an entry to be made again
+    file.commit(false);  // the folder is flushed once for all, in finish(): a name lost in a power cut is an entry to make again
     if (exists) ++redone_;
     ++made_;
     ++madeBy_[device];

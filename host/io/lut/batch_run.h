@@ -14,30 +14,30 @@ namespace pellucid::io {
 
 struct BatchOptions {
     std::string folder;           // exists
-    std::vector<Device> devices;  // at least one; the same one may be there several times
+    std::vector<Device> devices;  // at least one; the same one may be listed several times
     unsigned jobs = 0;            // entries in flight; 0: four per core and device
-    // Called by the workers, one at a time, with what is wrong with an entry; the others go on.
+    // Called by the workers, one at a time, with the fault of an entry. The others continue.
     std::function<void(const BatchEntry&, const std::string&)> failed;
 };
 
 struct BatchCounts {
-    size_t done = 0;  // all of the following together
+    size_t done = 0;  // the sum of all that follow
     size_t made = 0, kept = 0, failed = 0;
     size_t redone = 0;  // of `made`: in place of a file that was damaged
 };
 
-// Each worker takes an entry from integration to the renamed file, so that with more workers than cores one
-// computes while another waits for its device or its disk. An entry whose device fails is tried on the
+// Each worker takes an entry from integration to the renamed file. So with more workers than cores one
+// computes while another waits for its device or its disk. If its device fails, an entry is tried on the
 // others.
 class BatchRun {
   public:
     // Starts. The manifest must outlive this.
     BatchRun(const BatchManifest& manifest, BatchOptions options);
-    ~BatchRun();  // stops, waits for the entries in flight
+    ~BatchRun();  // stops, and waits for the entries in flight
 
     void stop() { stopped_ = true; }  // takes no more entries
     bool running() const { return active_ > 0; }
-    // Waits for the workers. Throws what made them stop: FileError when the folder is full or gone.
+    // Waits for the workers. Throws the error that stopped them: FileError if the folder is full or gone.
     void finish();
 
     BatchCounts counts() const;
@@ -55,7 +55,7 @@ class BatchRun {
     std::atomic<bool> stopped_{false};
     std::mutex mutex_;
     std::exception_ptr fatal_;           // guarded, as are the calls of options_.failed
-    std::vector<std::jthread> workers_;  // the last member: they use all others
+    std::vector<std::jthread> workers_;  // the last member: the threads use all others
 };
 
 }  // namespace pellucid::io

@@ -41,7 +41,7 @@ std::vector<uint8_t> encodeBc6h(uint32_t width, uint32_t height, std::span<const
         const bc6h::Bytes bytes = bc6h::pack(bc6h::bestBlock(target));
         std::memcpy(&blocks[(size_t(by) * across + bx) * 16], bytes.data(), 16);
     };
-    // Blocks do not know of one another: the order in which threads take rows changes nothing.
+    // Blocks are independent: the order in which threads take rows changes nothing.
     std::atomic<uint32_t> next{0};
     std::atomic<bool> stopped{false};
     const auto work = [&](bool asks) {
@@ -54,7 +54,7 @@ std::vector<uint8_t> encodeBc6h(uint32_t width, uint32_t height, std::span<const
     try {
         for (unsigned i = 1; i < std::min(down, std::max(1u, std::thread::hardware_concurrency())); ++i)
             helpers.emplace_back(work, false);
-    } catch (const std::system_error&) {  // fewer threads will do
+    } catch (const std::system_error&) {  // fewer threads are enough
     }
     work(true);
     helpers.clear();

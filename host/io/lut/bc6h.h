@@ -13,9 +13,10 @@ struct TexelError {
 };
 
 // Blocks of 4x4 texels, row by row, 16 bytes each, from three halves per texel. Texels beyond the right and
-// the bottom edge cost nothing and count for nothing. Negative and NaN become 0, infinity 65504. Chooses
-// among all 14 modes and 32 partitions by the squared error of the decoded values; the same input gives the
-// same bytes. `stop`, asked on the calling thread after each of its rows of blocks, ends it: no blocks come back.
+// bottom edge do not count. Negative values and NaN become 0, infinity becomes 65504. Chooses among all 14
+// modes and 32 partitions by the squared error of the decoded values. The same input gives the same bytes.
+// `stop` is asked on the calling thread after each of its rows of blocks; if it ends the work, no blocks are
+// returned.
 std::vector<uint8_t> encodeBc6h(uint32_t width, uint32_t height, std::span<const uint16_t> texels,
                                 const std::function<bool()>& stop = {});
 

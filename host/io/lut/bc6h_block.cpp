@@ -104,7 +104,7 @@ struct Bit {
     uint8_t end, channel, bit;
 };
 
-// The layout's text as one entry per bit.
+// The layout's text, as one entry per bit.
 std::vector<Bit> parsed(std::string_view layout) {
     std::vector<Bit> bits;
     for (size_t at = 0; at < layout.size();) {

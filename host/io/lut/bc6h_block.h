@@ -1,5 +1,5 @@
-// A block of BC6H, unsigned: its 14 modes, what its 128 bits mean, and the colours that they stand for
-// [Khronos Data Format Specification 1.3, "BC6H"; Microsoft, BC6H Format].
+// A block of BC6H, unsigned: its 14 modes, the meaning of its 128 bits, and its colours [Khronos Data Format
+// Specification 1.3, "BC6H"; Microsoft, BC6H Format].
 #pragma once
 #include <array>
 #include <cstdint>

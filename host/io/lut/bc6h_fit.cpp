@@ -1,6 +1,6 @@
-// Lines are fitted where the format interpolates, in the integers that halves are stored as, with each texel
-// weighted by how much a step there changes the value; candidates are then judged by the squared error of the
-// values they decode to.
+// Lines are fitted where the format interpolates: in the integers that halves are stored as. Each texel is
+// weighted by how much a step there changes its value. Candidates are then compared by the squared error of
+// the values that they decode to.
 #include "io/lut/bc6h_fit.h"
 
 #include <algorithm>
@@ -148,7 +148,7 @@ class Search {
                 ends[size_t(2 * s + 1)][c] = (line.mean[c] + high * line.axis[c]) / scale;
             }
         }
-        if (subsets == 2)  // a subset without texels goes where the other is
+        if (subsets == 2)  // a subset without texels takes the place of the other
             for (int s = 0; s < 2; ++s)
                 if (!lineOf(2, partition, s).any)
                     for (size_t e = 0; e < 2; ++e) ends[size_t(2 * s) + e] = ends[size_t(2 * (1 - s)) + e];
@@ -175,7 +175,7 @@ class Search {
         return q;
     }
 
-    // The best indices for these end points, and what the block then costs.
+    // The best indices for these end points, and the error of the block.
     Candidate judged(int modeIndex, int partition, const EndPoints& ends) const {
         const Mode& m = mode(modeIndex);
         const std::vector<float>& value = valueTable();

@@ -4,7 +4,7 @@
 
 namespace pellucid::io::bc6h {
 
-// What one block should hold: halves as bits (0 to 0x7BFF), and which texels count.
+// The wanted content of a block: halves as bits (0 to 0x7BFF), and which texels count.
 struct Target {
     std::array<std::array<uint16_t, 3>, 16> texel{};
     uint16_t counts = 0xFFFF;  // one bit per texel; at least one is set

@@ -1,4 +1,4 @@
-// What a table's file says about the table: names and values of its attributes.
+// The attributes by which a table's file describes the table: names and values.
 #pragma once
 #include <pellucid/pellucid.h>
 
@@ -20,7 +20,7 @@ inline constexpr int lutFormatVersion = 1;
 // Width and height in texels.
 std::pair<uint32_t, uint32_t> lutSize(const PelLutInfo& info);
 
-// The numbers of a description beside its size: visit(attribute name, float&).
+// The numbers of a description, except its size: visit(attribute name, float&).
 template <class Info, class Visit>
 void visitLutNumbers(Info& info, Visit&& visit) {
     if (info.kind == PEL_LUT_CURVATURE) {

@@ -15,7 +15,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "EXR is little-endian");
 
 constexpr uint32_t magic = 20000630, version = 2;
-constexpr std::string_view noSum = "0000000000000000";  // stands in while the sum is taken
+constexpr std::string_view noSum = "0000000000000000";  // takes this place while the sum is computed
 constexpr const char *keyName = "pellucid:key", *sumName = "pellucid:checksum";
 
 struct Bytes {
@@ -25,7 +25,7 @@ struct Bytes {
         data.append(reinterpret_cast<const char*>(&value), sizeof value);
         return *this;
     }
-    Bytes& text(std::string_view text) {  // with the zero at its end
+    Bytes& text(std::string_view text) {  // includes the zero at its end
         data.append(text).push_back('\0');
         return *this;
     }
@@ -46,7 +46,7 @@ struct Bytes {
 Bytes header(const PelLutInfo& info, PelLutEncoding encoding, const std::string& key, size_t& sumAt) {
     const auto [width, height] = lutSize(info);
     Bytes channels;
-    for (const char* name : {"B", "G", "R"})  // alphabetical, as the format has it
+    for (const char* name : {"B", "G", "R"})  // alphabetical, as the format requires
         channels.text(name)
             .add(uint32_t(encoding == PEL_LUT_HALF ? 1 : 2))  // HALF or FLOAT
             .add(uint32_t(0))                                 // not perceptually linear; reserved

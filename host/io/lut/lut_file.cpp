@@ -30,7 +30,7 @@ int indexOf(const std::string& path, const char* attribute, const std::string& v
                               known + " is needed");
 }
 
-// An EXR's worth: channels in the storage type of the encoding, and what the table is.
+// The contents of an EXR: channels in the storage type of the encoding, and the description of the table.
 Image describedImage(const Lut& lut, PelLutEncoding encoding) {
     const PelLutInfo info = lut.info();
     const auto [width, height] = lutSize(info);
@@ -134,7 +134,7 @@ void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncod
         return;
     }
     if (extension == "npy") {
-        // Halves are rounded where they are stored; in memory they are floats.
+        // Halves are rounded when they are stored; in memory they are floats.
         const ChannelType type = encoding == PEL_LUT_HALF ? ChannelType::Half : ChannelType::Float;
         const size_t shape[] = {height, width, 3};
         writeNpy(path, shape, lut.read<float>(PEL_LUT_FLOAT), type);
@@ -179,7 +179,7 @@ void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLut
 
 namespace {
 
-// What the attributes of an image say of a table; throws FileError where they are not a table's.
+// The description in an image's attributes. Throws FileError if they do not describe a table.
 PelLutInfo lutInfoOf(const Image& image) {
     const std::string& path = image.source;
     const auto need = [&]<class T>(const char* name, T*) -> const T& {
@@ -210,7 +210,7 @@ PelLutInfo lutInfoOf(const Image& image) {
             PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), lutAxisNames));
     }
     if (info.kind == PEL_LUT_SHADOW) {
-        // Files of before these were options have neither.
+        // Files from before these options have neither.
         info.shadow.axis = PEL_AXIS_LINEAR;
         info.shadow.closedEnds = 0;
         if (image.attribute("pellucid:axis"))
@@ -231,7 +231,7 @@ PelLutInfo lutInfoOf(const Image& image) {
 
 LutTexels decodeLut(const std::string& path, std::string bytes) {
     LutTexels table;
-    // The channels, all of them side by side, the device's and a copy on the way there.
+    // Memory for the channels, all channels interleaved, the device's copy, and one copy on the way there.
     const uint64_t limit = inputLimit() / 4;
     const Image image = decodeImage(
         path, std::move(bytes), [&](const Image& header) { table.info = lutInfoOf(header); }, limit);

@@ -1,5 +1,5 @@
-// Look-up tables as files: EXR carries what the table is, so that it can be read back and checked; the others
-// are pixels.
+// Look-up tables as files. EXR files carry a description of the table, so that they can be read back and
+// checked; other files are pixels only.
 #pragma once
 #include <optional>
 #include <pellucid/pellucid.hpp>
@@ -17,21 +17,21 @@ namespace pellucid::io {
 // written, std::invalid_argument when container and encoding do not go together.
 void writeLut(const std::string& path, const Lut& lut, std::optional<PelLutEncoding> encoding = {});
 
-// What writeLut will choose; throws like it, and when the file cannot be written. For checks before long
-// work.
+// What writeLut would choose. Throws as writeLut does, also if the file cannot be written. For checks before
+// long work.
 PelLutEncoding checkLutPath(const std::string& path, std::optional<PelLutEncoding> encoding);
 
-// The same as BC6H in .dds or .ktx2, an eighth of the bytes of half texels with alpha; returns what that
-// costs.
+// The same as BC6H in .dds or .ktx2, an eighth of the bytes of half texels with alpha. Returns the error of
+// the encoding.
 TexelError writeLutBc6h(const std::string& path, const Lut& lut);
 void checkLutPathBc6h(const std::string& path);
 
-// A table that was read, on no device yet.
+// A table that was read but is not on a device yet.
 struct LutTexels {
     PelLutInfo info = pelLutInfoDefaults();
     std::vector<float> texels;  // R, G, B
 };
-// From the bytes of a file; `path` is for messages. Throws FileError: no or incomplete description, broken,
+// From the bytes of a file; `path` is for messages. Throws FileError: no or incomplete description, damaged,
 // more than a quarter of inputLimit() as floats.
 LutTexels decodeLut(const std::string& path, std::string bytes);
 
@@ -39,8 +39,8 @@ LutTexels decodeLut(const std::string& path, std::string bytes);
 // size.
 Lut readLut(const Device& device, const std::string& path);
 
-// Checks what a table read from `path` is against what was asked for: its kind, and the keys of a scene file
-// that are in `keys` ("form", "radius_min", ...). Throws FileError that names both values.
+// Checks a table that was read from `path` against the request: its kind, and the keys of a scene file that
+// are in `keys` ("form", "radius_min", ...). Throws FileError with both values.
 void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLutInfo& wanted,
                   const std::vector<std::string>& keys);
 

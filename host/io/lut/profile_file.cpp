@@ -135,7 +135,7 @@ ProfileFile findProfile(const std::string& nameOrPath) {
         }
         known.append(known.empty() ? "" : ", ").append(name);
     }
-    throw FileError(nameOrPath, "is no material of the library (" + known + ") and no .toml file");
+    throw FileError(nameOrPath, "is neither a material of the library (" + known + ") nor a .toml file");
 }
 
 }  // namespace pellucid::io

@@ -15,8 +15,8 @@ struct ProfileFile {
 // type, value out of range, missing key.
 ProfileFile parseProfile(const std::string& file, const std::string& text);
 
-// A material of the library by name, or a file whose name ends in .toml. Throws FileError; an unknown name
-// lists the library.
+// A material of the library by name, or a file whose name ends in .toml. Throws FileError; for an unknown
+// name it lists the library.
 ProfileFile findProfile(const std::string& nameOrPath);
 
 }  // namespace pellucid::io

@@ -11,7 +11,7 @@ namespace pellucid::io {
 namespace {
 
 constexpr size_t sampleCount = 400;
-constexpr int candidates = 96;  // variances that a joining Gaussian is tried with
+constexpr int candidates = 96;  // variances tried for a new Gaussian
 
 // The line spread at logarithmic steps; root of the weight times a value, so that sums of squares are
 // integrals over s.
@@ -68,8 +68,8 @@ Mixture weighted(const Samples& s, std::vector<double> logVariance) {
     return m;
 }
 
-// One step of Levenberg and Marquardt over all variances and those weights that are not 0, whose sum stays:
-// where the variances shall be.
+// One step of Levenberg and Marquardt over all variances and those weights that are not 0; the sum of weights
+// is kept. Returns the new variances.
 std::vector<double> stepOf(const Samples& s, const Mixture& m, double damping) {
     const size_t n = m.logVariance.size();
     std::vector<size_t> free[3];
@@ -82,7 +82,7 @@ std::vector<double> stepOf(const Samples& s, const Mixture& m, double damping) {
     const size_t rows = 3 * sampleCount + n;
     Columns jacobian{rows, unknowns, std::vector<double>(rows * unknowns)};
     std::vector<double> target(rows, 0.0);
-    size_t next = 0;  // the weights' columns first: the variances' then hold what weights cannot do
+    size_t next = 0;  // the weights' columns first: those of the variances then hold only what weights cannot do
     const size_t firstVariance = unknowns - n;
     for (size_t c = 0; c < 3; ++c) {
         const Columns a = columnsOf(s, m.logVariance, int(c));
@@ -126,7 +126,7 @@ Mixture downhill(const Samples& s, Mixture m) {
     return m;
 }
 
-// With one Gaussian more, where it helps most.
+// Adds one Gaussian where it helps most.
 Mixture joined(const Samples& s, const std::vector<double>& logVariance, double narrowest, double widest) {
     Mixture best;
     for (int i = 0; i < candidates; ++i) {

@@ -1,4 +1,4 @@
-// The best sum of K Gaussians for a profile.
+// Fits a sum of K Gaussians to a profile.
 #pragma once
 #include <array>
 #include <pellucid/pellucid.hpp>
@@ -12,10 +12,10 @@ struct ProfileFit {
     double error[3];  // per channel of the profile that these Gaussians make when they are loaded: fitError
 };
 
-// Variances shared by the channels; weights >= 0 that add up to 1 per channel, as those of a loaded profile
-// do; 1 <= count <=
-// 12. Gaussians join one by one where they help most; after each, variances and weights go downhill together
-// (Levenberg, Marquardt), and at last each is taken out and put where it helps more, as long as that is
+// Variances are shared by the channels; weights are >= 0 and add up to 1 per channel, as those of a loaded
+// profile do; 1 <= count <= 12. Gaussians are added one by one where they help most. After each, variances
+// and weights are optimised together (Levenberg, Marquardt). At last each is removed and added where it helps
+// most, as long as that is another place. A profile that is a sum of `count` Gaussians is returned exactly.
 // somewhere else. A profile that is a sum of `count` Gaussians comes back as it is.
 ProfileFit fitGaussians(const Profile& profile, int count);
 

@@ -12,8 +12,8 @@ double dot(const double* a, const double* b, size_t n) {
     return sum;
 }
 
-// The least squares over the columns of `free` alone, with weights that add up to 1: the last of them is 1
-// less the others.
+// Least squares over the columns of `free` alone, with weights that add up to 1: the last weight is 1 minus
+// the others.
 std::vector<double> onFreeColumns(const Columns& a, std::span<const double> b, const std::vector<size_t>& free) {
     const size_t last = free.size() - 1;
     Columns reduced{a.rows, last, std::vector<double>(a.rows * last)};
@@ -88,7 +88,7 @@ std::vector<double> simplexWeights(const Columns& a, std::span<const double> b) 
     double largest = 0;
     for (size_t k = 0; k < a.count; ++k) largest = std::max(largest, dot(a.column(k), a.column(k), a.rows));
     for (size_t round = 0; round < 4 * a.count + 8; ++round) {
-        // At the optimum all free columns fall equally, and no other falls faster.
+        // At the optimum all free columns have the same slope, and no other has a steeper one.
         const std::vector<double> r = residual(a, w, b);
         double level = 0, steepest = 1e-14 * largest;
         for (size_t k : free) level += dot(a.column(k), r.data(), a.rows) / double(free.size());

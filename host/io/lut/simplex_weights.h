@@ -13,8 +13,8 @@ struct Columns {
     const double* column(size_t i) const { return values.data() + i * rows; }
 };
 
-// The x with the least |A x - b|, by Householder reflections; a column that depends on others gets 0. `a` and
-// `b` are spoiled.
+// The x with the least |A x - b|, by Householder reflections. A column that depends on others gets 0. `a` and
+// `b` are overwritten.
 std::vector<double> leastSquares(Columns& a, std::vector<double>& b);
 
 // The weights w >= 0 with sum 1 and the least |A w - b|: the active sets of Lawson and Hanson (Solving Least

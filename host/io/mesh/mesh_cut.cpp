@@ -74,7 +74,7 @@ void closeRim(PartedMesh& mesh, const std::vector<std::array<uint32_t, 2>>& rim,
     }
 }
 
-// Vertices that no triangle uses any more go.
+// Removes vertices that no triangle uses any more.
 void dropUnused(MeshData& mesh) {
     std::vector<uint32_t> place(mesh.vertexCount(), UINT32_MAX);
     std::vector<float> positions, normals;
@@ -98,7 +98,7 @@ void cutAndClose(PartedMesh& mesh, const std::string& part, const float (&normal
     Cutter cutter(data, normal, offset);
     const int wanted = mesh.part(part);
     std::vector<uint32_t> triangles, partOf;
-    std::vector<std::array<uint32_t, 2>> rim;  // edges of the cut, as the kept triangles run through them
+    std::vector<std::array<uint32_t, 2>> rim;  // edges of the cut, in the direction of the kept triangles
     const auto add = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t of) {
         triangles.insert(triangles.end(), {a, b, c});
         partOf.push_back(of);

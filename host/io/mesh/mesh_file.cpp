@@ -73,7 +73,7 @@ void triangulate(MeshData& mesh, const RawMesh& raw) {
                                 " with fewer than three corners left out");
 }
 
-// Normals as loaded are used only if every one can be.
+// Loaded normals are used only if all of them are usable.
 void checkNormals(MeshData& mesh) {
     size_t bad = 0;
     for (size_t v = 0; v + 2 < mesh.normals.size(); v += 3) {

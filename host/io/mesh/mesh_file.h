@@ -12,7 +12,7 @@ struct MeshData {
     std::vector<float> positions;     // xyz per vertex, in the file's unit of length
     std::vector<float> normals;       // unit xyz per vertex, or empty
     std::vector<float> uvs;           // u, v per vertex, or empty
-    std::vector<uint32_t> triangles;  // three indices each; polygons come as fans round their first corner
+    std::vector<uint32_t> triangles;  // three indices each; polygons become fans round their first corner
     std::vector<uint32_t> splitFrom;  // vertices beyond the file's own, made at UV seams: which one each copies
     size_t trianglesTurned = 0;       // by MeshLoadOptions.orient
     std::vector<std::string> warnings;  // what was left out or repaired, one sentence each
@@ -23,18 +23,18 @@ struct MeshData {
 };
 
 struct MeshLoadOptions {
-    // OBJ files give UVs per corner. True: a vertex whose corners differ is copied, copies after all of the
-    // file's own vertices (see splitFrom), so that a renderer can use them. False: UVs that differ are an
-    // average nobody wants, so none are loaded, and the vertices are exactly the file's.
+    // OBJ files give UVs per corner. True: a vertex whose corners differ is copied, and copies come after all
+    // of the file's own vertices (see splitFrom), so that a renderer can use them. False: UVs that differ are
+    // not loaded, since their average is useless, and the vertices are exactly the file's.
     bool splitUvSeams = false;
     // Turns triangles that face another way than their neighbours (pelMeshOrient, by the file's normals if it has some). False:
     // they stay, with a warning.
     bool orient = false;
 };
 
-// Parses with OpenMesh, but keeps every face, also those that make an edge non-manifold, which an OpenMesh
-// mesh refuses. Throws FileError: file missing or broken (with its line in text files), extension unknown, a
-// position not finite, an index out of range, no face.
+// Parses with OpenMesh, but keeps every face, also those with non-manifold edges, which an OpenMesh mesh
+// refuses. Throws FileError: file missing or damaged (with its line in text files), unknown extension, a
+// position that is not finite, an index out of range, no face.
 MeshData loadMesh(const std::string& path, const MeshLoadOptions& options = {});
 // The same from the bytes of a file; `path` is for messages and names the format.
 MeshData decodeMesh(const std::string& path, const std::string& text, const MeshLoadOptions& options = {});

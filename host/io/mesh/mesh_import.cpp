@@ -44,7 +44,7 @@ class RawImporter final : public OpenMesh::IO::BaseImporter {
     size_t n_faces() const override { return mesh_.faceStart.size() - 1; }
     size_t n_edges() const override { return 0; }
 
-    // Nothing of the rest is asked for: half-edges (OM files), colours, status, textures.
+    // The rest is not needed: half-edges (OM files), colours, status, textures.
     HalfedgeHandle add_edge(VertexHandle, VertexHandle) override { return HalfedgeHandle(); }
     FaceHandle add_face(HalfedgeHandle) override { return FaceHandle(); }
     void add_face_texcoords(FaceHandle, VertexHandle, const std::vector<Vec3f>&) override {}
@@ -77,7 +77,7 @@ class RawImporter final : public OpenMesh::IO::BaseImporter {
     void add_texture_information(int, std::string) override {}
 
   private:
-    // Vertices that never get a value keep 0; a file that sets none leaves the array empty.
+    // Vertices that never get a value keep 0. If the file sets none, the array stays empty.
     template <class Vector>
     void set(std::vector<float>& array, VertexHandle v, const Vector& value, size_t size) {
         if (v.idx() < 0 || static_cast<size_t>(v.idx()) >= n_vertices()) return;
@@ -131,7 +131,7 @@ RawMesh importWithOpenMesh(const std::string& path, const std::string& text, con
     std::istringstream stream(text, std::ios::binary);
     if (binaryStl) options += OpenMesh::IO::Options::Binary;
     const bool read = OpenMesh::IO::IOManager().read(stream, extension, importer, options);
-    if (!read) throw FileError(path, "is no ." + extension + " file that OpenMesh can read");
+    if (!read) throw FileError(path, "is not a ." + extension + " file that OpenMesh can read");
     const size_t vertices = importer.n_vertices();
     if (!mesh.normals.empty()) mesh.normals.resize(3 * vertices, 0.0f);
     if (!mesh.uvs.empty()) mesh.uvs.resize(2 * vertices, 0.0f);

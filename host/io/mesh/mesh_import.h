@@ -1,5 +1,4 @@
-// What OpenMesh's readers hand over, kept raw: every vertex and every face, whether or not they make a
-// manifold.
+// The raw output of OpenMesh's readers: every vertex and every face, whether or not they make a manifold.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -16,11 +15,11 @@ struct RawMesh {
     std::vector<float> cornerUvs;     // u, v per corner, or empty
 };
 
-// Throws FileError where a position is not finite, or a corner refers to a vertex that there is not.
+// Throws FileError if a position is not finite, or a corner refers to a vertex that does not exist.
 void checkRawMesh(const std::string& path, const RawMesh& raw);
 
-// Reads the text of `path` with the OpenMesh reader for `extension` ("obj", "stl"). Opens no
-// file, nor those that the text names (an OBJ's materials). Throws FileError.
+// Reads the text of `path` with the OpenMesh reader for `extension` ("obj", "stl"). Opens no files, also not
+// those that the text names (an OBJ's materials). Throws FileError.
 RawMesh importWithOpenMesh(const std::string& path, const std::string& text, const std::string& extension,
                            bool binaryStl);
 

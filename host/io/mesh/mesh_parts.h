@@ -1,4 +1,4 @@
-// Polygon meshes with named parts, made smooth: the heads of the demo.
+// Polygon meshes with named parts, subdivided: the heads of the demo.
 #pragma once
 #include <string>
 #include <vector>
@@ -16,17 +16,16 @@ struct PartedMesh {
 };
 
 // Reads an OBJ file with its groups ("g NAME"; faces before the first are in a part ""). Each part is
-// subdivided `levels` times by Catmull-Clark, so that a part's polygons become 4^levels quads and more, and
-// cut into triangles. Parts do not share vertices afterwards. Throws FileError as loadMesh does, and for a
-// part that is not manifold.
+// subdivided `levels` times by Catmull-Clark, so that its polygons become 4^levels quads or more, and cut
+// into triangles. Parts share no vertices afterwards. Throws FileError as loadMesh does, and for a part that
+// is not manifold.
 PartedMesh loadParts(const std::string& path, int levels);
 // The same from the bytes of a file; `path` is for messages.
 PartedMesh decodeParts(const std::string& path, const std::string& text, int levels);
 
-// Removes what lies below a plane, where dot(normal, p) < offset, cuts the triangles that cross it, and
-// closes each hole of the cut part with triangles of a new part called `cap`, whose normals face down the
-// plane. The cut has to be one closed, star-shaped curve, as that of a neck is; of an open curve nothing is
-// closed.
+// Removes what is below a plane, where dot(normal, p) < offset, cuts the triangles that cross it, and closes
+// each hole of the cut part with triangles of a new part called `cap`, whose normals face down the plane. The
+// cut must be one closed, star-shaped curve, as that of a neck is; an open curve is not closed.
 void cutAndClose(PartedMesh& mesh, const std::string& part, const float (&normal)[3], float offset,
                  const std::string& cap);
 

@@ -25,8 +25,8 @@ std::string outOfRange(long long index, long long first, size_t count, std::stri
            std::to_string(static_cast<long long>(count) - 1 + first) + " would be right";
 }
 
-// One corner "v", "v/vt", "v//vn" or "v/vt/vn" of an OBJ face; counts hold what was defined so far and in
-// all.
+// One corner "v", "v/vt", "v//vn" or "v/vt/vn" of an OBJ face. The counts are those of what was defined so
+// far, and in all.
 void checkObjCorner(const TextScan& scan, std::string_view corner, const size_t (&soFar)[3],
                     const size_t (&total)[3]) {
     constexpr const char* what[3] = {"vertex", "texture coordinate", "normal"};
@@ -86,7 +86,7 @@ MeshText checkOff(const std::string& path, const std::string& text) {
         if (normals)
             for (size_t i = 3; i < 6; ++i) mesh.normals.push_back(scan.number(i, "normal"));
         if (uvs) {
-            // Colours stand before them, in a number of ways.
+            // Colours come before them, in several ways.
             const size_t count = scan.words().size();
             if (count < (normals ? 6u : 3u) + 2) scan.fail("the texture coordinates are missing");
             for (size_t i = count - 2; i < count; ++i)
@@ -181,7 +181,7 @@ MeshText checkStl(const std::string& path, const std::string& text) {
     }
     TextScan scan(path, text);
     if (!scan.nextLine() || scan.words()[0] != "solid") {
-        throw FileError(path, "is no STL: it neither starts with 'solid' nor has the " +
+        throw FileError(path, "is not an STL file: it neither starts with 'solid' nor has the " +
                                   std::to_string(headerBytes) + " + 50 x facets bytes of a binary one (" +
                                   std::to_string(text.size()) + " bytes: cut off?)");
     }

@@ -27,7 +27,7 @@ double length(const Vec& a) {
     return std::sqrt(dot(a, a));
 }
 
-// For each vertex the first one, in order of index, at exactly its position.
+// For each vertex, the first vertex with exactly its position.
 std::vector<uint32_t> firstAtPosition(const std::vector<float>& positions) {
     const size_t count = positions.size() / 3;
     std::vector<uint32_t> order(count), first(count);

@@ -1,5 +1,5 @@
-// PLY files [Turk 1994]: the header word by word, then every value that it announces. OpenMesh's reader loses
-// its place at lists in vertices, among others.
+// PLY files [Turk 1994]: the header word by word, then every value that it announces. OpenMesh's reader fails
+// at lists in vertices, among others.
 #include <algorithm>
 #include <bit>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// One caller at a time in OpenMesh, and nothing on stderr from it: what it reports comes as FileError.
+// One caller at a time in OpenMesh, and no output from it on stderr: its reports become FileError.
 #pragma once
 #include <OpenMesh/Core/System/omstream.hh>
 #include <mutex>

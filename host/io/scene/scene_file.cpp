@@ -53,7 +53,7 @@ void readLight(TomlReader& reader, SceneFile& scene) {
     scene.lights.push_back(std::move(light));
 }
 
-// Names that must exist, numbers that must differ: what no single key can tell.
+// Names that must exist and numbers that must differ: checks that involve several keys.
 void checkReferences(const SceneFile& scene, const TomlReader& channels) {
     if (scene.channels[PEL_SLOT_NORMAL_SHADING].empty())
         channels.fail("normal_shading", "is missing; nothing can be shaded without normals");

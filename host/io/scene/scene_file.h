@@ -1,5 +1,6 @@
-// The scene file of `pellucid shade`: TOML that says what the channels of a G-buffer are, and what shines on
-// them. Every key, with units, is in docs/guide/scene-file.md; the fields are those of pellucid.h.
+// The scene file of `pellucid shade`: TOML that says what the channels of a G-buffer are, and which lights,
+// materials and tables to use. Every key, with units, is in docs/guide/scene-file.md; the fields are those of
+// pellucid.h.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,8 +11,8 @@
 
 namespace pellucid::io {
 
-// A look-up table by name: read from a file, or integrated from its description, whose handle of a
-// profile is not used.
+// A look-up table by name: read from a file, or integrated from its description. The profile handle in the
+// description is not used.
 struct SceneLut {
     std::string name;                        // materials refer to it
     PelLutInfo info = pelLutInfoDefaults();  // kind; and what to integrate if `file` is empty
@@ -21,14 +22,14 @@ struct SceneLut {
     int line = 0;                            // of the scene file; 0: made by a program
 };
 
-// How tables of a material that names none are made.
+// How tables are made for a material that names none.
 enum class ScenePreset { none, faceworks };
 
 struct SceneMaterial {
     uint32_t id = 1;  // value in the material channel, 1 to 255
     PelMaterial material = pelMaterialDefaults();
     std::string curvatureLut;  // name of a SceneLut; "": the profile's; without a profile no direct scattering
-    std::string shadowLut;     // likewise; "": plain shadow
+    std::string shadowLut;     // name of a SceneLut; "": the profile's; without a profile a plain shadow
     std::string profile;  // a material's name or a profile file: what is left to defaults follows from it; "": none
     ScenePreset preset = ScenePreset::none;
     std::string scatteredTexture;  // image of light that was scattered in texture space, linear; "": none
@@ -72,15 +73,15 @@ struct SceneFile {
     const SceneLut* lut(const std::string& name, PelLutKind kind) const;  // nullptr if there is none
 };
 
-// Reads and checks a scene; paths in it come back relative to the working folder. Throws FileError with the
-// line: bad TOML, unknown key (with the key that was perhaps meant), wrong type, value out of its range,
-// wrong number of values, a name that nothing has.
+// Reads and checks a scene. Paths in it are returned relative to the working folder. Throws FileError with
+// the line: bad TOML, unknown key (with the most similar known key), wrong type, value out of its range,
+// wrong number of values, a name that does not exist.
 SceneFile readScene(const std::string& path);
-// The same from text; `path` is for messages, and what the scene's paths are relative to.
+// The same from text. `path` is for messages, and the scene's paths are relative to it.
 SceneFile parseScene(const std::string& path, const std::string& text);
 
-// Writes a scene that readScene reads back to the same values, floats to the bit. File paths are written as
-// they are.
+// Writes a scene that readScene reads back to the same values, floats to the bit. File paths are written
+// unchanged.
 void writeScene(const std::string& path, const SceneFile& scene);
 
 }  // namespace pellucid::io

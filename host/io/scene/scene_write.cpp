@@ -9,13 +9,13 @@
 namespace pellucid::io {
 namespace {
 
-// A visitor of scene_keys.h that writes what it is shown.
+// A visitor of scene_keys.h that writes the values.
 class TomlWriter {
   public:
     explicit TomlWriter(std::string& out, std::string name = "") : out_(out), name_(std::move(name)) {}
 
     void number(std::string_view key, float value, Range) { line(key, shown(value)); }
-    // All of them with the special meaning: the default, which older readers do not know as numbers.
+    // If all values are the special one they mean the default, and the key is left out.
     void numbers(std::string_view key, const float* values, size_t count, Range range) {
         if (!std::all_of(values, values + count, [&](float v) { return v == range.special; }))
             line(key, shown(values, count));
@@ -52,7 +52,7 @@ class TomlWriter {
         out_.append(key).append(" = ").append(value) += '\n';
     }
 
-    // The shortest digits that read back to the same float, in any locale.
+    // The shortest digits that are read back as the same float, in any locale.
     static std::string shown(float value) {
         char digits[32];
         const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;

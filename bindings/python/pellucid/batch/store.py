@@ -49,7 +49,7 @@ class Store:
             else:
                 self._files.makedirs(self._root, exist_ok=True)
         except Exception as e:  # of an object store: whatever its library raises
-            raise StoreError(f"{self.out}: is no folder and cannot be made one: {getattr(e, 'strerror', None) or e}") from e
+            raise StoreError(f"{self.out}: is not a folder and cannot be made one: {getattr(e, 'strerror', None) or e}") from e
 
     def read(self, name: str) -> Optional[bytes]:
         """The file's bytes, None if there is none."""
@@ -76,7 +76,7 @@ class Store:
     def _write_local(folder: Path, name: str, data: bytes) -> None:
         target = folder / name
         if target.exists() and not target.is_file():
-            raise OSError(errno.EINVAL, "is no file; a file must have this name")
+            raise OSError(errno.EINVAL, "is not a file; a file must have this name")
         stem, _, extension = name.rpartition(".")
         # Of the form that the command removes when it finds it abandoned, which the lock tells.
         temporary = folder / f".{stem}.{_machine_tag()}-{secrets.token_hex(8)}.tmp.{extension}"

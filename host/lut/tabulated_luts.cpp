@@ -1,18 +1,18 @@
-// Beside kernels/lut/table_curvature_lut.cl and kernels/lut/table_shadow_lut.cl.
-#include "lut/table_luts.h"
+// Beside kernels/lut/tabulated_curvature_lut.cl and kernels/lut/tabulated_shadow_lut.cl.
+#include "lut/tabulated_luts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "lut/table_integrals.h"
+#include "lut/tabulated_integrals.h"
 
 namespace pel {
 namespace {
 
-// Corners of measured profiles want a finer mesh than Gaussians do.
+// Corners of tabulated profiles need a finer mesh than Gaussians do.
 constexpr int meshIntervals = 256;
-// Rows are integrated in parts, so that the records of a part stay below this many bytes.
+// Rows are integrated in parts, so that the records of one part stay below this many bytes.
 constexpr size_t recordBytes = size_t(64) << 20;
 
 std::vector<TableColumn> columnsOf(const PelCurvatureLutDesc& desc) {
@@ -53,14 +53,14 @@ SpherePoints spherePoints(const Profile& profile, const PelCurvatureLutDesc& des
 
 }  // namespace
 
-void integrateTableCurvature(Lut& lut, double curvatureMin, double curvatureMax) {
+void integrateTabulatedCurvature(Lut& lut, double curvatureMin, double curvatureMax) {
     Device& device = lut.device();
     const Profile& profile = *lut.profile();
     const PelCurvatureLutDesc& desc = lut.info().curvature;
     const bool ring = desc.form == PEL_FORM_RING || desc.form == PEL_FORM_HALF_RING;
     const RowAxis axis = rowAxis(desc.axis, desc.height, curvatureMin, curvatureMax);
 
-    TableCurvatureParams params{};
+    TabulatedCurvatureLutParams params{};
     params.width = desc.width;
     params.height = desc.height;
     params.axis = uint32_t(desc.axis);
@@ -92,7 +92,7 @@ void integrateTableCurvature(Lut& lut, double curvatureMin, double curvatureMax)
     cl::Defines options{{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}};
     if (desc.form == PEL_FORM_HALF_RING) options.emplace("PEL_HALF", "1");
     if (chord) options.emplace("PEL_CHORD", "1");
-    const cl::Program program = device.programs().get("lut/table_curvature_lut.cl", options);
+    const cl::Program program = device.programs().get("lut/tabulated_curvature_lut.cl", options);
     const std::vector<TableColumn> columnList = columnsOf(desc);
     const cl::Memory nodes = upload(device, meshOfNodes(meshIntervals)), columns = upload(device, columnList);
 
@@ -101,9 +101,9 @@ void integrateTableCurvature(Lut& lut, double curvatureMin, double curvatureMax)
     const cl::Memory rows = device.allocate(record * part);
     for (params.firstRow = 0; params.firstRow < desc.height; params.firstRow += part) {
         params.rows = std::min(part, desc.height - params.firstRow);
-        const char* name = ring                           ? "table_ring_rows"
-                           : desc.form == PEL_FORM_SPHERE ? "table_sphere_rows"
-                                                          : "table_arc_rows";
+        const char* name = ring                           ? "tabulated_ring_rows"
+                           : desc.form == PEL_FORM_SPHERE ? "tabulated_sphere_rows"
+                                                          : "tabulated_arc_rows";
         cl::Launch rowLaunch(program, name);
         rowLaunch.arg(params).arg(nodes);
         if (desc.form == PEL_FORM_SPHERE) rowLaunch.arg(ofRow);
@@ -113,26 +113,26 @@ void integrateTableCurvature(Lut& lut, double curvatureMin, double curvatureMax)
         else
             device.launch(rowLaunch, {{params.rows, 1, 1}, {group, 1, 1}});
 
-        cl::Launch texelLaunch(program, "table_texels");
+        cl::Launch texelLaunch(program, "tabulated_texels");
         texelLaunch.arg(params).arg(rows).arg(columns).arg(lut.texels());
-        const bool last = params.firstRow + params.rows == desc.height;  // with the copied row
+        const bool last = params.firstRow + params.rows == desc.height;  // includes the copied row
         device.launch(texelLaunch, {{(columnList.size() + columnsPerItem - 1) / columnsPerItem,
                                      params.rows + (last ? 1 : 0), 1},
                                     {group, 1, 1}});
     }
 }
 
-void integrateTableShadow(Lut& lut, double reciprocalMin, double reciprocalMax) {
+void integrateTabulatedShadow(Lut& lut, double reciprocalMin, double reciprocalMax) {
     Device& device = lut.device();
     const PelShadowLutDesc& desc = lut.info().shadow;
     const double end = tableEnd(*lut.profile());
     const RowAxis axis = rowAxis(desc.axis, desc.height, reciprocalMin, reciprocalMax);
-    const TableShadowParams params{desc.width,      desc.height, float(axis.min),     float(axis.step),
-                                   desc.sharpening, float(end),  uint32_t(desc.axis), desc.closedEnds};
+    const TabulatedShadowLutParams params{desc.width,      desc.height, float(axis.min),     float(axis.step),
+                                          desc.sharpening, float(end),  uint32_t(desc.axis), desc.closedEnds};
     const bool wide = device.info().mathWidth > 1;
     const size_t group = wide ? 1 : 64, columnsPerItem = wide ? 64 : 1;
     const cl::Program program = device.programs().get(
-        "lut/table_shadow_lut.cl",
+        "lut/tabulated_shadow_lut.cl",
         {{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
     const cl::Memory tails = upload(device, tableTails(*lut.profile(), end));
     cl::Launch launch(program, "table_shadow_texels");

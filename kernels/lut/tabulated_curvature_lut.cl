@@ -1,29 +1,31 @@
-// Curvature LUT of a measured profile, R linear between distances: every form of curvature_lut.cl (section 2 of
-// the mathematics). As in curvature_lut.cl each row becomes nodes at angles phi behind the terminator with E and F = -E',
+// Curvature LUT of a tabulated profile, R linear between distances: every form of curvature_lut.cl (section 2
+// of the mathematics). As in curvature_lut.cl each row becomes nodes at angles phi behind the terminator with
+// E and F = -E',
 //   unlit side D(-u) = E + back u,   lit side D(+u) = E + front u,   u = sin phi,
-// and texels are cubics between nodes; here a row carries the angles of its nodes, so that it may have its own.
-//   table_arc_rows     E'' + E = K(phi) + K(pi - phi), K = r P(r t), swept from pi/2 to 0. P has corners, its
-//                    tail has none worse than a root's integral: what an interval adds is its mass, a difference of tails,
-//                    and the mass's moment, from K at both ends. PEL_CHORD is penner-ring, K = P(2r sin(t/2)): masses over
-//                    chords, divided by dchord/dt, and where the chord stands still, from K alone.
-//   table_ring_rows    the same with K = R(2r sin(t/2)), which is smooth between the angles where R bends: they
-//                    become nodes of their row.
-//   table_sphere_rows  the circle of points at chord d receives in the mean m(phi, d), a closed form: a sum over
-//                    the points and weights that stand for the profile.
+// and texels are cubics between nodes. Here each row stores the angles of its nodes, which may differ from
+// row to row.
+//   tabulated_arc_rows     E'' + E = K(phi) + K(pi - phi), K = r P(r t), swept from pi/2 to 0. P has corners, but its
+//                          tail is smoother: an interval adds its mass, a difference of tails, and the moment of that mass,
+//                          from K at both ends. PEL_CHORD is penner-ring, K = P(2r sin(t/2)): masses over chords, divided by
+//                          dchord/dt; where the chord hardly changes, from K alone.
+//   tabulated_ring_rows    the same with K = R(2r sin(t/2)), which is smooth between the angles where R bends: these
+//                          become nodes of their row.
+//   tabulated_sphere_rows  the circle of points at chord d receives the mean m(phi, d), a closed form: a sum over the
+//                          points and weights that represent the profile.
 //
-// One work-item: table_arc_rows, table_ring_rows a row; table_sphere_rows PEL_WIDTH nodes of a row; table_texels PEL_COLUMNS
+// One work-item: tabulated_arc_rows, tabulated_ring_rows a row; tabulated_sphere_rows PEL_WIDTH nodes of a row; tabulated_texels PEL_COLUMNS
 // columns of the unlit half of a row, and their mirror images.
 // Variants: PEL_WIDTH; PEL_GROUP, work-items in a group; PEL_COLUMNS; PEL_HALF: the half ring; PEL_CHORD.
-#include "lib/lut/table_tails.clh"
+#include "lib/lut/profile_tails.clh"
 #include "lib/width.clh"
 #include "shared/lut.h"
 
-// A row's record: E (angle in w) and F of `slots` nodes, angles rising, of which the first may be unused; back (first
-// used node in w), front, scale of E.
+// A row's record: E (angle in w) and F of `slots` nodes, angles rising, of which the first may be unused;
+// back (first used node in w), front, scale of E.
 #define RECORD(params) (2 * (size_t)(params).slots + 3)
 
 // In diffusion radii.
-inline float rowRadius(const TableCurvatureParams params, const uint row) {
+inline float rowRadius(const TabulatedCurvatureLutParams params, const uint row) {
     const float value = fma((float)row + 0.5f, params.rowStep, params.rowMin);
     return 1.0f / (params.axis == PEL_LUT_AXIS_ROOT ? value * value : value);
 }
@@ -34,7 +36,8 @@ inline void storeNode(__global float4* record, const uint slot, const float angl
     record[2 * slot + 1] = (float4)(F.xyz, 0.0f);
 }
 
-// A sum of thousands of terms of about the same size, which plain float rounds the same way each time: Kahan's.
+// Kahan's sum: thousands of terms of about the same size, which plain float would round in the same direction
+// each time.
 typedef struct Sum {
     float4 value, lost;
 } Sum;
@@ -45,8 +48,8 @@ inline void add(Sum* sum, const float4 term) {
     sum->value = next;
 }
 
-// E and F at the next node, h further down, with what K adds between: in differences, so that short steps do not lose
-// 1 - cos h.
+// E and F at the next node, h further down, including what K adds between. Computed as differences, so that
+// short steps do not lose 1 - cos h.
 inline void turn(Sum* E, Sum* F, const float h, const float4 addE, const float4 addF) {
     const float half_ = sin(0.5f * h), versine = 2.0f * half_ * half_, s = sin(h);
     const float4 e = E->value, f = F->value;
@@ -54,7 +57,7 @@ inline void turn(Sum* E, Sum* F, const float h, const float4 addE, const float4 
     add(F, addF - e * s - f * versine);
 }
 
-// Distance from the point to another at the angle, and how fast it grows.
+// Distance from the point to another one at the angle, and its derivative.
 #ifdef PEL_CHORD
 #define DISTANCE(r, angle) (2.0f * (r)*sin(0.5f * (angle)))
 #define BEHIND(r, angle) (2.0f * (r)*cos(0.5f * (angle)))  // at pi - angle
@@ -63,8 +66,8 @@ inline void turn(Sum* E, Sum* F, const float h, const float4 addE, const float4 
 #define BEHIND(r, angle) ((r) * (M_PI_F - (angle)))
 #endif
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void table_arc_rows(
-    const TableCurvatureParams params, __global const LutNode* nodes, __global const float4* tails,
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_arc_rows(
+    const TabulatedCurvatureLutParams params, __global const LutNode* nodes, __global const float4* tails,
     __global float4* rows) {
     if (get_global_id(0) >= params.rows) return;
     const float r = rowRadius(params, params.firstRow + (uint)get_global_id(0));
@@ -133,8 +136,8 @@ inline float knotAngle(const float distance, const float diameter) {
     return 2.0f * asin(fmin(distance / diameter, 1.0f));
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void table_ring_rows(
-    const TableCurvatureParams params, __global const LutNode* nodes, __global const float4* knots,
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_ring_rows(
+    const TabulatedCurvatureLutParams params, __global const LutNode* nodes, __global const float4* knots,
     __global float4* rows) {
     if (get_global_id(0) >= params.rows) return;
     const float diameter = 2.0f * rowRadius(params, params.firstRow + (uint)get_global_id(0));
@@ -142,8 +145,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void table_ring_
     // R scaled to about 1, so that no radius leaves the range of float.
     const float4 peak = fmax(knots[0], fmax(radialOn(knots, 0, diameter), 1e-30f));
     Sum E = {0.0f, 0.0f}, F = E, front = E, back = E, mass = E;
-    // Front: the last knot not beyond pi/2, and the piece that begins there; behind, the first beyond it. Knot `knots` is
-    // the last; beyond it R is 0.
+    // In front: the last knot not beyond pi/2, and the piece that begins there. Behind: the first knot beyond
+    // it. Knot `knots` is the last; beyond it R is 0.
     int frontPiece = (int)params.knots, node = (int)params.nodes - 1;
     while (frontPiece > 0 && knotAngle(knots[frontPiece].w, diameter) >= M_PI_2_F) --frontPiece;
     int backPiece = frontPiece;
@@ -191,7 +194,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void table_ring_
         if (frontPiece > 0 && next == frontKnot) --frontPiece;
         if (backPiece < (int)params.knots && next == backKnot) ++backPiece;
     }
-    // Where a channel's table holds nothing within the circle nothing scatters: E is 0 and front 1.
+    // If a channel's table has no energy within the circle, nothing scatters: E is 0 and front 1.
     const int4 empty = mass.value <= 0.0f;
     const float4 scale = select(0.5f / mass.value, (float4)(0.0f), empty);
     __global float4* last = record + 2 * params.slots;
@@ -217,9 +220,9 @@ inline floatw acosOverPi(const floatw x) {
 // With a = cos theta cos psi, b = sin theta sin psi and theta = pi/2 + phi, the mean over the circle at colatitude psi is
 // (a acos(-a/b) + sqrt(b^2 - a^2)) / pi, 0 from a = -b and a from b on; its derivatives by a and b are acos(-a/b) / pi
 // and sqrt(1 - a^2/b^2) / pi.
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void table_sphere_rows(
-    const TableCurvatureParams params, __global const LutNode* nodes, __global const TablePoints* pointsOfRow,
-    __global const float4* points, __global float4* rows) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_sphere_rows(
+    const TabulatedCurvatureLutParams params, __global const LutNode* nodes,
+    __global const TablePoints* pointsOfRow, __global const float4* points, __global float4* rows) {
     const uint firstNode = get_global_id(0) * PEL_WIDTH;
     if (firstNode >= params.nodes) return;
     const uint row = get_global_id(1);
@@ -273,9 +276,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void table_spher
     }
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void table_texels(
-    const TableCurvatureParams params, __global const float4* rows, __global const TableColumn* columns,
-    __global float4* texels) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_texels(
+    const TabulatedCurvatureLutParams params, __global const float4* rows,
+    __global const TableColumn* columns, __global float4* texels) {
     const uint unlit = (params.width + 1) / 2;
     const uint begin = get_global_id(0) * PEL_COLUMNS;
     if (begin >= unlit) return;

@@ -1,4 +1,4 @@
-#include "lut/table_integrals.h"
+#include "lut/tabulated_integrals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,13 +11,13 @@ namespace {
 constexpr double gaussAt[4] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526};
 constexpr double gaussWeight[4] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
                                    0.3478548451374538};
-constexpr size_t knotsWorthCells = 128;  // a table of more is finer than the meshes here
+constexpr size_t knotsWorthCells = 128;  // a table with more is finer than the meshes here
 
 cl_float4 float4Of(const Rgb& v, double w) {
     return {{float(v[0]), float(v[1]), float(v[2]), float(w)}};
 }
 
-// Ascending borders of cells, and those knots that lie between them.
+// Ascending borders of cells, together with the knots between them.
 std::vector<double> withKnots(std::vector<double> borders, const std::vector<cl_float4>& knots) {
     if (knots.size() > knotsWorthCells) return borders;
     const double end = borders.back();
@@ -51,9 +51,9 @@ double tableReach(const Profile& profile) {
     return profile.shape().knots().back() / profile.radius();
 }
 
-// From the end inwards, cell by cell: each tail takes the shorter ones along, and what P adds within the
-// cell. P is like the root of the distance before each distance where R bends or ends, so cells are split
-// there and integrated over that root.
+// From the end inwards, cell by cell: each tail is the tail of the next cell plus what P adds within the
+// cell. P behaves like the root of the distance before each distance where R bends or ends, so cells are
+// split there and integrated over that root.
 std::vector<cl_float4> tableTails(const Profile& profile, double end) {
     const double unit = profile.radius();
     const auto lineSpread = [&](double s) {
@@ -98,15 +98,15 @@ std::vector<cl_float4> tableTails(const Profile& profile, double end) {
     return tails;
 }
 
-// Two points in each cell, weighted so that linear f are exact whatever R does within the cell. Cells are
-// narrow at the shaded point, and at the end too: there the circle round a sphere closes.
+// Two points in each cell, weighted so that linear f are exact for any R within the cell. Cells are narrow
+// near the shaded point, and at the end, where the circle round a sphere closes.
 std::vector<cl_float4> tablePoints(const std::vector<cl_float4>& knots, double diameter) {
     constexpr int cells = 128;
     const double end = std::min<double>(knots.back().s[3], diameter);
     std::vector<double> borders;
     for (int i = 0; i <= cells; ++i)
         borders.push_back(end * std::sin(std::numbers::pi / 2 * i / cells * i / cells));
-    // Opposite to the light the mean over a circle has a corner where the circle is a great one.
+    // Opposite to the light the mean over a circle has a corner where the circle is a great circle.
     const double quarter = diameter / std::numbers::sqrt2;
     if (quarter < end) borders.insert(std::upper_bound(borders.begin(), borders.end(), quarter), quarter);
     borders = withKnots(borders, knots);
@@ -116,7 +116,7 @@ std::vector<cl_float4> tablePoints(const std::vector<cl_float4>& knots, double d
     size_t piece = 0;
     for (size_t i = 0; i + 1 < borders.size(); ++i) {
         const double middle = (borders[i] + borders[i + 1]) / 2, half = (borders[i + 1] - borders[i]) / 2;
-        Rgb sum{}, moment{};  // of R d, and about the middle in halves
+        Rgb sum{}, moment{};  // of R d; and about the middle, in halves
         for (double a = borders[i]; a < borders[i + 1];) {
             while (piece + 1 < knots.size() && knots[piece + 1].s[3] <= a) ++piece;
             if (piece + 1 == knots.size()) break;
@@ -143,7 +143,7 @@ std::vector<cl_float4> tablePoints(const std::vector<cl_float4>& knots, double d
             points.push_back({weight, middle + half * at});
         }
     }
-    // A table may hold nothing so near in some channel: then nothing scatters.
+    // A table may have no energy so near in some channel: then nothing scatters.
     Rgb none{};
     for (int c = 0; c < 3; ++c)
         if (!(all[c] > 0)) none[c] = 1;

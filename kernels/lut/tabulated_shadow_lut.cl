@@ -1,17 +1,19 @@
-// Shadow LUT of a measured profile (section 3 of the mathematics), lengths in diffusion radii. As in shadow_lut.cl the
-// far side U = mass - T is integrated: with the ramp of half width b about -zeta and the mass M1(x) of P beyond x,
+// Shadow LUT of a tabulated profile (section 3 of the mathematics), lengths in diffusion radii. As in
+// shadow_lut.cl the far side U = mass - T is integrated: with the ramp of half width b about -zeta and the
+// mass M1(x) of P beyond x,
 //   U = int_{-1}^{1} 3/4 (1 - y^2) M1(zeta + b y) dy
 //     = 3/(2 b^2) (M2(e1) + M2(e2)) - 3/(2 b^3) (M3(e1) - M3(e2)),   e1 = zeta - b, e2 = zeta + b
-// with the further tails of shared/lut_integral.h: the second where b is no less than a quarter of a radius,
-// which leaves 2e-6 of rounding, the first, cell by cell of the list of tails, where the second would cancel.
+// with the further tails of shared/lut_integral.h. The second form is used where b is at least a quarter of a
+// radius; its rounding error is 2e-6. The first form is used, cell by cell of the list of tails, where the
+// second would cancel.
 //
-// One work-item: PEL_COLUMNS columns of the lit half of one row, and their mirror images. The row behind the last is a
-// copy of it, and the column behind the last likewise (shared/lut.h).
-// Variants: PEL_GROUP, work-items in a group; PEL_COLUMNS.
-#include "lib/lut/table_tails.clh"
+// Inputs: the list of tails. Output: texels, followed by a copy of the last row and column (shared/lut.h).
+// One work-item: PEL_COLUMNS columns of the lit half of one row, and their mirror images. Variants:
+// PEL_GROUP, work-items in a group; PEL_COLUMNS.
+#include "lib/lut/profile_tails.clh"
 #include "shared/lut.h"
 
-// Tails from any x: P is even, so that a tail from x < 0 is the whole less its mirror image.
+// Tails from any x. P is even, so a tail from x < 0 is the whole minus its mirror image.
 inline float4 secondFrom(__global const float4* tails, const float x, const float4 mass, const float end) {
     const float4 beyond = tailAt(tails, PEL_TAIL_SECOND, fabs(x), end);
     return x < 0.0f ? 0.5f * x * x * mass + 2.0f * tails[PEL_TAIL_SECOND] - beyond : beyond;
@@ -33,7 +35,7 @@ inline float4 rampOnSide(__global const float4* tails, const float zeta, const f
     const float from = fmax(sign * zeta - b, 0.0f), to = fmin(sign * zeta + b, end);
     if (!(from < to) && !(from < end && sign * zeta + b > 0.0f)) return (float4)(0.0f);
     const int first = tailCell(fmin(from, end), end), last = tailCell(fmax(to, 0.0f), end);
-    // Cells in y, so that they cover the ramp without gaps however narrow it is.
+    // Cells in y, so that they cover the ramp without gaps even if it is narrow.
     float y = clamp(-sign * zeta / b, -1.0f, 1.0f);
     const float yEnd = clamp((end - sign * zeta) / b, -1.0f, 1.0f);
     float4 sum = 0.0f;
@@ -64,7 +66,7 @@ inline float4 farSide(__global const float4* tails, const float zeta, const floa
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void table_shadow_texels(
-    const TableShadowParams params, __global const float4* tails, __global float4* texels) {
+    const TabulatedShadowLutParams params, __global const float4* tails, __global float4* texels) {
     const uint begin = params.width / 2 + get_global_id(0) * PEL_COLUMNS;
     const uint y = get_global_id(1);
     const float row = (float)min(y, params.height - 1);
@@ -72,7 +74,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void table_shado
     const float q = params.axis == PEL_LUT_AXIS_ROOT ? rowValue * rowValue : rowValue;
     const float b = 0.5f / (params.sharpening * q);
     const float4 mass = 2.0f * tails[PEL_TAIL_MASS];
-    // What is left of the light where the filter ends.
+    // The light that is left where the filter ends.
     float4 end = 0.0f;
     if (params.closedEnds && begin < params.width)
         end = clamp(farSide(tails, 0.5f / q, b, mass, params.end), 0.0f, 0.5f * mass);

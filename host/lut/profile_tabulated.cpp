@@ -1,4 +1,4 @@
-// Measured profiles: R linear between distances. Its line integral has a closed form per piece.
+// Tabulated profiles: R is linear between distances. Its line integral has a closed form per piece.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
