@@ -385,10 +385,25 @@ inline constexpr Tolerance scatterUnits{
     "scatterUnits", 1e-3,
     "RMS, a tenth of the maximum: a ring of blocks with 0.4 % of the light may count or not"};
 
+inline constexpr Tolerance lightThroughBall{"lightThroughBall", 0.12,
+                                            "relative, RMS: in the tails of Gaussians alone, blocks of "
+                                            "texels half as wide as their distance are 10 % off"};
+inline constexpr Tolerance lightSeenTwice{"lightSeenTwice", 4e-3, "two ways to divide a sum by its weights"};
+
 // --- against the surface integral of a head, RMSE in 1e-4 of radiance, albedo 0.8; 32.9, 12.8 and 8.3 measured ---
 inline constexpr Tolerance rulerHeadRed{"rulerHeadRed", 40, "Lambert with ray-traced shadows: 85"};
 inline constexpr Tolerance rulerHeadGreen{"rulerHeadGreen", 14, "Lambert: 30"};
 inline constexpr Tolerance rulerHeadBlue{"rulerHeadBlue", 9, "Lambert: 14"};
+inline constexpr Tolerance lightHead[3] = {{"lightHeadRed", 30, "screen and maps; 27.7 measured, 33 without"},
+                                           {"lightHeadGreen", 12.5, "12.1 measured"},
+                                           {"lightHeadBlue", 8.5, "8.2 measured"}};
+inline constexpr Tolerance lightFour[3] = {{"lightFourRed", 82, "76 measured; Lambert 324, 112 without a map"},
+                                           {"lightFourGreen", 61, "58 measured; Lambert 161, 68 without"},
+                                           {"lightFourBlue", 51, "49 measured; Lambert 99, 51 without"}};
+inline constexpr Tolerance lightBall[3] = {
+    {"lightBallRed", 10.5, "9.5 measured; Lambert 42, 14 without a map"},
+    {"lightBallGreen", 2.9, "2.6 measured; Lambert 8.7"},
+    {"lightBallBlue", 1.3, "1.1 measured; Lambert 3.1"}};
 inline constexpr Tolerance rulerMapBlue{"rulerMapBlue", 34, "irradiance alone, from texels of 0.33 mm: 33"};
 inline constexpr Tolerance scatterTapsRms{
     "scatterTapsRms", 2e-3,

@@ -10,7 +10,7 @@ std::span<const PassKind> shadingPasses() {
     static const PassKind passes[] = {
         ambientCubePass, classifyTilesPass, blurNormalsPass,    normalMapPass, shadowBoundsPass,
         wideShadowPass,  irradiancePass,    prepareScatterPass, diskPass,      separablePass,
-        scatterPass,     weighScatterPass,  shadePass};
+        scatterPass,     lightScatterPass,  weighScatterPass,   shadePass};
     return passes;
 }
 

@@ -4,6 +4,7 @@
 
 namespace pel {
 
-extern const PassKind prepareScatterPass, diskPass, separablePass, scatterPass, weighScatterPass;
+extern const PassKind prepareScatterPass, diskPass, separablePass, scatterPass, lightScatterPass,
+    weighScatterPass;
 
 }  // namespace pel

@@ -13,7 +13,7 @@ constexpr double lightBeyondReach = 4e-3;
 
 struct ProfileNodes {
     PelProfileTable table{};    // its offset is 0
-    std::vector<float> values;  // R of all nodes, then the shares within
+    std::vector<float> values;  // R of all nodes, the shares within, R of blocks
 };
 
 // `scale`: lengths of the tables per length of the profile, > 0. Throws where squares of such lengths are no

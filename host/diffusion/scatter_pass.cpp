@@ -1,31 +1,43 @@
-// The shader's pass of materials that scatter on the screen (PEL_SCATTERING_SCREEN and AUTO): takes
-// irradiance from its slot of the plan, and puts what is scattered there.
+// The shader's passes of materials that scatter on the screen (PEL_SCATTERING_SCREEN and AUTO) or from the maps of their
+// lights (PEL_SCATTERING_LIGHT): each takes irradiance from its slot of the plan, and puts what is scattered there.
 #include <algorithm>
 #include <optional>
 
 #include "diffusion/passes.h"
 #include "diffusion/scatter_material.h"
+#include "shading/features.h"
+#include "shading/mapped_lights.h"
 #include "shading/scratch_image.h"
 
 namespace pel {
 namespace {
 
-constexpr uint32_t methods = 1u << PEL_SCATTERING_SCREEN | 1u << PEL_SCATTERING_AUTO;
+constexpr uint32_t onScreen = 1u << PEL_SCATTERING_SCREEN | 1u << PEL_SCATTERING_AUTO,
+                   inLight = 1u << PEL_SCATTERING_LIGHT;
 
-bool scatters(const ShaderMaterial& material) {
+// Where maps do not hold all light, those of PEL_SCATTERING_LIGHT scatter on the screen.
+bool scatters(const ShaderState& state, const ShaderMaterial& material, bool alone) {
+    const bool mapped = lightIsMapped(state);
+    const uint32_t methods = alone ? (mapped ? inLight : 0) : mapped ? onScreen : onScreen | inLight;
     return methods >> material.params.scattering & 1 && !scattersOnDisk(material);
 }
 
+// `alone`: the lights' texels are all of the far part.
+template <bool alone>
 class ScatterPass final : public Pass {
   public:
     static bool needed(const ShaderPlan& plan) {
-        return std::ranges::any_of(plan.state.materials, [](const auto& m) { return scatters(m.second); });
+        return std::ranges::any_of(plan.state.materials,
+                                   [&](const auto& m) { return scatters(plan.state, m.second, alone); });
     }
 
     // Neighbours may be as far away as the profile reaches.
     PassScratch scratch(const ShaderPlan& plan) const override {
         const ImageView& frame = plan.state.images[PEL_SLOT_RADIANCE];
-        return {3 * sizeof(float), ScreenScatter::bytesFor(frame.width, frame.height), 0, true};
+        return {3 * sizeof(float),
+                ScreenScatter::bytesFor(frame.width, frame.height) +
+                    LightSpace::bytesFor(plan.state.lights, !alone),
+                0, true};
     }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
@@ -38,9 +50,10 @@ class ScatterPass final : public Pass {
                    images[PEL_SLOT_MATERIAL], scratchImage(out_, frame, PEL_FORMAT_PLANAR_RGB32F)};
         slot = images_.out;
         if (!scatter_) scatter_.emplace(device);
+        scatter_->announce({plan.state.lights, alone});
         materials_.clear();
         for (const auto& [id, material] : plan.state.materials)
-            if (scatters(material) && material.params.diffusionRadius > 0)
+            if (scatters(plan.state, material, alone) && material.params.diffusionRadius > 0)
                 materials_[id] = profileOf(material);
     }
     size_t bytes() const override { return (out_ ? out_->bytes() : 0) + (scatter_ ? scatter_->bytes() : 0); }
@@ -60,7 +73,11 @@ class ScatterPass final : public Pass {
     void enqueue(PassWork& work) override { scatter_->enqueue(images_, work.events); }
 
     void addStats(Device&, const ShaderPlan&, uint64_t, PelShaderStats& stats) const override {
-        addScatterCounts(scatter_->counts(), PEL_SCATTERING_SCREEN, stats);
+        ScatterCounts counts = scatter_->counts();
+        const LightCounts light = scatter_->lightCounts();
+        counts.taps += light.texels;
+        if (alone) counts.tilesTapped = light.tiles, counts.pixelsTapped = light.pixels;
+        addScatterCounts(counts, alone ? PEL_SCATTERING_LIGHT : PEL_SCATTERING_SCREEN, stats);
     }
 
   private:
@@ -72,6 +89,7 @@ class ScatterPass final : public Pass {
 
 }  // namespace
 
-constinit const PassKind scatterPass = passKind<ScatterPass>(methods);
+constinit const PassKind scatterPass = passKind<ScatterPass<false>>(onScreen);
+constinit const PassKind lightScatterPass = passKind<ScatterPass<true>>(inLight);
 
 }  // namespace pel

@@ -44,7 +44,7 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
         tables.push_back(nodes.table);
         values.insert(values.end(), nodes.values.begin(), nodes.values.end());
     }
-    if (tables.empty()) tables.emplace_back(), values.resize(8);
+    if (tables.empty()) tables.emplace_back(), values.resize(12);
     tables_ = device_->allocate(tables.size() * sizeof tables[0], tables.data());
     nodes_ = device_->allocate(values.size() * sizeof(float), values.data());
     nodeBytes_ = tables.size() * sizeof tables[0] + values.size() * sizeof(float);
@@ -83,6 +83,16 @@ void ScreenScatter::describeLevels(uint32_t width, uint32_t height) {
     device_->fill(pyramid_.get(), 0, bytes, 0);  // no area outside of the picture
 }
 
+void ScreenScatter::announce(const ScatterLights& lights) {
+    lights_ = lights;
+    light_.announce(lights.lights, !lights.alone);
+}
+
+ScreenMemory ScreenScatter::memory() const {
+    return {frameMemory_, pyramid_,     tables_,       nodes_,
+            tiles_,       frame_.width, frame_.height, size_t(frame_.tilesX) * frame_.tilesY};
+}
+
 void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const ScatterImages& images,
                             const ScatterView& view) {
     frame_.width = images.irradiance.width, frame_.height = images.irradiance.height;
@@ -101,6 +111,7 @@ void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const
     frame_.out = describeImage(images.out);
     sendTables(materials);
     describeLevels(frame_.width, frame_.height);
+    light_.prepare(lights_.lights, frame_.origin, size_t(frame_.tilesX) * frame_.tilesY);
     const size_t tileBytes = size_t(frame_.tilesX) * frame_.tilesY * sizeof(cl_uint);
     if (tileBytes != tileBytes_) tiles_ = device_->allocate(tileBytes), tileBytes_ = tileBytes;
     if (!counters_) counters_ = device_->allocate(PEL_DIFFUSION_COUNTERS * sizeof(cl_uint));
@@ -120,10 +131,13 @@ std::vector<cl::ProgramKey> ScreenScatter::programs(const ScatterImages& images)
                              {"PEL_FORMAT_MATERIAL", code(images.ids)}};
     const cl::Defines outputs{{"PEL_FORMAT_IRRADIANCE", code(images.irradiance)},
                               {"PEL_FORMAT_OUT", code(images.out)}};
-    return {{{"diffusion/surface.cl"}, inputs},
-            {{"diffusion/reduce.cl"}, {}},
-            {{"diffusion/classify_scatter.cl"}, {{"PEL_WIDTH", text(1)}}},
-            {{"diffusion/scatter_screen.cl"}, outputs}};
+    std::vector<cl::ProgramKey> keys{{{"diffusion/surface.cl"}, inputs},
+                                     {{"diffusion/reduce.cl"}, {}},
+                                     {{"diffusion/classify_scatter.cl"}, {{"PEL_WIDTH", text(1)}}},
+                                     {{"diffusion/scatter_screen.cl"}, outputs}};
+    if (!light_.empty())
+        for (cl::ProgramKey& key : light_.programs(images)) keys.push_back(std::move(key));
+    return keys;
 }
 
 // Work-items of a vector of pixels each.
@@ -160,11 +174,15 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
     cl::Launch classify(programs[CLASSIFY], "classify_scatter");
     classify.arg(frameMemory_).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_).arg(counters_);
     launch(classify, {{tiles, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
+    if (!light_.empty()) light_.enqueuePyramids(images, this->memory(), events);
+    // With the lights' texels alone the screen's sum only copies.
+    if (!light_.empty() && lights_.alone) device_->fill(tiles_.get(), 0, tileBytes_, 0);
     cl::Launch scatter(programs[SCATTER], "scatter_screen");
     scatter.arg(frameMemory_).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_);
     scatter.arg(memory(images.irradiance)).arg(memory(images.out)).arg(counters_);
     const size_t groups = std::min<size_t>(tiles, 64 * size_t(device_->info().computeUnits));
     launch(scatter, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
+    if (!light_.empty()) light_.enqueueSums(images, this->memory(), events);
 }
 
 ScatterCounts ScreenScatter::counts() {

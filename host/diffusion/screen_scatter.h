@@ -4,15 +4,10 @@
 #include <map>
 #include <vector>
 
-#include "core/image_view.h"
+#include "diffusion/light_space.h"
 #include "diffusion/profile_table.h"
 
 namespace pel {
-
-// Images of one size. Views that are not there are empty; either positions or depth is.
-struct ScatterImages {
-    ImageView irradiance, positions, depth, ids, out;
-};
 
 struct ScatterView {
     float inverseViewProjection[16] = {};  // clip to world; all zero: not known, with positions
@@ -25,13 +20,19 @@ struct ScatterView {
 bool eyeOf(const float inverse[16], float eye[3]);
 bool samePixels(const ImageView& a, const ImageView& b);
 
+// Lights whose shadow maps are lit surface too.
+struct ScatterLights {
+    std::vector<ShaderLight> lights;
+    bool alone = false;  // their texels are all of the far part; else those that the camera does not see are added
+};
+
 struct ScatterCounts {
     uint32_t tilesCovered, tilesTapped, pixelsCovered, pixelsTapped, taps, invalid;
 };
 
 class ScreenScatter {
   public:
-    explicit ScreenScatter(Ref<Device> device) : device_(std::move(device)) {}
+    explicit ScreenScatter(Ref<Device> device) : device_(device), light_(std::move(device)) {}
 
     // The profile of pixels with each id, 1 to 255, and its lengths in the unit of positions.
     struct Material {
@@ -41,6 +42,8 @@ class ScreenScatter {
             return profile.get() == other.profile.get() && scale == other.scale;
         }
     };
+    // Before programs are asked for; none by default.
+    void announce(const ScatterLights& lights);
     // Makes memory and sends constants where they changed.
     void prepare(const std::map<uint32_t, Material>& materials, const ScatterImages& images,
                  const ScatterView& view);
@@ -50,14 +53,18 @@ class ScreenScatter {
     ScatterCounts counts();
     // That a picture takes, beside tables.
     static uint64_t bytesFor(uint32_t width, uint32_t height);
-    size_t bytes() const { return pyramidBytes_ + nodeBytes_ + tileBytes_; }
+    size_t bytes() const { return pyramidBytes_ + nodeBytes_ + tileBytes_ + light_.bytes(); }
+    LightCounts lightCounts() { return light_.counts(); }
 
   private:
     void sendTables(const std::map<uint32_t, Material>& materials);
     void describeLevels(uint32_t width, uint32_t height);
+    ScreenMemory memory() const;
     cl::Range rows(uint32_t width, uint32_t height) const;
 
     Ref<Device> device_;
+    LightSpace light_;
+    ScatterLights lights_;
     std::map<uint32_t, Material> materials_;
     PelDiffusionFrame frame_{}, sent_{};
     cl::Memory frameMemory_, tables_, nodes_, pyramid_, tiles_, counters_;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shading/mapped_lights.h"
 #include "shading/material.h"
 
 namespace pel {
@@ -41,6 +42,13 @@ std::string warningsOf(const ShaderState& state, uint32_t features) {
                  "shadow map and thicknessTaps above 0");
         if (material.curvatureLut && !state.lights.empty() && !state.images[PEL_SLOT_CURVATURE])
             warn("material ", id, " has a curvature table without effect: there is no curvature image");
+        if (m.scattering == PEL_SCATTERING_LIGHT && !lightIsMapped(state))
+            warn("material ", id,
+                 " asks for PelMaterial.scattering light, and shadow maps do not hold all light: what lights "
+                 "without a map "
+                 "and ambient light give is summed over the screen, as by screen; a shadow map for every "
+                 "light and no "
+                 "ambient light would be right");
         if (!(features & PEL_FEATURE_TRANSMISSION) || thickness || !material.profile || m.transmission == 0)
             continue;
         const double reach = material.profile->reach() / state.options.millimetresPerUnit;

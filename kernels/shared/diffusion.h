@@ -27,10 +27,13 @@
 #define PEL_ROW_PARTS 4         // that different work-items copy
 #define PEL_DIFFUSION_IDS 256
 
-// A profile as two tables over the squared distance, four floats a node: R (1/length^2), then the share of the light that stays within.
-// Nodes are equally spaced in the bits of a float, PEL_PROFILE_NODES to the octave. From the last node on R is 0 and the share 1.
+// A profile as three tables over the squared distance, four floats a node: R (1/length^2), the share of the light that stays within, and the
+// mean of R over a block of a ring at that distance. Nodes are equally spaced in the bits of a float, PEL_PROFILE_NODES to the octave. From the last node on R is 0 and the share 1.
 #define PEL_PROFILE_NODES 16
 #define PEL_PROFILE_NODE_BITS 19  // 23 bits of mantissa, less those of a node
+// Width of such blocks over their distance: the root of the mean square of all in a ring round a point, weighed by R that falls as
+// distance^-1.5.
+#define PEL_BLOCK_WIDTH 0.431
 typedef struct PelProfileTable {
     PelUint32 offset;  // of the first node, nodes
     PelUint32 nodes;

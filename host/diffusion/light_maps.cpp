@@ -1,0 +1,147 @@
+#include "diffusion/light_maps.h"
+
+#include <algorithm>
+#include <array>
+#include <cfloat>
+#include <cmath>
+
+#include "shading/mapped_lights.h"
+#include "shading/shading_constants.h"
+
+namespace pel {
+namespace {
+
+using Matrix = std::array<double, 16>;
+
+// Gauss-Jordan with pivots. Returns false for singular matrices.
+bool invert(const Matrix& m, Matrix& inverse) {
+    std::array<std::array<double, 8>, 4> a{};
+    for (int r = 0; r < 4; ++r)
+        for (int c = 0; c < 4; ++c) a[r][c] = m[4 * r + c], a[r][4 + c] = r == c;
+    for (int k = 0; k < 4; ++k) {
+        int pivot = k;
+        for (int r = k + 1; r < 4; ++r)
+            if (std::abs(a[r][k]) > std::abs(a[pivot][k])) pivot = r;
+        std::swap(a[k], a[pivot]);
+        const double by = a[k][k];
+        if (!(std::abs(by) > 0) || !std::isfinite(by)) return false;
+        for (double& v : a[k]) v /= by;
+        for (int r = 0; r < 4; ++r) {
+            const double factor = a[r][k];
+            for (int c = 0; r != k && c < 8; ++c) a[r][c] -= factor * a[k][c];
+        }
+    }
+    for (int r = 0; r < 4; ++r)
+        for (int c = 0; c < 4; ++c) inverse[4 * r + c] = a[r][4 + c];
+    return std::all_of(inverse.begin(), inverse.end(), [](double v) { return std::isfinite(v); });
+}
+
+struct Vec {
+    double x, y, z;
+    double dot(Vec b) const { return x * b.x + y * b.y + z * b.z; }
+    double length() const { return std::sqrt(dot(*this)); }
+};
+
+Vec rowOf(const Matrix& m, int r) {
+    return {m[4 * r], m[4 * r + 1], m[4 * r + 2]};
+}
+
+// Of the length that u, or v, spans over the homogeneous coordinate: how much a step across the light changes it.
+double perLength(const Matrix& m, int r) {
+    const Vec row = rowOf(m, r), forward = rowOf(m, 3);
+    const double along = forward.dot(forward) > 0 ? row.dot(forward) / forward.dot(forward) : 0;
+    return Vec{row.x - along * forward.x, row.y - along * forward.y, row.z - along * forward.z}.length();
+}
+
+// A face of a cube as a perspective map: rows of components along u, v and the axis (kernels/lib/image/cube_map.clh).
+Matrix faceMatrix(const float (&toCube)[16], int face, const PelLight& light) {
+    const auto row = [&](int r, double sign) {
+        std::array<double, 4> v;
+        for (int k = 0; k < 4; ++k) v[k] = sign * double(toCube[4 * r + k]);
+        return v;
+    };
+    const double side = face & 1 ? -1 : 1;
+    const auto u = face < 2 ? row(2, -side) : face < 4 ? row(0, 1) : row(0, side);
+    const auto v = face < 2 || face >= 4 ? row(1, -1) : row(2, side);
+    const auto w = face < 2 ? row(0, side) : face < 4 ? row(1, side) : row(2, side);
+    Matrix m{};
+    for (int k = 0; k < 4; ++k) {
+        m[k] = (u[k] + w[k]) / 2;
+        m[4 + k] = (v[k] + w[k]) / 2;
+        // 1 / distance along the axis is A z + B; of radial maps it is the depth itself.
+        if (light.shadowProjection == PEL_SHADOW_CUBE)
+            m[8 + k] = -double(light.shadowDepthB) * w[k] / light.shadowDepthA;
+        m[12 + k] = w[k];
+    }
+    m[11] += light.shadowProjection == PEL_SHADOW_CUBE ? 1 / double(light.shadowDepthA) : 1;
+    return m;
+}
+
+PelLightMap describe(const ShaderLight& light, uint32_t number, Matrix m, const ImageView& image,
+                     uint32_t width, uint32_t height, const float origin[3]) {
+    const PelLight& l = light.params;
+    PelLightMap to{};
+    for (int r = 0; r < 4; ++r)
+        for (int k = 0; k < 3; ++k) m[4 * r + 3] += m[4 * r + k] * origin[k];
+    if (rowOf(m, 3).length() == 0 && m[15] != 0)
+        for (const double w = m[15]; double& v : m) v /= w;
+    Matrix inverse{};
+    if (!invert(m, inverse))
+        invalidArgument(
+            "the shadow matrix of light ", number,
+            " is singular: PelLight.worldToShadow has to tell all points apart, for light that scatters "
+            "is summed over its map");
+    std::copy(m.begin(), m.end(), to.toMap);
+    std::copy(inverse.begin(), inverse.end(), to.toWorld);
+    to.type = l.type;
+    std::copy_n(l.toLight, 3, to.toLight);
+    for (int k = 0; k < 3; ++k) to.position[k] = float(double(l.position[k]) - origin[k]);
+    std::copy_n(l.spotDirection, 3, to.spotDirection);
+    to.spotCosOuter = l.spotCosOuter;
+    to.spotScale = 1 / std::max(l.spotCosInner - l.spotCosOuter, 1e-6f);
+    to.range2 = l.range > 0 ? std::min(l.range * l.range, FLT_MAX) : FLT_MAX;
+    std::copy_n(l.color, 3, to.color);
+    if (l.shadowProjection == PEL_SHADOW_CUBE_RADIAL) to.radialRange = l.shadowDepthRange;
+    if (l.shadowExponent != 0) to.perExponent = float(std::log(2.0) / l.shadowExponent);
+    to.texel = float(std::max(1 / (perLength(m, 0) * width), 1 / (perLength(m, 1) * height)));
+    to.light = number;
+    to.map = describeImage(image);
+    to.level[0].width = width;
+    to.level[0].height = height;
+    return to;
+}
+
+}  // namespace
+
+std::vector<LightMap> lightMaps(const std::vector<ShaderLight>& lights, const float origin[3]) {
+    std::vector<LightMap> all;
+    for (uint32_t i = 0; i < lights.size(); ++i) {
+        const ShaderLight& light = lights[i];
+        const PelLight& l = light.params;
+        const ImageView& first = light.images[PEL_LIGHT_SHADOW_MAP];
+        if (!shines(light)) continue;
+        const uint32_t count = mapsOf(light);
+        if (all.size() + count > PEL_LIGHT_MAPS) continue;
+        for (uint32_t k = 0; k < count; ++k) {
+            if (isCube(l)) {
+                LightMap map{describe(light, i, faceMatrix(l.worldToShadow, int(k), l), first, first.width,
+                                      first.width, origin),
+                             first};
+                map.constants.firstRow = k * first.width;
+                all.push_back(map);
+                continue;
+            }
+            const ShadowCascade cascade = shadowCascade(light, k);
+            if (!*cascade.map) continue;
+            Matrix m;
+            std::copy_n(*cascade.worldToShadow, 16, m.begin());
+            LightMap map{describe(light, i, m, *cascade.map, cascade.map->width, cascade.map->height, origin),
+                         *cascade.map};
+            map.constants.finer = k;
+            all.push_back(map);
+        }
+    }
+    return all;
+}
+
+}  // namespace pel

@@ -1,0 +1,178 @@
+#include "diffusion/light_space.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "shading/launch_ranges.h"
+#include "shading/mapped_lights.h"
+#include "shading/shading_constants.h"
+
+namespace pel {
+namespace {
+
+enum Program { SEEN, TEXELS, REDUCE, CLASSIFY, SCATTER };
+
+uint32_t pointsOf(uint32_t level) {
+    return level ? 2 : 1;
+}
+
+}  // namespace
+
+// Returns the floats of all of them, and how many texels there are.
+uint64_t LightSpace::layOutLevels(std::vector<LightMap>& maps, bool hidden, uint64_t& seen) {
+    uint64_t floats = 0;
+    seen = 0;
+    for (LightMap& map : maps) {
+        PelLightMap& m = map.constants;
+        uint32_t width = m.level[0].width, height = m.level[0].height;
+        m.seen = uint32_t(seen);
+        seen += uint64_t(width) * height;
+        m.levels = 0;
+        for (PelPyramidLevel& level : m.level) {
+            const uint32_t stride = (width + 15) / 16 * 16 + 3 * PEL_PYRAMID_GUARD;
+            level = {uint32_t(floats), stride, width, height};
+            floats += uint64_t(height + 2 * PEL_PYRAMID_ROWS) * PEL_LIGHT_PLANES(hidden) *
+                      pointsOf(m.levels) * stride;
+            ++m.levels;
+            if (floats > UINT32_MAX || seen > UINT32_MAX)
+                fail(PEL_ERROR_OUT_OF_MEMORY,
+                     "the shadow maps of all lights are too large to sum light over");
+            if (width == 1 && height == 1) break;
+            width = (width + 1) / 2, height = (height + 1) / 2;
+        }
+    }
+    return floats + 2 * PEL_PYRAMID_GUARD;
+}
+
+uint64_t LightSpace::bytesFor(const std::vector<ShaderLight>& lights, bool hidden) {
+    const float origin[3] = {};
+    std::vector<LightMap> maps = lightMaps(lights, origin);
+    uint64_t seen = 0;
+    return maps.empty() ? 0 : layOutLevels(maps, hidden, seen) * sizeof(float) + (seen + 3) / 4 * 4;
+}
+
+void LightSpace::describeLevels() {
+    uint64_t seen = 0;
+    const size_t bytes = layOutLevels(maps_, hidden_, seen) * sizeof(float);
+    std::vector<PelLightMap> now;
+    for (const LightMap& map : maps_) now.push_back(map.constants);
+    const auto sameLevels = [](const PelLightMap& a, const PelLightMap& b) {
+        return !std::memcmp(a.level, b.level, sizeof a.level);
+    };
+    if (bytes != pyramidBytes_ || !std::equal(now.begin(), now.end(), sent_.begin(), sent_.end(), sameLevels)) {
+        pyramid_ = cl::Memory();
+        pyramidBytes_ = 0;
+        pyramid_ = device_->allocate(bytes);
+        pyramidBytes_ = bytes;
+        device_->fill(pyramid_.get(), 0, bytes, 0);  // no light outside of the maps
+    }
+    const size_t seenBytes = (size_t(seen) + 3) / 4 * 4;
+    if (seenBytes != seenBytes_) seen_ = device_->allocate(seenBytes), seenBytes_ = seenBytes;
+    const size_t mapBytes = now.size() * sizeof now[0];
+    if (!mapMemory_ || now.size() != sent_.size())
+        mapMemory_ = device_->allocate(mapBytes, now.data());
+    else if (std::memcmp(now.data(), sent_.data(), mapBytes))
+        device_->write(mapMemory_.get(), 0, mapBytes, now.data(), true);
+    sent_ = std::move(now);
+}
+
+void LightSpace::announce(const std::vector<ShaderLight>& lights, bool hidden) {
+    hidden_ = hidden;
+    empty_ = true;
+    mapFormat_ = content_ = 0;
+    for (const ShaderLight& light : lights) {
+        if (!shines(light)) continue;
+        empty_ = false;
+        mapFormat_ |= mapFormatCode(light);
+        content_ = light.params.shadowContent;
+    }
+}
+
+void LightSpace::prepare(const std::vector<ShaderLight>& lights, const float origin[3], size_t tileCount) {
+    maps_ = lightMaps(lights, origin);
+    if (empty_) return;
+    describeLevels();
+    const size_t bytes = tileCount * sizeof(cl_uint);
+    if (bytes != partBytes_) parts_ = device_->allocate(bytes), partBytes_ = bytes;
+    if (!counters_) counters_ = device_->allocate(PEL_LIGHT_COUNTERS * sizeof(cl_uint));
+}
+
+std::vector<cl::ProgramKey> LightSpace::programs(const ScatterImages& images) const {
+    const uint32_t lanes = device_->info().mathWidth;
+    const auto code = [&](const ImageView& view) { return text(formatCode(view, lanes)); };
+    const cl::Defines kind{{"PEL_HIDDEN", text(int(hidden_))}};
+    cl::Defines map = kind,
+                seen{{"PEL_FORMAT_POSITION", code(images.positions)},
+                     {"PEL_FORMAT_DEPTH", images.positions ? text(0) : code(images.depth)},
+                     {"PEL_FORMAT_MATERIAL", code(images.ids)}},
+                out = kind;
+    for (cl::Defines* defines : {&map, &seen}) {
+        (*defines)["PEL_FORMAT_SHADOW_MAP"] = text(mapFormat_);
+        (*defines)["PEL_SHADOW_CONTENT"] = text(content_);
+    }
+    out["PEL_FORMAT_OUT"] = code(images.out);
+    return {{{"diffusion/light_seen.cl"}, seen},
+            {{"diffusion/light_texels.cl"}, map},
+            {{"diffusion/light_reduce.cl"}, kind},
+            {{"diffusion/light_classify.cl"}, kind},
+            {{"diffusion/scatter_light.cl"}, out}};
+}
+
+// Work-items of a vector of texels each.
+cl::Range LightSpace::rows(const PelPyramidLevel& level) const {
+    const uint32_t lanes = device_->info().mathWidth;
+    return {{size_t((level.width + lanes - 1) / lanes) * level.height, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}};
+}
+
+void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory& screen,
+                                 std::vector<cl::Event>& events) {
+    std::vector<cl::Program> programs;
+    for (const cl::ProgramKey& key : this->programs(images)) programs.push_back(device_->programs().get(key));
+    const auto memory = [](const ImageView& view) { return view ? view.buffer->memory() : cl::Memory(); };
+    const auto launch = [&](cl::Launch& launch, const cl::Range& range) {
+        events.push_back(device_->launch(launch, range));
+    };
+    device_->fill(counters_.get(), 0, PEL_LIGHT_COUNTERS * sizeof(cl_uint), 0);
+    device_->fill(seen_.get(), 0, seenBytes_, 0);
+    const uint32_t lanes = device_->info().mathWidth;
+    for (uint32_t k = 0; k < maps_.size(); ++k) {
+        cl::Launch seen(programs[SEEN], "light_seen");
+        seen.arg(screen.frame).arg(memory(images.positions ? images.positions : images.depth));
+        seen.arg(memory(images.ids)).arg(mapMemory_).arg(cl_uint(k)).arg(memory(maps_[k].image)).arg(seen_);
+        launch(seen, {{size_t((screen.width + lanes - 1) / lanes) * screen.height, 1, 1},
+                      {PEL_DIFFUSION_GROUP, 1, 1}});
+    }
+    for (uint32_t k = 0; k < maps_.size(); ++k) {
+        const PelLightMap& map = maps_[k].constants;
+        cl::Launch texels(programs[TEXELS], "light_texels");
+        texels.arg(mapMemory_).arg(cl_uint(k)).arg(memory(maps_[k].image)).arg(seen_).arg(pyramid_);
+        launch(texels, rows(map.level[0]));
+        for (uint32_t level = 1; level < map.levels; ++level) {
+            cl::Launch reduce(programs[REDUCE], "light_reduce");
+            reduce.arg(mapMemory_).arg(cl_uint(k)).arg(cl_uint(level)).arg(pyramid_);
+            launch(reduce, rows(map.level[level]));
+        }
+    }
+    cl::Launch classify(programs[CLASSIFY], "light_classify");
+    classify.arg(screen.frame).arg(screen.pyramid).arg(screen.tables).arg(screen.nodes).arg(screen.tiles);
+    classify.arg(mapMemory_).arg(cl_uint(maps_.size())).arg(pyramid_).arg(parts_).arg(counters_);
+    launch(classify, {{screen.tileCount, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
+}
+
+void LightSpace::enqueueSums(const ScatterImages& images, const ScreenMemory& screen,
+                             std::vector<cl::Event>& events) {
+    cl::Launch scatter(device_->programs().get(programs(images)[SCATTER]), "scatter_light");
+    scatter.arg(screen.frame).arg(screen.pyramid).arg(screen.tables).arg(screen.nodes).arg(parts_);
+    scatter.arg(mapMemory_).arg(cl_uint(maps_.size())).arg(pyramid_).arg(images.out.buffer->memory()).arg(counters_);
+    const size_t groups = std::min<size_t>(screen.tileCount, 64 * size_t(device_->info().computeUnits));
+    events.push_back(
+        device_->launch(scatter, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}}));
+}
+
+LightCounts LightSpace::counts() {
+    LightCounts counts{};
+    if (counters_ && !maps_.empty()) device_->read(counters_.get(), 0, sizeof counts, &counts, true);
+    return counts;
+}
+
+}  // namespace pel

@@ -1,0 +1,51 @@
+// Shadow maps as lit surface beside a picture that scatters (docs/mathematics.md, section 10, "Light space").
+#pragma once
+#include "diffusion/light_maps.h"
+#include "diffusion/scatter_images.h"
+
+namespace pel {
+
+// What ScreenScatter has on the device.
+struct ScreenMemory {
+    cl::Memory frame, pyramid, tables, nodes, tiles;
+    uint32_t width, height;
+    size_t tileCount;
+};
+
+struct LightCounts {
+    uint32_t pixels, texels, tiles;
+};
+
+class LightSpace {
+  public:
+    explicit LightSpace(Ref<Device> device) : device_(std::move(device)) {}
+
+    // What its programs follow from. `hidden`: texels that the camera does not see fill what the screen misses; else all texels are
+    // the far part of the sum. The format and the content of all maps are one. Without a map nothing is done.
+    void announce(const std::vector<ShaderLight>& lights, bool hidden);
+    void prepare(const std::vector<ShaderLight>& lights, const float origin[3], size_t tileCount);
+    bool empty() const { return empty_; }
+    std::vector<cl::ProgramKey> programs(const ScatterImages& images) const;
+    // After the screen's pyramid and its words are made: the lights' pyramids, and what they matter to.
+    void enqueuePyramids(const ScatterImages& images, const ScreenMemory& screen, std::vector<cl::Event>& events);
+    // After what is scattered on the screen is written.
+    void enqueueSums(const ScatterImages& images, const ScreenMemory& screen, std::vector<cl::Event>& events);
+    LightCounts counts();
+    static uint64_t bytesFor(const std::vector<ShaderLight>& lights, bool hidden);
+    size_t bytes() const { return pyramidBytes_ + seenBytes_ + maps_.size() * sizeof(PelLightMap); }
+
+  private:
+    void describeLevels();
+    static uint64_t layOutLevels(std::vector<LightMap>& maps, bool hidden, uint64_t& seen);
+    cl::Range rows(const PelPyramidLevel& level) const;
+
+    Ref<Device> device_;
+    std::vector<LightMap> maps_;
+    std::vector<PelLightMap> sent_;
+    bool empty_ = true, hidden_ = true;
+    uint32_t mapFormat_ = 0, content_ = 0;
+    cl::Memory mapMemory_, pyramid_, seen_, parts_, counters_;
+    size_t pyramidBytes_ = 0, seenBytes_ = 0, partBytes_ = 0;
+};
+
+}  // namespace pel

@@ -1,0 +1,130 @@
+// Which texels of a shadow map show surface that the camera sees too (docs/mathematics.md, section 10, "Light space").
+//
+// A pixel's patch of surface, a parallelogram of its steps to the neighbours, falls on some texels; those whose depth is that of
+// the patch there show the same surface. Input: images of positions (length) or depth, and of ids. Output: a byte per texel, set
+// beforehand to 0: the pixel's id, or PEL_SEEN_OTHER where it does not scatter; which of several ids is the same each time, for equal
+// writes are all that meet inside of an object. One work-item: PEL_WIDTH pixels of a row. Variants: PEL_FORMAT_POSITION or
+// PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT.
+#include "lib/diffusion/light_space.clh"
+#include "lib/shading/material_id.clh"
+#include "lib/shading/position.clh"
+
+#define FARTHEST_TEXEL \
+    6.0f  // of a patch, from the pixel's own; wider ones are grazing, and their neighbours cover them
+#define OFF_PLANE 0.75f  // texels' lengths that a surface may be off the patch's plane
+
+static inline Vec3w loadPositions(__global const PelDiffusionFrame* frame, __global uchar* position, uint x,
+                                  uint y) {
+    const Span span = imageSpan(position, &frame->position, x, y);
+#if PEL_FORMAT_POSITION
+    const Vec3w p = loadColor(PEL_FORMAT_POSITION, span);
+#else
+    const Vec3w p = positionFromDepth(frame->inverseViewProjection, frame->width, frame->height, x, y,
+                                      loadScalar(PEL_FORMAT_DEPTH, span));
+#endif
+    return sub3(p, vec3((floatw)(frame->origin[0]), (floatw)(frame->origin[1]), (floatw)(frame->origin[2])));
+}
+
+#if PEL_WIDTH == 8
+#define BEFORE(v) PEL_SHUFFLE8(v, v, 1, 0, 1, 2, 3, 4, 5, 6)
+#define AFTER(v) PEL_SHUFFLE8(v, v, 1, 2, 3, 4, 5, 6, 7, 6)
+#elif PEL_WIDTH == 16
+#define BEFORE(v) PEL_SHUFFLE16(v, v, 1, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14)
+#define AFTER(v) PEL_SHUFFLE16(v, v, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 14)
+#endif
+
+// The shorter of the ways to two neighbours; of `b` where that to `a` is not finite.
+static inline Vec3w shorterWay(Vec3w p, Vec3w a, Vec3w b) {
+    const Vec3w toA = sub3(a, p), toB = sub3(b, p);
+    const floatw lengthA = dot3(toA, toA), lengthB = dot3(toB, toB);
+    return select3(toB, toA, finitew(lengthA) & ((lengthA <= lengthB) | notw(finitew(lengthB))));
+}
+
+typedef struct Patch {
+    floatw column, row, depth;    // of its middle
+    floatw acrossX, acrossY;      // texels to each side
+    floatw slopeX, slopeY, most;  // depth per texel, and how far off
+} Patch;
+
+static inline maskw patchOf(__global const PelLightMap* map, Vec3w p, Vec3w right, Vec3w down, Patch* patch) {
+    floatw w, unused;
+    const Vec3w at = texelOf(map, p, &w), a = sub3(texelOf(map, add3(p, right), &unused), at),
+                b = sub3(texelOf(map, add3(p, down), &unused), at);
+    const floatw across = a.x * b.y - a.y * b.x, inverse = 1.0f / across;
+    patch->column = at.x, patch->row = at.y, patch->depth = at.z;
+    patch->slopeX = (a.z * b.y - b.z * a.y) * inverse;
+    patch->slopeY = (b.z * a.x - a.z * b.x) * inverse;
+    patch->acrossX = fmin(0.5f * (fabs(a.x) + fabs(b.x)) + 0.5f, (floatw)(FARTHEST_TEXEL));
+    patch->acrossY = fmin(0.5f * (fabs(a.y) + fabs(b.y)) + 0.5f, (floatw)(FARTHEST_TEXEL));
+    // Depth along the light of a texel's length.
+    const Vec3w slope = vec3(map->toMap[8] - at.z * map->toMap[12], map->toMap[9] - at.z * map->toMap[13],
+                             map->toMap[10] - at.z * map->toMap[14]);
+    const floatw perLength = sqrt(dot3(slope, slope)) / fabs(w);
+    patch->most = OFF_PLANE * (fabs(patch->slopeX) + fabs(patch->slopeY) + perLength * fabs(w) * map->texel);
+    const float width = (float)map->level[0].width, height = (float)map->level[0].height;
+    return (w > 0.0f) & finitew(inverse) & finitew(patch->most) & (at.x > -FARTHEST_TEXEL) &
+           (at.y > -FARTHEST_TEXEL) & (at.x < width + FARTHEST_TEXEL) & (at.y < height + FARTHEST_TEXEL);
+}
+
+static inline void markPatch(__global const PelLightMap* map, __global const uchar* first,
+                             __global uchar* seen, float column, float row, float depth, float acrossX,
+                             float acrossY, float slopeX, float slopeY, float most, uchar id) {
+    const int left = max((int)ceil(column - acrossX), 0),
+              right = min((int)floor(column + acrossX), (int)map->level[0].width - 1);
+    const int top = max((int)ceil(row - acrossY), 0),
+              bottom = min((int)floor(row + acrossY), (int)map->level[0].height - 1);
+    for (int y = top; y <= bottom; ++y) {
+        __global const uchar* texels = first + (size_t)(map->firstRow + (uint)y) * map->map.rowStride;
+        __global uchar* marks = seen + map->seen + (size_t)y * map->level[0].width;
+        for (int x = left; x <= right; ++x) {
+            float there =
+                pixelComponent(PEL_FORMAT_SHADOW_MAP, texels + (size_t)(uint)x * map->map.pixelStride, 0, 0);
+            if (PEL_SHADOW_CONTENT == PEL_CONTENT_EXPONENTIAL) there = log2(there) * map->perExponent;
+            if (map->radialRange > 0.0f) {
+                const float s = (2.0f * (float)x + 1.0f) / (float)map->level[0].width - 1.0f,
+                            t = (2.0f * (float)y + 1.0f) / (float)map->level[0].height - 1.0f;
+                there = sqrt(fma(s, s, fma(t, t, 1.0f))) / (there * map->radialRange);
+            }
+            const float plane = fma((float)x - column, slopeX, fma((float)y - row, slopeY, depth));
+            if (fabs(there - plane) <= most) marks[x] = id;
+        }
+    }
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_seen(
+    __global const PelDiffusionFrame* frame, __global uchar* position, __global uchar* ids,
+    __global const PelLightMap* maps, uint index, __global uchar* texels, __global uchar* seen) {
+    const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
+    if (y >= frame->height) return;
+    __global const PelLightMap* map = maps + index;
+    const uint from = get_global_id(0) % across * PEL_WIDTH, x = vectorStart(from, frame->width);
+    const intw column = lanesw() + (int)x;
+    const maskw mine = (column >= (int)from) & (column < (int)frame->width);
+    const Vec3w p = loadPositions(frame, position, x, y);
+    const Vec3w above = loadPositions(frame, position, x, y > 0 ? y - 1 : min(y + 1, frame->height - 1)),
+                below = loadPositions(frame, position, x, y + 1 < frame->height ? y + 1 : max(y, 1u) - 1);
+#if PEL_WIDTH == 1
+    const Vec3w before = loadPositions(frame, position, x > 0 ? x - 1 : min(x + 1, frame->width - 1), y),
+                after = loadPositions(frame, position, x + 1 < frame->width ? x + 1 : max(x, 1u) - 1, y);
+#else
+    const Vec3w before = vec3(BEFORE(p.x), BEFORE(p.y), BEFORE(p.z)),
+                after = vec3(AFTER(p.x), AFTER(p.y), AFTER(p.z));
+#endif
+    Patch patch;
+    const maskw on =
+        mine & finite3(p) & patchOf(map, p, shorterWay(p, before, after), shorterWay(p, above, below), &patch);
+    if (!anyw(on)) return;
+    uintw id = (uintw)(1);
+#if PEL_FORMAT_MATERIAL
+    id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &frame->ids, x, y));
+#endif
+    __global const uchar* first = firstTexel(texels, &map->map);
+#define MARK(k, s)                                                                                             \
+    if (on s)                                                                                                  \
+        markPatch(map, first, seen, patch.column s, patch.row s, patch.depth s, patch.acrossX s,               \
+                  patch.acrossY s, patch.slopeX s, patch.slopeY s, patch.most s,                               \
+                  (uchar)(id s && id s < PEL_DIFFUSION_IDS && frame->tableOf[id s] ? min(id s, PEL_SEEN_OTHER) \
+                                                                                   : PEL_SEEN_OTHER));
+    PEL_EACH_LANE(MARK)
+#undef MARK
+}

@@ -1,0 +1,74 @@
+// The finest level of a light's pyramid (shared/light_space.h): of each texel of its shadow map where the surface is that it shows, and
+// the light that falls on it (docs/mathematics.md, section 10, "Light space").
+//
+// Input: the map, and what the camera sees of it. Output: level 0. With PEL_HIDDEN only texels that it does not see have flux;
+// without, all but those of things that do not scatter, and their ids stand beside. One work-item:
+// PEL_WIDTH texels of a row. Variants: PEL_HIDDEN, PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT.
+#include "lib/diffusion/light_space.clh"
+#include "lib/image/planes.clh"
+
+#define LONGEST_SLOPE \
+    10.0f  // surface of a texel, over its area across the light: beyond, the depths say little
+
+static inline Vec3w shorterStep(Vec3w p, Vec3w before, Vec3w after) {
+    const Vec3w back = sub3(p, before), on = sub3(after, p);
+    const floatw backLength = dot3(back, back), onLength = dot3(on, on);
+    return select3(on, back, finitew(backLength) & ((backLength < onLength) | notw(finitew(onLength))));
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_texels(
+    __global const PelLightMap* maps, uint index, __global uchar* texels, __global const uchar* seen,
+    __global float* pyramid) {
+    __global const PelLightMap* map = maps + index;
+    __global const PelPyramidLevel* level = &map->level[0];
+    const uint across = (level->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
+    if (y >= level->height) return;
+    const uint x = get_global_id(0) % across * PEL_WIDTH;
+    const size_t at = lightRow(level, 1, (int)y) + x;
+    const uint stride = level->stride;
+    __global const uchar* first = firstTexel(texels, &map->map);
+    const floatw depth = texelDepths(map, first, (int)x, (int)y);
+    const intw column = lanesw() + (int)x;
+    maskw there = surfaceAt(map, depth) & (column < (int)level->width);
+    __global const uchar* row = seen + map->seen + (size_t)y * level->width;
+#define SEEN(k, s) (there s ? (uint)row[x + k] : 0u)
+    uintw id = (uintw)(0);
+    if (anyw(there)) id = PEL_UINT_LANES(SEEN);
+#undef SEEN
+    there &= PEL_HIDDEN ? id == (uintw)(0) : id != (uintw)(PEL_SEEN_OTHER);
+    floatw flux = 0.0f;
+    if (anyw(there)) {
+        const floatw columns = convert_floatw(column), rows = (float)y;
+        const Vec3w p = pointOfTexel(map, columns, rows, depth);
+        const Vec3w right = sub3(pointOfTexel(map, columns + 1.0f, rows, depth), p),
+                    down = sub3(pointOfTexel(map, columns, rows + 1.0f, depth), p);
+        Vec3w toLight;
+        const floatw strength = lightAt(map, p, &toLight);
+        const floatw across = fabs(dot3(cross3(right, down), toLight));
+        // Surface that a finer cascade holds is its.
+        for (uint k = 1; k <= map->finer; ++k) {
+            floatw w;
+            __global const PelLightMap* finer = map - k;
+            const Vec3w t = texelOf(finer, p, &w);
+            there &= notw((t.x >= -0.5f) & (t.y >= -0.5f) & (t.x <= (float)finer->level[0].width - 0.5f) &
+                          (t.y <= (float)finer->level[0].height - 0.5f) & (t.z >= 0.0f) & (t.z <= 1.0f));
+        }
+        there &= finite3(p) & finitew(across) & finitew(strength);
+        flux = selectw((floatw)(0.0f), strength * across, there);
+        const Vec3w left = pointOfTexel(map, columns - 1.0f, rows, texelDepths(map, first, (int)x - 1, (int)y)),
+                    next = pointOfTexel(map, columns + 1.0f, rows, texelDepths(map, first, (int)x + 1, (int)y)),
+                    above = pointOfTexel(map, columns, rows - 1.0f, texelDepths(map, first, (int)x, (int)y - 1)),
+                    below = pointOfTexel(map, columns, rows + 1.0f, texelDepths(map, first, (int)x, (int)y + 1));
+        const Vec3w area = cross3(shorterStep(p, left, next), shorterStep(p, above, below));
+        floatw extent = sqrt(dot3(area, area));
+        extent = fmin(selectw(across, extent, finitew(extent)), LONGEST_SLOPE * across);
+        const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
+        const Vec3w q = select3(none, p, there);
+        storew(selectw((floatw)(0.0f), extent, there), at + PEL_LIGHT_EXTENT * stride, pyramid);
+        if (!PEL_HIDDEN) storew(as_floatw(id), at + PEL_LIGHT_ID * stride, pyramid);
+        storew(q.x, at + PEL_LIGHT_X * stride, pyramid);
+        storew(q.y, at + PEL_LIGHT_Y * stride, pyramid);
+        storew(q.z, at + PEL_LIGHT_Z * stride, pyramid);
+    }
+    storew(flux, at + PEL_LIGHT_FLUX * stride, pyramid);
+}

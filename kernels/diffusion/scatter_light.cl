@@ -1,0 +1,194 @@
+// Irradiance scattered under the surface, with the texels of shadow maps as lit surface (docs/mathematics.md, sections 9 and 10, "Light space").
+//
+// Near the point the sum runs over pixels and is divided by its weights; further away it is a sum as it stands. Without PEL_HIDDEN the
+// far part is that over the lights' texels. With PEL_HIDDEN it is over the screen, and texels that the camera does not see fill what mass
+// is missing there.
+//
+// Input: both pyramids, the words of light_classify. Output: pixels of its parts in an image like the irradiance's; others stay. One
+// work-group takes tiles, one work-item parts of them, pixel by pixel. Variants: PEL_HIDDEN, PEL_FORMAT_OUT.
+#include "lib/diffusion/windowed.clh"
+#include "lib/image/image.clh"
+#include "lib/shading/material_id.clh"
+
+#define PART 4  // pixels along a side
+// Width of the window, in steps from pixel to pixel or in texels.
+#define STEPS 2.0f
+#define TEXELS 1.5f
+#define LEAST_COSINE 0.2f  // to the light: texels on steeper surface count as if they were as long as on this
+#define NEARLY_PLANE 0.015f  // of the whole mass
+#define SURPLUS 0.01f        // mass beyond a plane's that may come of the pixels alone
+
+typedef struct Pixel {
+    float3 p, e;
+    float area, size;
+    uint id;
+} Pixel;
+
+static inline float3 pointAt(__global const float* at, uint stride) {
+    return (float3)(at[PEL_PLANE_X * stride], at[PEL_PLANE_Y * stride], at[PEL_PLANE_Z * stride]);
+}
+
+static inline Pixel pixelAt(__global const float* at, uint stride) {
+    Pixel pixel;
+    pixel.area = at[PEL_PLANE_AREA * stride];
+    pixel.size = at[PEL_PLANE_SIZE * stride];
+    pixel.id = as_uint(at[PEL_PLANE_ID * stride]);
+    pixel.p = pointAt(at, stride);
+    pixel.e = (float3)(at[PEL_PLANE_RED * stride], at[PEL_PLANE_GREEN * stride], at[PEL_PLANE_BLUE * stride]);
+    return pixel;
+}
+
+// The way to the nearer of two neighbours of the same object.
+static inline float3 shorterWay(__global const float* at, long to, uint stride, const Pixel* here) {
+    float3 way = (float3)(0.0f);
+    float least = FLT_MAX;
+    for (int side = -1; side <= 1; side += 2) {
+        __global const float* neighbour = at + to * side;
+        if (as_uint(neighbour[PEL_PLANE_ID * stride]) != here->id) continue;
+        const float3 v = (float)side * (pointAt(neighbour, stride) - here->p);
+        if (dot(v, v) < least) least = dot(v, v), way = v;
+    }
+    return way;
+}
+
+// The longest side of a light's texel on the surface.
+static inline float texelOnSurface(__global const PelLightMap* map, float3 p, float3 normal) {
+    floatw w;
+    Vec3w toLight;
+    const Vec3w at = vec3((floatw)(p.x), (floatw)(p.y), (floatw)(p.z));
+    texelOf(map, at, &w);
+    lightAt(map, at, &toLight);
+    const floatw cosine = fabs(toLight.x * normal.x + toLight.y * normal.y + toLight.z * normal.z);
+    const floatw length = map->texel * w / fmax(cosine, (floatw)(LEAST_COSINE));
+#if PEL_WIDTH == 1
+    return length;
+#else
+    return length.s0;
+#endif
+}
+
+static inline float3 shareOfPixel(__global const float* nodes, const PelProfileTable table, float area) {
+    const Vec3w share = shareOfArea(nodes, table, (floatw)(area));
+#if PEL_WIDTH == 1
+    return (float3)(share.x, share.y, share.z);
+#else
+    return (float3)(share.x.s0, share.y.s0, share.z.s0);
+#endif
+}
+
+// Light over mass, `e` where there is none.
+static inline float3 meanLight(float3 light, float3 mass, float3 e) {
+    return (float3)(mass.x > 0.0f ? light.x / mass.x : e.x, mass.y > 0.0f ? light.y / mass.y : e.y,
+                    mass.z > 0.0f ? light.z / mass.z : e.z);
+}
+
+// Blocks add up to a mass that is a little off. Where it is nearly a plane's it is taken to be that: so light that is the same
+// all round stays what it is.
+static inline float3 planeLike(float3 mass, float3 plane) {
+    const float3 off = mass - plane, trust = clamp(2.0f - fabs(off) * (1.0f / NEARLY_PLANE), 0.0f, 1.0f);
+    return mass / fmax(mass - off * trust, (float3)(FLT_MIN));
+}
+
+// What the sums of the screen and of hidden texels come to.
+typedef struct Hidden {
+    float3 nearLight, nearMass;  // of all lights; the greatest mass of one
+    float3 fill, filled;         // light that fills missing mass, and the greatest mass of one
+} Hidden;
+
+static inline float3 scatterPixel(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                                  __global const PelProfileTable* tables, __global const float* nodes,
+                                  __global const PelLightMap* maps, uint mapCount, __global const float* lights,
+                                  int x, int y, const Pixel* here, uint* blocks, uint* texels) {
+    const PelProfileTable table = tables[frame->tableOf[here->id] - 1];
+    const uint stride = frame->level[0].stride;
+    __global const float* at = pyramid + pyramidRow(&frame->level[0], y) + x;
+    const float3 right = shorterWay(at, 1, stride, here),
+                 down = shorterWay(at, (long)stride * PEL_PYRAMID_PLANES, stride, here),
+                 across = cross(right, down);
+    const float longest = sqrt(fmax(dot(right, right), dot(down, down))), shortest = sqrt(here->size);
+    Place place;
+    place.p = here->p;
+    place.id = here->id;
+    place.slack = 0.0f;
+    place.rho = STEPS * longest;
+    if (!PEL_HIDDEN) {
+        const float3 normal = across * rsqrt(fmax(dot(across, across), FLT_MIN));
+        place.rho = TEXELS * longest;
+        for (uint k = 0; k < mapCount; ++k) {
+            const float length = TEXELS * texelOnSurface(maps + k, here->p, normal);
+            if (length > place.rho && length < FLT_MAX) place.rho = length;
+        }
+    }
+    if (!(place.rho > 0.0f)) return here->e;
+    const float3 window = shareOfWindow(nodes, table, place.rho);
+    Windowed screen;
+    clearWindowed(&screen);
+    PelProfileTable seen = table;
+    if (!PEL_HIDDEN) seen.reach = fmin(table.reach, 2.0f * place.rho);
+    uint levels = 1;
+    while (levels < frame->levels && (float)(1u << levels) * shortest < seen.reach) ++levels;
+    *blocks += addScreen(&screen, frame, pyramid, nodes, seen, &place, x, y, levels);
+    const float3 own = shareOfPixel(nodes, table, here->area);
+    const float3 nearMass = own + sumOfLanes3(screen.nearMass),
+                 nearLight = own * here->e + sumOfLanes3(screen.nearLight);
+    const float3 farMass = sumOfLanes3(screen.farMass), farLight = sumOfLanes3(screen.farLight);
+    const float3 none = (float3)(0.0f);
+    const float3 missing = fmax(1.0f - window - farMass, none);
+    float3 lit = none;
+    Hidden hidden = {none, none, none, none};
+    for (uint k = 0; k < mapCount;) {
+        Windowed sums;
+        clearWindowed(&sums);
+        const uint light = maps[k].light;
+        const float3 color = vload3(0, maps[k].color);
+        for (; k < mapCount && maps[k].light == light; ++k)
+            *texels += addMap(&sums, maps + k, lights, nodes, table, &place);
+        const float3 far = color * sumOfLanes3(sums.farLight), mass = sumOfLanes3(sums.farMass);
+        lit += here->e.x + here->e.y + here->e.z > 0.0f
+                   ? far / fmax(planeLike(mass, 1.0f - window), (float3)(FLT_MIN))
+                   : far;
+        hidden.fill += far * fmin(missing / fmax(mass, (float3)(FLT_MIN)), (float3)(1.0f));
+        hidden.filled = fmax(hidden.filled, fmin(mass, missing));
+        hidden.nearLight += color * sumOfLanes3(sums.nearLight);
+        hidden.nearMass = fmax(hidden.nearMass, sumOfLanes3(sums.nearMass));
+    }
+    if (!PEL_HIDDEN) return window * meanLight(nearLight, nearMass, here->e) + lit;
+    const float3 shown =
+        window * meanLight(nearLight + hidden.nearLight, nearMass + hidden.nearMass, here->e) + farLight;
+    // Mass of which nothing is known is as what is shown; more than there is of a plane is there, beyond what may be error.
+    const float3 mass = window + farMass, surplus = fmax(mass - 1.0f - SURPLUS, none);
+    const float3 whole = fmin(mass, (float3)(1.0f)) + missing - hidden.filled + surplus;
+    return shown * (whole / fmax(mass, (float3)(FLT_MIN))) + hidden.fill;
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_light(
+    __global const PelDiffusionFrame* frame, __global const float* pyramid,
+    __global const PelProfileTable* tables, __global const float* nodes, __global const uint* parts,
+    __global const PelLightMap* maps, uint mapCount, __global const float* lights, __global uchar* out,
+    __global uint* counters) {
+    const uint count = frame->tilesX * frame->tilesY;
+    uint pixels = 0, blocks = 0, texels = 0;
+    for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
+        const uint word = parts[tile], part = get_local_id(0);
+        if (!(word >> part & 1)) continue;
+        const uint left = tile % frame->tilesX * PEL_DIFFUSION_TILE + part % PART * PART,
+                   top = tile / frame->tilesX * PEL_DIFFUSION_TILE + part / PART * PART;
+        for (uint y = top; y < min(top + PART, frame->height); ++y)
+            for (uint x = left; x < min(left + PART, frame->width); ++x) {
+                const Pixel here =
+                    pixelAt(pyramid + pyramidRow(&frame->level[0], (int)y) + x, frame->level[0].stride);
+                if (!(here.area > 0.0f)) continue;
+                const float3 s = fmax(scatterPixel(frame, pyramid, tables, nodes, maps, mapCount, lights,
+                                                   (int)x, (int)y, &here, &blocks, &texels),
+                                      (float3)(0.0f));
+                ++pixels;
+                // One lane of a vector, which begins at the pixel's place in its row.
+                const uint start = vectorStart(x, frame->width);
+                const maskw mine = lanesw() + (int)start == (intw)((int)x);
+                storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, start, y),
+                           vec3((floatw)(s.x), (floatw)(s.y), (floatw)(s.z)), mine);
+            }
+    }
+    if (pixels) atomic_add(&counters[PEL_COUNT_LIGHT_PIXELS], pixels);
+    if (texels) atomic_add(&counters[PEL_COUNT_LIGHT_TEXELS], texels);
+}

@@ -1,0 +1,55 @@
+// Constants of sums over the texels of shadow maps, laid out alike on host and device (docs/mathematics.md, section 10, "Light space").
+// Lengths are in the caller's unit, positions from PelDiffusionFrame.origin.
+#ifndef PEL_SHARED_LIGHT_SPACE
+#define PEL_SHARED_LIGHT_SPACE
+#include "shared/diffusion.h"
+
+// The lit surface as a pyramid of blocks of 2^l x 2^l texels. A block of level 1 and on is two points: a map that shows a near surface
+// beside a far one has none in between. A level is rows of planes, as those of the screen are: row y of plane p begins at
+// offset + ((y + PEL_PYRAMID_ROWS) planes + p) stride + PEL_PYRAMID_GUARD. Blocks without flux hold nothing else.
+#define PEL_LIGHT_LEVELS 12
+#define PEL_LIGHT_MAPS 24   // of all lights of a frame: cascades and faces of cubes one by one
+#define PEL_LIGHT_FLUX 0    // length^2: irradiance dA, over the light's colour
+#define PEL_LIGHT_EXTENT 1  // length^2 of surface
+#define PEL_LIGHT_X 2       // length: the middle of the flux
+#define PEL_LIGHT_Y 3
+#define PEL_LIGHT_Z 4
+#define PEL_LIGHT_ID 5  // the bits of an id, 0: not known; not where only hidden texels count
+// Planes of one point.
+#define PEL_LIGHT_PLANES(hidden) ((hidden) ? 5u : 6u)
+
+#define PEL_SEEN_OTHER 255u  // of a texel: the camera sees something there that does not scatter
+
+typedef struct PelLightMap {
+    float toMap[16];         // to homogeneous (u, v, z)
+    float toWorld[16];       // its inverse
+    PelUint32 type;          // PelLightType
+    float toLight[3];        // directional: unit
+    float position[3];       // length
+    float spotDirection[3];  // unit
+    float spotCosOuter;
+    float spotScale;  // 1 / (cosInner - cosOuter)
+    float range2;     // length^2; FLT_MAX: no limit
+    float color[3];
+    float radialRange;   // length per unit of depth where depth is the distance from the light; 0: it is not
+    float perExponent;   // depth per log2 of a texel; exponential maps
+    float texel;         // length of a texel over the homogeneous coordinate there
+    PelUint32 finer;     // maps before this one that take the surface which they hold
+    PelUint32 firstRow;  // of the image: a cube's face
+    PelUint32 seen;      // where its texels begin in the buffer of what the camera sees
+    PelUint32 levels;
+    PelUint32 light;  // maps of one light follow one another
+    PelShadeImage map;
+    PelPyramidLevel level[PEL_LIGHT_LEVELS];
+} PelLightMap;
+
+// Counters, after those of PelDiffusionFrame.
+#define PEL_COUNT_LIGHT_PIXELS 0  // that took texels of a map into account
+#define PEL_COUNT_LIGHT_TEXELS 1  // blocks of texels that were read
+#define PEL_COUNT_LIGHT_TILES 2
+#define PEL_LIGHT_COUNTERS 3
+
+#ifndef __OPENCL_VERSION__
+static_assert(sizeof(PelLightMap) == 4 * (32 + 1 + 3 + 3 + 3 + 3 + 3 + 8) + 32 + PEL_LIGHT_LEVELS * 16);
+#endif
+#endif

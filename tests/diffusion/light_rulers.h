@@ -1,0 +1,215 @@
+// Pictures with the shadow map of their light, and what light does on them: made by brute force elsewhere (a head),
+// or in closed form (a ball).
+#pragma once
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <pellucid/pellucid.hpp>
+
+#include "io/image/image_file.h"
+#include "reference/lut.h"
+#include "reference/profile.h"
+
+namespace light_rulers {
+
+using pellucid::Buffer;
+using pellucid::Device;
+using pellucid::Profile;
+
+constexpr double albedo = 0.8;  // of the pictures that errors are in
+
+// Lengths are in cm.
+struct Ruler {
+    uint32_t side = 0, samples = 1;  // pixels of the picture, of which samples^2 are one of the ruler
+    std::vector<float> positions, normals, irradiance, truth;  // RGB
+    std::vector<uint8_t> ids;
+    uint32_t mapSide = 0;
+    std::vector<float> map;
+    PelLight light = pelLightDefaults();
+    float profileScale = 1;
+    float camera = 60;  // it stands at (0, -camera, 0) and looks along y
+};
+
+// Christensen and Burley's profile with d of 0.29205, 0.10902, 0.05411 mm: the mean free path is d s(A), s = 1.1 for an albedo of 0.8.
+inline const float meanFreePath[3] = {0.29205f * 1.1f, 0.10902f * 1.1f, 0.05411f * 1.1f};
+inline const float white[3] = {0.8f, 0.8f, 0.8f};
+inline Profile profile() {
+    return Profile::burley(meanFreePath, white);
+}
+
+inline nlohmann::json readJson(const std::string& path) {
+    std::ifstream file(path);
+    return nlohmann::json::parse(file);
+}
+
+// Depths are lengths along the light.
+inline void addMap(Ruler& r, const std::string& base) {
+    const nlohmann::json json = readJson(base + ".json");
+    const pellucid::io::Image image = pellucid::io::readImage(base + "_shadowmap.exr");
+    r.mapSide = uint32_t(image.width);
+    r.map = image.channel("ViewLayer.Depth.Z").pixels;
+    const auto& view = json["shadow_map"]["world_to_light_view"];
+    const double extent = json["shadow_map"]["ortho_extent_cm"];
+    for (int k = 0; k < 4; ++k) {
+        r.light.worldToShadow[k] = float(double(view[0][k]) / extent + (k == 3 ? 0.5 : 0));
+        r.light.worldToShadow[4 + k] = float(-double(view[1][k]) / extent + (k == 3 ? 0.5 : 0));
+        r.light.worldToShadow[8 + k] = -float(view[2][k]);
+        r.light.worldToShadow[12 + k] = k == 3;
+    }
+    r.light.shadowDepthRange = 1;
+    for (int k = 0; k < 3; ++k) r.light.toLight[k] = float(json["light"]["direction_towards_light_world"][k]);
+}
+
+inline std::vector<float> readHalves(const std::string& path, size_t count) {
+    std::ifstream file(path, std::ios::binary);
+    std::vector<char> bytes((std::istreambuf_iterator<char>(file)), {});
+    std::vector<float> values(count);
+    const char* from = bytes.data() + bytes.size() - 2 * count;
+    for (size_t i = 0; i < count; ++i) {
+        uint16_t h;
+        std::memcpy(&h, from + 2 * i, 2);
+        const int exponent = h >> 10 & 31, mantissa = h & 1023;
+        const double v = exponent ? std::ldexp(1 + mantissa / 1024.0, exponent - 15) : std::ldexp(mantissa, -24);
+        values[i] = float(h >> 15 ? -v : v);
+    }
+    return values;
+}
+
+inline Ruler head1536(const std::string& rulers, const std::string& gbuffers) {
+    const pellucid::io::Image image = pellucid::io::readImage(rulers + "/head_side_1536.exr");
+    Ruler r;
+    r.side = 1536, r.samples = 3;
+    const std::string position[] = {"Position.X", "Position.Y", "Position.Z"},
+                      normal[] = {"NS.X", "NS.Y", "NS.Z"}, surface[] = {"Surface.R", "Surface.G", "Surface.B"},
+                      light[] = {"Irradiance.Y", "Irradiance.Y", "Irradiance.Y"};
+    r.positions = image.interleaved(position);
+    r.normals = image.interleaved(normal);
+    r.truth = image.interleaved(surface);
+    r.irradiance = image.interleaved(light);
+    for (float id : image.channel("IndexOB.X").pixels) r.ids.push_back(id > 0);
+    addMap(r, gbuffers + "/head_side");
+    return r;
+}
+
+inline void readGbuffer(Ruler& r, const std::string& path) {
+    const pellucid::io::Image image = pellucid::io::readImage(path);
+    r.side = uint32_t(image.width);
+    const std::string v = "ViewLayer.", position[] = {v + "Position.X", v + "Position.Y", v + "Position.Z"},
+                      normal[] = {v + "NShading.R", v + "NShading.G", v + "NShading.B"};
+    r.positions = image.interleaved(position);
+    r.normals = image.interleaved(normal);
+    for (float id : image.channel(v + "IndexOB.X").pixels) r.ids.push_back(id > 0);
+}
+
+inline Ruler headTimesFour(const std::string& rulers, const std::string& gbuffers) {
+    Ruler r;
+    readGbuffer(r, gbuffers + "/head_gbuf.exr");
+    const std::vector<float> e = readHalves(rulers + "/head_side_irradiance_f16.npy", r.ids.size());
+    for (float v : e) r.irradiance.insert(r.irradiance.end(), 3, v);
+    r.truth = readHalves(rulers + "/head_side_x4_surface_integral_f16.npy", 3 * r.ids.size());
+    r.profileScale = 4;
+    addMap(r, gbuffers + "/head_side");
+    return r;
+}
+
+// A ball of 10 mm, in the closed form of section 2.
+inline Ruler ball(const std::string& gbuffers) {
+    Ruler r;
+    readGbuffer(r, gbuffers + "/sphere10_gbuf.exr");
+    r.camera = 10;
+    addMap(r, gbuffers + "/sphere10_side");
+    const auto exact =
+        reference::burleyProfile({meanFreePath[0], meanFreePath[1], meanFreePath[2]}, {0.8, 0.8, 0.8});
+    std::vector<reference::Rgb> curve;  // over N.L from -1 to 1
+    const int steps = 200;
+    for (int k = 0; k <= steps; ++k)
+        curve.push_back(reference::curvatureD(reference::Form::sphere, *exact, -1 + 2.0 * k / steps, 10));
+    for (size_t i = 0; i < r.ids.size(); ++i) {
+        double cosine = 0;
+        for (int c = 0; c < 3; ++c) cosine += double(r.positions[3 * i + c]) * r.light.toLight[c];
+        const double u = std::clamp((cosine + 1) / 2 * steps, 0.0, steps - 1e-9);
+        const reference::Rgb s = mix(curve[size_t(u)], curve[size_t(u) + 1], u - std::floor(u));
+        for (int c = 0; c < 3; ++c) {
+            r.irradiance.push_back(r.ids[i] ? float(std::max(0.0, cosine)) : 0.0f);
+            r.truth.push_back(r.ids[i] ? float(s[c]) : 0.0f);
+        }
+    }
+    return r;
+}
+
+struct Shown {
+    std::vector<float> light;  // scattered irradiance
+    PelShaderStats stats;
+    double milliseconds;
+};
+
+// By the shader, at an albedo of 1. `given`: with the ruler's irradiance, else from the map's shadow.
+inline Shown shade(const Device& device, const Ruler& r, PelScattering scattering, bool given,
+                   bool withMap = true, float targetError = pelShaderOptionsDefaults().targetError) {
+    pellucid::Shader shader(device);
+    PelShaderOptions options = pelShaderOptionsDefaults();
+    options.millimetresPerUnit = 10;
+    options.countPixels = 1;
+    options.targetError = targetError;
+    shader.set(options);
+    const Buffer p(device, r.positions), n(device, r.normals), e(device, r.irradiance), i(device, r.ids),
+        map(device, r.map), out(device, std::vector<float>(r.positions.size(), 0.0f));
+    const auto rgb = [&](const Buffer& b) { return pellucid::imageDesc(b, PEL_FORMAT_RGB32F, r.side, r.side); };
+    shader.set(PEL_SLOT_RADIANCE, rgb(out));
+    shader.set(PEL_SLOT_POSITION, rgb(p));
+    shader.set(PEL_SLOT_NORMAL_SHADING, rgb(n));
+    if (given) shader.set(PEL_SLOT_IRRADIANCE, rgb(e));
+    shader.set(PEL_SLOT_MATERIAL, pellucid::imageDesc(i, PEL_FORMAT_R8_UINT, r.side, r.side));
+    PelMaterial material = pelMaterialDefaults();
+    const Profile skin = profile();
+    material.profile = skin.get();
+    material.scattering = scattering;
+    material.specular = 0;
+    if (r.profileScale != 1) material.diffusionRadius = float(skin.info().radius) * r.profileScale / 10;
+    std::fill_n(material.albedo, 3, 1.0f);
+    shader.setMaterial(1, material);
+    // Of clip = (x, z, y + camera - 1, y + camera): only where the camera stands matters.
+    PelCamera camera = pelCameraDefaults();
+    std::fill_n(camera.inverseViewProjection, 16, 0.0f);
+    camera.position[1] = -r.camera;
+    camera.inverseViewProjection[0] = camera.inverseViewProjection[9] = camera.inverseViewProjection[14] = 1;
+    camera.inverseViewProjection[6] = -r.camera;
+    shader.set(camera);
+    PelLight light = r.light;
+    std::fill_n(light.color, 3, 1.0f);
+    shader.set(std::vector<PelLight>{light});
+    if (withMap)
+        shader.set(0, PEL_LIGHT_SHADOW_MAP, pellucid::imageDesc(map, PEL_FORMAT_R32F, r.mapSide, r.mapSide));
+    shader.commit();
+    shader.execute();
+    shader.execute();
+    const PelShaderStats stats = shader.stats();
+    return {out.readAll<float>(), stats, stats.deviceMilliseconds};
+}
+
+// Root mean square per channel over the ruler's pixels that are wholly covered, in 1e-4 of radiance. `unlit`: of those without light.
+inline std::array<double, 3> error(const Ruler& r, const std::vector<float>& result, bool unlit = false) {
+    std::array<double, 3> sum{};
+    size_t count = 0;
+    const size_t k = r.samples, coarse = r.side / k;
+    for (size_t y = 0; y < coarse; ++y)
+        for (size_t x = 0; x < coarse; ++x) {
+            double mean[3] = {};
+            bool covered = true;
+            for (size_t j = 0; j < k * k; ++j) {
+                const size_t i = (k * y + j / k) * r.side + k * x + j % k;
+                covered &= r.ids[i] != 0 && !(unlit && r.irradiance[3 * i] > 0);
+                for (int c = 0; c < 3; ++c)
+                    mean[c] += (result[3 * i + c] - r.truth[3 * i + c]) / double(k * k);
+            }
+            if (!covered) continue;
+            ++count;
+            for (int c = 0; c < 3; ++c) sum[c] += mean[c] * mean[c];
+        }
+    for (double& s : sum) s = 1e4 * albedo * std::sqrt(s / double(std::max<size_t>(count, 1)));
+    return sum;
+}
+
+}  // namespace light_rulers

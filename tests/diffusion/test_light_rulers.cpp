@@ -1,0 +1,68 @@
+// Scattering with the shadow map of the light, against rulers made elsewhere: what the camera does not see is in the map.
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "diffusion/light_rulers.h"
+#include "tolerances.h"
+
+using namespace light_rulers;
+
+namespace {
+
+using Errors = std::array<double, 3>;
+
+void print(const char* what, const Errors& e, double milliseconds = 0) {
+    std::printf("%-28s 1e-4: %6.1f %6.1f %6.1f   %.1f ms\n", what, e[0], e[1], e[2], milliseconds);
+}
+
+// With visibility given: screen and maps keep to `most`, and are nearer than the screen alone; maps alone are nearer than Lambert.
+void hold(const Ruler& r, const tolerance::Tolerance (&most)[3], int channelsOfLight) {
+    const Device device("");
+    const Shown both = shade(device, r, PEL_SCATTERING_AUTO, true),
+                screen = shade(device, r, PEL_SCATTERING_AUTO, true, false),
+                light = shade(device, r, PEL_SCATTERING_LIGHT, true),
+                mapAlone = shade(device, r, PEL_SCATTERING_AUTO, false);
+    const Errors lambert = error(r, r.irradiance), withMap = error(r, both.light),
+                 without = error(r, screen.light), ofLight = error(r, light.light);
+    print("Lambert", lambert);
+    print("auto", without, screen.milliseconds);
+    print("auto and map", withMap, both.milliseconds);
+    print("light", ofLight, light.milliseconds);
+    print("auto, irradiance of the map", error(r, mapAlone.light), mapAlone.milliseconds);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_LT(withMap[c], most[c]);
+        EXPECT_LT(withMap[c], lambert[c]);
+        if (c < channelsOfLight) {
+            EXPECT_LT(ofLight[c], lambert[c]);
+        }
+    }
+    EXPECT_LT(withMap[0], 0.9 * without[0]);
+    EXPECT_LT(error(r, both.light, true)[0], error(r, screen.light, true)[0]);
+}
+
+const char* folder(const char* name) {
+    return std::getenv(name);
+}
+
+}  // namespace
+
+TEST(LightRulers, HeadLitFromTheSide) {
+    const char *rulers = folder("PELLUCID_RULER_DIR"), *gbuffers = folder("PELLUCID_GBUFFER_DIR");
+    if (!rulers || !gbuffers)
+        GTEST_SKIP() << "PELLUCID_RULER_DIR or PELLUCID_GBUFFER_DIR is not set: no ruler";
+    hold(head1536(rulers, gbuffers), tolerance::lightHead, 3);
+}
+
+TEST(LightRulers, HeadOfFourTimesTheRadius) {
+    const char *rulers = folder("PELLUCID_RULER_DIR"), *gbuffers = folder("PELLUCID_GBUFFER_DIR");
+    if (!rulers || !gbuffers)
+        GTEST_SKIP() << "PELLUCID_RULER_DIR or PELLUCID_GBUFFER_DIR is not set: no ruler";
+    hold(headTimesFour(rulers, gbuffers), tolerance::lightFour, 3);
+}
+
+TEST(LightRulers, Ball) {
+    const char* gbuffers = folder("PELLUCID_GBUFFER_DIR");
+    if (!gbuffers) GTEST_SKIP() << "PELLUCID_GBUFFER_DIR is not set: no G-buffer";
+    hold(ball(gbuffers), tolerance::lightBall, 1);
+}
