@@ -410,6 +410,11 @@ inline constexpr Tolerance scatterTapsRms{
     "taps that round to another pixel, where the profile's table ends a node further out"};
 inline constexpr Tolerance scatterTapsMost{"scatterTapsMost", 4e-2, "the same, of the worst pixel"};
 inline constexpr Tolerance scatterManyTaps{"scatterManyTaps", 6e-3, "256 taps on a disk against every pixel"};
+inline constexpr Tolerance textureEdge{"textureEdge", 1e-2,
+                                       "Gaussians sampled at half a sigma, of a step one texel wide"};
+inline constexpr Tolerance texturePlane{"texturePlane", 4.5e-3,
+                                        "the narrowest Gaussians are below a texel there"};
+inline constexpr Tolerance textureSphere{"textureSphere", 1.3e-3, "texels along u and v stand for distances"};
 
 // --- tables as BC6H ---
 inline constexpr Tolerance bc6hMax{

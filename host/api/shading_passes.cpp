@@ -8,9 +8,9 @@ namespace pel {
 // A pass reads what earlier passes made.
 std::span<const PassKind> shadingPasses() {
     static const PassKind passes[] = {
-        ambientCubePass, classifyTilesPass, blurNormalsPass,    normalMapPass, shadowBoundsPass,
-        wideShadowPass,  irradiancePass,    prepareScatterPass, diskPass,      separablePass,
-        scatterPass,     lightScatterPass,  weighScatterPass,   shadePass};
+        ambientCubePass, classifyTilesPass, blurNormalsPass,    normalMapPass,    shadowBoundsPass,
+        wideShadowPass,  irradiancePass,    prepareScatterPass, diskPass,         separablePass,
+        texturePass,     scatterPass,       lightScatterPass,   weighScatterPass, shadePass};
     return passes;
 }
 

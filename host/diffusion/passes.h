@@ -4,7 +4,7 @@
 
 namespace pel {
 
-extern const PassKind prepareScatterPass, diskPass, separablePass, scatterPass, lightScatterPass,
+extern const PassKind prepareScatterPass, diskPass, separablePass, texturePass, scatterPass, lightScatterPass,
     weighScatterPass;
 
 }  // namespace pel

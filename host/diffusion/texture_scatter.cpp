@@ -2,14 +2,52 @@
 
 #include <cmath>
 #include <cstring>
+#include <numeric>
+
+#include "shading/check_settings.h"
+#include "shading/image_slots.h"
+#include "shading/launch_ranges.h"
+#include "shading/scratch_image.h"
+#include "shading/shading_constants.h"
 
 namespace pel {
 namespace {
 
 constexpr uint32_t largestSide = 16384;
+constexpr size_t texelBytes = 4 * sizeof(float);
 
-[[noreturn]] void notYet(const char* call) {
-    fail(PEL_ERROR_UNSUPPORTED, call, " is not in this build of the library");
+// Number from 1 of the connected part of the mesh that each triangle belongs to.
+std::vector<uint32_t> islandsOf(const std::vector<uint32_t>& indices, uint32_t vertices) {
+    std::vector<uint32_t> parent(vertices);
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto root = [&](uint32_t v) {
+        while (parent[v] != v) v = parent[v] = parent[parent[v]];
+        return v;
+    };
+    for (size_t i = 0; i + 2 < indices.size(); i += 3)
+        for (size_t k = 1; k < 3; ++k) parent[root(indices[i + k])] = root(indices[i]);
+    std::vector<uint32_t> islands;
+    for (size_t i = 0; i + 2 < indices.size(); i += 3) islands.push_back(root(indices[i]) + 1);
+    return islands;
+}
+
+void checkParams(const PelTextureScatterParams& params, const Profile& profile, const ImageView& albedo) {
+    if (!(params.scale > 0) || !std::isfinite(params.scale))
+        invalidArgument("PelTextureScatterParams.scale is ", params.scale,
+                        "; a length above 0 is needed, in units of positions per unit of the profile");
+    const Rgb width = profile.shape().width();
+    for (double w : width)
+        if (!(w * params.scale * w * params.scale > 1e-30 && w * params.scale * w * params.scale < 1e30))
+            invalidArgument("PelTextureScatterParams.scale is ", params.scale, ", and makes the profile ",
+                            w * params.scale, " wide; 1e-15 to 1e15 would do");
+    if (!(params.albedoBefore >= 0 && params.albedoBefore <= 1))
+        invalidArgument("PelTextureScatterParams.albedoBefore is ", params.albedoBefore,
+                        "; it must be between 0 and 1");
+    if (params.gaussians < 2 || params.gaussians > 12)
+        invalidArgument("PelTextureScatterParams.gaussians is ", params.gaussians, "; 2 to 12 would be right");
+    if ((params.albedoBefore > 0 || params.albedoAfter) && !albedo)
+        invalidArgument("PelTextureScatterParams.", params.albedoAfter ? "albedoAfter" : "albedoBefore",
+                        " is set, and there is no albedo");
 }
 
 }  // namespace
@@ -32,36 +70,166 @@ Ref<TextureScatter> TextureScatter::create(const Ref<Device>& device, const PelT
     for (uint64_t i = 0; i < desc.numIndices; ++i)
         if (desc.indices[i] >= desc.numVertices)
             invalidArgument("triangle ", i / 3, " has the vertex ", desc.indices[i], " of ", desc.numVertices);
-    const Ref<TextureScatter> made = Ref<TextureScatter>::adopt(new TextureScatter(device, desc));
-    made->indices_.assign(desc.indices, desc.indices + desc.numIndices);
-    made->uvs_.resize(2 * size_t(desc.numVertices));
+    const std::vector<uint32_t> indices(desc.indices, desc.indices + desc.numIndices);
+    std::vector<float> uvs(2 * size_t(desc.numVertices));
     for (uint32_t i = 0; i < desc.numVertices; ++i) {
-        float* uv = &made->uvs_[2 * size_t(i)];
+        float* uv = &uvs[2 * size_t(i)];
         std::memcpy(uv, reinterpret_cast<const char*>(desc.uvs) + size_t(i) * stride, 2 * sizeof(float));
         if (!(uv[0] >= 0 && uv[0] <= 1 && uv[1] >= 0 && uv[1] <= 1))
             invalidArgument("vertex ", i, " has the texture coordinates (", uv[0], ", ", uv[1],
                             "); from 0 to 1 would be right");
     }
+    const Ref<TextureScatter> made = Ref<TextureScatter>::adopt(new TextureScatter(device, desc));
+    made->drawMesh(indices, uvs);
     return made;
 }
 
-void TextureScatter::setPositions(const VertexView&) {
-    notYet("pelTextureScatterSetPositions");
+void TextureScatter::drawMesh(const std::vector<uint32_t>& indices, const std::vector<float>& uvs) {
+    triangles_ = uint32_t(indices.size() / 3);
+    indices_ = indices.empty() ? device_->allocate(16) : device_->allocate(indices.size() * 4, indices.data());
+    uvs_ = uvs.empty() ? device_->allocate(16) : device_->allocate(uvs.size() * 4, uvs.data());
+    const std::vector<uint32_t> islands = islandsOf(indices, vertices_);
+    islands_ = islands.empty() ? device_->allocate(16) : device_->allocate(islands.size() * 4, islands.data());
+    owners_ = device_->allocate(texels() * sizeof(cl_uint));
+    tileFlags_ = device_->allocate(tiles() * sizeof(cl_uint));
+    counters_ = device_->allocate(PEL_TEXTURE_COUNTERS * sizeof(cl_uint));
+    device_->fill(owners_.get(), 0, texels() * sizeof(cl_uint), 0);
+    device_->fill(counters_.get(), 0, PEL_TEXTURE_COUNTERS * sizeof(cl_uint), 0);
+    describe({}, {}, {}, 0, 0);
+    const cl::Program map = program("diffusion/texture_map.cl", {}, {}, {});
+    cl::Launch owner(map, "texture_owner");
+    owner.arg(frameMemory_).arg(indices_).arg(uvs_).arg(owners_);
+    launch(owner, triangles_);
+    cl::Launch tile(map, "texture_tiles");
+    tile.arg(frameMemory_).arg(owners_).arg(tileFlags_).arg(counters_);
+    launch(tile, tiles());
+    events_.clear();
 }
 
-void TextureScatter::draw(const VertexView&, bool, const ImageView&) {
-    notYet("pelTextureScatterDraw");
+void TextureScatter::launch(cl::Launch& launch, size_t items) {
+    if (items) events_.push_back(device_->launch(launch, {{items, 1, 1}, {PEL_TEXTURE_GROUP, 1, 1}}));
 }
 
-void TextureScatter::execute(const PelTextureScatterParams&, const Ref<Profile>&, const ImageView&,
-                             const ImageView&, const ImageView&) {
-    notYet("pelTextureScatterExecute");
+void TextureScatter::describe(const ImageView& irradiance, const ImageView& albedo, const ImageView& out,
+                              float before, float after) {
+    PelTextureFrame frame{};
+    frame.width = width_, frame.height = height_, frame.tilesX = tilesX();
+    frame.triangles = triangles_;
+    frame.before = before, frame.after = after;
+    frame.irradiance = describeImage(irradiance);
+    frame.albedo = describeImage(albedo);
+    frame.out = describeImage(out);
+    if (frameMemory_ && !std::memcmp(&frame, &frame_, sizeof frame)) return;
+    frame_ = frame;
+    frameMemory_ = device_->allocate(sizeof frame, &frame_);
+}
+
+cl::Program TextureScatter::program(const char* file, const ImageView& irradiance, const ImageView& albedo,
+                                    const ImageView& out) const {
+    const auto code = [](const ImageView& view) { return text(formatCode(view, 1)); };
+    // A program needs some format to store in, also where it stores nothing.
+    return device_->programs().get({{file},
+                                    {{"PEL_WIDTH", text(1)},
+                                     {"PEL_FORMAT_IRRADIANCE", code(irradiance)},
+                                     {"PEL_FORMAT_ALBEDO", code(albedo)},
+                                     {"PEL_FORMAT_OUT", out ? code(out) : text(int(PEL_FORMAT_RGB32F))}}});
+}
+
+void TextureScatter::checkSize(const ImageView& view, const char* name) const {
+    if (view.width != width_ || view.height != height_)
+        invalidArgument("the ", name, " image is ", view.width, " x ", view.height, ", the texture ", width_,
+                        " x ", height_, "; they must have one size");
+}
+
+void TextureScatter::setPositions(const VertexView& positions) {
+    events_.clear();
+    if (!stretch_) stretch_ = device_->allocate(texels() * texelBytes);
+    cl::Launch stretch(program("diffusion/texture_map.cl", {}, {}, {}), "texture_stretch");
+    stretch.arg(frameMemory_).arg(indices_).arg(uvs_).arg(islands_);
+    stretch.arg(positions.memory).arg(positions.layout).arg(owners_).arg(stretch_);
+    launch(stretch, texels());
+    placed_ = true;
+}
+
+void TextureScatter::draw(const VertexView& values, bool unit, const ImageView& out) {
+    checkImage(PEL_SLOT_RADIANCE, out);
+    checkSize(out, "output");
+    describe({}, {}, out, 0, 0);
+    events_.clear();
+    cl::Launch one(program("diffusion/texture_map.cl", {}, {}, out), "texture_draw");
+    one.arg(frameMemory_).arg(indices_).arg(uvs_).arg(values.memory).arg(values.layout).arg(owners_);
+    one.arg(cl_uint(unit)).arg(memoryOf(out));
+    launch(one, texels());
+}
+
+void TextureScatter::execute(const PelTextureScatterParams& params, const Ref<Profile>& profile,
+                             const ImageView& irradiance, const ImageView& albedo, const ImageView& out) {
+    if (!placed_)
+        fail(PEL_ERROR_INVALID_STATE,
+             "the mesh has no positions yet: pelTextureScatterSetPositions comes first");
+    checkParams(params, *profile, albedo);
+    checkImage(PEL_SLOT_ALBEDO, irradiance);
+    checkSize(irradiance, "irradiance");
+    checkImage(PEL_SLOT_RADIANCE, out);
+    checkSize(out, "output");
+    if (overlapsElsewhere(out, irradiance))
+        invalidArgument("the output overlaps the irradiance image, and not texel on texel");
+    if (albedo) {
+        checkImage(PEL_SLOT_ALBEDO, albedo);
+        checkSize(albedo, "albedo");
+        if (sharesBytes(out, albedo)) invalidArgument("the output overlaps the albedo image, which is read");
+    }
+    if (chainOf_.get() != profile.get() || chainMost_ != params.gaussians)
+        chain_ = gaussianChain(*profile, params.gaussians), chainOf_ = profile, chainMost_ = params.gaussians;
+    std::vector<PelTextureBlur> blurs;
+    double before = 0;
+    for (const GaussianTerm& term : chain_.terms) {
+        PelTextureBlur blur{};
+        blur.variance = float((term.variance - before) * params.scale * params.scale);
+        blur.before = float(before * params.scale * params.scale);
+        before = term.variance;
+        for (int c = 0; c < 3; ++c) blur.weight[c] = float(term.weight[c]);
+        blurs.push_back(blur);
+        blur.down = 1, blur.first = blurs.size() == 1;
+        blurs.push_back(blur);
+    }
+    for (cl::Memory* memory : {&light_, &blurred_, &result_})
+        if (!*memory) *memory = device_->allocate(texels() * texelBytes);
+    blurs_ = device_->allocate(blurs.size() * sizeof blurs[0], blurs.data());
+    describe(irradiance, albedo, out, params.albedoBefore, params.albedoAfter ? 1 - params.albedoBefore : 0);
+    device_->fill(counters_.get(), PEL_COUNT_TEXELS_INVALID * sizeof(cl_uint), sizeof(cl_uint), 0);
+    events_.clear();
+    const cl::Program kernels = program("diffusion/scatter_texture.cl", irradiance, albedo, out);
+    cl::Launch light(kernels, "texture_light");
+    light.arg(frameMemory_).arg(stretch_).arg(memoryOf(irradiance)).arg(memoryOf(albedo)).arg(light_).arg(counters_);
+    launch(light, texels());
+    for (uint32_t i = 0; i < blurs.size(); ++i) {
+        cl::Launch blur(kernels, "texture_blur");
+        blur.arg(frameMemory_).arg(blurs_).arg(cl_uint(i)).arg(stretch_).arg(tileFlags_);
+        blur.arg(i % 2 ? blurred_ : light_).arg(i % 2 ? light_ : blurred_).arg(result_);
+        launch(blur, std::min<size_t>(tiles(), 64 * size_t(device_->info().computeUnits)) * PEL_TEXTURE_GROUP);
+    }
+    cl::Launch result(kernels, "texture_result");
+    result.arg(frameMemory_).arg(light_).arg(result_).arg(memoryOf(albedo)).arg(memoryOf(out));
+    launch(result, texels());
 }
 
 PelTextureScatterStats TextureScatter::stats() {
+    device_->finish();
     PelTextureScatterStats stats = pelTextureScatterStatsDefaults();
-    stats.texelsTotal = uint64_t(width_) * height_;
-    stats.tilesTotal = uint64_t((width_ + 15) / 16) * ((height_ + 15) / 16);
+    cl_uint counts[PEL_TEXTURE_COUNTERS];
+    device_->read(counters_.get(), 0, sizeof counts, counts, true);
+    stats.texelsTotal = texels();
+    stats.texelsCovered = counts[PEL_COUNT_TEXELS_COVERED];
+    stats.texelsInvalid = counts[PEL_COUNT_TEXELS_INVALID];
+    stats.tilesTotal = tiles();
+    stats.tilesBlurred = uint64_t(counts[PEL_COUNT_TEXTURE_TILES]) * chain_.terms.size();
+    stats.gaussians = chain_.terms.size();
+    stats.profileError = chain_.error;
+    stats.scratchBytes =
+        texels() * (sizeof(cl_uint) + texelBytes * (placed_ + 3 * bool(light_))) + tiles() * sizeof(cl_uint);
+    stats.launches = uint32_t(events_.size());
+    for (const cl::Event& event : events_) stats.deviceMilliseconds += eventMilliseconds(event);
     return stats;
 }
 

@@ -1,10 +1,11 @@
-// PelTextureScatter: scattering in the texture of a mesh.
+// PelTextureScatter: scattering in the texture of a mesh (kernels/diffusion/texture_map.cl and scatter_texture.cl).
 #pragma once
 #include <vector>
 
 #include "core/image_view.h"
-#include "lut/profile.h"
+#include "diffusion/gaussian_chain.h"
 #include "mesh/vertex_view.h"
+#include "shared/texture_scatter.h"
 
 namespace pel {
 
@@ -27,11 +28,27 @@ class TextureScatter final : public Object {
     TextureScatter(const Ref<Device>& device, const PelTextureScatterDesc& desc)
         : Object(kind), device_(device), width_(desc.width), height_(desc.height), vertices_(desc.numVertices) {}
     ~TextureScatter() override = default;
+    void drawMesh(const std::vector<uint32_t>& indices, const std::vector<float>& uvs);
+    void describe(const ImageView& irradiance, const ImageView& albedo, const ImageView& out, float before,
+                  float after);
+    void checkSize(const ImageView& view, const char* name) const;
+    cl::Program program(const char* file, const ImageView& irradiance, const ImageView& albedo,
+                        const ImageView& out) const;
+    void launch(cl::Launch& launch, size_t items);
+    size_t texels() const { return size_t(width_) * height_; }
+    uint32_t tilesX() const { return (width_ + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE; }
+    uint32_t tiles() const { return tilesX() * ((height_ + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE); }
 
     Ref<Device> device_;
-    uint32_t width_, height_, vertices_;
-    std::vector<uint32_t> indices_;
-    std::vector<float> uvs_;
+    uint32_t width_, height_, vertices_, triangles_ = 0;
+    PelTextureFrame frame_{};
+    cl::Memory frameMemory_, indices_, uvs_, islands_, owners_, tileFlags_, counters_, stretch_;
+    cl::Memory light_, blurred_, result_, blurs_;  // of executions
+    bool placed_ = false;
+    GaussianChain chain_{};
+    Ref<Profile> chainOf_;
+    uint32_t chainMost_ = 0;
+    std::vector<cl::Event> events_;
 };
 
 }  // namespace pel

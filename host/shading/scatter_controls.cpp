@@ -21,6 +21,11 @@ void checkMaterial(uint32_t id, const ShaderMaterial& material, const ShaderStat
             "material ", id, " has a thinThickness of ", m.thinThickness,
             ", and there is an irradiance image, and no back irradiance image: the light of the other side "
             "is not known");
+    if (m.scattering == PEL_SCATTERING_TEXTURE && (!material.scatteredTexture || !state.images[PEL_SLOT_UV]))
+        invalidArgument("material ", id, " takes light that was scattered in its texture, and there is no ",
+                        material.scatteredTexture
+                            ? "UV image to sample it by"
+                            : "such texture: pelShaderSetScatteredTexture gives it one");
     if (!readsIrradiance(material) || m.scattering == PEL_SCATTERING_NONE || byTaps(m)) return;
     if (m.borderColor[0] > 0 || m.borderColor[1] > 0 || m.borderColor[2] > 0)
         fail(PEL_ERROR_UNSUPPORTED, "material ", id, " has a borderColor and scatters by \"",

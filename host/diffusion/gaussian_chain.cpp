@@ -1,0 +1,99 @@
+#include "diffusion/gaussian_chain.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pel {
+namespace {
+
+constexpr int samples = 96;
+
+// Weights of 0 and more that bring the sum of the columns nearest to `wanted`, one after the other until they settle.
+std::vector<double> fitWeights(const std::vector<std::vector<double>>& columns,
+                               const std::vector<double>& wanted) {
+    std::vector<double> weights(columns.size(), 1.0 / double(columns.size())), left = wanted;
+    for (size_t k = 0; k < columns.size(); ++k)
+        for (size_t i = 0; i < left.size(); ++i) left[i] -= weights[k] * columns[k][i];
+    for (int round = 0; round < 400; ++round)
+        for (size_t k = 0; k < columns.size(); ++k) {
+            double along = 0, length = 0;
+            for (size_t i = 0; i < left.size(); ++i)
+                along += columns[k][i] * left[i], length += columns[k][i] * columns[k][i];
+            const double next = length > 0 ? std::max(0.0, weights[k] + along / length) : 0;
+            for (size_t i = 0; i < left.size(); ++i) left[i] += (weights[k] - next) * columns[k][i];
+            weights[k] = next;
+        }
+    return weights;
+}
+
+double within(const std::vector<GaussianTerm>& terms, int channel, double r) {
+    double sum = 0;
+    for (const GaussianTerm& t : terms) sum += t.weight[channel] * -std::expm1(-r * r / (2 * t.variance));
+    return sum;
+}
+
+std::vector<double> distancesOf(const Profile& profile) {
+    const Rgb width = profile.shape().width();
+    const double low = 0.02 * std::min({width[0], width[1], width[2]}),
+                 high = 8 * std::max({width[0], width[1], width[2]});
+    std::vector<double> distances;
+    for (int i = 0; i < samples; ++i)
+        distances.push_back(low * std::pow(high / low, double(i) / (samples - 1)));
+    return distances;
+}
+
+double errorOf(const std::vector<GaussianTerm>& terms, const std::vector<double>& distances,
+               const std::vector<Rgb>& shares) {
+    double most = 0;
+    for (size_t i = 0; i < distances.size(); ++i)
+        for (int c = 0; c < 3; ++c)
+            most = std::max(most, std::abs(within(terms, c, distances[i]) - shares[i][c]));
+    return most;
+}
+
+}  // namespace
+
+GaussianChain gaussianChain(const Profile& profile, uint32_t most) {
+    const std::vector<double> distances = distancesOf(profile);
+    std::vector<Rgb> shares;
+    for (double r : distances) {
+        const Rgb beyond = profile.shape().transmission(r);
+        shares.push_back({1 - beyond[0], 1 - beyond[1], 1 - beyond[2]});
+    }
+    GaussianChain best{profile.terms(), 0};
+    if (!best.terms.empty() && best.terms.size() <= most) {
+        std::ranges::sort(best.terms, {}, &GaussianTerm::variance);
+        best.error = errorOf(best.terms, distances, shares);
+        return best;
+    }
+    const Rgb width = profile.shape().width();
+    const double narrowest = std::min({width[0], width[1], width[2]}),
+                 widest = std::max({width[0], width[1], width[2]});
+    best.error = INFINITY;
+    for (double low : {0.015, 0.03, 0.06, 0.12, 0.25, 0.5})
+        for (double high : {1.0, 1.4, 2.0}) {
+            std::vector<GaussianTerm> terms;
+            std::vector<std::vector<double>> columns;
+            for (uint32_t k = 0; k < most; ++k) {
+                const double sigma =
+                    low * narrowest * std::pow(high * widest / (low * narrowest), double(k) / (most - 1));
+                terms.push_back({sigma * sigma, {}});
+                std::vector<double> column;
+                for (double r : distances) column.push_back(-std::expm1(-r * r / (2 * sigma * sigma)));
+                columns.push_back(std::move(column));
+            }
+            for (int c = 0; c < 3; ++c) {
+                std::vector<double> wanted;
+                for (const Rgb& s : shares) wanted.push_back(s[c]);
+                const std::vector<double> weights = fitWeights(columns, wanted);
+                double sum = 0;
+                for (double w : weights) sum += w;
+                for (uint32_t k = 0; k < most; ++k) terms[k].weight[c] = sum > 0 ? weights[k] / sum : k == 0;
+            }
+            const double error = errorOf(terms, distances, shares);
+            if (error < best.error) best = {std::move(terms), error};
+        }
+    return best;
+}
+
+}  // namespace pel

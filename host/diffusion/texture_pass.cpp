@@ -1,0 +1,108 @@
+// The shader's pass of materials that take light which was scattered in texture space (PEL_SCATTERING_TEXTURE): it takes irradiance
+// from its slot of the plan, and puts that light there.
+#include <algorithm>
+
+#include "diffusion/passes.h"
+#include "diffusion/scatter_material.h"
+#include "shading/launch_ranges.h"
+#include "shading/scratch_image.h"
+#include "shading/shading_constants.h"
+#include "shared/texture_scatter.h"
+
+namespace pel {
+namespace {
+
+class TexturePass final : public Pass {
+  public:
+    static bool needed(const ShaderPlan& plan) {
+        return std::ranges::any_of(plan.state.materials, [](const auto& m) { return takes(m.second); });
+    }
+
+    PassScratch scratch(const ShaderPlan&) const override { return {3 * sizeof(float), 0, 0, true}; }
+
+    void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
+        auto& images = plan.state.images;
+        ImageView& slot = images[PEL_SLOT_IRRADIANCE];
+        const ImageView& frame = images[PEL_SLOT_RADIANCE];
+        resize(out_, device, size_t(frame.width) * frame.height * 3 * sizeof(float));
+        irradiance_ = slot;
+        uv_ = images[PEL_SLOT_UV], ids_ = images[PEL_SLOT_MATERIAL];
+        slot = scratchImage(out_, frame, PEL_FORMAT_PLANAR_RGB32F);
+        target_ = slot;
+        if (!counters_) counters_ = device->allocate(PEL_DIFFUSION_COUNTERS * sizeof(cl_uint));
+        samples_.clear();
+        for (const auto& [id, material] : plan.state.materials)
+            if (takes(material)) samples_.push_back({id, material.scatteredTexture, {}});
+    }
+    size_t bytes() const override { return out_ ? out_->bytes() : 0; }
+
+    std::vector<cl::ProgramKey> programs(const Device&, const ShaderPlan&) const override {
+        const auto code = [](const ImageView& view) { return text(formatCode(view, 1)); };
+        std::vector<cl::ProgramKey> keys;
+        for (const Sample& sample : samples_)
+            keys.push_back({{"diffusion/sample_texture.cl"},
+                            {{"PEL_WIDTH", text(1)},
+                             {"PEL_FORMAT_TEXTURE", code(sample.texture)},
+                             {"PEL_FORMAT_UV", code(uv_)},
+                             {"PEL_FORMAT_MATERIAL", code(ids_)},
+                             {"PEL_FORMAT_IRRADIANCE", code(irradiance_)},
+                             {"PEL_FORMAT_OUT", code(target_)}}});
+        return keys;
+    }
+
+    size_t upload(Device& device, ShaderPlan&) override {
+        for (size_t i = 0; i < samples_.size(); ++i) {
+            PelTextureSample s{};
+            s.width = target_.width, s.height = target_.height;
+            s.tilesX = (s.width + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE;
+            s.id = samples_[i].id;
+            s.copies = i == 0;
+            s.texture = describeImage(samples_[i].texture);
+            s.uv = describeImage(uv_);
+            s.ids = describeImage(ids_);
+            s.irradiance = describeImage(irradiance_);
+            s.out = describeImage(target_);
+            samples_[i].constants = device.allocate(sizeof s, &s);
+        }
+        return samples_.size() * sizeof(PelTextureSample);
+    }
+
+    void enqueue(PassWork& work) override {
+        work.device.fill(counters_.get(), 0, PEL_DIFFUSION_COUNTERS * sizeof(cl_uint), 0);
+        const size_t tiles = size_t((target_.width + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE) *
+                             ((target_.height + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE);
+        for (size_t i = 0; i < samples_.size(); ++i) {
+            cl::Launch launch(program(i), "sample_texture");
+            launch.arg(samples_[i].constants).arg(memoryOf(samples_[i].texture)).arg(memoryOf(uv_));
+            launch.arg(memoryOf(ids_)).arg(memoryOf(irradiance_)).arg(memoryOf(target_)).arg(counters_);
+            work.launch(launch, {{tiles, 1, 1}, {PEL_TEXTURE_GROUP, 1, 1}});
+        }
+    }
+
+    void addStats(Device& device, const ShaderPlan&, uint64_t, PelShaderStats& stats) const override {
+        ScatterCounts counts{};
+        device.read(counters_.get(), 0, sizeof counts, &counts, true);
+        addScatterCounts(counts, PEL_SCATTERING_TEXTURE, stats);
+    }
+
+  private:
+    struct Sample {
+        uint32_t id;
+        ImageView texture;
+        cl::Memory constants;
+    };
+    static bool takes(const ShaderMaterial& material) {
+        return material.params.scattering == PEL_SCATTERING_TEXTURE;
+    }
+
+    Ref<Buffer> out_;
+    ImageView irradiance_, uv_, ids_, target_;
+    cl::Memory counters_;
+    std::vector<Sample> samples_;
+};
+
+}  // namespace
+
+constinit const PassKind texturePass = passKind<TexturePass>(1u << PEL_SCATTERING_TEXTURE);
+
+}  // namespace pel

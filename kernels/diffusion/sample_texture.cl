@@ -1,0 +1,68 @@
+// Light that was scattered in texture space, in the place of irradiance, for the pixels of one material: bilinear, repeated beyond [0, 1].
+//
+// Inputs: texture, texture coordinates, ids, irradiance. Output: an image like the irradiance's. One work-item takes tiles. Variants: PEL_FORMAT_....
+#include "lib/image/image.clh"
+#include "lib/shading/material_id.clh"
+#include "shared/diffusion.h"
+#include "shared/texture_scatter.h"
+
+// A texel's column or row, repeated.
+static inline uint repeated(float place, uint size) {
+    const float wrapped = place - (float)size * floor(place / (float)size);
+    return min((uint)wrapped, size - 1);
+}
+
+static inline Vec3w texelAt(__global const PelTextureSample* s, __global uchar* texture, uint x, uint y) {
+    return loadColor(PEL_FORMAT_TEXTURE, imageSpan(texture, &s->texture, x, y));
+}
+
+static inline Vec3w mixed(Vec3w a, Vec3w b, float t) {
+    return add3(a, scale3(sub3(b, a), t));
+}
+
+static inline Vec3w sampleAt(__global const PelTextureSample* s, __global uchar* texture, float u, float v) {
+    if (!isfinite(u) || !isfinite(v)) return vec3(NAN, NAN, NAN);
+    const uint width = s->texture.width, height = s->texture.height;
+    const float x = (u - floor(u)) * (float)width - 0.5f, y = (v - floor(v)) * (float)height - 0.5f;
+    const float left = floor(x), top = floor(y);
+    const uint x0 = repeated(left, width), x1 = repeated(left + 1.0f, width), y0 = repeated(top, height),
+               y1 = repeated(top + 1.0f, height);
+    return mixed(mixed(texelAt(s, texture, x0, y0), texelAt(s, texture, x1, y0), x - left),
+                 mixed(texelAt(s, texture, x0, y1), texelAt(s, texture, x1, y1), x - left), y - top);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void sample_texture(
+    __global const PelTextureSample* s, __global uchar* texture, __global uchar* uv, __global uchar* ids,
+    __global uchar* irradiance, __global uchar* out, __global uint* counters) {
+    const uint tilesY = (s->height + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE;
+    uint pixels = 0, tiles = 0;
+    for (uint tile = get_global_id(0); tile < s->tilesX * tilesY; tile += get_global_size(0)) {
+        const uint left = tile % s->tilesX * PEL_TEXTURE_TILE, top = tile / s->tilesX * PEL_TEXTURE_TILE;
+        uint taken = 0;
+        for (uint y = top; y < min(top + PEL_TEXTURE_TILE, s->height); ++y)
+            for (uint x = left; x < min(left + PEL_TEXTURE_TILE, s->width); ++x) {
+                uint id = 1;
+#if PEL_FORMAT_MATERIAL
+                id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &s->ids, x, y));
+#endif
+                const Span to = imageSpan(out, &s->out, x, y);
+                if (id == s->id) {
+                    const Span at = imageSpan(uv, &s->uv, x, y);
+                    storeColor(PEL_FORMAT_OUT, to,
+                               sampleAt(s, texture, gatherComponent(PEL_FORMAT_UV, at, 0),
+                                        gatherComponent(PEL_FORMAT_UV, at, 1)),
+                               1);
+                    ++taken;
+                } else if (s->copies) {
+                    storeColor(PEL_FORMAT_OUT, to,
+                               loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &s->irradiance, x, y)), 1);
+                }
+            }
+        pixels += taken, tiles += taken > 0;
+    }
+    if (!pixels) return;
+    atomic_add(&counters[PEL_COUNT_TILES_TAPPED], tiles);
+    atomic_add(&counters[PEL_COUNT_PIXELS_COVERED], pixels);
+    atomic_add(&counters[PEL_COUNT_PIXELS_TAPPED], pixels);
+    atomic_add(&counters[PEL_COUNT_TAPS], 4 * pixels);
+}

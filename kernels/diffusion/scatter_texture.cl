@@ -1,0 +1,129 @@
+// Scattering in texture space by a chain of Gaussians (docs/mathematics.md, section 7) [d'Eon, Luebke 2007].
+//
+// texture_light: irradiance * albedo^before, and 1 where there is any. texture_blur: one filter along u or v: Gaussian weights of lengths on the
+// surface, over texels of the same island; what is not covered does not count. texture_result: times albedo^after; texels within two of a
+// covered one take the nearest one's. One work-group takes tiles with something covered, or texels. Variants: PEL_FORMAT_....
+#include "lib/diffusion/texels.clh"
+#include "lib/image/image.clh"
+
+#define LEAST_SIGMA \
+    0.8f               // texels; of narrower Gaussians three taps have the variance, of others their samples
+#define FARTHEST 3.0f  // sigmas
+#define PAD 2          // texels
+
+static inline Vec3w power3(Vec3w a, float power) {
+    if (power == 1.0f) return a;
+    return vec3(pow(max0w(a.x), power), pow(max0w(a.y), power), pow(max0w(a.z), power));
+}
+
+static inline Vec3w albedoAt(__global const PelTextureFrame* frame, __global uchar* albedo, uint x, uint y,
+                             float power) {
+#if PEL_FORMAT_ALBEDO
+    if (power != 0.0f)
+        return power3(loadColor(PEL_FORMAT_ALBEDO, imageSpan(albedo, &frame->albedo, x, y)), power);
+#endif
+    return vec3(1.0f, 1.0f, 1.0f);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_light(
+    __global const PelTextureFrame* frame, __global const float4* stretch, __global uchar* irradiance,
+    __global uchar* albedo, __global float4* light, __global uint* counters) {
+    const uint x = get_global_id(0) % frame->width, y = get_global_id(0) / frame->width;
+    if (y >= frame->height) return;
+    const size_t at = (size_t)y * frame->width + x;
+    float4 result = (float4)(0.0f);
+    if (stretch[at].w > 0.0f) {
+        const Vec3w e = loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y));
+        const Vec3w l = mul3(e, albedoAt(frame, albedo, x, y, frame->before));
+        if (finite3(l) && finite3(albedoAt(frame, albedo, x, y, frame->after)))
+            result = (float4)(l.x, l.y, l.z, 1.0f);
+        else
+            atomic_inc(&counters[PEL_COUNT_TEXELS_INVALID]);
+    }
+    light[at] = result;
+}
+
+// `step`: texels from one to the next along the filter; `place` of `count`: of the texel along it.
+static inline float4 blurTexel(__global const float4* stretch, __global const float4* light, size_t at,
+                               long step, int place, int count, bool down, float variance, float blurredBefore) {
+    const float4 own = stretch[at], here = light[at];
+    const float size = down ? own.y : own.x;
+    if (!(here.w > 0.0f) || !(size > 0.0f)) return here;
+    const float sigma2 = variance / (size * size);  // texels^2
+    const bool narrow = sigma2 < LEAST_SIGMA * LEAST_SIGMA;
+    const float sigma = sqrt(sigma2);
+    // No further apart than half a sigma, nor than what was blurred before hides.
+    const int stride = narrow ? 1 : max((int)fmin(0.5f * sigma, blurredBefore / size), 1);
+    const int taps = narrow ? 1 : (int)fmin(FARTHEST * sigma / (float)stride + 0.5f, (float)(count / stride));
+    const float centre = narrow ? 1.0f - sigma2 : 1.0f, perVariance = 0.5f / variance;
+    float4 sum = centre * size * here;
+    for (int side = -1; side <= 1; side += 2) {
+        float distance = 0.0f, before = size;
+        for (int k = 1; k <= taps; ++k) {
+            const int offset = side * k * stride;
+            if (place + offset < 0 || place + offset >= count) break;
+            const size_t there = (size_t)((long)at + offset * step);
+            const float4 s = stretch[there];
+            if (as_uint(s.z) != as_uint(own.z) || !(s.w > 0.0f)) break;  // the surface ends here
+            const float length = down ? s.y : s.x;
+            distance += 0.5f * (before + length) * (float)stride;
+            before = length;
+            const float weight = narrow ? 0.5f * sigma2 : exp(-distance * distance * perVariance);
+            sum += weight * length * light[there];
+        }
+    }
+    return sum.w > 0.0f ? (float4)(sum.xyz / sum.w, 1.0f) : (float4)(0.0f);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_blur(
+    __global const PelTextureFrame* frame, __global const PelTextureBlur* blurs, uint which,
+    __global const float4* stretch, __global const uint* tiles, __global const float4* light,
+    __global float4* blurred, __global float4* result) {
+    __global const PelTextureBlur* blur = &blurs[which];
+    const uint count = frame->tilesX * ((frame->height + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE);
+    const bool down = blur->down != 0;
+    const float4 weight = (float4)(blur->weight[0], blur->weight[1], blur->weight[2], 1.0f);
+    for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
+        if (!tiles[tile]) continue;
+        const uint left = tile % frame->tilesX * PEL_TEXTURE_TILE, top = tile / frame->tilesX * PEL_TEXTURE_TILE;
+        for (uint item = get_local_id(0); item < PEL_TEXTURE_TILE * PEL_TEXTURE_TILE; item += PEL_TEXTURE_GROUP) {
+            const uint x = left + item % PEL_TEXTURE_TILE, y = top + item / PEL_TEXTURE_TILE;
+            if (x >= frame->width || y >= frame->height) continue;
+            const size_t at = (size_t)y * frame->width + x;
+            const float4 b = blurTexel(stretch, light, at, down ? (long)frame->width : 1, (int)(down ? y : x),
+                                       (int)(down ? frame->height : frame->width), down, blur->variance,
+                                       sqrt(blur->before));
+            blurred[at] = b;
+            if (down)
+                result[at] = blur->first ? weight * b : (float4)(result[at].xyz + weight.xyz * b.xyz, b.w);
+        }
+    }
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_result(
+    __global const PelTextureFrame* frame, __global const float4* light, __global const float4* result,
+    __global uchar* albedo, __global uchar* out) {
+    const uint x = get_global_id(0) % frame->width, y = get_global_id(0) / frame->width;
+    if (y >= frame->height) return;
+    const size_t at = (size_t)y * frame->width + x;
+    float4 best = (float4)(0.0f);
+    uint bestX = x, bestY = y;
+    if (light[at].w > 0.0f) {
+        best = result[at];
+    } else {
+        int nearest = PAD * PAD * 2 + 1;
+        for (int j = -PAD; j <= PAD; ++j)
+            for (int i = -PAD; i <= PAD; ++i) {
+                const int u = (int)x + i, v = (int)y + j, distance = i * i + j * j;
+                if (u < 0 || v < 0 || u >= (int)frame->width || v >= (int)frame->height || distance >= nearest)
+                    continue;
+                const size_t there = (size_t)v * frame->width + u;
+                if (!(light[there].w > 0.0f)) continue;
+                nearest = distance, best = result[there], bestX = (uint)u, bestY = (uint)v;
+            }
+    }
+    const Vec3w s = mul3(vec3(best.x, best.y, best.z), albedoAt(frame, albedo, bestX, bestY, frame->after));
+    const bool there = best.w > 0.0f;
+    storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, x, y),
+               vec3(there ? s.x : 0.0f, there ? s.y : 0.0f, there ? s.z : 0.0f), 1);
+}

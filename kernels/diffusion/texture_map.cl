@@ -1,0 +1,101 @@
+// A mesh in its texture: which triangle lies on each texel, how long texels are on the surface, and values of vertices drawn there
+// (docs/mathematics.md, section 7).
+//
+// texture_owner: 1 + the last triangle that holds the texel's centre, borders included; one work-item is one triangle. texture_tiles:
+// which tiles have such a texel; one work-item is one tile. texture_stretch: length of a texel along u and v, and the island; texture_draw:
+// an image; one work-item is one texel. Lengths are in the unit of positions.
+#include "lib/diffusion/texels.clh"
+#include "lib/image/image.clh"
+#include "lib/mesh/mesh_vertex.clh"
+
+#define INSIDE -1e-5f  // share of a vertex at the border, with the rounding of its texture coordinates
+
+__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_owner(
+    __global const PelTextureFrame* frame, __global const uint* indices, __global const float* uvs,
+    __global uint* owners) {
+    const uint triangle = get_global_id(0);
+    if (triangle >= frame->triangles) return;
+    const UvTriangle t = uvTriangle(frame, indices, uvs, triangle);
+    if (!(fabs(t.twice) > 0.0f)) return;
+    const float2 low = fmin(t.a, fmin(t.a + t.ab, t.a + t.ac)), high = fmax(t.a, fmax(t.a + t.ab, t.a + t.ac));
+    const int x0 = max((int)floor(low.x), 0), x1 = min((int)ceil(high.x), (int)frame->width - 1);
+    const int y0 = max((int)floor(low.y), 0), y1 = min((int)ceil(high.y), (int)frame->height - 1);
+    for (int y = y0; y <= y1; ++y)
+        for (int x = x0; x <= x1; ++x) {
+            const float3 share = sharesAt(&t, (float)x, (float)y);
+            if (share.x >= INSIDE && share.y >= INSIDE && share.z >= INSIDE)
+                atomic_max(&owners[(size_t)y * frame->width + x], triangle + 1);
+        }
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_tiles(
+    __global const PelTextureFrame* frame, __global const uint* owners, __global uint* tiles,
+    __global uint* counters) {
+    const uint tile = get_global_id(0), tilesY = (frame->height + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE;
+    if (tile >= frame->tilesX * tilesY) return;
+    const uint left = tile % frame->tilesX * PEL_TEXTURE_TILE, top = tile / frame->tilesX * PEL_TEXTURE_TILE;
+    uint covered = 0;
+    for (uint y = top; y < min(top + PEL_TEXTURE_TILE, frame->height); ++y)
+        for (uint x = left; x < min(left + PEL_TEXTURE_TILE, frame->width); ++x)
+            covered += owners[(size_t)y * frame->width + x] != 0;
+    tiles[tile] = covered > 0;
+    if (!covered) return;
+    atomic_inc(&counters[PEL_COUNT_TEXTURE_TILES]);
+    atomic_add(&counters[PEL_COUNT_TEXELS_COVERED], covered);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_stretch(
+    __global const PelTextureFrame* frame, __global const uint* indices, __global const float* uvs,
+    __global const uint* islands, __global const float* positions, VertexLayout layout,
+    __global const uint* owners, __global float4* stretch) {
+    const size_t texel = get_global_id(0);
+    if (texel >= (size_t)frame->width * frame->height) return;
+    float4 result = (float4)(0.0f);
+    const uint owner = owners[texel];
+    if (owner) {
+        const UvTriangle t = uvTriangle(frame, indices, uvs, owner - 1);
+        const uint3 v = vload3(owner - 1, indices);
+        const float3 a = vertexLoad3(positions, layout, v.x), b = vertexLoad3(positions, layout, v.y) - a,
+                     c = vertexLoad3(positions, layout, v.z) - a;
+        const float per = 1.0f / t.twice;
+        const float3 alongU = (b * t.ac.y - c * t.ab.y) * per, alongV = (c * t.ab.x - b * t.ac.x) * per;
+        result.x = length(alongU), result.y = length(alongV);
+        result.z = as_float(islands[owner - 1]);
+        if (!isfinite(result.x) || !isfinite(result.y)) result.xy = 0.0f;
+        result.w = 1.0f;
+    }
+    stretch[texel] = result;
+}
+
+__constant int2 beside[8] = {(int2)(-1, 0),  (int2)(1, 0),  (int2)(0, -1), (int2)(0, 1),
+                             (int2)(-1, -1), (int2)(1, -1), (int2)(-1, 1), (int2)(1, 1)};
+
+// A triangle on the texel, or on one beside it; 0: none.
+static inline uint nearestOwner(__global const PelTextureFrame* frame, __global const uint* owners, int x, int y) {
+    uint owner = owners[(size_t)y * frame->width + x];
+    for (int k = 0; k < 8 && !owner; ++k) {
+        const int u = x + beside[k].x, v = y + beside[k].y;
+        if (u >= 0 && v >= 0 && u < (int)frame->width && v < (int)frame->height)
+            owner = owners[(size_t)v * frame->width + u];
+    }
+    return owner;
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_draw(
+    __global const PelTextureFrame* frame, __global const uint* indices, __global const float* uvs,
+    __global const float* values, VertexLayout layout, __global const uint* owners, uint unit,
+    __global uchar* out) {
+    const uint x = get_global_id(0) % frame->width, y = get_global_id(0) / frame->width;
+    if (y >= frame->height) return;
+    const uint owner = nearestOwner(frame, owners, (int)x, (int)y);
+    float3 value = (float3)(0.0f);
+    if (owner) {
+        const UvTriangle t = uvTriangle(frame, indices, uvs, owner - 1);
+        const uint3 v = vload3(owner - 1, indices);
+        const float3 share = sharesAt(&t, (float)x, (float)y);
+        value = share.x * vertexLoad3(values, layout, v.x) + share.y * vertexLoad3(values, layout, v.y) +
+                share.z * vertexLoad3(values, layout, v.z);
+        if (unit) value *= rsqrt(fmax(dot(value, value), FLT_MIN));
+    }
+    storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, x, y), vec3(value.x, value.y, value.z), 1);
+}

@@ -1,0 +1,48 @@
+// Constants of scattering in texture space, laid out alike on host and device (docs/mathematics.md, section 7).
+#ifndef PEL_SHARED_TEXTURE_SCATTER
+#define PEL_SHARED_TEXTURE_SCATTER
+#include "shared/shade.h"
+
+#define PEL_TEXTURE_GROUP 16  // work-items
+#define PEL_TEXTURE_TILE 16   // texels along a side
+
+typedef struct PelTextureFrame {
+    PelUint32 width;  // texels
+    PelUint32 height;
+    PelUint32 tilesX;
+    PelUint32 triangles;
+    float before, after;  // powers of albedo before and after
+    PelUint32 pad[2];
+    PelShadeImage irradiance, albedo, out;
+} PelTextureFrame;
+
+// One Gaussian of the chain.
+typedef struct PelTextureBlur {
+    float variance;   // length^2, beyond the one before
+    float before;     // length^2, of that one
+    float weight[3];  // of what it leaves, per channel
+    PelUint32 down;   // 0: along u, 1: along v, and add
+    PelUint32 first;  // 1: nothing was added before
+} PelTextureBlur;
+
+// What a PelShader samples for one material.
+typedef struct PelTextureSample {
+    PelUint32 width;  // pixels
+    PelUint32 height;
+    PelUint32 tilesX;
+    PelUint32 id;
+    PelUint32 copies;  // 1: other pixels are copied
+    PelUint32 pad[3];
+    PelShadeImage texture, uv, ids, irradiance, out;
+} PelTextureSample;
+
+#define PEL_COUNT_TEXELS_COVERED 0
+#define PEL_COUNT_TEXELS_INVALID 1
+#define PEL_COUNT_TEXTURE_TILES 2
+#define PEL_TEXTURE_COUNTERS 3
+
+#ifndef __OPENCL_VERSION__
+static_assert(sizeof(PelTextureFrame) == 32 + 3 * 32 && sizeof(PelTextureBlur) == 28);
+static_assert(sizeof(PelTextureSample) == 32 + 5 * 32);
+#endif
+#endif
