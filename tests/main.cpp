@@ -1,10 +1,16 @@
 // Runs the cases of a test program. Ends with 77 where none failed and some were skipped, so that CTest says
-// so.
+// so, and with 1 where handles or OpenCL objects are left (host/core/left_objects.cpp, tests/cl/cl_spy.cpp).
 #include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "cl/cl_spy.h"
 
 int main(int argc, char** argv) {
     testing::InitGoogleTest(&argc, argv);
+    spy::counts();  // a program that names nothing of the spy would not load it
     const int failed = RUN_ALL_TESTS();
+    ::setenv("PELLUCID_CHECK_LEFT", "1", 0);  // of this program, not of those that it has started
     if (failed) return failed;
     return testing::UnitTest::GetInstance()->skipped_test_count() > 0 ? 77 : 0;
 }

@@ -1,7 +1,17 @@
-// Leaves one buffer and one event behind. The spy is to fail it: a watch that sees nothing passes everything.
+// Leaves one buffer and one event behind; named `profile`, one profile, which is no object of OpenCL's. The watches are to fail it: one that
+// sees nothing passes everything.
+#include <cstring>
 #include <pellucid/pellucid.hpp>
 
-int main() {
+#include "cl/cl_spy.h"
+
+int main(int argc, char** argv) {
+    spy::counts();  // so that it is loaded
+    if (argc > 1 && std::strcmp(argv[1], "profile") == 0) {
+        PelProfile profile = nullptr;
+        pellucid::check(pelProfileCreateSkin(&profile));
+        return 0;
+    }
     const pellucid::Device device("");
     PelBuffer buffer = nullptr;
     PelEvent done = nullptr;

@@ -1,4 +1,6 @@
 // host/io/mesh/mesh_file.h: what is loaded, what is refused and with which message.
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -300,4 +302,106 @@ TEST_F(MeshFile, ScaleToHeight) {
     MeshData mesh = loadMesh(write("a.off", offTetrahedron));
     EXPECT_EQ(scaleToHeight(mesh, 240, 1), 120.0f);
     EXPECT_EQ(mesh.positions[1], 120.0f);
+}
+
+namespace {
+
+// Values of any PLY type as bytes of either order.
+class PlyBytes {
+  public:
+    explicit PlyBytes(bool big) : big_(big) {}
+    PlyBytes& add(const std::string& type, double value) {
+        if (type == "char") append(int8_t(value));
+        if (type == "uchar") append(uint8_t(value));
+        if (type == "short") append(int16_t(value));
+        if (type == "ushort") append(uint16_t(value));
+        if (type == "int") append(int32_t(value));
+        if (type == "uint") append(uint32_t(value));
+        if (type == "float") append(float(value));
+        if (type == "double") append(value);
+        return *this;
+    }
+    std::string bytes;
+
+  private:
+    template <class T>
+    void append(T value) {
+        char raw[sizeof value];
+        std::memcpy(raw, &value, sizeof value);
+        if (big_ == (std::endian::native == std::endian::little)) std::reverse(raw, raw + sizeof value);
+        bytes.append(raw, sizeof value);
+    }
+    const bool big_;
+};
+
+}  // namespace
+
+// Lists of any type of length and value, in vertices and faces, before, between and after what is wanted.
+TEST_F(MeshFile, PlyListsOfEitherByteOrder) {
+    const std::vector<std::string> lengths = {"char", "uchar", "short", "ushort", "int", "uint"},
+                                   values = {"char", "uchar", "short", "ushort",
+                                             "int",  "uint",  "float", "double"};
+    for (bool big : {false, true})
+        for (const std::string& length : lengths)
+            for (const std::string& value : values) {
+                const bool whole = value != "float" && value != "double";
+                const std::string index = whole ? value : "int";
+                const std::string header = std::string("ply\nformat ") +
+                                           (big ? "binary_big_endian" : "binary_little_endian") +
+                                           " 1.0\nelement vertex 300\nproperty list " + length + " " + value +
+                                           " extra\nproperty float x\nproperty double y\nproperty " + value +
+                                           " other\nproperty float z\nproperty list " + length + " " + value +
+                                           " more\nelement face 2\nproperty list " + length + " " + value +
+                                           " before\nproperty list " + length + " " + index +
+                                           " vertex_indices\nproperty short flags\nend_header\n";
+                PlyBytes out(big);
+                for (int v = 0; v < 300; ++v) {
+                    out.add(length, v % 3);
+                    for (int i = 0; i < v % 3; ++i) out.add(value, 100 + i);
+                    out.add("float", v + 0.25).add("double", -v - 0.5).add(value, 77).add("float", 2 * v);
+                    out.add(length, 1).add(value, 101);
+                }
+                const int last = index == "char" ? 127 : index == "uchar" ? 255 : 299;
+                for (const std::vector<int>& face :
+                     {std::vector<int>{0, 1, last}, std::vector<int>{3, 2, 1, last - 1}}) {
+                    out.add(length, 2).add(value, 1).add(value, 2);
+                    out.add(length, double(face.size()));
+                    for (int corner : face) out.add(index, corner);
+                    out.add("short", -9);
+                }
+                const std::string name =
+                    std::string(big ? "big" : "little") + "_" + length + "_" + value + ".ply";
+                const MeshData mesh = loadMesh(write(name, header + out.bytes));
+                ASSERT_EQ(mesh.vertexCount(), 300u) << name;
+                for (uint32_t v : {0u, 1u, 2u, 255u, 299u}) {
+                    EXPECT_EQ(mesh.positions[3 * v], v + 0.25f) << name;
+                    EXPECT_EQ(mesh.positions[3 * v + 1], -0.5f - float(v)) << name;
+                    EXPECT_EQ(mesh.positions[3 * v + 2], 2.0f * float(v)) << name;
+                }
+                const uint32_t l = uint32_t(last);
+                EXPECT_EQ(mesh.triangles, (std::vector<uint32_t>{0, 1, l, 3, 2, 1, 3, 1, l - 1})) << name;
+            }
+}
+
+TEST_F(MeshFile, LengthsOfBigEndianPlyListsAreChecked) {
+    const auto file = [&](const std::string& type, const std::string& rest) {
+        PlyBytes out(true);
+        for (double x : {0, 0, 0, 1, 0, 0, 0, 1, 0}) out.add("float", x);
+        return "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float x\nproperty float "
+               "y\nproperty float z\n"
+               "element face 1\nproperty list " +
+               type + " int vertex_indices\nend_header\n" + out.bytes + rest;
+    };
+    const std::string corners = PlyBytes(true).add("int", 0).add("int", 1).add("int", 2).bytes;
+    EXPECT_EQ(loadError("good.ply", file("short", std::string("\0\3", 2) + corners)), "");
+    EXPECT_TRUE(
+        contains(loadError("swapped.ply", file("short", std::string("\3\0", 2) + corners)), "ends early"));
+    EXPECT_TRUE(
+        contains(loadError("negative.ply", file("int", "\xff\xff\xff\xff" + corners)), "negative length"));
+    EXPECT_TRUE(contains(
+        loadError("far.ply", file("short", std::string("\0\3", 2) +
+                                               PlyBytes(true).add("int", 0).add("int", 1).add("int", 3).bytes)),
+        "refers to vertex 3"));
+    const std::string whole = file("short", std::string("\0\3", 2) + corners);
+    EXPECT_TRUE(contains(loadError("cut.ply", whole.substr(0, whole.size() - 1)), "ends early"));
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How many of the small faults that one could make do the tests notice?
 
-    run.py [N] [SEED] [--only REGEX] [--again] [--list] [--seconds S] [--as-is]
+    run.py [N] [SEED] [--only REGEX] [--again] [--list] [--seconds S] [--nearest K] [--as-is]
 
 Takes N lines (50) of kernels, host, command and Python package by SEED (1), puts one fault into each (faults.py), one at a time, builds
 what changed, and runs the tests that execute the line until one fails. Prints killed or survived, the diff of each survivor, and the
@@ -12,6 +12,9 @@ any fault, to see which lines it executes (gcov), which kernels it launches (PoC
 --seconds: how long the tests of one fault may take by that measurement (120); those that do not fit are not run. A line that no
 test executes is a survivor. A test that hangs has noticed; a fault that does not compile does not count, nor does one whose name
 stands in equivalent.txt.
+--nearest: a first sieve for machines with little time. Nothing is measured beforehand: of each fault the K tests of nearest kinship run,
+that is tests whose name shares most with the file's, whether they execute the line or not. What they notice is noticed; the
+rest is judged again by a run without this option and with --again.
 --only: faults in files whose path matches. --again: survivors of earlier runs once more, after tests were added. --list: names only.
 --as-is: goes on with the copy as it is, while the tree changes.
 Ends with 1 when less than 92 % were noticed. build/mutants/tree may be a link to a folder where the compiler's cache knows the tree.
@@ -112,11 +115,13 @@ class Workplace:
             if str(path.relative_to(TREE)) not in wanted:
                 path.unlink()
 
+    counting = True  # whether the build counts lines
+
     def build(self, *targets):
         if not (BUILD / "build.ninja").exists():
             launcher = ["-DCMAKE_C_COMPILER_LAUNCHER=ccache", "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
             counting = [f"-DCMAKE_PROJECT_pellucid_INCLUDE={TREE}/tests/mutants/count_lines.cmake",
-                        "-DCMAKE_EXE_LINKER_FLAGS=--coverage", "-DCMAKE_SHARED_LINKER_FLAGS=--coverage"]
+                        "-DCMAKE_EXE_LINKER_FLAGS=--coverage", "-DCMAKE_SHARED_LINKER_FLAGS=--coverage"] if self.counting else []
             status, _ = command(["cmake", "-G", "Ninja", "-S", TREE, "-B", BUILD, "-DCMAKE_BUILD_TYPE=Release", *counting, *launcher],
                                 600, WORK / "build.log")
             if status:
@@ -346,6 +351,45 @@ def judge(place, coverage, fault, seconds):
             shutil.rmtree(path, ignore_errors=True)
 
 
+def sieve(place, coverage, fault, nearest):
+    """(verdict, by what) by the nearest tests alone."""
+    original = (TREE / fault.path).read_text()
+    python, kernel = fault.path.startswith("bindings/python"), fault.path.startswith("kernels")
+    known = set((WORK / "pocl").glob("*/*"))
+    log = WORK / "test.log"
+    sound = WORK / "sound.json"  # tests that pass without any fault, and their time
+    passed = json.loads(sound.read_text()) if sound.exists() else {}
+    names = []
+    for name in coverage.kin(fault):
+        if len(names) == nearest:
+            break
+        if name not in passed:
+            status, seconds = (place.test(name, 900, log) if (place.python() if python else place.build(name))
+                               else ("does not build", 0))
+            passed[name] = seconds if status in PASSED else None
+            sound.write_text(json.dumps(passed))
+            say(f"{seconds:7.1f} s  {name}{'' if status in PASSED else f' fails without any fault ({status})'}")
+        if passed[name] is not None:
+            names.append(name)
+    place.apply(fault, original)
+    try:
+        if not (place.python() if python else place.build("pellucid")):
+            return "does not compile", ""
+        for name in names:
+            if not python and not place.build(name):
+                return "does not compile", ""
+            status, _ = place.test(name, 120 + 10 * passed[name], log)
+            if status not in PASSED:
+                if kernel and "did not build with" in log.read_text(errors="replace"):
+                    return "does not compile", ""
+                return "killed", name if isinstance(status, int) else f"{name}, which {status}"
+        return "survived", f"the nearest: {', '.join(names)}"
+    finally:
+        place.restore(fault.path, original)
+        for path in set((WORK / "pocl").glob("*/*")) - known if kernel else ():
+            shutil.rmtree(path, ignore_errors=True)
+
+
 def diff(fault):
     old = (TREE / fault.path).read_text()
     lines = difflib.unified_diff(old.split("\n"), fault.apply(old).split("\n"), "a/" + fault.path, "b/" + fault.path, n=2, lineterm="")
@@ -377,8 +421,10 @@ def main():
     parser.add_argument("--again", action="store_true")
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--as-is", action="store_true")
+    parser.add_argument("--nearest", type=int, default=0)
     parser.add_argument("--seconds", type=float, default=120)
     o = parser.parse_args()
+    Workplace.counting = not o.nearest
     place = Workplace(o.as_is)
     same, every = equivalent(), sample(o.seed, o.only)
     if o.list:
@@ -400,7 +446,8 @@ def main():
         result = known.get(fault.name)
         if not result or (o.again and result["verdict"] == "survived"):
             start = time.monotonic()
-            verdict, reason = judge(place, coverage, fault, o.seconds)
+            verdict, reason = (sieve(place, coverage, fault, o.nearest) if o.nearest else
+                               judge(place, coverage, fault, o.seconds))
             result = {"name": fault.name, "verdict": verdict, "reason": reason, "seconds": round(time.monotonic() - start, 1)}
             with results.open("a") as out:
                 out.write(json.dumps(result) + "\n")

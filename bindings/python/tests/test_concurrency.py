@@ -262,23 +262,34 @@ def test_ctrl_c_while_a_compiler_works(tmp_path):
 
 FORK = textwrap.dedent("""
     import os
+    import numpy as np
     import pellucid as pel
     device = pel.Device()
+    buffer, shader, profile = pel.Buffer(device, 64), pel.Shader(device), pel.Profile.skin()
+    mesh = pel.MeshTopology(device, np.arange(3), 3)
+    live, lut = pel.LiveMesh(mesh), pel.Lut.specular(device, width=8, height=8)
+    event = buffer.submit_read(np.empty(64, np.uint8))
     if os.fork() == 0:
-        for use in (pel.Device, pel.devices, device.finish, lambda: pel.Buffer(device, 64)):
+        uses = (pel.Device, pel.devices, device.finish, lambda: pel.Buffer(device, 64), lambda: buffer.read(np.empty(64, np.uint8)),
+                shader.commit, lambda: profile.info, mesh.save, lambda: live.stats, lut.read, event.wait,
+                lambda: pel.orient_mesh(np.arange(3), 3))
+        for use in uses:
             try:
                 use()
             except pel.PellucidError as error:
                 print(error.code.name, "spawn" in str(error), flush=True)
+        del live, mesh, lut, event, shader, buffer, profile, device  # nothing waits there
         raise SystemExit(3)
     print(os.waitstatus_to_exitcode(os.wait()[1]))
     device.finish()
+    event.wait()
+    print(len(mesh.save()) > 0)
 """)
 
 
 def test_a_forked_process_is_told_so():
     done = subprocess.run([sys.executable, "-c", FORK], stdout=subprocess.PIPE, text=True, timeout=60)
-    assert done.returncode == 0 and done.stdout.split("\n")[:5] == ["INVALID_STATE True"] * 4 + ["3"]
+    assert done.returncode == 0 and done.stdout.split("\n")[:14] == ["INVALID_STATE True"] * 12 + ["3", "True"]
 
 
 def test_events_are_awaited(device):

@@ -162,3 +162,42 @@ AT_WORK = textwrap.dedent("""
 def test_the_process_ends_while_daemon_threads_are_at_work(progress):
     done = subprocess.run([sys.executable, "-c", AT_WORK, progress], stderr=subprocess.PIPE, text=True, timeout=100)
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_stale_and_forged_handles_are_errors(device):
+    """By the C library that the package brings, as another binding in the same process would call it."""
+    import ctypes
+    from pathlib import Path
+
+    lib = ctypes.CDLL(str(Path(pel.__file__).parent / "libpellucid.so"))
+    lib.pelGetErrorMessage.restype = ctypes.c_char_p
+    invalid = int(pel.ErrorCode.INVALID_ARGUMENT)
+    mine, profile, size = ctypes.c_void_p(), ctypes.c_void_p(), ctypes.c_size_t()
+    assert lib.pelDeviceCreate(b"", ctypes.byref(mine)) == 0
+    assert lib.pelProfileCreateSkin(ctypes.byref(profile)) == 0
+    for _ in range(3):  # of another kind, never given out, and none
+        assert lib.pelDeviceFinish(profile) == invalid and b"PelProfile" in lib.pelGetErrorMessage()
+        assert lib.pelBufferGetSize(mine, ctypes.byref(size)) == invalid
+        assert lib.pelDeviceFinish(ctypes.c_void_p(0x123456789)) == invalid
+        assert lib.pelDeviceFinish(None) == invalid
+    lib.pelProfileRelease(profile)
+    lib.pelDeviceRelease(mine)
+    seen = []
+    pel.set_error_callback(lambda code, message: seen.append(code))
+    try:
+        for _ in range(3):
+            lib.pelDeviceRelease(mine)
+            lib.pelDeviceRetain(mine)
+            lib.pelProfileRelease(profile)
+        assert lib.pelDeviceFinish(mine) == invalid
+    finally:
+        pel.set_error_callback(None)
+    assert len(seen) == 10 and set(seen) == {pel.ErrorCode.INVALID_ARGUMENT}
+    # None of that took anything from the package's own objects, nor do new ones get a stale handle.
+    other = ctypes.c_void_p()
+    assert lib.pelProfileCreateSkin(ctypes.byref(other)) == 0 and other.value not in (profile.value, mine.value)
+    lib.pelProfileRelease(other)
+    values = np.arange(8)
+    out = np.empty(8, values.dtype)
+    pel.Buffer(device, values).read(out)
+    assert np.array_equal(out, values) and pel.Profile.skin().info.radius > 2
