@@ -138,7 +138,8 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
     for (uint32_t k = 0; k < maps_.size(); ++k) {
         cl::Launch seen(programs[SEEN], "light_seen");
         seen.arg(screen.frame).arg(memory(images.positions ? images.positions : images.depth));
-        seen.arg(memory(images.ids)).arg(mapMemory_).arg(cl_uint(k)).arg(memory(maps_[k].image)).arg(seen_);
+        seen.arg(memory(images.ids)).arg(mapMemory_).arg(cl_uint(k)).arg(memory(maps_[k].image));
+        seen.arg(screen.pyramid).arg(seen_);
         launch(seen, {{size_t((screen.width + lanes - 1) / lanes) * screen.height, 1, 1},
                       {PEL_DIFFUSION_GROUP, 1, 1}});
     }

@@ -6,6 +6,7 @@
 // writes are all that meet inside of an object. One work-item: PEL_WIDTH pixels of a row. Variants: PEL_FORMAT_POSITION or
 // PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT.
 #include "lib/diffusion/light_space.clh"
+#include "lib/diffusion/pyramid.clh"
 #include "lib/shading/material_id.clh"
 #include "lib/shading/position.clh"
 
@@ -93,7 +94,8 @@ static inline void markPatch(__global const PelLightMap* map, __global const uch
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_seen(
     __global const PelDiffusionFrame* frame, __global uchar* position, __global uchar* ids,
-    __global const PelLightMap* maps, uint index, __global uchar* texels, __global uchar* seen) {
+    __global const PelLightMap* maps, uint index, __global uchar* texels, __global const float* pyramid,
+    __global uchar* seen) {
     const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
     if (y >= frame->height) return;
     __global const PelLightMap* map = maps + index;
@@ -111,13 +113,21 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
                 after = vec3(AFTER(p.x), AFTER(p.y), AFTER(p.z));
 #endif
     Patch patch;
-    const maskw on =
+    maskw on =
         mine & finite3(p) & patchOf(map, p, shorterWay(p, before, after), shorterWay(p, above, below), &patch);
-    if (!anyw(on)) return;
     uintw id = (uintw)(1);
 #if PEL_FORMAT_MATERIAL
     id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &frame->ids, x, y));
 #endif
+    // What scatters and is dark is not what a light sees.
+    __global const PelPyramidLevel* level = &frame->level[0];
+    __global const float* own = pyramid + pyramidRow(level, (int)y) + x;
+    const uint stride = level->stride;
+    const maskw dark = (loadw(PEL_PLANE_RED * stride, own) == 0.0f) &
+                       (loadw(PEL_PLANE_GREEN * stride, own) == 0.0f) &
+                       (loadw(PEL_PLANE_BLUE * stride, own) == 0.0f);
+    on &= notw(dark & (as_uintw(loadw(PEL_PLANE_ID * stride, own)) != (uintw)(0)));
+    if (!anyw(on)) return;
     __global const uchar* first = firstTexel(texels, &map->map);
 #define MARK(k, s)                                                                                             \
     if (on s)                                                                                                  \

@@ -16,6 +16,7 @@
 #define TEXELS 1.5f
 #define LEAST_COSINE 0.2f  // to the light: texels on steeper surface count as if they were as long as on this
 #define NEARLY_PLANE 0.015f  // of the whole mass
+#define LEFT_ALONE 0.25f     // of the tolerance: less light from hidden texels changes nothing
 #define SURPLUS 0.01f        // mass beyond a plane's that may come of the pixels alone
 
 typedef struct Pixel {
@@ -83,22 +84,17 @@ static inline float3 meanLight(float3 light, float3 mass, float3 e) {
 }
 
 // Blocks add up to a mass that is a little off. Where it is nearly a plane's it is taken to be that: so light that is the same
-// all round stays what it is.
+// all round stays what it is. Returns by how much the light is to be multiplied.
 static inline float3 planeLike(float3 mass, float3 plane) {
     const float3 off = mass - plane, trust = clamp(2.0f - fabs(off) * (1.0f / NEARLY_PLANE), 0.0f, 1.0f);
-    return mass / fmax(mass - off * trust, (float3)(FLT_MIN));
+    return (mass - off * trust) / fmax(mass, (float3)(FLT_MIN));
 }
 
-// What the sums of the screen and of hidden texels come to.
-typedef struct Hidden {
-    float3 nearLight, nearMass;  // of all lights; the greatest mass of one
-    float3 fill, filled;         // light that fills missing mass, and the greatest mass of one
-} Hidden;
-
-static inline float3 scatterPixel(__global const PelDiffusionFrame* frame, __global const float* pyramid,
-                                  __global const PelProfileTable* tables, __global const float* nodes,
-                                  __global const PelLightMap* maps, uint mapCount, __global const float* lights,
-                                  int x, int y, const Pixel* here, uint* blocks, uint* texels) {
+// A pixel's scattered light. Returns false where it stays as it is.
+static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                                __global const PelProfileTable* tables, __global const float* nodes,
+                                __global const PelLightMap* maps, uint mapCount, __global const float* lights,
+                                int x, int y, const Pixel* here, uint* blocks, uint* texels, float3* result) {
     const PelProfileTable table = tables[frame->tableOf[here->id] - 1];
     const uint stride = frame->level[0].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[0], y) + x;
@@ -119,8 +115,26 @@ static inline float3 scatterPixel(__global const PelDiffusionFrame* frame, __glo
             if (length > place.rho && length < FLT_MAX) place.rho = length;
         }
     }
-    if (!(place.rho > 0.0f)) return here->e;
-    const float3 window = shareOfWindow(nodes, table, place.rho);
+    if (!(place.rho > 0.0f)) return false;
+    const float3 window = shareOfWindow(nodes, table, place.rho), none = (float3)(0.0f);
+    // The lights first: where they bring nothing that the camera does not see, the pixel is right as it is.
+    float3 far[PEL_LIGHT_MAPS], mass[PEL_LIGHT_MAPS], hiddenLight = none, hiddenMass = none, all = none;
+    uint lightCount = 0;
+    for (uint k = 0; k < mapCount; ++lightCount) {
+        Windowed sums;
+        clearWindowed(&sums);
+        const uint light = maps[k].light;
+        const float3 color = vload3(0, maps[k].color);
+        for (; k < mapCount && maps[k].light == light; ++k)
+            *texels += addMap(&sums, maps + k, lights, nodes, table, &place);
+        far[lightCount] = color * sumOfLanes3(sums.farLight);
+        mass[lightCount] = sumOfLanes3(sums.farMass);
+        const float3 near = color * sumOfLanes3(sums.nearLight);
+        hiddenLight += near;
+        hiddenMass = fmax(hiddenMass, sumOfLanes3(sums.nearMass));
+        all += near + far[lightCount];
+    }
+    if (PEL_HIDDEN && fmax(all.x, fmax(all.y, all.z)) <= LEFT_ALONE * frame->tolerance) return false;
     Windowed screen;
     clearWindowed(&screen);
     PelProfileTable seen = table;
@@ -131,34 +145,27 @@ static inline float3 scatterPixel(__global const PelDiffusionFrame* frame, __glo
     const float3 own = shareOfPixel(nodes, table, here->area);
     const float3 nearMass = own + sumOfLanes3(screen.nearMass),
                  nearLight = own * here->e + sumOfLanes3(screen.nearLight);
-    const float3 farMass = sumOfLanes3(screen.farMass), farLight = sumOfLanes3(screen.farLight);
-    const float3 none = (float3)(0.0f);
-    const float3 missing = fmax(1.0f - window - farMass, none);
-    float3 lit = none;
-    Hidden hidden = {none, none, none, none};
-    for (uint k = 0; k < mapCount;) {
-        Windowed sums;
-        clearWindowed(&sums);
-        const uint light = maps[k].light;
-        const float3 color = vload3(0, maps[k].color);
-        for (; k < mapCount && maps[k].light == light; ++k)
-            *texels += addMap(&sums, maps + k, lights, nodes, table, &place);
-        const float3 far = color * sumOfLanes3(sums.farLight), mass = sumOfLanes3(sums.farMass);
-        lit += here->e.x + here->e.y + here->e.z > 0.0f
-                   ? far / fmax(planeLike(mass, 1.0f - window), (float3)(FLT_MIN))
-                   : far;
-        hidden.fill += far * fmin(missing / fmax(mass, (float3)(FLT_MIN)), (float3)(1.0f));
-        hidden.filled = fmax(hidden.filled, fmin(mass, missing));
-        hidden.nearLight += color * sumOfLanes3(sums.nearLight);
-        hidden.nearMass = fmax(hidden.nearMass, sumOfLanes3(sums.nearMass));
+    if (!PEL_HIDDEN) {
+        const bool isLit = here->e.x + here->e.y + here->e.z > 0.0f;
+        float3 sum = window * meanLight(nearLight, nearMass, here->e);
+        for (uint k = 0; k < lightCount; ++k)
+            sum += isLit ? far[k] * planeLike(mass[k], 1.0f - window) : far[k];
+        *result = sum;
+        return true;
     }
-    if (!PEL_HIDDEN) return window * meanLight(nearLight, nearMass, here->e) + lit;
-    const float3 shown =
-        window * meanLight(nearLight + hidden.nearLight, nearMass + hidden.nearMass, here->e) + farLight;
+    const float3 farMass = sumOfLanes3(screen.farMass), missing = fmax(1.0f - window - farMass, none);
+    float3 fill = none, filled = none;
+    for (uint k = 0; k < lightCount; ++k) {
+        fill += far[k] * fmin(missing / fmax(mass[k], (float3)(FLT_MIN)), (float3)(1.0f));
+        filled = fmax(filled, fmin(mass[k], missing));
+    }
+    const float3 shown = window * meanLight(nearLight + hiddenLight, nearMass + hiddenMass, here->e) +
+                         sumOfLanes3(screen.farLight);
     // Mass of which nothing is known is as what is shown; more than there is of a plane is there, beyond what may be error.
-    const float3 mass = window + farMass, surplus = fmax(mass - 1.0f - SURPLUS, none);
-    const float3 whole = fmin(mass, (float3)(1.0f)) + missing - hidden.filled + surplus;
-    return shown * (whole / fmax(mass, (float3)(FLT_MIN))) + hidden.fill;
+    const float3 known = window + farMass, surplus = fmax(known - 1.0f - SURPLUS, none);
+    const float3 whole = fmin(known, (float3)(1.0f)) + missing - filled + surplus;
+    *result = shown * (whole / fmax(known, (float3)(FLT_MIN))) + fill;
+    return true;
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_light(
@@ -178,9 +185,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
                 const Pixel here =
                     pixelAt(pyramid + pyramidRow(&frame->level[0], (int)y) + x, frame->level[0].stride);
                 if (!(here.area > 0.0f)) continue;
-                const float3 s = fmax(scatterPixel(frame, pyramid, tables, nodes, maps, mapCount, lights,
-                                                   (int)x, (int)y, &here, &blocks, &texels),
-                                      (float3)(0.0f));
+                float3 s;
+                if (!scatterPixel(frame, pyramid, tables, nodes, maps, mapCount, lights, (int)x, (int)y,
+                                  &here, &blocks, &texels, &s))
+                    continue;
+                s = fmax(s, (float3)(0.0f));
                 ++pixels;
                 // One lane of a vector, which begins at the pixel's place in its row.
                 const uint start = vectorStart(x, frame->width);

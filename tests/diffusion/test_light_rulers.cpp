@@ -4,6 +4,8 @@
 #include <array>
 
 #include "diffusion/light_rulers.h"
+#include "diffusion/lit_scenes.h"
+#include "test_size.h"
 #include "tolerances.h"
 
 using namespace light_rulers;
@@ -65,4 +67,44 @@ TEST(LightRulers, Ball) {
     const char* gbuffers = folder("PELLUCID_GBUFFER_DIR");
     if (!gbuffers) GTEST_SKIP() << "PELLUCID_GBUFFER_DIR is not set: no G-buffer";
     hold(ball(gbuffers), tolerance::lightBall, 1);
+}
+
+// What comes through an ear that is lit from behind, against the library's own surface integral.
+TEST(LightRulers, EarFromBehind) {
+    namespace lit = lit_scenes;
+    const Device device("");
+    const char* data = folder("PELLUCID_HEADS_DIR");
+    const std::string heads = data ? data : std::string(PELLUCID_SOURCE_DIR) + "/data/heads";
+    const lit::Body whole = lit::head(heads + "/head_male.obj", "male", sized(2, 0));
+    const lit::Body ear = lit::closeUp(
+        whole, "ear", [](lit::Vec3 p) { return p.x; }, 80);
+    lit::SceneRequest request;
+    request.azimuth = 70;
+    request.lightAzimuth = 200, request.lightElevation = 10;
+    request.size = sized(192, 16);
+    request.mapSize = sized(2048, 64);
+    const lit::LitScene s = lit::make(device, ear, request, profile());
+    const auto rms = [&](const std::vector<float>& picture) {
+        Errors sum{};
+        size_t count = 0;
+        for (size_t i = 0; i < s.covered.size(); ++i) {
+            if (!s.covered[i] || !(s.subsets[i] & lit::io::SUBSET_UNLIT)) continue;
+            ++count;
+            for (int c = 0; c < 3; ++c) sum[c] += std::pow(picture[3 * i + c] - s.truth[3 * i + c], 2);
+        }
+        for (double& v : sum) v = 1e4 * albedo * std::sqrt(v / double(std::max<size_t>(count, 1)));
+        return sum;
+    };
+    const Errors lambert = rms(s.irradiance);
+    print("Lambert", lambert);
+    for (PelScattering scattering : {PEL_SCATTERING_AUTO, PEL_SCATTERING_LIGHT}) {
+        lit::ShadeRequest way;
+        way.scattering = scattering;
+        way.traced = true;
+        const Errors e = rms(lit::shade(device, s, profile(), 1, nullptr, way));
+        print(scattering == PEL_SCATTERING_AUTO ? "auto and map" : "light", e);
+        if (testsAreSmall()) continue;
+        EXPECT_LT(e[0], 0.6 * lambert[0]);
+        for (int c = 1; c < 3; ++c) EXPECT_LT(e[c], lambert[c] + 2);
+    }
 }
