@@ -184,6 +184,34 @@ TEST(CurvatureHub, AFanOfManyTrianglesIsQuickAndRight) {
     EXPECT_LT(seconds.count(), 60) << "kernels are compiled meanwhile, on machines that do other things";
 }
 
+TEST(CurvatureHub, LaunchesAreThoseOfOtherMeshesAndMemoryGrowsAsTheTriangles) {
+    // Of a fan of 4 n triangles against one of n, and a polygon of as many corners, which comes as a fan round its first one.
+    const auto work = [](uint32_t n, bool polygon) {
+        fixture::Mesh mesh;
+        for (uint32_t i = 0; i < n; ++i) {
+            const double a = 6.283185307179586 * i / n;
+            mesh.positions.insert(mesh.positions.end(), {float(std::cos(a)), float(std::sin(a)), 0.0f});
+            mesh.normals.insert(mesh.normals.end(), {0, 0, 1});
+        }
+        for (uint32_t i = 1; i + 1 < n; ++i) mesh.indices.insert(mesh.indices.end(), {0u, i, i + 1});
+        if (!polygon) {
+            for (uint32_t i = 0; i < n; ++i) mesh.positions[3 * i + 2] = i == 0 ? 0.3f : 0.0f;
+            mesh.indices.insert(mesh.indices.end(), {0u, n - 1, 1u});
+        }
+        curvature(mesh, topologyDesc(mesh), meanParams(PEL_CURVATURE_QUADRIC));  // builds programs
+        const PelDeviceStats before = device().stats();
+        expectFinite(curvature(mesh, topologyDesc(mesh), meanParams(PEL_CURVATURE_QUADRIC)).values);
+        const PelDeviceStats after = device().stats();
+        return std::pair(after.launches - before.launches, double(after.bytesAllocated - before.bytesAllocated));
+    };
+    for (bool polygon : {false, true}) {
+        const auto [launches, bytes] = work(2000, polygon);
+        const auto [moreLaunches, moreBytes] = work(8000, polygon);
+        EXPECT_EQ(launches, moreLaunches);
+        EXPECT_LE(moreBytes / bytes, 4.4) << bytes;
+    }
+}
+
 TEST(CurvatureHub, TheRimOfAFanSeesItsNeighbours) {
     // A belt of a sphere below a pole of 60 neighbours, which only show what is near.
     const fixture::Mesh mesh = latLongSphere(40, 60, 1);
