@@ -178,3 +178,20 @@ TEST_F(NpyRead, DamagedFilesAreRefused) {
     refused(with("\x01\x00", "\x07\x00"), "version 7");
     EXPECT_THROW(io::readNpy(path("none.npy")), io::FileError);
 }
+
+// The corners of sRGB and its greys, as published for its matrix and the white D65 (B. Lindbloom, CIE colour calculator).
+TEST(ColorDifference, LabOfKnownColours) {
+    const std::pair<std::array<double, 3>, pellucid::io::Lab> known[] = {
+        {{1, 0, 0}, {53.2408, 80.0925, 67.2032}},
+        {{0, 1, 0}, {87.7347, -86.1827, 83.1793}},
+        {{0, 0, 1}, {32.2970, 79.1875, -107.8602}},
+        {{1, 1, 1}, {100, 0, 0}},
+        {{0, 0, 0}, {0, 0, 0}},
+        {{0.18418651, 0.18418651, 0.18418651}, {50, 0, 0}},
+        {{-1, 1, -1}, {87.7347, -86.1827, 83.1793}}};
+    for (const auto& [rgb, lab] : known) {
+        const pellucid::io::Lab found = pellucid::io::labFromLinear(rgb);
+        for (size_t i = 0; i < 3; ++i)
+            EXPECT_NEAR(found[i], lab[i], 0.02) << rgb[0] << " " << rgb[1] << " " << rgb[2] << ", " << i;
+    }
+}
