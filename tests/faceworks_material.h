@@ -6,6 +6,7 @@ namespace fixture {
 
 inline PelMaterial faceworksMaterial() {
     PelMaterial m = pelMaterialDefaults();
+    m.scattering = PEL_SCATTERING_PREINTEGRATED;
     m.diffusionRadius = 2.7f;
     m.shadowFilterWidth = 8;
     m.normalBlend[0] = 1;

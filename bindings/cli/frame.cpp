@@ -170,6 +170,7 @@ void Frame::setMaterial(const io::SceneFile& scene, const io::SceneMaterial& m, 
         if (!profile) profile = Profile::skin();
         if (!curvature) curvature = luts.faceworks(profile, PEL_LUT_CURVATURE);
         if (!shadow) shadow = luts.faceworks(profile, PEL_LUT_SHADOW);
+        if (material.scattering == PEL_SCATTERING_AUTO) material.scattering = PEL_SCATTERING_PREINTEGRATED;
         if (material.diffusionRadius == 0) material.diffusionRadius = profile.info().radius / scene.unitMm;
     } else {
         material.profile = profile.get();

@@ -72,12 +72,24 @@ class ScatterPass final : public Pass {
 
     void enqueue(PassWork& work) override { scatter_->enqueue(images_, work.events); }
 
-    void addStats(Device&, const ShaderPlan&, uint64_t, PelShaderStats& stats) const override {
+    void addStats(Device&, const ShaderPlan& plan, uint64_t, PelShaderStats& stats) const override {
         ScatterCounts counts = scatter_->counts();
         const LightCounts light = scatter_->lightCounts();
         counts.taps += light.texels;
         if (alone) counts.tilesTapped = light.tiles, counts.pixelsTapped = light.pixels;
         addScatterCounts(counts, alone ? PEL_SCATTERING_LIGHT : PEL_SCATTERING_SCREEN, stats);
+        if constexpr (!alone) {
+            // Whether auto's materials kept them is known where no other material scatters so.
+            if (std::ranges::any_of(plan.state.materials, [&](const auto& m) {
+                    return scatters(plan.state, m.second, alone) &&
+                           m.second.given.scattering != PEL_SCATTERING_AUTO;
+                }))
+                return;
+            uint64_t& chosen = stats.pixelsByChoice[PEL_SCATTERING_SCREEN];
+            const uint64_t kept = std::min<uint64_t>(counts.pixelsCovered - counts.pixelsTapped, chosen);
+            stats.pixelsByChoice[PEL_SCATTERING_NONE] += kept;
+            chosen -= kept;
+        }
     }
 
   private:

@@ -9,9 +9,13 @@
 namespace pel {
 namespace {
 
-// The wide filter spans three standard deviations of the widest line spread: a narrower one cuts red off, a
-// wider one makes shadows of its own, which narrow channels show most (docs/guide/shading.md, "Materials").
-constexpr double filterWidths = 3;
+// The wide filter, and how far before a surface an occluder counts, in standard deviations of the widest line
+// spread: docs/guide/shading.md, "Materials", has what others give. Softness and slope are no lengths.
+constexpr double filterWidths = 1.3, biasWidths = 0.1;
+constexpr float softness = 0.1f, coneSlope = 0.8f;
+// Without a profile, mm.
+constexpr double plainFilterWidth = 8, plainBias = 0.5;
+constexpr float plainSoftness = 0.25f, plainConeSlope = 0.5f;
 constexpr double reflectionGain = 1.38;  // of a ball, per mean free path times curvature (section 12)
 constexpr float noBlend[3] = {1, 0.3f, 0};
 constexpr uint32_t transmissionTexels = 256;
@@ -92,7 +96,10 @@ void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const 
     material.shadowLut = material.givenShadowLut;
     material.transmission = {};
     if (m.shadowFilterWidth == 0)
-        m.shadowFilterWidth = float((profile ? filterWidths * widest(*profile) : 8.0) / unit);
+        m.shadowFilterWidth = float((profile ? filterWidths * widest(*profile) : plainFilterWidth) / unit);
+    material.shadowBias = float((profile ? biasWidths * widest(*profile) : plainBias) / unit);
+    material.shadowSoftness = profile ? softness : plainSoftness;
+    material.shadowConeSlope = profile ? coneSlope : plainConeSlope;
     if (profile) {
         const ProfileTables::Tables& made = tables.get(device, *profile, float(m.shadowFilterWidth * unit));
         if (!material.curvatureLut) material.curvatureLut = made.curvature;

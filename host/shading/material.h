@@ -34,7 +34,8 @@ double transmissionReach(const Profile& profile);
 void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const PelShaderOptions& options,
                      ProfileTables& tables);
 
-// Sentences, one a line, about what is set without effect or is unlikely (pelShaderGetWarnings).
-std::string warningsOf(const ShaderState& state, uint32_t features);
+// Sentences, one a line, about what is set without effect or is unlikely (pelShaderGetWarnings). `given`: as the caller
+// set it, `state`: with what auto came to.
+std::string warningsOf(const ShaderState& given, const ShaderState& state, uint32_t features);
 
 }  // namespace pel

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "shading/choose_method.h"
 #include "shading/features.h"
 #include "shading/image_slots.h"
 #include "shading/scatter_controls.h"
@@ -11,10 +12,12 @@
 namespace pel {
 namespace {
 
-ShaderPlan planOf(const ShaderState& state) {
+ShaderPlan planOf(const ShaderState& given, uint32_t methods) {
     ShaderPlan plan;
+    plan.state = given;
+    plan.warnings = chooseMethods(plan.state, methods);
+    const ShaderState& state = plan.state;
     plan.features = deriveFeatures(state);
-    plan.state = state;
     plan.variants = variantFeatures(state, plan.features);
     const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
     plan.tilesX = (frame.width + PEL_TILE_WIDTH - 1) / PEL_TILE_WIDTH;
@@ -36,9 +39,9 @@ void Shader::commit() {
 
 // A plan and its passes' memory, in bands of at most this many rows of tiles.
 void Shader::allocate(uint32_t mostRows) {
-    ShaderPlan plan = planOf(state_);
-    checkMethods();
-    checkScattering(state_);
+    ShaderPlan plan = planOf(state_, methods());
+    checkMethods(plan.state);
+    checkScattering(plan.state);
     // Old images go before new ones are made: both together would not keep to a budget. After a failure
     // nothing is held.
     committed_ = false;
@@ -52,12 +55,17 @@ void Shader::allocate(uint32_t mostRows) {
     passes_ = std::move(passes);
 }
 
-// Each method of scattering that a material names has a pass.
-void Shader::checkMethods() const {
+// Those that this build has.
+uint32_t Shader::methods() const {
     uint32_t methods = 1u << PEL_SCATTERING_NONE | 1u << PEL_SCATTERING_PREINTEGRATED;
     for (const PassKind& kind : passKinds_) methods |= kind.methods;
-    for (const auto& [id, material] : state_.materials)
-        if (!(methods >> material.params.scattering & 1))
+    return methods;
+}
+
+// Each method of scattering that a material names has a pass.
+void Shader::checkMethods(const ShaderState& state) const {
+    for (const auto& [id, material] : state.materials)
+        if (!(methods() >> material.params.scattering & 1))
             fail(PEL_ERROR_UNSUPPORTED, "PelMaterial.scattering of material ", id, " is ",
                  scatteringName(material.params.scattering),
                  ", which this build of the library does not have");
@@ -68,7 +76,9 @@ void Shader::finishPlan() {
     passes_.each([&](Pass& pass) { pass.build(*device_, plan_); });
     programsBuilt_ += device_->programs().counts().built - before;
     send();
-    warnings_ = warningsOf(state_, plan_.features);
+    warnings_ = plan_.warnings;
+    if (const std::string more = warningsOf(state_, plan_.state, plan_.features); !more.empty())
+        warnings_ += (warnings_.empty() ? "" : "\n") + more;
     committed_ = true;
 }
 
@@ -192,7 +202,6 @@ PelShaderStats Shader::stats() {
     stats.pixelsTotal = uint64_t(constants_.frame().width) * constants_.frame().height;
     stats.bands = bands_;
     stats.variants = plan_.variants.size();
-    if (committed_) passes_.each([&](const Pass& pass) { pass.addStats(*device_, plan_, bands_, stats); });
     if (committed_) {
         cl_uint counts[PEL_COUNTERS];
         device_->read(counters_.get(), 0, sizeof counts, counts, true);
@@ -205,8 +214,12 @@ PelShaderStats Shader::stats() {
         stats.pixelsShadowTexels = counts[PEL_COUNT_SHADOW_TEXELS];
         stats.pixelsIrradiance = counts[PEL_COUNT_IRRADIANCE];
         static_assert(std::size(decltype(stats.pixelsByScattering){}) == PEL_SCATTERS);
-        for (int i = 0; i < PEL_SCATTERS; ++i) stats.pixelsByScattering[i] = counts[PEL_COUNT_SCATTERING + i];
+        for (int i = 0; i < PEL_SCATTERS; ++i) {
+            stats.pixelsByScattering[i] = counts[PEL_COUNT_SCATTERING + i];
+            stats.pixelsByChoice[i] = counts[PEL_COUNT_CHOICE + i];
+        }
     }
+    if (committed_) passes_.each([&](const Pass& pass) { pass.addStats(*device_, plan_, bands_, stats); });
     for (const cl::Event& event : events_) stats.deviceMilliseconds += eventMilliseconds(event);
     return stats;
 }

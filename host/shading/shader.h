@@ -44,7 +44,8 @@ class Shader final : public Object {
   private:
     ~Shader() override = default;
     void allocate(uint32_t mostRows);
-    void checkMethods() const;
+    uint32_t methods() const;
+    void checkMethods(const ShaderState& state) const;
     void finishPlan();
     void send();
     void launchOnNothing();

@@ -25,6 +25,7 @@ struct BoundedMap {
 struct ShaderPlan {
     ShaderState state;  // as of the commit, with the images that passes make in their slots
     uint32_t features = 0;
+    std::string warnings;            // of what auto had to do without
     std::vector<uint32_t> variants;  // features of each variant of the shading kernel
     uint32_t tilesX = 0, tileRows = 0;
 

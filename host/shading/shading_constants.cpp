@@ -168,9 +168,13 @@ std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(const ShaderSt
         to.f0 = m.f0;
         to.diffusionRadius = m.diffusionRadius;
         to.shadowFilterWidth = readsIrradiance(from) ? 0 : m.shadowFilterWidth;
+        to.shadowBias = from.shadowBias;
+        to.shadowSoftness = from.shadowSoftness;
+        to.shadowConeSlope = from.shadowConeSlope;
         to.scattering = m.scattering;
         to.albedoAfter = readsIrradiance(from) && m.scattering != PEL_SCATTERING_NONE ? 1 - m.albedoBefore : 1;
         copy(to.through, from.through);
+        to.named = from.given.scattering;
         to.specularModel = m.specularModel;
         to.roughness2 = m.roughness2;
         to.lobeMix = m.lobeMix;

@@ -1,6 +1,7 @@
 // Bounds of the blocks of shadow maps of depths, by which wide shadows are known without reading texels.
 #include <algorithm>
 
+#include "shading/features.h"
 #include "shading/passes.h"
 #include "shading/scratch_image.h"
 #include "shading/shading_constants.h"
@@ -67,8 +68,10 @@ class ShadowBounds final : public Pass {
 
   private:
     static bool isBounded(const ShaderPlan& plan, const ShaderLight& light) {
-        return !plan.state.options.disableSkipping &&
-               light.params.shadowContent == PEL_SHADOW_CONTENT_DEPTH && !isCube(light.params);
+        return !plan.state.options.disableSkipping && light.params.shadowContent == PEL_SHADOW_CONTENT_DEPTH &&
+               !isCube(light.params) && light.params.shadowFilterTexels > 0 &&
+               std::ranges::any_of(plan.state.materials,
+                                   [](const auto& m) { return !readsIrradiance(m.second); });
     }
 
     Ref<Buffer> bounds_;

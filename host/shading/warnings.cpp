@@ -27,7 +27,7 @@ bool isBlackColor(const float (&c)[3]) {
 
 }  // namespace
 
-std::string warningsOf(const ShaderState& state, uint32_t features) {
+std::string warningsOf(const ShaderState&, const ShaderState& state, uint32_t features) {
     std::string all;
     const auto warn = [&](auto&&... parts) { all += (all.empty() ? "" : "\n") + text(parts...); };
     const bool map = std::any_of(state.lights.begin(), state.lights.end(),

@@ -311,7 +311,11 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
     __global const PelShadeFrame* frame = scene->frame;
     // Whether its diffuse light is the image's: that of the lights and of the ambient, scattered already.
     const bool scattered = HAS(PEL_BIT_IRRADIANCE) && material->scattering != PEL_SCATTER_PREINTEGRATED;
-    if (HAS(PEL_BIT_COUNT)) counts->of[PEL_COUNT_SCATTERING + material->scattering] += countw(active);
+    if (HAS(PEL_BIT_COUNT)) {
+        counts->of[PEL_COUNT_SCATTERING + material->named] += countw(active);
+        if (material->named == PEL_SCATTER_AUTO)
+            counts->of[PEL_COUNT_CHOICE + material->scattering] += countw(active);
+    }
     // A pixel is spoiled by what its own material reads alone, so that its neighbours' materials do not matter.
     p->valid &= ((p->spoiled & material->needs) == 0) | notw(active);
     Vec3w diffuse = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = diffuse;

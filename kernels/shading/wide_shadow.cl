@@ -71,7 +71,9 @@ static inline maskw comparable(const Receiver* r, Vec3w p, Vec3w n) {
 }
 
 // Returns the lanes whose filter can be run; the others are behind the light, or no numbers.
-static inline maskw makeFilters(__global const PelWideShadow* light, Vec3w p, Vec3w n, floatw width, Filters* f) {
+static inline maskw makeFilters(__global const PelWideShadow* light, const FilterShape* shape, Vec3w p,
+                                Vec3w n, Filters* f) {
+    const floatw width = shape->width;
     const Receiver r = receiverInMap(light, p, n);
     const floatw zPerLength = r.zPerLength, texelU = r.texelU, texelV = r.texelV, cosine = r.cosine;
     const floatw tilt = 1.0f / fmax(cosine, (floatw)(PEL_FLATTEST_COSINE));
@@ -85,18 +87,18 @@ static inline maskw makeFilters(__global const PelWideShadow* light, Vec3w p, Ve
     const floatw step = fmax(ceil(2.0f * fmax(radiusX, radiusY) / light->maxTexels), (floatw)(1.0f));
     storew(r.x, 0, f->x);
     storew(r.y, 0, f->y);
-    storew(r.z - (light->bias + body) * zPerLength, 0, f->z);
+    storew(r.z - (shape->bias + body) * zPerLength, 0, f->z);
     storew(dzdx, 0, f->dzdx);
     storew(dzdy, 0, f->dzdy);
     storew(radiusX, 0, f->radiusX);
     storew(radiusY, 0, f->radiusY);
-    storew(light->coneSlope * tilt * 0.5f * width * zPerLength, 0, f->cone);
+    storew(shape->coneSlope * tilt * 0.5f * width * zPerLength, 0, f->cone);
     if (PEL_SHADOW_CONTENT == PEL_CONTENT_MOMENTS)
         storew(1.0f / (floatw)(zPerLength), 0, f->scale);
     else if (PEL_SHADOW_CONTENT == PEL_CONTENT_EXPONENTIAL)
         storew((floatw)(light->exponent), 0, f->scale);
     else
-        storew(1.0f / (light->softness * width * zPerLength), 0, f->scale);
+        storew(1.0f / (shape->softness * width * zPerLength), 0, f->scale);
     storew(step, 0, f->step);
     maskw held = -1;
     if ((PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) && light->cascades)
@@ -126,6 +128,24 @@ static inline floatw sharpInMap(__global const PelWideShadow* light, __global co
         fmax(PEL_SHARP_TEXELS * fmax(r.texelU, r.texelV) * tilt * fabs(r.zPerLength), least);
     s.perTolerance = copysign(1.0f / tolerance, r.zPerLength);
     return selectw(shown, sharpShadow(PEL_FORMAT_SHADOW_MAP, map, &light->map, &s, perExponent, held), held);
+}
+
+// Of the materials of these ids; ids without one may lie beyond the table.
+static inline FilterShape filterShape(__global const PelWideShadow* light,
+                                      __global const PelShadeMaterial* materials, uintw id, maskw active) {
+#define FIELD(field) PEL_LANES(OF_##field)
+#define OF_shadowFilterWidth(k, s) (active s ? materials[id s].shadowFilterWidth : 1.0f)
+#define OF_shadowBias(k, s) (active s ? materials[id s].shadowBias : 0.0f)
+#define OF_shadowSoftness(k, s) (active s ? materials[id s].shadowSoftness : 1.0f)
+#define OF_shadowConeSlope(k, s) (active s ? materials[id s].shadowConeSlope : 0.0f)
+    FilterShape shape;
+    shape.width = FIELD(shadowFilterWidth);
+    shape.bias = light->bias, shape.softness = light->softness, shape.coneSlope = light->coneSlope;
+    if (light->bias < 0.0f) shape.bias = FIELD(shadowBias);
+    if (light->softness < 0.0f) shape.softness = FIELD(shadowSoftness);
+    if (light->coneSlope < 0.0f) shape.coneSlope = FIELD(shadowConeSlope);
+    return shape;
+#undef FIELD
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_shadow(
@@ -161,14 +181,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
             const floatw facing = dot3(n, sampleLight(&lights[lightIndex], p).direction);
             n = scale3(n, selectw((floatw)(1.0f), (floatw)(-1.0f), sheet & (facing < 0.0f)));
 #endif
-            // Ids without a material may lie beyond the table.
-#define PEL_WIDTH_(k, s) (active s ? materials[id s].shadowFilterWidth : 1.0f)
-            floatw width = PEL_LANES(PEL_WIDTH_);
-#undef PEL_WIDTH_
+            FilterShape shape = filterShape(wideShadow, materials, id, active);
             maskw left = active;
             if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING))
                 left &= sampleLight(&lights[lightIndex], p).strength > 0.0f;
-            maskw sharp = left & (width == 0.0f);
+            maskw sharp = left & (shape.width == 0.0f);
             float shown[PEL_WIDTH];
             storew((floatw)(1.0f), 0, shown);
             if (!(wideShadow->maxTexels > 0.0f)) left = sharp;  // only sharp shadows are made of this light
@@ -178,8 +195,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                 __global const float* m = wideShadow->worldToShadow;
                 // Of cubes the smallest disk, two texels in radius, is the sharp shadow.
                 const Vec3w q = cubePosition(m, p);
-                width = selectw(width, sqrt(dot3(q, q)) * (8.0f / (float)wideShadow->map.width), sharp);
-                left &= makeCubeFilters(wideShadow, q, cubeTurned(m, n), width, PEL_FLATTEST_COSINE, &f);
+                shape.width =
+                    selectw(shape.width, sqrt(dot3(q, q)) * (8.0f / (float)wideShadow->map.width), sharp);
+                left &= makeCubeFilters(wideShadow, &shape, q, cubeTurned(m, n), PEL_FLATTEST_COSINE, &f);
                 if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(left), texels += countw(left);
 #define PEL_FILTER_(k, s) \
     if (left s) shown[k] = wideShadowInCube(PEL_FORMAT_SHADOW_MAP, map, wideShadow, &f, k, &content);
@@ -203,7 +221,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                             filtered += countw(before & notw(sharp)), texels += countw(before & notw(sharp));
                         if (!anyw(left)) continue;
                     }
-                    const maskw held = makeFilters(light, p, n, width, &f) & left;
+                    const maskw held = makeFilters(light, &shape, p, n, &f) & left;
                     if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(held);
                     left &= notw(held);
                     const bool bounded = PEL_BOUNDS && boundsPay(frame, list, &light->map);

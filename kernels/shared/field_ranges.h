@@ -45,9 +45,9 @@
     X(color, 0, PEL_HUGE, PEL_NONE)              \
     X(shadowFilterTexels, 4, 256, 0)             \
     X(shadowCascades, 0, 4, PEL_NONE)            \
-    X(shadowBias, 0, PEL_HUGE, PEL_NONE)         \
-    X(shadowSoftness, 1e-3f, PEL_HUGE, PEL_NONE) \
-    X(shadowConeSlope, 0, PEL_HUGE, PEL_NONE)    \
+    X(shadowBias, 0, PEL_HUGE, -1)               \
+    X(shadowSoftness, 1e-3f, PEL_HUGE, -1)       \
+    X(shadowConeSlope, 0, PEL_HUGE, -1)          \
     X(shadowMinDeviation, 0, PEL_HUGE, PEL_NONE) \
     X(shadowBleeding, 0, 0.999f, PEL_NONE)
 #define PEL_EACH_PLACED_LIGHT_RANGE(X) X(range, 0, PEL_HUGE, PEL_NONE)

@@ -78,6 +78,9 @@ typedef struct PelShadeMaterial {
     float f0;
     float diffusionRadius;    // length
     float shadowFilterWidth;  // length; 0: a sharp shadow
+    float shadowBias;         // length; this and the next two for lights that leave theirs to the profile
+    float shadowSoftness;     // of the filter's width
+    float shadowConeSlope;
     PelUint32 hasNormalMap;
     PelUint32 specularModel;  // PelSpecularModel
     float roughness2;
@@ -88,7 +91,8 @@ typedef struct PelShadeMaterial {
     float transmissionShare;
     float gain[3];         // length: direct light times 1 + gain * curvature; all 0: none
     PelUint32 needs;       // PEL_BIT_...: features that this material asks for
-    PelUint32 scattering;  // PelScattering
+    PelUint32 scattering;  // PelScattering, what auto came to in its place
+    PelUint32 named;       // the same as the caller named it
     float albedoAfter;     // power of albedo that scattered irradiance is multiplied by
     float through[3];      // share of the light on a sheet's other side
     PelUint32 variants;    // bit i: variant i of the shading kernel has all of them
@@ -137,13 +141,14 @@ typedef struct PelShadeLight {
 #define PEL_COUNT_WIDE_SHADOW 5
 #define PEL_COUNT_SHADOW_TEXELS 6
 #define PEL_COUNT_IRRADIANCE 7
-#define PEL_COUNT_SCATTERING 8  // and on: one for each PelScattering
-#define PEL_COUNTERS (PEL_COUNT_SCATTERING + PEL_SCATTERS)
+#define PEL_COUNT_SCATTERING 8                                  // and on: one for each PelScattering
+#define PEL_COUNT_CHOICE (PEL_COUNT_SCATTERING + PEL_SCATTERS)  // of materials of auto, by what it came to
+#define PEL_COUNTERS (PEL_COUNT_CHOICE + PEL_SCATTERS)
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelShadeImage) == 32 && sizeof(PelShadeLut) == 40);
 static_assert(sizeof(PelShadeFrame) == 4 * (8 + 8 + 3 + 16 + 27 + 3 + 1) + PEL_IMAGE_SLOTS * 32);
-static_assert(sizeof(PelShadeMaterial) == 4 * 38 + 3 * sizeof(PelShadeLut));
+static_assert(sizeof(PelShadeMaterial) == 4 * 42 + 3 * sizeof(PelShadeLut));
 static_assert(sizeof(PelShadeCascade) == 4 * (16 + 4) + 32);
 static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64 + 8 + PEL_CASCADES * sizeof(PelShadeCascade));
 #endif

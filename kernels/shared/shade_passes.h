@@ -31,7 +31,7 @@ typedef struct PelWideShadow {
     float perExponent;   // 1 / that
     float minDeviation;  // moments: length
     float bleeding;      // moments: share of light that counts as none
-    float bias;          // length
+    float bias;          // length; this and the next two below 0: as each material says
     float softness;      // of the filter's width
     float coneSlope;     // length per length
     float maxTexels;     // across the filter

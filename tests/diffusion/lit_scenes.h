@@ -298,7 +298,6 @@ inline std::vector<float> shade(const Device& device, const LitScene& s, const P
     std::ranges::copy(s.map.worldToUvz.toFloats(), light.worldToShadow);
     light.shadowDepthRange = float(s.map.depthRange);
     light.shadowFilterTexels = 64;
-    light.shadowBias /= float(s.unit);
     pellucid::Shader shader(device);
     shader.set(options);
     const auto w = uint32_t(s.width), h = uint32_t(s.height);

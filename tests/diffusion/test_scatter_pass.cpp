@@ -24,6 +24,8 @@ std::vector<float> shaded(const Picture& p, PelScattering scattering, PelShaderS
     shader.set(PEL_SLOT_MATERIAL, pellucid::imageDesc(i, PEL_FORMAT_R8_UINT, p.width, p.height));
     PelMaterial material = pelMaterialDefaults();
     material.scattering = scattering;
+    const Profile skin = Profile::skin();
+    if (scattering == PEL_SCATTERING_AUTO) material.profile = skin.get();  // the others have skin's without one
     material.specular = 0;
     for (float& a : material.albedo) a = 0.5f;
     shader.setMaterial(1, material);

@@ -54,8 +54,15 @@ struct Image {
     Vec3 vec(size_t pixel) const { return {at(pixel, 0), at(pixel, 1), at(pixel, 2)}; }
 };
 
+// Leaves nothing of its filter to a profile, whose numbers an oracle takes as they are.
+inline PelLight plainLight() {
+    PelLight l = pelLightDefaults();
+    l.shadowBias = 0.5f, l.shadowSoftness = 0.25f, l.shadowConeSlope = 0.5f;
+    return l;
+}
+
 struct Light {
-    PelLight params = pelLightDefaults();
+    PelLight params = plainLight();
     Image wide;  // empty: none
     uint32_t mapSize = 0;
     Image map;

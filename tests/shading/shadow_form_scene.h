@@ -13,7 +13,7 @@ struct MapImage {
     std::vector<float> values;
 };
 struct FormLight {
-    PelLight params = pelLightDefaults();
+    PelLight params = plainLight();
     std::vector<MapImage> maps;
 };
 struct Seen {

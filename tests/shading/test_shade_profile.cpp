@@ -83,6 +83,7 @@ class Shading {
 PelMaterial materialOf(const Profile& profile) {
     PelMaterial m = pelMaterialDefaults();
     m.profile = profile.get();
+    m.scattering = PEL_SCATTERING_PREINTEGRATED;
     for (float& a : m.albedo) a = 1;
     return m;
 }
@@ -114,7 +115,7 @@ TEST(ShadeProfile, TheProfileAloneGivesItsTablesAndWidths) {
     }
     const PelMaterial resolved = shading.shader.material(1);
     EXPECT_EQ(resolved.diffusionRadius, info.radius);
-    EXPECT_FLOAT_EQ(resolved.shadowFilterWidth, 3 * info.width[0]);
+    EXPECT_FLOAT_EQ(resolved.shadowFilterWidth, 1.3f * info.width[0]);
     for (int c = 0; c < 3; ++c) EXPECT_EQ(resolved.normalBlend[c], info.normalBlend[c]);
 }
 

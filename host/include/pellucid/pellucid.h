@@ -738,11 +738,12 @@ typedef struct PelLight {
     /* The wide shadow made from the shadow map, when PEL_LIGHT_WIDE_SHADOW is not set (docs/shading.md, "Wide shadow"). */
     uint32_t shadowFilterTexels; /* 0: none. Else the most texels across the filter that are read, 4 to 256; of a finer map
                                     every 2nd, 3rd, ... row and column. Typical 48 */
-    float shadowBias;     /* length an occluder must stand before the surface to count; 0.5 mm */
-    float shadowSoftness; /* times PelMaterial.shadowFilterWidth: how much further before the bias it counts in
-                                    full, so that round bodies do not shade themselves with a hard edge; 0.25 */
-    float shadowConeSlope; /* the bias grows by this times the sideways distance, so that folds and facets do not
-                                    shade themselves; 0.5 */
+    /* The next three are -1 by default: from each material's profile (docs/guide/shading.md, "Materials"); without one 0.5 mm, 0.25
+       and 0.5. */
+    float shadowBias;     /* length an occluder must stand before the surface to count */
+    float shadowSoftness; /* times PelMaterial.shadowFilterWidth: how much further before the bias it counts in full, so that round
+                             bodies do not shade themselves with a hard edge */
+    float shadowConeSlope; /* the bias grows by this times the sideways distance, so that folds and facets do not shade themselves */
     /* Cascades: up to four parallel maps of a directional light, the finest first: PEL_LIGHT_SHADOW_MAP with the matrix and range
        above, then PEL_LIGHT_CASCADE_1, 2, 3 with those below. A point takes the finest that holds it with its whole filter;
        outside of all there is neither shadow nor thickness. */
@@ -770,7 +771,10 @@ typedef enum PelScattering {
     PEL_SCATTERING_SCREEN = 3,  /* the profile summed over the screen, from irradiance per pixel */
     PEL_SCATTERING_LIGHT = 4,   /* the profile summed over the light's shadow map */
     PEL_SCATTERING_TEXTURE = 5, /* irradiance in texture space [d'Eon, Luebke 2007] */
-    PEL_SCATTERING_AUTO = 6 /* what the inputs allow, with the least work for PelShaderOptions.targetError */
+    PEL_SCATTERING_AUTO = 6 /* what the inputs allow, with the least work for PelShaderOptions.targetError: on the screen where there
+                               are positions or depth, and shadows that are sharp or can be made so; by tables otherwise, and where the
+                               material brings its own; with nothing to scatter by, like PREINTEGRATED without tables
+                               (docs/guide/shading.md, "Auto"). pelShaderGetWarnings and PelShaderStats say what it took */
 } PelScattering;
 
 typedef struct PelMaterial {
@@ -780,7 +784,7 @@ typedef struct PelMaterial {
                               Where it differs from a LUT's, look-ups are rescaled */
     float normalBlend[3]; /* how far the blurred normal replaces the shading normal, per channel: the channel that scatters
                               widest sees the blurred normal only. Default -1: the profile's; without one 1, 0.3, 0 */
-    float shadowFilterWidth; /* length: penumbra of the wide shadow where the surface faces the light. Default 0: three
+    float shadowFilterWidth; /* length: penumbra of the wide shadow where the surface faces the light. Default 0: 1.3
                                       times the profile's largest width; without a profile 8 mm */
     float deepScatterColor[3];     /* 0: no deep scatter */
     float deepScatterRadius;       /* length, sigma of the transmission through thickness; 6 mm */
@@ -798,8 +802,8 @@ typedef struct PelMaterial {
     float deepScatterAmbient; /* share of ambient light that comes through from behind: times deepScatterColor and the
                                       irradiance on -Nb. Needs PEL_SLOT_THICKNESS, measured along the
                                       inward normal: off without it, also with shadow maps; 0 */
-    PelScattering scattering; /* PEL_SCATTERING_PREINTEGRATED. All but it take shadows from maps sharp: compared about a
-                                      texel wide, whatever the filter's fields of PelLight say */
+    PelScattering scattering; /* PEL_SCATTERING_AUTO. All but PEL_SCATTERING_PREINTEGRATED take shadows from maps sharp: compared
+                                      about a texel wide, whatever the filter's fields of PelLight say */
     PelProfile profile; /* in mm; the shader keeps it alive. Everything left to defaults follows from it: both tables
                                       (made, and kept for the device), widths, normal blend, transmission. NULL: none */
     float transmission; /* share of the light that the profile lets through thin parts (pelProfileTransmission of the

@@ -94,9 +94,9 @@ static inline PelLight pelLightDefaults(void) {
     s.worldToShadow[0] = s.worldToShadow[5] = 1.0f;
     s.worldToShadow[10] = s.worldToShadow[15] = 1.0f;
     s.shadowDepthRange = 1.0f;
-    s.shadowBias = 0.5f;
-    s.shadowSoftness = 0.25f;
-    s.shadowConeSlope = 0.5f;
+    s.shadowBias = -1.0f;
+    s.shadowSoftness = -1.0f;
+    s.shadowConeSlope = -1.0f;
     s.shadowMinDeviation = 0.25f;
     s.shadowBleeding = 0.1f;
     return s;
@@ -115,7 +115,7 @@ static inline PelMaterial pelMaterialDefaults(void) {
     s.uvScale = 1.0f;
     s.roughness2 = 0.15f;
     s.lobeMix = 0.15f;
-    s.scattering = PEL_SCATTERING_PREINTEGRATED;
+    s.scattering = PEL_SCATTERING_AUTO;
     return s;
 }
 static inline PelAmbient pelAmbientDefaults(void) { PEL_ZEROED_(PelAmbient, s); return s; }

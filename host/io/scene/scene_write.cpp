@@ -14,7 +14,9 @@ class TomlWriter {
   public:
     explicit TomlWriter(std::string& out, std::string name = "") : out_(out), name_(std::move(name)) {}
 
-    void number(std::string_view key, float value, Range) { line(key, shown(value)); }
+    void number(std::string_view key, float value, Range range) {
+        if (!(value == range.special && value < 0)) line(key, shown(value));
+    }
     // If all values are the special one they mean the default, and the key is left out.
     void numbers(std::string_view key, const float* values, size_t count, Range range) {
         if (!std::all_of(values, values + count, [&](float v) { return v == range.special; }))

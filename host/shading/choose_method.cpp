@@ -1,0 +1,81 @@
+#include "shading/choose_method.h"
+
+#include <algorithm>
+
+#include "shading/features.h"
+
+namespace pel {
+namespace {
+
+// Of scratch: a pixel, with irradiance and the shadow of a light; a texel of a light's map.
+constexpr uint64_t bytesOnScreen = 96, bytesPerTexel = 33;
+
+bool isAuto(const ShaderMaterial& material) {
+    return material.given.scattering == PEL_SCATTERING_AUTO;
+}
+bool bringsTables(const ShaderMaterial& material) {
+    return material.givenCurvatureLut || material.givenShadowLut;
+}
+
+// Whether every light's shadow is sharp where irradiance is made, or can be made so.
+bool shadowsAreSharp(const ShaderState& state) {
+    const bool wanted = std::ranges::any_of(state.materials, [](const auto& m) {  // by materials that keep to tables
+        return !isAuto(m.second) && !readsIrradiance(m.second);
+    });
+    return std::ranges::all_of(state.lights, [&](const ShaderLight& light) {
+        return !light.images[PEL_LIGHT_WIDE_SHADOW] || (light.images[PEL_LIGHT_SHADOW_MAP] && !wanted);
+    });
+}
+
+}  // namespace
+
+std::string chooseMethods(ShaderState& state, uint32_t methods) {
+    std::string all;
+    const auto say = [&](auto&&... parts) { all += (all.empty() ? "" : "\n") + text(parts...); };
+    const bool places = state.images[PEL_SLOT_POSITION] || state.images[PEL_SLOT_DEPTH];
+    const bool given = bool(state.images[PEL_SLOT_IRRADIANCE]);
+    const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
+    uint64_t bytes = uint64_t(frame.width) * frame.height * bytesOnScreen;
+    for (const ShaderLight& light : state.lights)
+        for (uint32_t i = 0; light.images[PEL_LIGHT_SHADOW_MAP] && i < cascadesOf(light); ++i)
+            bytes += uint64_t(shadowCascade(light, i).map->width) * shadowCascade(light, i).map->height *
+                     bytesPerTexel;
+    const bool fits = !state.options.scratchBudget || bytes <= state.options.scratchBudget;
+    const bool onScreen =
+        places && fits && (given || shadowsAreSharp(state)) && (methods >> PEL_SCATTERING_SCREEN & 1);
+    const bool lit = !state.lights.empty() || !isBlack(state.ambient) || state.ambientCube;
+    bool scatters = false;
+    for (auto& [id, material] : state.materials) {
+        if (!isAuto(material)) continue;
+        material.params.scattering = PEL_SCATTERING_PREINTEGRATED;
+        if (!material.profile || bringsTables(material) || !(lit || given)) continue;
+        if (onScreen) {
+            material.params.scattering = PEL_SCATTERING_SCREEN;
+            scatters = true;
+        } else if (!fits) {
+            say("material ", id, " scatters by its tables, for PelShaderOptions.scratchBudget is ",
+                state.options.scratchBudget,
+                " bytes, and scattering on the screen takes the whole frame at a time, ", bytes, " bytes");
+        } else if (!places) {
+            say("material ", id,
+                " scatters by its tables, for there are neither positions nor depth: with them it would "
+                "scatter on the "
+                "screen, which is nearer to light");
+        } else {
+            say("material ", id,
+                " scatters by its tables, for the shadow image of a light is wide: with a shadow map in its "
+                "place, or "
+                "irradiance, it would scatter on the screen, which is nearer to light");
+        }
+    }
+    // What has nothing to scatter by takes the same light and the same shadows as what does.
+    for (auto& [id, material] : state.materials)
+        if (isAuto(material) && !material.profile && !bringsTables(material) && (scatters || given))
+            material.params.scattering = PEL_SCATTERING_NONE;
+    if (scatters && !given)
+        for (ShaderLight& light : state.lights)
+            if (light.images[PEL_LIGHT_SHADOW_MAP]) light.images[PEL_LIGHT_WIDE_SHADOW] = ImageView();
+    return all;
+}
+
+}  // namespace pel
