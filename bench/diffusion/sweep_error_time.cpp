@@ -32,6 +32,36 @@ std::vector<Setting> settings() {
                        [size](const Device& d, const LitScene& s, const Profile& p, double k, double* t) {
                            return shadePreintegrated(d, s, p, k, t, size);
                        }});
+    // With visibility given, as an image.
+    const auto add = [&](const char* method, const std::string& setting, const ShadeRequest& request) {
+        all.push_back({method, setting,
+                       [request](const Device& d, const LitScene& s, const Profile& p, double k, double* t) {
+                           return shade(d, s, p, k, t, request);
+                       }});
+    };
+    for (uint32_t taps : {9u, 17u, 25u, 51u, 101u}) {
+        ShadeRequest request;
+        request.scattering = PEL_SCATTERING_SEPARABLE;
+        request.scatterTaps = taps;
+        request.traced = true;
+        add("separable", "2 x " + std::to_string(taps) + " taps", request);
+    }
+    for (uint32_t taps : {8u, 16u, 32u, 64u, 128u, 256u}) {
+        ShadeRequest request;
+        request.scattering = PEL_SCATTERING_SCREEN;
+        request.scatterTaps = taps;
+        request.traced = true;
+        add("disk", std::to_string(taps) + " taps", request);
+    }
+    for (float target : {1e-3f, 2e-3f, 5e-3f, 1e-2f}) {
+        ShadeRequest request;
+        request.scattering = PEL_SCATTERING_SCREEN;
+        request.targetError = target;
+        request.traced = true;
+        char setting[32];
+        std::snprintf(setting, sizeof setting, "error %g", double(target));
+        add("screen", setting, request);
+    }
     return all;
 }
 

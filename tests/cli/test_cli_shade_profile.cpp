@@ -89,3 +89,67 @@ TEST_F(ShadeProfile, ADistanceIsNoDeviceDepth) {
     shaded("s.toml");
     EXPECT_NE(warnings_.find("depth channel reaches 250"), std::string::npos) << warnings_;
 }
+
+// Every control of scattering that a scene file can name.
+TEST_F(ShadeProfile, MethodsAndTheirControls) {
+    std::vector<float> back, positions;
+    for (int i = 0; i < shade_files::width * shade_files::height; ++i)
+        back.insert(back.end(), {0.3f, 0.3f, 0.3f});
+    std::vector<float> light, weights, uvs;
+    for (int i = 0; i < shade_files::width * shade_files::height; ++i) {
+        light.insert(light.end(), 3, i % shade_files::width < 7 ? 1.0f : 0.0f);
+        weights.push_back(0);
+        positions.insert(positions.end(),
+                         {0.5f * float(i % shade_files::width), 0.5f * float(i / shade_files::width), 0});
+        uvs.insert(uvs.end(), {float(i % shade_files::width) / shade_files::width, 0.5f});
+    }
+    gbuffer_.addInterleaved(std::vector<std::string>{"P.X", "P.Y", "P.Z"}, positions);
+    scene_.channels[PEL_SLOT_POSITION] = {"P.X", "P.Y", "P.Z"};
+    gbuffer_.addInterleaved(std::vector<std::string>{"E.R", "E.G", "E.B"}, light);
+    gbuffer_.addInterleaved(std::vector<std::string>{"B.R", "B.G", "B.B"}, back);
+    gbuffer_.addInterleaved(std::vector<std::string>{"W.V"}, weights);
+    gbuffer_.addInterleaved(std::vector<std::string>{"UV.U", "UV.V"}, uvs);
+    io::writeExr(path("g.exr"), gbuffer_);
+    scene_.channels[PEL_SLOT_IRRADIANCE] = {"E.R", "E.G", "E.B"};
+    scene_.materials[0].profile = "skin";
+    PelMaterial& m = scene_.materials[0].material;
+    const auto result = [&] {
+        io::writeScene(path("s.toml"), scene_);
+        return shaded("s.toml");
+    };
+    m.scattering = PEL_SCATTERING_NONE;
+    const auto plain = result();
+    std::vector<std::vector<float>> all{plain};
+    const auto differs = [&](const char* what) {
+        all.push_back(result());
+        for (size_t k = 0; k + 1 < all.size(); ++k) EXPECT_NE(all[k], all.back()) << what;
+    };
+    m.scattering = PEL_SCATTERING_SEPARABLE;
+    differs("separable");
+    m.scatterTaps = 9;
+    differs("taps");
+    m.scattering = PEL_SCATTERING_SCREEN;
+    differs("disk");
+    scene_.frameIndex = 7;
+    differs("frame");
+    m.thinThickness = 0.2f;
+    scene_.channels[PEL_SLOT_IRRADIANCE_BACK] = {"B.R", "B.G", "B.B"};
+    differs("sheet");
+    m.thinThickness = 0;
+    scene_.channels[PEL_SLOT_SCATTER_WEIGHT] = {"W.V"};
+    EXPECT_EQ(result(), plain);  // nothing of it is taken
+    scene_.channels[PEL_SLOT_SCATTER_WEIGHT].clear();
+    scene_.channels[PEL_SLOT_UV] = {"UV.U", "UV.V"};
+    io::Image texture;
+    texture.width = 4, texture.height = 2;
+    texture.addInterleaved(std::vector<std::string>{"R", "G", "B"}, std::vector<float>(24, 0.75f));
+    io::writeExr(path("lit.exr"), texture);
+    m.scattering = PEL_SCATTERING_TEXTURE;
+    m.scatterTaps = 0;
+    scene_.materials[0].scatteredTexture = "lit.exr";
+    const auto sampled = result();
+    EXPECT_NEAR(sampled[3 * 5], 0.75 * 0.5, 1e-3);  // times the albedo
+    scene_.materials[0].scatteredTexture = "no.exr";
+    io::writeScene(path("s.toml"), scene_);
+    expectRefused(command("s.toml"), 3, "no.exr");
+}

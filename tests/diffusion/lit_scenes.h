@@ -258,6 +258,7 @@ using Method = std::function<std::vector<float>(const Device&, const LitScene&, 
 
 struct ShadeRequest {
     PelScattering scattering = PEL_SCATTERING_AUTO;
+    uint32_t scatterTaps = 0;
     uint32_t tableSize = 0;  // 0: the tables that the profile brings
     float targetError = pelShaderOptionsDefaults().targetError;
     bool traced = false;    // irradiance with ray-traced shadows is given
@@ -273,6 +274,7 @@ inline std::vector<float> shade(const Device& device, const LitScene& s, const P
     std::fill(material.albedo, material.albedo + 3, 1.0f);
     material.profile = profile.get();
     material.scattering = request.scattering;
+    material.scatterTaps = request.scatterTaps;
     if (profileScale != 1) material.diffusionRadius = radius;
     pellucid::Lut curvatureLut, shadowLut;
     if (tableSize) {

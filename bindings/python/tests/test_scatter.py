@@ -45,3 +45,36 @@ def test_scales_and_materials(device):
         scatter.set_material(300, pel.Profile.skin())
     with pytest.raises(pel.PellucidError, match="targetError"):
         scatter.execute(irradiance, positions, ids=ids, params=pel.ScatterParams(target_error=-1))
+
+
+def test_controls_and_further_images(device):
+    irradiance, positions, ids = ball()
+    scatter = pel.Scatter(device)
+    scatter.set_material(1, pel.Profile.skin())
+    whole = scatter.execute(irradiance, positions, ids=ids)
+    for method, taps in (("separable", 25), ("screen", 64)):
+        scatter.set_controls(1, scattering=method, scatter_taps=taps)
+        tapped = scatter.execute(irradiance, positions, ids=ids)
+        assert 0 < np.sqrt(np.mean((tapped - whole) ** 2)) < 0.01
+        stats = scatter.stats()
+        assert stats.tiles_by_scattering[int(pel.Scattering[method.upper()])] == stats.tiles_tapped > 0
+    # Half of the scattered light, and times the albedo.
+    scatter.set_image("scatter_weight", np.full(ids.shape, 0.5, np.float32))
+    scatter.set_image("albedo", np.full((*ids.shape, 3), 0.25, np.float32))
+    half = scatter.execute(irradiance, positions, ids=ids)
+    assert np.allclose(half, 0.25 * 0.5 * (irradiance + tapped), atol=1e-6)
+    out = np.ones_like(irradiance)
+    scatter.execute(irradiance, positions, ids=ids, out=out, params=pel.ScatterParams(accumulate=1))
+    assert np.allclose(out, 1 + half, atol=1e-6)
+    # Light from behind a sheet.
+    scatter.set_controls(1, thin_thickness=0.4)
+    scatter.set_image("scatter_weight", None)
+    scatter.set_image("irradiance_back", np.ones_like(irradiance))
+    through = pel.Profile.skin().transmission([0.4])[0]
+    front = scatter.execute(np.zeros_like(irradiance), positions, ids=ids)
+    assert np.allclose(front[40, 40], 0.25 * through, atol=1e-4)
+    scatter.set_controls(1)
+    with pytest.raises(pel.PellucidError, match="none that a PelScatter keeps"):
+        scatter.set_image("curvature", np.ones(ids.shape, np.float32))
+    with pytest.raises(pel.PellucidError, match="scatterTaps is 3"):
+        scatter.set_controls(1, scatter_taps=3)
