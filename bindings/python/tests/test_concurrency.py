@@ -271,7 +271,7 @@ FORK = textwrap.dedent("""
     event = buffer.submit_read(np.empty(64, np.uint8))
     if os.fork() == 0:
         uses = (pel.Device, pel.devices, device.finish, lambda: pel.Buffer(device, 64), lambda: buffer.read(np.empty(64, np.uint8)),
-                shader.commit, lambda: profile.info, mesh.save, lambda: live.stats, lut.read, event.wait,
+                shader.commit, lambda: profile.info, mesh.save, live.stats, lut.read, event.wait,
                 lambda: pel.orient_mesh(np.arange(3), 3))
         for use in uses:
             try:
