@@ -1,4 +1,4 @@
-// The passes of this room.
+// The passes of this folder.
 #pragma once
 #include "shading/pass.h"
 

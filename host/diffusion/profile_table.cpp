@@ -8,8 +8,9 @@
 namespace pel {
 namespace {
 
-// 2 pi r R dr over [begin, end] on the logarithm of r: Gauss-Legendre with four points, exact for what a
-// sixteenth of an octave of a profile differs from a polynomial to far below a float.
+// 2 pi r R dr over [begin, end], integrated over the logarithm of r by Gauss-Legendre with four points.
+// Within a sixteenth of an octave a profile is so close to a polynomial that the error is far below a
+// float's.
 Rgb lightBetween(const ProfileShape& shape, double begin, double end) {
     constexpr double points[] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
                                  0.8611363115940526};
@@ -50,7 +51,7 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
     const Rgb width = shape.width();
     const double narrowest = std::min({width[0], width[1], width[2]}),
                  widest = std::max({width[0], width[1], width[2]});
-    // A thousandth of the narrowest width: what lies within belongs to the pixel itself.
+    // A thousandth of the narrowest width: light within belongs to the pixel itself.
     const double first = 1e-3 * narrowest * scale, farthest = 64 * widest * scale;
     if (!(first * first > 1e-30) || !(farthest * farthest < 1e30))
         invalidArgument("a profile ", widest * scale,
@@ -79,7 +80,7 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
         return most;
     };
     while (nodes + 1 < shares.size() && left(nodes) > lightBeyondReach) ++nodes;
-    ++nodes;  // the last one, where nothing is left
+    ++nodes;  // the last one: no light is left
 
     ProfileNodes result;
     result.table = {0, uint32_t(nodes), firstBits, float(radiusOfNode(firstBits + uint32_t(nodes - 1) * step))};

@@ -1,4 +1,4 @@
-// A profile as the tables that kernels/diffusion looks weights up in (kernels/shared/diffusion.h).
+// A profile as the tables of weights that kernels/diffusion reads (kernels/shared/diffusion.h).
 #pragma once
 #include <vector>
 
@@ -7,8 +7,8 @@
 
 namespace pel {
 
-// What is further away than this share of the light reaches is left out, and the rest scaled up for it: where
-// Burley's profile is cut by others too, at 16 d.
+// Light beyond the distance that leaves this share is cut off, and the rest is scaled up. For Burley's
+// profile that is 16 d, where others cut it too.
 constexpr double lightBeyondReach = 4e-3;
 
 struct ProfileNodes {
@@ -16,8 +16,8 @@ struct ProfileNodes {
     std::vector<float> values;  // R of all nodes, the shares within, R of blocks
 };
 
-// `scale`: lengths of the tables per length of the profile, > 0. Throws where squares of such lengths are no
-// floats.
+// `scale`: lengths of the tables per length of the profile, > 0. Throws if squares of such lengths are
+// outside float.
 ProfileNodes profileNodes(const ProfileShape& shape, double scale);
 
 }  // namespace pel

@@ -36,7 +36,7 @@ void checkImages(const ScatterImages& images) {
         if (view->width != images.out.width || view->height != images.out.height)
             invalidArgument("the ", name, " image is ", view->width, " x ", view->height, ", the output ",
                             images.out.width, " x ", images.out.height, "; all must have one size");
-        // The irradiance may be written over pixel on pixel.
+        // The irradiance may be overwritten pixel on pixel.
         const bool same = view->format == images.out.format && view->byteOffset == images.out.byteOffset &&
                           !overlapsElsewhere(images.out, *view);
         if (sharesBytes(images.out, *view) && !(slot == PEL_SLOT_ALBEDO && same))

@@ -1,5 +1,5 @@
-// Irradiance of a picture scattered under the surface: the kernels of kernels/diffusion over plain inputs,
-// for the shader's passes and for hosts that light their own frames.
+// Scatters the irradiance of a picture: the kernels of kernels/diffusion over plain inputs, for the shader's
+// passes and for hosts that light their own frames.
 #pragma once
 #include <map>
 #include <vector>

@@ -1,4 +1,4 @@
-// Beside kernels/diffusion/surface_integral.cl.
+// Host side of kernels/diffusion/surface_integral.cl.
 #include "diffusion/surface_integral.h"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ std::vector<SurfaceTriangle> litTriangles(const PelSurfaceIntegralDesc& desc) {
         const double n[3] = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
                              ab[0] * ac[1] - ab[1] * ac[0]};
         const double longest = std::max(std::hypot(ab[0], ab[1], ab[2]), std::hypot(ac[0], ac[1], ac[2]));
-        // Without an area, or so narrow that float knows no plane of it.
+        // Triangles without an area, or so narrow that float gives them no plane.
         if (!(std::hypot(n[0], n[1], n[2]) > 1e-7 * longest * longest)) continue;
         lit.push_back(t);
     }
@@ -106,7 +106,7 @@ void surfaceIntegral(Device& device, const PelSurfaceIntegralDesc& desc, const V
                      const VertexView& result, bool blocking) {
     if (points.layout.count == 0) return;
     const Ref<Profile> profile = desc.profile ? fromHandle<Profile>(desc.profile) : Profile::skin();
-    // Lengths of the profile are in millimetres where a unit is given, and in units of positions by default.
+    // Lengths of the profile are in millimetres if a unit is given, and in units of positions by default.
     const double scale =
         (desc.diffusionRadius > 0 ? desc.diffusionRadius / profile->radius() : 1) / desc.millimetresPerUnit;
     std::array<double, 3> cut;

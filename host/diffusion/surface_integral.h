@@ -5,7 +5,7 @@
 
 namespace pel {
 
-// Throws unless every number is usable; the message names the triangle or vertex.
+// Throws unless every number is valid; the message names the triangle or vertex.
 void checkSurfaceIntegral(const PelSurfaceIntegralDesc& desc);
 
 // Enqueues the sums; the mesh is read during the call.

@@ -18,7 +18,7 @@ constexpr double gaussAt[5] = {0.04691007703066800, 0.23076534494715845, 0.5, 0.
 constexpr double gaussPart[5] = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
                                  0.23931433524968324, 0.11846344252809454};
 
-// R; of a measured profile, which ends, as if it went on as at its end.
+// R. A tabulated profile, which ends, is continued with its last value.
 Rgb radial(const ProfileShape& shape, const std::vector<double>& knots, double s) {
     return shape.radial(knots.empty() ? s : std::min(s, knots.back()));
 }
@@ -59,7 +59,7 @@ SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
     std::array<double, 3> cut;
     for (int c = 0; c < 3; ++c) {
         cut[c] = cutInPositions[c] / scale;
-        // A measured profile may end above 0.
+        // A tabulated profile may end above 0.
         if (!knots.empty() && shape.radial(knots.back())[c] > 0 && !(cut[c] > 0 && cut[c] < knots.back()))
             cut[c] = knots.back();
     }
@@ -68,7 +68,7 @@ SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
     const double first = middle - octavesIn;
     const int cells = (octavesIn + octavesOut) * PEL_SURFACE_ROWS;
     const auto at = [&](int i) { return std::exp2(first + double(i) / PEL_SURFACE_ROWS); };
-    // Within the first distance R is taken for constant times 1/s.
+    // Within the first distance R is taken as constant times 1/s.
     std::vector<Rgb> enclosed(size_t(cells) + 1);
     for (int i = 0; i < cells; ++i) {
         const Rgb more = energyBetween(shape, knots, at(i), at(i + 1));
@@ -97,8 +97,8 @@ SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
     table.firstLog2 = first + double(low) / PEL_SURFACE_ROWS + std::log2(scale);
     table.reach = at(high) * scale;
     for (int c = 0; c < 3; ++c) table.cut[c] = cut[c] * scale;
-    // Where R steps or bends, the rule along edges has an error in proportion to the step of s^2 R and the
-    // square of the piece.
+    // Where R steps or bends, the rule along edges has an error proportional to the step of s^2 R and to the
+    // square of the interval.
     constexpr double atOnce = 1.25, wanted = 1e-5, errorOfStep = 2.5e-3, bends = 0.2;
     double step = knots.empty() ? 0 : bends;
     for (int c = 0; c < 3; ++c)
@@ -106,7 +106,7 @@ SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
             step = std::max(step, 2 * std::numbers::pi * cut[c] * cut[c] * radial(shape, knots, cut[c])[c] *
                                       whole / all[c]);
     table.piece = atOnce / std::max(1.0, std::sqrt(step * errorOfStep / wanted));
-    // sup from the end inwards, of this profile in units of positions: R scales with 1/length^2.
+    // sup from the end inwards, for this profile in units of positions: R scales with 1/length^2.
     const int rows = high - low + 1;
     table.bend.resize(rows);
     table.fall.resize(rows);

@@ -1,4 +1,4 @@
-// What a profile is to the surface integral: energy within a distance, and how fast R bends. In units of
+// What the surface integral needs of a profile: energy within a distance, and how fast R bends. In units of
 // positions.
 #pragma once
 #include <array>
@@ -14,19 +14,19 @@ struct SurfaceProfile {
     std::vector<cl_float4> rows;  // two per distance, as PEL_SURFACE_ROWS says
     double firstLog2;             // log2 of the first distance
     double reach;                 // length; R is 0 beyond in all channels
-    std::array<double, 3> cut;    // length; 0: R falls off by itself
+    std::array<double, 3> cut;    // length; 0: R does not end abruptly
     double piece;                 // of the parameter along an edge that one rule takes
     // sup over s >= the row's distance of the Hessian's norm (1/length^4) and of the gradient's (1/length^3).
     std::vector<double> bend, fall;
 
     double distance(size_t row) const;
     size_t count() const { return bend.size(); }
-    // Values of bend and fall at a distance: of the row below it, which is the larger.
+    // Values of bend and fall at a distance: those of the row below it, which are the larger ones.
     size_t rowBelow(double distance) const;
 };
 
-// Lengths of the profile times `scale` are in units of positions. `cut`: lengths where R ends, 0 for nowhere;
-// what is left is scaled to 1 on a plane.
+// Lengths of the profile times `scale` are in units of positions. `cut`: lengths where R ends, 0 for none;
+// the rest is scaled to 1 on a plane.
 SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale, const std::array<double, 3>& cut);
 
 }  // namespace pel

@@ -26,7 +26,7 @@ double length(const Vec& a) {
     return std::sqrt(dot(a, a));
 }
 
-// Light of a set: per channel its weight, and where it is.
+// Light of a set of triangles: per channel its weight and its centre.
 struct Moments {
     Vec weight{};                // integral of E dA
     std::array<Vec, 3> first{};  // of E y dA
@@ -43,8 +43,8 @@ Vec corner(const SurfaceTriangle& t, int k) {
     return {t.corner[3 * k], t.corner[3 * k + 1], t.corner[3 * k + 2]};
 }
 
-// Exact for cubic integrands: E |y|^2 is one [Strang & Fix 1973, degree 3]. About `origin`, so that nothing
-// cancels.
+// Exact for cubic integrands; E |y|^2 is cubic [Strang & Fix 1973, degree 3]. Relative to `origin`, so that
+// nothing cancels.
 Moments momentsOf(const SurfaceTriangle& t, const Vec& origin) {
     const Vec a = corner(t, 0) - origin, ab = corner(t, 1) - corner(t, 0), ac = corner(t, 2) - corner(t, 0);
     const Vec normal{ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]};
@@ -70,8 +70,8 @@ class Builder {
     Builder(SurfaceTree& tree, const SurfaceProfile& profile, double error,
             const std::function<void(double)>& progress)
         : tree_(tree), profile_(profile), progress_(progress) {
-        // Errors are shared out by distance, the same to each octave: E dA / (2 pi r^2 octaves) of a plane
-        // adds up to E.
+        // The error is divided among distances, the same for each octave: E dA / (2 pi r^2 octaves) of a
+        // plane adds up to E.
         nearest_ = profile.distance(0);
         share_ = error / (2 * std::numbers::pi * std::log(2 * profile.reach / nearest_));
         order_.resize(tree.triangles.size());
@@ -83,7 +83,7 @@ class Builder {
     }
     void build() {
         split(0, order_.size());
-        // Leaves in the order of the walk, so that neighbours lie side by side.
+        // Leaves in the order of the walk, so that neighbours are side by side in memory.
         std::vector<SurfaceTriangle> sorted(order_.size());
         uint32_t next = 0;
         for (SurfaceNode& node : tree_.nodes)
@@ -120,7 +120,7 @@ class Builder {
             const Vec extent = high - low;
             const int axis = int(std::max_element(extent.begin(), extent.end()) - extent.begin());
             const size_t middle = (begin + end) / 2;
-            // Equal places are told apart by their numbers, so that the tree is the same everywhere.
+            // Equal places are ordered by their numbers, so that the tree is the same everywhere.
             std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                              [&](uint32_t a, uint32_t b) {
                                  const double pa = middles_[a][axis], pb = middles_[b][axis];
@@ -144,7 +144,7 @@ class Builder {
         const Moments& m = set.moments;
         const double light = m.weight[0] + m.weight[1] + m.weight[2];
         const Vec centre = (1 / light) * (m.first[0] + m.first[1] + m.first[2]);
-        // Per channel: how far its light is from the centre, and its mean squared distance.
+        // Per channel: the distance of its light from the centre, and its mean squared distance.
         double offset = 0, spread = 0;
         for (int c = 0; c < 3; ++c) {
             if (!(m.weight[c] > 0)) continue;

@@ -1,4 +1,4 @@
-// The hierarchy over a lit mesh: where a set of triangles may count as one point.
+// The hierarchy over a lit mesh: from which distance on a set of triangles counts as one point.
 #pragma once
 #include <functional>
 #include <vector>
@@ -12,8 +12,8 @@ struct SurfaceTree {
     std::vector<SurfaceTriangle> triangles;
 };
 
-// `lit`: triangles with some irradiance and an area. `error`: what a sum may be off, in irradiance.
-// `progress` is told a fraction.
+// `lit`: triangles with irradiance and area. `error`: allowed error of a sum, in irradiance. `progress` gets
+// a fraction.
 SurfaceTree buildSurfaceTree(std::vector<SurfaceTriangle> lit, const SurfaceProfile& profile, double error,
                              const std::function<void(double)>& progress);
 

@@ -12,7 +12,7 @@ namespace pel {
 class TextureScatter final : public Object {
   public:
     static constexpr Kind kind = Kind::textureScatter;
-    // Throws where the mesh is none.
+    // Throws if the mesh is wrong.
     static Ref<TextureScatter> create(const Ref<Device>& device, const PelTextureScatterDesc& desc);
 
     // Each enqueues its work.

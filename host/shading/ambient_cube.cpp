@@ -1,5 +1,5 @@
-// The ambient cube map as the shading kernel reads it (lib/shading/ambient_cube.clh), made from the host's
-// six faces once in an execution.
+// The ambient cube map in the form that the shading kernel reads (lib/shading/ambient_cube.clh), made from
+// the host's six faces once per execution.
 #include <algorithm>
 
 #include "shading/launch_ranges.h"
@@ -41,7 +41,7 @@ class AmbientCube final : public Pass {
     void enqueueFrame(PassWork& work) const override {
         const ImageView& faces = work.plan.state.ambientCube;
         const cl_uint size = edgeOf(faces);
-        // From a face to the next, in bytes.
+        // Bytes from one face to the next.
         const uint64_t step = faces.height > faces.width ? size * faces.rowStride : size * faces.pixelStride;
         cl::Launch launch(program(), "ambient_cube");
         launch.arg(faces.buffer->memory())

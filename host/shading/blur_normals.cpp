@@ -1,4 +1,4 @@
-// Blurred normals on screen, where the caller gave none.
+// Blurred normals on screen, if the caller gave none.
 #include <cstddef>
 
 #include "shading/launch_ranges.h"

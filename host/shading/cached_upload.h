@@ -1,10 +1,10 @@
-// Constants on the device, sent when they changed.
+// Constants on the device, sent only when they change.
 #pragma once
 #include "core/device.h"
 
 namespace pel {
 
-// A buffer that is written anew only when its bytes differ from those it holds.
+// A buffer that is written again only if its bytes differ.
 class CachedUpload {
   public:
     // Returns the bytes sent.

@@ -1,4 +1,4 @@
-// What a shader accepts, value by value as it is set and as a whole at commit.
+// The settings that a shader accepts: value by value when they are set, and all together at commit.
 #include "shading/check_settings.h"
 
 #include <cmath>

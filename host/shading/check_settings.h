@@ -1,4 +1,4 @@
-// What a shader accepts. Each throws PEL_ERROR_INVALID_ARGUMENT with the value and what would be right.
+// Checks of settings. Each throws PEL_ERROR_INVALID_ARGUMENT with the value and what would be right.
 #pragma once
 #include "shading/image_slots.h"
 #include "shading/shader_state.h"
@@ -15,8 +15,7 @@ void checkScatterControls(const char* structure, uint32_t taps, float albedoBefo
                           const float (&borderColor)[3]);
 void checkScatteredTexture(const ImageView& texture);
 void checkLight(const PelLight& light, uint32_t index);
-// A light's shadow map as it is at commit: its form, its images and the fields that they need
-// (check_shadow_map.cpp).
+// A light's shadow map at commit: its form, its images and the fields that they need (check_shadow_map.cpp).
 void checkLightMap(const ShaderLight& light, uint32_t index);
 void checkAmbient(const PelAmbient& ambient);
 void checkAmbientCube(const ImageView& faces);

@@ -1,5 +1,4 @@
-// What a shader accepts as a light's shadow map: form, images and the fields that they need, together at
-// commit.
+// Checks of a light's shadow map at commit: form, images, and the fields that they need.
 #include <cmath>
 
 #include "shading/check_settings.h"

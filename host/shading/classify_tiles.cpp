@@ -1,4 +1,4 @@
-// Lists of the tiles that have a material, and of those that each variant of the shading kernel takes.
+// Lists of the tiles with a material, and of the tiles of each variant of the shading kernel.
 #include "shading/passes.h"
 #include "shading/shade_variants.h"
 #include "shading/shading_constants.h"
@@ -66,7 +66,7 @@ class ClassifyTiles final : public Pass {
         work.launch(launch, classifyRange(work.device, work.tiles()));
     }
 
-    // The next band counts anew.
+    // The next band starts counting again.
     void keepCounts(PassWork& work) {
         if (bandCountBytes_ < work.plan.tileRows * countBytes) {
             bandCountBytes_ = 0;

@@ -18,7 +18,7 @@ void need(bool present, const char* what, const char* why) {
 
 void checkSizes(const ShaderState& state) {
     const ImageView& target = state.images[PEL_SLOT_RADIANCE];
-    // Outputs beside radiance: none may lie over any other image.
+    // Outputs beside radiance: they may not overlap any other image.
     const auto checkOutputs = [&](const ImageView& view, const std::string& what, int itself) {
         for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
             if (isOutput(slot) && slot != itself && state.images[slot] &&
@@ -119,7 +119,7 @@ bool makesLightFromBehind(const ShaderState& state, uint32_t features) {
            std::ranges::any_of(state.materials, [](const auto& m) { return m.second.params.thinThickness > 0; });
 }
 
-// By irradiance that has to be made, or by specular light beside it.
+// Irradiance that has to be made, or specular light beside it.
 static bool takesSharpShadows(const ShaderState& state) {
     return makesIrradiance(state) || std::ranges::any_of(state.materials, [](const auto& m) {
                return readsIrradiance(m.second) && m.second.params.specular > 0;
@@ -213,8 +213,8 @@ uint32_t deriveFeatures(const ShaderState& state) {
     if (makesIrradiance(state)) features |= PEL_FEATURE_MAKE_IRRADIANCE;
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
         if (isOutput(slot) && images[slot]) features |= PEL_FEATURE_OUTPUTS;
-    // Blurred normals matter to scattered and ambient light; a host's image goes before ours, a map before
-    // the blur.
+    // Blurred normals matter to scattered and ambient light. A host's image is used first, then a normal map,
+    // then the blur.
     const bool read = !state.lights.empty() || features & PEL_FEATURE_AMBIENT;
     if (read && !images[PEL_SLOT_NORMAL_BLURRED])
         for (const auto& [id, material] : state.materials) {

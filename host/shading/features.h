@@ -1,14 +1,14 @@
-// What a shader's state asks for, in PelFeature bits; nothing else turns a feature on.
+// The features of a shader's state, in PelFeature bits. Nothing else turns a feature on.
 #pragma once
 #include "shading/shader_state.h"
 
 namespace pel {
 
-// PelFeature bits of what is bound and non-zero. Throws when something needed is missing or does not fit.
+// PelFeature bits of what is bound and not zero. Throws if something needed is missing or does not match.
 uint32_t deriveFeatures(const ShaderState& state);
-// Those that a material asks for by itself, as far as the rest is there.
+// The features that a material asks for by itself, if their other inputs exist.
 uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material);
-// Those of the forms that a light's shadow map has.
+// The features of the forms that a light's shadow map has.
 uint32_t formFeatures(const PelLight& light);
 
 // Whether a light's shadow image is made from its shadow map.
@@ -17,11 +17,11 @@ bool filtersShadow(const ShaderState& state, const ShaderLight& light);
 inline bool readsIrradiance(const ShaderMaterial& material) {
     return material.params.scattering != PEL_SCATTERING_PREINTEGRATED;
 }
-// Whether that has to be made, which takes sharp shadows.
+// Whether that irradiance has to be made, which needs sharp shadows.
 bool makesIrradiance(const ShaderState& state);
 // Whether light from behind thin sheets is made: where the host gives it, it is added later.
 bool makesLightFromBehind(const ShaderState& state, uint32_t features);
-// Whether PelAmbient gives no light; there may be a cube map beside it.
+// Whether PelAmbient gives no light; there may still be a cube map.
 bool isBlack(const PelAmbient& ambient);
 
 }  // namespace pel

@@ -13,8 +13,8 @@ namespace {
 constexpr ImageSlot slots[] = {PEL_EACH_IMAGE(SLOT)};
 #undef SLOT
 
-// The public header documents the slots and choices, and is read by C compilers on its own: it must agree
-// with the lists.
+// The public header documents slots and choices, and C compilers read it by itself, so it must agree with the
+// lists.
 #define CHECK_SLOT(name, number, role, content, components, key, words, bits) \
     static_assert(PEL_SLOT_##name == number);
 PEL_EACH_IMAGE(CHECK_SLOT)

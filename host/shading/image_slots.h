@@ -1,4 +1,4 @@
-// What the list of image slots (shared/image_slots.h) says of each.
+// Facts about each image slot, from the list in shared/image_slots.h.
 #pragma once
 #include <pellucid/pellucid.h>
 
@@ -6,10 +6,10 @@
 
 namespace pel {
 
-// TARGET and SHADE are read by the shading kernel, PASS by other passes alone; TARGET and OUTPUT are written
-// by it.
+// The shading kernel reads TARGET and SHADE, only other passes read PASS; the kernel writes TARGET and
+// OUTPUT.
 enum class SlotRole { TARGET, SHADE, PASS, OUTPUT };
-// What pixels hold, and so which formats they may have.
+// The content of pixels, which decides the formats that they may have.
 enum class Content { SCALAR, ID, COLOR, NORMAL, UV, GRADIENT, COLOR_OUTPUT, SCALAR_OUTPUT };
 
 struct ImageSlot {

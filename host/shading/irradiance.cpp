@@ -1,6 +1,6 @@
-// Irradiance per pixel of the materials whose diffuse light comes from it, where the caller gave none. What
-// scatters it runs between this pass and the shading kernel: it reads PEL_SLOT_IRRADIANCE, and puts its own
-// result into that slot of the plan.
+// Irradiance per pixel for the materials that need it, if the caller gave none. The pass that scatters it
+// runs between this pass and the shading kernel: it reads PEL_SLOT_IRRADIANCE, and puts its result into that
+// slot of the plan.
 #include "shading/features.h"
 #include "shading/launch_ranges.h"
 #include "shading/passes.h"

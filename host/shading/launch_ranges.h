@@ -1,23 +1,23 @@
-// How passes over tiles are launched, and what their programs know of an image's layout.
+// How passes over tiles are launched, and the defines for an image's layout.
 #pragma once
 #include "shading/shader_state.h"
 
 namespace pel {
 
-// CPUs run one vector of pixels after another in each work-item; GPUs want a full work-group in a tile.
+// On CPUs each work-item runs one vector of pixels after another; on GPUs a tile takes a full work-group.
 uint32_t tileGroup(const Device& device);
-// Work-items that keep every unit busy to the end; each group takes a run of the tiles.
+// Enough work-items to keep every unit busy to the end; each group takes a run of the tiles.
 cl::Range tileRange(const Device& device, uint32_t tiles);
 
-// What a variant of a kernel knows of an image: its format, and whether its pixels are read one by one. Those
-// of tight images of at least `lanes` pixels a row are read in vectors. 0: no image.
+// The define of a kernel variant for an image: its format, and whether its pixels are read one by one. Packed
+// images of at least `lanes` pixels a row are read in vectors. 0: no image.
 uint32_t formatCode(const ImageView& view, uint32_t lanes);
 // The same of a light's shadow map and its cascades together.
 uint32_t mapFormatCode(const ShaderLight& light);
 
-// The geometric normals of a frame: their slot, or the shading normals'.
+// The slot of the geometric normals of a frame, or that of the shading normals.
 PelImageSlot geometricNormalSlot(const ShaderState& state);
-// What every pass over tiles needs that reads ids and the surface: group, width, and formats of ids,
+// The defines of every pass over tiles that reads ids and the surface: group, width, and formats of ids,
 // positions and depth.
 cl::Defines surfaceDefines(const Device& device, const ShaderState& state, uint32_t lanes);
 

@@ -50,7 +50,7 @@ Ref<Lut> shadowTable(const Ref<Device>& device, Profile& profile, float filterWi
     return integrateShadowLut(device, desc);
 }
 
-// Even in the root of thickness: fine where it falls steeply.
+// Linear in the root of thickness: fine where it falls steeply.
 Ref<Lut> transmissionTable(const Ref<Device>& device, const Profile& profile) {
     PelLutInfo info = pelLutInfoDefaults();
     info.kind = PEL_LUT_SPECULAR;

@@ -1,4 +1,4 @@
-// What a material leaves to defaults, and the tables that its profile gives.
+// The defaults of a material, and the tables that follow from its profile.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace pel {
 
-// Finds or makes the tables of a profile and keeps them as long as a material has it: setting the same
-// material again is free.
+// Finds or makes the tables of a profile, and keeps them as long as a material has it: setting the same
+// material again costs nothing.
 class ProfileTables {
   public:
     struct Tables {
@@ -19,18 +19,18 @@ class ProfileTables {
         Ref<Lut> curvature, shadow, transmission;
     };
     const Tables& get(const Ref<Device>& device, Profile& profile, float filterWidth);
-    // Lets go what no material has.
+    // Releases tables that no material has.
     void keepOnly(const std::map<uint32_t, ShaderMaterial>& materials);
 
   private:
     std::vector<Tables> all_;
 };
 
-// The thickness at the end of the transmission's row, mm: what comes through is nothing there.
+// The thickness at the end of the transmission's row, mm, where no light comes through.
 double transmissionReach(const Profile& profile);
 
-// Fills in material.params and its tables from material.given: see PelMaterial. Throws
-// PEL_ERROR_INVALID_ARGUMENT for what the profile cannot give.
+// Fills in material.params and its tables from material.given (see PelMaterial). Throws
+// PEL_ERROR_INVALID_ARGUMENT for what the profile cannot provide.
 void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const PelShaderOptions& options,
                      ProfileTables& tables);
 

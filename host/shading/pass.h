@@ -1,6 +1,6 @@
-// A pass of shading: what lies beside one kernel file. The shader keeps the passes of a list in order and
-// asks each of those that are needed the same questions. Passes know each other by what they leave in the
-// plan alone, so that other rooms may add theirs: the list comes from outside (host/api/shading_passes.cpp).
+// A pass of shading: the host side of one kernel file. The shader keeps the passes of a list in order and
+// asks each needed pass the same questions. Passes know of each other only through the plan, so other folders
+// may add theirs: the list comes from host/api/shading_passes.cpp.
 #pragma once
 #include <memory>
 
@@ -13,9 +13,9 @@ class ShadingConstants;
 // Memory for images that a pass makes.
 struct PassScratch {
     uint64_t pixelBytes = 0;  // per pixel of a band
-    uint64_t guardBytes = 0;  // beside that
-    uint32_t haloRows = 0;    // rows of tiles that have to be there before and after a band
-    bool wholeFrame = false;  // pixels need others that may be anywhere: there is one band
+    uint64_t guardBytes = 0;  // in addition
+    uint32_t haloRows = 0;    // rows of tiles that must exist before and after a band
+    bool wholeFrame = false;  // pixels need others anywhere in the frame: there is one band
 };
 
 // Launches of one execution, or of one band of it.
@@ -27,10 +27,10 @@ struct PassWork {
     TileRows rows{0, 0};    // those of the launches
     TileRows around{0, 0};  // those of the band with its halo
     uint64_t band = 0;
-    bool interruptible = false;  // the caller waits, and may want to hear how far it is
+    bool interruptible = false;  // the caller waits, and may want progress
     bool written = false;        // set by the pass that writes the caller's images
 
-    // Whether the band has no halo: what was launched around it was launched for it.
+    // Whether the band has no halo: the launch around it was a launch for it.
     bool alone() const { return rows.begin == around.begin && rows.end == around.end; }
     uint32_t tiles() const { return (rows.end - rows.begin) * plan.tilesX; }
     void launch(cl::Launch& launch, const cl::Range& range) {
@@ -42,9 +42,9 @@ class Pass {
   public:
     virtual ~Pass() = default;
 
-    // Memory. What images need, before a band is chosen; then they are made, and named in the plan. Again
-    // with another band when memory did not suffice: what has the right size is kept, what has not goes
-    // before the new one comes.
+    // Memory. First the needs of images, before a band is chosen; then they are allocated and named in the
+    // plan. Called again with another band if memory did not suffice: buffers of the right size are kept,
+    // others are released before new ones are made.
     virtual PassScratch scratch(const ShaderPlan&) const { return {}; }
     virtual void allocate(const Ref<Device>&, ShaderPlan&) {}
     virtual size_t bytes() const { return 0; }  // held now
@@ -57,9 +57,9 @@ class Pass {
             programs_.push_back(device.programs().get(key));
     }
 
-    // Constants, sent where they changed. Returns the bytes sent.
+    // Constants, sent if they changed. Returns the bytes sent.
     virtual size_t upload(Device&, ShaderPlan&) { return 0; }
-    // Says in them that images of passes begin at this row of pixels; after `upload` they say 0.
+    // Writes into them that images of passes begin at this row of pixels; after `upload` it is 0.
     virtual void moveScratch(Device&, const ShaderPlan&, const ShadingConstants&, uint32_t /*row*/) {}
 
     // Launches: once in an execution; for a band with its halo; for a band.
@@ -76,7 +76,7 @@ class Pass {
     std::vector<cl::Program> programs_;
 };
 
-// What stands in a list of passes. One that a state does not need is not made: it holds neither memory nor
+// An entry of a list of passes. A pass that a state does not need is not made: it has no memory and no
 // programs.
 struct PassKind {
     bool (*needed)(const ShaderPlan& plan);

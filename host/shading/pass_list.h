@@ -1,4 +1,4 @@
-// The passes that a shader has, and the memory that they share out.
+// The passes of a shader, and the memory that they share.
 #pragma once
 #include <span>
 
@@ -11,7 +11,7 @@ class PassList {
     PassList() = default;
     explicit PassList(std::span<const PassKind> kinds) : kinds_(kinds), passes_(kinds.size()) {}
 
-    // Makes those that are needed and drops the others. Their images hold as many rows of tiles as
+    // Makes the needed passes and drops the others. Their images hold as many rows of tiles as
     // PelShaderOptions.scratchBudget, memory and `mostRows` allow.
     void allocate(const Ref<Device>& device, ShaderPlan& plan, uint32_t mostRows);
     size_t bytes() const;

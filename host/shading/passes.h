@@ -1,4 +1,4 @@
-// The passes of this room, each in a file beside its kernel's.
+// The passes of this folder, each in a file beside its kernel's.
 #pragma once
 #include "shading/pass.h"
 

@@ -1,10 +1,10 @@
-// The controls of scattering that materials have, as a whole at commit.
+// Checks of the materials' controls of scattering at commit.
 #pragma once
 #include "shading/shader_state.h"
 
 namespace pel {
 
-// Throws where a control cannot be kept to.
+// Throws if a control cannot be honoured.
 void checkScattering(const ShaderState& state);
 
 }  // namespace pel

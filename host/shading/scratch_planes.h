@@ -17,7 +17,7 @@ class ScratchPlanes {
     explicit ScratchPlanes(PelImageSlot slot) : slot_(slot) {}
     // And puts them into their slot.
     void allocate(const Ref<Device>& device, ShaderPlan& plan);
-    // Pass::moveScratch; not where another pass has put something else into the slot.
+    // Pass::moveScratch; not if another pass has replaced the slot.
     void move(Device& device, const ShaderPlan& plan, const ShadingConstants& constants, uint32_t row) const;
     const cl::Memory& memory() const { return buffer_->memory(); }
     size_t bytes() const { return buffer_ ? buffer_->bytes() : 0; }

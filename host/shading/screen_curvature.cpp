@@ -35,7 +35,7 @@ void checkScreenCurvature(const PelScreenCurvatureParams& params, const ScreenCu
             invalidArgument("the ", slotName(slot), " image is ", view->width, " x ", view->height,
                             ", the curvature image ", images.curvature.width, " x ", images.curvature.height,
                             "; all must have one size");
-        // A pixel reads its neighbours: not even the same pixel may be written over.
+        // A pixel reads its neighbours, so not even the same pixel may be overwritten.
         if (sharesBytes(images.curvature, *view))
             invalidArgument("the curvature image overlaps the ", slotName(slot), " image, which is read");
     }
@@ -62,7 +62,7 @@ void screenCurvature(Device& device, const PelScreenCurvatureParams& params, con
                                {"PEL_FORMAT_IDS", text(formatCode(images.ids, lanes))},
                                {"PEL_FORMAT_CURVATURE", text(formatCode(images.curvature, lanes))}}),
         "screen_curvature");
-    // Copied here and now: the queue, which may be busy, has no part in it.
+    // Copied now: the queue may be busy and is not used for this.
     const cl::Memory memory = device.allocate(sizeof frame, &frame);
     launch.arg(memory).arg(images.normals.buffer->memory()).arg(where.buffer->memory());
     launch.arg(images.ids ? images.ids.buffer->memory() : cl::Memory()).arg(images.curvature.buffer->memory());

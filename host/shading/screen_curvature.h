@@ -4,12 +4,12 @@
 
 namespace pel {
 
-// Views that are not there are empty; either positions or depth is.
+// Missing views are empty; either positions or depth is given.
 struct ScreenCurvatureImages {
     ImageView normals, positions, depth, ids, curvature;
 };
 
-// Throws where parameters or images are wrong or do not fit together.
+// Throws if parameters or images are wrong or do not match.
 void checkScreenCurvature(const PelScreenCurvatureParams& params, const ScreenCurvatureImages& images);
 // Enqueues everything.
 void screenCurvature(Device& device, const PelScreenCurvatureParams& params, const ScreenCurvatureImages& images);

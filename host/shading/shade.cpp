@@ -9,7 +9,7 @@
 namespace pel {
 namespace {
 
-// A caller who listens is asked at least this often whether to go on: some tens of milliseconds on two cores.
+// A progress callback is called at least this often: every few tens of milliseconds on two cores.
 constexpr uint64_t pixelsPerPart = 1 << 20;
 
 class Shade final : public Pass {
@@ -47,7 +47,7 @@ class Shade final : public Pass {
         const uint32_t list = plan.variants.size() > 1 ? 1 + variant : 0;
         launch.arg(cl_uint(part)).arg(cl_uint(parts));
         launch.arg(cl_uint(plan.state.options.tileLists == PEL_TILES_NO_LIST ? PEL_EVERY_TILE : list));
-        // Groups take tiles in turn, so that no host waits for their count.
+        // Groups take tiles in turn, so the host need not know their number.
         work.launch(launch, tileRange(work.device, work.tiles()));
     }
 };

@@ -17,11 +17,11 @@ static_assert(PEL_BIT_DIRECT_SCATTER == PEL_FEATURE_DIRECT_SCATTER && PEL_BIT_SH
               PEL_BIT_SHADOW_LUT == PEL_FEATURE_SHADOW_LUT && PEL_BIT_AMBIENT == PEL_FEATURE_AMBIENT &&
               PEL_BIT_DEEP_SCATTER == PEL_FEATURE_DEEP_SCATTER &&
               PEL_BIT_THICKNESS_TAPS == PEL_FEATURE_THICKNESS_TAPS && PEL_BIT_SPECULAR == PEL_FEATURE_SPECULAR);
-// What the passes before it do does not make another variant of the shading kernel.
+// What earlier passes do makes no other variant of the shading kernel.
 constexpr uint32_t shadeFeatures =
     (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER | PEL_FEATURE_AMBIENT_CUBE |
     PEL_FEATURE_IRRADIANCE | PEL_FEATURE_TRANSMISSION | PEL_FEATURE_SHADOW_CUBE | PEL_FEATURE_SHADOW_CASCADES;
-// Those that a material asks for (materialNeeds); the others hold for all of a frame.
+// Features that a material asks for (materialNeeds); the others hold for the whole frame.
 constexpr uint32_t materialFeatures = PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SHADOW_LUT |
                                       PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS |
                                       PEL_FEATURE_SPECULAR | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER |
@@ -31,22 +31,21 @@ static_assert(PEL_BIT_TRANSMISSION == PEL_FEATURE_TRANSMISSION);
 static_assert(PEL_BIT_GGX == PEL_FEATURE_GGX && PEL_BIT_AMBIENT_SCATTER == PEL_FEATURE_AMBIENT_SCATTER &&
               PEL_BIT_AMBIENT_CUBE == PEL_FEATURE_AMBIENT_CUBE && PEL_BIT_SHADOW_CUBE == PEL_FEATURE_SHADOW_CUBE &&
               PEL_BIT_SHADOW_CASCADES == PEL_FEATURE_SHADOW_CASCADES);
-// Tiles that a work-item of the classification takes: runs on a CPU, one each on a GPU, which has thousands
-// of work-items.
+// Tiles per work-item of the classification: runs on a CPU; one on a GPU, which has thousands of work-items.
 uint32_t classifyRun(const Device& device) {
     if (device.info().mathWidth == 1) return 1;
-    // Long runs stay in order, which prefetchers follow; a few for each unit keep all of them busy.
+    // Long runs keep their order, which prefetchers follow; a few for each unit keep all units busy.
     return std::bit_floor(std::clamp(4096 / std::max(device.info().computeUnits, 1u), 64u, 2048u));
 }
 uint32_t classifyGroup(const Device& device) {
     return device.info().mathWidth > 1 ? 1 : 64;
 }
 
-// Slots that no feature reads are left out: fewer variants, and no input that cannot matter.
+// Slots that no feature reads are left out: fewer variants, and unused inputs cannot matter.
 bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
     uint32_t bits = imageSlot(slot).bits;
     if (slot == PEL_SLOT_DEPTH && state.images[PEL_SLOT_POSITION]) return false;
-    // The geometric normal stands in for a blurred one that is not there.
+    // The geometric normal replaces a missing blurred one.
     if (slot == PEL_SLOT_NORMAL_GEOMETRIC && !state.images[PEL_SLOT_NORMAL_BLURRED])
         bits |= PEL_READ_NORMAL_BLURRED;
     return bits == uint32_t(PEL_BITS_ALL_) || features & bits;
@@ -89,7 +88,7 @@ cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t
     key.defines["PEL_SHADE_GROUP"] = std::to_string(tileGroup(device));
     key.defines["PEL_CLASSIFY_GROUP"] = std::to_string(classifyGroup(device));
     key.defines["PEL_CLASSIFY_RUN"] = std::to_string(classifyRun(device));
-    // In one program: a driver's cost per program is what a first frame waits for.
+    // One program, because a driver's cost per program is what a first frame waits for.
     if (state.images[PEL_SLOT_MATERIAL]) key.files.push_back("shading/classify_tiles.cl");
     return key;
 }
@@ -101,7 +100,7 @@ cl::Range classifyRange(const Device& device, size_t tiles) {
 
 std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t features) {
     std::vector<uint32_t> variants{features};
-    // What else is written must not depend on the variant; and tests want every term everywhere.
+    // Other outputs must not depend on the variant; and tests want every term everywhere.
     if (!state.images[PEL_SLOT_MATERIAL] || state.options.tileLists != PEL_TILES_PER_VARIANT ||
         state.options.disableSkipping || features & PEL_FEATURE_OUTPUTS)
         return variants;
@@ -110,7 +109,7 @@ std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t feature
     std::vector<uint32_t> partial;
     for (const uint32_t needs : needed) {
         const uint32_t left = (features & ~materialFeatures) | needs;
-        // Another variant pays where it spares a term of its own (docs/guide/shading.md, "Tiles").
+        // Another variant pays if it leaves out a term (docs/guide/shading.md, "Tiles").
         if ((features & ~left) & (PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SPECULAR |
                                   PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_TRANSMISSION))
             partial.push_back(left);

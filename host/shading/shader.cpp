@@ -1,4 +1,4 @@
-// Commit and execution of a PelShader, and what it counted.
+// Commit and execution of a PelShader, and its statistics.
 #include "shading/shader.h"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ void Shader::commit() {
     finishPlan();
 }
 
-// A plan and its passes' memory, in bands of at most this many rows of tiles.
+// Makes a plan and the memory of its passes, in bands of at most this many rows of tiles.
 void Shader::allocate(uint32_t mostRows) {
     ShaderPlan plan = planOf(state_, methods());
     checkMethods(plan.state);
@@ -82,14 +82,14 @@ void Shader::finishPlan() {
     committed_ = true;
 }
 
-// The plan's constants.
+// Sends the plan's constants.
 void Shader::send() {
     scratchRow_.reset();
     bytesUploaded_ += constants_.update(*device_, plan_.state, plan_.variants, plan_.tilesX * plan_.listRows());
     passes_.each([&](Pass& pass) { bytesUploaded_ += pass.upload(*device_, plan_); });
 }
 
-// Less at a time. Returns false when that is not possible.
+// Halves the band. False if that is not possible.
 bool Shader::halveBand() {
     const uint32_t rows = std::min(plan_.bandRows, plan_.tileRows);
     if (!plan_.scratch || plan_.wholeFrame || rows <= 1) return false;
@@ -123,8 +123,8 @@ void Shader::execute(bool blocking) {
         try {
             runBand(work);
         } catch (const Error& e) {
-            // Drivers may find out only now that memory does not suffice. Pixels that are shaded already stay
-            // as they are: where radiance lies over an input they could not be shaded again.
+            // Drivers may notice only now that memory does not suffice. Pixels that are shaded already are
+            // kept: if radiance overwrites an input they could not be shaded again.
             if (e.code() != PEL_ERROR_OUT_OF_MEMORY || work.written || !halveBand()) throw;
             continue;
         }
@@ -142,7 +142,7 @@ void Shader::setRows(const PassWork& work, TileRows rows) {
                        work.around.begin * PEL_TILE_HEIGHT);
 }
 
-// A band: passes make what they need in it and around it, the last of them shades it.
+// Runs one band: passes make what they need in it and around it; the last pass shades it.
 void Shader::runBand(PassWork& work) {
     const TileRows rows = work.rows;
     work.around = {rows.begin - std::min(rows.begin, plan_.haloRows),
@@ -178,7 +178,7 @@ void Shader::addPrefillJobs(std::vector<std::function<void()>>& jobs) const {
     });
 }
 
-// Every kernel that an execution launches, but in a frame of no tiles.
+// Launches every kernel of an execution, in a frame without tiles.
 void Shader::launchOnNothing() {
     PassWork work = beginWork();
     constants_.setBand(*device_, 0, 0, 0);

@@ -1,4 +1,4 @@
-// PelShader: takes what the caller sets, plans a frame at commit, and runs its passes.
+// PelShader: keeps what the caller sets, plans a frame at commit, and runs its passes.
 #pragma once
 #include <functional>
 #include <optional>
@@ -13,7 +13,7 @@ namespace pel {
 class Shader final : public Object {
   public:
     static constexpr Kind kind = Kind::shader;
-    // `passes`, in order, outlives the shader.
+    // `passes`, in order, must outlive the shader.
     Shader(Ref<Device> device, std::span<const PassKind> passes);
 
     // shader_settings.cpp
@@ -32,12 +32,13 @@ class Shader final : public Object {
 
     // shader.cpp
     void commit();
-    // `blocking`: the caller waits, and may want to hear how far it is.
+    // `blocking`: the caller waits, and may want progress.
     void execute(bool blocking);
     PelShaderStats stats();
-    // Sentences, one a line, of the last commit.
+    // Warnings of the last commit, one sentence a line.
     const std::string& warnings() const { return warnings_; }
-    // Jobs that build what a commit would, and launch each kernel on no tile. Throws what a commit would.
+    // Jobs for a warm-up: they build what a commit would, and launch each kernel on no tile. Throws what a
+    // commit would.
     void addPrefillJobs(std::vector<std::function<void()>>& jobs) const;
     Device& device() const { return *device_; }
 

@@ -1,4 +1,4 @@
-// What a commit made of a shader's state (shader_state.h), and what its passes hand to each other.
+// What a commit makes of a shader's state (shader_state.h), and what its passes pass on to each other.
 #pragma once
 #include "shading/shader_state.h"
 
@@ -15,7 +15,7 @@ struct FilteredLight {
     cl::Memory constants;  // PelWideShadow of each of its maps
 };
 
-// A shadow map whose blocks' bounds are kept.
+// A shadow map with bounds of its blocks.
 struct BoundedMap {
     uint32_t filtered, cascade;  // of ShaderPlan.filteredLights, and which of its maps
     uint32_t blocks;
@@ -45,7 +45,7 @@ struct ShaderPlan {
 
     // Rows of pixels that images of passes hold.
     uint32_t scratchRows() const;
-    // Rows of tiles that tile lists have room for.
+    // Rows of tiles for which tile lists have room.
     uint32_t listRows() const;
 };
 

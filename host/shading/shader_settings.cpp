@@ -1,4 +1,4 @@
-// What the caller sets on a PelShader: checked and kept until the next commit.
+// What the caller sets on a PelShader: checked, and kept until the next commit.
 #include "core/handle_table.h"
 #include "core/struct_size.h"
 #include "shading/check_settings.h"

@@ -1,4 +1,4 @@
-// What the caller set on a PelShader. What a commit makes of it is a ShaderPlan (shader_plan.h).
+// What the caller set on a PelShader. A commit makes a ShaderPlan of it (shader_plan.h).
 #pragma once
 #include <array>
 #include <map>

@@ -16,7 +16,7 @@ void copy(float (&to)[N], const float (&from)[N]) {
     std::copy_n(from, N, to);
 }
 
-// How far u (row 0) or v (row 1) of a parallel map goes per length.
+// How much u (row 0) or v (row 1) of a parallel map grows per length.
 double uvPerLength(const float (&m)[16], int row) {
     const float* r = m + 4 * row;
     return std::sqrt(double(r[0]) * r[0] + double(r[1]) * r[1] + double(r[2]) * r[2]) / std::abs(double(m[15]));

@@ -1,4 +1,4 @@
-// The device side of a shader's state: frame, materials, lights and look-up tables, sent when they changed.
+// The shading constants of a shader: frame, materials, lights and look-up tables, sent when they change.
 #pragma once
 #include <array>
 #include <vector>
@@ -13,12 +13,11 @@ struct ShaderState;
 
 class ShadingConstants {
   public:
-    // Returns the bytes sent. The tables of all materials are copied into one buffer when there are several
-    // of them. `variants`: features of each variant of the shading kernel; `listTiles`:
-    // PelShadeFrame.listTiles.
+    // Returns the bytes sent. If there are several tables they are copied into one buffer. `variants`:
+    // features of each variant of the shading kernel; `listTiles`: PelShadeFrame.listTiles.
     size_t update(Device& device, const ShaderState& state, const std::vector<uint32_t>& variants,
                   uint32_t listTiles);
-    // What launches from now on take: `tiles` from `firstTile` on, with scratch images that begin at a row of
+    // The tiles of the next launches: `tiles` from `firstTile` on, with scratch images that begin at a row of
     // pixels.
     void setBand(Device& device, uint32_t firstTile, uint32_t tiles, uint32_t scratchRow);
 
@@ -27,7 +26,7 @@ class ShadingConstants {
     const cl::Memory& materials() const { return materialUpload_.memory(); }
     const cl::Memory& lights() const { return lightUpload_.memory(); }
     const cl::Memory& luts() const { return luts_; }
-    // Distinct buffers of the lights' images, as the kernel's arguments light0...
+    // Distinct buffers of the lights' images: the kernel's arguments light0...
     const std::vector<cl::Memory>& lightBuffers() const { return lightBuffers_; }
     size_t scratchBytes() const;
 

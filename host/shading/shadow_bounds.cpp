@@ -1,4 +1,4 @@
-// Bounds of the blocks of shadow maps of depths, by which wide shadows are known without reading texels.
+// Bounds of the blocks of shadow maps of depths, which decide most wide shadows without reading texels.
 #include <algorithm>
 
 #include "shading/features.h"

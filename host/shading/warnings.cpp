@@ -1,4 +1,4 @@
-// What a commit tells about a scene that it can shade, and that is hardly meant (pelShaderGetWarnings).
+// Warnings of a commit: settings that can be shaded but are probably not intended (pelShaderGetWarnings).
 #include <algorithm>
 #include <cmath>
 

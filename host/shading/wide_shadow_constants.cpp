@@ -44,7 +44,7 @@ PelWideShadow describeWideShadow(const ShaderLight& light, uint32_t index, uint3
     };
     const bool perspective = l.shadowProjection == PEL_SHADOW_PERSPECTIVE;
     const double w = perspective ? row(3).length() : matrix[15];
-    // Along a ray of the light u and v stay what they are; across it they grow by 1 / extent per length.
+    // Along a ray of the light u and v do not change; across it they grow by 1 / extent per length.
     Vec forward = perspective ? row(3).scaled(1 / w) : row(0).cross(row(1));
     if (!perspective) {
         const double length = forward.length(), sign = row(2).dot(forward) * w * from.depthRange < 0 ? -1 : 1;

@@ -1,5 +1,5 @@
-// The one program of wide shadows and of their maps' bounds: a driver's cost per program is what a first
-// frame waits for.
+// The one program of wide shadows and of their maps' bounds, because a driver's cost per program is what a
+// first frame waits for.
 #pragma once
 #include "shading/shader_plan.h"
 

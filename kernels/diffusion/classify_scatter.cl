@@ -1,10 +1,13 @@
-// Which tiles of the screen need taps, and from which level of the pyramid on (docs/mathematics.md, section 10, "Error-driven
-// choice").
+// Which tiles of the screen need taps, and from which level of the pyramid on (docs/mathematics.md, section
+// 10, "Error-driven choice").
 //
-// Where irradiance is linear across the profile's reach, what flows in is what flows out: only the second differences of irradiance
-// matter. Those at a step of 2^k pixels, times the light that comes from further away than that, are what the rings from level k on
-// can change; their sum over all levels is held against the tolerance. Levels from the first one on that make little of it are left out. Input: the pyramid. Output: a word per tile, 0: the
-// irradiance is right as it is; 1 + first level | levels << 8. One work-item is one tile.
+// Where irradiance is linear within the profile's reach, as much light flows in as out: only the second
+// differences of irradiance matter. The second difference at a step of 2^k pixels, times the light that comes
+// from further away than that, bounds what the rings from level k on can change. Their sum over all levels is
+// compared with the tolerance. The first levels are left out if they contribute little.
+//
+// Input: the pyramid. Output: a word per tile: 0 if the irradiance is right already; otherwise 1 + first
+// level | levels << 8. One work-item: one tile.
 #undef PEL_WIDTH
 #define PEL_WIDTH 1
 #include "lib/diffusion/profile_table.clh"
@@ -12,11 +15,12 @@
 
 // Measured on a head and on balls, so that 99 % of the pixels keep to the tolerance.
 #define ERROR_PER_BEND 0.15f
-// Of the tolerance: what a tile may keep without being looked at. Smooth change costs few taps and covers many pixels.
+// Share of the tolerance that a tile may leave without taps. Smooth changes cost few taps and cover many
+// pixels.
 #define LEFT_ALONE 0.5f
-#define LEAST_LIGHT 0.004f  // that a level has to bring
+#define LEAST_LIGHT 0.004f  // that a level must contribute
 
-// The greatest second difference from block to block of level k in and round a tile.
+// The greatest second difference between blocks of level k in and round a tile.
 static inline float bendNear(__global const PelDiffusionFrame* frame, __global const float* pyramid,
                              uint tileX, uint tileY, int k) {
     __global const PelPyramidLevel* level = &frame->level[k + 1];

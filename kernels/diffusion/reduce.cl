@@ -1,10 +1,11 @@
 // One level of the pyramid (shared/diffusion.h) from the next finer one: blocks of 2 x 2.
 //
-// A block is of one object: of the child with the largest area, and of those others that have its id and lie near it. So nothing
-// bleeds from one object to another, or from a surface to one behind it. One work-item: PEL_WIDTH blocks of a row.
+// A block belongs to one object: to that of the child with the largest area, with those other children that
+// have its id and are near it. So no light bleeds from one object to another, or to a surface behind. Inputs:
+// the finer level. Output: the coarser one. One work-item: PEL_WIDTH blocks of a row.
 #include "lib/diffusion/pyramid.clh"
 
-// Children further apart than this many times the width of the largest are of another surface.
+// Children further apart than this many times the width of the largest belong to another surface.
 #define FARTHEST_CHILD 5.0f
 
 typedef struct Child {
@@ -55,7 +56,7 @@ static inline Row loadRow(__global const float* at, uint stride) {
     return row;
 }
 
-// |before + after - 2 here|; where a neighbour is not there or another object's, light goes on as on the other side.
+//before + after - 2 here|. If a neighbour is missing or belongs to another object, the light is continued from the other side.
 static inline floatw bendOf(floatw here, floatw before, maskw hasBefore, floatw after, maskw hasAfter) {
     return selectw((floatw)(0.0f), fabs(before + after - 2.0f * here), hasBefore & hasAfter);
 }

@@ -1,13 +1,14 @@
 // Irradiance scattered under the surface, gathered on the screen (docs/mathematics.md, sections 9 and 10):
 // S(x) = sum over y of R(|x - y|) E(y) A(y), over the pixels near x and over ever larger blocks further away.
 //
-// The blocks that a pixel sums over are those of 2 x 2 parents round its own parent, six on a side; from level 1 on without those that
-// the level below has taken apart. So every pixel of the neighbourhood is in one block, whose width is at most about half of its
-// distance. The sum is divided by what the weights add up to: what the screen does not show counts like the rest.
+// The blocks that a pixel sums over are those of the 2 x 2 parents round its own parent, six on a side; from
+// level 1 on without those that the level below has resolved. So every pixel of the neighbourhood is in
+// exactly one block, whose width is at most about half of its distance. The sum is divided by the sum of
+// weights: what the screen does not show is assumed to be like the rest.
 //
-// Input: the pyramid, the words of classify_scatter. Output: an image like the irradiance's; pixels of the same value where nothing
-// was to be done. One work-group takes tiles, one work-item PEL_WIDTH pixels of a row at a time. Variants: PEL_FORMAT_IRRADIANCE,
-// PEL_FORMAT_OUT.
+// Inputs: the pyramid, the words of classify_scatter. Output: an image in the format of the irradiance;
+// pixels without taps keep their value. One work-group takes tiles, one work-item PEL_WIDTH pixels of a row
+// at a time. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT.
 #include "lib/diffusion/profile_table.clh"
 #include "lib/diffusion/pyramid.clh"
 #include "lib/image/image.clh"
@@ -90,8 +91,9 @@ static inline __attribute__((always_inline)) uint addLevel(__global const PelDif
     return taps;
 }
 
-// The share of the light that comes from within three blocks on a side, the block's own and those round it, on its plane: of an
-// ellipse of their area as slender as the view of the plane, by its radii at every eighth of a turn.
+// The share of the light that comes from within three blocks on a side: the block and those round it, on its
+// plane. It is that of an ellipse of their area, as slender as the plane is seen, from its radii at every
+// eighth of a turn.
 static inline Vec3w shareWithin(__global const float* nodes, const PelProfileTable table, const Pixels* here,
                                 uint level) {
     const floatw area = here->area * (9.0f / 3.14159265f),
@@ -102,7 +104,8 @@ static inline Vec3w shareWithin(__global const float* nodes, const PelProfileTab
     return add3(scale3(ends, (floatw)(0.25f)), scale3(profileShare(nodes, table, oblique), (floatw)(0.5f)));
 }
 
-// What scattering changes in one channel. Levels that were left out, and a pixel that has nothing round it, keep the pixel's own.
+// The change by scattering in one channel. Levels that were left out, and pixels without neighbours, keep the
+// pixel's own value.
 static inline floatw changeOf(floatw light, floatw weight, floatw e, floatw skipped) {
     const floatw total = weight + skipped;
     return (light - weight * e) / selectw((floatw)(1.0f), total, total > 0.0f);
@@ -211,7 +214,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
         const uint word = tiles[tile];
         if (!word && frame->inPlace) continue;
         const uint first = word ? (word & 255) - 1 : 0, levels = word >> 8;
-        // What levels from `first` on change is nearly the same all over a block of that level, and what is nearer flows both ways.
+        // The change by levels from `first` on is nearly the same over a block of that level, and nearer
+        // light flows both ways.
         const uint rows = 1u << min(first, (uint)PEL_TILE_LEVEL);
         const uint items = PEL_DIFFUSION_TILE / PEL_WIDTH * (PEL_DIFFUSION_TILE / rows);
         for (uint item = get_local_id(0); item < items; item += PEL_DIFFUSION_GROUP) {
@@ -251,7 +255,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
                                      changeOfPixels(frame, pyramid, tables, nodes, x, y, 0, levels, &here,
                                                     unknown, &pixels, &taps),
                                      unknown);
-                // Less than nothing is an error of the sums.
+                // A negative value is an error of the sums.
                 const Vec3w s = add3(here.e, change);
                 storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, x, y),
                            vec3(max0w(s.x), max0w(s.y), max0w(s.z)), active);

@@ -9,8 +9,8 @@
 #include "lib/shading/material_id.clh"
 #include "lib/shading/position.clh"
 
-// Surface seen at a steeper angle than this cosine counts with the area it would have at it: what a pixel's normal says of its
-// whole area is wrong where the surface turns away inside of the pixel.
+// A surface seen at a steeper angle than this cosine counts with the area at this angle: the normal of a
+// pixel is wrong for its whole area if the surface turns away inside the pixel.
 #define LEAST_COSINE 0.25f
 
 // PEL_WIDTH pixels from (`from`, y) on.
@@ -44,7 +44,7 @@ static inline void copyPoints(__global const PelDiffusionFrame* frame, __global 
         *covered += countw(mine & there);
         *invalid += countw(mine & there & notw(sound));
         id = as_uintw(selectw((intw)(0), as_intw(id), there & sound));
-        // What is no number stays out of all sums: its place holds zeros.
+        // Values with NaN or Inf are left out of all sums: zeros take their place.
         const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
         p = select3(none, p, sound), e = select3(none, e, sound);
         storePlane(pyramid, row + PEL_PLANE_X * stride, p.x, mine);
@@ -75,7 +75,7 @@ typedef struct Step {
     floatw length2;  // FLT_MAX: there is none
 } Step;
 
-// The shorter of the steps to the neighbours that are of the same object: the longer one may lead off the surface.
+// The shorter of the steps to the neighbours of the same object: the longer one may lead off the surface.
 static inline Step shorterStep(__global const float* pyramid, size_t here, long to, uint stride, Vec3w p,
                                uintw id) {
     Step step;
@@ -120,7 +120,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
             const floatw cosine = fabs(dot3(cross, p)) * inverseRootw(dot3(cross, cross) * dot3(p, p));
             area *= fmin(cosine * (1.0f / LEAST_COSINE), (floatw)(1.0f));
         }
-        // A line of pixels counts as facing the camera, a lone pixel has no size.
+        // A line of pixels counts as facing the camera. A single pixel has no size.
         area = selectw(area, right.length2, noDown);
         area = selectw(area, down.length2, noRight);
         area = selectw(area, (floatw)(0.0f), noRight & noDown);

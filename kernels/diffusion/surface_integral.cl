@@ -1,12 +1,13 @@
 // The surface integral (section 9 of the mathematics): S(x) = sum over triangles of the integral of R(|x - y|) E(y) dA, with E
 // linear on each triangle.
 //
-// Far sets of triangles count as points, from the distance on that host/diffusion/surface_tree.cpp worked out. Near triangles
-// are integrated over their borders. With M(r) = integral of R(s) s ds, x at height h above the plane and p below it there,
-// polar coordinates round p turn the integral of R into one of M(r) - M(h) over the border's angle, since s ds is the same
-// along the plane and in space; and as R (y - p) is the gradient of M, the first moment is M times the border's normal,
-// integrated along the border. Both are exact for every profile and leave no 1/r behind. Along an edge whose line passes p at
-// distance D, t = D sinh u makes both integrands smooth at every scale.
+// Far sets of triangles count as points, from the distance on that host/diffusion/surface_tree.cpp computed.
+// Near triangles are integrated over their borders. Let M(r) = integral of R(s) s ds, and let x be at height
+// h above the plane, over the point p. Polar coordinates round p turn the integral of R into one of M(r) -
+// M(h) over the border's angle, since s ds is the same along the plane and in space. As R (y - p) is the
+// gradient of M, the first moment is M times the border's normal, integrated along the border. Both are exact
+// for every profile and contain no 1/r. Along an edge whose line passes p at distance D, t = D sinh u makes
+// both integrands smooth at every scale.
 //
 // Inputs: a tree of triangles, a table of M, points (length). Output: RGB per point; 0 for a point that is not finite.
 // One work-item: PEL_WIDTH consecutive points, which walk the tree together.
@@ -21,7 +22,7 @@ static inline floatw surfaceRow(SurfaceSum sum, floatw r) {
     return fmin(fmax(row, (floatw)(0.0f)), (floatw)((float)(sum.rows - 1) - 0.0078125f));
 }
 
-// M(r). Below the first row it is taken to rise linearly. Where R ends abruptly the table goes on, and M stays at 1 / 2 pi.
+// M(r). It is linear below the first row. If R ends abruptly the table continues, and M stays at 1 / 2 pi.
 static inline Vec3w surfaceEnclosed(SurfaceSum sum, __global const float4* table, floatw r) {
     const floatw row = surfaceRow(sum, fmax(r, (floatw)(1e-37f)));
     const floatw below = fmin(r * exp2(-sum.firstLog2), (floatw)(1.0f));
@@ -82,10 +83,10 @@ __constant float surface_part[4] = {0.1739274226f, 0.3260725774f, 0.3260725774f,
 // Edges that span less, as the tangent of half the hyperbolic angle, take one rule in t.
 #define SURFACE_SHORT 0.125f
 #define SURFACE_PIECES 512  // of an edge, at most
-// Narrowest D, part of an edge: nearer lines are passed at this distance.
+// Smallest D, relative to the edge: nearer lines are passed at this distance.
 #define SURFACE_NARROW 1e-6f
 
-// What one triangle adds.
+// The contribution of one triangle.
 static inline Vec3w surfaceTriangle(SurfaceSum sum, __global const float4* table,
                                     __global const SurfaceTriangle* triangle, Vec3w x) {
     float3 corner[3], light[3];
@@ -98,7 +99,7 @@ static inline Vec3w surfaceTriangle(SurfaceSum sum, __global const float4* table
     const float3 n = area / twice;
     const Vec3w toPoint = sub3(x, all3(corner[0]));
     floatw h = dot3(toPoint, all3(n));
-    // A point of the surface is off by rounding alone, which 1/r would notice.
+    // Points of the surface are off it by rounding only, which 1/r would amplify.
     const float extent = fmax(fmax(fabs(corner[0].x), fabs(corner[0].y)), fmax(fabs(corner[0].z), length(ab)));
     h = selectw(h, (floatw)(0.0f), fabs(h) < (floatw)(5e-7f * extent));
     const Vec3w p = sub3(toPoint, scale3(all3(n), h)), atHeight = surfaceEnclosed(sum, table, fabs(h));
@@ -116,7 +117,8 @@ static inline Vec3w surfaceTriangle(SurfaceSum sum, __global const float4* table
         const floatw D = dot3(from, all3(m)), t0 = dot3(from, all3(t)), t1 = t0 + edge;
         const floatw distance = fmax(fabs(D), (floatw)(SURFACE_NARROW * edge));
         Vec3w angle = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), length = angle;
-        // Seen from afar an edge spans 2 artanh of this; the difference of two asinh would leave nothing of small triangles.
+        // From far away an edge spans 2 artanh of this; the difference of two asinh would cancel for small
+        // triangles.
         const floatw root0 = sqrt(fma(t0, t0, distance * distance)),
                      root1 = sqrt(fma(t1, t1, distance * distance));
         const bool isShort = largestLane(edge / (root0 + root1)) < SURFACE_SHORT && sum.piecesPerU < 1.0f;
@@ -144,7 +146,7 @@ static inline Vec3w surfaceTriangle(SurfaceSum sum, __global const float4* table
                 length = add3(length, scale3(sub3(M, all3((float3)(sum.whole))), way));
             }
         const float mb = dot(m, towardsB), mc = dot(m, towardsC);
-        // An edge whose line the point is on turns by nothing.
+        // An edge whose line contains the point spans no angle.
         const floatw sign =
             selectw(copysign((floatw)(1.0f), D), (floatw)(0.0f), fabs(D) < (floatw)(SURFACE_NARROW * edge));
         result = add3(result, add3(mul3(there, scale3(angle, sign)), mul3(all3(mb * b + mc * c), length)));
@@ -163,8 +165,8 @@ static inline Vec3w surfaceEnded(SurfaceSum sum, __global const float4* table, f
     return vec3(R.x * within[0], R.y * within[1], R.z * within[2]);
 }
 
-// The same by 7 points, exact to degree 5 [Radon 1948], for a triangle that is small beside its distance: there the borders'
-// shares cancel to less than their rounding.
+// The same by 7 points, exact to degree 5 [Radon 1948], for triangles that are small beside their distance:
+// there the shares of the borders cancel below their rounding.
 __constant float surface_corner[7][3] = {
     {0.333333333f, 0.333333333f, 0.333333333f}, {0.059715872f, 0.470142064f, 0.470142064f},
     {0.470142064f, 0.059715872f, 0.470142064f}, {0.470142064f, 0.470142064f, 0.059715872f},
@@ -193,7 +195,7 @@ static inline Vec3w surfaceSampled(SurfaceSum sum, __global const float4* table,
     return result;
 }
 
-// Kahan's sum: thousands of small terms would leave nothing behind in a float near 1.
+// Kahan's sum: otherwise thousands of small terms would be lost in a float near 1.
 static inline void surfaceAdd(Vec3w* total, Vec3w* lost, Vec3w term) {
     const Vec3w corrected = sub3(term, *lost), next = add3(*total, corrected);
     *lost = sub3(sub3(next, *total), corrected);

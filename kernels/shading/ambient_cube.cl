@@ -1,8 +1,9 @@
-// The nodes of an ambient cube map (lib/shading/ambient_cube.clh) from the six faces that the host has, in its layout.
+// The nodes of an ambient cube map (lib/shading/ambient_cube.clh) from the host's six faces, in its layout.
 //
-// On an edge, the mean of both faces' outermost texels, taken where their mean direction is the node's: for a node at t along the
-// edge, at t (1 - 1 / 2n) on each; at a corner the mean of three. Both are right to second order in the size of a texel, as is
-// the bilinear interpolation itself. Negative values become 0; NaN and Inf stay.
+// On an edge: the mean of both faces' outermost texels, taken where their mean direction is the node's. For a
+// node at t along the edge that is at t (1 - 1 / 2n) on each face; at a corner it is the mean of three. Both
+// are right to second order in the size of a texel, as is the bilinear interpolation. Negative values become
+// 0; NaN and Inf are kept.
 //
 // One work-item: one node, PEL_WIDTH 1. Variants: PEL_FORMAT_CUBE, PEL_GROUP.
 #include "lib/image/cube_map.clh"
@@ -22,7 +23,8 @@ static inline float4 cubeTexel(const Faces* f, uint face, int x, int y) {
     return select(texel, (float4)(0.0f), texel < 0.0f);
 }
 
-// Linear between the two texels round coordinate s in [-1, 1]; a texel of weight 0 is not read, whatever it holds.
+// Linear between the two texels next to coordinate s in [-1, 1]. A texel of weight 0 is not read, whatever it
+// holds.
 static inline float cubeNeighbours(uint size, float s, int* first, int* second) {
     const float at = clamp(fma(s, 0.5f * (float)size, 0.5f * (float)size - 0.5f), 0.0f, (float)(size - 1));
     *first = (int)at;

@@ -1,11 +1,11 @@
 // Blurred normals from shading normals, on screen (docs/guide/shading.md, "Blurred normals"): a separable mean over the surface
 // within the material's diffusion radius, which stops at depth edges and at other materials.
 //
-// Along one axis, first x, then y, the taps k = 1..PEL_BLUR_TAPS to each side lie `step` pixels apart, so that the last one
-// is about one radius away on the surface: step = ceil(radius / (PEL_BLUR_TAPS s)), s the distance to the nearer of the two
-// neighbours. A tap's weight is (1 - d^2 / radius^2)^2, d its distance in space. The walk ends at the border, at another
-// material, beyond the radius, and at a depth edge: a step more than PEL_BLUR_GAP times as long as the longest before it.
-// Taps with a NaN or Inf are passed over.
+// Along one axis, first x, then y, the taps k = 1..PEL_BLUR_TAPS to each side are `step` pixels apart, so
+// that the last one is about one radius away on the surface: step = ceil(radius / (PEL_BLUR_TAPS s)), s being
+// the distance to the nearer of the two neighbours. A tap's weight is (1 - d^2 / radius^2)^2, d its distance
+// in space. The walk ends at the border, at another material, beyond the radius, and at a depth edge: a step
+// more than PEL_BLUR_GAP times as long as the longest before it. Taps with NaN or Inf are skipped.
 //
 // Inputs: shading normals, positions or depth, material ids. Output: Nb of each pixel of a material without normal map;
 // NaN where the pixel's own normal or position is. One work-group: a run of tiles; one work-item: PEL_WIDTH pixels of a row
@@ -15,7 +15,8 @@
 #include "lib/shading/tiles.clh"
 #include "shared/shade_passes.h"
 
-// Ids of PEL_WIDTH pixels from `first` on that this work-item takes: those from x on which have a material; others are 0.
+// Ids of PEL_WIDTH pixels from `first` on. Ids are 0 for pixels before x, which belong to another work-item,
+// and for pixels without a material.
 static inline uintw ownIds(__global const PelShadeFrame* frame, __global uchar* material, uint x, uint y,
                            uint first) {
     const intw column = lanesw() + (int)first;
@@ -23,8 +24,8 @@ static inline uintw ownIds(__global const PelShadeFrame* frame, __global uchar* 
     return selectw((uintw)(0), id, (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id));
 }
 
-// tags: the id where normal and position are numbers, its negative where not, 0 where there is no material: of every pixel,
-// since taps go beyond the tiles of the list.
+// tags: the id if normal and position are finite, its negative if not, 0 without a material. For every pixel,
+// since taps reach beyond the tiles of the list.
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void prepare_normals(
     __global const PelShadeFrame* frame, __global const uint* list, __global uchar* material,
     __global uchar* normal, __global uchar* position, __global uchar* depth, __global float* normals,
@@ -79,7 +80,7 @@ static inline maskw sameMaterial(const Field* f, int x, int y, int offset, size_
     return mask & (fabs(loadw(at, f->tags)) == id);
 }
 
-// Distance to a direct neighbour; Inf where there is none to compare with.
+// Distance to a direct neighbour; Inf if there is none to compare with.
 static inline floatw neighbourDistance(const Field* f, int x, int y, int offset, size_t at, Vec3w p,
                                        floatw id, maskw mask) {
     mask = sameMaterial(f, x, y, offset, at, id, mask);
@@ -94,7 +95,7 @@ static inline int greatest(intw value, maskw mask) {
     return (int)greatestId(as_uintw(value), mask);
 }
 
-// The sum of a pixel's normal and of those along the axis, of the lanes of `mask`.
+// The sum of a pixel's normal and of those along the axis, for the lanes of `mask`.
 static inline Vec3w blurAlong(const Field* f, int x, int y, floatw id, floatw radius, maskw mask) {
     const size_t centre = scratchIndex(f->frame, (uint)x, (uint)y);
     const long pixel = f->alongY ? (long)f->frame->width : 1;  // from one pixel to the next along the axis
@@ -140,7 +141,7 @@ static inline Vec3w blurAlong(const Field* f, int x, int y, floatw id, floatw ra
     return scale3(sum, 1.0f / total);
 }
 
-// `from` and `to` differ; along y `to` holds the unblurred normals, which stay where the mean vanishes.
+// `from` and `to` differ. Along y, `to` holds the unblurred normals, which are kept where the mean vanishes.
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void blur_normals(
     __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials,
     __global const uint* list, __global uchar* material, __global const float* from,
@@ -168,7 +169,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void blur_n
                 const maskw vanished = valid & notw(length2 > 1e-12f);
                 n = scale3(n, 1.0f / sqrt(length2));
                 if (anyw(vanished)) n = select3(n, loadPlanesOf(to, plane, at, vanished), vanished);
-                const floatw none = NAN;  // the shading pass makes it the invalid colour
+                const floatw none = NAN;  // the shading pass makes it an invalid pixel
                 n = select3(vec3(none, none, none), n, valid);
             }
             storePlanes(to, plane, at, n, wanted);

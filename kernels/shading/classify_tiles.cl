@@ -1,15 +1,15 @@
 // Which tiles hold a pixel of a material, and which variant of the shading kernel they need: compact lists of their numbers
 // (docs/guide/shading.md, "Tiles").
 //
-// Inputs: the material id image, PelShadeFrame.materialMask, PelShadeMaterial.variants. Output: lists of tiles (shared/shade.h),
-// in runs of PEL_CLASSIFY_RUN tiles that stay in order, since neighbours share cache lines and pages; list 0 is left out when
-// only those of the variants are wanted. One work-item: one run. Variants: PEL_FORMAT_MATERIAL; PEL_BIT_NO_SKIPPING lists
-// every tile.
+// Inputs: the material id image, PelShadeFrame.materialMask, PelShadeMaterial.variants. Output: lists of
+// tiles (shared/shade.h), in runs of PEL_CLASSIFY_RUN tiles that keep their order, since neighbours share
+// cache lines and pages; list 0 is left out if only the lists of the variants are needed. One work-item: one
+// run. Variants: PEL_FORMAT_MATERIAL; PEL_BIT_NO_SKIPPING lists every tile.
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 #include "shared/shade.h"
 
-// Bits of the variants that have what all materials of the pixels of `left` need.
+// Bits of the variants that have all features that the materials of the pixels of `left` need.
 static inline uint commonVariants(__global const PelShadeMaterial* materials, uintw id, maskw left) {
     uint able = ~0u;
     while (anyw(left)) {
@@ -20,7 +20,8 @@ static inline uint commonVariants(__global const PelShadeMaterial* materials, ui
     return able;
 }
 
-// 0: no pixel of a material; else 1 + the last variant that has what all its materials need (they get cheaper).
+// 0: no pixel of a material; otherwise 1 + the last variant that has all features that its materials need
+// (later ones are cheaper).
 static inline uint classOfTile(__global const PelShadeFrame* frame, __global const PelShadeMaterial* materials,
                                __global uchar* material, uint tile, uint variants) {
     const uint x0 = tile % frame->tilesX * PEL_TILE_WIDTH, y0 = tile / frame->tilesX * PEL_TILE_HEIGHT;
@@ -34,8 +35,7 @@ static inline uint classOfTile(__global const PelShadeFrame* frame, __global con
                 loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[PEL_IMAGE_MATERIAL], first, y));
             if (!anyw(id != known)) continue;  // nearly always
             const maskw has = hasMaterial(frame, id);
-            known = greatestId(
-                id, (maskw)(-1));  // nothing more to learn from it; in mixed vectors of what follows, likewise
+            known = greatestId(id, (maskw)(-1));  // its variants are known now; in mixed vectors only those of this id
             if (!anyw(has)) continue;
             found = 1;
             if (able != 1u) able &= commonVariants(materials, id, has);

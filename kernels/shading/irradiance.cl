@@ -1,14 +1,15 @@
-// Light that arrives at each pixel, before it scatters: irradiance / pi of all lights, shadows sharp, and of the ambient light
-// (section 6 of the mathematics without a profile); no specular, no albedo.
+// Irradiance / pi at each pixel, before it scatters: all lights with sharp shadows, and the ambient light
+// (section 6 of the mathematics without a profile); without specular light and albedo.
 //
-// Inputs: shading normals, positions or depth where a light has a position, ambient occlusion, shadows per pixel and light, ids.
-// Output: planes of RGB, NaN where an input is. Pixels of materials that scatter by tables (PEL_SCATTER_PREINTEGRATED) are left
-// as they are. One work-group: a run of tiles; one work-item: PEL_WIDTH pixels of a row at a time. Variants: as shade.cl.
+// Inputs: shading normals, positions or depth if a light has a position, ambient occlusion, shadows per pixel
+// and light, ids. Output: planes of RGB, NaN where an input is. Pixels of materials that use the tables
+// (PEL_SCATTER_PREINTEGRATED) are not changed. One work-group: a run of tiles; one work-item: PEL_WIDTH
+// pixels of a row at a time. Variants: as shade.cl.
 #include "lib/image/planes.clh"
 #include "lib/shading/tiles.clh"
 #include "shading/scene.clh"
 
-// At PEL_WIDTH pixels from (x, y) on. Where no light arrives its shadow does not matter.
+// Irradiance at PEL_WIDTH pixels from (x, y) on. Where no light arrives its shadow does not matter.
 static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMaterial* materials, uintw id,
                                   maskw wanted, uint x, uint y) {
     __global const PelShadeFrame* frame = scene->frame;

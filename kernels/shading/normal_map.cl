@@ -1,9 +1,10 @@
 // Blurred normals from a tangent-space normal map (section 6, "blurred-normal mip"): trilinear, at the level whose texels
 // are as long as the diffusion radius, but never sharper than the pixel's own level of detail.
 //
-// Inputs: UV, their gradients (or none), tangents, geometric normals, ids, one material's map. Output: planes of Nb per pixel of
-// that material, and the geometric normal where PelNormalMap.fallback asks for it; NaN where an input is. One work-group: a
-// run of tiles; one work-item: one pixel at a time (PEL_WIDTH 1). PEL_NORMAL_SLOT: where the geometric normals are.
+// Inputs: UV, their gradients (or none), tangents, geometric normals, ids, one material's map. Output: planes
+// of Nb for pixels of that material, and the geometric normal if PelNormalMap.fallback is set; NaN where an
+// input is. One work-group: a run of tiles; one work-item: one pixel at a time (PEL_WIDTH 1).
+// PEL_NORMAL_SLOT: the slot of the geometric normals.
 #include "lib/image/planes.clh"
 #include "lib/shading/normal_map.clh"
 #include "lib/shading/tiles.clh"

@@ -1,9 +1,10 @@
-// Curvature per pixel from normals and positions (lib/shading/screen_curvature.clh says how).
+// Curvature per pixel from normals and positions (lib/shading/screen_curvature.clh has the method; section 5
+// of the mathematics).
 //
-// Inputs: images of unit normals, of positions (length) or depth, of ids (0 is background); params. Output: an R32F image,
-// 1/length, 0 for background and for what cannot be measured. One work-item: PEL_WIDTH pixels of a row. Variants:
-// PEL_FORMAT_NORMAL, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_IDS (0: none), PEL_FORMAT_CURVATURE
-// (lib/image/image.clh).
+// Inputs: images of unit normals, of positions (length) or depth, of ids (0 is background); params. Output:
+// an R32F image, 1/length, 0 for background and for pixels that cannot be measured. One work-item: PEL_WIDTH
+// pixels of a row. Variants: PEL_FORMAT_NORMAL, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_IDS (0:
+// none), PEL_FORMAT_CURVATURE (lib/image/image.clh).
 
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
@@ -11,7 +12,7 @@
 #include "lib/shading/screen_curvature.clh"
 #include "shared/screen.h"
 
-// An id of any object, not only of a material: the number's bits.
+// An id of any object, not only of a material: the bits of the number.
 inline uintw loadObjectId(const int format, Span s) {
     switch (format & ~PEL_FMT_STRIDED) {
         case PEL_FMT_R8_UINT:
@@ -70,7 +71,7 @@ inline Pixel loadPixel(const Inputs* in, uint x, uint y) {
     return pixel;
 }
 
-// Each lane takes its neighbour's value, the last or the first keeps its own.
+// Each lane takes its neighbour's value; the last or the first lane keeps its own.
 #if PEL_WIDTH == 1
 #define LANES_UP(v) (v)
 #define LANES_DOWN(v) (v)
@@ -105,7 +106,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_SCREEN_GROUP, 1, 1))) void scre
     const Span out = imageSpan(curvature, &frame->curvature, x, y);
     floatw value = 0.0f;
     if (anyw(here.point.usable)) {
-        // A vector beside the image would be outside of it: the same pixels once more, moved by a lane.
+        // A vector beside the image would be outside it: the same pixels once more, moved by one lane.
         Pixel left = loadPixel(&in, max(x, 1u) - 1, y), right = here;
         if (x == 0) MOVE_LANES(left, LANES_UP);
         if (x + PEL_WIDTH < frame->width)

@@ -1,11 +1,13 @@
-// The screen-space shading pass: section 6 of the mathematics for every pixel that has a material.
-// Where a material scatters on the screen or not at all, its diffuse light comes from the irradiance image.
+// The screen-space shading pass: section 6 of the mathematics for every pixel with a material. Materials that
+// scatter by another method than the tables, or not at all, take their diffuse light from the irradiance
+// image.
 //
-// Inputs: the images of PelImageSlot and of each light in the caller's layout (shared/shade.h), materials, lights, the
-// tables in one buffer, and the lists of tiles from classify_tiles.cl, of which it takes one. Output: radiance, linear RGB.
-// One work-group takes one tile after another from the list; one work-item PEL_WIDTH pixels of a row at a time.
-// Variants: PEL_FEATURES (shared/features.h) and the format of each image, PEL_FORMAT_<SLOT>, 0 where there is none;
-// all wide shadows have one format, and all shadow maps one and the same PEL_SHADOW_CONTENT. Unused buffers are NULL.
+// Inputs: the images of PelImageSlot and of each light in the caller's layout (shared/shade.h), materials,
+// lights, the tables in one buffer, and one of the lists of tiles from classify_tiles.cl. Output: radiance,
+// linear RGB. One work-group takes one tile after another from the list; one work-item takes PEL_WIDTH pixels
+// of a row at a time. Variants: PEL_FEATURES (shared/features.h) and the format of each image,
+// PEL_FORMAT_<SLOT>, 0 without an image; all wide shadows have one format, and all shadow maps have the same
+// PEL_SHADOW_CONTENT. Unused buffers are NULL.
 #include "lib/image/image.clh"
 #include "lib/shading/cube_thickness.clh"
 #include "lib/shading/deep_scatter.clh"
@@ -30,17 +32,18 @@ typedef struct Pixels {
     floatw curvature, occlusion, thickness, roughness, specular;
     floatw turnCosine, turnSine;  // of the disk of taps; PEL_BIT_ROTATE_TAPS only
     maskw valid;                  // no input that every material reads is NaN or Inf
-    uintw spoiled;                // PEL_BIT_... whose inputs are
+    uintw spoiled;                // PEL_BIT_... of features with NaN or Inf in an input
 } Pixels;
 
-// The parts that outputs beside radiance take (PEL_FORMAT_OUT_...); not computed where there is none.
+// The parts for outputs beside radiance (PEL_FORMAT_OUT_...); not computed without such outputs.
 typedef struct Parts {
     Vec3w diffuse, deepScatter;  // to be multiplied by albedo
     floatw thickness;
     bool measured;  // thickness is
 } Parts;
 
-// Notes where an input of these features is no number. What ambient light and positional lights read, every material reads.
+// Marks features with NaN or Inf in an input. Inputs of ambient light and of positional lights are read by
+// every material.
 static inline void spoil(Pixels* p, const uint features, maskw finite) {
     if (HAS(features & (PEL_BIT_AMBIENT | PEL_BIT_POSITIONAL)))
         p->valid &= finite;
@@ -98,7 +101,8 @@ static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
     return p;
 }
 
-// Thickness along a light with cascades: the finest that holds the point with its taps; 0 outside of all.
+// Thickness along a light with cascades, from the finest map that holds the point with its taps; 0 outside
+// all maps.
 static inline floatw measureInCascades(const Scene* scene, __global const PelShadeMaterial* material,
                                        __global const PelShadeLight* light, const Pixels* p, Vec3w inside,
                                        float cutoff, maskw needed) {
@@ -121,7 +125,7 @@ static inline floatw measureInCascades(const Scene* scene, __global const PelSha
     return thickness;
 }
 
-// Length that the light travelled inside before it came out of the pixels of `needed`.
+// Length of the light's path inside the body, for the pixels of `needed`.
 static inline floatw measureThickness(const Scene* scene, __global const PelShadeMaterial* material,
                                       __global const PelShadeLight* light, const Pixels* p, maskw needed,
                                       bool beyondCutoff) {
@@ -140,7 +144,7 @@ static inline floatw measureThickness(const Scene* scene, __global const PelShad
                          p->turnCosine, p->turnSine, cutoff, needed);
 }
 
-// The same for transmission, whose position does not move: the greatest thickness about each pixel of `needed`.
+// The same for transmission, whose position is not moved: the greatest thickness near each pixel of `needed`.
 static inline floatw measureGreatest(const Scene* scene, __global const PelShadeLight* light, const Pixels* p,
                                      maskw needed) {
     if (HAS(PEL_BIT_SHADOW_CUBE) && light->projection >= PEL_MAP_CUBE)
@@ -177,7 +181,8 @@ static inline Vec3w ambientOfPixels(const Scene* scene, float3 blend, const Pixe
     return HAS(PEL_BIT_CUBE_ALONE) ? e : add3(e, ambientLight(frame->ambient, blend, p->n, p->nb));
 }
 
-// What one light adds to pixels of one material: diffuse and deep scatter are multiplied by albedo later.
+// The contribution of one light to pixels of one material. Diffuse light and deep scatter are multiplied by
+// albedo later.
 static inline void addLight(const Scene* scene, __global const PelShadeMaterial* material,
                             __global const PelShadeLight* light, const Pixels* p, floatw w, maskw active,
                             bool scattered, Vec3w* diffuse, Vec3w* specular, Parts* parts, Counts* counts) {
@@ -196,7 +201,7 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
         direct = directScatter(scene->luts, material->curvature, vload3(0, material->normalBlend), p->pair,
                                nl, bl, p->curvature);
         if (material->gain[0] != 0.0f) {
-            // Fitted on balls of more than ten mean free paths; beyond one it would mean nothing.
+            // Fitted on balls of more than ten mean free paths; it is meaningless beyond one.
             const Vec3w gain = loadUniform3(material->gain);
 #define PEL_GAIN_(c) fmin(max0w(fma(gain.c, p->curvature, (floatw)(1.0f))), (floatw)(2.38f))
             direct = mul3(direct, vec3(PEL_GAIN_(x), PEL_GAIN_(y), PEL_GAIN_(z)));
@@ -240,7 +245,8 @@ static inline void addLight(const Scene* scene, __global const PelShadeMaterial*
             const Vec3w through = scale3(
                 throughSlab(scene->luts, material->transmission, material->transmissionPerLength, thickness),
                 behind * material->transmissionShare);
-            // The table's dark side is light that came round or through as well: the larger of the two, never both.
+            // The table's dark side is light that came round or through as well, so the larger of the two is
+            // used, never the sum.
             sum = vec3(fmax(direct.x, through.x), fmax(direct.y, through.y), fmax(direct.z, through.z));
             if (PEL_FORMAT_OUT_DEEP_SCATTER)
                 parts->deepScatter = add3(parts->deepScatter, mul3(sub3(sum, direct), color));
@@ -309,7 +315,8 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
                                   uint x, uint y, maskw active, Parts* parts, Vec3w* specularPart,
                                   Counts* counts) {
     __global const PelShadeFrame* frame = scene->frame;
-    // Whether its diffuse light is the image's: that of the lights and of the ambient, scattered already.
+    // Whether its diffuse light is the irradiance image: that of the lights and of the ambient light, already
+    // scattered.
     const bool scattered = HAS(PEL_BIT_IRRADIANCE) && material->scattering != PEL_SCATTER_PREINTEGRATED;
     if (HAS(PEL_BIT_COUNT)) {
         counts->of[PEL_COUNT_SCATTERING + material->named] += countw(active);
@@ -344,7 +351,7 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
         if (!SKIPPING || anyw(active & (through > 0.0f))) {
             const Vec3w e = ambientAlong(scene, scale3(p->nb, (floatw)(-1.0f)));
             Vec3w deep = scale3(mul3(loadUniform3(material->deepScatterColor), e), through);
-            // A cube may hold NaN, which must not matter where nothing comes through.
+            // A cube may hold NaN, which must not matter where no light comes through.
             if (HAS(PEL_BIT_AMBIENT_CUBE))
                 deep = select3(vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), deep, through > 0.0f);
             diffuse = add3(diffuse, deep);
@@ -367,12 +374,12 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
     return HAS(PEL_BIT_IRRADIANCE) ? add3(radiance, before) : radiance;
 }
 
-// Writes one colour beside radiance.
+// Writes one part beside radiance.
 #define STORE_PART(slot, part) \
     if (PEL_FORMAT_##slot)     \
         storeColor(PEL_FORMAT_##slot, SPAN(slot), select3(invalid, part, valid& finite3(part)), active);
 
-// PEL_WIDTH pixels from (x, y) on, of which those of `active` are wanted.
+// PEL_WIDTH pixels from (x, y) on; those of `active` are wanted.
 static inline void shadePixels(const Scene* scene, uint x, uint y, uintw id, maskw active, Counts* counts) {
     __global const PelShadeFrame* frame = scene->frame;
     Pixels p = loadPixels(scene, x, y);
@@ -406,7 +413,7 @@ static inline void shadePixels(const Scene* scene, uint x, uint y, uintw id, mas
     result = select3(invalid, result, valid);
     if (HAS(PEL_BIT_ACCUMULATE)) {
         result = add3(result, loadColorOf(PEL_FORMAT_RADIANCE, target, active));
-        shown &= finite3(result);  // what stood there may be NaN or Inf
+        shown &= finite3(result);  // the previous content may be NaN or Inf
         result = select3(invalid, result, finite3(result));
     }
     count(counts, PEL_COUNT_SHADED, active);
@@ -428,7 +435,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
     const uint tiles = listed ? list[which] : frame->tiles;
     const size_t listStart = PEL_TILE_LISTS + (size_t)which * frame->listTiles;
     // Each group takes a run of the list: neighbours in it share pages, and often cache lines, of the images.
-    // Of long frames a launch takes one part of `parts`, so that the host may stop between them.
+    // A launch takes one part of `parts` of a long frame, so that the host can stop between them.
     const uint groups = get_num_groups(0) * parts, group = get_num_groups(0) * part + get_group_id(0);
     const uint end = (uint)((ulong)tiles * (group + 1) / groups);
     for (uint i = (uint)((ulong)tiles * group / groups); i < end; ++i) {
@@ -438,7 +445,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
              pixel += PEL_SHADE_GROUP * PEL_WIDTH) {
             const uint x = tileX + pixel % PEL_TILE_WIDTH, y = tileY + pixel / PEL_TILE_WIDTH;
             if (x >= frame->width || y >= frame->height) continue;
-            // At the right edge vectors begin earlier; the lanes before x belong to the tile or vector before.
+            // At the right edge vectors begin earlier; lanes before x belong to the previous tile or vector.
             const uint first = vectorStart(x, frame->width);
             const intw column = lanesw() + (int)first;
             maskw active = (column >= (int)x) & (column < (int)frame->width);

@@ -1,12 +1,13 @@
-// Bounds of every block of a shadow map, for lib/shading/shadow_bounds.clh: the mean slope along x and y, and the least and the greatest
-// depth less the plane of that slope through 0 at the block's middle.
+// Bounds of every block of a shadow map, for lib/shading/shadow_bounds.clh: the mean slope along x and y, and
+// the least and greatest depth minus the plane of that slope through 0 at the block's middle.
 //
-// Input: a map of depths. Output: four planes of one float per block, depths times the sign by which they grow away from the
-// light. Texels that are no number throw no shadow: they count as infinitely far, and their block as level. One work-item: one
-// block. Nothing is written where so few tiles have a material that the map would cost more to read than their filters.
+// Input: a map of depths. Output: four planes of one float per block; depths are multiplied by the sign with
+// which they grow away from the light. Texels with NaN or Inf cast no shadow: they count as infinitely far,
+// and their block as level. One work-item: one block. Nothing is written if so few tiles have a material that
+// reading the map would cost more than their filters.
 #include "lib/shading/shadow_bounds.clh"
 
-// PEL_BOUNDS_BLOCK texels of a row; beyond its end the last one again.
+// PEL_BOUNDS_BLOCK texels of a row; after its end the last texel again.
 static inline float8 boundsTexels(__global const uchar* row, __global const PelShadeImage* map, uint column) {
     if (PEL_FORMAT_SHADOW_MAP == PEL_FMT_R32F && column + PEL_BOUNDS_BLOCK <= map->width)
         return vload8(0, (__global const float*)row + column);

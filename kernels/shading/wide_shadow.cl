@@ -1,11 +1,13 @@
-// The shadow image of one light from its shadow map: how much of the light arrives at each pixel of a material, filtered over the
-// material's shadowFilterWidth (lib/shading/wide_filter.clh), or over about a texel where that is 0 (lib/shading/sharp_shadow.clh).
+// The shadow image of one light from its shadow map: the share of the light that arrives at each pixel of a
+// material, filtered over the material's shadowFilterWidth (lib/shading/wide_filter.clh), or over about a
+// texel if that is 0 (lib/shading/sharp_shadow.clh).
 //
-// Inputs: positions or depth, geometric normals, ids, the shadow map. Output: R32F, 0 to 1; pixels that the light does not
-// reach get 1. Of a light with cascades the finest that holds a pixel's filter is read; of a cube, all faces under it
-// (lib/shading/cube_filter.clh). One work-group: a run of tiles; one work-item: PEL_WIDTH pixels, whose filters it runs one after another,
-// PEL_WIDTH texels at a time. PEL_NORMAL_SLOT: where the geometric normals are; PEL_SHADOW_CONTENT: what texels hold;
-// PEL_BOUNDS: the bounds of blocks of the maps are there, and filters that they decide read no texel.
+// Inputs: positions or depth, geometric normals, ids, the shadow map. Output: R32F, 0 to 1; pixels out of the
+// light's reach get 1. Of a light with cascades the finest map that holds a pixel's filter is read; of a
+// cube, all faces under it (lib/shading/cube_filter.clh). One work-group: a run of tiles; one work-item:
+// PEL_WIDTH pixels, whose filters it runs one after another, PEL_WIDTH texels at a time. Variants:
+// PEL_NORMAL_SLOT: the slot of the geometric normals; PEL_SHADOW_CONTENT: the content of texels; PEL_BOUNDS:
+// bounds of the maps' blocks exist, and filters that they decide read no texel.
 #include "lib/shading/cube_filter.clh"
 #include "lib/shading/light.clh"
 #include "lib/shading/shadow_bounds.clh"
@@ -14,9 +16,9 @@
 #include "lib/shading/wide_filter.clh"
 #include "shared/shade_passes.h"
 
-// Below this cosine to the light the tangent plane is followed no steeper: five times the sideways distance.
+// The tangent plane is followed down to this cosine to the light: five times the sideways distance.
 #define PEL_FLATTEST_COSINE 0.2f
-// Smaller filters would see texels come and go.
+// With smaller filters texels would appear and disappear.
 #define PEL_LEAST_TEXELS 2.0f
 // Of sharp shadows: the same cosine, and the tolerance along the normal in texels. docs/guide/shading.md, "Irradiance per pixel", has
 // what others give.
@@ -29,7 +31,7 @@ typedef struct Filters {
     float radiusX[PEL_WIDTH], radiusY[PEL_WIDTH], cone[PEL_WIDTH], scale[PEL_WIDTH], step[PEL_WIDTH];
 } Filters;
 
-// Where a point lies in a map, and the tangent plane there.
+// Where a point is in a map, and the tangent plane there.
 typedef struct Receiver {
     floatw u, v, z, w;
     floatw zPerLength;        // depth per length along the light
@@ -63,9 +65,10 @@ static inline Receiver receiverInMap(__global const PelWideShadow* light, Vec3w 
     return r;
 }
 
-// Whether depths round the receiver can be compared: it is before the light, near the map, and all is numbers.
+// Whether depths round the receiver can be compared: it is before the light, near the map, and all values are
+// finite.
 static inline maskw comparable(const Receiver* r, Vec3w p, Vec3w n) {
-    // Far outside of the map, where integers would overflow, everything is lit.
+    // Far outside the map, where integers would overflow, everything is lit.
     return (r->w > 0.0f) & finite3(p) & finite3(n) & (fabs(r->x) < 1e6f) & (fabs(r->y) < 1e6f) &
            finitew(r->zPerLength);
 }
@@ -77,8 +80,8 @@ static inline maskw makeFilters(__global const PelWideShadow* light, const Filte
     const Receiver r = receiverInMap(light, p, n);
     const floatw zPerLength = r.zPerLength, texelU = r.texelU, texelV = r.texelV, cosine = r.cosine;
     const floatw tilt = 1.0f / fmax(cosine, (floatw)(PEL_FLATTEST_COSINE));
-    // A point that faces away is behind its own body: up to two filter widths of that are not its shadow; the curvature
-    // table darkens it.
+    // A point that faces away is behind its own body. Up to two filter widths of that do not count as shadow;
+    // the curvature table darkens it.
     const floatw body = 2.0f * width * max0w(-cosine);
     const floatw dzdx = dot3(n, loadUniform3(light->right)) * tilt * texelU * zPerLength;
     const floatw dzdy = dot3(n, loadUniform3(light->down)) * tilt * texelV * zPerLength;
@@ -106,7 +109,7 @@ static inline maskw makeFilters(__global const PelWideShadow* light, const Filte
     return held & comparable(&r, p, n) & (radiusX < 1e6f) & (radiusY < 1e6f) & finitew(dzdx) & finitew(dzdy);
 }
 
-// The sharp shadow of the lanes of `left` that this map holds; those are taken out of `left`.
+// The sharp shadow of the lanes of `left` that this map holds; these are removed from `left`.
 static inline floatw sharpInMap(__global const PelWideShadow* light, __global const uchar* map, Vec3w p,
                                 Vec3w n, float perExponent, floatw shown, maskw* left) {
     const Receiver r = receiverInMap(light, p, n);
@@ -120,7 +123,7 @@ static inline floatw sharpInMap(__global const PelWideShadow* light, __global co
     s.x = r.x, s.y = r.y, s.z = r.z;
     s.dzdx = dot3(n, loadUniform3(light->right)) * tilt * r.texelU * r.zPerLength;
     s.dzdy = dot3(n, loadUniform3(light->down)) * tilt * r.texelV * r.zPerLength;
-    // A float's last bits, of the largest depths that stand beside it, are no shadow.
+    // The last bits of a float, at the largest depths here, are not shadow.
     const floatw least = (fabs(r.z) + 1.0f) * 4e-7f;
     // How far before the tangent plane another depth may be and still be the receiver's own: what the surface is off its plane
     // inside of the footprint, a mesh's facets among it, grows as texels do.
@@ -193,7 +196,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                 CubeFilters f;
                 __global const uchar* map = firstTexel(map0, &wideShadow->map);
                 __global const float* m = wideShadow->worldToShadow;
-                // Of cubes the smallest disk, two texels in radius, is the sharp shadow.
+                // In cubes the sharp shadow is the smallest disk, two texels in radius.
                 const Vec3w q = cubePosition(m, p);
                 shape.width =
                     selectw(shape.width, sqrt(dot3(q, q)) * (8.0f / (float)wideShadow->map.width), sharp);

@@ -1,11 +1,12 @@
-// Constants of scattering on the screen, laid out alike on host and device (docs/mathematics.md, sections 9 and 10). Lengths are in
-// the caller's unit.
+// Constants of scattering on the screen, with the same layout on host and device (docs/mathematics.md,
+// sections 9 and 10). Lengths are in the caller's unit.
 #ifndef PEL_SHARED_DIFFUSION
 #define PEL_SHARED_DIFFUSION
 #include "shared/shade.h"
 
-// The surface as a pyramid of blocks of 2^l x 2^l pixels. A level is rows of planes: row y of plane p begins at
-// offset + ((y + PEL_PYRAMID_ROWS) PEL_PYRAMID_PLANES + p) stride + PEL_PYRAMID_GUARD. Blocks outside of the image have no area.
+// The surface as a pyramid of blocks of 2^l x 2^l pixels. A level is rows of planes: row y of plane p begins
+// at offset + ((y + PEL_PYRAMID_ROWS) PEL_PYRAMID_PLANES + p) stride + PEL_PYRAMID_GUARD. Blocks outside the
+// image have no area.
 #define PEL_PYRAMID_LEVELS 8
 #define PEL_PYRAMID_GUARD 16  // blocks before and after a row
 #define PEL_PYRAMID_ROWS 4    // rows before the first and after the last
@@ -57,7 +58,7 @@ typedef struct PelDiffusionFrame {
     PelUint32 everyTile;  // 1: no tile and no level is left out
     PelUint32 inPlace;    // 1: `out` is `irradiance`
     PelUint32 tables;
-    PelUint32 facing;  // 1: `origin` is the camera, so that grazing surface can be told
+    PelUint32 facing;  // 1: `origin` is the camera, so that surfaces seen at a grazing angle can be found
     float tolerance;   // of irradiance
     float origin[3];   // length, world; of the pyramid's positions
     float inverseViewProjection[16];

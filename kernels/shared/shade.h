@@ -1,5 +1,6 @@
-// Constants of one execution of the shading pass, laid out alike on host and device. Lengths are in the caller's
-// unit, colours are linear RGB, matrices are row-major and multiply column vectors.
+// Constants of one execution of the shading pass (shading constants), with the same layout on host and
+// device. Lengths are in the caller's unit, colours are linear RGB, matrices are row-major and multiply
+// column vectors.
 #ifndef PEL_SHARED_SHADE
 #define PEL_SHARED_SHADE
 #include "shared/choices.h"
@@ -8,22 +9,23 @@
 #include "shared/lut.h"
 #include "shared/scalars.h"
 
-#define PEL_TILE_WIDTH 128  // pixels; measured, docs/shading.md
+#define PEL_TILE_WIDTH 128  // pixels; measured, docs/design-notes.md
 #define PEL_TILE_HEIGHT 2
 #define PEL_TILE_PIXELS (PEL_TILE_WIDTH * PEL_TILE_HEIGHT)
 #define PEL_LIGHT_BUFFERS 16  // distinct buffers among all images of all lights
 #define PEL_EACH_LIGHT_BUFFER(X) \
     X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8) X(9) X(10) X(11) X(12) X(13) X(14) X(15)
 #define PEL_MATERIALS 256  // ids 0 (background) to 255
-// Lists of tiles in one buffer: PEL_TILE_LISTS counts, then the lists, each with room for PelShadeFrame.listTiles. List 0 has
-// every tile with a material; list 1 + i the tiles of variant i of the shading kernel, where there are several.
+// Lists of tiles in one buffer: PEL_TILE_LISTS counts, then the lists, each with room for
+// PelShadeFrame.listTiles. List 0 has every tile with a material; list 1 + i has the tiles of variant i of
+// the shading kernel, if there are several.
 #define PEL_TILE_VARIANTS 3
 #define PEL_TILE_LISTS (1 + PEL_TILE_VARIANTS)
 #define PEL_EVERY_TILE 0xffffffffu  // instead of a list's number: visit all tiles
-// Transmittance below 2^-16 counts as none: it lets taps stop early and is a third of the accuracy promised.
+// Transmittance below 2^-16 counts as 0: taps can stop early, and it is a third of the promised accuracy.
 #define PEL_LEAST_TRANSMITTANCE_LOG2 16
 
-// Where the pixels of an image lie in its buffer.
+// Where the pixels of an image are in its buffer.
 typedef struct PelShadeImage {
     PelUint32 offset[2];    // bytes to the first pixel, low and high word
     PelUint32 plane[2];     // bytes from plane to plane, low and high word; planar formats only
@@ -69,7 +71,7 @@ typedef struct PelShadeMaterial {
     float specularSharpening;  // 0.9 k: specular's shadow is smoothstep(w 0.9k + (1 - 0.9k) / 2); 0: plain w
     float deepScatterColor[3];
     float deepScatterFalloff;       // -log2(e) / (2 radius^2), 1/length^2: transmittance = exp2(falloff t^2)
-    float thicknessCutoff;          // length beyond which the transmittance counts as none
+    float thicknessCutoff;          // length beyond which the transmittance counts as 0
     float deepScatterNormalOffset;  // length
     float thicknessFilterRadius;    // UV of the shadow map
     PelUint32 thicknessTaps;        // 0: no taps
@@ -95,7 +97,7 @@ typedef struct PelShadeMaterial {
     PelUint32 named;       // the same as the caller named it
     float albedoAfter;     // power of albedo that scattered irradiance is multiplied by
     float through[3];      // share of the light on a sheet's other side
-    PelUint32 variants;    // bit i: variant i of the shading kernel has all of them
+    PelUint32 variants;    // bit i: variant i of the shading kernel has all of these features
 } PelShadeMaterial;
 
 #define PEL_CASCADES 4  // of one light, at most
@@ -127,7 +129,7 @@ typedef struct PelShadeLight {
     PelUint32 mapBuffer;
     PelShadeImage wide;
     PelShadeImage map;
-    PelUint32 cascades;  // 0: the map above is no cascade
+    PelUint32 cascades;  // 0: the map above is not a cascade
     float perExponent;   // depth per log2 of a texel; exponential maps
     PelShadeCascade cascade[PEL_CASCADES];
 } PelShadeLight;

@@ -1,4 +1,5 @@
-// Constants of the passes that run before shade.cl, laid out alike on host and device. Units as in shared/shade.h.
+// Constants of the passes that run before shade.cl, with the same layout on host and device. Units as in
+// shared/shade.h.
 #ifndef PEL_SHARED_SHADE_PASSES
 #define PEL_SHARED_SHADE_PASSES
 #include "shared/shade.h"
@@ -13,8 +14,8 @@
 
 #define PEL_BOUNDS_BLOCK 8  // texels along a side of the blocks whose least and greatest depth are known
 
-// One light's wide shadow, made from its shadow map, or from one of its cascades. Of a cube: worldToShadow turns into its
-// space; right, down, forward, extent, centre and zPerLength are not used.
+// One light's wide shadow, made from its shadow map or from one of its cascades. For a cube, worldToShadow
+// maps to the cube's space; right, down, forward, extent, centre and zPerLength are not used.
 typedef struct PelWideShadow {
     float worldToShadow[16];
     float right[3];        // unit, world: along +u
