@@ -27,8 +27,8 @@ inline constexpr Tolerance lutRoundingBoundary{
 inline constexpr Tolerance lutSecondDifference{
     "lutSecondDifference", 5e-4,
     "between neighbours of a 512-texel row away from the terminator; a kink or a band would show as 1e-3"};
-inline constexpr Tolerance peerBytes{"peerBytes", 2,
-                                     "8-bit steps: the peer samples its integrals at 200 points"};
+inline constexpr Tolerance faceWorksBytes{"faceWorksBytes", 2,
+                                          "8-bit steps: FaceWorks samples its integrals at 200 points"};
 inline constexpr Tolerance profileEvaluation{
     "profileEvaluation", 3e-6,
     "relative; the mixtures of Gaussians that stand for burley and dipole leave 1e-6"};
@@ -182,7 +182,7 @@ inline constexpr Tolerance uvScale{
     "uvScale", 2e-6,
     "relative: float edge lengths; their logarithms add up without loss and errors average out"};
 
-inline constexpr Tolerance peerUvScale{"peerUvScale", 1e-5, "the peer adds up logarithms in float"};
+inline constexpr Tolerance faceWorksUvScale{"faceWorksUvScale", 1e-5, "FaceWorks adds up logarithms in float"};
 inline constexpr Tolerance scaledMesh{"scaledMesh", 1e-9,
                                       "a mesh scaled by k: the same numbers but for rounding"};
 inline constexpr Tolerance finiteDifference{"finiteDifference", 2e-6, "second differences at a step of 1e-4"};
@@ -210,20 +210,21 @@ inline constexpr Tolerance specularTable{
 inline constexpr Tolerance shadeThickness{
     "shadeThickness", 2e-3, "length: depths of a map that spans 200 to 700, through one float division"};
 inline constexpr Tolerance ggxEnergy{"ggxEnergy", 3e-3, "against a mean of 100,000 random half vectors"};
-inline constexpr Tolerance peerDirect{
-    "peerDirect", 2e-3,
+inline constexpr Tolerance faceWorksDirect{
+    "faceWorksDirect", 2e-3,
     "half a texel of N.L: its table holds D less Lambert, ours D, which is clamped at the last centre"};
-inline constexpr Tolerance peerPass{"peerPass", 2e-5,
-                                    "the peer's float arithmetic and ours, vectors turned in float"};
+inline constexpr Tolerance faceWorksPass{"faceWorksPass", 2e-5,
+                                         "FaceWorks' float arithmetic and ours, vectors turned in float"};
 inline constexpr Tolerance diskMoment{"diskMoment", 0.02, "mean squared radius of a disk, 1/2, from 8 points"};
 inline constexpr Tolerance diskSpacing{
     "diskSpacing", 0.65,
     "least distance over that of a hexagonal packing: 0.7 to 0.75 is called blue noise, 0 is white"};
 inline constexpr Tolerance diskEdge{"diskEdge", 0.55,
                                     "RMS error over straight edges, relative to as many random points"};
-inline constexpr Tolerance peerTapsMean{"peerTapsMean", 0.002,
-                                        "relative: means over 20,000 pixels, other taps"};
-inline constexpr Tolerance peerTapsRms{"peerTapsRms", 0.08, "of the mean: pixel by pixel with 8 other taps"};
+inline constexpr Tolerance faceWorksTapsMean{"faceWorksTapsMean", 0.002,
+                                             "relative: means over 20,000 pixels, other taps"};
+inline constexpr Tolerance faceWorksTapsRms{"faceWorksTapsRms", 0.08,
+                                            "of the mean: pixel by pixel with 8 other taps"};
 inline constexpr Tolerance blurResponse{
     "blurResponse", 0.02, "share of a wave that is left: 13 taps stand for an integral over the kernel"};
 inline constexpr Tolerance mappedNormal{
@@ -264,12 +265,14 @@ inline constexpr Tolerance cubeTurnedThickness{
     "cubeTurnedThickness", 0.1, "mm, mean over pixels: disks of 32 taps that lie elsewhere on the map"};
 inline constexpr Tolerance cubeTurned{"cubeTurned", 0.03,
                                       "filters of 16 texels across that lie elsewhere on the map"};
-inline constexpr Tolerance peerTerm{"peerTerm", 1e-6, "the peer's float arithmetic and float LUT coordinates"};
-inline constexpr Tolerance peerSharpened{"peerSharpened", 1e-6, "the same, steeper by the sharpening"};
-inline constexpr Tolerance peerThicknessMean{"peerThicknessMean", 1e-3,
-                                             "relative: means over 20,000 pixels, other taps"};
-inline constexpr Tolerance peerThicknessRms{"peerThicknessRms", 0.05,
-                                            "of the mean: pixel by pixel with other taps"};
+inline constexpr Tolerance faceWorksTerm{"faceWorksTerm", 1e-6,
+                                         "FaceWorks' float arithmetic and float LUT coordinates"};
+inline constexpr Tolerance faceWorksSharpened{"faceWorksSharpened", 1e-6,
+                                              "the same, steeper by the sharpening"};
+inline constexpr Tolerance faceWorksThicknessMean{"faceWorksThicknessMean", 1e-3,
+                                                  "relative: means over 20,000 pixels, other taps"};
+inline constexpr Tolerance faceWorksThicknessRms{"faceWorksThicknessRms", 0.05,
+                                                 "of the mean: pixel by pixel with other taps"};
 
 inline constexpr Tolerance shadeFromDepth{"shadeFromDepth", 1e-3,
                                           "positions from float depth: 1e-7 of depth moves a point by 1e-3 "
@@ -294,8 +297,8 @@ inline constexpr Tolerance smallRadiusLimit{"smallRadiusLimit", 1e-7,
 inline constexpr Tolerance widePenumbra{
     "widePenumbra", 1e-3, "reciprocal width 1e-3: the smoothstep's foot, and the symmetry of the centre"};
 inline constexpr Tolerance srgbInverse{"srgbInverse", 1e-6, "the standard's two pieces meet to seven digits"};
-inline constexpr Tolerance peerRoundedApart{
-    "peerRoundedApart", 0.1, "share of 8-bit values: an error of 7.7e-4 moves a fifth of a step at most"};
+inline constexpr Tolerance faceWorksRoundedApart{
+    "faceWorksRoundedApart", 0.1, "share of 8-bit values: an error of 7.7e-4 moves a fifth of a step at most"};
 inline constexpr Tolerance sampledSphere{"sampledSphere", 1e-3, "averages over 20,000 even directions"};
 inline constexpr Tolerance sampledDisk{"sampledDisk", 2e-3, "an edge through a disk of 5000 even taps"};
 inline constexpr Tolerance oracleExact{"oracleExact", 1e-13, "the same sum in another order of operations"};

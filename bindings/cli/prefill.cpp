@@ -57,12 +57,12 @@ void run(const Arguments& a) {
         check(pelDeviceGetStats(run.device().get(), &s));
         return s;
     };
-    uint32_t groups = (a.luts ? PEL_PROGRAMS_LUTS : 0) | (a.tableLuts ? PEL_PROGRAMS_TABLE_LUTS : 0) |
+    uint32_t groups = (a.luts ? PEL_PROGRAMS_LUTS : 0) | (a.tableLuts ? PEL_PROGRAMS_TABULATED_LUTS : 0) |
                       (a.curvature ? PEL_PROGRAMS_CURVATURE : 0);
     if (!groups && a.scenes.empty())
-        groups = PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABLE_LUTS | PEL_PROGRAMS_CURVATURE;
+        groups = PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABULATED_LUTS | PEL_PROGRAMS_CURVATURE;
     const PelDeviceStats before = stats();
-    if (groups) prefillPrograms(run.device(), groups, {}, a.threads);
+    if (groups) warmUpPrograms(run.device(), groups, {}, a.threads);
     for (const std::string& scene : a.scenes) {
         run.note("building what " + scene + " needs");
         try {

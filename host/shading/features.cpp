@@ -76,7 +76,7 @@ void checkLightFormats(const ShaderState& state, PelLightSlot slot) {
 }
 
 // One kernel reads all maps, cascades too.
-void checkMapForms(const ShaderState& state) {
+void checkShadowMaps(const ShaderState& state) {
     const ShaderLight* first = nullptr;
     for (const ShaderLight& light : state.lights) {
         const ImageView& map = light.images[PEL_LIGHT_SHADOW_MAP];
@@ -94,7 +94,7 @@ void checkMapForms(const ShaderState& state) {
 }
 
 // One program reads the normal maps of all materials.
-void checkMapFormats(const ShaderState& state) {
+void checkNormalMapFormats(const ShaderState& state) {
     const ImageView* first = nullptr;
     for (const auto& [id, material] : state.materials) {
         if (material.normalMap.empty()) continue;
@@ -189,7 +189,7 @@ uint32_t deriveFeatures(const ShaderState& state) {
         invalidArgument("without a material image all pixels are of material 1, which is not set");
     checkLightFormats(state, PEL_LIGHT_WIDE_SHADOW);
     checkLightFormats(state, PEL_LIGHT_SHADOW_MAP);
-    checkMapForms(state);
+    checkShadowMaps(state);
 
     bool wide = false, filtered = false, positional = false;
     uint32_t forms = 0;
@@ -227,7 +227,7 @@ uint32_t deriveFeatures(const ShaderState& state) {
     if (features & PEL_FEATURE_NORMAL_MAP) {
         need(bool(images[PEL_SLOT_UV]), "UV image", "by normal maps");
         need(bool(images[PEL_SLOT_TANGENT]), "tangent image", "by normal maps");
-        checkMapFormats(state);
+        checkNormalMapFormats(state);
     }
     const bool position = images[PEL_SLOT_POSITION] || images[PEL_SLOT_DEPTH];
     constexpr const char* what = "position image (or the depth image)";

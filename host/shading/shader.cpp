@@ -161,7 +161,7 @@ void Shader::runBand(PassWork& work) {
     passes_.each([&](Pass& pass) { pass.enqueue(work); });
 }
 
-void Shader::addPrefillJobs(std::vector<std::function<void()>>& jobs) const {
+void Shader::addWarmUpJobs(std::vector<std::function<void()>>& jobs) const {
     Ref<Shader> shader = make<Shader>(device_, passKinds_);
     shader->state_ = state_;
     shader->allocate(1);

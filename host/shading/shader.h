@@ -39,7 +39,7 @@ class Shader final : public Object {
     const std::string& warnings() const { return warnings_; }
     // Jobs for a warm-up: they build what a commit would, and launch each kernel on no tile. Throws what a
     // commit would.
-    void addPrefillJobs(std::vector<std::function<void()>>& jobs) const;
+    void addWarmUpJobs(std::vector<std::function<void()>>& jobs) const;
     Device& device() const { return *device_; }
 
   private:

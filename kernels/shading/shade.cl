@@ -30,9 +30,9 @@ typedef struct Pixels {
     NormalPair pair;
     Vec3w albedo, irradiance;
     floatw curvature, occlusion, thickness, roughness, specular;
-    floatw turnCosine, turnSine;  // of the disk of taps; PEL_BIT_ROTATE_TAPS only
-    maskw valid;                  // no input that every material reads is NaN or Inf
-    uintw spoiled;                // PEL_BIT_... of features with NaN or Inf in an input
+    floatw tapCosine, tapSine;  // of the disk of taps; PEL_BIT_ROTATE_TAPS only
+    maskw valid;                // no input that every material reads is NaN or Inf
+    uintw invalidBits;          // PEL_BIT_... of features with NaN or Inf in an input
 } Pixels;
 
 // The parts for outputs beside radiance (PEL_FORMAT_OUT_...); not computed without such outputs.
@@ -44,11 +44,11 @@ typedef struct Parts {
 
 // Marks features with NaN or Inf in an input. Inputs of ambient light and of positional lights are read by
 // every material.
-static inline void spoil(Pixels* p, const uint features, maskw finite) {
+static inline void markInvalid(Pixels* p, const uint features, maskw finite) {
     if (HAS(features & (PEL_BIT_AMBIENT | PEL_BIT_POSITIONAL)))
         p->valid &= finite;
     else
-        p->spoiled |= selectw((uintw)(features), (uintw)(0), finite);
+        p->invalidBits |= selectw((uintw)(features), (uintw)(0), finite);
 }
 
 static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
@@ -56,17 +56,17 @@ static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
     Pixels p;
     p.n = loadNormal(PEL_FORMAT_NORMAL_SHADING, SPAN(NORMAL_SHADING));
     p.valid = finite3(p.n);
-    p.spoiled = 0;
+    p.invalidBits = 0;
     p.ng = p.n;
     if (PEL_FORMAT_NORMAL_GEOMETRIC) {
         p.ng = loadNormal(PEL_FORMAT_NORMAL_GEOMETRIC, SPAN(NORMAL_GEOMETRIC));
-        spoil(&p, PEL_READ_NORMAL_GEOMETRIC | (PEL_FORMAT_NORMAL_BLURRED ? 0 : PEL_READ_NORMAL_BLURRED),
-              finite3(p.ng));
+        markInvalid(&p, PEL_READ_NORMAL_GEOMETRIC | (PEL_FORMAT_NORMAL_BLURRED ? 0 : PEL_READ_NORMAL_BLURRED),
+                    finite3(p.ng));
     }
     p.nb = p.ng;
     if (PEL_FORMAT_NORMAL_BLURRED) {
         p.nb = loadNormal(PEL_FORMAT_NORMAL_BLURRED, SPAN(NORMAL_BLURRED));
-        spoil(&p, PEL_READ_NORMAL_BLURRED, finite3(p.nb));
+        markInvalid(&p, PEL_READ_NORMAL_BLURRED, finite3(p.nb));
     }
     p.pair = normalPair(p.n, p.nb);
     if (NEEDS_POSITION) {
@@ -75,22 +75,22 @@ static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
         else
             p.position = positionFromDepth(frame->inverseViewProjection, frame->width, frame->height, x, y,
                                            loadScalar(PEL_FORMAT_DEPTH, SPAN(DEPTH)));
-        spoil(&p, PEL_READ_POSITION, finite3(p.position));
+        markInvalid(&p, PEL_READ_POSITION, finite3(p.position));
         p.toCamera = normalize3(sub3(loadUniform3(frame->cameraPosition), p.position));
     }
-    if (HAS(PEL_BIT_ROTATE_TAPS)) tapTurn(x, y, &p.turnCosine, &p.turnSine);
+    if (HAS(PEL_BIT_ROTATE_TAPS)) tapRotation(x, y, &p.tapCosine, &p.tapSine);
     if (PEL_FORMAT_ALBEDO) {
         p.albedo = loadColor(PEL_FORMAT_ALBEDO, SPAN(ALBEDO));
         p.valid &= finite3(p.albedo);
     }
     if (HAS(PEL_READ_IRRADIANCE)) {
         p.irradiance = loadColor(PEL_FORMAT_IRRADIANCE, SPAN(IRRADIANCE));
-        spoil(&p, PEL_READ_IRRADIANCE, finite3(p.irradiance));
+        markInvalid(&p, PEL_READ_IRRADIANCE, finite3(p.irradiance));
     }
 #define LOAD_SCALAR(slot, name)                             \
     if (HAS(PEL_READ_##slot) && PEL_FORMAT_##slot) {        \
         p.name = loadScalar(PEL_FORMAT_##slot, SPAN(slot)); \
-        spoil(&p, PEL_READ_##slot, finitew(p.name));        \
+        markInvalid(&p, PEL_READ_##slot, finitew(p.name));  \
     }
     LOAD_SCALAR(CURVATURE, curvature)
     LOAD_SCALAR(AMBIENT_OCCLUSION, occlusion)
@@ -118,7 +118,7 @@ static inline floatw measureInCascades(const Scene* scene, __global const PelSha
         __global const uchar* map = firstTexel(scene->lightImages[cascade->mapBuffer], &cascade->map);
         const floatw some = thicknessOfMap(PEL_FORMAT_SHADOW_MAP, map, &cascade->map, light,
                                            cascade->depthRange, uvz, radiusU, radiusV, material->thicknessTaps,
-                                           HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine, p->turnSine, cutoff, held);
+                                           HAS(PEL_BIT_ROTATE_TAPS), p->tapCosine, p->tapSine, cutoff, held);
         thickness = selectw(thickness, some, held);
         left &= notw(held);
     }
@@ -135,13 +135,13 @@ static inline floatw measureThickness(const Scene* scene, __global const PelShad
         return cubeThickness(
             PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map), light,
             cubePosition(light->worldToShadow, inside), material->thicknessFilterRadius,
-            material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->turnCosine, p->turnSine, cutoff, needed);
+            material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS), p->tapCosine, p->tapSine, cutoff, needed);
     if (HAS(PEL_BIT_SHADOW_CASCADES) && light->cascades)
         return measureInCascades(scene, material, light, p, inside, cutoff, needed);
     return thicknessTaps(PEL_FORMAT_SHADOW_MAP, firstTexel(scene->lightImages[light->mapBuffer], &light->map),
                          light, shadowCoordinates(light->worldToShadow, inside),
                          material->thicknessFilterRadius, material->thicknessTaps, HAS(PEL_BIT_ROTATE_TAPS),
-                         p->turnCosine, p->turnSine, cutoff, needed);
+                         p->tapCosine, p->tapSine, cutoff, needed);
 }
 
 // The same for transmission, whose position is not moved: the greatest thickness near each pixel of `needed`.
@@ -323,8 +323,8 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
         if (material->named == PEL_SCATTER_AUTO)
             counts->of[PEL_COUNT_CHOICE + material->scattering] += countw(active);
     }
-    // A pixel is spoiled by what its own material reads alone, so that its neighbours' materials do not matter.
-    p->valid &= ((p->spoiled & material->needs) == 0) | notw(active);
+    // Only inputs that its own material reads can make a pixel invalid, so other materials of the tile do not matter.
+    p->valid &= ((p->invalidBits & material->needs) == 0) | notw(active);
     Vec3w diffuse = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = diffuse;
     parts->diffuse = parts->deepScatter = diffuse;
     Vec3w before = diffuse;  // light that albedo is in

@@ -77,15 +77,15 @@ inline void expectRounded(const uint8_t* bytes, const reference::Rgb& steps, int
     }
 }
 
-// The peer's own tables are sampled and clipped: near, but not the same.
-inline void expectNearPeer(const pellucid::Lut& lut, const std::filesystem::path& file) {
-    const auto peer = npy::read<uint8_t>(file);
+// FaceWorks' own tables are sampled and clipped: near, but not the same.
+inline void expectNearFaceWorks(const pellucid::Lut& lut, const std::filesystem::path& file) {
+    const auto theirs = npy::read<uint8_t>(file);
     const auto bytes = lut.read<uint8_t>(PEL_LUT_FACEWORKS8);
-    ASSERT_EQ(bytes.size(), peer.data.size());
+    ASSERT_EQ(bytes.size(), theirs.data.size());
     int furthest = 0;
     for (size_t i = 0; i < bytes.size(); ++i)
-        furthest = std::max(furthest, std::abs(int(bytes[i]) - peer.data[i]));
-    EXPECT_LE(furthest, int(tolerance::peerBytes.value));
+        furthest = std::max(furthest, std::abs(int(bytes[i]) - theirs.data[i]));
+    EXPECT_LE(furthest, int(tolerance::faceWorksBytes.value));
 }
 
 }  // namespace fixture

@@ -126,7 +126,7 @@ TEST(CurvatureLut, EncodingsRoundTruth) {
             fixture::expectRounded(&bytes[(size_t(y) * 256 + x) * 4], steps, x, y);
         }
     EXPECT_TRUE(clipped > 0 || testsAreSmall())
-        << "the narrowest radii exceed what the peer's residual holds";
+        << "the narrowest radii exceed what FaceWorks' residual holds";
     uint64_t all = 0;
     for (size_t i = 0; i < texels.size(); i += 3) {
         const double u = spec.u(int(i / 3 % 256));
@@ -138,7 +138,7 @@ TEST(CurvatureLut, EncodingsRoundTruth) {
     EXPECT_EQ(lut.read<uint16_t>(PEL_LUT_HALF).size(), texels.size());
 }
 
-TEST(CurvatureLut, EqualsTheExactTableOfThePeersProfile) {
+TEST(CurvatureLut, EqualsTheExactTableOfFaceWorksProfile) {
     REQUIRE_ORACLE_DIRECTORY(directory);
     const auto truth = npy::read<float>(directory / "truth_lut_curv_A_arc10_f32.npy");
     const Lut lut(Device(""), pelCurvatureLutDescDefaults());
@@ -148,5 +148,5 @@ TEST(CurvatureLut, EqualsTheExactTableOfThePeersProfile) {
     for (size_t i = 0; i < texels.size(); ++i)
         worst = std::max(worst, std::abs(double(texels[i]) - truth.data[i]));
     EXPECT_LT(worst, tolerance::lutTexelGaussians);
-    fixture::expectNearPeer(lut, directory / "fw_lut_curv_A_u8.npy");
+    fixture::expectNearFaceWorks(lut, directory / "fw_lut_curv_A_u8.npy");
 }

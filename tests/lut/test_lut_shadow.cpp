@@ -154,7 +154,7 @@ TEST(ShadowLut, EncodingRoundsTruth) {
         }
 }
 
-TEST(ShadowLut, EqualsTheExactTableOfThePeersProfile) {
+TEST(ShadowLut, EqualsTheExactTableOfFaceWorksProfile) {
     REQUIRE_ORACLE_DIRECTORY(directory);
     const auto truth = npy::read<float>(directory / "truth_lut_shadow_A_withfade_f32.npy");
     const Lut lut(Device(""), pelShadowLutDescDefaults());
@@ -166,5 +166,5 @@ TEST(ShadowLut, EqualsTheExactTableOfThePeersProfile) {
         worst = std::max(worst, std::abs(faded - truth.data[i]));
     }
     EXPECT_LT(worst, tolerance::lutTexelGaussians);
-    fixture::expectNearPeer(lut, directory / "fw_lut_shadow_A_u8.npy");
+    fixture::expectNearFaceWorks(lut, directory / "fw_lut_shadow_A_u8.npy");
 }

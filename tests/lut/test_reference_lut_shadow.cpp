@@ -1,4 +1,4 @@
-// The oracle's shadow and specular LUTs and the peer's 8-bit encodings: closed forms, limits, tables
+// The oracle's shadow and specular LUTs and FaceWorks' 8-bit encodings: closed forms, limits, tables
 // integrated elsewhere.
 #include <gtest/gtest.h>
 
@@ -138,9 +138,9 @@ TEST(ReferenceEncoding, RoundsAndClips) {
     EXPECT_EQ(shadowFade(21, 512), 1);
 }
 
-// The peer's own 8-bit tables carry its float error (7.7e-4 at most): beside the exact value they may round
+// FaceWorks' own 8-bit tables carry its float error (7.7e-4 at most): beside the exact value they may round
 // to the next step.
-TEST(ReferenceEncoding, PeersTablesAreOneStepFromExactAtMost) {
+TEST(ReferenceEncoding, FaceWorksTablesAreOneStepFromExactAtMost) {
     REQUIRE_ORACLE_DIRECTORY(directory);
     const auto curvature = npy::read<uint8_t>(directory / "fw_lut_curv_A_u8.npy");
     const auto shadow = npy::read<uint8_t>(directory / "fw_lut_shadow_A_u8.npy");
@@ -162,8 +162,8 @@ TEST(ReferenceEncoding, PeersTablesAreOneStepFromExactAtMost) {
                 differentShadow += oursShadow[c] != theirsShadow[c];
             }
         }
-    EXPECT_LE(differentCurvature, tolerance::peerRoundedApart * 4 * texels);
-    EXPECT_LE(differentShadow, tolerance::peerRoundedApart * 4 * texels);
+    EXPECT_LE(differentCurvature, tolerance::faceWorksRoundedApart * 4 * texels);
+    EXPECT_LE(differentShadow, tolerance::faceWorksRoundedApart * 4 * texels);
 }
 
 TEST(ReferenceBeckmann, IsNormalisedOverTheHemisphereAndHasItsLimits) {

@@ -1,4 +1,4 @@
-// The oracle's mesh curvature: hand-made meshes, surfaces of known curvature, scale, and the peer's results
+// The oracle's mesh curvature: hand-made meshes, surfaces of known curvature, scale, and FaceWorks' results
 // on real meshes.
 #include <gtest/gtest.h>
 
@@ -218,7 +218,7 @@ TEST(ReferenceCurvature, NoiseMovesVerticesByTheWantedShareOfAnEdge) {
     EXPECT_NEAR(std::sqrt(square / before.size()) / (0.02 * meanEdge), 1, tolerance::sampledDeviation);
 }
 
-void compareWithPeer(const std::string& name) {
+void compareWithFaceWorks(const std::string& name) {
     REQUIRE_ORACLE_DIRECTORY(directory);
     auto path = [&](const char* what) { return directory / ("mesh_" + name + "_" + what + ".npy"); };
     const auto positions = npy::read<float>(path("pos_f32")), normals = npy::read<float>(path("nrm_f32"));
@@ -245,13 +245,13 @@ void compareWithPeer(const std::string& name) {
         EXPECT_LE(worst, tolerance::edgeCurvature * largest);
     }
     const double theirs = npy::read<float>(path("fwuvscale_f32")).data.at(0);
-    EXPECT_NEAR(uvScale(mesh) / theirs, 1, tolerance::peerUvScale);
+    EXPECT_NEAR(uvScale(mesh) / theirs, 1, tolerance::faceWorksUvScale);
 }
-TEST(ReferenceCurvature, HeadEqualsThePeer) {
-    compareWithPeer("head");
+TEST(ReferenceCurvature, HeadEqualsFaceWorks) {
+    compareWithFaceWorks("head");
 }
-TEST(ReferenceCurvature, SphereEqualsThePeer) {
-    compareWithPeer("sphere1cm");
+TEST(ReferenceCurvature, SphereEqualsFaceWorks) {
+    compareWithFaceWorks("sphere1cm");
 }
 
 }  // namespace

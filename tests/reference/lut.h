@@ -58,7 +58,7 @@ struct ShadowLutSpec {
     }
 };
 Rgb shadowTexel(const ShadowLutSpec& spec, const Profile& profile, int x, int y);
-double shadowFade(int x, int width);  // the peer's: columns with 25x < W times 25x/W
+double shadowFade(int x, int width);  // FaceWorks': columns with 25x < W times 25x/W
 
 // --- specular ---
 
@@ -66,7 +66,7 @@ double shadowFade(int x, int width);  // the peer's: columns with 25x < W times 
 double beckmann(double cosine, double m);
 double beckmannEncoded(double cosine, double m);  // P^0.1 / 2 [d'Eon & Luebke]
 
-// --- the peer's 8-bit encodings ---
+// --- FaceWorks' 8-bit encodings ---
 
 using Rgba8 = std::array<uint8_t, 4>;
 // Before rounding, in 8-bit steps: how near truth is to a rounding boundary decides what a float may return.

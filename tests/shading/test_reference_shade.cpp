@@ -1,4 +1,4 @@
-// The oracle's shading terms: hand-worked values, limits, and 20,000 pixels that the peer shaded.
+// The oracle's shading terms: hand-worked values, limits, and 20,000 pixels that FaceWorks shaded.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -239,7 +239,7 @@ TEST(ReferenceShade, LampsFallOff) {
     EXPECT_EQ(lampAt(lamp, {2, 0, 1}).color.x, 0);
 }
 
-class Peer : public testing::Test {
+class FaceWorksPixels : public testing::Test {
   protected:
     void SetUp() override {
         REQUIRE_ORACLE_DIRECTORY(directory);
@@ -261,7 +261,7 @@ class Peer : public testing::Test {
         const float* p = in_.row(pixel) + first;
         return {p[0], p[1], p[2]};
     }
-    // Largest difference over all pixels from the peer's outputs first, first + 1, ...
+    // Largest difference over all pixels from FaceWorks' outputs first, first + 1, ...
     template <class F>
     double worst(int first, int count, const F& ours) const {
         double largest = 0;
@@ -277,7 +277,7 @@ class Peer : public testing::Test {
     Table delta_, shadow_;
 };
 
-TEST_F(Peer, DirectEqualsOurs) {
+TEST_F(FaceWorksPixels, DirectEqualsOurs) {
     EXPECT_LE(worst(0, 3,
                     [&](int i) {
                         const Vec3 nb = input(i, 6), l = input(i, 9);
@@ -285,45 +285,45 @@ TEST_F(Peer, DirectEqualsOurs) {
                             bilinear(delta_, 0.5 * dot(nb, l) + 0.5, curvatureRow(in_.row(i)[12], 1, 100, 1));
                         return direct(delta, input(i, 3), nb, l);
                     }),
-              tolerance::peerTerm);
+              tolerance::faceWorksTerm);
 }
 
-TEST_F(Peer, ShadowsEqualOurs) {
+TEST_F(FaceWorksPixels, ShadowsEqualOurs) {
     EXPECT_LE(worst(3, 3,
                     [&](int i) {
                         return bilinear(shadow_, in_.row(i)[13],
                                         shadowRow(dot(input(i, 0), input(i, 9)), 9, 8, 100, 1));
                     }),
-              tolerance::peerTerm);
+              tolerance::faceWorksTerm);
     EXPECT_LE(worst(6, 1,
                     [&](int i) {
                         return Vec3{sharpenedShadow(in_.row(i)[13], in_.row(i)[14]), 0, 0};
                     }),
-              tolerance::peerSharpened);
+              tolerance::faceWorksSharpened);
 }
 
-TEST_F(Peer, AmbientNormalsEqualOurs) {
+TEST_F(FaceWorksPixels, AmbientNormalsEqualOurs) {
     for (int n = 0; n < 3; ++n)
         EXPECT_LE(worst(7 + 3 * n, 3, [&](int i) { return ambientNormals(input(i, 3), input(i, 6))[n]; }),
-                  tolerance::peerTerm);
+                  tolerance::faceWorksTerm);
     EXPECT_LE(worst(16, 3,
                     [&](int i) {
                         return Vec3{in_.row(i)[19], in_.row(i)[23], in_.row(i)[27]};
                     }),
-              tolerance::peerTerm);
+              tolerance::faceWorksTerm);
 }
 
-TEST_F(Peer, DeepScatterEqualsOurs) {
+TEST_F(FaceWorksPixels, DeepScatterEqualsOurs) {
     EXPECT_LE(worst(23, 1,
                     [&](int i) {
                         return Vec3{deepScatter(in_.row(i)[15], 6, input(i, 6), input(i, 9)), 0, 0};
                     }),
-              tolerance::peerTerm);
+              tolerance::faceWorksTerm);
 }
 
-// The peer's taps lie elsewhere in the same disk: means agree, and each pixel more closely the more taps it
+// FaceWorks' taps lie elsewhere in the same disk: means agree, and each pixel more closely the more taps it
 // took.
-TEST_F(Peer, ThicknessAgreesOnAverage) {
+TEST_F(FaceWorksPixels, ThicknessAgreesOnAverage) {
     const auto taps = evenDisk(64);
     const DepthDecoding decodings[2] = {{false, 300, 0, 1}, {true, 1, -0.0075, 0.01}};
     for (int kind = 0; kind < 2; ++kind) {
@@ -335,9 +335,9 @@ TEST_F(Peer, ThicknessAgreesOnAverage) {
             theirs += out_.row(i)[20 + 2 * kind];
             for (int j = 0; j < 2; ++j) apart[j] += std::pow(t - out_.row(i)[19 + 2 * kind + j], 2);
         }
-        EXPECT_NEAR(ours / theirs, 1, tolerance::peerThicknessMean);
+        EXPECT_NEAR(ours / theirs, 1, tolerance::faceWorksThicknessMean);
         EXPECT_LT(apart[1], apart[0]);
-        EXPECT_LT(std::sqrt(apart[1] / in_.shape[0]), tolerance::peerThicknessRms * theirs / in_.shape[0]);
+        EXPECT_LT(std::sqrt(apart[1] / in_.shape[0]), tolerance::faceWorksThicknessRms * theirs / in_.shape[0]);
     }
 }
 

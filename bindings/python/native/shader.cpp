@@ -144,7 +144,7 @@ void bindShader(py::module_& module) {
             locked(s, [&] { return pelShaderGetStats(s.get(), &stats); });
             return bytesOf(stats);
         });
-    module.def("prefill_programs",
+    module.def("warm_up_programs",
                [](const Device& d, uint32_t groups, const std::vector<Shader>& shaders, uint32_t threads) {
                    const auto built = std::make_shared<uint32_t>();
                    callInterruptibly([=, device = d.handle] {
@@ -155,12 +155,12 @@ void bindShader(py::module_& module) {
                        for (const Shader& s : shaders) order.emplace(s.busy.get(), &s);
                        std::vector<std::unique_lock<std::recursive_mutex>> locks;
                        for (const auto& [mutex, shader] : order) locks.push_back(locking(*shader));
-                       PelPrefill work = pelPrefillDefaults();
+                       PelWarmUp work = pelWarmUpDefaults();
                        work.groups = groups;
                        work.shaders = handles.data();
                        work.numShaders = uint32_t(handles.size());
                        work.threads = threads;
-                       return pelPrefillPrograms(device.get(), &work, built.get());
+                       return pelWarmUpPrograms(device.get(), &work, built.get());
                    });
                    return *built;
                });

@@ -19,7 +19,7 @@ from .mesh import MeshTopology, orient_mesh
 from .profile import Profile
 from .reference import compare, submit_surface_integral, surface_integral
 from .scatter import Scatter
-from .shader import Shader, prefill_programs
+from .shader import Shader, warm_up_programs
 from .texture_scatter import TextureScatter
 
 _number = _native.version()
@@ -27,5 +27,5 @@ __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
 
 __all__ = [  # noqa: PLE0604
     "Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile", "Scatter", "Shader",
-    "TextureScatter", "Vertices", "compare", "devices", "orient_mesh", "prefill_programs", "screen_curvature", "set_error_callback",
+    "TextureScatter", "Vertices", "compare", "devices", "orient_mesh", "warm_up_programs", "screen_curvature", "set_error_callback",
     "submit_screen_curvature", "submit_surface_integral", "surface_integral", *_type_names]

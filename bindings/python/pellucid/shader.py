@@ -216,7 +216,7 @@ class Shader(OfThisProcess):
         return _filled(ShaderStats, self._handle.stats())
 
 
-def prefill_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Sequence[Shader] = (), threads: int = 0) -> int:
+def warm_up_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Sequence[Shader] = (), threads: int = 0) -> int:
     """Builds OpenCL programs before they are needed, so that no first commit or execution waits for a compiler.
 
     The driver's own cache on disk, where it has one, keeps the result for later processes. A progress callback of the device
@@ -244,7 +244,7 @@ def prefill_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Se
     PellucidError
         What a shader's commit would raise; CANCELLED.
     """
-    return int(_native.prefill_programs(device._handle, int(groups), [s._handle for s in shaders], threads))
+    return int(_native.warm_up_programs(device._handle, int(groups), [s._handle for s in shaders], threads))
 
 
 def _mip_chain(image: NDArray[Any]) -> list[NDArray[Any]]:

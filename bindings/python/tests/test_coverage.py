@@ -37,7 +37,7 @@ def test_every_enumeration_and_structure_is_there():
     # Structures of pointers and handles, and what stands for them.
     arrays = {"PelImageDesc": pel.Image, "PelVertexView": pel.Vertices, "PelMeshTopologyDesc": pel.MeshTopology,
               "PelSubmit": pel.Event, "PelGaussian": pel.Profile.gaussians, "PelVertexRange": pel.LiveMesh.update,
-              "PelPrefill": pel.prefill_programs, "PelTextureScatterDesc": pel.TextureScatter, "PelSurfaceIntegralDesc": pel.surface_integral}
+              "PelWarmUp": pel.warm_up_programs, "PelTextureScatterDesc": pel.TextureScatter, "PelSurfaceIntegralDesc": pel.surface_integral}
     names = re.findall(r"typedef (?:enum|struct) (Pel\w+) \{", text)
     assert len(names) > 35
     missing = [n for n in names if n not in arrays and not hasattr(pel, "ErrorCode" if n == "PelError" else n[3:])]

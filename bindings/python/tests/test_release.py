@@ -117,19 +117,19 @@ def test_work_may_be_submitted_from_finalizers(device):
     assert ends.looked and _flight.in_flight() == 0
 
 
-def test_two_threads_prefill_the_same_shaders(device):
+def test_two_threads_warm_up_the_same_shaders(device):
     """In opposite order; each keeps both from other threads meanwhile."""
     image = np.zeros((2, 16, 3), np.float32)
     shaders = [pel.Shader(device).set_image("radiance", np.empty_like(image)).set_image("normal_shading", image) for _ in range(2)]
     for shader in shaders:
         shader.set_material(1, pel.Material()).set_ambient(pel.Ambient(constant=(1, 1, 1)))
-    pel.prefill_programs(device, shaders=shaders)
+    pel.warm_up_programs(device, shaders=shaders)
 
-    def prefill(order):
+    def warm_up(order):
         for _ in range(25):
-            pel.prefill_programs(device, shaders=order)
+            pel.warm_up_programs(device, shaders=order)
 
-    threads = [threading.Thread(target=prefill, args=(order,), daemon=True) for order in (shaders, shaders[::-1])]
+    threads = [threading.Thread(target=warm_up, args=(order,), daemon=True) for order in (shaders, shaders[::-1])]
     for thread in threads:
         thread.start()
     for thread in threads:

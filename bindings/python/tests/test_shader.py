@@ -418,20 +418,20 @@ def test_programs_are_built_ahead_and_frames_in_bands():
     ahead = shader(np.zeros_like(position))
     told = []
     device.set_progress(lambda fraction, what: told.append((fraction, what)))
-    assert pel.prefill_programs(device, shaders=[ahead]) == 2  # shading, wide shadow
+    assert pel.warm_up_programs(device, shaders=[ahead]) == 2  # shading, wide shadow
     assert told[0] == (0, "building programs") and told[-1] == (1, "building programs")
     device.set_progress(None)
     built = device.stats().programs_built
     shader(whole).commit().execute()
     bands = shader(banded, scratch_budget=64 * 4 * 20).commit()
     bands.execute()
-    assert device.stats().programs_built == built and pel.prefill_programs(device, shaders=[ahead]) == 0
+    assert device.stats().programs_built == built and pel.warm_up_programs(device, shaders=[ahead]) == 0
     assert bands.stats().bands == 3
     assert np.array_equal(whole, banded) and whole.any()
     with pytest.raises(pel.PellucidError, match="at least 512"):
         shader(banded, scratch_budget=100).commit()
     with pytest.raises(pel.PellucidError, match="PelProgramGroup"):
-        pel.prefill_programs(device, 64)
+        pel.warm_up_programs(device, 64)
 
 
 def test_a_material_may_name_its_profile(device, view):

@@ -8,10 +8,10 @@
  * - Colours are linear RGB.
  * - Matrices are 16 floats in row-major order and multiply column vectors: clip = M * (x, y, z, 1).
  * - Every structure that may grow starts with structSize; the pel*Defaults() functions fill it and every other field.
- * - Handles are counted: each Create or Retain is paired with a Release. Objects keep what they use alive. A handle is
- *   never given out again: NULL, a released, a mistaken or an invented one is PEL_ERROR_INVALID_ARGUMENT. Retain and Release
- *   return nothing; their errors are told by pelGetErrorMessage and the callback.
- * - After fork, calls of the child return PEL_ERROR_INVALID_STATE if the parent had used OpenCL by then.
+ * - Handles are counted: each Create or Retain is paired with a Release. Objects keep what they use alive. The same handle
+ *   is never returned twice: NULL, a released, a mistaken or an invented handle is PEL_ERROR_INVALID_ARGUMENT. Retain and
+ *   Release return nothing; pelGetErrorMessage and the callback report their errors.
+ * - After fork, calls of the child return PEL_ERROR_INVALID_STATE if the parent had used OpenCL before.
  * - A function that can fail returns PelError. On an error no output is written and all objects stay usable;
  *   pelGetErrorMessage() says what was wrong, where, and what would be right.
  * - Functions may be called from any thread. One object may be used by several threads at a time, except that a
@@ -46,11 +46,11 @@ extern "C" {
 typedef enum PelError {
     PEL_SUCCESS = 0,
     PEL_ERROR_INVALID_ARGUMENT = 1, /* a value, a size or a combination that the documentation excludes */
-    PEL_ERROR_INVALID_STATE = 2,    /* the call is right, but not now (execute before commit) */
+    PEL_ERROR_INVALID_STATE = 2,    /* the call is valid, but not now (execute before commit) */
     PEL_ERROR_NO_DEVICE = 3,        /* no OpenCL device, or none that matches the selector */
     PEL_ERROR_OUT_OF_MEMORY = 4,    /* host or device */
     PEL_ERROR_DEVICE = 5,           /* OpenCL reported a failure, or a kernel did not build */
-    PEL_ERROR_UNSUPPORTED = 6,      /* right, but this device or this build cannot */
+    PEL_ERROR_UNSUPPORTED = 6,      /* valid, but this device or this build cannot do it */
     PEL_ERROR_CANCELLED = 7,        /* a progress callback returned 0 */
     PEL_ERROR_UNKNOWN = 8           /* a fault in the library */
 } PelError;
@@ -61,7 +61,7 @@ PEL_API const char* pelErrorName(PelError error);
 /* The message of the last failed call on this thread, or "" if none failed yet. Valid until this thread's next call. */
 PEL_API const char* pelGetErrorMessage(void);
 
-/* Called, on the failing thread, with each error as it is returned. NULL removes it. One for the whole process. */
+/* Called on the failing thread with each error before it is returned. NULL removes it. One for the whole process. */
 typedef void (*PelErrorCallback)(void* user, PelError error, const char* message);
 PEL_API void pelSetErrorCallback(PelErrorCallback callback, void* user);
 
@@ -81,7 +81,7 @@ typedef enum PelDeviceType {
 
 typedef struct PelDeviceInfo {
     uint32_t structSize;
-    uint32_t index; /* position in the list, as selectors use it; UINT32_MAX for a host's own context */
+    uint32_t index; /* position in the list, for selectors; UINT32_MAX for a host's own context */
     PelDeviceType type;
     uint32_t computeUnits;
     uint32_t clockMhz;
@@ -97,7 +97,7 @@ typedef struct PelDeviceInfo {
     char platform[128];
     char version[128]; /* CL_DEVICE_VERSION */
     char driver[128];
-    char quirks[256]; /* workarounds in force here, "; " between them; "" if none */
+    char quirks[256]; /* workarounds in use, separated by "; "; "" if none */
 } PelDeviceInfo;
 
 /* Counts the OpenCL devices of this machine. 0 devices is a success here. */
@@ -112,7 +112,7 @@ PEL_API PelError pelDeviceEnumerate(uint32_t index, PelDeviceInfo* info);
 PEL_API PelError pelDeviceCreate(const char* selector, PelDevice* device);
 
 /* Makes a device from the caller's own cl_context, cl_device_id and in-order cl_command_queue (retained; all needed).
- * Work goes to that queue and nowhere else. */
+ * All work goes to that queue. */
 PEL_API PelError pelDeviceCreateFromCl(void* clContext, void* clDeviceId, void* clCommandQueue,
                                        PelDevice* device);
 
@@ -136,13 +136,13 @@ typedef struct PelDeviceStats {
     uint64_t bytesAllocated; /* device memory allocated by the library, in total over time */
     double kernelMilliseconds; /* device time of finished kernels, from OpenCL profiling; 0 on a queue without it */
     double buildMilliseconds; /* host time spent in building programs */
-    uint32_t programsLoaded; /* of programsBuilt: from binaries that this library keeps on disk (docs/devices.md) */
+    uint32_t programsLoaded; /* of programsBuilt: from binaries that this library keeps on disk (docs/guide/devices.md) */
     uint32_t programsStored; /* of programsBuilt: compiled, and their binaries written there */
 } PelDeviceStats;
-/* Waits for submitted work first, so that kernelMilliseconds is whole. */
+/* Waits for submitted work first, so that kernelMilliseconds is complete. */
 PEL_API PelError pelDeviceGetStats(PelDevice device, PelDeviceStats* stats);
 
-/* Called from long work, on the calling thread, with a fraction in [0, 1] and what is being done. Return 0 to cancel:
+/* Called during long work, on the calling thread, with a fraction in [0, 1] and the name of the step. Return 0 to cancel:
  * the call then returns PEL_ERROR_CANCELLED. One per device; NULL removes it. */
 typedef int (*PelProgressCallback)(void* user, double fraction, const char* what);
 PEL_API PelError pelDeviceSetProgress(PelDevice device, PelProgressCallback callback, void* user);
@@ -150,8 +150,8 @@ PEL_API PelError pelDeviceSetProgress(PelDevice device, PelProgressCallback call
 /* ---- Submission --------------------------------------------------------------------------------------------- */
 
 /* How a call that does work is submitted. NULL: it blocks until the result is there. Otherwise it returns once the work
- * is queued after `waits`; memory given to it stays valid until `done` (or, with done NULL, pelDeviceFinish) says it is
- * finished. */
+ * is queued after `waits`; memory given to it must stay valid until `done` (or, with done NULL, pelDeviceFinish) reports
+ * the end. */
 typedef struct PelSubmit {
     const PelEvent* waits; /* numWaits events, of this device */
     uint32_t numWaits;
@@ -170,12 +170,12 @@ PEL_API void pelEventRelease(PelEvent event);
 
 typedef struct PelBufferObject* PelBuffer;
 
-/* Memory of the library's own, `bytes` > 0 long; `initial` (bytes long, or NULL for zeros) is copied. */
+/* Memory that the library owns, `bytes` > 0 long; `initial` (bytes long, or NULL for zeros) is copied. */
 PEL_API PelError pelBufferCreate(PelDevice device, size_t bytes, const void* initial, PelBuffer* buffer);
 
 /* The caller's host memory, in place. The caller keeps it alive until the buffer is released and its work is done, and
- * touches it only while the buffer is mapped (pelBufferMap). Where host and device share memory nothing is copied;
- * elsewhere mapping and unmapping move it. Alignment to 4096 bytes avoids a copy on some devices. */
+ * accesses it only while the buffer is mapped (pelBufferMap). If host and device share memory nothing is copied;
+ * otherwise mapping and unmapping copy it. Alignment to 4096 bytes avoids a copy on some devices. */
 PEL_API PelError pelBufferCreateFromHost(PelDevice device, void* memory, size_t bytes, PelBuffer* buffer);
 
 /* The caller's cl_mem buffer, of the device's context (retained). */
@@ -220,10 +220,10 @@ typedef enum PelFormat {
     PEL_FORMAT_PLANAR_RGB32F = 18 /* three float32 planes, planeStride bytes apart */
 } PelFormat;
 
-/* A view of an image inside a buffer, in the layout it already has. Images that are read may share memory as they like. One
- * that a shader writes may share it with others only pixel on pixel: in one buffer with the same strides, as the very same
- * image or as other components of its pixels. What pelScreenCurvature and pelScatterExecute write may be other components
- * too, but shares no byte with what they read, except that pelScatterExecute may write over its irradiance, in the same
+/* A view of an image inside a buffer, in the layout it already has. Images that are read may share memory. An image
+ * that a shader writes may share memory with others only pixel on pixel: in one buffer with the same strides, as the same
+ * image or as other components of its pixels. The outputs of pelScreenCurvature and pelScatterExecute may also be other
+ * components, but may share no byte with the inputs, except that pelScatterExecute may overwrite its irradiance in the same
  * format. Any other overlap is PEL_ERROR_INVALID_ARGUMENT, also between buffers over the same host memory and parts of one
  * cl_mem. */
 typedef struct PelImageDesc {
@@ -242,7 +242,7 @@ typedef struct PelImageDesc {
 
 typedef struct PelMeshTopologyObject* PelMeshTopology;
 
-/* What was found in a mesh, and what was done about it. */
+/* What was found in a mesh, and how it was handled. */
 typedef struct PelMeshReport {
     uint32_t structSize;
     uint32_t vertices;
@@ -255,11 +255,11 @@ typedef struct PelMeshReport {
     uint32_t degenerateTriangles;  /* a repeated index: skipped */
     uint32_t zeroLengthEdges;      /* too short to measure: skipped; set by curvature */
     uint32_t nonFinitePositions; /* NaN or Inf: edges to them are skipped, their own curvature is 0; set by curvature */
-    uint32_t nonFiniteNormals; /* NaN, Inf or zero, likewise; set by curvature */
-    uint32_t inconsistentEdges; /* whose two triangles run along them the same way: one of the two faces the other side, so that
+    uint32_t nonFiniteNormals; /* NaN, Inf or zero, handled the same way; set by curvature */
+    uint32_t inconsistentEdges; /* whose two triangles run along them in the same direction: one of the two faces the other side, so
                                    normals made from them cancel out (pelMeshOrient) */
-    uint32_t lowDegreeFits; /* unique positions around which too few others stand for a cubic, so that the quadric estimator
-                               fitted less there: estimates that may be far off; set by curvature */
+    uint32_t lowDegreeFits; /* unique positions with too few others around them for a cubic, so that the quadric estimator
+                               fitted fewer terms there: estimates may be far off; set by curvature */
 } PelMeshReport;
 
 typedef enum PelWeld { PEL_WELD_NONE = 0, PEL_WELD_EXACT = 1, PEL_WELD_TOLERANCE = 2 } PelWeld;
@@ -269,47 +269,47 @@ typedef struct PelMeshTopologyDesc {
     uint32_t numVertices;
     const uint32_t* indices; /* numIndices, three per triangle; read during the call only */
     uint64_t numIndices;     /* a multiple of 3 */
-    PelWeld weld;            /* vertices at the same place are one vertex to the topology; default none */
-    float weldTolerance;     /* length; PEL_WELD_TOLERANCE only */
+    PelWeld weld; /* welding: vertices at the same place become one vertex of the topology; default none */
+    float weldTolerance; /* length; PEL_WELD_TOLERANCE only */
     const float* positions; /* needed when welding: xyz per vertex, positionStride bytes apart; read during the call */
     uint32_t positionStride; /* bytes; 0: 12 */
 } PelMeshTopologyDesc;
 
 /* Analyses the connectivity once; curvature for any positions then reuses it. Errors: PEL_ERROR_INVALID_ARGUMENT for an
- * index count that is no multiple of 3 or an index >= numVertices (the message names the triangle). `report` may be
+ * index count that is not a multiple of 3 or an index >= numVertices (the message names the triangle). `report` may be
  * NULL. */
 PEL_API PelError pelMeshTopologyCreate(PelDevice device, const PelMeshTopologyDesc* desc,
                                        PelMeshTopology* topology, PelMeshReport* report);
 PEL_API void pelMeshTopologyRetain(PelMeshTopology topology);
 PEL_API void pelMeshTopologyRelease(PelMeshTopology topology);
 
-/* The analysis as bytes, to be kept and loaded without analysing again. `size`: the room at `destination` before the call
- * (any, if destination is NULL), the bytes of the analysis after it. For machines of the same byte order and this
- * version of the library; pelMeshTopologyLoad refuses others, and anything that is damaged. Errors:
- * PEL_ERROR_INVALID_ARGUMENT when the room is too small. */
+/* The analysis as bytes, to be stored and loaded without analysing again. `size`: before the call the bytes at `destination`
+ * (any value if destination is NULL), after it the bytes of the analysis. For machines of the same byte order and this
+ * version of the library; pelMeshTopologyLoad refuses others, and damaged data. Errors:
+ * PEL_ERROR_INVALID_ARGUMENT if `destination` is too small. */
 PEL_API PelError pelMeshTopologySave(PelMeshTopology topology, void* destination, size_t* size);
 PEL_API PelError pelMeshTopologyLoad(PelDevice device, const void* bytes, size_t size,
                                      PelMeshTopology* topology, PelMeshReport* report);
 
-/* What pelMeshOrient found and did. A part: triangles that hang together by edges that belong to two of them. */
+/* What pelMeshOrient found and did. A part: triangles connected by edges that belong to two of them. */
 typedef struct PelMeshOrientation {
     uint32_t structSize;
-    uint32_t trianglesTurned; /* whose second and third index changed places */
+    uint32_t trianglesTurned; /* whose second and third index were exchanged */
     uint32_t parts;
-    uint32_t partsTurned;       /* with a triangle that was turned */
-    uint32_t inconsistentEdges; /* that are left: of parts with one side only, as a Moebius strip has */
-    uint32_t partsByNormals;    /* of partsTurned: whose side the normals told */
-    uint32_t partsByVolume;     /* whose side follows from their being closed */
-    uint32_t partsByMajority;   /* whose side is a guess: that of most of their triangles */
+    uint32_t partsTurned;       /* with a triangle that was reversed */
+    uint32_t inconsistentEdges; /* that remain: of parts with one side only, such as a Moebius strip */
+    uint32_t partsByNormals;    /* of partsTurned: the normals decided the side */
+    uint32_t partsByVolume;     /* the part is closed, and its inside decided the side */
+    uint32_t partsByMajority;   /* the side is a guess: that of most of the triangles */
 } PelMeshOrientation;
 
-/* Turns triangles so that the two of every edge run along it opposite ways, as one surface has them. `indices`: desc->numIndices,
- * written: those of desc, which they may be, with the second and third of some triangles exchanged. Parts whose triangles
- * agree already stay as they are, whichever way they face. Of the others the outward side is the one that `normals` (xyz float32
- * per vertex, normalStride bytes apart, 0: 12; or NULL) look to; where they do not tell, and the part is closed and desc has
- * positions, the side away from its inside; else that of most of its triangles. Vertices are one by desc->weld. Nothing is
- * turned unasked anywhere: pelMeshNormals and every estimator take triangles as they are. `found` may be NULL. Errors: as
- * pelMeshTopologyCreate. */
+/* Reverses triangles so that the two triangles of every edge run along it in opposite directions, as those of one surface do.
+ * `indices`: desc->numIndices, written: the indices of desc (may be the same array), with the second and third index of some
+ * triangles exchanged. Parts that are consistent already are left unchanged, whichever side they face. The outward side of the
+ * other parts is the one that `normals` (xyz float32 per vertex, normalStride bytes apart, 0: 12; or NULL) point to. If these
+ * do not decide, the part is closed and desc has positions, it is the side away from the inside; otherwise that of most of its
+ * triangles. desc->weld decides which vertices are the same. No other function reverses triangles: pelMeshNormals and the
+ * estimators use them unchanged. `found` may be NULL. Errors: as pelMeshTopologyCreate. */
 PEL_API PelError pelMeshOrient(const PelMeshTopologyDesc* desc, const float* normals, uint32_t normalStride,
                                uint32_t* indices, PelMeshOrientation* found);
 
@@ -324,7 +324,8 @@ typedef struct PelVertexView {
 typedef enum PelCurvatureEstimator {
     PEL_CURVATURE_EDGE = 0,   /* (min + max) / 2 of |dn| / |dp| over a vertex's triangle edges [FaceWorks] */
     PEL_CURVATURE_TENSOR = 1, /* least squares on each triangle's normal differences [Rusinkiewicz 2004] */
-    PEL_CURVATURE_QUADRIC = 2 /* polynomial fit to the positions of the two-ring: does not trust the normals. Default */
+    PEL_CURVATURE_QUADRIC =
+        2 /* polynomial fit to the positions of the two-ring: does not depend on the normals. Default */
 } PelCurvatureEstimator;
 
 /* What is written for a vertex. Curvatures are positive where the surface bends away from its normal (a sphere with
@@ -346,10 +347,11 @@ typedef enum PelCurvatureQuantity {
  * answer. */
 typedef enum PelSmoothingWeights {
     PEL_SMOOTHING_COTANGENT =
-        0, /* cotangents over Voronoi areas [Pinkall & Polthier 1993]: spreads alike in all directions,
-                                    whatever the triangles. Default */
-    PEL_SMOOTHING_AREA = 1 /* area of an edge's triangles over the square of its length: never negative, and the sum of
-                                    value times area of all vertices stays; on stretched cells it spreads further along
+        0, /* cotangents over Voronoi areas [Pinkall & Polthier 1993]: spreads equally in all directions,
+                                    whatever the triangles look like. Default */
+    PEL_SMOOTHING_AREA =
+        1 /* area of an edge's triangles over the square of its length: never negative, and keeps the sum
+                                    of value times area over all vertices; on stretched cells it spreads further along
                                     than across */
 } PelSmoothingWeights;
 
@@ -363,24 +365,24 @@ typedef struct PelCurvatureParams {
                                  0: none. The first call with a radius measures the mesh, which blocks, unless
                                  smoothingStages is given */
     float smoothingCrease; /* with a radius: angle between normals, radians, across which smoothing falls to 1/e, so
-                                 that sharp features stay; 0: none stay */
-    uint32_t smoothingStages; /* with a radius: work spent, about 9 * radius / edge length; 0: chosen from the mesh, and then
-                                 corrected for what its density alone takes from narrow shapes, which a given number is
-                                 not (docs/curvature.md). Too few smooth less */
+                                 that sharp features are kept; 0: no such limit */
+    uint32_t smoothingStages; /* with a radius: number of stages, about 9 * radius / edge length; too few smooth less. 0: chosen
+                                 from the mesh; short waves are then corrected for the density of the mesh, which a given
+                                 number does not do (docs/guide/curvature.md) */
     PelSmoothingWeights smoothingWeights; /* with a radius */
 } PelCurvatureParams;
 
 /* Curvature at each vertex. `positions`, `normals`: xyz float32 per vertex, as many as the topology has; normals are of
- * unit length; NULL: they are made from the positions, as by pelMeshNormals. `curvature`: one float32 per vertex (more where the quantity says so), 1/length, finite; 0 where nothing
- * could be measured. Signed values are smoothed, then the quantity is taken. A given `report` makes the call block. Same
+ * unit length; NULL: they are made from the positions, as by pelMeshNormals. `curvature`: one float32 per vertex (more for some quantities), 1/length, finite; 0 where nothing
+ * could be measured. Signed values are smoothed, then the quantity is taken. With a `report` the call blocks. Same
  * input, same bits. Sources: FaceWorks 1.0; Rusinkiewicz, Estimating Curvatures, 3DPVT 2004. */
 PEL_API PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* params,
                                   const PelVertexView* positions, const PelVertexView* normals,
                                   const PelVertexView* curvature, PelMeshReport* report,
                                   const PelSubmit* submit);
 
-/* Unit normals from positions: those of a vertex's triangles, weighted by their angles there; vertices that were welded
- * share one. (0, 0, 0) where no triangle has a plane. `normals`: xyz float32 per vertex, written. Same input, same bits.
+/* Unit normals from positions: the mean of the normals of a vertex's triangles, weighted by their angles there; a welded vertex
+ * has one. (0, 0, 0) where no triangle has a plane. `normals`: xyz float32 per vertex, written. Same input, same bits.
  * Source: Thuermer & Wuethrich 1998. */
 PEL_API PelError pelMeshNormals(PelMeshTopology topology, const PelVertexView* positions,
                                 const PelVertexView* normals, const PelSubmit* submit);
@@ -401,16 +403,17 @@ typedef struct PelVertexRange {
     uint32_t count;
 } PelVertexRange;
 
-/* Curvature, by `params`, of a mesh of which a part moves from update to update. What an update left stays on the device:
- * per vertex 4 to 32 bytes of estimates, 8 to 16 of smoothed values, 12 of normals that it makes. */
+/* Curvature, by `params`, of a mesh of which a part moves from update to update. The device keeps between updates, per vertex:
+ * 4 to 32 bytes of estimates, 8 to 16 of smoothed values, 12 of normals if it makes them. */
 PEL_API PelError pelLiveMeshCreate(PelMeshTopology topology, const PelCurvatureParams* params, PelLiveMesh* live);
 PEL_API void pelLiveMeshRetain(PelLiveMesh live);
 PEL_API void pelLiveMeshRelease(PelLiveMesh live);
 
-/* The same bits as pelMeshCurvature, with only the work that the change asks for. `changed`: numChanged ranges of vertices
- * whose position or normal is another than at the update before, in any order; NULL: all. Only rows that they reach are
- * measured, smoothed and written; ranges without vertices cost nothing at all: no launch, no byte. The first
- * update measures everything, as does one that begins or ends to give normals; one with another `curvature` writes all of it.
+/* Gives the same bits as pelMeshCurvature, with only the work that the change needs. `changed`: numChanged ranges of vertices
+ * whose position or normal differs from the previous update, in any order; NULL: all. Only rows that they reach are
+ * measured, smoothed and written; ranges without vertices cost nothing: no launch, no byte. The first
+ * update measures everything, and so does one with normals after one without, or the reverse. An update with another
+ * `curvature` writes all of it.
  * One asynchronous submission; the first with a smoothing radius measures the mesh, which blocks, unless
  * params.smoothingStages is given, and so does the first with `changed`, which reads the neighbour lists back. Errors:
  * PEL_ERROR_INVALID_ARGUMENT for a range that leaves the mesh. */
@@ -425,7 +428,7 @@ typedef struct PelLiveMeshStats {
     uint64_t launches;
     uint64_t rowsEstimated;
     uint64_t rowsSmoothed;  /* summed over passes */
-    uint64_t rowsStored;    /* exactly those that the change reaches */
+    uint64_t rowsStored;    /* exactly the rows that the change reaches */
     uint64_t bytesUploaded; /* lists of rows; 0 when the same vertices change again */
     uint64_t deviceBytes;   /* held between updates */
     uint64_t hostBytes;     /* neighbour lists on the host, once `changed` was given; about 32 per vertex */
@@ -446,7 +449,7 @@ typedef struct PelScreenCurvatureParams {
  * depth or between ids. A sphere has 1/radius; a cylinder between 0 and that, by its angle to the pixels. `normals`: unit,
  * world; `positions`: world; or `depth` with params.inverseViewProjection and positions NULL; `ids`: of materials or
  * objects, 0 is background; may be NULL. `curvature`: R32F, written, finite; 0 for background and for pixels whose
- * normal or position is not finite, which no neighbour uses. All images have one size. `params` may be NULL. Source: Penner,
+ * normal or position is not finite; no neighbour uses those. All images have one size. `params` may be NULL. Source: Penner,
  * SIGGRAPH 2011. */
 PEL_API PelError pelScreenCurvature(PelDevice device, const PelScreenCurvatureParams* params,
                                     const PelImageDesc* normals, const PelImageDesc* positions,
@@ -465,21 +468,21 @@ typedef enum PelProfileKind {
     PEL_PROFILE_TABLE = 4
 } PelProfileKind;
 
-/* weight * exp(-d^2 / 2 variance) / (2 pi variance): as energy per area at distance d; the same variance and weight give
- * the line spread. */
+/* weight * exp(-d^2 / 2 variance) / (2 pi variance): energy per area at distance d. The line spread has the same variance
+ * and weight. */
 typedef struct PelGaussian {
     float variance;  /* length^2, > 0; mm^2 */
     float weight[3]; /* red, green, blue, >= 0; scaled so that each channel sums to 1 */
 } PelGaussian;
 
-/* The fits of s(A) in Christensen and Burley 2015, by what the length given is and how light enters. */
+/* The fits of s(A) in Christensen and Burley 2015. They differ in the meaning of the length and in how light enters. */
 typedef enum PelBurleyFit {
     PEL_BURLEY_SEARCHLIGHT = 0,          /* eq. 5: volume mean free path, perpendicular beam */
     PEL_BURLEY_DIFFUSE_TRANSMISSION = 1, /* eq. 6: volume mean free path, diffuse transmission; the usual one */
     PEL_BURLEY_DIFFUSE_MEAN_FREE_PATH = 2 /* eq. 8: diffuse mean free path on the surface, perpendicular beam */
 } PelBurleyFit;
 
-/* A profile tells, per RGB channel, how much of the light that enters at one point leaves at a distance. It belongs to no
+/* A profile says, per RGB channel, how much of the light that enters at one point leaves at a distance. It belongs to no
  * device and never changes. Lengths are in any one unit, mm for skin. All are normalised: no light is lost.
  * Errors: PEL_ERROR_INVALID_ARGUMENT for values that are not finite or out of the ranges below, or a channel without
  * energy; the message names the value. */
@@ -493,20 +496,20 @@ PEL_API PelError pelProfileCreateGaussians(const PelGaussian* gaussians, uint32_
  * Source: Christensen and Burley, Approximate Reflectance Profiles for Efficient Subsurface Scattering, 2015. */
 PEL_API PelError pelProfileCreateBurley(const float meanFreePath[3], const float albedo[3], PelBurleyFit fit,
                                         PelProfile* profile);
-/* The same from b itself, length > 0: the d under which other programs know this profile (Blender's radius is 4 pi times it). */
+/* The same from b itself, length > 0. Other programs call it d (Blender's radius is 4 pi d). */
 PEL_API PelError pelProfileCreateBurleyDistance(const float distance[3], PelProfile* profile);
-/* The classical dipole. absorption and reducedScattering > 0, 1/length; eta > 1, the medium against its outside.
+/* The classical dipole. absorption and reducedScattering > 0, 1/length; eta > 1, the medium's index of refraction relative to its outside.
  * Source: Jensen, Marschner, Levoy, Hanrahan, A Practical Model for Subsurface Light Transport, 2001. */
 PEL_API PelError pelProfileCreateDipole(const float absorption[3], const float reducedScattering[3],
                                         float eta, PelProfile* profile);
-/* Measured R: linear between `count` (2 to 4096) rising distances >= 0, constant before the first, 0 after the last.
- * `values`: RGB per distance, >= 0, up to a factor. Tables are integrated from it as it stands, corners and all. */
+/* A tabulated profile: R linear between `count` (2 to 4096) rising distances >= 0, constant before the first, 0 after the last.
+ * `values`: RGB per distance, >= 0, up to a factor. Look-up tables are integrated from it exactly, including its corners. */
 PEL_API PelError pelProfileCreateTable(const float* distances, const float* values, uint32_t count,
                                        PelProfile* profile);
-/* A material of the library, in mm: "skin", "marble", ... Errors: PEL_ERROR_INVALID_ARGUMENT for another name; the message lists
- * those that there are. */
+/* A material of the library, in mm: "skin", "marble", ... Errors: PEL_ERROR_INVALID_ARGUMENT for an unknown name; the message lists
+ * the known ones. */
 PEL_API PelError pelProfileCreateNamed(const char* name, PelProfile* profile);
-/* Name of the library's material `index`, from 0 on; NULL behind the last. Static storage. */
+/* Name of the library's material `index`, from 0 on; NULL after the last. Static storage. */
 PEL_API const char* pelProfileLibraryName(uint32_t index);
 PEL_API void pelProfileRetain(PelProfile profile);
 PEL_API void pelProfileRelease(PelProfile profile);
@@ -519,18 +522,18 @@ typedef struct PelProfileInfo {
     float normalBlend[3]; /* for PelMaterial.normalBlend: 1 - log8(widest width / width), at least 0. A channel as wide as
                              the widest sees the blurred normal alone, one eight times narrower the shading normal alone;
                              1, 0.28, 0.03 for skin */
-    uint32_t gaussians; /* terms of the sum that stands for it on the device; 0 for tables */
+    uint32_t gaussians; /* terms of the sum that represents it on the device; 0 for tabulated profiles */
     uint32_t singular; /* 1: R grows like 1/d towards 0, so that the ring forms have no finite integral (burley) */
-    char name[64]; /* as tables and their files carry it; the kind's name unless pelProfileSetName was called */
-    float meanFreePath[3]; /* length; 0 where the profile does not know it: all but burley from mean free paths, and dipole */
-    float reach;      /* length within which all but a thousandth of the light of each channel leaves again */
-    char source[256]; /* where the numbers of a material of the library come from; "" for others */
+    char name[64]; /* for tables and their files; the kind's name unless pelProfileSetName was called */
+    float meanFreePath[3]; /* length; known for burley from mean free paths and for dipole, 0 for all others */
+    float reach;           /* length within which all but a thousandth of the light of each channel leaves */
+    char source[256];      /* where the numbers of a material of the library come from; "" for others */
 } PelProfileInfo;
 PEL_API PelError pelProfileGetInfo(PelProfile profile, PelProfileInfo* info);
 /* Names a profile, once, before it is used: up to 63 bytes. */
 PEL_API PelError pelProfileSetName(PelProfile profile, const char* name);
 
-/* What comes through a slab that is lit evenly on its far side: the share of R beyond `count` distances >= 0 (length), RGB each.
+/* Transmission of a slab that is lit evenly on its far side: the share of R beyond `count` distances >= 0 (length), RGB each.
  * (1/4) exp(-s/b) + (3/4) exp(-s/3b) for Burley's profile, the sum of w exp(-s^2/2v) for Gaussians [Jimenez et al. 2010]. */
 PEL_API PelError pelProfileTransmission(PelProfile profile, const double* distances, uint32_t count,
                                         double* transmission);
@@ -544,7 +547,7 @@ typedef struct PelLutObject* PelLut;
 
 typedef enum PelLutKind { PEL_LUT_CURVATURE = 0, PEL_LUT_SHADOW = 1, PEL_LUT_SPECULAR = 2 } PelLutKind;
 
-/* Over what geometry a curvature LUT is integrated; docs/luts.md says what each is good for. */
+/* The geometry over which a curvature LUT is integrated; docs/guide/luts.md says how to choose. */
 typedef enum PelCurvatureForm {
     PEL_FORM_ARC = 0, /* the line spread along the arc of a circle, cut at 10 mm * radius / 2.7 [FaceWorks] */
     PEL_FORM_RING = 1, /* the radial profile R (energy per area) of the chord, round a circle, normalised */
@@ -556,11 +559,12 @@ typedef enum PelCurvatureForm {
 } PelCurvatureForm;
 
 /* How texels are spread over the axes of a curvature LUT. Look-ups in pellucid follow the table's own axis; a host that
- * reads a table itself must too. s is the texel coordinate from -1 to 1 across, t that from 0 to 1 down. */
+ * reads a table itself must do so too. s is the texel coordinate from -1 to 1 across, t that from 0 to 1 down. */
 typedef enum PelLutAxis {
     PEL_AXIS_LINEAR = 0, /* u = s; curvature linear in t [FaceWorks] */
-    PEL_AXIS_ROOT = 1 /* u = s |s|; the square root of curvature linear in t: dense at the terminator and for flat
-                            surfaces, so that 64x64 texels look up as well as 1024x1024 linear ones */
+    PEL_AXIS_ROOT =
+        1 /* square-root axis: u = s |s|; the square root of curvature linear in t: dense at the terminator and
+                            for flat surfaces, so that look-ups in 64x64 texels are as good as in 1024x1024 linear ones */
 } PelLutAxis;
 
 typedef struct PelCurvatureLutDesc {
@@ -584,8 +588,8 @@ typedef struct PelShadowLutDesc {
     float widthMax;        /* length; typical 100 mm */
     float sharpening;      /* >= 1: how much narrower the shadow gets than the wide filter; typical 10 */
     PelProfile profile;    /* NULL: skin. The table keeps it alive */
-    uint32_t closedEnds; /* 1: each row rescaled, so that w = 0 gives 0 and w = 1 gives 1: lit skin then keeps what scatters
-                              further than the filter reaches; 0: as it is [FaceWorks] */
+    uint32_t closedEnds; /* 1: each row is rescaled, so that w = 0 gives 0 and w = 1 gives 1: lit skin then keeps the light that
+                              scatters further than the filter reaches; 0: not rescaled [FaceWorks] */
     PelLutAxis axis; /* PEL_AXIS_LINEAR: w and 1/width linear [FaceWorks]; PEL_AXIS_ROOT: the position across the edge,
                               (sqrt(w) - sqrt(1 - w)) / 2 + 1/2, and the root of 1/width linear, from end to end */
 } PelShadowLutDesc;
@@ -616,7 +620,7 @@ typedef struct PelLutInfo {
     PelCurvatureLutDesc curvature; /* of a PEL_LUT_CURVATURE */
     PelShadowLutDesc shadow;       /* of a PEL_LUT_SHADOW */
     PelSpecularLutDesc specular;   /* of a PEL_LUT_SPECULAR */
-    char profile[64];              /* name of the profile, for tables from texels too; "skin" by default */
+    char profile[64];              /* name of the profile, also for tables from texels; "skin" by default */
 } PelLutInfo;
 /* The description with all defaults resolved; a profile in it belongs to the table. */
 PEL_API PelError pelLutGetInfo(PelLut lut, PelLutInfo* info);
@@ -625,7 +629,7 @@ typedef enum PelLutEncoding {
     PEL_LUT_FLOAT = 0, /* RGB float32, the values themselves */
     PEL_LUT_HALF = 1,  /* RGB float16, the same */
     PEL_LUT_FACEWORKS8 = 2 /* RGBA8: curvature sat(2 (D - max(u, 0)) + 1/2); shadow faded at the left edge, then sRGB;
-                              specular as it is */
+                              specular unchanged */
 } PelLutEncoding;
 
 /* Bytes that pelLutRead writes: width * height * 12, 6 or 4. */
@@ -662,15 +666,15 @@ typedef enum PelImageSlot {
     PEL_SLOT_UV = 13, /* u, v of the normal map: two components, float or half. Needed by normal maps */
     PEL_SLOT_UV_GRADIENT = 14, /* du/dx, dv/dx, du/dy, dv/dy per pixel: four components. Not set: only the
                                        diffusion radius chooses the level of a normal map */
-    PEL_SLOT_TANGENT = 15,     /* xyz, unit, along u; a fourth component below 0 turns the bitangent round.
+    PEL_SLOT_TANGENT = 15,     /* xyz, unit, along u; a fourth component below 0 reverses the bitangent.
                                        Needed by normal maps */
-    /* Outputs beside radiance, which stays what it is: parts of it per pixel of a material, for compositing and debugging.
-       Always replaced, never added to; RGB or RGBA, float or half, but for the last. */
+    /* Outputs beside radiance, which they do not change: parts of it per pixel of a material, for compositing and debugging.
+       Always replaced, never added to; RGB or RGBA, float or half, except the last. */
     PEL_SLOT_OUT_DIFFUSE = 16,      /* albedo * (scattered light + ambient) */
     PEL_SLOT_OUT_DEEP_SCATTER = 17, /* albedo * light that came through */
     PEL_SLOT_OUT_SPECULAR = 18,
     PEL_SLOT_OUT_THICKNESS = 19, /* length, one component: of the thickness image, or along the first light with a shadow
-                                       map; 0 where neither is */
+                                       map; 0 without either */
     PEL_SLOT_IRRADIANCE =
         20, /* RGB, irradiance / pi: all lights and the ambient, shadows sharp; no specular, no albedo. Read
                                        by materials that do not scatter by tables (PelMaterial.scattering); not set: made from
@@ -688,9 +692,8 @@ typedef enum PelImageSlot {
 typedef enum PelLightSlot {
     PEL_LIGHT_WIDE_SHADOW = 0, /* w per pixel, 0 shadow to 1 lit, filtered over PelMaterial.shadowFilterWidth. Not set:
                                   PelLight.shadowFilterTexels makes it from the shadow map */
-    PEL_LIGHT_SHADOW_MAP =
-        1, /* depth in [0, 1], any size, one component: thickness by taps, wide shadow. What else it may
-                                  hold: PelLight.shadowProjection, shadowContent, shadowCascades */
+    PEL_LIGHT_SHADOW_MAP = 1, /* depth in [0, 1], any size, one component: thickness by taps, wide shadow. Other forms:
+                                  PelLight.shadowProjection, shadowContent, shadowCascades */
     PEL_LIGHT_CASCADE_1 =
         2, /* the second of PelLight.shadowCascades, and so on. Maps that share one image (an atlas) are
                                   views of it: the same buffer and rowStride, each with its byteOffset */
@@ -702,8 +705,8 @@ typedef enum PelLightSlot {
 typedef enum PelLightType { PEL_LIGHT_DIRECTIONAL = 0, PEL_LIGHT_POINT = 1, PEL_LIGHT_SPOT = 2 } PelLightType;
 
 /* The cubes are of point and spot lights: one image of six square faces, one below the other, +x -x +y -y +z -z, each laid
- * out as OpenGL, Vulkan and Direct3D have it, row 0 first. PelLight.worldToShadow then takes world to the cube's own
- * space: a rotation and the light in the origin. Taps and filters cross the edges of faces (docs/shading.md). */
+ * out as in OpenGL, Vulkan and Direct3D, row 0 first. PelLight.worldToShadow then maps world to the cube's own
+ * space: a rotation, with the light at the origin. Taps and filters cross the edges of faces (docs/guide/shading.md). */
 typedef enum PelShadowProjection {
     PEL_SHADOW_PARALLEL = 0,
     PEL_SHADOW_PERSPECTIVE = 1,
@@ -711,7 +714,7 @@ typedef enum PelShadowProjection {
     PEL_SHADOW_CUBE_RADIAL = 3 /* distance from the light = shadowDepthRange * z */
 } PelShadowProjection;
 
-/* What the texels of a shadow map hold: z, or what may be filtered beforehand. All lights need the same. */
+/* What the texels of a shadow map hold: z, or values that may be filtered beforehand. It is the same for all lights. */
 typedef enum PelShadowContent {
     PEL_SHADOW_CONTENT_DEPTH = 0, /* z */
     PEL_SHADOW_CONTENT_MOMENTS =
@@ -724,7 +727,7 @@ typedef struct PelLight {
     PelLightType type;
     float toLight[3];       /* directional: unit vector from the surface to the light */
     float position[3];      /* point, spot: world */
-    float spotDirection[3]; /* spot: unit vector the way the light looks */
+    float spotDirection[3]; /* spot: unit vector in the direction of the light's axis */
     float spotCosInner;     /* cosine of the angle from spotDirection up to which the spot is fully bright */
     float spotCosOuter;     /* and from which it is dark; between them a smoothstep of the cosine */
     float color[3]; /* directional: irradiance / pi at normal incidence; point, spot: that at distance 1 */
@@ -732,10 +735,10 @@ typedef struct PelLight {
     /* The rest describes the shadow map, if PEL_LIGHT_SHADOW_MAP is set. */
     float worldToShadow[16]; /* to homogeneous (u, v, z): u, v in [0, 1] over the map, row 0 at v = 0; z as in the map */
     PelShadowProjection shadowProjection;
-    float shadowDepthRange; /* parallel: length that z from 0 to 1 spans; negative when z falls away from the light */
+    float shadowDepthRange; /* parallel: length that z from 0 to 1 spans; negative if z decreases away from the light */
     float shadowDepthA; /* perspective: distance along the light = 1 / (A * z + B), from its projection matrix */
     float shadowDepthB;
-    /* The wide shadow made from the shadow map, when PEL_LIGHT_WIDE_SHADOW is not set (docs/shading.md, "Wide shadow"). */
+    /* The wide shadow made from the shadow map, when PEL_LIGHT_WIDE_SHADOW is not set (docs/guide/shading.md, "Wide shadow"). */
     uint32_t shadowFilterTexels; /* 0: none. Else the most texels across the filter that are read, 4 to 256; of a finer map
                                     every 2nd, 3rd, ... row and column. Typical 48 */
     /* The next three are -1 by default: from each material's profile (docs/guide/shading.md, "Materials"); without one 0.5 mm, 0.25
@@ -745,17 +748,17 @@ typedef struct PelLight {
                              bodies do not shade themselves with a hard edge */
     float shadowConeSlope; /* the bias grows by this times the sideways distance, so that folds and facets do not shade themselves */
     /* Cascades: up to four parallel maps of a directional light, the finest first: PEL_LIGHT_SHADOW_MAP with the matrix and range
-       above, then PEL_LIGHT_CASCADE_1, 2, 3 with those below. A point takes the finest that holds it with its whole filter;
-       outside of all there is neither shadow nor thickness. */
-    uint32_t shadowCascades;      /* 1 to 4 maps; 0: one map that is no cascade */
+       above, then PEL_LIGHT_CASCADE_1, 2, 3 with those below. A point takes the finest map that holds it with its whole filter;
+       outside all maps there is neither shadow nor thickness. */
+    uint32_t shadowCascades;      /* 1 to 4 maps; 0: one map that is not a cascade */
     float cascadeToShadow[3][16]; /* worldToShadow of PEL_LIGHT_CASCADE_1, 2, 3 */
     float cascadeDepthRange[3];   /* shadowDepthRange of those */
     PelShadowContent shadowContent;
-    float shadowExponent; /* PEL_SHADOW_CONTENT_EXPONENTIAL: c, of the sign that lets c * z grow away from the light; 80
+    float shadowExponent; /* PEL_SHADOW_CONTENT_EXPONENTIAL: c, with the sign with which c * z grows away from the light; 80
                                  for float32, 10 for half */
     float shadowMinDeviation; /* PEL_SHADOW_CONTENT_MOMENTS: length, least standard deviation of depths; 0.25 mm */
-    float shadowBleeding; /* PEL_SHADOW_CONTENT_MOMENTS: 0 to below 1, share of light below which it is dark, for lights
-                                 that shine through overlapping shadows; 0.1 */
+    float shadowBleeding; /* PEL_SHADOW_CONTENT_MOMENTS: 0 to below 1, share of light that counts as none, against
+                                 light that leaks through overlapping shadows; 0.1 */
 } PelLight;
 
 typedef enum PelSpecularModel {
@@ -794,7 +797,7 @@ typedef struct PelMaterial {
     float specular;                /* rho_s; 0: no specular */
     float roughness;               /* m of Beckmann; 0.3 */
     float f0;                      /* reflectance at normal incidence; 0.028 */
-    float uvScale; /* length per unit of u or v on the surface, as pelMeshUvScale gives it: which level of
+    float uvScale; /* length per unit of u or v on the surface, from pelMeshUvScale. It decides which level of
                                       the normal map is blurred over diffusionRadius; 1 */
     PelSpecularModel specularModel;
     float roughness2;         /* of the second lobe of GGX; multiplied by the roughness image too; 0.15 */
@@ -807,15 +810,15 @@ typedef struct PelMaterial {
     PelProfile profile; /* in mm; the shader keeps it alive. Everything left to defaults follows from it: both tables
                                       (made, and kept for the device), widths, normal blend, transmission. NULL: none */
     float transmission; /* share of the light that the profile lets through thin parts (pelProfileTransmission of the
-                                      thickness along the light, times max(-Ng.L, 0)): the larger of it and the table's dark
-                                      side counts. Needs a profile, and a thickness image or a shadow map with thicknessTaps;
-                                      a deepScatterColor stands in its place; 1 */
+                                      thickness along the light, times max(-Ng.L, 0)): the larger of this and the table's
+                                      dark side is used. Needs a profile, and a thickness image or a shadow map with
+                                      thicknessTaps; a deepScatterColor replaces it; 1 */
     float curvatureGain; /* how much more a body of curvature c reflects than a half-space of the same medium: direct
                                       light times 1 + curvatureGain * 1.38 * meanFreePath * c. Needs a profile that knows its
                                       mean free path; 0 */
     uint32_t scatterTaps; /* 0, or 8 to 256. PEL_SCATTERING_SEPARABLE: taps of each of the two filters; 0: 25.
                                       PEL_SCATTERING_SCREEN: taps on a disk, placed by the profile; 0: the whole profile. Other
-                                      methods have no use for it; 0 */
+                                      methods ignore it; 0 */
     float albedoBefore; /* 0 to 1, m: irradiance is multiplied by albedo^m before it scatters and by albedo^(1 - m)
                                       after: how much of the texture the scattering softens. For methods that scatter
                                       irradiance; 0 */
@@ -859,12 +862,12 @@ typedef enum PelFeature {
     PEL_FEATURE_OUTPUTS = 1 << 12,         /* an output beside radiance */
     PEL_FEATURE_AMBIENT_CUBE = 1 << 13,    /* ambient light from a cube map */
     PEL_FEATURE_IRRADIANCE = 1 << 14, /* a material whose diffuse light comes from irradiance per pixel */
-    PEL_FEATURE_MAKE_IRRADIANCE = 1 << 15, /* which is made here: there is no PEL_SLOT_IRRADIANCE */
+    PEL_FEATURE_MAKE_IRRADIANCE = 1 << 15, /* the shader makes that irradiance: there is no PEL_SLOT_IRRADIANCE */
     PEL_FEATURE_TRANSMISSION = 1 << 23,    /* PelMaterial.transmission, and thickness from an image or taps */
     PEL_FEATURE_SHADOW_CUBE = 1 << 24,     /* a shadow map of a cube, for thickness or a wide shadow */
-    PEL_FEATURE_SHADOW_CASCADES = 1 << 25, /* cascades, likewise */
-    PEL_FEATURE_SHADOW_EXPONENTIAL = 1 << 26, /* PEL_SHADOW_CONTENT_EXPONENTIAL, likewise */
-    PEL_FEATURE_SHADOW_MOMENTS = 1 << 27      /* PEL_SHADOW_CONTENT_MOMENTS, likewise */
+    PEL_FEATURE_SHADOW_CASCADES = 1 << 25, /* cascades, for thickness or a wide shadow */
+    PEL_FEATURE_SHADOW_EXPONENTIAL = 1 << 26, /* PEL_SHADOW_CONTENT_EXPONENTIAL, for the same */
+    PEL_FEATURE_SHADOW_MOMENTS = 1 << 27      /* PEL_SHADOW_CONTENT_MOMENTS, for the same */
 } PelFeature;
 
 /* What a shader did: counts of its last execution unless they say total. */
@@ -874,7 +877,7 @@ typedef struct PelShaderStats {
     uint64_t programsBuilt; /* total */
     uint64_t launches;
     uint64_t scratchBytes;  /* device memory held beside the caller's images */
-    uint64_t bytesUploaded; /* constants and tables sent since the execution before */
+    uint64_t bytesUploaded; /* shading constants and tables sent since the previous execution */
     uint64_t tilesTotal;
     uint64_t tilesShaded; /* with at least one pixel of a material */
     uint64_t pixelsTotal;
@@ -890,8 +893,8 @@ typedef struct PelShaderStats {
     uint64_t bands; /* rows of tiles are shaded in this many rounds, to keep to PelShaderOptions.scratchBudget */
     uint64_t variants;     /* of the shading kernel, each with a tile list of its own */
     uint64_t tilesPartial; /* shaded by a variant with fewer features than the shader has */
-    uint64_t pixelsShadowTexels; /* of those, whose filter read texels: of the others the bounds of the map's blocks said that they
-                                    are lit or in shadow */
+    uint64_t pixelsShadowTexels; /* of pixelsWideShadow: whose filter read texels. For the others the bounds of the map's blocks
+                                    decided */
     uint64_t pixelsIrradiance;      /* whose irradiance was made */
     uint64_t pixelsByScattering[7]; /* shaded, by PelMaterial.scattering */
     /* Methods that scatter irradiance per pixel. */
@@ -899,38 +902,38 @@ typedef struct PelShaderStats {
                                     chose count as themselves */
     uint64_t pixelsScattered; /* that took taps */
     uint64_t pixelsKept; /* that kept their irradiance, because it was right already or nothing was in reach */
-    uint64_t scatterTaps; /* pixels and blocks of pixels that were looked at, modulo 2^32 */
+    uint64_t scatterTaps; /* pixels and blocks of pixels that were read, modulo 2^32 */
     uint64_t pixelsByChoice[7]; /* of materials of PEL_SCATTERING_AUTO: by the method that was chosen for them; NONE: kept
                                     their irradiance */
 } PelShaderStats;
 
-/* How the shading kernel finds its tiles. The same bits come out of each. */
+/* How the shading kernel finds its tiles. All give the same bits. */
 typedef enum PelTileLists {
     PEL_TILES_ONE_LIST = 0, /* one list of all tiles with a material */
-    PEL_TILES_PER_VARIANT =
-        1, /* a list per variant: tiles whose materials need less are shaded by a kernel that has less.
-                                  Faster where nearly all tiles do (docs/shading.md, "Tiles") */
-    PEL_TILES_NO_LIST = 2 /* every tile is visited, and left again where it has no material; for measurements */
+    PEL_TILES_PER_VARIANT = 1, /* a list per variant: tiles whose materials need fewer features are shaded by a smaller
+                                  kernel. Faster if nearly all tiles do (docs/guide/shading.md, "Tiles") */
+    PEL_TILES_NO_LIST = 2 /* every tile is visited, and skipped if it has no material; for measurements */
 } PelTileLists;
 
 typedef struct PelShaderOptions {
     uint32_t structSize;
     uint32_t accumulate; /* 1: radiance is added to the output image; 0: it replaces pixels that have a material */
-    uint32_t disableSkipping; /* 1: shade every tile and evaluate every term; the same bits come out, for tests */
+    uint32_t disableSkipping; /* 1: shade every tile and evaluate every term, for tests; gives the same bits */
     uint32_t countPixels;     /* 1: fill all pixel counters of PelShaderStats, at some cost */
-    float invalidColor[3]; /* radiance of a pixel with a NaN or Inf input; default 0 */
+    float invalidColor[3];    /* radiance of a pixel with a NaN or Inf input; default 0 */
     uint32_t blurNormals; /* 1: without PEL_SLOT_NORMAL_BLURRED, blurred normals are shading normals blurred on screen
                                  over PelMaterial.diffusionRadius; needs positions or depth */
-    uint32_t rotateTaps; /* 1: the disk of thickness taps is turned by an angle that depends on the pixel's column and row
-                                 alone, so that what few taps miss is noise, not bands (docs/shading.md, "Turned taps") */
-    uint64_t scratchBudget; /* bytes that images which the passes make (blurred normals, wide shadows) may take: larger
+    uint32_t rotateTaps; /* 1: the disk of thickness taps is rotated by an angle that depends only on the pixel's column and
+                                 row, so that the error of few taps is noise instead of bands (docs/guide/shading.md, "Rotated
+                                 disk of taps") */
+    uint64_t scratchBudget; /* limit in bytes for images that the passes make (blurred normals, wide shadows): larger
                                  frames are shaded in bands of rows, with the same bits as a result. 0: no limit, and bands
                                  only when memory runs out */
     PelTileLists tileLists;
-    float targetError; /* of methods that leave out what changes little: how much of white their result may be off, 0 to 1;
-                                 0.002 */
+    float targetError; /* for methods that leave out small contributions: the error that they may make, as a share of white,
+                                 0 to 1; 0.002 */
     float millimetresPerUnit; /* of positions, > 0: profiles are in mm, every other length in the scene's unit; 1 */
-    uint32_t frameIndex; /* turns scattering taps that are placed at random another way in each frame, for hosts that
+    uint32_t frameIndex; /* gives scattering taps with random places other places in each frame, for hosts that
                                  average frames. The same number gives the same bits; 0 */
 } PelShaderOptions;
 
@@ -940,12 +943,12 @@ PEL_API void pelShaderRelease(PelShader shader);
 PEL_API PelError pelShaderSetOptions(PelShader shader, const PelShaderOptions* options);
 /* A NULL image clears the slot. */
 PEL_API PelError pelShaderSetImage(PelShader shader, PelImageSlot slot, const PelImageDesc* image);
-/* Material `id`, 1 to 255; a NULL material removes it. Either LUT may be NULL: the profile's own then, or, without a profile, no
- * direct scattering, plain shadow. */
+/* Material `id`, 1 to 255; a NULL material removes it. Either LUT may be NULL: then it is made from the profile; without a profile
+ * there is no direct scattering, and the shadow is plain. */
 PEL_API PelError pelShaderSetMaterial(PelShader shader, uint32_t id, const PelMaterial* material,
                                       PelLut curvatureLut, PelLut shadowLut);
 /* The tangent-space normal map of material `id`, which must be set: `levels` images, each half the size of the one before,
- * all in one buffer and of one format with three components (unorm: 2x - 1; float: as they are), repeated beyond [0, 1].
+ * all in one buffer and of one format with three components (unorm: 2x - 1; float: unchanged), repeated beyond [0, 1].
  * Without PEL_SLOT_NORMAL_BLURRED, the blurred normal is read from it: trilinear, at level
  * log2(max(size * diffusionRadius, uvScale) / uvScale), but never sharper than the pixel's own level of detail. A count of 0
  * removes it. Source: FaceWorks 1.0. */
@@ -966,17 +969,17 @@ PEL_API PelError pelShaderSetAmbient(PelShader shader, const PelAmbient* ambient
  *     +x ( 1, -t, -s)   +y (s,  1,  t)   +z ( s, -t,  1)
  *     -x (-1, -t,  s)   -y (s, -1, -t)   -z (-s, -t, -1)
  * as in OpenGL, Direct3D and Vulkan. Bilinear, without seams between faces; negative values count as 0. Read at each execution.
- * NULL removes it. Errors: PEL_ERROR_INVALID_ARGUMENT for another shape or a format that is no colour. */
+ * NULL removes it. Errors: PEL_ERROR_INVALID_ARGUMENT for another shape or a format without colour. */
 PEL_API PelError pelShaderSetAmbientCube(PelShader shader, const PelImageDesc* faces);
 PEL_API PelError pelShaderSetCamera(PelShader shader, const PelCamera* camera);
-/* Checks that everything fits together, derives the features and builds what they need. */
+/* Checks that everything fits together, derives the features and builds the programs that they need. */
 PEL_API PelError pelShaderCommit(PelShader shader);
-/* Shades. Blocking, it tells a progress callback of the device how far it is, about every million pixels; cancelled by it,
+/* Shades. A blocking call reports progress to the device's callback about every million pixels; if that cancels,
  * some pixels are shaded and others not. Errors: PEL_ERROR_CANCELLED; PEL_ERROR_INVALID_STATE when something was set after the last commit. */
 PEL_API PelError pelShaderExecute(PelShader shader, const PelSubmit* submit);
-/* Material `id` as it is shaded: every field that was left to a default has its value. profile comes back NULL. */
+/* Material `id` as it is shaded: every default is replaced by its value. profile is NULL. */
 PEL_API PelError pelShaderGetMaterial(PelShader shader, uint32_t id, PelMaterial* material);
-/* What the last commit found that was set without effect, or unlikely: sentences, one a line; "" if nothing. Valid until the
+/* Warnings of the last commit: settings without effect, and unlikely values. One sentence a line; "" if none. Valid until the
  * shader's next commit or its release. */
 PEL_API PelError pelShaderGetWarnings(PelShader shader, const char** warnings);
 /* Waits for the last execution. */
@@ -984,47 +987,44 @@ PEL_API PelError pelShaderGetStats(PelShader shader, PelShaderStats* stats);
 
 /* ---- Reference ---------------------------------------------------------------------------------------------- */
 
-/* What PelSurfaceIntegralDesc.irradiance belongs to. */
+/* The element that each value of PelSurfaceIntegralDesc.irradiance belongs to. */
 typedef enum PelIrradianceAt {
     PEL_IRRADIANCE_VERTEX = 0,   /* one per vertex, linear on triangles */
     PEL_IRRADIANCE_TRIANGLE = 1, /* one per triangle, constant on it */
     PEL_IRRADIANCE_CORNER = 2    /* one per index: linear on triangles, with steps at edges */
 } PelIrradianceAt;
 
-/* A lit mesh, and where its light is wanted again. Arrays are the host's, read during the call. */
+/* A lit mesh, and the points where the scattered light is wanted. Arrays are the host's, read during the call. */
 typedef struct PelSurfaceIntegralDesc {
     uint32_t structSize;
     uint32_t numVertices;
     const float* positions;  /* xyz per vertex, units of positions */
     const uint32_t* indices; /* numIndices, three per triangle; either order */
     uint64_t numIndices;
-    const float* irradiance; /* RGB, 0 or more, visibility in it: pi times the radiance of a white Lambertian surface, or
-                                 whatever the result is to be in */
+    const float* irradiance; /* RGB, 0 or more, with visibility: pi times the radiance of a white Lambertian surface, or in
+                                 any other unit, which is then that of the result */
     PelIrradianceAt irradianceAt;
     PelProfile profile;       /* NULL: skin */
     float diffusionRadius;    /* unit of the profile, millimetres for skin; 0: the profile's own */
     float millimetresPerUnit; /* units of the profile per unit of positions: 10 for a mesh in centimetres; 1 */
-    float cut[3]; /* unit of the profile; from this distance on R is 0, and what is left of it is scaled to 1 on a
-                                 plane; per channel; 0: R as it is */
-    float tolerance; /* error of the hierarchy, part of the largest irradiance, 1e-7 to 1; 1e-3, which in practice
-                                 leaves 1e-5 */
-    PelVertexView points; /* xyz float32 each, units of positions; on the triangles: a point above them gets less */
+    float cut[3]; /* unit of the profile; from this distance on R is 0, and the rest is scaled to 1 on a
+                                 plane; per channel; 0: R is not cut */
+    float tolerance; /* bound of the error of the hierarchy, relative to the largest irradiance, 1e-7 to 1; 1e-3, which in
+                                 practice gives 1e-5 */
+    PelVertexView points; /* xyz float32 each, units of positions; on the triangles: a point above them gets too little */
     PelVertexView result; /* RGB float32 each, written, in units of irradiance; 0 for a point that is not finite */
 } PelSurfaceIntegralDesc;
 
 /* Light that leaves a surface after diffusing under it: the sum over all of the surface of R(distance) times irradiance, by
- * straight-line distance, not renormalised: what every diffusion method here approximates. Times the albedo it compares with
- * diffuse radiance. Near triangles are integrated exactly for irradiance that is linear on them, however steep R is; far sets
+ * the straight distance, not renormalised. Every diffusion method here approximates this. Multiplied by the albedo it compares
+ * with diffuse radiance. Near triangles are integrated exactly for irradiance that is linear on them, however steep R is; far sets
  * of triangles count as points, with an error of at most `tolerance` on a plane, and in proportion to the area in reach
- * elsewhere. What is left is the mesh: facets, and irradiance that is not linear on them (a shadow's edge wants triangles of a
- * quarter of the narrowest channel's width). Work grows with the number of points and the logarithm of that of triangles.
- * The mesh is sorted on the host before the first point is; blocking calls tell a progress callback of the device how far they
- * are. Same input, same bits. Errors: PEL_ERROR_INVALID_ARGUMENT for numbers that are not finite or negative (the message
+ * elsewhere. The remaining error is that of the mesh: facets, and irradiance that is not linear on them (the edge of a shadow needs
+ * triangles of a quarter of the narrowest channel's width). Work grows with the number of points and the logarithm of that of triangles.
+ * The mesh is sorted on the host first. Blocking calls report progress to the device's callback. Same input, same bits. Errors: PEL_ERROR_INVALID_ARGUMENT for numbers that are not finite or negative (the message
  * names the vertex), indices beyond the vertices, points and result of different length. Source: mathematics, section 9. */
 PEL_API PelError pelSurfaceIntegral(PelDevice device, const PelSurfaceIntegralDesc* desc,
                                     const PelSubmit* submit);
-
-/* ---- Programs ahead of their first use ---------------------------------------------------------------------- */
 
 /* ---- Scattering alone --------------------------------------------------------------------------------------- */
 
@@ -1034,11 +1034,11 @@ typedef struct PelScatterObject* PelScatter;
 
 typedef struct PelScatterParams {
     uint32_t structSize;
-    float targetError; /* share of white by which 99 % of the pixels may differ from what `everywhere` gives, so that pixels and
-                          blocks that change little are left out; below 0.002 it is an aim, not a promise; 0.002 */
+    float targetError; /* share of white by which 99 % of the pixels may differ from the result of `everywhere`: pixels and blocks
+                          that change little are left out; below 0.002 it is an aim, not a promise; 0.002 */
     float white;         /* irradiance that counts as white; 1 */
     uint32_t everywhere; /* 1: leave nothing out anywhere; 0 */
-    float inverseViewProjection[16]; /* clip to world, as in PelCamera. Needed with depth; with positions it tells surface seen at a
+    float inverseViewProjection[16]; /* clip to world, as in PelCamera. Needed with depth; with positions it finds surfaces seen at a
                                         grazing angle, and may be all zero; default */
     uint32_t accumulate; /* 1: the result is added to `out`, which then is another image than the irradiance; 0 */
     uint32_t frameIndex; /* as PelShaderOptions.frameIndex; 0 */
@@ -1060,10 +1060,10 @@ typedef struct PelScatterStats {
     uint64_t pixelsTotal;
     uint64_t pixelsCovered; /* with a material */
     uint64_t pixelsTapped;  /* that were gathered; the others kept their irradiance */
-    uint64_t pixelsInvalid; /* NaN or Inf in irradiance or position: kept as they are, and counted by no neighbour */
-    uint64_t tilesCovered; /* of 16 x 16 pixels */
+    uint64_t pixelsInvalid; /* NaN or Inf in irradiance or position: unchanged, and used by no neighbour */
+    uint64_t tilesCovered;  /* of 16 x 16 pixels */
     uint64_t tilesTapped;
-    uint64_t taps; /* pixels and blocks of pixels that were looked at, modulo 2^32 */
+    uint64_t taps; /* pixels and blocks of pixels that were read, modulo 2^32 */
     uint64_t scratchBytes;
     double deviceMilliseconds;     /* of devices that measure */
     uint64_t tilesByScattering[7]; /* tapped, by PelScatterControls.scattering */
@@ -1073,14 +1073,14 @@ PEL_API PelError pelScatterCreate(PelDevice device, PelScatter* scatter);
 PEL_API void pelScatterRetain(PelScatter scatter);
 PEL_API void pelScatterRelease(PelScatter scatter);
 
-/* Pixels of id 1 to 255 scatter by `profile`, whose lengths count `scale` units of positions each: 1 where positions are in mm, as
- * profiles are, 0.1 for cm; twice that for twice the radius; 0 or a NULL profile: not at all. The object keeps the profile alive. */
+/* Pixels of id 1 to 255 scatter by `profile`, `scale`: units of positions per unit of the profile's lengths: 1 if positions are in mm, as
+ * profiles are, 0.1 for cm; twice that for twice the radius. 0 or a NULL profile: no scattering. The object keeps the profile alive. */
 PEL_API PelError pelScatterSetMaterial(PelScatter scatter, uint32_t id, PelProfile profile, float scale);
 
-/* How pixels of material `id`, which must be set, scatter; NULL: as by default. */
+/* How pixels of material `id`, which must be set, scatter; NULL: the defaults. */
 PEL_API PelError pelScatterSetControls(PelScatter scatter, uint32_t id, const PelScatterControls* controls);
 
-/* An image that executions read beside those they are given, of the same size, until another or NULL takes its place:
+/* A further image for the next executions, of the same size as the others, until it is replaced, or removed by NULL:
  * PEL_SLOT_SCATTER_WEIGHT; PEL_SLOT_IRRADIANCE_BACK; PEL_SLOT_ALBEDO, which the irradiance then is without: the result has it in
  * it, and is radiance where irradiance was irradiance / pi. */
 PEL_API PelError pelScatterSetImage(PelScatter scatter, PelImageSlot slot, const PelImageDesc* image);
@@ -1100,8 +1100,8 @@ PEL_API PelError pelScatterGetStats(PelScatter scatter, PelScatterStats* stats);
 
 /* ---- Scattering in texture space ---------------------------------------------------------------------------- */
 
-/* Irradiance of a mesh, drawn into its texture and scattered there: seen from nowhere, so that it may be kept while neither mesh
- * nor light move. Keeps memory between executions. One thread at a time. Source: d'Eon and Luebke, GPU Gems 3, chapter 14;
+/* Irradiance of a mesh, drawn into its texture and scattered there: independent of the view, so it may be kept while neither mesh
+ * nor light moves. Keeps memory between executions. One thread at a time. Source: d'Eon and Luebke, GPU Gems 3, chapter 14;
  * docs/mathematics.md, section 7. */
 typedef struct PelTextureScatterObject* PelTextureScatter;
 
@@ -1112,8 +1112,8 @@ typedef struct PelTextureScatterDesc {
     uint32_t numVertices;
     const uint32_t* indices; /* numIndices, three per triangle; read during the call only */
     uint64_t numIndices;     /* a multiple of 3 */
-    const float* uvs; /* u, v per vertex, uvStride bytes apart, in [0, 1]; read during the call only. Where triangles lie over each
-                         other in the texture, the later one counts */
+    const float* uvs; /* u, v per vertex, uvStride bytes apart, in [0, 1]; read during the call only. Where triangles overlap in the texture, the
+                         later one counts */
     uint32_t uvStride; /* bytes; 0: 8 */
 } PelTextureScatterDesc;
 
@@ -1124,7 +1124,7 @@ typedef struct PelTextureScatterParams {
     float albedoBefore; /* as in PelMaterial, with the albedo that the execution is given; 0 */
     uint32_t albedoAfter; /* 1: the result is multiplied by albedo^(1 - albedoBefore); 0: whoever samples it does that, as a
                              PelShader does; 0 */
-    uint32_t gaussians; /* 2 to 12: Gaussians that stand for a profile which is no sum of as many or fewer; 6 */
+    uint32_t gaussians; /* 2 to 12: number of Gaussians for profiles that are not a sum of as many or fewer; 6 */
 } PelTextureScatterParams;
 
 typedef struct PelTextureScatterStats {
@@ -1143,14 +1143,14 @@ typedef struct PelTextureScatterStats {
 } PelTextureScatterStats;
 
 /* Errors: PEL_ERROR_INVALID_ARGUMENT for indices beyond the vertices, texture coordinates that are not finite (the message names the
- * vertex) or a size that is no texture's. */
+ * vertex) or a wrong size. */
 PEL_API PelError pelTextureScatterCreate(PelDevice device, const PelTextureScatterDesc* desc,
                                          PelTextureScatter* scatter);
 PEL_API void pelTextureScatterRetain(PelTextureScatter scatter);
 PEL_API void pelTextureScatterRelease(PelTextureScatter scatter);
 
-/* Where the vertices are: xyz float32, numVertices of them. Measures how the texture is stretched over the mesh. Comes before
- * anything else, and again when the mesh moved. */
+/* Where the vertices are: xyz float32, numVertices of them. Measures how the texture is stretched over the mesh. Call it before
+ * anything else, and again when the mesh has moved. */
 PEL_API PelError pelTextureScatterSetPositions(PelTextureScatter scatter, const PelVertexView* positions,
                                                const PelSubmit* submit);
 
@@ -1161,9 +1161,9 @@ PEL_API PelError pelTextureScatterSetPositions(PelTextureScatter scatter, const 
 PEL_API PelError pelTextureScatterDraw(PelTextureScatter scatter, const PelVertexView* values, uint32_t unit,
                                        const PelImageDesc* out, const PelSubmit* submit);
 
-/* `irradiance`: RGB, of the texture's size, the host's own or a drawn one; only texels in triangles count. `albedo`: likewise, or
+/* `irradiance`: RGB, of the texture's size, the host's own or a drawn one; only texels in triangles count. `albedo`: the same, or
  * NULL: 1. `out`: RGB or RGBA, float or half, written, may be the irradiance: scattered irradiance, also within two texels round
- * triangles. Across seams of the texture nothing flows; nothing darkens there either. `params` may be NULL. */
+ * triangles. No light flows across seams of the texture, but they do not darken. `params` may be NULL. */
 PEL_API PelError pelTextureScatterExecute(PelTextureScatter scatter, const PelTextureScatterParams* params,
                                           const PelImageDesc* irradiance, const PelImageDesc* albedo,
                                           const PelImageDesc* out, const PelSubmit* submit);
@@ -1171,29 +1171,31 @@ PEL_API PelError pelTextureScatterExecute(PelTextureScatter scatter, const PelTe
 /* Of the last execution; waits for it. */
 PEL_API PelError pelTextureScatterGetStats(PelTextureScatter scatter, PelTextureScatterStats* stats);
 
-/* Groups of programs that do not depend on a G-buffer; bits of PelPrefill.groups. */
+/* ---- Warm-up ------------------------------------------------------------------------------------------------ */
+
+/* Groups of programs that do not depend on a G-buffer; bits of PelWarmUp.groups. */
 typedef enum PelProgramGroup {
     PEL_PROGRAMS_LUTS = 1 << 0, /* curvature, shadow and specular tables of sums of Gaussians, and their encodings */
-    PEL_PROGRAMS_TABLE_LUTS = 1 << 1, /* tables of profiles that are not such sums */
-    PEL_PROGRAMS_CURVATURE = 1 << 2   /* of meshes by every estimator, smoothing, UV scale */
+    PEL_PROGRAMS_TABULATED_LUTS = 1 << 1, /* tables of tabulated profiles, which are not such sums */
+    PEL_PROGRAMS_CURVATURE = 1 << 2       /* of meshes by every estimator, smoothing, UV scale */
 } PelProgramGroup;
 
-typedef struct PelPrefill {
+typedef struct PelWarmUp {
     uint32_t structSize;
     uint32_t groups; /* PelProgramGroup bits; 0: none */
-    const PelShader* shaders; /* numShaders of this device, with images, materials and lights set as for a commit; nothing of
-                                 theirs is written, and only the formats and packing of images matter: 16 x 1 pixels stand
-                                 for a frame */
+    const PelShader* shaders; /* numShaders of this device, with images, materials and lights set as for a commit. Nothing is
+                                 written to them, and only the formats and packing of images matter: 16 x 1 pixels can
+                                 represent a frame */
     uint32_t numShaders;
-    uint32_t threads; /* that build at a time; 0: one per core, at most one per program. PoCL builds one by one */
-} PelPrefill;
+    uint32_t threads; /* that build at the same time; 0: one per core, at most one per program. PoCL builds one by one */
+} PelWarmUp;
 
-/* Builds the programs that the described work will need, so that neither the first commit nor the first execution pays for
- * it, and launches each kernel on nothing, since some drivers compile only then. The driver's own cache on disk, where it has
- * one, keeps the result for later processes. Tells a progress callback of the device how far it is; cancelled by it, what was
- * built so far stays. `built`, if not NULL, receives the number of programs that were not there before. Errors:
- * PEL_ERROR_INVALID_ARGUMENT as a shader's commit would return it; PEL_ERROR_CANCELLED. */
-PEL_API PelError pelPrefillPrograms(PelDevice device, const PelPrefill* work, uint32_t* built);
+/* Builds the programs that the described work will need, so that the first commit and the first execution do not wait for
+ * them, and launches each kernel on nothing, since some drivers compile only then. If the driver has a cache on disk, it
+ * keeps the result for later processes. Reports progress to the device's callback; if that cancels, programs built so far are
+ * kept. `built`, if not NULL, receives the number of programs that were not there before. Errors:
+ * PEL_ERROR_INVALID_ARGUMENT as from a shader's commit; PEL_ERROR_CANCELLED. */
+PEL_API PelError pelWarmUpPrograms(PelDevice device, const PelWarmUp* work, uint32_t* built);
 
 #include "pellucid_defaults.h"
 

@@ -463,19 +463,19 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
     }
 };
 
-// Builds programs before they are needed (pelPrefillPrograms): those of the groups (PelProgramGroup bits), and those that the
+// Builds programs before they are needed (pelWarmUpPrograms): those of the groups (PelProgramGroup bits), and those that the
 // shaders would build at their commit. Returns how many were not there before.
-inline uint32_t prefillPrograms(const Device& device, uint32_t groups,
-                                const std::vector<Shader>& shaders = {}, uint32_t threads = 0) {
+inline uint32_t warmUpPrograms(const Device& device, uint32_t groups, const std::vector<Shader>& shaders = {},
+                               uint32_t threads = 0) {
     std::vector<PelShader> handles;
     for (const Shader& shader : shaders) handles.push_back(shader.get());
-    PelPrefill work = pelPrefillDefaults();
+    PelWarmUp work = pelWarmUpDefaults();
     work.groups = groups;
     work.shaders = handles.data();
     work.numShaders = uint32_t(handles.size());
     work.threads = threads;
     uint32_t built = 0;
-    check(pelPrefillPrograms(device.get(), &work, &built));
+    check(pelWarmUpPrograms(device.get(), &work, &built));
     return built;
 }
 

@@ -138,7 +138,7 @@ static inline PelSurfaceIntegralDesc pelSurfaceIntegralDescDefaults(void) {
     s.tolerance = 1e-3f;
     return s;
 }
-static inline PelPrefill pelPrefillDefaults(void) { PEL_ZEROED_(PelPrefill, s); return s; }
+static inline PelWarmUp pelWarmUpDefaults(void) { PEL_ZEROED_(PelWarmUp, s); return s; }
 /* clang-format on */
 
 #undef PEL_ZEROED_

@@ -33,8 +33,8 @@ cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* dev
 
 namespace {
 
-PelPrefill workOf(const std::vector<PelShader>& shaders, uint32_t groups = 0) {
-    PelPrefill work = pelPrefillDefaults();
+PelWarmUp workOf(const std::vector<PelShader>& shaders, uint32_t groups = 0) {
+    PelWarmUp work = pelWarmUpDefaults();
     work.groups = groups;
     work.shaders = shaders.data();
     work.numShaders = uint32_t(shaders.size());
@@ -73,7 +73,7 @@ struct Telling {
     }
 };
 
-TEST(Prefill, ACommitAndAnExecutionFindEverythingBuilt) {
+TEST(WarmUp, ACommitAndAnExecutionFindEverythingBuilt) {
     const Device own("");
     const Tables tables = makeTables(own, 32, 32);
     // 16 x 2 pixels stand for a frame of the same formats.
@@ -84,9 +84,9 @@ TEST(Prefill, ACommitAndAnExecutionFindEverythingBuilt) {
     pellucid::check(pelDeviceSetProgress(own.get(), Telling::tell, &telling));
     builds = 0;
     const std::vector<PelShader> shaders{small.shader.get()};
-    const PelPrefill work = workOf(shaders);
+    const PelWarmUp work = workOf(shaders);
     uint32_t built = 0;
-    pellucid::check(pelPrefillPrograms(own.get(), &work, &built));
+    pellucid::check(pelWarmUpPrograms(own.get(), &work, &built));
     EXPECT_EQ(built, 4u) << "two variants, blur, wide shadow";
     EXPECT_EQ(int(built), builds.load());
     ASSERT_GE(telling.fractions.size(), 2u);
@@ -104,16 +104,16 @@ TEST(Prefill, ACommitAndAnExecutionFindEverythingBuilt) {
     EXPECT_EQ(large.shader.stats().programsBuilt, 0u);
     const auto shaded = large.target.readAll<float>();
     EXPECT_GT(*std::max_element(shaded.begin(), shaded.end()), 0.01f);
-    pellucid::check(pelPrefillPrograms(own.get(), &work, &built));
+    pellucid::check(pelWarmUpPrograms(own.get(), &work, &built));
     EXPECT_EQ(built, 0u) << "all is there";
 }
 
-TEST(Prefill, TablesAndCurvatureFindEverythingBuilt) {
+TEST(WarmUp, TablesAndCurvatureFindEverythingBuilt) {
     const Device own("");
     Telling telling;
     pellucid::check(pelDeviceSetProgress(own.get(), Telling::tell, &telling));
     const uint32_t built =
-        pellucid::prefillPrograms(own, PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABLE_LUTS | PEL_PROGRAMS_CURVATURE);
+        pellucid::warmUpPrograms(own, PEL_PROGRAMS_LUTS | PEL_PROGRAMS_TABULATED_LUTS | PEL_PROGRAMS_CURVATURE);
     EXPECT_GE(built, 10u);
     EXPECT_TRUE(std::is_sorted(telling.fractions.begin(), telling.fractions.end()));
     pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));
@@ -151,44 +151,44 @@ TEST(Prefill, TablesAndCurvatureFindEverythingBuilt) {
     EXPECT_EQ(builds.load(), 0);
 }
 
-TEST(Prefill, CanBeStoppedAndGoneOnWith) {
+TEST(WarmUp, CanBeStoppedAndGoneOnWith) {
     const Device own("");
     Telling telling;
     telling.stopAt = 3;
     pellucid::check(pelDeviceSetProgress(own.get(), Telling::tell, &telling));
-    PelPrefill work = workOf({}, PEL_PROGRAMS_LUTS);
+    PelWarmUp work = workOf({}, PEL_PROGRAMS_LUTS);
     work.threads = 2;
     uint32_t built = 77;
-    EXPECT_EQ(pelPrefillPrograms(own.get(), &work, &built), PEL_ERROR_CANCELLED);
+    EXPECT_EQ(pelWarmUpPrograms(own.get(), &work, &built), PEL_ERROR_CANCELLED);
     EXPECT_EQ(built, 77u) << "no output is written on an error";
     pellucid::check(pelDeviceSetProgress(own.get(), nullptr, nullptr));
-    pellucid::check(pelPrefillPrograms(own.get(), &work, &built));
+    pellucid::check(pelWarmUpPrograms(own.get(), &work, &built));
     EXPECT_LT(built, 7u) << "what was built before the stop is kept: all of it, where builders were faster "
                             "than the one who tells";
 }
 
-TEST(Prefill, SaysWhatIsWrong) {
+TEST(WarmUp, SaysWhatIsWrong) {
     const Device own(""), other("");
     Shader empty(own), foreign(other);
-    PelPrefill work = workOf({}, 64);
-    EXPECT_EQ(pelPrefillPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    PelWarmUp work = workOf({}, 64);
+    EXPECT_EQ(pelWarmUpPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
     EXPECT_NE(std::string(pelGetErrorMessage()).find("PelProgramGroup"), std::string::npos);
     work = workOf({});
     work.numShaders = 1;
     work.shaders = nullptr;
-    EXPECT_EQ(pelPrefillPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(pelWarmUpPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
     const PelShader foreignHandle = foreign.get(), emptyHandle = empty.get();
     work.shaders = &foreignHandle;
-    EXPECT_EQ(pelPrefillPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(pelWarmUpPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
     EXPECT_NE(std::string(pelGetErrorMessage()).find("another PelDevice"), std::string::npos);
     work.shaders = &emptyHandle;
-    EXPECT_EQ(pelPrefillPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(pelWarmUpPrograms(own.get(), &work, nullptr), PEL_ERROR_INVALID_ARGUMENT);
     EXPECT_NE(std::string(pelGetErrorMessage()).find("radiance image is needed"), std::string::npos);
     work = workOf({});
     uint32_t built = 9;
-    EXPECT_EQ(pelPrefillPrograms(own.get(), &work, &built), PEL_SUCCESS);
+    EXPECT_EQ(pelWarmUpPrograms(own.get(), &work, &built), PEL_SUCCESS);
     EXPECT_EQ(built, 0u);
-    EXPECT_EQ(pelPrefillPrograms(own.get(), nullptr, nullptr), PEL_ERROR_INVALID_ARGUMENT);
+    EXPECT_EQ(pelWarmUpPrograms(own.get(), nullptr, nullptr), PEL_ERROR_INVALID_ARGUMENT);
 }
 
 }  // namespace

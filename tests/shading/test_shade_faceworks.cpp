@@ -18,9 +18,9 @@ double linear(double s) {
     return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
 }
 
-// The peer's 20,000 pixels as a frame. Its light has another direction in each; ours has one, +z: `turned` gives vectors in a
+// FaceWorks' 20,000 pixels as a frame. Its light has another direction in each; ours has one, +z: `turned` gives vectors in a
 // frame of the pixel's own in which that is so.
-class ShadePeer : public testing::Test {
+class ShadeFaceWorks : public testing::Test {
   protected:
     void SetUp() override {
         REQUIRE_ORACLE_DIRECTORY(directory);
@@ -85,7 +85,7 @@ class ShadePeer : public testing::Test {
         shader.commit().execute();
         return thickness ? lengths.readAll<float>() : target.readAll<float>();
     }
-    // Largest difference of RGB pixels from the peer's outputs first, first + 1, ...
+    // Largest difference of RGB pixels from FaceWorks' outputs first, first + 1, ...
     double worst(const std::vector<float>& ours, int first, int count, int stride = 3) const {
         double largest = 0;
         for (size_t i = 0; i < frame_.pixels(); ++i)
@@ -105,21 +105,21 @@ class ShadePeer : public testing::Test {
     Frame frame_;
 };
 
-TEST_F(ShadePeer, Direct) {
+TEST_F(ShadeFaceWorks, Direct) {
     normals();
     fill(PEL_SLOT_CURVATURE, 1, [&](size_t i) { return Vec3{in_.row(i)[12], 0, 0}; });
-    EXPECT_LE(worst(run(), 0, 3), tolerance::peerDirect);
+    EXPECT_LE(worst(run(), 0, 3), tolerance::faceWorksDirect);
 }
 
-TEST_F(ShadePeer, Shadow) {
+TEST_F(ShadeFaceWorks, Shadow) {
     normals();
     frame_.curvatureLut = false;
     fill(PEL_SLOT_NORMAL_SHADING, 3, [](size_t) { return Vec3{0, 0, 1}; });  // a direct term of 1
     fillImage(frame_.lights[0].wide, 1, [&](size_t i) { return Vec3{in_.row(i)[13], 0, 0}; });
-    EXPECT_LE(worst(run(), 3, 3), tolerance::peerPass);
+    EXPECT_LE(worst(run(), 3, 3), tolerance::faceWorksPass);
 }
 
-TEST_F(ShadePeer, AmbientNormals) {
+TEST_F(ShadeFaceWorks, AmbientNormals) {
     fill(PEL_SLOT_NORMAL_SHADING, 3, [&](size_t i) { return in(i, 3); });
     fill(PEL_SLOT_NORMAL_BLURRED, 3, [&](size_t i) { return in(i, 6); });
     frame_.lights.clear();
@@ -136,20 +136,20 @@ TEST_F(ShadePeer, AmbientNormals) {
                 largest = std::max(
                     largest, std::abs(2.0 * (shown[3 * i + size_t(c)] - 1.0) - out_.row(i)[7 + 3 * c + axis]));
     }
-    EXPECT_LE(largest, tolerance::peerPass);
+    EXPECT_LE(largest, tolerance::faceWorksPass);
 }
 
-TEST_F(ShadePeer, DeepScatterOfAGivenThickness) {
+TEST_F(ShadeFaceWorks, DeepScatterOfAGivenThickness) {
     normals();
     fill(PEL_SLOT_NORMAL_SHADING, 3, [](size_t) { return Vec3{0, 0, -1}; });  // no direct light
     frame_.curvatureLut = frame_.shadowLut = false;
     fill(PEL_SLOT_THICKNESS, 1, [&](size_t i) { return Vec3{in_.row(i)[15], 0, 0}; });
     for (float& c : frame_.materials[1].deepScatterColor) c = 1;
-    EXPECT_LE(worst(run(), 23, 1), tolerance::peerPass + 0x1p-16);
+    EXPECT_LE(worst(run(), 23, 1), tolerance::faceWorksPass + 0x1p-16);
 }
 
 // The taps lie elsewhere in the same disk.
-TEST_F(ShadePeer, ThicknessOnAverage) {
+TEST_F(ShadeFaceWorks, ThicknessOnAverage) {
     fill(PEL_SLOT_NORMAL_SHADING, 3, [](size_t) { return Vec3{0, 0, 1}; });
     fill(PEL_SLOT_POSITION, 3, [&](size_t i) { return in(i, 16); });
     frame_.curvatureLut = frame_.shadowLut = false;
@@ -175,10 +175,10 @@ TEST_F(ShadePeer, ThicknessOnAverage) {
                 theirs += out_.row(i)[column];
                 apart += std::pow(ours[i] - out_.row(i)[column], 2);
             }
-            EXPECT_NEAR(sum / theirs, 1, tolerance::peerTapsMean) << taps;
+            EXPECT_NEAR(sum / theirs, 1, tolerance::faceWorksTapsMean) << taps;
             EXPECT_LT(std::sqrt(apart / double(frame_.pixels())),
-                      tolerance::peerTapsRms * theirs / double(frame_.pixels()));
-            std::printf("%d taps, %s: mean %.5f of the peer's, RMS difference %.4f of it\n", taps,
+                      tolerance::faceWorksTapsRms * theirs / double(frame_.pixels()));
+            std::printf("%d taps, %s: mean %.5f of FaceWorks', RMS difference %.4f of it\n", taps,
                         perspective ? "perspective" : "parallel", sum / theirs,
                         std::sqrt(apart / double(frame_.pixels())) / (theirs / double(frame_.pixels())));
         }

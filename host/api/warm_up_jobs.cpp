@@ -1,4 +1,4 @@
-#include "api/prefill_programs.h"
+#include "api/warm_up_jobs.h"
 
 #include <condition_variable>
 #include <exception>
@@ -27,7 +27,7 @@ PelShadowLutDesc smallShadowLut() {
     return desc;
 }
 
-void lutJobs(const Ref<Device>& device, PrefillJobs& jobs) {
+void lutJobs(const Ref<Device>& device, WarmUpJobs& jobs) {
     for (const PelCurvatureForm form :
          {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_PENNER_RING, PEL_FORM_ARC})
         jobs.push_back([device, form] { integrateCurvatureLut(device, smallCurvatureLut(form)); });
@@ -43,7 +43,7 @@ void lutJobs(const Ref<Device>& device, PrefillJobs& jobs) {
 }
 
 // A profile that is not a sum of Gaussians.
-void tableLutJobs(const Ref<Device>& device, PrefillJobs& jobs) {
+void tableLutJobs(const Ref<Device>& device, WarmUpJobs& jobs) {
     const std::vector<float> radii{0, 1, 3}, values{1, 1, 1, 0.5, 0.4, 0.3, 0, 0, 0};
     const Ref<Profile> profile = Profile::table(radii.data(), values.data(), uint32_t(radii.size()));
     for (const PelCurvatureForm form :
@@ -84,7 +84,7 @@ struct SmallMesh {
     VertexView view(uint32_t words) const { return {memory, {4, 0, words, 0}}; }
 };
 
-void curvatureJobs(const Ref<Device>& device, PrefillJobs& jobs) {
+void curvatureJobs(const Ref<Device>& device, WarmUpJobs& jobs) {
     for (const bool welded : {false, true})
         for (const PelCurvatureEstimator estimator :
              {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC})
@@ -107,15 +107,15 @@ void curvatureJobs(const Ref<Device>& device, PrefillJobs& jobs) {
 
 }  // namespace
 
-PrefillJobs prefillGroups(const Ref<Device>& device, uint32_t groups) {
-    PrefillJobs jobs;
+WarmUpJobs jobsOfGroups(const Ref<Device>& device, uint32_t groups) {
+    WarmUpJobs jobs;
     if (groups & PEL_PROGRAMS_LUTS) lutJobs(device, jobs);
-    if (groups & PEL_PROGRAMS_TABLE_LUTS) tableLutJobs(device, jobs);
+    if (groups & PEL_PROGRAMS_TABULATED_LUTS) tableLutJobs(device, jobs);
     if (groups & PEL_PROGRAMS_CURVATURE) curvatureJobs(device, jobs);
     return jobs;
 }
 
-void runPrefill(Device& device, const PrefillJobs& jobs, uint32_t threads) {
+void runJobs(Device& device, const WarmUpJobs& jobs, uint32_t threads) {
     std::mutex mutex;
     std::condition_variable changed;
     size_t next = 0, done = 0, running = 0;

@@ -1,4 +1,4 @@
-// Warm-up: builds programs before they are needed (pelPrefillPrograms).
+// Warm-up: builds programs before they are needed (pelWarmUpPrograms).
 #pragma once
 #include <functional>
 #include <vector>
@@ -9,12 +9,12 @@ namespace pel {
 
 // Jobs that may run at the same time, in any order. Each builds programs and launches their kernels on
 // nothing, or on the smallest possible input.
-using PrefillJobs = std::vector<std::function<void()>>;
+using WarmUpJobs = std::vector<std::function<void()>>;
 
-PrefillJobs prefillGroups(const Ref<Device>& device, uint32_t groups);
+WarmUpJobs jobsOfGroups(const Ref<Device>& device, uint32_t groups);
 
 // Runs them on `threads` threads (0: one per core), reports progress to the device's callback, and throws the
 // first error. Jobs that have not begun by then are left out.
-void runPrefill(Device& device, const PrefillJobs& jobs, uint32_t threads);
+void runJobs(Device& device, const WarmUpJobs& jobs, uint32_t threads);
 
 }  // namespace pel
