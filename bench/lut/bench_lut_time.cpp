@@ -10,10 +10,12 @@
 
 #include "lut_kernels.h"
 #include "reference/lut.h"
+#include "shared/choices.h"
 
 namespace {
 
 constexpr int side = bench::ArcTable::side;
+#define FORM(name, number, key) "-DPEL_FORM_" #name "=" #number " "
 const std::string kernels = PELLUCID_SOURCE_DIR "/kernels/", own = PELLUCID_SOURCE_DIR "/bench/lut/";
 
 bench::Runner& runner() {
@@ -83,8 +85,8 @@ void ours(benchmark::State& state) {
     const int nodes = int(state.range(0)), points = int(state.range(1));
     bench::ArcTable table;
     const std::string defines =
-        "-DPEL_FORM=0 -DPEL_GROUP=1 -DPEL_COLUMNS=256 -DPEL_NODES=" + std::to_string(nodes) +
-        " -DPEL_POINTS=" + std::to_string(points);
+        PEL_EACH_CURVATURE_FORM(FORM) "-DPEL_FORM=0 -DPEL_GROUP=1 -DPEL_COLUMNS=256 -DPEL_NODES=" +
+        std::to_string(nodes) + " -DPEL_POINTS=" + std::to_string(points);
     cl_kernel rows = runner().kernel(kernels + "lut/curvature_lut.cl", "curvature_rows", defines);
     cl_kernel fill = runner().kernel(kernels + "lut/curvature_lut.cl", "curvature_texels", defines);
     const cl_mem gaussians = runner().upload(table.gaussians),

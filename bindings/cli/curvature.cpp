@@ -6,6 +6,7 @@
 #include "command.h"
 #include "curvature_picture.h"
 #include "io/atomic_file.h"
+#include "io/choice_keys.h"
 #include "io/file_error.h"
 #include "io/image/image_file.h"
 #include "io/input_file.h"
@@ -24,25 +25,6 @@ struct Arguments {
     bool orient = false;
     std::vector<float> range;  // of colours: low, high; empty: from the values
 };
-
-const std::map<std::string, PelCurvatureEstimator> estimators = {
-    {"edge", PEL_CURVATURE_EDGE}, {"tensor", PEL_CURVATURE_TENSOR}, {"quadric", PEL_CURVATURE_QUADRIC}};
-
-const std::map<std::string, PelCurvatureQuantity> quantities = {
-    {"absolute", PEL_QUANTITY_ABSOLUTE},     {"absolute-max", PEL_QUANTITY_ABSOLUTE_MAX},
-    {"curvedness", PEL_QUANTITY_CURVEDNESS}, {"mean", PEL_QUANTITY_MEAN},
-    {"gaussian", PEL_QUANTITY_GAUSSIAN},     {"first", PEL_QUANTITY_FIRST},
-    {"second", PEL_QUANTITY_SECOND}};
-
-const std::map<std::string, PelSmoothingWeights> weights = {{"cotangent", PEL_SMOOTHING_COTANGENT},
-                                                            {"area", PEL_SMOOTHING_AREA}};
-
-template <class T>
-std::vector<std::string> namesOf(const std::map<std::string, T>& values) {
-    std::vector<std::string> names;
-    for (const auto& [name, value] : values) names.push_back(name);
-    return names;
-}
 
 bool isSigned(PelCurvatureQuantity quantity) {
     return quantity >= PEL_QUANTITY_MEAN;
@@ -79,9 +61,9 @@ void run(const Arguments& a) {
                          ": two finite numbers are needed, the lower one first");
     const MeshWeldChoice weld = weldChoice(a.weld);
     PelCurvatureParams params = a.params;
-    params.estimator = estimators.at(a.estimator);
-    params.quantity = quantities.at(a.quantity);
-    params.smoothingWeights = weights.at(a.smoothingWeights);
+    params.estimator = chosen<PelCurvatureEstimator>(io::estimators, a.estimator);
+    params.quantity = chosen<PelCurvatureQuantity>(io::quantities, a.quantity);
+    params.smoothingWeights = chosen<PelSmoothingWeights>(io::smoothingWeights, a.smoothingWeights);
     params.smoothingCrease = float(a.creaseDegrees * 3.14159265358979 / 180);
     Run run(a.run);
     io::MeshLoadOptions load;
@@ -135,10 +117,10 @@ void addCurvature(CLI::App& app) {
                      "file to write: .npy (one float32 per vertex) or .ply (with colours)")
         ->required();
     command->add_option("--estimator", a->estimator, "how curvature is estimated")
-        ->check(CLI::IsMember(namesOf(estimators)))
+        ->check(isOneOf(io::estimators))
         ->capture_default_str();
     command->add_option("--quantity", a->quantity, "what is made of the principal curvatures")
-        ->check(CLI::IsMember(namesOf(quantities)))
+        ->check(isOneOf(io::quantities))
         ->capture_default_str();
     command->add_option("--weld", a->weld, "vertices at one place are one: none, exact, or within a length")
         ->capture_default_str();
@@ -154,7 +136,7 @@ void addCurvature(CLI::App& app) {
     command
         ->add_option("--smooth-weights", a->smoothingWeights,
                      "with --smooth-radius: how neighbours are weighed")
-        ->check(CLI::IsMember(namesOf(weights)))
+        ->check(isOneOf(io::smoothingWeights))
         ->capture_default_str();
     command->add_option("--picture", a->picture,
                         "PNG to write as well: the mesh coloured by the values, with a colour bar");

@@ -1,4 +1,5 @@
 // pellucid lut curvature|shadow: integrates a look-up table and writes it.
+#include "io/choice_keys.h"
 #include "io/lut/lut_file.h"
 #include "io/lut/profile_file.h"
 
@@ -10,16 +11,6 @@
 
 namespace pellucid::cli {
 namespace {
-
-const std::map<std::string, PelLutEncoding> encodings{
-    {"float", PEL_LUT_FLOAT}, {"half", PEL_LUT_HALF}, {"faceworks8", PEL_LUT_FACEWORKS8}};
-
-const std::map<std::string, PelCurvatureForm> forms{{"arc", PEL_FORM_ARC},
-                                                    {"ring", PEL_FORM_RING},
-                                                    {"half-ring", PEL_FORM_HALF_RING},
-                                                    {"sphere", PEL_FORM_SPHERE},
-                                                    {"penner-ring", PEL_FORM_PENNER_RING}};
-const std::map<std::string, PelLutAxis> axes{{"linear", PEL_AXIS_LINEAR}, {"root", PEL_AXIS_ROOT}};
 
 struct Arguments {
     Run::Options run;
@@ -53,7 +44,8 @@ void integrate(Arguments& arguments, Desc& desc) {
     const bool bc6h = arguments.encoding == "bc6h";
     const bool picture = arguments.encoding.empty() && isPicture(arguments.output);
     std::optional<PelLutEncoding> encoding;
-    if (!arguments.encoding.empty() && !bc6h) encoding = encodings.at(arguments.encoding);
+    if (!arguments.encoding.empty() && !bc6h)
+        encoding = chosen<PelLutEncoding>(io::lutEncodings, arguments.encoding);
     try {
         if (bc6h)
             io::checkLutPathBc6h(arguments.output);
@@ -97,7 +89,7 @@ void addCommon(CLI::App& command, Arguments& a) {
                     "float, half, faceworks8 (.png, .bmp, .tga for engines), or bc6h for .dds and .ktx2 "
                     "(default: float for .exr "
                     "and .npy, half for .dds and .ktx2; a .png without it is a picture to look at)")
-        ->check(CLI::IsMember({"float", "half", "faceworks8", "bc6h"}));
+        ->check(isOneOf(io::lutEncodings, {"bc6h"}));
     addRunOptions(command, a.run);
 }
 
@@ -124,17 +116,17 @@ void addLut(CLI::App& app) {
     curvature->add_option("--radius-max", a->curvature.radiusMax, "largest radius of curvature, mm")
         ->capture_default_str();
     curvature->add_option("--form", a->form, "geometry that light is integrated over")
-        ->check(CLI::IsMember({"arc", "ring", "half-ring", "sphere", "penner-ring"}))
+        ->check(isOneOf(io::curvatureForms))
         ->capture_default_str();
     curvature
         ->add_option("--axis", a->axis, "spread of texels: linear, or root (small tables look up better)")
-        ->check(CLI::IsMember({"linear", "root"}))
+        ->check(isOneOf(io::lutAxes))
         ->capture_default_str();
     curvature->callback([a, curvatureRadius] {
         a->radius = curvatureRadius;
         const Profile profile = takeProfile(*a, a->curvature);
-        a->curvature.form = forms.at(a->form);
-        a->curvature.axis = axes.at(a->axis);
+        a->curvature.form = chosen<PelCurvatureForm>(io::curvatureForms, a->form);
+        a->curvature.axis = chosen<PelLutAxis>(io::lutAxes, a->axis);
         integrate(*a, a->curvature);
     });
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/launch_policy.h"
 #include "shading/launch_ranges.h"
 #include "shading/shading_constants.h"
 
@@ -180,7 +181,7 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
     cl::Launch scatter(programs[SCATTER], "scatter_screen");
     scatter.arg(frameMemory_).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_);
     scatter.arg(memory(images.irradiance)).arg(memory(images.out)).arg(counters_);
-    const size_t groups = std::min<size_t>(tiles, 64 * size_t(device_->info().computeUnits));
+    const size_t groups = groupsFor(*device_, tiles);
     launch(scatter, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
     if (!light_.empty()) light_.enqueueSums(images, this->memory(), events);
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/handle_table.h"
+#include "core/launch_policy.h"
 #include "diffusion/surface_tree.h"
 
 namespace pel {
@@ -131,7 +132,7 @@ void surfaceIntegral(Device& device, const PelSurfaceIntegralDesc& desc, const V
     };
     const cl::Memory nodes = upload(tree.nodes), triangles = upload(tree.triangles), rows = upload(table.rows);
     const uint32_t lanes = device.info().mathWidth;
-    const size_t group = lanes > 1 ? 1 : 64;
+    const size_t group = launchPolicy(device).group;
     const cl::Program program =
         device.programs().get("diffusion/surface_integral.cl", {{"PEL_GROUP", text(group)}});
     const uint32_t count = points.layout.count;

@@ -20,14 +20,7 @@
 
 namespace pellucid::io {
 namespace fs = std::filesystem;
-namespace {
-
-// Seconds since the last write after which a temporary file counts as abandoned: for writers whose locks this
-// program can see, and for others.
-constexpr double lockedAge = 60, foreignAge = 86400;
-
-// The machine whose locks this program can see: everything under this kernel, including containers. 8
-// hexadecimal digits. bindings/python/pellucid/batch/ store.py makes the same.
+// 8 hexadecimal digits; see the header.
 const std::string& machineTag() {
     static const std::string tag = [] {
         std::string name;
@@ -37,10 +30,16 @@ const std::string& machineTag() {
             ::gethostname(host, sizeof host - 1);
             name = host;
         }
-        return ContentHash().add(name).text().substr(0, 8);
+        return hexDigits(contentHash(name)).substr(0, 8);
     }();
     return tag;
 }
+
+namespace {
+
+// Seconds since the last write after which a temporary file counts as abandoned: for writers whose locks this
+// program can see, and for others.
+constexpr double lockedAge = 60, foreignAge = 86400;
 
 // 64 random bits that nobody can predict.
 std::string randomDigits() {

@@ -37,6 +37,10 @@ void writeWholeFile(const std::string& path, std::string_view bytes);
 // Waits until the names in a folder are on the disk, if the file system can do that; throws FileError.
 void flushFolder(const std::string& path);
 
+// The part of temporary names that says whose locks this program can see: everything under this kernel,
+// including containers. 8 hexadecimal digits.
+const std::string& machineTag();
+
 // Removes what killed programs left in a folder: temporary files that nobody locks, a minute after they were
 // last written; and those of other machines, whose locks are not visible everywhere, after a day. Returns how
 // many.

@@ -3,13 +3,18 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/launch_policy.h"
 #include "lut/lut_check.h"
 #include "lut/lut_terms.h"
 #include "lut/luts.h"
 #include "lut/tabulated_luts.h"
+#include "shared/choices.h"
 
 namespace pel {
 namespace {
+
+// What the kernel calls the forms.
+#define NUMBER(name, number, key) {"PEL_FORM_" #name, #number},
 
 // Cubic Hermite interpolation between nodes, for each column of the unlit half.
 std::vector<LutColumn> columnsOf(uint32_t width, PelLutAxis axis, int nodes) {
@@ -64,18 +69,17 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
         terms = {{float(1e-8 / std::max(1.0, curvatureMax)), 1, 1, 1}};
 
     const uint32_t lanes = device->info().mathWidth;
-    const bool wide = lanes > 1;  // a CPU: long work-items; otherwise many
-    const size_t group = wide ? 1 : 64, columnsPerItem = wide ? 256 : 1;
-    const cl::Program program =
-        device->programs().get("lut/curvature_lut.cl", {{"PEL_FORM", std::to_string(int(desc.form))},
-                                                        {"PEL_GROUP", std::to_string(group)},
-                                                        {"PEL_NODES", std::to_string(quality.nodes)},
-                                                        {"PEL_POINTS", std::to_string(quality.points)},
-                                                        {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
+    const auto [group, columnsPerItem, unused] = launchPolicy(*device);
+    const cl::Program program = device->programs().get(
+        "lut/curvature_lut.cl", {PEL_EACH_CURVATURE_FORM(NUMBER){"PEL_FORM", std::to_string(int(desc.form))},
+                                 {"PEL_GROUP", std::to_string(group)},
+                                 {"PEL_NODES", std::to_string(quality.nodes)},
+                                 {"PEL_POINTS", std::to_string(quality.points)},
+                                 {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
     const std::vector<LutColumn> columnWeights = columnsOf(desc.width, desc.axis, quality.nodes);
     const cl::Memory gaussians = upload(*device, terms), nodes = upload(*device, meshOfNodes(quality.nodes)),
                      columns = upload(*device, columnWeights);
-    const size_t record = 2 * quality.nodes + 5;
+    const size_t record = PEL_CURVATURE_RECORD(quality.nodes);
     const cl::Memory rows = device->allocate(record * desc.height * sizeof(cl_float4));
     const CurvatureLutParams params = paramsOf(desc, curvatureMin, curvatureMax, terms.size());
 

@@ -1,9 +1,9 @@
 #include "lut/lut.h"
 
-#include <cmath>
 #include <cstring>
 
 #include "core/handle_table.h"
+#include "lut/lut_terms.h"
 
 namespace pel {
 namespace {
@@ -53,15 +53,9 @@ LutLayout layoutOf(const PelLutInfo& info) {
             break;
     }
     layout.rowTexels = layout.width + 1;
-    const bool root = layout.axis == PEL_LUT_AXIS_ROOT;
-    const double first = root ? std::sqrt(1 / longest) : 1 / longest;
-    const double last = root ? std::sqrt(1 / shortest) : 1 / shortest;
-    // On the linear axis values are in the middle of texels, as in FaceWorks. On the square-root axis they
-    // reach the ends of the axis, so that no look-up within the range is clamped.
-    const double rows = root ? layout.height - 1.0 : layout.height;
-    const double scale = last > first ? rows / (last - first) : 0.0;
-    layout.rowMin = float(root && scale > 0 ? first - 0.5 / scale : first);
-    layout.rowScale = float(scale);
+    const RowAxis rows = rowAxis(PelLutAxis(layout.axis), layout.height, 1 / longest, 1 / shortest);
+    layout.rowMin = float(rows.min);
+    layout.rowScale = float(rows.scale);
     return layout;
 }
 

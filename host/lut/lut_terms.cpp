@@ -48,11 +48,10 @@ double columnElevation(uint32_t x, uint32_t width, PelLutAxis axis) {
 RowAxis rowAxis(PelLutAxis axis, uint32_t height, double least, double most) {
     const bool root = axis == PEL_AXIS_ROOT;
     const double first = root ? std::sqrt(least) : least, last = root ? std::sqrt(most) : most;
-    if (root && height > 1) {
-        const double step = (last - first) / (height - 1);
-        return {first - 0.5 * step, step};
-    }
-    return {first, (last - first) / height};
+    const double rows = root ? height - 1.0 : height, scale = last > first ? rows / (last - first) : 0.0;
+    if (rows == 0) return {first, last - first, scale};
+    const double step = (last - first) / rows;
+    return {root ? first - 0.5 * step : first, step, scale};
 }
 
 }  // namespace pel

@@ -5,11 +5,15 @@
 #include <cstring>
 #include <numbers>
 
+#include "shared/choices.h"
+
 namespace pel {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr const char* kindNames[] = {"skin", "gaussians", "burley", "dipole", "table"};
+#define KEY(name, number, key) key,
+constexpr const char* kindNames[] = {PEL_EACH_PROFILE_KIND(KEY)};
+#undef KEY
 constexpr const char* channelNames[] = {"red", "green", "blue"};
 
 }  // namespace

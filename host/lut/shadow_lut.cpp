@@ -1,6 +1,7 @@
 // Beside kernels/lut/shadow_lut.cl.
 #include <cmath>
 
+#include "core/launch_policy.h"
 #include "lut/lut_check.h"
 #include "lut/lut_terms.h"
 #include "lut/luts.h"
@@ -36,8 +37,7 @@ Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
         params.mass[channel] = float(mass);
     }
 
-    const uint32_t lanes = device->info().mathWidth;
-    const size_t group = lanes > 1 ? 1 : 64, columnsPerItem = lanes > 1 ? 256 : 1;
+    const auto [group, columnsPerItem, unused] = launchPolicy(*device);
     const cl::Program program = device->programs().get(
         "lut/shadow_lut.cl",
         {{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}});

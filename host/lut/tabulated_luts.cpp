@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/launch_policy.h"
 #include "lut/tabulated_integrals.h"
 
 namespace pel {
@@ -88,7 +89,7 @@ void integrateTabulatedCurvature(Lut& lut, double curvatureMin, double curvature
     if (!ring) params.slots = params.nodes;
 
     const uint32_t lanes = device.info().mathWidth;
-    const size_t group = lanes > 1 ? 1 : 64, columnsPerItem = lanes > 1 ? 256 : 1;
+    const auto [group, columnsPerItem, unused] = launchPolicy(device);
     cl::Defines options{{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}};
     if (desc.form == PEL_FORM_HALF_RING) options.emplace("PEL_HALF", "1");
     if (chord) options.emplace("PEL_CHORD", "1");
@@ -96,7 +97,7 @@ void integrateTabulatedCurvature(Lut& lut, double curvatureMin, double curvature
     const std::vector<TableColumn> columnList = columnsOf(desc);
     const cl::Memory nodes = upload(device, meshOfNodes(meshIntervals)), columns = upload(device, columnList);
 
-    const size_t record = (2 * size_t(params.slots) + 3) * sizeof(cl_float4);
+    const size_t record = PEL_TABLE_RECORD(size_t(params.slots)) * sizeof(cl_float4);
     const uint32_t part = uint32_t(std::clamp<size_t>(recordBytes / record, 1, desc.height));
     const cl::Memory rows = device.allocate(record * part);
     for (params.firstRow = 0; params.firstRow < desc.height; params.firstRow += part) {
@@ -129,8 +130,7 @@ void integrateTabulatedShadow(Lut& lut, double reciprocalMin, double reciprocalM
     const RowAxis axis = rowAxis(desc.axis, desc.height, reciprocalMin, reciprocalMax);
     const TabulatedShadowLutParams params{desc.width,      desc.height, float(axis.min),     float(axis.step),
                                           desc.sharpening, float(end),  uint32_t(desc.axis), desc.closedEnds};
-    const bool wide = device.info().mathWidth > 1;
-    const size_t group = wide ? 1 : 64, columnsPerItem = wide ? 64 : 1;
+    const auto [group, unused, columnsPerItem] = launchPolicy(device);
     const cl::Program program = device.programs().get(
         "lut/tabulated_shadow_lut.cl",
         {{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}});

@@ -2,8 +2,13 @@
 
 #include <cmath>
 
+#include "shared/choices.h"
+
 namespace pel {
 namespace {
+
+// What the kernel calls the quantities.
+#define NUMBER(name, number, key) {"PEL_QUANTITY_" #name, #number},
 
 const char* estimatorKernel(PelCurvatureEstimator estimator) {
     return estimator == PEL_CURVATURE_EDGE     ? "curvature_edge"
@@ -97,9 +102,9 @@ uint32_t planeStrideOf(const MeshTopology& topology) {
 cl::Defines passDefines(const MeshTopology& topology, const PelCurvatureParams& params, uint32_t stride) {
     return {{"PEL_MESH_MAPPED", topology.mapped() ? "1" : "0"},
             {"PEL_MESH_STRIDE", std::to_string(stride)},
-            {"MESH_PLANES", std::to_string(planesOf(params.quantity))},
+            {"PEL_MESH_PLANES", std::to_string(planesOf(params.quantity))},
             {"PEL_MESH_QUANTITY", std::to_string(params.quantity)},
-            {"PEL_MESH_LISTED", "0"},
+            PEL_EACH_QUANTITY(NUMBER) PEL_EACH_QUANTITY_OF_SEVERAL(NUMBER){"PEL_MESH_LISTED", "0"},
             {"PEL_MESH_RUNS", haveRuns(topology)},
             {"PEL_WIDTH", std::to_string(width(topology.device()))}};
 }

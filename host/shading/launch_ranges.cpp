@@ -1,19 +1,17 @@
 #include "shading/launch_ranges.h"
 
-#include <algorithm>
-
+#include "core/launch_policy.h"
 #include "shared/formats.h"
 
 namespace pel {
 
 uint32_t tileGroup(const Device& device) {
-    return device.info().mathWidth > 1 ? 1 : 64;
+    return uint32_t(launchPolicy(device).group);
 }
 
 cl::Range tileRange(const Device& device, uint32_t tiles) {
     const size_t group = tileGroup(device);
-    const size_t groups = std::min<size_t>(tiles, 64 * size_t(device.info().computeUnits));
-    return {{groups * group, 1, 1}, {group, 1, 1}};
+    return {{groupsFor(device, tiles) * group, 1, 1}, {group, 1, 1}};
 }
 
 uint32_t formatCode(const ImageView& view, uint32_t lanes) {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <set>
 
+#include "core/launch_policy.h"
 #include "shading/features.h"
 #include "shading/image_slots.h"
 #include "shading/launch_ranges.h"
@@ -38,7 +39,7 @@ uint32_t classifyRun(const Device& device) {
     return std::bit_floor(std::clamp(4096 / std::max(device.info().computeUnits, 1u), 64u, 2048u));
 }
 uint32_t classifyGroup(const Device& device) {
-    return device.info().mathWidth > 1 ? 1 : 64;
+    return uint32_t(launchPolicy(device).group);
 }
 
 // Slots that no feature reads are left out: fewer variants, and unused inputs cannot matter.

@@ -19,21 +19,14 @@
 // interpolation, about 1e-3 sigma (h/sigma)^4, is about the same for every width sigma of K, so one mesh
 // serves all rows and profiles.
 //
-// Variants: PEL_WIDTH; PEL_FORM, as PelCurvatureForm; PEL_GROUP, work-items in a group; PEL_NODES, N;
+// Variants: PEL_WIDTH; PEL_FORM, one of PEL_FORM_ARC ... (PelCurvatureForm); PEL_GROUP, work-items in a group; PEL_NODES, N;
 // PEL_POINTS, Gauss points per mesh interval (1 to 3); PEL_COLUMNS, columns per work-item of curvature_texels.
 #include "lib/lut/normal.clh"
 #include "lib/width.clh"
 #include "shared/lut.h"
 #include "shared/lut_integral.h"
 
-#define FORM_ARC 0
-#define FORM_RING 1
-#define FORM_HALF_RING 2
-#define FORM_SPHERE 3
-#define FORM_PENNER_RING 4
-
-// A row's record: E, F at node 0, ... E, F at node N, back, front, scale of E.
-#define ROW_STRIDE (2 * PEL_NODES + 5)
+#define ROW_STRIDE PEL_CURVATURE_RECORD(PEL_NODES)
 
 #if PEL_POINTS == 1
 __constant float gaussAt[1] = {0.0f};
@@ -47,7 +40,7 @@ __constant float gaussWeight[3] = {0.555555556f, 0.888888889f, 0.555555556f};
 #endif
 
 // Beyond this many sigmas a Gaussian adds less than 1e-8 of its weight. A chord is at least 2/pi of its arc.
-#if PEL_FORM == FORM_ARC
+#if PEL_FORM == PEL_FORM_ARC
 #define REACH 5.8f
 #else
 #define REACH 9.1f
@@ -76,7 +69,7 @@ inline void storeRows(__global float4* rows, const uint firstRow, const uint hei
 #endif
 }
 
-#if PEL_FORM == FORM_SPHERE
+#if PEL_FORM == PEL_FORM_SPHERE
 // exp(-z) int cos^2(h) exp(z cos h) dh over the half circle, z >= 0. Minimax fits made for this file, 7e-8
 // and 2e-8 relative.
 inline floatw latitudeFront(const floatw z) {
@@ -123,20 +116,20 @@ inline Rgb kernelAt(__global const LutGaussian* gaussians, const uint first, con
     Rgb sum = {0.0f, 0.0f, 0.0f};
     for (uint g = first; g < end; ++g) {
         const LutGaussian G = gaussians[g];
-#if PEL_FORM == FORM_SPHERE
+#if PEL_FORM == PEL_FORM_SPHERE
         // In sigmas. At 1e-6 light is already even; the same limit is used where the sum is normalised.
         const floatw x = clamp(radius / G.sigma, 1e-6f, 1e8f);
 #else
         const floatw x = fmin(radius / G.sigma, 1e8f);
 #endif
-#if PEL_FORM == FORM_ARC
+#if PEL_FORM == PEL_FORM_ARC
         const floatw e = exp(-0.5f * (x * t) * (x * t)) * (0.39894228f * x);
-#elif PEL_FORM == FORM_SPHERE
+#elif PEL_FORM == PEL_FORM_SPHERE
         const floatw latitude =
             behind ? exp(-x * x) * latitudeBack(x * (versine - 1.0f) * x)
                    : exp(-(x * versine) * x) * latitudeFront(fmax(x * (1.0f - versine) * x, 0.0f));
         const floatw e = x * latitude * (x * 0.159154943f);
-#elif PEL_FORM == FORM_PENNER_RING
+#elif PEL_FORM == PEL_FORM_PENNER_RING
         const floatw e = x * exp(-(x * versine) * x);
 #else
         const floatw e = x * exp(-(x * versine) * x) * x;
@@ -158,9 +151,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
     const floatw rowValue = fma(row + 0.5f, (floatw)(params.rowStep), (floatw)(params.rowMin));
     const floatw curvature = params.axis == PEL_LUT_AXIS_ROOT ? rowValue * rowValue : rowValue;
     const floatw radius = 1.0f / curvature;
-#if PEL_FORM == FORM_ARC
+#if PEL_FORM == PEL_FORM_ARC
     const floatw end = fmin(params.cut * curvature, (floatw)(M_PI_F));
-#elif PEL_FORM == FORM_HALF_RING
+#elif PEL_FORM == PEL_FORM_HALF_RING
     const floatw end = M_PI_2_F;
 #else
     const floatw end = M_PI_F;
@@ -223,7 +216,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
                 F = rgbFma(k, weight * cd, F);
                 back = rgbFma(k, weight * cosine, back);
                 mass = rgbFma(k, weight, mass);
-#if PEL_FORM != FORM_ARC
+#if PEL_FORM != PEL_FORM_ARC
                 // front is 1 minus the light that does not arrive there, which includes all of back
                 missing = rgbFma(k, weight, missing);
 #endif
@@ -235,7 +228,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
 
     const Rgb none = {0.0f, 0.0f, 0.0f};
     Rgb frontTotal, scale = {1.0f, 1.0f, 1.0f};
-#if PEL_FORM == FORM_ARC
+#if PEL_FORM == PEL_FORM_ARC
     // Mass within the cut and the half circle.
     frontTotal = none;
     for (uint g = 0; g < params.gaussians; ++g) {
@@ -246,7 +239,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
     }
     frontTotal = rgbFma(missing, -2.0f, frontTotal);
     back = rgbFma(back, 2.0f, none);
-#elif PEL_FORM == FORM_SPHERE
+#elif PEL_FORM == PEL_FORM_SPHERE
     Rgb all = none, mean = none;
     for (uint g = 0; g < params.gaussians; ++g) {
         const LutGaussian G = gaussians[g];

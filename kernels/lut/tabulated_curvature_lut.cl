@@ -22,7 +22,7 @@
 
 // A row's record: E (angle in w) and F of `slots` nodes, angles rising, of which the first may be unused;
 // back (first used node in w), front, scale of E.
-#define RECORD(params) (2 * (size_t)(params).slots + 3)
+#define RECORD(params) PEL_TABLE_RECORD((size_t)(params).slots)
 
 // In diffusion radii.
 inline float rowRadius(const TabulatedCurvatureLutParams params, const uint row) {

@@ -5,7 +5,7 @@
 // slot is left out of its neighbours' means, and the last pass writes 0 for it, so no NaN spreads or is
 // returned. One work-item: PEL_WIDTH slots (of plane get_global_id(1)); curvature_store:
 // one vertex of the caller. Variants: PEL_MESH_MAPPED 1: vertices find their slot in slotOf. PEL_MESH_STRIDE,
-// PEL_MESH_RUNS: lib/mesh/mesh_slots.clh. PEL_MESH_LISTED: lib/mesh/mesh_vertex.clh. MESH_PLANES, PEL_MESH_QUANTITY (a
+// PEL_MESH_RUNS: lib/mesh/mesh_slots.clh. PEL_MESH_LISTED: lib/mesh/mesh_vertex.clh. PEL_MESH_PLANES, PEL_MESH_QUANTITY (a
 // PelCurvatureQuantity): what curvature_store reads and writes.
 
 #include "lib/mesh/mesh_ring.clh"
@@ -74,25 +74,25 @@ inline float finiteOrZero(float value) {
 inline void storeQuantity(uint slot, uint planeStride, __global const float* planes,
                           __global const float* estimated, float scale, __global float* result) {
     const float first = planes[slot] * scale;
-#if MESH_PLANES > 1
+#if PEL_MESH_PLANES > 1
     const float second = planes[(size_t)planeStride + slot] * scale;
 #endif
-#if PEL_MESH_QUANTITY == 0
+#if PEL_MESH_QUANTITY == PEL_QUANTITY_ABSOLUTE
     *result = finiteOrZero(fabs(first));
-#elif PEL_MESH_QUANTITY == 1
+#elif PEL_MESH_QUANTITY == PEL_QUANTITY_ABSOLUTE_MAX
     *result = finiteOrZero(fmax(fabs(first), fabs(second)));
-#elif PEL_MESH_QUANTITY == 2
+#elif PEL_MESH_QUANTITY == PEL_QUANTITY_CURVEDNESS
     *result = finiteOrZero(hypot(first, second) * 0.70710678f);
-#elif PEL_MESH_QUANTITY == 3 || PEL_MESH_QUANTITY == 5
+#elif PEL_MESH_QUANTITY == PEL_QUANTITY_MEAN || PEL_MESH_QUANTITY == PEL_QUANTITY_FIRST
     *result = finiteOrZero(first);
-#elif PEL_MESH_QUANTITY == 4
+#elif PEL_MESH_QUANTITY == PEL_QUANTITY_GAUSSIAN
     *result = finiteOrZero(first * second);
-#elif PEL_MESH_QUANTITY == 6
+#elif PEL_MESH_QUANTITY == PEL_QUANTITY_SECOND
     *result = finiteOrZero(second);
 #else
     result[0] = finiteOrZero(first);
     result[1] = finiteOrZero(second);
-#if PEL_MESH_QUANTITY == 8
+#if PEL_MESH_QUANTITY == PEL_QUANTITY_FRAME
     for (uint plane = 2; plane < 8; ++plane) result[plane] = estimated[(size_t)plane * planeStride + slot];
 #endif
 #endif

@@ -33,7 +33,7 @@
 //
 // One work-item: PEL_WIDTH slots.
 //
-// Variants: PEL_MESH_STRIDE, PEL_MESH_RUNS (lib/mesh/mesh_slots.clh), MESH_PLANES (lib/mesh/principal.clh).
+// Variants: PEL_MESH_STRIDE, PEL_MESH_RUNS (lib/mesh/mesh_slots.clh), PEL_MESH_PLANES (lib/mesh/principal.clh).
 
 #include "lib/mesh/mesh_frame.clh"
 

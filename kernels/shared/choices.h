@@ -1,5 +1,5 @@
-// Choices among a few, each once: pellucid.h's enumerations are checked against these lists (host/shading/image_slots.cpp).
-// X(name, number, key); keys are those of scene files.
+// Choices among a few, each once: pellucid.h's enumerations are checked against these lists (host/core/choices.cpp).
+// X(name, number, key); keys are those of files and of the command.
 #ifndef PEL_SHARED_CHOICES
 #define PEL_SHARED_CHOICES
 // clang-format off
@@ -33,6 +33,55 @@
     X(LIGHT, 4, "light")               \
     X(TEXTURE, 5, "texture")           \
     X(AUTO, 6, "auto")
+// PelLutKind
+#define PEL_EACH_LUT_KIND(X)           \
+    X(CURVATURE, 0, "curvature")       \
+    X(SHADOW, 1, "shadow")             \
+    X(SPECULAR, 2, "specular")
+// PelCurvatureForm
+#define PEL_EACH_CURVATURE_FORM(X)     \
+    X(ARC, 0, "arc")                   \
+    X(RING, 1, "ring")                 \
+    X(HALF_RING, 2, "half-ring")       \
+    X(SPHERE, 3, "sphere")             \
+    X(PENNER_RING, 4, "penner-ring")
+// PelLutAxis
+#define PEL_EACH_LUT_AXIS(X)           \
+    X(LINEAR, 0, "linear")             \
+    X(ROOT, 1, "root")
+// PelLutEncoding
+#define PEL_EACH_LUT_ENCODING(X)       \
+    X(FLOAT, 0, "float")               \
+    X(HALF, 1, "half")                 \
+    X(FACEWORKS8, 2, "faceworks8")
+// PelProfileKind
+#define PEL_EACH_PROFILE_KIND(X)       \
+    X(SKIN, 0, "skin")                 \
+    X(GAUSSIANS, 1, "gaussians")       \
+    X(BURLEY, 2, "burley")             \
+    X(DIPOLE, 3, "dipole")             \
+    X(TABLE, 4, "table")
+// PelCurvatureEstimator
+#define PEL_EACH_ESTIMATOR(X)          \
+    X(EDGE, 0, "edge")                 \
+    X(TENSOR, 1, "tensor")             \
+    X(QUADRIC, 2, "quadric")
+// PelCurvatureQuantity: those of one number, then the others
+#define PEL_EACH_QUANTITY(X)           \
+    X(ABSOLUTE, 0, "absolute")         \
+    X(ABSOLUTE_MAX, 1, "absolute-max") \
+    X(CURVEDNESS, 2, "curvedness")     \
+    X(MEAN, 3, "mean")                 \
+    X(GAUSSIAN, 4, "gaussian")         \
+    X(FIRST, 5, "first")               \
+    X(SECOND, 6, "second")
+#define PEL_EACH_QUANTITY_OF_SEVERAL(X) \
+    X(PRINCIPAL, 7, "principal")       \
+    X(FRAME, 8, "frame")
+// PelSmoothingWeights
+#define PEL_EACH_SMOOTHING_WEIGHTS(X)  \
+    X(COTANGENT, 0, "cotangent")       \
+    X(AREA, 1, "area")
 // clang-format on
 
 #define PEL_NUMBER_TYPE_(name, number, key) PEL_TYPE_##name = number,

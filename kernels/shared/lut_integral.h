@@ -13,6 +13,11 @@ typedef struct LutGaussian {
     float blue;
 } LutGaussian;
 
+// A row's record of curvature_lut.cl, in float4: E, F at node 0, ... E, F at the last node, back, front, scale of E. And of
+// table_curvature_lut.cl, which has slots in place of nodes.
+#define PEL_CURVATURE_RECORD(nodes) (2 * (nodes) + 5)
+#define PEL_TABLE_RECORD(slots) (2 * (slots) + 3)
+
 // A node of the angular mesh, at angle (pi/2) (j/N)^4 behind the terminator, j = 0 ... N.
 typedef struct LutNode {
     float angle;  // radians

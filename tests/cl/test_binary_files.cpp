@@ -38,10 +38,10 @@ const Digest one = Digest().add("one"), two = Digest().add("two"), three = Diges
 
 }  // namespace
 
-TEST_F(BinaryFile, DigestIsTheOneOfTheDraft) {
-    // Test vectors of the draft: FNV-1a, 128 bits.
-    EXPECT_EQ(Digest().text(), "6c62272e07bb014262b821756295c58d");
-    EXPECT_EQ(Digest().add("a").text(), "d228cb696f1a8caf78912b704e4a8964");
+TEST_F(BinaryFile, DigestIsXxh3OfAllThatWasAdded) {
+    EXPECT_EQ(Digest().text(), "99aa06d3014798d86001c324468d497f");
+    EXPECT_EQ(Digest().add("a").add("bc").text(), Digest().add("abc").text());
+    EXPECT_EQ(Digest().add("abc").text(), "06b05ab6733a618578af5f94892f3950");
     EXPECT_NE(Digest().addPart("ab").addPart("c").text(), Digest().addPart("a").addPart("bc").text());
 }
 

@@ -6,10 +6,10 @@
 #include <thread>
 
 #include "cli_run.h"
+#include "io/content_hash.h"
 #include "io/image/image_file.h"
 #include "io/lut/batch_entry.h"
 #include "io/lut/lut_file.h"
-#include "io/xx_hash.h"
 
 namespace fs = std::filesystem;
 
@@ -293,9 +293,9 @@ TEST_F(BatchCommand, FilesHoldTheTexelsOfTheTable) {
 }
 
 // Values of the reference implementation.
-TEST(XxHash, KnownValues) {
-    using pellucid::io::xxHash64;
-    EXPECT_EQ(xxHash64(""), 0xEF46DB3751D8E999u);
-    EXPECT_EQ(xxHash64("abc"), 0x44BC2CF5AD770999u);
-    EXPECT_EQ(xxHash64("Nobody inspects the spammish repetition"), 0xFBCEA83C8A378BF1u);
+TEST(ContentHash, IsXxh64) {
+    using pellucid::io::contentHash;
+    EXPECT_EQ(contentHash(""), 0xEF46DB3751D8E999u);
+    EXPECT_EQ(contentHash("abc"), 0x44BC2CF5AD770999u);
+    EXPECT_EQ(contentHash("Nobody inspects the spammish repetition"), 0xFBCEA83C8A378BF1u);
 }

@@ -2,6 +2,7 @@
 #include "progress.h"
 
 #ifdef PELLUCID_BATCH
+#include "io/atomic_file.h"
 #include "io/lut/batch_entry.h"
 #include "io/lut/lut_exr.h"
 
@@ -67,6 +68,7 @@ void bindBatch(py::module_& module) {
         .def("text", [](const BatchManifest& m) { return m.text; })
         .def("profiles", [](const BatchManifest& m) { return m.profiles; })
         .def("make", &made);
+    module.def("machine_tag", &pellucid::io::machineTag);
     module.def("verify_file", [](const py::bytes& file, const std::string& key) {
         const std::string_view bytes = file;
         WithoutGil free;

@@ -96,7 +96,7 @@ def test_temporary_names_are_random_locked_and_never_followed(store, tmp_path, m
     monkeypatch.setattr(module.secrets, "token_hex", lambda _: "0123456789abcdef")
     victim = tmp_path / "victim"
     victim.write_text("precious")
-    planted = tmp_path / f".curvature-0123456789abcdef.{module._machine_tag()}-0123456789abcdef.tmp.exr"
+    planted = tmp_path / f".curvature-0123456789abcdef.{module._native.machine_tag()}-0123456789abcdef.tmp.exr"
     planted.symlink_to(victim)
     with pytest.raises(StoreError, match="File exists"):
         store.write(NAME, b"newer")
@@ -115,7 +115,7 @@ def test_the_command_sweeps_what_a_worker_left(tmp_path):
     if not command:
         pytest.skip("PELLUCID_COMMAND names no command")
     import subprocess
-    left = tmp_path / f".t.{module._machine_tag()}-0123456789abcdef.tmp.exr"
+    left = tmp_path / f".t.{module._native.machine_tag()}-0123456789abcdef.tmp.exr"
     left.write_bytes(b"half")
     os.utime(left, (time.time() - 100,) * 2)
     subprocess.run([command, "profile", "fit", "marble", "--gaussians", "1", "-o", tmp_path / "p.toml"], check=True,

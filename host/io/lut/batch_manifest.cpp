@@ -45,7 +45,7 @@ uint32_t indexOf(const TomlReader& reader, const char* key, const std::string& v
 
 Request readRequest(TomlReader& reader) {
     Request r;
-    reader.choice("kind", r.kind, lutKindNames);
+    reader.choice("kind", r.kind, lutKinds);
     reader.list("profile", r.profiles);
     reader.list("form", r.forms);
     reader.list("axis", r.axes);
@@ -176,7 +176,7 @@ class Expansion {
         entry.info.kind = r.kind;
         entry.encoding = PelLutEncoding(indexOf(reader, "encoding", encoding, encodingNames));
         Key key;
-        key("kind", lutKindNames[r.kind])("version", pelVersion())("encoding", encoding)("size", side);
+        key("kind", lutKinds[r.kind])("version", pelVersion())("encoding", encoding)("size", side);
         if (r.kind != PEL_LUT_SPECULAR) {
             const Known& known = profile(reader, profileName);
             entry.profile = known.profile;
@@ -201,7 +201,7 @@ class Expansion {
             entry.info.specular.width = entry.info.specular.height = side;
         }
         entry.key = key.out.str();
-        entry.file = std::string(lutKindNames[r.kind]) + "-" + ContentHash().add(entry.key).text() + ".exr";
+        entry.file = std::string(lutKinds[r.kind]) + "-" + hexDigits(contentHash(entry.key)) + ".exr";
         if (files_.insert(entry.file).second)
             manifest_.entries.push_back(std::move(entry));
         else

@@ -7,14 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "io/choice_keys.h"
 #include "io/image/image_file.h"
 
 namespace pellucid::io {
 
-inline constexpr std::string_view lutKindNames[] = {"curvature", "shadow", "specular"};  // PelLutKind
-inline constexpr std::string_view lutFormNames[] = {"arc", "ring", "half-ring", "sphere",
-                                                    "penner-ring"};     // PelCurvatureForm
-inline constexpr std::string_view lutAxisNames[] = {"linear", "root"};  // PelLutAxis
 inline constexpr int lutFormatVersion = 1;
 
 // Width and height in texels.

@@ -7,7 +7,6 @@
 #include "io/content_hash.h"
 #include "io/image/exr_header.h"
 #include "io/lut/lut_describe.h"
-#include "io/xx_hash.h"
 
 namespace pellucid::io {
 namespace {
@@ -111,7 +110,7 @@ std::string encodeLutExr(const PelLutInfo& info, PelLutEncoding encoding, std::s
         scanLines<uint16_t>(b, width, height, texels);
     else
         scanLines<float>(b, width, height, texels);
-    b.data.replace(sumAt, noSum.size(), hexDigits(xxHash64(b.data)));
+    b.data.replace(sumAt, noSum.size(), hexDigits(contentHash(b.data)));
     return std::move(b.data);
 }
 
@@ -122,9 +121,8 @@ bool verifyLutExr(std::string_view file, std::string_view key) {
     while (const auto attribute = header.next()) {
         if (attribute->name == keyName) keyFits = attribute->value == key;
         if (attribute->name == sumName && attribute->value.size() == noSum.size())
-            return keyFits &&
-                   attribute->value ==
-                       hexDigits(xxHash64(std::string(file).replace(attribute->valueAt, noSum.size(), noSum)));
+            return keyFits && attribute->value == hexDigits(contentHash(std::string(file).replace(
+                                                      attribute->valueAt, noSum.size(), noSum)));
     }
     return false;
 }

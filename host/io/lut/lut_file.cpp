@@ -151,7 +151,7 @@ void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLut
         text << "is a table whose " << what << " is " << is << "; " << asked << " is asked for";
         throw FileError(path, text.str());
     };
-    if (found.kind != wanted.kind) refuse("kind", lutKindNames[found.kind], lutKindNames[wanted.kind]);
+    if (found.kind != wanted.kind) refuse("kind", lutKinds[found.kind], lutKinds[wanted.kind]);
     const auto [width, height] = lutSize(found);
     const auto [askedWidth, askedHeight] = lutSize(wanted);
     const PelCurvatureLutDesc &c = found.curvature, &askedC = wanted.curvature;
@@ -165,9 +165,8 @@ void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLut
         same("height", height, askedHeight);
         same("diffusion_radius", curvature ? c.diffusionRadius : s.diffusionRadius,
              curvature ? askedC.diffusionRadius : askedS.diffusionRadius);
-        same("form", lutFormNames[c.form], lutFormNames[askedC.form]);
-        same("axis", lutAxisNames[curvature ? c.axis : s.axis],
-             lutAxisNames[curvature ? askedC.axis : askedS.axis]);
+        same("form", curvatureForms[c.form], curvatureForms[askedC.form]);
+        same("axis", lutAxes[curvature ? c.axis : s.axis], lutAxes[curvature ? askedC.axis : askedS.axis]);
         same("closed_ends", s.closedEnds, askedS.closedEnds);
         same("radius_min", c.radiusMin, askedC.radiusMin);
         same("radius_max", c.radiusMax, askedC.radiusMax);
@@ -196,7 +195,7 @@ PelLutInfo lutInfoOf(const Image& image) {
     if (format != lutFormatVersion)
         throw FileError(path, "is written in format " + std::to_string(format) +
                                   "; this program reads format " + std::to_string(lutFormatVersion));
-    info.kind = PelLutKind(indexOf(path, "pellucid:kind", needText("pellucid:kind"), lutKindNames));
+    info.kind = PelLutKind(indexOf(path, "pellucid:kind", needText("pellucid:kind"), lutKinds));
     if (info.kind != PEL_LUT_SPECULAR) {
         const std::string profile = needText("pellucid:profile");
         if (profile.empty() || profile.size() >= sizeof info.profile)
@@ -205,17 +204,15 @@ PelLutInfo lutInfoOf(const Image& image) {
     }
     if (info.kind == PEL_LUT_CURVATURE) {
         info.curvature.form =
-            PelCurvatureForm(indexOf(path, "pellucid:form", needText("pellucid:form"), lutFormNames));
-        info.curvature.axis =
-            PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), lutAxisNames));
+            PelCurvatureForm(indexOf(path, "pellucid:form", needText("pellucid:form"), curvatureForms));
+        info.curvature.axis = PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), lutAxes));
     }
     if (info.kind == PEL_LUT_SHADOW) {
         // Files from before these options have neither.
         info.shadow.axis = PEL_AXIS_LINEAR;
         info.shadow.closedEnds = 0;
         if (image.attribute("pellucid:axis"))
-            info.shadow.axis =
-                PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), lutAxisNames));
+            info.shadow.axis = PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), lutAxes));
         if (image.attribute("pellucid:closedEnds"))
             info.shadow.closedEnds = uint32_t(need("pellucid:closedEnds", static_cast<int*>(nullptr)));
     }

@@ -7,7 +7,6 @@
 namespace pellucid::io {
 namespace {
 
-constexpr std::string_view kinds[] = {"skin", "gaussians", "burley", "dipole", "table"};  // PelProfileKind
 constexpr std::string_view units[] = {"mm", "cm", "m", "um"};
 constexpr float millimetres[] = {1, 10, 1000, 0.001f};
 constexpr std::string_view fits[] = {"searchlight", "diffuse-transmission", "diffuse-mean-free-path"};  // PelBurleyFit
@@ -108,8 +107,8 @@ ProfileFile parseProfile(const std::string& file, const std::string& text) {
     reader.text("name", result.name);
     reader.text("source", result.source);
     PelProfileKind kind = PEL_PROFILE_SKIN;
-    reader.choice("kind", kind, kinds);
-    result.kind = kinds[kind];
+    reader.choice("kind", kind, profileKinds);
+    result.kind = profileKinds[kind];
     uint32_t unit = 0;
     if (kind != PEL_PROFILE_SKIN) need(reader, "unit", result.kind);
     reader.choice("unit", unit, units);
@@ -131,7 +130,7 @@ ProfileFile findProfile(const std::string& nameOrPath) {
         if (name == nameOrPath) {
             const Profile profile = Profile::named(name);
             const PelProfileInfo info = profile.info();
-            return {name, std::string(kinds[info.kind]), info.source, profile};
+            return {name, std::string(profileKinds[info.kind]), info.source, profile};
         }
         known.append(known.empty() ? "" : ", ").append(name);
     }

@@ -5,8 +5,8 @@
 #pragma once
 #include <string_view>
 
+#include "io/choice_keys.h"
 #include "io/scene/scene_file.h"
-#include "shared/choices.h"
 #include "shared/field_ranges.h"
 #include "shared/image_slots.h"
 
@@ -15,17 +15,8 @@ namespace pellucid::io {
 using Range = pel::FieldRange;
 namespace range = pel::range;
 
-#define PELLUCID_KEY(name, number, key) key,
-constexpr std::string_view lightTypes[] = {PEL_EACH_LIGHT_TYPE(PELLUCID_KEY)};
-constexpr std::string_view shadowProjections[] = {PEL_EACH_SHADOW_PROJECTION(PELLUCID_KEY)};
-constexpr std::string_view shadowContents[] = {PEL_EACH_SHADOW_CONTENT(PELLUCID_KEY)};
-constexpr std::string_view specularModels[] = {PEL_EACH_SPECULAR_MODEL(PELLUCID_KEY)};
-constexpr std::string_view scatterings[] = {PEL_EACH_SCATTERING(PELLUCID_KEY)};
-#undef PELLUCID_KEY
 constexpr std::string_view cascadeKeys[] = {"cascade_1", "cascade_2", "cascade_3"};
 constexpr std::string_view scenePresets[] = {"none", "faceworks"};  // ScenePreset
-constexpr std::string_view curvatureForms[] = {"arc", "ring", "half-ring", "sphere", "penner-ring"};  // PelCurvatureForm
-constexpr std::string_view lutAxes[] = {"linear", "root"};  // PelLutAxis
 
 struct SlotKey {
     PelImageSlot slot;

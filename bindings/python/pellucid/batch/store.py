@@ -4,12 +4,12 @@ from __future__ import annotations
 import contextlib
 import errno
 import fcntl
-import functools
 import os
 import secrets
-import socket
 from pathlib import Path
 from typing import Any, Optional
+
+from .. import _native
 
 
 class StoreError(Exception):
@@ -79,7 +79,7 @@ class Store:
             raise OSError(errno.EINVAL, "is not a file; a file must have this name")
         stem, _, extension = name.rpartition(".")
         # Of the form that the command removes when it finds it abandoned, which the lock tells.
-        temporary = folder / f".{stem}.{_machine_tag()}-{secrets.token_hex(8)}.tmp.{extension}"
+        temporary = folder / f".{stem}.{_native.machine_tag()}-{secrets.token_hex(8)}.tmp.{extension}"
         fd = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666)
         try:
             with contextlib.suppress(OSError):  # where there are no locks, age alone tells
@@ -110,20 +110,3 @@ def _flush_folder(folder: Path) -> None:
             raise
     finally:
         os.close(fd)
-
-
-@functools.cache
-def _machine_tag() -> str:
-    """Whose locks are seen here: those under this kernel. host/io/atomic_file.cpp makes the same."""
-    try:
-        name = Path("/proc/sys/kernel/random/boot_id").read_text().strip()
-    except OSError:
-        name = socket.gethostname()
-    return f"{_fnv(name.encode()):016x}"[:8]
-
-
-def _fnv(data: bytes) -> int:
-    value = 14695981039346656037
-    for byte in data:
-        value = (value ^ byte) * 1099511628211 % 2**64
-    return value
