@@ -9,7 +9,6 @@
 #include "io/file_error.h"
 #include "io/image/color_map.h"
 #include "io/input_file.h"
-#include "io/mesh/mesh_import.h"
 #include "io/mesh/mesh_text.h"
 
 namespace pellucid::io {
@@ -17,6 +16,30 @@ namespace {
 
 std::string counted(size_t count, const std::string& one, const std::string& several) {
     return std::to_string(count) + " " + (count == 1 ? one : several);
+}
+
+void checkVertices(const std::string& path, const RawMesh& raw) {
+    for (size_t i = 0; i < raw.positions.size(); ++i) {
+        if (!std::isfinite(raw.positions[i])) {
+            throw FileError(
+                path,
+                "vertex " + std::to_string(i / 3) +
+                    " (counted from 0) has a position that is NaN or infinite; positions must be finite");
+        }
+    }
+}
+
+void checkCorners(const std::string& path, const RawMesh& raw) {
+    const auto vertices = static_cast<int64_t>(raw.positions.size() / 3);
+    for (size_t f = 0; f + 1 < raw.faceStart.size(); ++f) {
+        for (size_t c = raw.faceStart[f]; c < raw.faceStart[f + 1]; ++c) {
+            if (raw.corners[c] >= 0 && raw.corners[c] < vertices) continue;
+            throw FileError(path, "face " + std::to_string(f) + " (counted from 0) refers to vertex " +
+                                      std::to_string(raw.corners[c]) + ", but the file has " +
+                                      std::to_string(vertices) + (vertices == 1 ? " vertex" : " vertices") +
+                                      "; 0 to " + std::to_string(vertices - 1) + " would be right");
+        }
+    }
 }
 
 // Corner UVs become vertex UVs; a vertex whose corners differ is copied, or (no splitting) the UVs are left
@@ -124,27 +147,20 @@ MeshData loadMesh(const std::string& path, const MeshLoadOptions& options) {
 MeshData decodeMesh(const std::string& path, const std::string& text, const MeshLoadOptions& options) {
     const std::string extension = requireExtension(path, {"off", "obj", "ply", "stl"});
     if (text.empty()) throw FileError(path, "is empty; a mesh was expected");
-    MeshText checked;
-    if (extension == "off") checked = checkOff(path, text);
-    if (extension == "obj") checked = checkObj(path, text);
-    if (extension == "stl") checked = checkStl(path, text);
-    if (extension == "ply") checked = checkPly(path, text);
-
-    RawMesh raw = checked.mesh ? std::move(*checked.mesh)
-                               : importWithOpenMesh(path, checked.canonical ? *checked.canonical : text,
-                                                    extension, checked.binary);
-    checkRawMesh(path, raw);
+    RawMesh raw = extension == "off"   ? readOff(path, text)
+                  : extension == "obj" ? readObj(path, text)
+                  : extension == "stl" ? readStl(path, text)
+                                       : readPly(path, text);
+    checkVertices(path, raw);
+    checkCorners(path, raw);
 
     MeshData mesh;
     mesh.source = path;
     mesh.positions = std::move(raw.positions);
     mesh.normals = std::move(raw.normals);
     checkNormals(mesh);
-    const size_t faces = raw.faceStart.size() - 1;
-    if (faces < checked.faces) {
-        mesh.warnings.push_back(counted(checked.faces - faces, "face", "faces") +
-                                " with coinciding corners left out");
-    }
+    if (raw.leftOut)
+        mesh.warnings.push_back(counted(raw.leftOut, "face", "faces") + " with coinciding corners left out");
     if (!raw.cornerUvs.empty()) {
         assignCornerUvs(mesh, raw, options.splitUvSeams);
     } else {

@@ -7,7 +7,6 @@
 
 #include "io/file_error.h"
 #include "io/input_file.h"
-#include "io/mesh/mesh_import.h"
 #include "io/mesh/mesh_text.h"
 #include "io/mesh/quiet_open_mesh.h"
 #include "io/text_scan.h"
@@ -96,13 +95,11 @@ PartedMesh loadParts(const std::string& path, int levels) {
 }
 
 PartedMesh decodeParts(const std::string& path, const std::string& text, int levels) {
-    const MeshText checked = checkObj(path, text);
-    const RawMesh raw = importWithOpenMesh(path, checked.canonical ? *checked.canonical : text, "obj", false);
-    checkRawMesh(path, raw);
+    const RawMesh raw = readObj(path, text);
     PartedMesh out;
     out.mesh.source = path;
     const std::vector<uint32_t> groups = groupsOf(path, text, out.parts);
-    if (raw.faceStart.size() != checked.faces + 1 || groups.size() != checked.faces)
+    if (raw.leftOut || groups.size() != raw.faces())
         throw FileError(
             path,
             "has faces with coinciding corners, so that its groups cannot be told apart; mend the mesh");

@@ -1,22 +1,23 @@
 #include "io/mesh/mesh_text.h"
 
-#include <cstdint>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstring>
+#include <map>
+#include <optional>
 
 #include "io/text_scan.h"
 
 namespace pellucid::io {
 namespace {
 
+constexpr size_t stlHeader = 84, stlFacet = 50;  // bytes of a binary STL
 constexpr const char* axisNames[3] = {"x", "y", "z"};
 
-void checkPosition(const TextScan& scan, size_t firstWord) {
-    for (size_t a = 0; a < 3; ++a) scan.number(firstWord + a, std::string("coordinate ") + axisNames[a]);
-}
-
-void appendWords(std::string& out, const TextScan& scan, size_t count) {
-    for (size_t i = 0; i < count; ++i) out.append(i ? " " : "").append(scan.words()[i]);
-    out += '\n';
+void readPosition(const TextScan& scan, size_t firstWord, std::vector<float>& positions) {
+    for (size_t a = 0; a < 3; ++a)
+        positions.push_back(scan.number(firstWord + a, std::string("coordinate ") + axisNames[a]));
 }
 
 std::string outOfRange(long long index, long long first, size_t count, std::string_view what) {
@@ -25,29 +26,123 @@ std::string outOfRange(long long index, long long first, size_t count, std::stri
            std::to_string(static_cast<long long>(count) - 1 + first) + " would be right";
 }
 
-// One corner "v", "v/vt", "v//vn" or "v/vt/vn" of an OBJ face. The counts are those of what was defined so
-// far, and in all.
-void checkObjCorner(const TextScan& scan, std::string_view corner, const size_t (&soFar)[3],
-                    const size_t (&total)[3]) {
-    constexpr const char* what[3] = {"vertex", "texture coordinate", "normal"};
+// Ends a face of the corners behind the last one; false, and nothing of it is kept, where a vertex comes twice.
+bool endFace(RawMesh& mesh) {
+    const auto first = mesh.corners.begin() + mesh.faceStart.back();
+    std::vector<int64_t> sorted(first, mesh.corners.end());
+    std::sort(sorted.begin(), sorted.end());
+    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
+        mesh.corners.erase(first, mesh.corners.end());
+        ++mesh.leftOut;
+        return false;
+    }
+    mesh.faceStart.push_back(static_cast<uint32_t>(mesh.corners.size()));
+    return true;
+}
+
+// An OBJ's lists: vertices, texture coordinates, normals. A face may name what comes later in the file.
+enum { V, VT, VN };
+constexpr const char* listNames[3] = {"vertex", "texture coordinate", "normal"};
+
+struct ObjCorner {
+    long long index[3] = {0, 0, 0};  // from 1; 0: none
+    long long given[3] = {0, 0, 0};  // as the file has it, for messages
+};
+
+// One corner "v", "v/vt", "v//vn" or "v/vt/vn"; `counts` hold what was defined so far.
+ObjCorner readCorner(const TextScan& scan, std::string_view word, const size_t (&counts)[3]) {
+    ObjCorner corner;
     for (size_t k = 0; k < 3; ++k) {
-        const size_t slash = corner.find('/');
-        const std::string_view word = corner.substr(0, slash);
-        if (k == 0 || !word.empty()) {
-            const long long given = scan.integer(word, what[k]);
-            const long long index = given < 0 ? static_cast<long long>(soFar[k]) + given + 1 : given;
-            if (index < 1 || index > static_cast<long long>(total[k]))
-                scan.fail(outOfRange(given, 1, total[k], what[k]));
+        const size_t slash = word.find('/');
+        const std::string_view part = word.substr(0, slash);
+        if (k == 0 || !part.empty()) {
+            corner.given[k] = scan.integer(part, listNames[k]);
+            corner.index[k] = corner.given[k] < 0 ? static_cast<long long>(counts[k]) + corner.given[k] + 1
+                                                  : corner.given[k];
+            if (corner.index[k] < 1) corner.index[k] = -1;
         }
-        if (slash == std::string_view::npos) return;
-        corner.remove_prefix(slash + 1);
+        if (slash == std::string_view::npos) return corner;
+        word.remove_prefix(slash + 1);
     }
     scan.fail("a corner has more than the three parts vertex/texture/normal");
 }
 
+struct ObjFace {
+    std::vector<ObjCorner> corners;
+    int line;
+};
+
+// The faces of an OBJ, once all that they may name is known.
+void assemble(const std::string& path, const std::vector<ObjFace>& faces, const std::vector<float>& uvs,
+              const std::vector<float>& normals, RawMesh& mesh) {
+    const size_t counts[3] = {mesh.positions.size() / 3, uvs.size() / 2, normals.size() / 3};
+    for (const ObjFace& face : faces) {
+        bool allUvs = true;
+        for (const ObjCorner& c : face.corners) {
+            for (size_t k = 0; k < 3; ++k)
+                if (c.index[k] < 0 || c.index[k] > static_cast<long long>(counts[k]))
+                    throw FileError(path, outOfRange(c.given[k], 1, counts[k], listNames[k]), face.line);
+            mesh.corners.push_back(c.index[V] - 1);
+            allUvs &= c.index[VT] > 0;
+        }
+        const size_t first = mesh.faceStart.back();
+        if (!endFace(mesh)) continue;
+        if (allUvs) {
+            mesh.cornerUvs.resize(2 * first, 0.0f);  // faces without UVs before this one
+            for (const ObjCorner& c : face.corners)
+                mesh.cornerUvs.insert(mesh.cornerUvs.end(),
+                                      {uvs[2 * size_t(c.index[VT]) - 2], uvs[2 * size_t(c.index[VT]) - 1]});
+        }
+        for (const ObjCorner& c : face.corners) {
+            if (c.index[VN] == 0) continue;
+            mesh.normals.resize(mesh.positions.size(), 0.0f);
+            std::copy_n(&normals[3 * size_t(c.index[VN] - 1)], 3, &mesh.normals[3 * size_t(c.index[V] - 1)]);
+        }
+    }
+    if (!mesh.cornerUvs.empty()) mesh.cornerUvs.resize(2 * mesh.corners.size(), 0.0f);
+}
+
+// Vertices of an STL, which has each once for every facet: the same position is the same vertex.
+class StlVertices {
+  public:
+    explicit StlVertices(RawMesh& mesh) : mesh_(mesh) {}
+    void corner(const float (&p)[3]) {
+        const auto [entry, isNew] =
+            known_.try_emplace({p[0], p[1], p[2]}, static_cast<int64_t>(mesh_.positions.size() / 3));
+        if (isNew) mesh_.positions.insert(mesh_.positions.end(), p, p + 3);
+        mesh_.corners.push_back(entry->second);
+    }
+
+  private:
+    RawMesh& mesh_;
+    std::map<std::array<float, 3>, int64_t> known_;
+};
+
+// A binary STL has exactly the bytes that its header announces.
+std::optional<RawMesh> readBinaryStl(const std::string& path, const std::string& text) {
+    uint32_t facets = 0;
+    if (text.size() >= stlHeader) std::memcpy(&facets, text.data() + 80, 4);
+    if (text.size() < stlHeader || text.size() != stlHeader + stlFacet * static_cast<size_t>(facets))
+        return std::nullopt;
+    RawMesh mesh;
+    StlVertices vertices(mesh);
+    for (uint32_t f = 0; f < facets; ++f) {
+        for (size_t k = 0; k < 3; ++k) {
+            float p[3];
+            std::memcpy(p, text.data() + stlHeader + stlFacet * f + 12 * (k + 1), sizeof p);
+            if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])))
+                throw FileError(path, "facet " + std::to_string(f) +
+                                          " (counted from 0) has a coordinate that is NaN or infinite");
+            vertices.corner(p);
+        }
+        endFace(mesh);
+    }
+    return mesh;
+}
+
 }  // namespace
 
-MeshText checkOff(const std::string& path, const std::string& text) {
+RawMesh readOff(const std::string& path, const std::string& text) {
     TextScan scan(path, text);
     if (!scan.nextLine()) scan.fail("is empty; an OFF file starts with a line 'OFF'");
     const std::string header(scan.words()[0]);
@@ -63,8 +158,7 @@ MeshText checkOff(const std::string& path, const std::string& text) {
     normals = flags.find('N') != std::string::npos;
     uvs = flags.find("ST") != std::string::npos;
 
-    MeshText result;
-    RawMesh& mesh = result.mesh.emplace();
+    RawMesh mesh;
     size_t at = 1;
     if (scan.words().size() == 1) {
         if (!scan.nextLine())
@@ -81,8 +175,7 @@ MeshText checkOff(const std::string& path, const std::string& text) {
             scan.fail("ends early: " + std::to_string(vertices) + " vertices announced, " +
                       std::to_string(v) + " found");
         }
-        checkPosition(scan, 0);
-        for (size_t i = 0; i < 3; ++i) mesh.positions.push_back(scan.number(i, "coordinate"));
+        readPosition(scan, 0, mesh.positions);
         if (normals)
             for (size_t i = 3; i < 6; ++i) mesh.normals.push_back(scan.number(i, "normal"));
         if (uvs) {
@@ -93,7 +186,6 @@ MeshText checkOff(const std::string& path, const std::string& text) {
                 mesh.uvs.push_back(scan.number(i, "texture coordinate"));
         }
     }
-    mesh.faceStart.push_back(0);
     for (long long f = 0; f < faces; ++f) {
         if (!scan.nextLine()) {
             scan.fail("ends early: " + std::to_string(faces) + " faces announced, " + std::to_string(f) +
@@ -112,77 +204,41 @@ MeshText checkOff(const std::string& path, const std::string& text) {
         }
         mesh.faceStart.push_back(static_cast<uint32_t>(mesh.corners.size()));
     }
-    result.faces = static_cast<size_t>(faces);
-    return result;
+    return mesh;
 }
 
-MeshText checkObj(const std::string& path, const std::string& text) {
-    size_t total[3] = {0, 0, 0};
-    const auto kindOf = [](std::string_view word) {
-        return word == "v" ? 0 : word == "vt" ? 1 : word == "vn" ? 2 : -1;
-    };
+RawMesh readObj(const std::string& path, const std::string& text) {
+    RawMesh mesh;
+    std::vector<float> uvs, normals;
+    std::vector<ObjFace> faces;
     for (TextScan scan(path, text); scan.nextLine();) {
-        const int kind = kindOf(scan.words()[0]);
-        if (kind < 0) continue;
-        ++total[kind];
-        if (kind == 0) checkPosition(scan, 1);
-        if (kind == 1) {
-            for (size_t i = 1; i < 3; ++i) scan.number(i, "texture coordinate");
-        }
-        if (kind == 2) {
-            for (size_t i = 1; i < 4; ++i) scan.number(i, "normal");
-        }
-    }
-    MeshText result;
-    size_t soFar[3] = {0, 0, 0};
-    bool materials = false;
-    const auto isMaterial = [](std::string_view word) { return word == "mtllib" || word == "usemtl"; };
-    for (TextScan scan(path, text); scan.nextLine();) {
-        const int kind = kindOf(scan.words()[0]);
-        materials |= isMaterial(scan.words()[0]);
-        if (kind >= 0) ++soFar[kind];
+        const std::string_view word = scan.words()[0];
         if (scan.words().back().back() == '\\')
             scan.fail("lines continued with '\\' are not supported; join them");
-        if (scan.words()[0] != "f") continue;
-        ++result.faces;
+        if (word == "v") readPosition(scan, 1, mesh.positions);
+        if (word == "vt")
+            for (size_t i = 1; i < 3; ++i) uvs.push_back(scan.number(i, "texture coordinate"));
+        if (word == "vn")
+            for (size_t i = 1; i < 4; ++i) normals.push_back(scan.number(i, "normal"));
+        if (word != "f") continue;
         if (scan.words().size() < 4) scan.fail("a face needs at least three corners");
-        for (size_t i = 1; i < scan.words().size(); ++i) checkObjCorner(scan, scan.words()[i], soFar, total);
+        const size_t counts[3] = {mesh.positions.size() / 3, uvs.size() / 2, normals.size() / 3};
+        faces.push_back({{}, scan.line()});
+        for (size_t i = 1; i < scan.words().size(); ++i)
+            faces.back().corners.push_back(readCorner(scan, scan.words()[i], counts));
     }
-    if (materials) {  // OpenMesh would open the files that they name
-        result.canonical.emplace();
-        for (TextScan scan(path, text); scan.nextLine();)
-            if (!isMaterial(scan.words()[0])) appendWords(*result.canonical, scan, scan.words().size());
-    }
-    return result;
+    assemble(path, faces, uvs, normals, mesh);
+    return mesh;
 }
 
-MeshText checkStl(const std::string& path, const std::string& text) {
-    MeshText result;
-    constexpr size_t headerBytes = 84, facetBytes = 50;  // of a binary STL
-    if (text.size() >= headerBytes) {
-        uint32_t facets;
-        std::memcpy(&facets, text.data() + 80, 4);
-        if (text.size() == headerBytes + facetBytes * static_cast<size_t>(facets)) {
-            for (uint32_t f = 0; f < facets; ++f) {
-                float corners[9];
-                std::memcpy(corners, text.data() + headerBytes + facetBytes * f + 12, sizeof corners);
-                for (float c : corners) {
-                    if (!std::isfinite(c)) {
-                        throw FileError(path,
-                                        "facet " + std::to_string(f) +
-                                            " (counted from 0) has a coordinate that is NaN or infinite");
-                    }
-                }
-            }
-            result.faces = facets;
-            result.binary = true;
-            return result;
-        }
-    }
+RawMesh readStl(const std::string& path, const std::string& text) {
+    if (std::optional<RawMesh> binary = readBinaryStl(path, text)) return std::move(*binary);
+    RawMesh mesh;
+    StlVertices vertices(mesh);
     TextScan scan(path, text);
     if (!scan.nextLine() || scan.words()[0] != "solid") {
         throw FileError(path, "is not an STL file: it neither starts with 'solid' nor has the " +
-                                  std::to_string(headerBytes) + " + 50 x facets bytes of a binary one (" +
+                                  std::to_string(stlHeader) + " + 50 x facets bytes of a binary one (" +
                                   std::to_string(text.size()) + " bytes: cut off?)");
     }
     size_t inFacet = 0;
@@ -191,18 +247,20 @@ MeshText checkStl(const std::string& path, const std::string& text) {
         const std::string_view word = scan.words()[0];
         if (word == "facet") inFacet = 0;
         if (word == "vertex") {
-            checkPosition(scan, 1);
+            std::vector<float> p;
+            readPosition(scan, 1, p);
+            vertices.corner({p[0], p[1], p[2]});
             ++inFacet;
         }
         if (word == "endfacet") {
             if (inFacet != 3)
                 scan.fail("a facet has " + std::to_string(inFacet) + " vertices; 3 would be right");
-            ++result.faces;
+            endFace(mesh);
         }
         ended = word == "endsolid";
     }
     if (!ended) scan.fail("ends without 'endsolid': the file was cut off");
-    return result;
+    return mesh;
 }
 
 }  // namespace pellucid::io

@@ -1,27 +1,31 @@
-// A strict check of a mesh file's text before OpenMesh's lenient readers see it; for OFF and PLY, where
-// little is left to do then, in place of them. OpenMesh's readers take "nan" for the end of the file, skip a
-// broken vertex and so shift all later indices, and take trailing face colours for faces.
+// Strict readers of mesh files: each number must be present and finite, each index in range. Every vertex and face is kept, whether or
+// not they make a manifold. Lenient readers take "nan" for the end of the file, skip a broken vertex and so shift all later indices, and
+// take trailing face colours for faces.
 #pragma once
 #include <cstddef>
-#include <optional>
+#include <cstdint>
 #include <string>
-
-#include "io/mesh/mesh_import.h"
+#include <vector>
 
 namespace pellucid::io {
 
-struct MeshText {
-    size_t faces = 0;             // faces that the file lists
-    bool binary = false;          // an STL that is not text
-    std::optional<RawMesh> mesh;  // if the check has read it already
-    std::optional<std::string> canonical;  // the same mesh without what OpenMesh cannot read, if there was such a thing
+struct RawMesh {
+    std::vector<float> positions;           // xyz
+    std::vector<float> normals;             // xyz per vertex, or empty
+    std::vector<float> uvs;                 // per vertex, or empty
+    std::vector<uint32_t> faceStart = {0};  // face f has corners [faceStart[f], faceStart[f + 1])
+    std::vector<int64_t> corners;           // vertex index per corner
+    std::vector<float> cornerUvs;           // u, v per corner, or empty
+    size_t leftOut = 0;                     // faces of OBJ and STL files with coinciding corners
+
+    size_t faces() const { return faceStart.size() - 1; }
 };
 
 // Each throws FileError with the line of the first number that is missing, not finite, or an index out of
-// range.
-MeshText checkOff(const std::string& path, const std::string& text);  // ASCII: not "OFF BINARY"
-MeshText checkObj(const std::string& path, const std::string& text);
-MeshText checkStl(const std::string& path, const std::string& text);  // ASCII and binary
-MeshText checkPly(const std::string& path, const std::string& text);  // ASCII and binary
+// range. No other file is opened, nor those that the text names (an OBJ's materials).
+RawMesh readOff(const std::string& path, const std::string& text);  // ASCII: not "OFF BINARY"
+RawMesh readObj(const std::string& path, const std::string& text);
+RawMesh readStl(const std::string& path, const std::string& text);  // ASCII and binary
+RawMesh readPly(const std::string& path, const std::string& text);  // likewise
 
 }  // namespace pellucid::io

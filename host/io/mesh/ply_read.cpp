@@ -301,7 +301,6 @@ void readFaces(Body& body, const Element& e, RawMesh& mesh) {
 
 template <class Body>
 void readElements(Body body, const Header& header, RawMesh& mesh) {
-    mesh.faceStart.push_back(0);
     for (const Element& e : header.elements) {
         if (e.name == "vertex") {
             readVertices(body, e, mesh);
@@ -319,16 +318,15 @@ void readElements(Body body, const Header& header, RawMesh& mesh) {
 
 }  // namespace
 
-MeshText checkPly(const std::string& path, const std::string& text) {
+RawMesh readPly(const std::string& path, const std::string& text) {
     const Header header = readHeader(path, text);
     checkElements(path, header);
-    MeshText result;
+    RawMesh mesh;
     if (header.encoding == Encoding::Ascii)
-        readElements(AsciiBody(path, text, header), header, result.mesh.emplace());
+        readElements(AsciiBody(path, text, header), header, mesh);
     else
-        readElements(BinaryBody(path, text, header), header, result.mesh.emplace());
-    result.faces = result.mesh->faceStart.size() - 1;
-    return result;
+        readElements(BinaryBody(path, text, header), header, mesh);
+    return mesh;
 }
 
 }  // namespace pellucid::io
