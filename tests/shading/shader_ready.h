@@ -1,0 +1,36 @@
+// A shader that only lacks what a test takes away or gets wrong, and the error that follows.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <initializer_list>
+
+#include "shade_scene.h"
+
+namespace shade_test {
+
+struct Ready {
+    Frame frame = randomFrame(1, 32, 16, 1);
+    pellucid::Shader shader{device()};
+    pellucid::Buffer target{device(), 32 * 16 * 12};
+    Ready() {
+        setFrame(device(), shader, frame, tables());
+        shader.set(PEL_SLOT_RADIANCE, pellucid::imageDesc(target, PEL_FORMAT_RGB32F, 32, 16));
+    }
+};
+
+// The call fails with this code and says all of `words`.
+inline void expectError(PelError code, std::initializer_list<const char*> words,
+                        const std::function<void()>& call) {
+    try {
+        call();
+        FAIL() << "no error";
+    } catch (const pellucid::Error& e) {
+        EXPECT_EQ(e.code(), code) << e.what();
+        for (const char* word : words)
+            EXPECT_NE(std::string(e.what()).find(word), std::string::npos)
+                << "\"" << word << "\" in: " << e.what();
+    }
+}
+
+}  // namespace shade_test
