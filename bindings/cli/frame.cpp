@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "io/choice_keys.h"
 #include "io/file_error.h"
 #include "io/image/mip_chain.h"
 #include "io/lut/lut_file.h"
@@ -299,30 +300,8 @@ void writeThickness(const std::string& path, int width, int height, const std::v
 }
 
 nlohmann::ordered_json toJson(const PelShaderStats& s) {
-    static constexpr std::pair<PelFeature, const char*> names[] = {
-        {PEL_FEATURE_DIRECT_SCATTER, "direct_scatter"},
-        {PEL_FEATURE_SHADOW, "shadow"},
-        {PEL_FEATURE_SHADOW_LUT, "shadow_lut"},
-        {PEL_FEATURE_AMBIENT, "ambient"},
-        {PEL_FEATURE_DEEP_SCATTER, "deep_scatter"},
-        {PEL_FEATURE_THICKNESS_TAPS, "thickness_taps"},
-        {PEL_FEATURE_SPECULAR, "specular"},
-        {PEL_FEATURE_BLUR_NORMALS, "blur_normals"},
-        {PEL_FEATURE_NORMAL_MAP, "normal_map"},
-        {PEL_FEATURE_FILTER_SHADOW, "filter_shadow"},
-        {PEL_FEATURE_GGX, "ggx"},
-        {PEL_FEATURE_AMBIENT_SCATTER, "ambient_scatter"},
-        {PEL_FEATURE_OUTPUTS, "outputs"},
-        {PEL_FEATURE_AMBIENT_CUBE, "ambient_cube"},
-        {PEL_FEATURE_IRRADIANCE, "irradiance"},
-        {PEL_FEATURE_MAKE_IRRADIANCE, "make_irradiance"},
-        {PEL_FEATURE_TRANSMISSION, "transmission"},
-        {PEL_FEATURE_SHADOW_CUBE, "shadow_cube"},
-        {PEL_FEATURE_SHADOW_CASCADES, "shadow_cascades"},
-        {PEL_FEATURE_SHADOW_MOMENTS, "shadow_moments"},
-        {PEL_FEATURE_SHADOW_EXPONENTIAL, "shadow_exponential"}};
     nlohmann::ordered_json features = nlohmann::ordered_json::array();
-    for (const auto& [bit, name] : names)
+    for (const auto& [bit, name] : io::featureKeys)
         if (s.features & bit) features.push_back(name);
     return {{"features", features},
             {"programs_built", s.programsBuilt},

@@ -1,5 +1,6 @@
 // The public header documents choices, and is read by C compilers on its own: it must agree with the lists.
 #include "shared/choices.h"
+#include "shared/features.h"
 
 #include <pellucid/pellucid.h>
 
@@ -16,6 +17,8 @@ namespace {
 #define PROFILE(name, number, key) static_assert(PEL_PROFILE_##name == number);
 #define ESTIMATOR(name, number, key) static_assert(PEL_CURVATURE_##name == number);
 #define QUANTITY(name, number, key) static_assert(PEL_QUANTITY_##name == number);
+#define FEATURE(name, bit, kernel, material, key) \
+    static_assert(int(PEL_FEATURE_##name) == int(PEL_BIT_##name));
 #define WEIGHTS(name, number, key) static_assert(PEL_SMOOTHING_##name == number);
 PEL_EACH_LIGHT_TYPE(LIGHT)
 PEL_EACH_SHADOW_PROJECTION(PROJECTION)
@@ -31,5 +34,6 @@ PEL_EACH_ESTIMATOR(ESTIMATOR)
 PEL_EACH_QUANTITY(QUANTITY)
 PEL_EACH_QUANTITY_OF_SEVERAL(QUANTITY)
 PEL_EACH_SMOOTHING_WEIGHTS(WEIGHTS)
+PEL_EACH_FEATURE(FEATURE)
 
 }  // namespace

@@ -1,8 +1,10 @@
 // Names of choices in files and on the command line, by their numbers in pellucid.h.
 #pragma once
+#include <cstdint>
 #include <string_view>
 
 #include "shared/choices.h"
+#include "shared/features.h"
 
 namespace pellucid::io {
 
@@ -21,5 +23,12 @@ inline constexpr std::string_view estimators[] = {PEL_EACH_ESTIMATOR(PELLUCID_KE
 inline constexpr std::string_view quantities[] = {PEL_EACH_QUANTITY(PELLUCID_KEY)};
 inline constexpr std::string_view smoothingWeights[] = {PEL_EACH_SMOOTHING_WEIGHTS(PELLUCID_KEY)};
 #undef PELLUCID_KEY
+struct FeatureKey {
+    uint32_t bit;  // of PelFeature
+    std::string_view key;
+};
+#define PELLUCID_FEATURE(name, bit, kernel, material, key) {1u << bit, key},
+inline constexpr FeatureKey featureKeys[] = {PEL_EACH_FEATURE(PELLUCID_FEATURE)};
+#undef PELLUCID_FEATURE
 
 }  // namespace pellucid::io

@@ -14,24 +14,6 @@
 namespace pel {
 namespace {
 
-static_assert(PEL_BIT_DIRECT_SCATTER == PEL_FEATURE_DIRECT_SCATTER && PEL_BIT_SHADOW == PEL_FEATURE_SHADOW &&
-              PEL_BIT_SHADOW_LUT == PEL_FEATURE_SHADOW_LUT && PEL_BIT_AMBIENT == PEL_FEATURE_AMBIENT &&
-              PEL_BIT_DEEP_SCATTER == PEL_FEATURE_DEEP_SCATTER &&
-              PEL_BIT_THICKNESS_TAPS == PEL_FEATURE_THICKNESS_TAPS && PEL_BIT_SPECULAR == PEL_FEATURE_SPECULAR);
-// What earlier passes do makes no other variant of the shading kernel.
-constexpr uint32_t shadeFeatures =
-    (PEL_FEATURE_SPECULAR * 2 - 1) | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER | PEL_FEATURE_AMBIENT_CUBE |
-    PEL_FEATURE_IRRADIANCE | PEL_FEATURE_TRANSMISSION | PEL_FEATURE_SHADOW_CUBE | PEL_FEATURE_SHADOW_CASCADES;
-// Features that a material asks for (materialNeeds); the others hold for the whole frame.
-constexpr uint32_t materialFeatures = PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SHADOW_LUT |
-                                      PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS |
-                                      PEL_FEATURE_SPECULAR | PEL_FEATURE_GGX | PEL_FEATURE_AMBIENT_SCATTER |
-                                      PEL_FEATURE_IRRADIANCE | PEL_FEATURE_TRANSMISSION;
-static_assert(PEL_BIT_IRRADIANCE == PEL_FEATURE_IRRADIANCE);
-static_assert(PEL_BIT_TRANSMISSION == PEL_FEATURE_TRANSMISSION);
-static_assert(PEL_BIT_GGX == PEL_FEATURE_GGX && PEL_BIT_AMBIENT_SCATTER == PEL_FEATURE_AMBIENT_SCATTER &&
-              PEL_BIT_AMBIENT_CUBE == PEL_FEATURE_AMBIENT_CUBE && PEL_BIT_SHADOW_CUBE == PEL_FEATURE_SHADOW_CUBE &&
-              PEL_BIT_SHADOW_CASCADES == PEL_FEATURE_SHADOW_CASCADES);
 // Tiles per work-item of the classification: runs on a CPU; one on a GPU, which has thousands of work-items.
 uint32_t classifyRun(const Device& device) {
     if (device.info().mathWidth == 1) return 1;
@@ -85,7 +67,7 @@ cl::Defines sceneDefines(const Device& device, const ShaderState& state, uint32_
 }
 
 cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t features) {
-    cl::ProgramKey key{{"shading/shade.cl"}, sceneDefines(device, state, features & shadeFeatures)};
+    cl::ProgramKey key{{"shading/shade.cl"}, sceneDefines(device, state, features & PEL_BITS_OF_KERNEL)};
     key.defines["PEL_SHADE_GROUP"] = std::to_string(tileGroup(device));
     key.defines["PEL_CLASSIFY_GROUP"] = std::to_string(classifyGroup(device));
     key.defines["PEL_CLASSIFY_RUN"] = std::to_string(classifyRun(device));
@@ -109,7 +91,7 @@ std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t feature
     for (const auto& [id, material] : state.materials) needed.insert(materialNeeds(state, material));
     std::vector<uint32_t> partial;
     for (const uint32_t needs : needed) {
-        const uint32_t left = (features & ~materialFeatures) | needs;
+        const uint32_t left = (features & ~PEL_BITS_OF_MATERIALS) | needs;
         // Another variant pays if it leaves out a term (docs/guide/shading.md, "Tiles").
         if ((features & ~left) & (PEL_FEATURE_DIRECT_SCATTER | PEL_FEATURE_SPECULAR |
                                   PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_TRANSMISSION))

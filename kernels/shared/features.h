@@ -3,28 +3,49 @@
 #ifndef PEL_SHARED_FEATURES
 #define PEL_SHARED_FEATURES
 
-// Bits of PEL_FEATURES. The low ones are PelFeature of the public header.
-#define PEL_BIT_DIRECT_SCATTER 0x1
-#define PEL_BIT_SHADOW 0x2
-#define PEL_BIT_SHADOW_LUT 0x4
-#define PEL_BIT_AMBIENT 0x8
-#define PEL_BIT_DEEP_SCATTER 0x10
-#define PEL_BIT_THICKNESS_TAPS 0x20
-#define PEL_BIT_SPECULAR 0x40
-#define PEL_BIT_GGX 0x400
-#define PEL_BIT_AMBIENT_SCATTER 0x800
-#define PEL_BIT_AMBIENT_CUBE 0x2000
-#define PEL_BIT_IRRADIANCE 0x4000
-#define PEL_BIT_TRANSMISSION 0x800000
-#define PEL_BIT_SHADOW_CUBE 0x1000000
-#define PEL_BIT_SHADOW_CASCADES 0x2000000
-// How the kernel goes about it.
-#define PEL_BIT_POSITIONAL 0x10000   // a point or spot light
-#define PEL_BIT_ACCUMULATE 0x20000   // add to the output
-#define PEL_BIT_NO_SKIPPING 0x40000  // evaluate every term of every pixel
-#define PEL_BIT_COUNT \
-    0x80000  // count pixels per feature; those of a material, and invalid ones, are counted without it
-#define PEL_BIT_CUBE_ALONE 0x100000   // ambient light has no other part than the cube map
-#define PEL_BIT_ROTATE_TAPS 0x200000  // thickness taps are turned from pixel to pixel
+// clang-format off
+// PelFeature of the public header, each once: X(name, bit, kernel, material, key). kernel: 1 makes another variant of the shading kernel;
+// the passes before it do not. material: 1 is asked for by materials; the others hold for all of a frame.
+#define PEL_EACH_FEATURE(X)                          \
+    X(DIRECT_SCATTER, 0, 1, 1, "direct_scatter")     \
+    X(SHADOW, 1, 1, 0, "shadow")                     \
+    X(SHADOW_LUT, 2, 1, 1, "shadow_lut")             \
+    X(AMBIENT, 3, 1, 0, "ambient")                   \
+    X(DEEP_SCATTER, 4, 1, 1, "deep_scatter")         \
+    X(THICKNESS_TAPS, 5, 1, 1, "thickness_taps")     \
+    X(SPECULAR, 6, 1, 1, "specular")                 \
+    X(BLUR_NORMALS, 7, 0, 0, "blur_normals")         \
+    X(NORMAL_MAP, 8, 0, 0, "normal_map")             \
+    X(FILTER_SHADOW, 9, 0, 0, "filter_shadow")       \
+    X(GGX, 10, 1, 1, "ggx")                          \
+    X(AMBIENT_SCATTER, 11, 1, 1, "ambient_scatter")  \
+    X(OUTPUTS, 12, 0, 0, "outputs")                  \
+    X(AMBIENT_CUBE, 13, 1, 0, "ambient_cube")        \
+    X(IRRADIANCE, 14, 1, 1, "irradiance")            \
+    X(MAKE_IRRADIANCE, 15, 0, 0, "make_irradiance")  \
+    X(TRANSMISSION, 23, 1, 1, "transmission")        \
+    X(SHADOW_CUBE, 24, 1, 0, "shadow_cube")          \
+    X(SHADOW_CASCADES, 25, 1, 0, "shadow_cascades")  \
+    X(SHADOW_EXPONENTIAL, 26, 0, 0, "shadow_exponential") \
+    X(SHADOW_MOMENTS, 27, 0, 0, "shadow_moments")
+
+// Bits of PEL_FEATURES.
+#define PEL_FEATURE_BIT_(name, bit, kernel, material, key) PEL_BIT_##name = 1 << bit,
+#define PEL_FEATURE_KERNEL_(name, bit, kernel, material, key) | kernel << bit
+#define PEL_FEATURE_MATERIAL_(name, bit, kernel, material, key) | material << bit
+enum {
+    PEL_EACH_FEATURE(PEL_FEATURE_BIT_)
+    // How the kernel goes about it.
+    PEL_BIT_POSITIONAL = 0x10000,   // a point or spot light
+    PEL_BIT_ACCUMULATE = 0x20000,   // add to the output
+    PEL_BIT_NO_SKIPPING = 0x40000,  // evaluate every term of every pixel
+    PEL_BIT_COUNT = 0x80000,        // count pixels per feature; those of a material, and invalid ones, are counted without it
+    PEL_BIT_CUBE_ALONE = 0x100000,  // ambient light has no other part than the cube map
+    PEL_BIT_ROTATE_TAPS = 0x200000, // thickness taps are turned from pixel to pixel
+    // Sets of features.
+    PEL_BITS_OF_KERNEL = 0 PEL_EACH_FEATURE(PEL_FEATURE_KERNEL_),
+    PEL_BITS_OF_MATERIALS = 0 PEL_EACH_FEATURE(PEL_FEATURE_MATERIAL_)
+};
+// clang-format on
 
 #endif
