@@ -62,7 +62,8 @@ TEST(KernelRules, NamesFollowTheRule) {
     const std::regex kernel(R"(__kernel[^{;]*?void\s+(\w+)\s*\()"),
         function(R"(\n(?:static )?inline [\w ]+\*?\s(\w+)\()"), macro(R"(\n\s*#\s*define\s+(\w+))");
     const std::regex entryName("[a-z0-9]+(_[a-z0-9]+)*"), functionName("(as_|convert_)?[a-z][a-zA-Z0-9]*"),
-        publicName("PEL_[A-Z0-9_]+|[a-z]+w|(as|convert)_[a-z]+w"), ownName("[A-Z][A-Z0-9_]*|kernel");
+        publicName("PEL_[A-Z0-9_]+|[a-z]+w|(as|convert)_[a-z]+w"),
+        ownName("[A-Z][A-Z0-9_]*(_[a-z][a-zA-Z0-9]*)?|kernel");
     int checked = 0;
     const fs::path root = fs::path(PELLUCID_SOURCE_DIR) / "kernels";
     const auto check = [&](const fs::path& file, const std::string& text, const std::regex& what,
