@@ -279,7 +279,7 @@ def test_bad_entries_are_reported_and_the_others_made(tmp_path):
     (["m.toml"], 2, "--out"), (["m.toml", "--out", "o", "--timeout", "0"], 2, "--timeout"),
     (["m.toml", "--out", "o", "--device", "none"], 4, '"none" matches no OpenCL device'),
     (["m.toml", "--out", "o", "--scheduler", "here"], 4, "no Dask scheduler at here: missing port number"),
-    (["none.toml", "--out", "o"], 3, "none.toml: cannot be read"), (["m.toml", "--out", "m.toml"], 3, "m.toml: is no folder"),
+    (["none.toml", "--out", "o"], 3, "none.toml: cannot be read"), (["m.toml", "--out", "m.toml"], 3, "m.toml: is not a folder"),
 ])
 def test_wrong_use(tmp_path, arguments, code, message):
     (tmp_path / "m.toml").write_text(GRID)
