@@ -237,7 +237,7 @@ TEST_F(Cli, BadMeshesAreRefusedWithTheirPlace) {
     refused("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n", "index.obj:4: ");
     refused("empty.ply", "", "empty");
     refused("points.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "no face");
-    refused("text.stl", "hello", "no STL");
+    refused("text.stl", "hello", "is not an STL file");
     expectRefused({"curvature", path("none.off"), "-o", path("c.npy")}, 3, "No such file");
     expectRefused({"curvature", write("m.fbx", "x"), "-o", path("c.npy")}, 3, ".off, .obj, .ply, .stl");
 }
