@@ -178,7 +178,7 @@ TEST_F(Shade, BadFilesAreRefused) {
     expectRefused(expecting("radius_min = 0.5"), 3, "radius_min is 1; 0.5 is asked for");
     expectRefused(expecting("diffusion_radius = 3"), 3, "diffusion_radius is 2.7; 3 is asked for");
     expectRefused({"shade", path("g.exr"), "--scene", path("s.toml"), "-o", path("no/o.exr")}, 2, "no folder");
-    expectRefused({"shade", path("g.exr"), "--scene", path("s.toml"), "-o", path("o.png")}, 2, ".exr");
+    expectRefused({"shade", path("g.exr"), "--scene", path("s.toml"), "-o", path("o.gif")}, 2, ".exr");
     expectRefused({"shade", path("g.exr"), "-o", path("o.exr")}, 2, "--scene");
 }
 
