@@ -134,7 +134,7 @@ TEST(ShadeIrradiance, SaysWhatIsWrong) {
     setScattering(f, PelScattering(9));
     EXPECT_NE(message(PEL_ERROR_INVALID_ARGUMENT).find("scattering is 9"), std::string::npos);
     setScattering(f, PEL_SCATTERING_TEXTURE);
-    const std::string missing = message(PEL_ERROR_UNSUPPORTED);
+    const std::string missing = message(PEL_ERROR_INVALID_ARGUMENT);
     EXPECT_NE(missing.find("texture"), std::string::npos) << missing;
     setScattering(f, PEL_SCATTERING_NONE);
     f.options.targetError = -1;
