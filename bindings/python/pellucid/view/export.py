@@ -47,6 +47,8 @@ def scene_text(session: Session, look: Look, width: int, height: int) -> str:
         text += "\n[[material]]\n" + _lines(id=id, scattering=m.scattering.name.lower())
         if m.profile is not None:
             text += _lines(profile=profile, transmission=m.transmission, diffusion_radius=m.diffusion_radius)
+            if any(m.deep_scatter_color):
+                text += _lines(deep_scatter_color=m.deep_scatter_color)
         text += _lines(thickness_taps=m.thickness_taps, specular=m.specular, roughness=m.roughness, f0=m.f0,
                        specular_model=m.specular_model.name.lower(), roughness2=m.roughness2, lobe_mix=m.lobe_mix)
     return text

@@ -63,6 +63,7 @@ class Look:
     method: str = "auto"
     target_error: float = 0.002      # of white, what `auto` may be off
     transmission: float = 1.0
+    deep_scatter: tuple[float, float, float] = (0.0, 0.0, 0.0)  # colour of FaceWorks' own term, in place of transmission
     albedo: tuple[float, float, float] = (1.0, 1.0, 1.0)  # times the mesh's
     specular: float = 0.35
     roughness: float = 0.3
@@ -92,7 +93,7 @@ class Look:
         for key in values:
             if key not in known:
                 raise ValueError(f"a look has no {key!r}; it has {', '.join(sorted(known))}")
-        look = cls(**{k: tuple(v) if k in ("albedo", "distance") else v for k, v in values.items() if k != "lamps"})
+        look = cls(**{k: tuple(v) if k in ("albedo", "deep_scatter", "distance") else v for k, v in values.items() if k != "lamps"})
         if "lamps" in values:
             look.lamps = [Lamp(**{k: tuple(v) if k == "color" else v for k, v in lamp.items()}) for lamp in values["lamps"]]
         return look

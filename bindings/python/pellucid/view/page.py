@@ -203,6 +203,8 @@ class Page:
         self.slider("Pores", self.look, "pores", 0, 0.5, 0.01)
         for c, name in enumerate(("Albedo red, times", "green", "blue")):
             self.channel(name, "albedo", c, 0.0, 2.0, 0.01)
+        for c, name in enumerate(("Deep scatter red", "green", "blue")):
+            self.channel(name, "deep_scatter", c, 0.0, 3.0, 0.05)
 
     def channel(self, name: str, attribute: str, c: int, low: float, high: float, step: float, then: Callable[[], None] = lambda: None) -> None:
         def change(e: events.ValueChangeEventArguments) -> None:

@@ -135,6 +135,7 @@ class Session:
         if look.method != "none" or look.transmission > 0:
             skin.profile = self.profile(look)
             skin.transmission = look.transmission
+            skin.deep_scatter_color = look.deep_scatter
             if look.radius_scale != 1:
                 skin.diffusion_radius = skin.profile.info.radius * look.radius_scale / self.mm
         made = {SKIN: skin}
