@@ -71,7 +71,7 @@ class Look:
     ggx: bool = False
     roughness2: float = 0.15
     lobe_mix: float = 0.15
-    pores: float = 0.1               # slope of the relief that the renderer adds
+    pores: float = 0.06              # slope of the relief that the renderer adds
     ambient: float = 0.12            # irradiance / pi from everywhere
     lamps: list[Lamp] = field(default_factory=_lamps)
     shadow_size: int = 1024          # texels a side

@@ -209,7 +209,7 @@ class Session:
         p.tell("ambient", look.ambient, lambda: s.set_ambient(Ambient(constant=[look.ambient] * 3)))
         eye, _ = self.camera(width / height)
         p.tell("camera", eye.tobytes(), lambda: s.set_camera(Camera(position=eye)))
-        p.tell("options", (look.target_error, self.count), lambda: s.set_options(
+        p.tell("options", (look.target_error, self.count, self.mm), lambda: s.set_options(
             target_error=look.target_error, millimetres_per_unit=self.mm, count_pixels=int(self.count)))
         if not p.told.get("committed"):
             s.commit()
