@@ -16,8 +16,8 @@ struct ShaderMaterial {
     Ref<Lut> givenCurvatureLut, givenShadowLut;
     PelMaterial params;  // with what it leaves to defaults filled in (shading/material.h, choose_method.h), as are
     Ref<Lut> curvatureLut, shadowLut, transmission;
-    float through[3];                  // share of the light on a sheet's other side
-    float gain[3];  // length: direct light times 1 + gain * curvature
+    float through[3];  // share of the light on a sheet's other side
+    float gain[3];     // length: direct light times 1 + gain * curvature
     // Of the wide shadow, where a light leaves them to the profile.
     float shadowBias, shadowSoftness, shadowConeSlope;
     std::vector<ImageView> normalMap;  // its levels, the finest first

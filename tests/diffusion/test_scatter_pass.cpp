@@ -25,7 +25,8 @@ std::vector<float> shaded(const Picture& p, PelScattering scattering, PelShaderS
     PelMaterial material = pelMaterialDefaults();
     material.scattering = scattering;
     const Profile skin = Profile::skin();
-    if (scattering == PEL_SCATTERING_AUTO) material.profile = skin.get();  // the others have skin's without one
+    if (scattering == PEL_SCATTERING_AUTO)
+        material.profile = skin.get();  // the others have skin's without one
     material.specular = 0;
     for (float& a : material.albedo) a = 0.5f;
     shader.setMaterial(1, material);

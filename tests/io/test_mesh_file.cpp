@@ -175,7 +175,8 @@ TEST_F(MeshFile, BadFilesSayWhere) {
         contains(loadError("i.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n\nf 1 2 4\n"), "i.obj:5: vertex index 4"));
     EXPECT_TRUE(
         contains(loadError("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -1 -2 -4\n"), "m.obj:4: vertex index -4"));
-    EXPECT_TRUE(contains(loadError("s.stl", binaryStl(facetsOfTetrahedron()).substr(0, 150)), "is not an STL file"));
+    EXPECT_TRUE(
+        contains(loadError("s.stl", binaryStl(facetsOfTetrahedron()).substr(0, 150)), "is not an STL file"));
     std::vector<float> facets = facetsOfTetrahedron();
     facets[13] = NAN;
     EXPECT_TRUE(contains(loadError("nan.stl", binaryStl(facets)), "facet 1"));

@@ -743,7 +743,7 @@ typedef struct PelLight {
                                     every 2nd, 3rd, ... row and column. Typical 48 */
     /* The next three are -1 by default: from each material's profile (docs/guide/shading.md, "Materials"); without one 0.5 mm, 0.25
        and 0.5. */
-    float shadowBias;     /* length an occluder must stand before the surface to count */
+    float shadowBias; /* length an occluder must stand before the surface to count */
     float shadowSoftness; /* times PelMaterial.shadowFilterWidth: how much further before the bias it counts in full, so that round
                              bodies do not shade themselves with a hard edge */
     float shadowConeSlope; /* the bias grows by this times the sideways distance, so that folds and facets do not shade themselves */
@@ -774,7 +774,8 @@ typedef enum PelScattering {
     PEL_SCATTERING_SCREEN = 3,  /* the profile summed over the screen, from irradiance per pixel */
     PEL_SCATTERING_LIGHT = 4,   /* the profile summed over the light's shadow map */
     PEL_SCATTERING_TEXTURE = 5, /* irradiance in texture space [d'Eon, Luebke 2007] */
-    PEL_SCATTERING_AUTO = 6 /* what the inputs allow, with the least work for PelShaderOptions.targetError: on the screen where there
+    PEL_SCATTERING_AUTO =
+        6 /* what the inputs allow, with the least work for PelShaderOptions.targetError: on the screen where there
                                are positions or depth, and shadows that are sharp or can be made so; by tables otherwise, and where the
                                material brings its own; with nothing to scatter by, like PREINTEGRATED without tables
                                (docs/guide/shading.md, "Auto"). pelShaderGetWarnings and PelShaderStats say what it took */
