@@ -94,7 +94,7 @@ def make(out: Path, pictures_only: bool, sections: Iterable[str], size: int = 48
              "shadow maps are written too, and `pellucid shade gbuffer.exr --scene scene.toml -o again.exr` there gives the same picture.", ""]
     for section in sections:
         lines += [f"## {section}", ""]
-        for number, entry in enumerate(GALLERY[section]):
+        for entry in GALLERY[section]:
             print(f"{section}: {entry.name}", file=sys.stderr, flush=True)
             session.look, session.mm = Look(), 1.0
             session.orbit.azimuth, session.orbit.elevation = 20.0, 2.0
