@@ -6,7 +6,6 @@
 #include "diffusion/gather_scatter.h"
 #include "diffusion/passes.h"
 #include "diffusion/scatter_material.h"
-#include "shading/scratch_image.h"
 
 namespace pel {
 namespace {
@@ -26,15 +25,7 @@ class GatherPass final : public Pass {
     }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
-        auto& images = plan.state.images;
-        ImageView& slot = images[PEL_SLOT_IRRADIANCE];
-        const ImageView& frame = images[PEL_SLOT_RADIANCE];
-        resize(out_, device, size_t(frame.width) * frame.height * 3 * sizeof(float));
-        images_.of = {slot, images[PEL_SLOT_POSITION],
-                      images[PEL_SLOT_POSITION] ? ImageView() : images[PEL_SLOT_DEPTH],
-                      images[PEL_SLOT_MATERIAL], scratchImage(out_, frame, PEL_FORMAT_PLANAR_RGB32F)};
-        images_.weight = images[PEL_SLOT_SCATTER_WEIGHT];
-        slot = images_.of.out;
+        images_ = {takeIrradiance(plan, device, out_), plan.state.images[PEL_SLOT_SCATTER_WEIGHT]};
         if (!scatter_) scatter_.emplace(device, form);
         materials_.clear();
         sources_.reset();

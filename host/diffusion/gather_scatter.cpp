@@ -131,11 +131,7 @@ void GatherScatter::prepare(const std::map<uint32_t, Material>& materials, const
     }
     if (tileBytes != tileBytes_) tiles_ = device_->allocate(tileBytes), tileBytes_ = tileBytes;
     if (!counters_) counters_ = device_->allocate(PEL_DIFFUSION_COUNTERS * sizeof(cl_uint));
-    if (!frameMemory_)
-        frameMemory_ = device_->allocate(sizeof frame_, &frame_);
-    else if (std::memcmp(&frame_, &sent_, sizeof frame_))
-        device_->write(frameMemory_.get(), 0, sizeof frame_, &frame_, true);
-    sent_ = frame_;
+    constants_.send(*device_, frame_);
 }
 
 std::vector<cl::ProgramKey> GatherScatter::programs(const GatherImages& images) const {
@@ -165,17 +161,17 @@ void GatherScatter::enqueue(const GatherImages& images, std::vector<cl::Event>& 
     };
     device_->fill(counters_.get(), 0, PEL_DIFFUSION_COUNTERS * sizeof(cl_uint), 0);
     cl::Launch points(programs[SURFACE], "gather_points");
-    points.arg(frameMemory_).arg(memoryOf(of.irradiance)).arg(memoryOf(of.positions ? of.positions : of.depth));
+    points.arg(constants_.memory()).arg(memoryOf(of.irradiance)).arg(memoryOf(of.positions ? of.positions : of.depth));
     points.arg(memoryOf(of.ids)).arg(memoryOf(images.weight)).arg(points_).arg(counters_);
     launch(points, size_t(PEL_ROW_PARTS) * frame_.height);
     const size_t tiles = size_t(frame_.tilesX) * frame_.tilesY;
     cl::Launch areas(programs[SURFACE], "gather_areas");
-    areas.arg(frameMemory_).arg(points_).arg(described_).arg(tiles_).arg(counters_);
+    areas.arg(constants_.memory()).arg(points_).arg(described_).arg(tiles_).arg(counters_);
     launch(areas, tiles);
     const size_t items = std::min<size_t>(tiles, 64 * size_t(device_->info().computeUnits)) * PEL_DIFFUSION_GROUP;
     const auto gather = [&](const char* kernel, auto&& arguments) {
         cl::Launch one(programs[GATHER], kernel);
-        one.arg(frameMemory_).arg(points_).arg(described_).arg(taps_).arg(nodes_).arg(tiles_);
+        one.arg(constants_.memory()).arg(points_).arg(described_).arg(taps_).arg(nodes_).arg(tiles_);
         arguments(one);
         one.arg(counters_);
         launch(one, items);

@@ -51,8 +51,9 @@ class GatherScatter {
     Ref<Device> device_;
     const Form form_;
     std::map<uint32_t, Material> materials_;
-    PelGatherFrame frame_{}, sent_{};
-    cl::Memory frameMemory_, described_, taps_, nodes_, points_, rows_, tiles_, counters_;
+    PelGatherFrame frame_{};
+    SentConstants<PelGatherFrame> constants_;
+    cl::Memory described_, taps_, nodes_, points_, rows_, tiles_, counters_;
     size_t pointBytes_ = 0, tableBytes_ = 0, tileBytes_ = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "diffusion/scatter_material.h"
 
+#include "shading/scratch_image.h"
+
 namespace pel {
 
 ScreenScatter::Material profileOf(const ShaderMaterial& material) {
@@ -8,6 +10,17 @@ ScreenScatter::Material profileOf(const ShaderMaterial& material) {
                                                    : Profile::skin();
     const double radius = profile->radius();
     return {std::move(profile), material.params.diffusionRadius / radius};
+}
+
+ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Buffer>& out) {
+    auto& images = plan.state.images;
+    const ImageView& frame = images[PEL_SLOT_RADIANCE];
+    resize(out, device, size_t(frame.width) * frame.height * 3 * sizeof(float));
+    ScatterImages taken{images[PEL_SLOT_IRRADIANCE], images[PEL_SLOT_POSITION],
+                        images[PEL_SLOT_POSITION] ? ImageView() : images[PEL_SLOT_DEPTH],
+                        images[PEL_SLOT_MATERIAL], scratchImage(out, frame, PEL_FORMAT_PLANAR_RGB32F)};
+    images[PEL_SLOT_IRRADIANCE] = taken.out;
+    return taken;
 }
 
 void addScatterCounts(const ScatterCounts& counts, PelScattering scattering, PelShaderStats& stats) {

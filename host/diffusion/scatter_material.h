@@ -2,6 +2,7 @@
 #pragma once
 #include "diffusion/screen_scatter.h"
 #include "shading/features.h"
+#include "shading/shader_plan.h"
 
 namespace pel {
 
@@ -24,6 +25,9 @@ inline bool scattersByTaps(const ShaderMaterial& material) {
 inline uint32_t scatterTapsOf(PelScattering scattering, uint32_t taps) {
     return taps || scattering != PEL_SCATTERING_SEPARABLE ? taps : 25;
 }
+
+// The plan's images for a method that scatters into `out`, which from now on is the plan's irradiance.
+ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Buffer>& out);
 
 void addScatterCounts(const ScatterCounts& counts, PelScattering scattering, PelShaderStats& stats);
 

@@ -7,7 +7,6 @@
 #include "diffusion/scatter_material.h"
 #include "shading/features.h"
 #include "shading/mapped_lights.h"
-#include "shading/scratch_image.h"
 
 namespace pel {
 namespace {
@@ -41,14 +40,7 @@ class ScatterPass final : public Pass {
     }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
-        auto& images = plan.state.images;
-        ImageView& slot = images[PEL_SLOT_IRRADIANCE];
-        const ImageView& frame = images[PEL_SLOT_RADIANCE];
-        resize(out_, device, size_t(frame.width) * frame.height * 3 * sizeof(float));
-        images_ = {slot, images[PEL_SLOT_POSITION],
-                   images[PEL_SLOT_POSITION] ? ImageView() : images[PEL_SLOT_DEPTH],
-                   images[PEL_SLOT_MATERIAL], scratchImage(out_, frame, PEL_FORMAT_PLANAR_RGB32F)};
-        slot = images_.out;
+        images_ = takeIrradiance(plan, device, out_);
         if (!scatter_) scatter_.emplace(device);
         scatter_->announce({plan.state.lights, alone});
         materials_.clear();

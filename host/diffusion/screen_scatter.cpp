@@ -76,7 +76,8 @@ uint64_t ScreenScatter::bytesFor(uint32_t width, uint32_t height) {
 
 void ScreenScatter::describeLevels(uint32_t width, uint32_t height) {
     const size_t bytes = layOutLevels(width, height, frame_.level) * sizeof(float);
-    if (bytes == pyramidBytes_ && !std::memcmp(frame_.level, sent_.level, sizeof frame_.level)) return;
+    if (bytes == pyramidBytes_ && !std::memcmp(frame_.level, constants_.sent().level, sizeof frame_.level))
+        return;
     pyramid_ = cl::Memory();
     pyramidBytes_ = 0;
     pyramid_ = device_->allocate(bytes);
@@ -90,8 +91,14 @@ void ScreenScatter::announce(const ScatterLights& lights) {
 }
 
 ScreenMemory ScreenScatter::memory() const {
-    return {frameMemory_, pyramid_,     tables_,       nodes_,
-            tiles_,       frame_.width, frame_.height, size_t(frame_.tilesX) * frame_.tilesY};
+    return {constants_.memory(),
+            pyramid_,
+            tables_,
+            nodes_,
+            tiles_,
+            frame_.width,
+            frame_.height,
+            size_t(frame_.tilesX) * frame_.tilesY};
 }
 
 void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const ScatterImages& images,
@@ -116,11 +123,7 @@ void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const
     const size_t tileBytes = size_t(frame_.tilesX) * frame_.tilesY * sizeof(cl_uint);
     if (tileBytes != tileBytes_) tiles_ = device_->allocate(tileBytes), tileBytes_ = tileBytes;
     if (!counters_) counters_ = device_->allocate(PEL_DIFFUSION_COUNTERS * sizeof(cl_uint));
-    if (!frameMemory_)
-        frameMemory_ = device_->allocate(sizeof frame_, &frame_);
-    else if (std::memcmp(&frame_, &sent_, sizeof frame_))
-        device_->write(frameMemory_.get(), 0, sizeof frame_, &frame_, true);
-    sent_ = frame_;
+    constants_.send(*device_, frame_);
 }
 
 std::vector<cl::ProgramKey> ScreenScatter::programs(const ScatterImages& images) const {
@@ -157,29 +160,29 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
     device_->fill(counters_.get(), 0, PEL_DIFFUSION_COUNTERS * sizeof(cl_uint), 0);
     {
         cl::Launch points(programs[SURFACE], "surface_points");
-        points.arg(frameMemory_)
+        points.arg(constants_.memory())
             .arg(memory(images.irradiance))
             .arg(memory(images.positions ? images.positions : images.depth));
         points.arg(memory(images.ids)).arg(pyramid_).arg(counters_);
         launch(points, {{size_t(PEL_ROW_PARTS) * frame_.height, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
         cl::Launch areas(programs[SURFACE], "surface_areas");
-        areas.arg(frameMemory_).arg(pyramid_);
+        areas.arg(constants_.memory()).arg(pyramid_);
         launch(areas, rows(frame_.width, frame_.height));
     }
     for (uint32_t k = 1; k < frame_.levels; ++k) {
         cl::Launch reduce(programs[REDUCE], "reduce_surface");
-        reduce.arg(frameMemory_).arg(pyramid_).arg(cl_uint(k));
+        reduce.arg(constants_.memory()).arg(pyramid_).arg(cl_uint(k));
         launch(reduce, rows(frame_.level[k].width, frame_.level[k].height));
     }
     const size_t tiles = size_t(frame_.tilesX) * frame_.tilesY;
     cl::Launch classify(programs[CLASSIFY], "classify_scatter");
-    classify.arg(frameMemory_).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_).arg(counters_);
+    classify.arg(constants_.memory()).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_).arg(counters_);
     launch(classify, {{tiles, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
     if (!light_.empty()) light_.enqueuePyramids(images, this->memory(), events);
     // With the lights' texels alone the screen's sum only copies.
     if (!light_.empty() && lights_.alone) device_->fill(tiles_.get(), 0, tileBytes_, 0);
     cl::Launch scatter(programs[SCATTER], "scatter_screen");
-    scatter.arg(frameMemory_).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_);
+    scatter.arg(constants_.memory()).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_);
     scatter.arg(memory(images.irradiance)).arg(memory(images.out)).arg(counters_);
     const size_t groups = groupsFor(*device_, tiles);
     launch(scatter, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});

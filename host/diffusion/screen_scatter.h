@@ -6,6 +6,7 @@
 
 #include "diffusion/light_space.h"
 #include "diffusion/profile_table.h"
+#include "diffusion/sent_constants.h"
 
 namespace pel {
 
@@ -66,8 +67,9 @@ class ScreenScatter {
     LightSpace light_;
     ScatterLights lights_;
     std::map<uint32_t, Material> materials_;
-    PelDiffusionFrame frame_{}, sent_{};
-    cl::Memory frameMemory_, tables_, nodes_, pyramid_, tiles_, counters_;
+    PelDiffusionFrame frame_{};
+    SentConstants<PelDiffusionFrame> constants_;
+    cl::Memory tables_, nodes_, pyramid_, tiles_, counters_;
     size_t pyramidBytes_ = 0, nodeBytes_ = 0, tileBytes_ = 0;
 };
 
