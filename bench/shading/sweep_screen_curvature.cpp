@@ -110,14 +110,6 @@ io::Picture tile(const io::Picture& whole, const Crop& c) {
     return io::shrunk(part, 2);
 }
 
-io::Picture withBar(const io::Picture& picture, double low, double high, const char* unit) {
-    const io::Picture bar = io::colorBar(picture.width, low, high, unit, 1);
-    io::Picture both(picture.width, picture.height + bar.height, io::Srgb8{20, 20, 20});
-    both.paste(0, 0, picture);
-    both.paste(0, picture.height, bar);
-    return both;
-}
-
 void run(const std::string& meshFile, const std::string& folder, const std::string& vertexFile,
          const std::string& screenFile, const std::string& figure) {
     const io::Image g = io::readImage(folder + "/key_gbuffer.exr");
@@ -175,7 +167,8 @@ void run(const std::string& meshFile, const std::string& folder, const std::stri
     const float high = percentile(onHead, 0.98);
     const Crop crop = headOf(mask, g.width, g.height);
     const auto map = [&](const std::vector<float>& values, float from, float to, const char* unit) {
-        return withBar(tile(io::colored(g.width, g.height, values, from, to, mask), crop), from, to, unit);
+        return io::withColorBar(tile(io::colored(g.width, g.height, values, from, to, mask), crop), from, to,
+                                unit, 1);
     };
     const auto shaded = [&](const std::vector<float>& radiance) {
         return tile(io::Picture(g.width, g.height, io::toSrgb8(radiance)), crop);

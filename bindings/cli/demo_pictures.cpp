@@ -79,11 +79,7 @@ io::Picture curvatureMap(const DemoView& view) {
     const float high = std::max(percentile(seen, 0.98), 1e-6f);
     const io::Picture whole = io::colored(view.gbuffer.width, view.gbuffer.height, curvature, 0, high, material);
     const io::Picture map = io::shrunk(cropped(whole, coveredPart(view)), sheetShrink);
-    const io::Picture bar = io::colorBar(map.width, 0, high, "1/mm");
-    io::Picture both(map.width, map.height + bar.height);
-    both.paste(0, 0, map);
-    both.paste(0, map.height, bar);
-    return both;
+    return io::withColorBar(map, 0, high, "1/mm");
 }
 
 }  // namespace
@@ -101,11 +97,7 @@ std::string writeParts(const std::string& folder, const DemoView& view, const Fr
     add("specular", developed(view, frame.output(PEL_SLOT_OUT_SPECULAR)));
     add("thickness", io::colored(view.gbuffer.width, view.gbuffer.height, frame.output(PEL_SLOT_OUT_THICKNESS),
                                  0, longest, view.gbuffer.channel("Material.I").pixels));
-    const io::Picture bar = io::colorBar(tiles.back().picture.width, 0, longest, "mm", 1);
-    io::Picture both(bar.width, tiles.back().picture.height + bar.height);
-    both.paste(0, 0, tiles.back().picture);
-    both.paste(0, tiles.back().picture.height, bar);
-    tiles.back().picture = both;
+    tiles.back().picture = io::withColorBar(tiles.back().picture, 0, longest, "mm", 1);
     const io::Picture sheet = io::contactSheet(tiles, int(tiles.size()));
     const std::string file = folder + "/" + view.name + "_parts.png";
     io::writeImage8(file, sheet.width, sheet.height, 3, sheet.rgb);

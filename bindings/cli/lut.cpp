@@ -7,7 +7,6 @@
 #include "io/atomic_file.h"
 #include "io/image/image_file.h"
 #include "io/image/tone_map.h"
-#include "shade_picture.h"
 
 namespace pellucid::cli {
 namespace {
@@ -42,7 +41,7 @@ template <class Desc>
 void integrate(Arguments& arguments, Desc& desc) {
     parseSize(arguments.size, desc.width, desc.height);
     const bool bc6h = arguments.encoding == "bc6h";
-    const bool picture = arguments.encoding.empty() && isPicture(arguments.output);
+    const bool picture = arguments.encoding.empty() && io::isPicture(arguments.output);
     std::optional<PelLutEncoding> encoding;
     if (!arguments.encoding.empty() && !bc6h)
         encoding = chosen<PelLutEncoding>(io::lutEncodings, arguments.encoding);

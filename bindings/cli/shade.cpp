@@ -71,13 +71,13 @@ void run(const Arguments& a) {
         io::requireExtension(a.output, {"exr", "png", "jpg", "jpeg", "bmp", "tga"});
         io::checkWritable(a.output);
         if (!a.picture.empty()) {
-            io::requireExtension(a.picture, {"png", "jpg", "jpeg", "bmp", "tga"});
+            io::requirePicture(a.picture);
             io::checkWritable(a.picture);
         }
     } catch (const io::FileError& e) {
         throw UsageError(e.what());
     }
-    const std::string picture = isPicture(a.output) ? a.output : a.picture;
+    const std::string picture = io::isPicture(a.output) ? a.output : a.picture;
     if (picture.empty() && a.show != std::vector<std::string>{"final"})
         throw UsageError(
             "--show: parts are shown in a picture; name one with --picture, or write -o to a .png");

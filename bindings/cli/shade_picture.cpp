@@ -24,15 +24,6 @@ PelImageSlot slotOfPart(const std::string& part) {
     return PEL_SLOT_RADIANCE;
 }
 
-bool isPicture(const std::string& path) {
-    return std::ranges::any_of(
-        std::initializer_list<const char*>{".png", ".jpg", ".jpeg", ".bmp", ".tga"}, [&](std::string ending) {
-            return path.size() > ending.size() &&
-                   std::equal(ending.begin(), ending.end(), path.end() - ptrdiff_t(ending.size()),
-                              [](char a, char b) { return a == std::tolower(static_cast<unsigned char>(b)); });
-        });
-}
-
 void writeShadePicture(const std::string& path, const io::Image& gbuffer, const Frame& frame,
                        const std::vector<std::string>& parts, const io::ToneMap& tone) {
     std::vector<io::Tile> tiles;
@@ -41,11 +32,7 @@ void writeShadePicture(const std::string& path, const io::Image& gbuffer, const 
         if (slot == PEL_SLOT_OUT_THICKNESS) {
             const std::vector<float> lengths = frame.output(slot);
             const io::Picture map = io::colored(gbuffer.width, gbuffer.height, lengths, 0, longest, lengths);
-            const io::Picture bar = io::colorBar(map.width, 0, longest, "length", 1);
-            io::Picture both(map.width, map.height + bar.height);
-            both.paste(0, 0, map);
-            both.paste(0, map.height, bar);
-            tiles.push_back({part, both});
+            tiles.push_back({part, io::withColorBar(map, 0, longest, "length", 1)});
         } else {
             tiles.push_back(
                 {part, io::Picture(gbuffer.width, gbuffer.height,

@@ -13,9 +13,6 @@ std::vector<std::string> showableParts();
 // The slot of a part; PEL_SLOT_RADIANCE of "final".
 PelImageSlot slotOfPart(const std::string& part);
 
-// True for the extensions of pictures to look at: png, jpg, jpeg, bmp, tga.
-bool isPicture(const std::string& path);
-
 // The parts side by side, labelled where there is more than one, lengths as colours with a bar. `frame` was shaded with their
 // slots as outputs.
 void writeShadePicture(const std::string& path, const io::Image& gbuffer, const Frame& frame,

@@ -4,6 +4,7 @@
 #include <OpenImageIO/half.h>
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <cstring>
 #include <stdexcept>
 
@@ -154,9 +155,21 @@ void writeExr(const std::string& path, const Image& image) {
     writeWithOiio(path, spec, TypeDesc::UNKNOWN, native.data());
 }
 
+namespace {
+const std::initializer_list<std::string_view> pictureExtensions{"png", "jpg", "jpeg", "bmp", "tga"};
+}
+
+bool isPicture(const std::string& path) {
+    return std::ranges::find(pictureExtensions, extensionOf(path)) != pictureExtensions.end();
+}
+
+std::string requirePicture(const std::string& path) {
+    return requireExtension(path, pictureExtensions);
+}
+
 void writeImage8(const std::string& path, int width, int height, int channels,
                  std::span<const uint8_t> pixels, bool srgb) {
-    const std::string extension = requireExtension(path, {"png", "jpg", "jpeg", "bmp", "tga"});
+    const std::string extension = requirePicture(path);
     const bool jpeg = extension == "jpg" || extension == "jpeg";
     if (jpeg && channels == 4) throw FileError(path, "JPEG holds no alpha; 1 or 3 channels do");
     if (pixels.size() !=

@@ -63,6 +63,10 @@ Image decodeImage(const std::string& path, std::string bytes,
 // their bits.
 void writeExr(const std::string& path, const Image& image);
 
+// Whether writeImage8 writes files of this extension; the second throws FileError where it does not, and returns the extension.
+bool isPicture(const std::string& path);
+std::string requirePicture(const std::string& path);
+
 // Writes interleaved 8-bit pixels (1, 3 or 4 channels) as .png, .bmp or .tga without changing the bytes, or
 // (1 or 3 channels) as .jpg. `srgb` only says what a PNG declares the bytes to be: sRGB-encoded, or linear.
 void writeImage8(const std::string& path, int width, int height, int channels,

@@ -145,6 +145,14 @@ Picture colorBar(int width, double low, double high, std::string_view unit, int 
     return bar;
 }
 
+Picture withColorBar(const Picture& picture, double low, double high, std::string_view unit, int textScale) {
+    const Picture bar = colorBar(picture.width, low, high, unit, textScale);
+    Picture both(picture.width, picture.height + bar.height);
+    both.paste(0, 0, picture);
+    both.paste(0, picture.height, bar);
+    return both;
+}
+
 Picture colored(int width, int height, std::span<const float> values, float low, float high,
                 std::span<const float> mask, Srgb8 outside) {
     Picture picture(width, height, outside);

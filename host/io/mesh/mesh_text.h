@@ -26,6 +26,6 @@ struct RawMesh {
 RawMesh readOff(const std::string& path, const std::string& text);  // ASCII: not "OFF BINARY"
 RawMesh readObj(const std::string& path, const std::string& text);
 RawMesh readStl(const std::string& path, const std::string& text);  // ASCII and binary
-RawMesh readPly(const std::string& path, const std::string& text);  // likewise
+RawMesh readPly(const std::string& path, const std::string& text);  // ASCII and binary
 
 }  // namespace pellucid::io
