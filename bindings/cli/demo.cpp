@@ -107,8 +107,8 @@ ShadedView shadeView(Run& run, Stages& stages, LutStore& luts, const sample::Sce
                pixels * sizeof(float));
 
     ShadedView shaded;
-    const io::SceneFile variants[] = {withoutScattering(view.scene), withoutDeepScatter(view.scene), view.scene};
-    const char* names[] = {"Lambert", "scattering", "scattering + transmission"};
+    const io::SceneFile variants[] = {withoutScattering(view.scene), byTables(view.scene), view.scene};
+    const char* names[] = {"Lambert", "by tables", "auto"};
     for (int i = 0; i < 3; ++i) {
         Frame frame(run.device(), view.gbuffer, variants[i], luts, view.shadowMaps);
         stages.measure(view.name + ": shade, " + names[i], pixels, "pixels",
@@ -164,9 +164,10 @@ void run(Arguments a) {
 
     std::vector<std::string> files = writePictures(a.output, views, curvatureLut, shadowLut);
     const DemoView& backlit = views.back().view;
-    Frame parts(
-        run.device(), backlit.gbuffer, backlit.scene, luts, backlit.shadowMaps, pelShaderOptionsDefaults(),
-        {PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER, PEL_SLOT_OUT_SPECULAR, PEL_SLOT_OUT_THICKNESS});
+    // By tables, for thickness and transmission are parts of theirs alone.
+    Frame parts(run.device(), backlit.gbuffer, byTables(backlit.scene), luts, backlit.shadowMaps,
+                pelShaderOptionsDefaults(),
+                {PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER, PEL_SLOT_OUT_SPECULAR, PEL_SLOT_OUT_THICKNESS});
     parts.shade();
     files.push_back(writeParts(a.output, backlit, parts));
     run.report["output"] = a.output;

@@ -168,16 +168,13 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     return view;
 }
 
-io::SceneFile withoutDeepScatter(io::SceneFile scene) {
-    for (io::SceneMaterial& m : scene.materials) m.material.transmission = 0;
+io::SceneFile byTables(io::SceneFile scene) {
+    for (io::SceneMaterial& m : scene.materials) m.material.scattering = PEL_SCATTERING_PREINTEGRATED;
     return scene;
 }
 
 io::SceneFile withoutScattering(io::SceneFile scene) {
-    scene = withoutDeepScatter(std::move(scene));
-    for (io::SceneMaterial& m : scene.materials) {
-        m.profile.clear();
-    }
+    for (io::SceneMaterial& m : scene.materials) m.profile.clear();
     // One normal for all channels, as a renderer without scattering has.
     scene.channels[PEL_SLOT_NORMAL_BLURRED].clear();
     scene.channels[PEL_SLOT_NORMAL_GEOMETRIC] = scene.channels[PEL_SLOT_NORMAL_SHADING];

@@ -41,8 +41,8 @@ io::SceneFile standardLuts();
 // Renders with the stand-in host.
 DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const DemoViewRequest& request);
 
-// The same scene with less in it: plain Lambert, or everything but deep scatter.
+// The same scene shaded plainly, by Lambert, or by tables.
 io::SceneFile withoutScattering(io::SceneFile scene);
-io::SceneFile withoutDeepScatter(io::SceneFile scene);
+io::SceneFile byTables(io::SceneFile scene);
 
 }  // namespace pellucid::cli
