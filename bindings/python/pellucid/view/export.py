@@ -3,15 +3,13 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..files import write_image
 from .look import SKIN, Look
-
-if TYPE_CHECKING:
-    from .session import Session
+from .session import Session, tinted
 
 
 def _toml(value: Any) -> str:
@@ -93,13 +91,11 @@ def export(session: Session, folder: Any, width: int = 1280, height: int = 720) 
     out = Path(folder)
     out.mkdir(parents=True, exist_ok=True)
     look = session.look.copy()
-    look.albedo = tuple(look.albedo)  # type: ignore[assignment]
     mode, session.look.mode = session.look.mode, "final"
     try:
         radiance = session.radiance(look, width, height)
         g = session.gbuffer(width, height)
-        albedo = np.where(g.material[..., None] == SKIN, np.minimum(g.albedo * np.asarray(look.albedo, np.float32), 1.0), g.albedo)
-        values = np.concatenate([g.material[..., None], g.position, g.normal_geometric, g.normal_shading, g.curvature[..., None], albedo], 2)
+        values = np.concatenate([g.material[..., None], g.position, g.normal_geometric, g.normal_shading, g.curvature[..., None], tinted(g, look)], 2)
         names = ["Id.I", *(f"{n}.{c}" for n in ("Position", "NormalGeometric", "NormalShading") for c in "XYZ"), "Curvature.V",
                  *(f"Albedo.{c}" for c in "RGB")]
         write_image(out / "gbuffer.exr", values, channels=names)

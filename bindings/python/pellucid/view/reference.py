@@ -5,16 +5,14 @@ shadows are therefore as sharp as the mesh is fine: `pellucid reference` traces 
 """
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..reference import surface_integral
 from .look import SKIN, Look
-
-if TYPE_CHECKING:
-    from .session import Session
+from .session import Session, tinted
 
 
 def _lit(map: Any, positions: NDArray[Any], normals: NDArray[Any], texel: float) -> NDArray[np.float32]:
@@ -62,4 +60,4 @@ def reference(session: Session, look: Look, width: int, height: int) -> NDArray[
                                                diffusion_radius=profile.info.radius * look.radius_scale,
                                                millimetres_per_unit=session.mm)
         session._reference = (key, scattered)
-    return session._reference[1] * np.minimum(g.albedo * np.asarray(look.albedo, np.float32), 1.0)
+    return session._reference[1] * tinted(g, look)

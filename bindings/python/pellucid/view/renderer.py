@@ -43,6 +43,7 @@ class Renderer:
         self._targets: dict[Any, Any] = {}
         self._memory: list[NDArray[np.float32]] = []
         self._arrays: list[Any] = []
+        self._shadow_targets: dict[int, Any] = {}  # by size
         self.mesh: Mesh | None = None
 
     @property
@@ -114,11 +115,10 @@ class Renderer:
         assert self.mesh is not None
         direction, r = unit(to_light), 1.02 * self.radius
         matrix = parallel(r, 0.0, 2 * r) @ look_at(self.centre + direction * r, self.centre, up)
-        key = ("shadow", size)
-        if key not in self.__dict__.setdefault("_shadow_targets", {}):
+        if size not in self._shadow_targets:
             texture = self.context.texture((size, size), 1, dtype="f4")
-            self._shadow_targets[key] = self.context.framebuffer([texture], self.context.depth_renderbuffer((size, size)))
-        frame = self._shadow_targets[key]
+            self._shadow_targets[size] = self.context.framebuffer([texture], self.context.depth_renderbuffer((size, size)))
+        frame = self._shadow_targets[size]
         frame.use()
         frame.clear(1.0, 1.0, 1.0, 1.0)
         self.context.enable_only(moderngl.DEPTH_TEST)

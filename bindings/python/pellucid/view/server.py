@@ -5,6 +5,7 @@ import asyncio
 import hmac
 import io
 import json
+import math
 import time
 from concurrent.futures import ThreadPoolExecutor
 from http.cookies import SimpleCookie
@@ -80,10 +81,10 @@ class Viewer:
             orbit.azimuth = (orbit.azimuth - 120 * dx + 180) % 360 - 180
             orbit.elevation = max(-89.0, min(89.0, orbit.elevation + 120 * dy))
         elif kind == "pan":
-            tall = 2 * orbit.distance * 0.1763 * orbit.fov / 20
+            tall = 2 * orbit.distance * math.tan(math.radians(orbit.fov) / 2)
             orbit.pan = (orbit.pan[0] - dx * tall, orbit.pan[1] + dy * tall)
         elif kind == "zoom":
-            orbit.distance = max(1.2 * self.session.renderer.radius * 0.2, min(50 * self.session.renderer.radius, orbit.distance * 1.2 ** (5 * dy)))
+            orbit.distance = max(0.24 * self.session.renderer.radius, min(50 * self.session.renderer.radius, orbit.distance * 1.2 ** (5 * dy)))
         elif kind == "light":
             for look in filter(None, (self.session.look, self.session.other)):
                 lamp = look.lamps[0]

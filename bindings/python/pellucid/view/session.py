@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import files
-from .._types import Ambient, Camera, CurvatureParams, Light, Material
+from .._types import Ambient, Camera, Light, Material
 from ..device import Device
 from ..mesh import MeshTopology
 from ..profile import Profile
@@ -40,8 +40,13 @@ _GLOSS = {EYES: (0.6, 0.08), TEETH: (0.5, 0.15), TONGUE: (0.4, 0.2), CUT: (0.0, 
 _OUTPUTS = {"diffuse": "out_diffuse", "specular": "out_specular", "deep_scatter": "out_deep_scatter", "thickness": "out_thickness"}
 
 
+def tinted(g: GBuffer, look: Look) -> NDArray[np.float32]:
+    """The albedo with the look's tint on skin, (h, w, 3)."""
+    return np.where(g.material[..., None] == SKIN, np.minimum(g.albedo * np.asarray(look.albedo, np.float32), 1.0), g.albedo)
+
+
 class _Pass:
-    """A shader, and what it was last told, so that only what changed is told again."""
+    """A shader and its last settings, so that only changed settings are set again."""
 
     def __init__(self, device: Device) -> None:
         self.shader = Shader(device)
@@ -81,7 +86,7 @@ class Session:
         mesh = files.load_mesh(path, subdivide, up)
         weld = {} if mesh.ids is not None else {"weld": "exact", "positions": mesh.positions}
         topology = MeshTopology(self.device, mesh.triangles, len(mesh.positions), **weld)
-        curvature = topology.curvature(mesh.positions, mesh.normals, smoothing_passes=CurvatureParams(smoothing_passes=2).smoothing_passes)
+        curvature = topology.curvature(mesh.positions, mesh.normals, smoothing_passes=2)
         self.renderer.set_mesh(mesh, curvature, self.mm)
         self.mesh = mesh
         self.centre = (np.asarray(mesh.low, float) + mesh.high) / 2
@@ -159,7 +164,7 @@ class Session:
                albedo: bool = True) -> _Pass:
         g = self.gbuffer(width, height)
         p = self._passes.setdefault(name, _Pass(self.device))
-        s, memory = p.shader, (self.renderer._memory[0].ctypes.data, width, height, look.albedo, albedo)
+        s, memory = p.shader, (g.position.ctypes.data, width, height, look.albedo, albedo)
 
         def images() -> None:
             for slot, image in (("position", g.position), ("material", g.material), ("normal_geometric", g.normal_geometric),
@@ -169,16 +174,15 @@ class Session:
             s.set_image("radiance", p.outputs["radiance"])
 
         p.tell("images", memory[:3], images)
-        tinted = albedo and tuple(look.albedo) != (1.0, 1.0, 1.0)
-        if tinted:  # host work: only where a tint is set
-            p.tell("tint", None, lambda: None)
-            values = np.where(g.material[..., None] == SKIN, np.minimum(g.albedo * np.asarray(look.albedo, np.float32), 1.0), g.albedo)
+        tints = albedo and tuple(look.albedo) != (1.0, 1.0, 1.0)
+        if tints:  # host work: only where a tint is set
+            values = tinted(g, look)
             if p.outputs.get("albedo") is None or p.outputs["albedo"].shape != values.shape:
                 p.outputs["albedo"] = values
                 p.told.pop("albedo", None)
             else:
                 p.outputs["albedo"][...] = values
-        p.tell("albedo", (memory, tinted), lambda: s.set_image("albedo", None if not albedo else p.outputs["albedo"] if tinted else g.albedo))
+        p.tell("albedo", (memory, tints), lambda: s.set_image("albedo", None if not albedo else p.outputs["albedo"] if tints else g.albedo))
 
         def parts() -> None:
             for slot in _OUTPUTS.values():
