@@ -127,18 +127,25 @@ pellucid::MeshTopology topologyFrom(const py::object& report,
     return pellucid::MeshTopology(std::exchange(made->handle, nullptr));
 }
 
+PelMeshTopologyDesc topologyDesc(uint32_t numVertices, uintptr_t indices, uint64_t numIndices, uint32_t weld,
+                                 float tolerance, uintptr_t positions, uint32_t positionStride) {
+    PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
+    desc.numVertices = numVertices;
+    desc.indices = static_cast<const uint32_t*>(pointer(indices));
+    desc.numIndices = numIndices;
+    desc.weld = PelWeld(weld);
+    desc.weldTolerance = tolerance;
+    desc.positions = static_cast<const float*>(pointer(positions));
+    desc.positionStride = positionStride;
+    return desc;
+}
+
 void bindOrient(py::module_& module) {
     module.def("orient_mesh", [](uint32_t numVertices, uintptr_t indices, uint64_t numIndices, uint32_t weld,
                                  float tolerance, uintptr_t positions, uint32_t positionStride,
                                  uintptr_t normals, uint32_t normalStride, const py::object& found) {
-        PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
-        desc.numVertices = numVertices;
-        desc.indices = static_cast<const uint32_t*>(pointer(indices));
-        desc.numIndices = numIndices;
-        desc.weld = PelWeld(weld);
-        desc.weldTolerance = tolerance;
-        desc.positions = static_cast<const float*>(pointer(positions));
-        desc.positionStride = positionStride;
+        const PelMeshTopologyDesc desc =
+            topologyDesc(numVertices, indices, numIndices, weld, tolerance, positions, positionStride);
         PelMeshOrientation* counts = structOf<PelMeshOrientation>(found);
         call([&] {
             return pelMeshOrient(&desc, static_cast<const float*>(pointer(normals)), normalStride,
@@ -160,14 +167,8 @@ void bindMesh(py::module_& module) {
             "create",
             [](const Device& d, uint32_t numVertices, uintptr_t indices, uint64_t numIndices, uint32_t weld,
                float tolerance, uintptr_t positions, uint32_t positionStride, const py::object& report) {
-                PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
-                desc.numVertices = numVertices;
-                desc.indices = static_cast<const uint32_t*>(pointer(indices));
-                desc.numIndices = numIndices;
-                desc.weld = PelWeld(weld);
-                desc.weldTolerance = tolerance;
-                desc.positions = static_cast<const float*>(pointer(positions));
-                desc.positionStride = positionStride;
+                const PelMeshTopologyDesc desc =
+                    topologyDesc(numVertices, indices, numIndices, weld, tolerance, positions, positionStride);
                 return topologyFrom(report,
                                     [desc, device = d.handle](PelMeshTopology* made, PelMeshReport* found) {
                                         return pelMeshTopologyCreate(device.get(), &desc, made, found);
