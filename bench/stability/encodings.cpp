@@ -1,4 +1,4 @@
-// Tables as half floats and in the peer's eight bits: how far a code is from the nearest to the truth.
+// Tables as half floats and in FaceWorks' eight bits: how far a code is from the nearest to the truth.
 #include "tables.h"
 
 namespace stability {

@@ -215,11 +215,12 @@ void addCompare(CLI::App& app) {
     command->add_option("a", a->a, "EXR, NPY, or an 8-bit picture, which is decoded from sRGB")->required();
     command->add_option("b", a->b, "what it is compared with")->required();
     command->add_option("--layer-a", a->channelsA, "layer of A: its .R, .G and .B instead of R, G, B");
-    command->add_option("--layer-b", a->channelsB, "likewise of B, such as Surface");
+    command->add_option("--layer-b", a->channelsB, "layer of B, such as Surface");
     command->add_option("--scale-a", a->scaleA, "multiplies A")->capture_default_str();
     command->add_option("--scale-b", a->scaleB, "multiplies B, such as by an albedo")->capture_default_str();
-    command->add_option("--gbuffer", a->gbuffer,
-                        "multi-layer EXR: only pixels of a material count, and sub-sets are told apart");
+    command->add_option(
+        "--gbuffer", a->gbuffer,
+        "multi-layer EXR: only pixels of a material count; errors are given for each sub-set of them");
     command->add_option("--scene", a->scene, "its scene file (TOML)");
     command->add_option("--light", a->light, "number of the light that sub-sets go by")->capture_default_str();
     command

@@ -15,7 +15,7 @@
 #define PEL_PLANE_X 2         // length, from PelDiffusionFrame.origin: the mean over the block's surface
 #define PEL_PLANE_Y 3
 #define PEL_PLANE_Z 4
-#define PEL_PLANE_RED 5  // irradiance, likewise
+#define PEL_PLANE_RED 5  // irradiance
 #define PEL_PLANE_GREEN 6
 #define PEL_PLANE_BLUE 7
 #define PEL_PLANE_BEND 8  // greatest second difference of irradiance, from block to block one level finer

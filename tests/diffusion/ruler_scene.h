@@ -12,7 +12,7 @@
 namespace ruler {
 
 constexpr size_t side = 1536, coarse = 512;
-constexpr double albedo = 0.8;  // of the pictures that errors are told of
+constexpr double albedo = 0.8;  // of the pictures whose errors are measured
 
 // Positions are in cm, the camera stands at (0, -60, 0).
 struct Head {
