@@ -1,5 +1,6 @@
 #include "api/entry.h"
 #include "core/submission.h"
+#include "eye/eye_lut.h"
 #include "lut/luts.h"
 
 using namespace pel;
@@ -41,6 +42,10 @@ PelError pelSpecularLutCreate(PelDevice device, const PelSpecularLutDesc* desc, 
                               const PelSubmit* submit) {
     return createLut(device, desc, pelSpecularLutDescDefaults(), "PelSpecularLutDesc", lut, submit,
                      tabulateSpecularLut);
+}
+
+PelError pelEyeLutCreate(PelDevice device, const PelEyeLutDesc* desc, PelLut* lut, const PelSubmit* submit) {
+    return createLut(device, desc, pelEyeLutDescDefaults(), "PelEyeLutDesc", lut, submit, integrateEyeLut);
 }
 
 PelError pelLutCreateFromTexels(PelDevice device, const PelLutInfo* info, const float* texels, size_t bytes,

@@ -60,6 +60,34 @@ PelError pelShaderSetScatteredTexture(PelShader shader, uint32_t id, const PelIm
     });
 }
 
+PelError pelShaderSetEye(PelShader shader, uint32_t id, const PelEye* eye, PelLut caustics) {
+    return entry([&] {
+        const Ref<Shader> s = fromHandle<Shader>(shader);
+        if (!eye) return s->setEye(id, nullptr, nullptr);
+        const Ref<Lut> table = caustics ? fromHandle<Lut>(caustics) : Ref<Lut>();
+        const PelEye given = readStruct(eye, pelEyeDefaults(), "PelEye");
+        s->setEye(id, &given, table.get());
+    });
+}
+
+PelError pelShaderSetIrisTexture(PelShader shader, uint32_t id, const PelImageDesc* texture) {
+    return entry([&] {
+        const Ref<Shader> s = fromHandle<Shader>(shader);
+        if (!texture) return s->setIrisTexture(id, nullptr);
+        const PelImageDesc desc = readStruct(texture, pelImageDescDefaults(), "PelImageDesc");
+        s->setIrisTexture(id, &desc);
+    });
+}
+
+PelError pelShaderSetReflectionCube(PelShader shader, const PelImageDesc* faces) {
+    return entry([&] {
+        const Ref<Shader> s = fromHandle<Shader>(shader);
+        if (!faces) return s->setReflectionCube(nullptr);
+        const PelImageDesc desc = readStruct(faces, pelImageDescDefaults(), "PelImageDesc");
+        s->setReflectionCube(&desc);
+    });
+}
+
 PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t count) {
     return entry([&] { fromHandle<Shader>(shader)->setLights(lights, count); });
 }

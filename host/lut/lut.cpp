@@ -13,6 +13,7 @@ static_assert(int(PEL_AXIS_LINEAR) == PEL_LUT_AXIS_LINEAR && int(PEL_AXIS_ROOT) 
 PelProfile profileHandle(const PelLutInfo& info) {
     return info.kind == PEL_LUT_CURVATURE ? info.curvature.profile
            : info.kind == PEL_LUT_SHADOW  ? info.shadow.profile
+           : info.kind == PEL_LUT_EYE     ? info.eye.profile
                                           : nullptr;
 }
 
@@ -22,8 +23,11 @@ PelLutInfo resolved(PelLutInfo info, const Profile& profile) {
         std::memset(info.profile, 0, sizeof info.profile);
         std::strncpy(info.profile, profile.name().c_str(), sizeof info.profile - 1);
     }
+    if (info.kind == PEL_LUT_EYE && !profileHandle(info))
+        std::strncpy(info.profile, "none", sizeof info.profile);
     for (float* radius : {&info.curvature.diffusionRadius, &info.shadow.diffusionRadius})
         if (*radius == 0) *radius = float(profile.radius());
+    if (info.eye.irisRadius == 0) info.eye.irisRadius = info.eye.limbusRadius;
     return info;
 }
 
@@ -50,6 +54,10 @@ LutLayout layoutOf(const PelLutInfo& info) {
         case PEL_LUT_SPECULAR:
             layout.width = info.specular.width;
             layout.height = info.specular.height;
+            break;
+        case PEL_LUT_EYE:  // slice below slice
+            layout.width = info.eye.width;
+            layout.height = info.eye.height * info.eye.depth;
             break;
     }
     layout.rowTexels = layout.width + 1;

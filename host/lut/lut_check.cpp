@@ -1,6 +1,7 @@
 #include "lut/lut_check.h"
 
 #include "core/check_range.h"
+#include "lut/eye_shape.h"
 
 namespace pel {
 namespace {
@@ -42,6 +43,12 @@ void checkSpecularDesc(const PelSpecularLutDesc& fields) {
     PEL_EACH_SPECULAR_LUT_RANGE(PEL_CHECK_RANGE)
 }
 
+void checkEyeDesc(const PelEyeLutDesc& fields) {
+    const char* structure = "PelEyeLutDesc";
+    PEL_EACH_EYE_LUT_RANGE(PEL_CHECK_RANGE)
+    EyeShape(fields, structure);
+}
+
 void checkInfo(const PelLutInfo& info) {
     if (info.kind == PEL_LUT_CURVATURE)
         checkCurvatureDesc(info.curvature);
@@ -49,9 +56,12 @@ void checkInfo(const PelLutInfo& info) {
         checkShadowDesc(info.shadow);
     else if (info.kind == PEL_LUT_SPECULAR)
         checkSpecularDesc(info.specular);
+    else if (info.kind == PEL_LUT_EYE)
+        checkEyeDesc(info.eye);
     else
-        invalidArgument("PelLutInfo.kind is ", int(info.kind),
-                        "; PEL_LUT_CURVATURE (0), PEL_LUT_SHADOW (1) or PEL_LUT_SPECULAR (2) is needed");
+        invalidArgument(
+            "PelLutInfo.kind is ", int(info.kind),
+            "; PEL_LUT_CURVATURE (0), PEL_LUT_SHADOW (1), PEL_LUT_SPECULAR (2) or PEL_LUT_EYE (3) is needed");
 }
 
 }  // namespace pel

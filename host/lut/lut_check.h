@@ -8,6 +8,7 @@ namespace pel {
 void checkCurvatureDesc(const PelCurvatureLutDesc& desc);
 void checkShadowDesc(const PelShadowLutDesc& desc);
 void checkSpecularDesc(const PelSpecularLutDesc& desc);
+void checkEyeDesc(const PelEyeLutDesc& desc);
 void checkInfo(const PelLutInfo& info);
 
 }  // namespace pel

@@ -26,6 +26,10 @@ Encoding encodingOf(const Lut& lut, PelLutEncoding encoding) {
         case PEL_LUT_HALF:
             return {"encode_half", 6};
         case PEL_LUT_FACEWORKS8:
+            if (lut.info().kind == PEL_LUT_EYE)
+                invalidArgument(
+                    "an eye's table has values above 1, which PEL_LUT_FACEWORKS8 cannot hold: PEL_LUT_HALF "
+                    "would be right");
             return {bytesKernel(lut.info().kind), 4};
     }
     invalidArgument("LUT encoding ", int(encoding),

@@ -153,10 +153,17 @@ void checkAmbient(const PelAmbient& ambient) {
     checkFinite("PelAmbient", "sh", &ambient.sh[0][0], 27);
 }
 
-void checkAmbientCube(const ImageView& faces) {
-    checkContent(faces, Content::COLOR, "ambient cube");
+void checkIrisTexture(const ImageView& texture) {
+    checkContent(texture, Content::COLOR, "iris texture");
+    if (texture.width != texture.height)
+        invalidArgument("the iris texture is ", texture.width, " x ", texture.height,
+                        "; a square, whose inscribed circle is the iris' rim, would be right");
+}
+
+void checkCube(const ImageView& faces, const char* what) {
+    checkContent(faces, Content::COLOR, what);
     if (faces.height != 6 * faces.width && faces.width != 6 * faces.height)
-        invalidArgument("the ambient cube image is ", faces.width, " x ", faces.height,
+        invalidArgument("the ", what, " image is ", faces.width, " x ", faces.height,
                         "; six square faces one below the other are n x 6n pixels, side by side 6n x n");
 }
 

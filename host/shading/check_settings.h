@@ -14,11 +14,13 @@ void checkMaterial(const PelMaterial& material);
 void checkScatterControls(const char* structure, uint32_t taps, float albedoBefore,
                           const float (&borderColor)[3]);
 void checkScatteredTexture(const ImageView& texture);
+void checkIrisTexture(const ImageView& texture);
 void checkLight(const PelLight& light, uint32_t index);
 // A light's shadow map at commit: its form, its images and the fields that they need (check_shadow_map.cpp).
 void checkLightMap(const ShaderLight& light, uint32_t index);
 void checkAmbient(const PelAmbient& ambient);
-void checkAmbientCube(const ImageView& faces);
+// Of six faces; `what` names it.
+void checkCube(const ImageView& faces, const char* what);
 void checkCamera(const PelCamera& camera);
 void checkOptions(const PelShaderOptions& options);
 

@@ -187,6 +187,8 @@ uint32_t deriveFeatures(const ShaderState& state) {
         invalidArgument("no material is set: pelShaderSetMaterial gives an id its material");
     if (!images[PEL_SLOT_MATERIAL] && !state.materials.contains(1))
         invalidArgument("without a material image all pixels are of material 1, which is not set");
+    if (std::ranges::any_of(state.materials, [](const auto& m) { return m.second.eye.has_value(); }))
+        fail(PEL_ERROR_UNSUPPORTED, "this build of the library does not shade eyes yet");
     checkLightFormats(state, PEL_LIGHT_WIDE_SHADOW);
     checkLightFormats(state, PEL_LIGHT_SHADOW_MAP);
     checkShadowMaps(state);

@@ -22,6 +22,10 @@ class Shader final : public Object {
     void setMaterial(uint32_t id, const PelMaterial* material, Lut* curvatureLut, Lut* shadowLut);
     void setNormalMap(uint32_t id, const PelImageDesc* levels, uint32_t count);
     void setScatteredTexture(uint32_t id, const PelImageDesc* texture);
+    // Either may be NULL.
+    void setEye(uint32_t id, const PelEye* eye, Lut* caustics);
+    void setIrisTexture(uint32_t id, const PelImageDesc* texture);
+    void setReflectionCube(const PelImageDesc* faces);
     void setLights(const PelLight* lights, uint32_t count);
     void setLightImage(uint32_t light, PelLightSlot slot, const PelImageDesc* image);
     void setAmbient(const PelAmbient& ambient);
@@ -45,6 +49,7 @@ class Shader final : public Object {
   private:
     ~Shader() override = default;
     void allocate(uint32_t mostRows);
+    ShaderMaterial& materialFor(uint32_t id, const char* what);
     uint32_t methods() const;
     void checkMethods(const ShaderState& state) const;
     void finishPlan();

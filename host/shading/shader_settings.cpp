@@ -1,6 +1,9 @@
 // What the caller sets on a PelShader: checked, and kept until the next commit.
+#include <algorithm>
+
 #include "core/handle_table.h"
 #include "core/struct_size.h"
+#include "eye/check_eye.h"
 #include "shading/check_settings.h"
 #include "shading/shader.h"
 #include "shared/shade_passes.h"
@@ -59,10 +62,16 @@ void Shader::setMaterial(uint32_t id, const PelMaterial* material, Lut* curvatur
     committed_ = false;
 }
 
-void Shader::setNormalMap(uint32_t id, const PelImageDesc* levels, uint32_t count) {
+// The material that something belongs to; it must be set first.
+ShaderMaterial& Shader::materialFor(uint32_t id, const char* what) {
     const auto found = state_.materials.find(id);
     if (found == state_.materials.end())
-        invalidArgument("material ", id, " is not set: pelShaderSetMaterial comes before its normal map");
+        invalidArgument("material ", id, " is not set: pelShaderSetMaterial comes before its ", what);
+    return found->second;
+}
+
+void Shader::setNormalMap(uint32_t id, const PelImageDesc* levels, uint32_t count) {
+    ShaderMaterial& material = materialFor(id, "normal map");
     if (count > PEL_MAP_LEVELS)
         invalidArgument("a normal map of ", count, " levels; ", PEL_MAP_LEVELS, " are the most");
     if (count > 0 && !levels) invalidArgument("levels is NULL but their count is ", count);
@@ -75,21 +84,55 @@ void Shader::setNormalMap(uint32_t id, const PelImageDesc* levels, uint32_t coun
         next += level->structSize;
     }
     checkNormalMap(views);
-    found->second.normalMap = std::move(views);
+    material.normalMap = std::move(views);
     committed_ = false;
 }
 
 void Shader::setScatteredTexture(uint32_t id, const PelImageDesc* texture) {
-    const auto found = state_.materials.find(id);
-    if (found == state_.materials.end())
-        invalidArgument("material ", id,
-                        " is not set: pelShaderSetMaterial comes before its scattered texture");
+    ShaderMaterial& material = materialFor(id, "scattered texture");
     ImageView view;
     if (texture) {
         view = makeImageView(*texture, *device_, "scattered texture");
         checkScatteredTexture(view);
     }
-    found->second.scatteredTexture = view;
+    material.scatteredTexture = view;
+    committed_ = false;
+}
+
+void Shader::setEye(uint32_t id, const PelEye* eye, Lut* caustics) {
+    ShaderMaterial& material = materialFor(id, "eye");
+    if (!eye) {
+        material.eye.reset();
+        committed_ = false;
+        return;
+    }
+    ShaderEye set = material.eye.value_or(ShaderEye());  // which may have a texture
+    set.params = resolvedEye(*eye);
+    if (caustics && &caustics->device() != device_.get())
+        invalidArgument("the caustics belong to another PelDevice than the shader");
+    if (caustics && caustics->info().kind != PEL_LUT_EYE)
+        invalidArgument("the LUT given as caustics is of another kind: pelEyeLutCreate would be right");
+    const auto eyes =
+        std::ranges::count_if(state_.materials, [](const auto& m) { return m.second.eye.has_value(); });
+    if (!material.eye && eyes >= PEL_EYES)
+        invalidArgument("material ", id, " would be eye ", eyes + 1, "; ", PEL_EYES, " are the most");
+    set.irisProfile = eye->irisProfile ? fromHandle<Profile>(eye->irisProfile) : Ref<Profile>();
+    set.caustics = Ref(caustics);
+    set.ownCaustics = caustics == nullptr;
+    material.eye = std::move(set);
+    committed_ = false;
+}
+
+void Shader::setIrisTexture(uint32_t id, const PelImageDesc* texture) {
+    ShaderMaterial& material = materialFor(id, "iris");
+    if (!material.eye)
+        invalidArgument("material ", id, " is no eye: pelShaderSetEye comes before its iris texture");
+    ImageView view;
+    if (texture) {
+        view = makeImageView(*texture, *device_, "iris texture");
+        checkIrisTexture(view);
+    }
+    material.eye->iris = view;
     committed_ = false;
 }
 
@@ -134,9 +177,19 @@ void Shader::setAmbientCube(const PelImageDesc* faces) {
     ImageView view;
     if (faces) {
         view = makeImageView(*faces, *device_, "ambient cube");
-        checkAmbientCube(view);
+        checkCube(view, "ambient cube");
     }
     state_.ambientCube = view;
+    committed_ = false;
+}
+
+void Shader::setReflectionCube(const PelImageDesc* faces) {
+    ImageView view;
+    if (faces) {
+        view = makeImageView(*faces, *device_, "reflection cube");
+        checkCube(view, "reflection cube");
+    }
+    state_.reflectionCube = view;
     committed_ = false;
 }
 

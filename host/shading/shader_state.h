@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "core/image_view.h"
@@ -9,6 +10,15 @@
 #include "lut/profile.h"
 
 namespace pel {
+
+// The eye around a material that is its sclera.
+struct ShaderEye {
+    PelEye params;  // checked, with its defaults filled in (eye/check_eye.h)
+    Ref<Profile> irisProfile;
+    Ref<Lut> caustics;  // the caller's, or made at commit
+    bool ownCaustics = false;
+    ImageView iris;  // texture; none: fibres are drawn
+};
 
 struct ShaderMaterial {
     PelMaterial given;  // by the caller, with
@@ -22,6 +32,7 @@ struct ShaderMaterial {
     float shadowBias, shadowSoftness, shadowConeSlope;
     std::vector<ImageView> normalMap;  // its levels, the finest first
     ImageView scatteredTexture;
+    std::optional<ShaderEye> eye;
 };
 
 struct ShaderLight {
@@ -35,7 +46,7 @@ struct ShaderState {
     std::map<uint32_t, ShaderMaterial> materials;
     std::vector<ShaderLight> lights;
     PelAmbient ambient = pelAmbientDefaults();
-    ImageView ambientCube;  // six faces
+    ImageView ambientCube, reflectionCube;  // six faces
     PelCamera camera = pelCameraDefaults();
 };
 

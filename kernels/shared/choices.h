@@ -37,7 +37,8 @@
 #define PEL_EACH_LUT_KIND(X)           \
     X(CURVATURE, 0, "curvature")       \
     X(SHADOW, 1, "shadow")             \
-    X(SPECULAR, 2, "specular")
+    X(SPECULAR, 2, "specular")         \
+    X(EYE, 3, "eye")
 // PelCurvatureForm
 #define PEL_EACH_CURVATURE_FORM(X)     \
     X(ARC, 0, "arc")                   \

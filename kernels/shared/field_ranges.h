@@ -79,6 +79,36 @@
     X(width, 1, 16384, PEL_NONE)       \
     X(height, 1, 16384, PEL_NONE)
 
+// Of PelEye and of PelEyeLutDesc.
+#define PEL_EACH_EYE_SHAPE_RANGE(X)               \
+    X(scleraRadius, PEL_TINY, PEL_HUGE, PEL_NONE) \
+    X(corneaRadius, PEL_TINY, PEL_HUGE, PEL_NONE) \
+    X(corneaConic, -100, 100, PEL_NONE)           \
+    X(limbusRadius, PEL_TINY, PEL_HUGE, PEL_NONE) \
+    X(chamberDepth, PEL_TINY, PEL_HUGE, PEL_NONE) \
+    X(corneaIndex, 1, 3, PEL_NONE)                \
+    X(aqueousIndex, 1, 3, PEL_NONE)               \
+    X(irisRadius, PEL_TINY, PEL_HUGE, 0)          \
+    X(irisConcavity, 0, PEL_HUGE, PEL_NONE)
+
+#define PEL_EACH_EYE_RANGE(X)               \
+    PEL_EACH_EYE_SHAPE_RANGE(X)             \
+    X(limbusWidth, 0, PEL_HUGE, PEL_NONE)   \
+    X(limbusDarkening, 0, 1, PEL_NONE)      \
+    X(pupilRadius, 0, PEL_HUGE, PEL_NONE)   \
+    X(texturePupil, 0, 0.95f, PEL_NONE)     \
+    X(irisColor, 0, PEL_HUGE, -1)           \
+    X(tearRoughness, 1e-3f, 1, PEL_NONE)    \
+    X(wetLineRoughness, 1e-3f, 1, PEL_NONE) \
+    X(tearIndex, 1, 3, PEL_NONE)
+
+#define PEL_EACH_EYE_LUT_RANGE(X) \
+    PEL_EACH_EYE_SHAPE_RANGE(X)   \
+    X(width, 2, 1024, PEL_NONE)   \
+    X(height, 2, 1024, PEL_NONE)  \
+    X(depth, 2, 256, PEL_NONE)    \
+    X(millimetresPerUnit, PEL_TINY, PEL_HUGE, PEL_NONE)
+
 #ifdef __cplusplus
 #include <limits>
 #include <sstream>
@@ -127,6 +157,12 @@ PEL_EACH_CURVATURE_LUT_RANGE(PEL_RANGE_)
 }
 namespace shadowLut {
 PEL_EACH_SHADOW_LUT_RANGE(PEL_RANGE_)
+}
+namespace eye {
+PEL_EACH_EYE_RANGE(PEL_RANGE_)
+}
+namespace eyeLut {
+PEL_EACH_EYE_LUT_RANGE(PEL_RANGE_)
 }
 #undef PEL_RANGE_
 }  // namespace range

@@ -8,7 +8,7 @@
 // Features whose terms read the blurred normal, or the geometric one if there is no blurred one.
 #define PEL_BITS_BLURRED_ \
     (PEL_BIT_DIRECT_SCATTER | PEL_BIT_AMBIENT | PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER)
-#define PEL_BITS_POSITION_ (PEL_BIT_SPECULAR | PEL_BIT_THICKNESS_TAPS | PEL_BIT_POSITIONAL)
+#define PEL_BITS_POSITION_ (PEL_BIT_SPECULAR | PEL_BIT_THICKNESS_TAPS | PEL_BIT_POSITIONAL | PEL_BIT_EYE)
 #define PEL_BITS_ALL_ 0x7fffffff
 
 // clang-format off
@@ -40,7 +40,8 @@
     X(OUT_THICKNESS, 19, OUTPUT, SCALAR_OUTPUT, 0, "thickness", "thickness output", PEL_BITS_ALL_)                                \
     X(IRRADIANCE, 20, SHADE, COLOR, 3, "irradiance", "irradiance", PEL_BIT_IRRADIANCE)                                         \
     X(SCATTER_WEIGHT, 21, PASS, SCALAR, 2, "scatter_weight", "scatter weight", 0)                                              \
-    X(IRRADIANCE_BACK, 22, PASS, COLOR, 3, "irradiance_back", "back irradiance", 0)
+    X(IRRADIANCE_BACK, 22, PASS, COLOR, 3, "irradiance_back", "back irradiance", 0)                                            \
+    X(WETNESS, 23, SHADE, SCALAR, 1, "wetness", "wetness", PEL_BIT_EYE)
 // clang-format on
 
 // PEL_IMAGE_<NAME>, their count, and PEL_READ_<NAME>: the bits.

@@ -15,6 +15,7 @@
 #define PEL_LIGHT_BUFFERS 16  // distinct buffers among all images of all lights
 #define PEL_EACH_LIGHT_BUFFER(X) \
     X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8) X(9) X(10) X(11) X(12) X(13) X(14) X(15)
+#define PEL_EYES 64        // materials that are eyes, at most
 #define PEL_MATERIALS 256  // ids 0 (background) to 255
 // Lists of tiles in one buffer: PEL_TILE_LISTS counts, then the lists, each with room for
 // PelShadeFrame.listTiles. List 0 has every tile with a material; list 1 + i has the tiles of variant i of
@@ -50,8 +51,9 @@ typedef struct PelShadeFrame {
     // Irradiance / pi as a polynomial of the normal: 1, y, z, x, xy, yz, 3z^2 - 1, xz, x^2 - y^2; the basis' factors
     // and the constant term are folded in.
     float ambient[9][3];
-    float invalidColor[3];  // radiance of a pixel with NaN or Inf input
-    PelUint32 cubeSize;     // texels along an edge of the ambient cube map; 0: none
+    float invalidColor[3];     // radiance of a pixel with NaN or Inf input
+    PelUint32 cubeSize;        // texels along an edge of the ambient cube map; 0: none
+    PelUint32 reflectionSize;  // of the cube map that eyes reflect; 0: none
     PelShadeImage images[PEL_IMAGE_SLOTS];
 } PelShadeFrame;
 
@@ -97,6 +99,7 @@ typedef struct PelShadeMaterial {
     PelUint32 named;       // the same as the caller named it
     float albedoAfter;     // power of albedo that scattered irradiance is multiplied by
     float through[3];      // share of the light on a sheet's other side
+    PelUint32 eye;         // 1 + which eye of shared/eye.h; 0: none
     PelUint32 variants;    // bit i: variant i of the shading kernel has all of these features
 } PelShadeMaterial;
 
@@ -145,12 +148,15 @@ typedef struct PelShadeLight {
 #define PEL_COUNT_IRRADIANCE 7
 #define PEL_COUNT_SCATTERING 8                                  // and on: one for each PelScattering
 #define PEL_COUNT_CHOICE (PEL_COUNT_SCATTERING + PEL_SCATTERS)  // of materials of auto, by what it came to
-#define PEL_COUNTERS (PEL_COUNT_CHOICE + PEL_SCATTERS)
+#define PEL_COUNT_EYE (PEL_COUNT_CHOICE + PEL_SCATTERS)
+#define PEL_COUNT_IRIS (PEL_COUNT_EYE + 1)
+#define PEL_COUNT_CAUSTIC (PEL_COUNT_EYE + 2)
+#define PEL_COUNTERS (PEL_COUNT_EYE + 3)
 
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelShadeImage) == 32 && sizeof(PelShadeLut) == 40);
-static_assert(sizeof(PelShadeFrame) == 4 * (8 + 8 + 3 + 16 + 27 + 3 + 1) + PEL_IMAGE_SLOTS * 32);
-static_assert(sizeof(PelShadeMaterial) == 4 * 42 + 3 * sizeof(PelShadeLut));
+static_assert(sizeof(PelShadeFrame) == 4 * (8 + 8 + 3 + 16 + 27 + 3 + 2) + PEL_IMAGE_SLOTS * 32);
+static_assert(sizeof(PelShadeMaterial) == 4 * 43 + 3 * sizeof(PelShadeLut));
 static_assert(sizeof(PelShadeCascade) == 4 * (16 + 4) + 32);
 static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64 + 8 + PEL_CASCADES * sizeof(PelShadeCascade));
 #endif

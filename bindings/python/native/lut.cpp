@@ -49,6 +49,7 @@ void bindLut(py::module_& module) {
         .def_static("curvature", created<PelCurvatureLutDesc, pelCurvatureLutCreate>)
         .def_static("shadow", created<PelShadowLutDesc, pelShadowLutCreate>)
         .def_static("specular", created<PelSpecularLutDesc, pelSpecularLutCreate>)
+        .def_static("eye", created<PelEyeLutDesc, pelEyeLutCreate>)
         .def_static("from_texels",
                     [](const Device& d, const py::object& info, uintptr_t texels, size_t bytes) {
                         const auto lut = std::make_shared<Lut>();

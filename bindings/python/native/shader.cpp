@@ -72,6 +72,22 @@ void bindShader(py::module_& module) {
                  const PelImageDesc desc = texture ? imageDesc(*texture) : pelImageDescDefaults();
                  locked(s, [&] { return pelShaderSetScatteredTexture(s.get(), id, texture ? &desc : nullptr); });
              })
+        .def("set_eye",
+             [](const Shader& s, uint32_t id, const py::object& eye, const Lut* caustics) {
+                 const PelEye* e = eye.is_none() ? nullptr : structOf<PelEye>(eye);
+                 locked(s,
+                        [&] { return pelShaderSetEye(s.get(), id, e, caustics ? caustics->get() : nullptr); });
+             })
+        .def("set_iris_texture",
+             [](const Shader& s, uint32_t id, const std::optional<ImageView>& texture) {
+                 const PelImageDesc desc = texture ? imageDesc(*texture) : pelImageDescDefaults();
+                 locked(s, [&] { return pelShaderSetIrisTexture(s.get(), id, texture ? &desc : nullptr); });
+             })
+        .def("set_reflection_cube",
+             [](const Shader& s, const std::optional<ImageView>& faces) {
+                 const PelImageDesc desc = faces ? imageDesc(*faces) : pelImageDescDefaults();
+                 locked(s, [&] { return pelShaderSetReflectionCube(s.get(), faces ? &desc : nullptr); });
+             })
         .def("set_lights",
              [](const Shader& s, const std::vector<py::object>& lights) {
                  std::vector<PelLight> all;

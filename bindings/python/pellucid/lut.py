@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from . import _flight, _native, _show
 from ._arrays import output_array
 from ._struct import OfThisProcess, to_enum
-from ._types import CurvatureLutDesc, LutEncoding, LutInfo, ShadowLutDesc, SpecularLutDesc
+from ._types import CurvatureLutDesc, EyeLutDesc, LutEncoding, LutInfo, ShadowLutDesc, SpecularLutDesc
 from .device import Device, Event, _filled, _handles
 from .profile import Profile
 
@@ -18,7 +18,7 @@ _TEXELS = {LutEncoding.FLOAT: (np.float32, 3), LutEncoding.HALF: (np.float16, 3)
 
 
 class Lut(OfThisProcess):
-    """A table on the device; made by `curvature`, `shadow`, `specular` or `from_texels`.
+    """A table on the device; made by `curvature`, `shadow`, `specular`, `eye` or `from_texels`.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Lut(OfThisProcess):
     _handle: _native.Lut
 
     def __init__(self) -> None:
-        raise TypeError("make a table by Lut.curvature, Lut.shadow, Lut.specular or Lut.from_texels")
+        raise TypeError("make a table by Lut.curvature, Lut.shadow, Lut.specular, Lut.eye or Lut.from_texels")
 
     @classmethod
     def _made(cls, device: Device, handle: _native.Lut, event: Optional[_native.Event]) -> Lut:
@@ -77,6 +77,15 @@ class Lut(OfThisProcess):
         return cls._integrated(device, _native.Lut.specular, SpecularLutDesc, desc, fields, None, wait, waits)
 
     @classmethod
+    def eye(cls, device: Device, desc: Optional[EyeLutDesc] = None, *, profile: Optional[Profile] = None,
+            wait: bool = True, waits: Iterable[Event] = (), **fields: Any) -> Lut:
+        """Integrates the caustic of a cornea: irradiance on the iris, slice below slice from light along the gaze on.
+
+        The parameters are as for `curvature`, with EyeLutDesc; `profile` is that of the iris, none without it.
+        """
+        return cls._integrated(device, _native.Lut.eye, EyeLutDesc, desc, fields, profile, wait, waits)
+
+    @classmethod
     def _integrated(cls, device: Device, create: Any, kind: Any, desc: Any, fields: dict[str, Any],
                     profile: Optional[Profile], wait: bool, waits: Iterable[Event]) -> Lut:
         settings = kind() if desc is None else desc.copy()
@@ -109,7 +118,7 @@ class Lut(OfThisProcess):
         """What the table holds."""
         info = _filled(LutInfo, self._handle.info())
         # The library's copy points to the table's profile, which this structure would outlive; its name stays.
-        for part in ("curvature", "shadow"):
+        for part in ("curvature", "shadow", "eye"):
             info._data[part]["profile"] = 0
         return info
 
@@ -133,8 +142,14 @@ class Lut(OfThisProcess):
 
     def __repr__(self) -> str:
         info = self.info
+        height, width = self._size(info)
+        return f"<pellucid.Lut {info.kind.name.lower()}, {width} x {height}, {info.profile or 'no profile'}>"
+
+    @staticmethod
+    def _size(info: LutInfo) -> tuple[int, int]:
+        """Rows and columns; of an eye's table the rows of all slices."""
         size = getattr(info, info.kind.name.lower())
-        return f"<pellucid.Lut {info.kind.name.lower()}, {size.width} x {size.height}, {info.profile or 'no profile'}>"
+        return size.height * getattr(size, "depth", 1), size.width
 
     def _repr_png_(self) -> bytes:
         return _show.png(_show.srgb(self.read()))
@@ -143,7 +158,7 @@ class Lut(OfThisProcess):
         """Shows the table with its axes; returns matplotlib's axes (new ones without `ax`)."""
         info, ax = self.info, _show.axes(ax)
         across, down = {"CURVATURE": ("N.L", "curvature"), "SHADOW": ("shadow", "1 / penumbra width"),
-                        "SPECULAR": ("n.h", "roughness")}[info.kind.name]
+                        "SPECULAR": ("n.h", "roughness"), "EYE": ("place on the iris", "light's angle")}[info.kind.name]
         ax.imshow(_show.srgb(self.read()), aspect="auto", extent=(-1 if across == "N.L" else 0, 1, 1, 0))
         ax.set_xlabel(across)
         ax.set_ylabel(f"{down}, from its smallest to its largest")
@@ -173,9 +188,8 @@ class Lut(OfThisProcess):
                      waits: Iterable[Event]) -> tuple[NDArray[Any], Event]:
         e = to_enum(LutEncoding, encoding, "encoding")
         info = self.info
-        size = getattr(info, info.kind.name.lower())
         dtype, components = _TEXELS[e]
-        result = output_array(out, (size.height, size.width, components), dtype, "out")
+        result = output_array(out, (*self._size(info), components), dtype, "out")
         if not result.flags.c_contiguous or not result.flags.writeable:
             raise ValueError("out must be C-contiguous and writable")
         with _flight.kept(self.device._handle, self, result):

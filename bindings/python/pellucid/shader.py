@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._arrays import Image, submit
 from ._struct import OfThisProcess, to_enum
-from ._types import Ambient, Camera, Format, ImageSlot, Light, LightSlot, Material, ProgramGroup, ShaderOptions, ShaderStats
+from ._types import Ambient, Camera, Eye, Format, ImageSlot, Light, LightSlot, Material, ProgramGroup, ShaderOptions, ShaderStats
 from .device import Buffer, Device, Event, _filled, _handles
 from .lut import Lut
 
@@ -120,6 +120,35 @@ class Shader(OfThisProcess):
                    lambda native: self._handle.set_scattered_texture(id, native))
         return self
 
+    def set_eye(self, id: int, eye: Optional[Eye], caustics: Optional[Lut] = None) -> Shader:
+        """Makes material `id`, which must be set, an eye around the material, which is its sclera; None: no eye any longer.
+
+        Parameters
+        ----------
+        id : int
+            A material that was set. Positions or depth, and the camera's position are needed too.
+        eye : Eye or None
+        caustics : Lut, optional
+            Lut.eye; without it the table is made for this eye.
+        """
+        self._handle.set_eye(id, None if eye is None else eye._data, None if caustics is None else caustics._handle)
+        return self
+
+    def set_iris_texture(self, id: int, texture: Any) -> Shader:
+        """Sets the albedo of the iris of the eye `id`.
+
+        Parameters
+        ----------
+        id : int
+            A material that is an eye.
+        texture : array, Image or None
+            (n, n, 3 or 4), whose inscribed circle is the iris' rim, row 0 at Eye.up, as one sees it who faces the eye. Read at
+            each execution; None removes it: fibres are drawn by Eye.iris_seed.
+        """
+        self._keep(("iris_texture", id), texture, f"iris texture of material {id}", False, False,
+                   lambda native: self._handle.set_iris_texture(id, native))
+        return self
+
     def set_lights(self, lights: Sequence[Light]) -> Shader:
         """Replaces all lights, 0 to 64; images of lights beyond the count are cleared."""
         self._handle.set_lights([light._data for light in lights])
@@ -143,15 +172,14 @@ class Shader(OfThisProcess):
             Direct3D: to the right and down, +x runs along -z and -y, -x along z and -y, +y along x and z, -y along x and -z,
             +z along x and -y, -z along -x and -y. Read at each execution. None removes it.
         """
-        if getattr(faces, "ndim", 0) == 4:
-            if faces.shape[0] != 6:
-                raise ValueError(f"the ambient cube has the shape {faces.shape}; six faces, (6, n, n, 3 or 4), would be right")
-            faces = faces.view()
-            try:
-                faces.shape = (6 * faces.shape[1], *faces.shape[2:])
-            except AttributeError:
-                raise ValueError("the ambient cube's faces lie apart in memory; numpy.ascontiguousarray puts them together") from None
-        self._keep("ambient_cube", faces, "ambient_cube", False, False, self._handle.set_ambient_cube)
+        self._keep("ambient_cube", _below(faces, "ambient"), "ambient_cube", False, False, self._handle.set_ambient_cube)
+        return self
+
+    def set_reflection_cube(self, faces: Any) -> Shader:
+        """Sets the surroundings that eyes reflect: radiance / pi, six faces as for `set_ambient_cube`, as sharp as the film of
+        tears should show them. Read at each execution. None removes it."""
+        self._keep("reflection_cube", _below(faces, "reflection"), "reflection_cube", False, False,
+                   self._handle.set_reflection_cube)
         return self
 
     def set_camera(self, camera: Camera) -> Shader:
@@ -245,6 +273,20 @@ def warm_up_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Se
         What a shader's commit would raise; CANCELLED.
     """
     return int(_native.warm_up_programs(device._handle, int(groups), [s._handle for s in shaders], threads))
+
+
+def _below(faces: Any, which: str) -> Any:
+    """Six faces (6, n, n, c) one below the other; anything else as it is."""
+    if getattr(faces, "ndim", 0) != 4:
+        return faces
+    if faces.shape[0] != 6:
+        raise ValueError(f"the {which} cube has the shape {faces.shape}; six faces, (6, n, n, 3 or 4), would be right")
+    faces = faces.view()
+    try:
+        faces.shape = (6 * faces.shape[1], *faces.shape[2:])
+    except AttributeError:
+        raise ValueError(f"the {which} cube's faces lie apart in memory; numpy.ascontiguousarray puts them together") from None
+    return faces
 
 
 def _mip_chain(image: NDArray[Any]) -> list[NDArray[Any]]:

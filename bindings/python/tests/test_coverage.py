@@ -71,5 +71,5 @@ def test_every_call_that_does_work_can_be_submitted():
         submit = getattr(owner, f"submit_{name}")
         assert {"waits"} <= set(inspect.signature(submit).parameters), name
     assert "waits" in inspect.signature(pel.Shader.submit).parameters
-    for kind in ("curvature", "shadow", "specular"):
+    for kind in ("curvature", "shadow", "specular", "eye"):
         assert {"wait", "waits"} <= set(inspect.signature(getattr(pel.Lut, kind)).parameters)

@@ -545,7 +545,12 @@ PEL_API PelError pelProfileEvaluate(PelProfile profile, const double* distances,
 
 typedef struct PelLutObject* PelLut;
 
-typedef enum PelLutKind { PEL_LUT_CURVATURE = 0, PEL_LUT_SHADOW = 1, PEL_LUT_SPECULAR = 2 } PelLutKind;
+typedef enum PelLutKind {
+    PEL_LUT_CURVATURE = 0,
+    PEL_LUT_SHADOW = 1,
+    PEL_LUT_SPECULAR = 2,
+    PEL_LUT_EYE = 3 /* light on the iris: the caustic of a cornea */
+} PelLutKind;
 
 /* The geometry over which a curvature LUT is integrated; docs/guide/luts.md says how to choose. */
 typedef enum PelCurvatureForm {
@@ -600,6 +605,26 @@ typedef struct PelSpecularLutDesc {
     uint32_t height; /* texels along the roughness m from 0 to 1; typical 512 */
 } PelSpecularLutDesc;
 
+/* The caustic of a cornea: irradiance on the iris, of a beam of irradiance 1 across itself. Lengths are in any one unit: a table of
+ * an eye twice as large is the same. Fields that PelEye has too are described there. */
+typedef struct PelEyeLutDesc {
+    uint32_t structSize;
+    uint32_t width; /* texels across the iris in the direction of the light, from the far rim to the near one; 2 to 1024; 64 */
+    uint32_t height; /* texels from the line through the light's direction to the rim: the other half is its mirror image; 2 to 1024; 64 */
+    uint32_t depth; /* slices over the light's angle to the gaze, the first at 0 and the last where no light enters any longer; 2 to 256; 32 */
+    float scleraRadius;
+    float corneaRadius;
+    float corneaConic;
+    float limbusRadius;
+    float chamberDepth;
+    float corneaIndex;
+    float aqueousIndex;
+    float irisRadius;
+    float irisConcavity;
+    float millimetresPerUnit; /* units of the profile per unit of the lengths above; 1 */
+    PelProfile profile; /* of the iris, whose light is scattered in the table; NULL: not scattered. The table keeps it alive */
+} PelEyeLutDesc;
+
 /* Integrates a curvature LUT: texel (x, y) holds D(N.L, r) per channel, row 0 the smallest curvature. Sources: FaceWorks 1.0; Penner, SIGGRAPH 2011. */
 PEL_API PelError pelCurvatureLutCreate(PelDevice device, const PelCurvatureLutDesc* desc, PelLut* lut,
                                        const PelSubmit* submit);
@@ -611,6 +636,12 @@ PEL_API PelError pelShadowLutCreate(PelDevice device, const PelShadowLutDesc* de
  * Source: d'Eon and Luebke, GPU Gems 3, ch. 14. */
 PEL_API PelError pelSpecularLutCreate(PelDevice device, const PelSpecularLutDesc* desc, PelLut* lut,
                                       const PelSubmit* submit);
+/* Integrates the caustic of a cornea by carrying the wavefront of each slice's light through it, with Fresnel's transmittance and light
+ * that its inside reflects: no flux is lost between texels. Texels in rows as one image, width x (height * depth), slice below
+ * slice: light along the gaze first. Texel (x, y) of slice z: the mean irradiance of its area on the iris, whose rim is the circle that touches the
+ * sides of the image. Same input, same bits. Source: docs/mathematics.md, section 13. */
+PEL_API PelError pelEyeLutCreate(PelDevice device, const PelEyeLutDesc* desc, PelLut* lut,
+                                 const PelSubmit* submit);
 PEL_API void pelLutRetain(PelLut lut);
 PEL_API void pelLutRelease(PelLut lut);
 
@@ -621,6 +652,7 @@ typedef struct PelLutInfo {
     PelShadowLutDesc shadow;       /* of a PEL_LUT_SHADOW */
     PelSpecularLutDesc specular;   /* of a PEL_LUT_SPECULAR */
     char profile[64];              /* name of the profile, also for tables from texels; "skin" by default */
+    PelEyeLutDesc eye;             /* of a PEL_LUT_EYE */
 } PelLutInfo;
 /* The description with all defaults resolved; a profile in it belongs to the table. */
 PEL_API PelError pelLutGetInfo(PelLut lut, PelLutInfo* info);
@@ -632,7 +664,7 @@ typedef enum PelLutEncoding {
                               specular unchanged */
 } PelLutEncoding;
 
-/* Bytes that pelLutRead writes: width * height * 12, 6 or 4. */
+/* Bytes that pelLutRead writes: width * height * 12, 6 or 4; of a PEL_LUT_EYE times its depth, and not PEL_LUT_FACEWORKS8. */
 PEL_API PelError pelLutGetSize(PelLut lut, PelLutEncoding encoding, size_t* bytes);
 /* The texels, row-major, top row first. `destination` holds `bytes` >= pelLutGetSize. */
 PEL_API PelError pelLutRead(PelLut lut, PelLutEncoding encoding, void* destination, size_t bytes,
@@ -685,7 +717,10 @@ typedef enum PelImageSlot {
                                      NaN is 0. Not set: 1 */
     PEL_SLOT_IRRADIANCE_BACK = 22, /* RGB, as PEL_SLOT_IRRADIANCE: of the other side of a thin sheet
                                       (PelMaterial.thinThickness). Not set: made from lights and ambient */
-    PEL_SLOT_COUNT = 23
+    PEL_SLOT_WETNESS =
+        23, /* 0 to 1, one component: the wet line along the lids, where tears collect. Read by eyes: their gloss is there as wide as
+                              PelEye.wetLineRoughness says. Clamped; NaN is 0. Not set: 0 */
+    PEL_SLOT_COUNT = 24
 } PelImageSlot;
 
 /* The images of one light. */
@@ -847,6 +882,38 @@ typedef struct PelCamera {
                                         the depth image, so that ordinary and reversed depth both work */
 } PelCamera;
 
+/* An eyeball as an optical instrument, around a material that is its sclera. Lengths are in mm, whatever the scene's unit
+ * (PelShaderOptions.millimetresPerUnit); place and directions are in world space. The eye's surface is this model's: the
+ * G-buffer only says which pixels show it, so the cornea is smooth however coarse the mesh, and also where the mesh is a plain ball.
+ * Sources: Le Grand and El Hage, Physiological Optics, 1980; Navarro, Santamaria, Bescos, JOSA A 2, 1985. */
+typedef struct PelEye {
+    uint32_t structSize;
+    float center[3];       /* of the sclera's sphere, units of positions */
+    float gaze[3];         /* the direction in which it looks, of any length; 0, 0, 1 */
+    float up[3];           /* where the top of the iris' texture is, not along gaze, of any length; 0, 1, 0 */
+    float scleraRadius;    /* mm; 12 [Le Grand] */
+    float corneaRadius;    /* mm, of curvature at its apex; 7.8 [Le Grand] */
+    float corneaConic;     /* conic constant: 0 is a sphere, -1 a paraboloid; -0.26 [Navarro] */
+    float limbusRadius;    /* mm, of the circle in which cornea and sclera meet; 6 */
+    float limbusWidth;     /* mm, of the soft border between them; 1 */
+    float limbusDarkening; /* 0 to 1: share of the light that the iris' rim absorbs where the border begins; grows with the slant of the view; 0.6 */
+    float chamberDepth; /* mm, from the cornea's apex to the plane of the iris' rim; 3.05 [Le Grand, Navarro] */
+    float corneaIndex; /* refractive index, 1 to 3; 1.376 [Navarro]. The cornea has no thickness, but reflects on both of its sides */
+    float aqueousIndex;  /* of what is behind it, 1 to 3; 1.336 [Le Grand] */
+    float irisRadius;    /* mm; 0: limbusRadius */
+    float irisConcavity; /* mm, how much deeper than its rim the iris' centre lies: a paraboloid; 0: a plane */
+    float pupilRadius;   /* mm, less than the iris'; 2 */
+    float texturePupil; /* 0 to 0.95: radius of the pupil in the iris' texture, as a share of its rim's; 0.3. Between
+                             pupil and rim the texture is stretched evenly */
+    float irisColor[3]; /* multiplies the texture, or colours the fibres of an iris without one; -1: 1 with a texture, else 0.22, 0.12, 0.06;
+                             -1 */
+    uint32_t irisSeed;  /* another number, another pattern of fibres of an iris without a texture; 0 */
+    float tearRoughness;    /* of the film of tears: GGX's alpha, 0.001 to 1; 0.03 */
+    float wetLineRoughness; /* the same where PEL_SLOT_WETNESS is 1; 0.2 */
+    float tearIndex;        /* of the film, 1 to 3: how much it reflects; 1.336; 1: nothing */
+    PelProfile irisProfile; /* in mm: how light scatters in the iris. NULL: not at all. The sclera's is PelMaterial.profile */
+} PelEye;
+
 typedef enum PelFeature {
     PEL_FEATURE_DIRECT_SCATTER = 1 << 0, /* curvature image and a curvature LUT */
     PEL_FEATURE_SHADOW = 1 << 1,         /* a wide shadow image */
@@ -868,7 +935,9 @@ typedef enum PelFeature {
     PEL_FEATURE_SHADOW_CUBE = 1 << 24,     /* a shadow map of a cube, for thickness or a wide shadow */
     PEL_FEATURE_SHADOW_CASCADES = 1 << 25, /* cascades, for thickness or a wide shadow */
     PEL_FEATURE_SHADOW_EXPONENTIAL = 1 << 26, /* PEL_SHADOW_CONTENT_EXPONENTIAL, for the same */
-    PEL_FEATURE_SHADOW_MOMENTS = 1 << 27      /* PEL_SHADOW_CONTENT_MOMENTS, for the same */
+    PEL_FEATURE_SHADOW_MOMENTS = 1 << 27,     /* PEL_SHADOW_CONTENT_MOMENTS, for the same */
+    PEL_FEATURE_EYE = 1 << 28,                /* a material is an eye (pelShaderSetEye) */
+    PEL_FEATURE_REFLECTION_CUBE = 1 << 29     /* an eye, and a cube map that it reflects */
 } PelFeature;
 
 /* What a shader did: counts of its last execution unless they say total. */
@@ -906,6 +975,10 @@ typedef struct PelShaderStats {
     uint64_t scatterTaps; /* pixels and blocks of pixels that were read, modulo 2^32 */
     uint64_t pixelsByChoice[7]; /* of materials of PEL_SCATTERING_AUTO: by the method that was chosen for them; NONE: kept
                                     their irradiance */
+    uint64_t pixelsEye;     /* of materials that are eyes */
+    uint64_t pixelsIris;    /* of those: that show the iris, outside its pupil */
+    uint64_t pixelsCaustic; /* of those: that read the caustic table, summed over lights */
+    uint64_t tilesEye; /* shaded by a variant with code for eyes. With a material image: those that hold an eye */
 } PelShaderStats;
 
 /* How the shading kernel finds its tiles. All give the same bits. */
@@ -959,6 +1032,19 @@ PEL_API PelError pelShaderSetNormalMap(PelShader shader, uint32_t id, const PelI
  * which they need, texel centres at (i + 1/2) / size, row 0 at v = 0, repeated beyond [0, 1]. Read at each execution. NULL
  * removes it. */
 PEL_API PelError pelShaderSetScatteredTexture(PelShader shader, uint32_t id, const PelImageDesc* texture);
+/* Makes material `id`, which must be set, an eye; at most 64 are. The material is its sclera, with everything that a material has;
+ * iris, pupil, limbus and film of tears come from `eye`. Needs PEL_SLOT_POSITION or _DEPTH, and PelCamera.position. `caustics`: a table
+ * of pelEyeLutCreate; NULL: it is made for this eye, and kept. NULL for `eye`: the material is no eye any longer. Removing the material removes
+ * its eye. Errors: PEL_ERROR_INVALID_ARGUMENT for parts that do not fit together, such as a pupil that is wider than the iris; the message
+ * names the field. */
+PEL_API PelError pelShaderSetEye(PelShader shader, uint32_t id, const PelEye* eye, PelLut caustics);
+/* The albedo of the iris of material `id`, which must be an eye: a square image whose inscribed circle is the iris' rim, as one sees it who
+ * faces the eye, row 0 at PelEye.up; a colour format; bilinear. Read at each execution. NULL removes it: fibres are drawn by
+ * PelEye.irisSeed. */
+PEL_API PelError pelShaderSetIrisTexture(PelShader shader, uint32_t id, const PelImageDesc* texture);
+/* The surroundings that eyes reflect: radiance / pi, six faces as in pelShaderSetAmbientCube, as sharp as the film of tears should show
+ * them. Bilinear; negative values count as 0. Read at each execution. NULL removes it. Other materials do not read it. */
+PEL_API PelError pelShaderSetReflectionCube(PelShader shader, const PelImageDesc* faces);
 /* Replaces all lights, 0 to 64 of them; images of lights beyond the count are cleared. */
 PEL_API PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t count);
 PEL_API PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot,

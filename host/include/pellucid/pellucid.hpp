@@ -381,6 +381,10 @@ class Lut : public Handle<PelLut, pelLutRetain, pelLutRelease> {
     Lut(const Device& device, const PelSpecularLutDesc& desc, const PelSubmit* submit = nullptr) {
         check(pelSpecularLutCreate(device.get(), &desc, out(), submit));
     }
+    // The caustic of a cornea; pelEyeLutDescOf makes the description of an eye's.
+    Lut(const Device& device, const PelEyeLutDesc& desc, const PelSubmit* submit = nullptr) {
+        check(pelEyeLutCreate(device.get(), &desc, out(), submit));
+    }
     Lut(const Device& device, const PelLutInfo& info, const std::vector<float>& texels) {
         check(pelLutCreateFromTexels(device.get(), &info, texels.data(), texels.size() * sizeof(float), out()));
     }
@@ -428,6 +432,19 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
         return done(pelShaderSetScatteredTexture(h_, id, &texture));
     }
     Shader& clearScatteredTexture(uint32_t id) { return done(pelShaderSetScatteredTexture(h_, id, nullptr)); }
+    // Makes a material that is set an eye. Without a table it is made.
+    Shader& setEye(uint32_t id, const PelEye& eye, const Lut& caustics = {}) {
+        return done(pelShaderSetEye(h_, id, &eye, caustics.get()));
+    }
+    Shader& clearEye(uint32_t id) { return done(pelShaderSetEye(h_, id, nullptr, nullptr)); }
+    Shader& setIrisTexture(uint32_t id, const PelImageDesc& texture) {
+        return done(pelShaderSetIrisTexture(h_, id, &texture));
+    }
+    Shader& clearIrisTexture(uint32_t id) { return done(pelShaderSetIrisTexture(h_, id, nullptr)); }
+    Shader& setReflectionCube(const PelImageDesc& faces) {
+        return done(pelShaderSetReflectionCube(h_, &faces));
+    }
+    Shader& clearReflectionCube() { return done(pelShaderSetReflectionCube(h_, nullptr)); }
     Shader& set(const std::vector<PelLight>& lights) {
         return done(pelShaderSetLights(h_, lights.data(), uint32_t(lights.size())));
     }

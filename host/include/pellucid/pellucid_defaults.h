@@ -55,6 +55,50 @@ static inline PelSpecularLutDesc pelSpecularLutDescDefaults(void) {
     s.height = 512;
     return s;
 }
+static inline PelEye pelEyeDefaults(void) {
+    PEL_ZEROED_(PelEye, s);
+    s.gaze[2] = 1.0f;
+    s.up[1] = 1.0f;
+    s.scleraRadius = 12.0f;
+    s.corneaRadius = 7.8f;
+    s.corneaConic = -0.26f;
+    s.limbusRadius = 6.0f;
+    s.limbusWidth = 1.0f;
+    s.limbusDarkening = 0.6f;
+    s.chamberDepth = 3.05f;
+    s.corneaIndex = 1.376f;
+    s.aqueousIndex = 1.336f;
+    s.pupilRadius = 2.0f;
+    s.texturePupil = 0.3f;
+    s.irisColor[0] = s.irisColor[1] = s.irisColor[2] = -1.0f;
+    s.tearRoughness = 0.03f;
+    s.wetLineRoughness = 0.2f;
+    s.tearIndex = 1.336f;
+    return s;
+}
+/* The table that belongs to an eye. */
+static inline PelEyeLutDesc pelEyeLutDescOf(const PelEye* eye) {
+    PEL_ZEROED_(PelEyeLutDesc, s);
+    s.width = 64;
+    s.height = 64;
+    s.depth = 32;
+    s.scleraRadius = eye->scleraRadius;
+    s.corneaRadius = eye->corneaRadius;
+    s.corneaConic = eye->corneaConic;
+    s.limbusRadius = eye->limbusRadius;
+    s.chamberDepth = eye->chamberDepth;
+    s.corneaIndex = eye->corneaIndex;
+    s.aqueousIndex = eye->aqueousIndex;
+    s.irisRadius = eye->irisRadius;
+    s.irisConcavity = eye->irisConcavity;
+    s.millimetresPerUnit = 1.0f;
+    s.profile = eye->irisProfile;
+    return s;
+}
+static inline PelEyeLutDesc pelEyeLutDescDefaults(void) {
+    const PelEye eye = pelEyeDefaults();
+    return pelEyeLutDescOf(&eye);
+}
 static inline PelScatterParams pelScatterParamsDefaults(void) {
     PEL_ZEROED_(PelScatterParams, s);
     s.targetError = 2e-3f;
@@ -81,6 +125,7 @@ static inline PelLutInfo pelLutInfoDefaults(void) {
     s.curvature = pelCurvatureLutDescDefaults();
     s.shadow = pelShadowLutDescDefaults();
     s.specular = pelSpecularLutDescDefaults();
+    s.eye = pelEyeLutDescDefaults();
     memcpy(s.profile, "skin", 5);
     return s;
 }

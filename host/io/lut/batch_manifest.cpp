@@ -46,6 +46,8 @@ uint32_t indexOf(const TomlReader& reader, const char* key, const std::string& v
 Request readRequest(TomlReader& reader) {
     Request r;
     reader.choice("kind", r.kind, lutKinds);
+    if (r.kind == PEL_LUT_EYE)
+        reader.fail("kind", "is 'eye', of which a batch makes none; `pellucid lut eye` does");
     reader.list("profile", r.profiles);
     reader.list("form", r.forms);
     reader.list("axis", r.axes);

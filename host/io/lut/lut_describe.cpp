@@ -8,6 +8,8 @@ std::pair<uint32_t, uint32_t> lutSize(const PelLutInfo& info) {
             return {info.curvature.width, info.curvature.height};
         case PEL_LUT_SHADOW:
             return {info.shadow.width, info.shadow.height};
+        case PEL_LUT_EYE:
+            return {info.eye.width, info.eye.height * info.eye.depth};
         case PEL_LUT_SPECULAR:
             break;
     }
@@ -29,6 +31,7 @@ std::vector<std::pair<std::string, Attribute>> describeLut(const PelLutInfo& inf
         all.emplace_back("pellucid:axis", std::string(lutAxes[info.shadow.axis]));
         all.emplace_back("pellucid:closedEnds", int(info.shadow.closedEnds));
     }
+    if (info.kind == PEL_LUT_EYE) all.emplace_back("pellucid:depth", int(info.eye.depth));
     visitLutNumbers(info, [&](const char* name, float value) { all.emplace_back(name, value); });
     return all;
 }

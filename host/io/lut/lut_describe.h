@@ -14,7 +14,7 @@ namespace pellucid::io {
 
 inline constexpr int lutFormatVersion = 1;
 
-// Width and height in texels.
+// Width and height in texels: of an eye's table those of all slices, one below the other.
 std::pair<uint32_t, uint32_t> lutSize(const PelLutInfo& info);
 
 // The numbers of a description, except its size: visit(attribute name, float&).
@@ -29,6 +29,17 @@ void visitLutNumbers(Info& info, Visit&& visit) {
         visit("pellucid:widthMin", info.shadow.widthMin);
         visit("pellucid:widthMax", info.shadow.widthMax);
         visit("pellucid:sharpening", info.shadow.sharpening);
+    } else if (info.kind == PEL_LUT_EYE) {
+        visit("pellucid:scleraRadius", info.eye.scleraRadius);
+        visit("pellucid:corneaRadius", info.eye.corneaRadius);
+        visit("pellucid:corneaConic", info.eye.corneaConic);
+        visit("pellucid:limbusRadius", info.eye.limbusRadius);
+        visit("pellucid:chamberDepth", info.eye.chamberDepth);
+        visit("pellucid:corneaIndex", info.eye.corneaIndex);
+        visit("pellucid:aqueousIndex", info.eye.aqueousIndex);
+        visit("pellucid:irisRadius", info.eye.irisRadius);
+        visit("pellucid:irisConcavity", info.eye.irisConcavity);
+        visit("pellucid:millimetresPerUnit", info.eye.millimetresPerUnit);
     }
 }
 

@@ -216,6 +216,15 @@ PelLutInfo lutInfoOf(const Image& image) {
         if (image.attribute("pellucid:closedEnds"))
             info.shadow.closedEnds = uint32_t(need("pellucid:closedEnds", static_cast<int*>(nullptr)));
     }
+    if (info.kind == PEL_LUT_EYE) {
+        const int depth = need("pellucid:depth", static_cast<int*>(nullptr));
+        if (depth < 1 || image.height % depth)
+            throw FileError(path, "attribute \"pellucid:depth\" is " + std::to_string(depth) +
+                                      ", which does not divide the height, " + std::to_string(image.height));
+        info.eye.width = uint32_t(image.width);
+        info.eye.height = uint32_t(image.height / depth);
+        info.eye.depth = uint32_t(depth);
+    }
     info.curvature.width = info.shadow.width = info.specular.width = uint32_t(image.width);
     info.curvature.height = info.shadow.height = info.specular.height = uint32_t(image.height);
     visitLutNumbers(
