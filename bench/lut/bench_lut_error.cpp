@@ -1,6 +1,5 @@
 // What matters to a picture: the error after the bilinear look-up anywhere between texels, for table sizes,
-// axes and encodings, and what each form of the curvature table does to the energy. The times of these cases
-// mean nothing; their counters do:
+// axes and encodings. The times of these cases mean nothing; their counters do:
 //   max, rms   of D over 4000 points of (N.L, 1/r), against the oracle
 //   dE2000     largest colour difference of lit skin of albedo 0.8, 0.55, 0.45 under white light
 //   KiB        of the table in that encoding with four channels
@@ -13,6 +12,7 @@
 #include <cmath>
 #include <random>
 
+#include "half_bits.h"
 #include "io/image/color_difference.h"
 #include "reference/lut.h"
 
@@ -56,17 +56,12 @@ const std::vector<Point>& points() {
     return all;
 }
 
-float fromHalf(uint16_t bits) {
-    const int exponent = bits >> 10 & 31, mantissa = bits & 1023;
-    return exponent ? std::ldexp(float(mantissa + 1024), exponent - 25) : std::ldexp(float(mantissa), -24);
-}
-
 // RGB per texel as a host would hold them: D, or for 8 bits the residual D - max0(u).
 std::vector<float> texelsOf(const Lut& lut, PelLutEncoding encoding) {
     if (encoding == PEL_LUT_FLOAT) return lut.read<float>(encoding);
     std::vector<float> texels;
     if (encoding == PEL_LUT_HALF) {
-        for (uint16_t bits : lut.read<uint16_t>(encoding)) texels.push_back(fromHalf(bits));
+        for (uint16_t bits : lut.read<uint16_t>(encoding)) texels.push_back(float(fromHalf(bits)));
         return texels;
     }
     const auto bytes = lut.read<uint8_t>(encoding);
@@ -132,72 +127,6 @@ void lookUpError(benchmark::State& state) {
                             1024.0;
 }
 
-// Mean of D over the sphere of directions, less the 1/4 of a white Lambert sphere: what a form gains or loses
-// of red light.
-void energy(benchmark::State& state) {
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
-    desc.form = PelCurvatureForm(state.range(0));
-    desc.axis = PEL_AXIS_ROOT;
-    desc.width = 2049;
-    desc.height = 1;
-    desc.radiusMin = desc.radiusMax = float(state.range(1));
-    double mean[3] = {};
-    for (auto _ : state) {
-        const auto texels = Lut(device(), desc).read<float>(PEL_LUT_FLOAT);
-        std::fill(mean, mean + 3, 0.0);
-        for (int x = 0; x < 2049; ++x)
-            for (int k = 0; k < 3; ++k)
-                mean[k] += texels[size_t(x) * 3 + k] * std::abs(-1 + x / 1024.0) / 1024 * (x % 2048 ? 1 : 0.5);
-    }
-    state.counters["red"] = mean[0] - 0.25;
-    state.counters["green"] = mean[1] - 0.25;
-    state.counters["blue"] = mean[2] - 0.25;
-}
-
-// Largest difference of a form from the sphere on a sphere, skin.
-void fromSphere(benchmark::State& state) {
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
-    desc.form = PelCurvatureForm(state.range(0));
-    desc.width = 256;
-    desc.height = 1;
-    desc.radiusMin = desc.radiusMax = float(state.range(1));
-    PelCurvatureLutDesc exact = desc;
-    exact.form = PEL_FORM_SPHERE;
-    double worst = 0;
-    for (auto _ : state) {
-        const auto ours = Lut(device(), desc).read<float>(PEL_LUT_FLOAT),
-                   sphere = Lut(device(), exact).read<float>(PEL_LUT_FLOAT);
-        for (size_t i = 0; i < ours.size(); ++i)
-            worst = std::max(worst, double(std::abs(ours[i] - sphere[i])));
-    }
-    state.counters["max"] = worst;
-}
-
-// Largest difference of a form from the arc without its cut on a cylinder, skin: what a surface that bends
-// one way receives, with light that goes round it as often as it likes.
-void fromCylinder(benchmark::State& state) {
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
-    desc.form = PelCurvatureForm(state.range(0));
-    desc.width = 128;
-    desc.height = 1;
-    desc.radiusMin = desc.radiusMax = float(state.range(1));
-    const auto skin = reference::skinProfile();
-    double worst[3] = {};
-    for (auto _ : state) {
-        const auto ours = Lut(device(), desc).read<float>(PEL_LUT_FLOAT);
-        for (int x = 0; x < 128; ++x) {
-            const double u = -1 + (x + 0.5) / 64;
-            const auto exact =
-                reference::curvatureD(reference::Form::arc, *skin, u, double(state.range(1)), 1e9);
-            for (int k = 0; k < 3; ++k)
-                worst[k] = std::max(worst[k], std::abs(ours[size_t(x) * 3 + size_t(k)] - exact[k]));
-        }
-    }
-    state.counters["red"] = worst[0];
-    state.counters["green"] = worst[1];
-    state.counters["blue"] = worst[2];
-}
-
 // A root table of 64x64 for 2.7 mm and r = 1 to 100 mm, read for a material of another radius at curvature
 // times the ratio (section 6), against that material's own integral: over the curvatures that the table
 // holds, and, `beyond`, up to r = 1 mm and 100 mm where it is clamped.
@@ -237,10 +166,7 @@ BENCHMARK(lookUpError)
     ->ArgNames({"side", "axis", "encoding"})
     ->ArgsProduct({{32, 63, 64, 89, 127, 128, 256, 512, 1024}, {0, 1}, {0, 1, 2}})
     ->Iterations(1);
-BENCHMARK(energy)->ArgNames({"form", "radius_mm"})->ArgsProduct({{0, 1, 2, 3}, {1, 3, 10, 100}})->Iterations(1);
-BENCHMARK(fromCylinder)->ArgNames({"form", "radius_mm"})->ArgsProduct({{0, 1, 2, 3}, {1, 3, 10, 100}})->Iterations(1);
 BENCHMARK(runtimeRadius)->ArgNames({"form", "percent"})->ArgsProduct({{0, 3}, {37, 50, 100, 150, 200}})->Iterations(1);
-BENCHMARK(fromSphere)->ArgNames({"form", "radius_mm"})->ArgsProduct({{0, 1, 2}, {1, 3, 10, 100}})->Iterations(1);
 
 }  // namespace
 
