@@ -3,6 +3,7 @@
 
 #ifdef PELLUCID_BATCH
 #include "io/atomic_file.h"
+#include "io/file_error.h"
 #include "io/lut/batch_entry.h"
 #include "io/lut/lut_exr.h"
 
@@ -68,7 +69,17 @@ void bindBatch(py::module_& module) {
         .def("text", [](const BatchManifest& m) { return m.text; })
         .def("profiles", [](const BatchManifest& m) { return m.profiles; })
         .def("make", &made);
-    module.def("machine_tag", &pellucid::io::machineTag);
+    // Complete or not at all, as the command writes its files.
+    module.def("write_file", [](const std::string& path, const py::bytes& file) {
+        const std::string_view bytes = file;
+        try {
+            WithoutGil free;
+            pellucid::io::writeWholeFile(path, bytes);
+        } catch (const pellucid::io::FileError& e) {
+            PyErr_SetString(PyExc_OSError, e.what());
+            throw py::error_already_set();
+        }
+    });
     module.def("verify_file", [](const py::bytes& file, const std::string& key) {
         const std::string_view bytes = file;
         WithoutGil free;

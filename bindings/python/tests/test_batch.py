@@ -206,6 +206,14 @@ def test_a_cluster_is_asked_for_workers_again(manifest, device, tmp_path, monkey
     check_complete(summary, manifest, device, tmp_path / "out")
 
 
+def test_a_cluster_that_adapts(manifest, device, tmp_path):
+    """Dask starts workers because work waits."""
+    with distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=None) as cluster:
+        cluster.adapt(minimum=0, maximum=2, interval="100ms")
+        summary = batch.run(manifest, tmp_path / "out", scheduler=cluster)
+    check_complete(summary, manifest, device, tmp_path / "out")
+
+
 def test_a_scheduler_that_dies(client, manifest, device, tmp_path):
     def start(*what):
         return subprocess.Popen([sys.executable, "-m", *what, "--host", "127.0.0.1", "--no-dashboard", "--scheduler-file",

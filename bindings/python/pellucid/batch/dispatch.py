@@ -1,21 +1,20 @@
 """Shares the entries of a manifest out among the workers of a Dask cluster.
 
-Dask moves the work of a worker that dies, or that the scheduler has not heard of for its `worker-ttl`, to another one. What is added
-here: files are named by content and appear whole, so that doing an entry twice changes nothing; an entry counts once, when this
-process has read its file back; entries that were not done are tried again, in halves, by other workers than the one that failed.
+Dask gives pieces of the list to workers, and the pieces of a worker that dies, or that the scheduler has not heard of for its
+`worker-ttl`, to others. What is added here: files are named by content and appear whole, so that doing an entry twice changes
+nothing; an entry counts once, when this process has read its file back; and what was not done is submitted again, in halves, to other
+workers than the one that failed.
 """
 from __future__ import annotations
 
 import asyncio
 import contextlib
 import hashlib
-import itertools
 import pickle
 import queue
 import threading
 import time
-import uuid
-from collections import deque
+from collections.abc import Sequence
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from typing import Any, Callable, Optional
 
@@ -27,9 +26,11 @@ from .manifest import Manifest
 from .report import BatchError, Display, NoWorker, Summary
 from .store import Store, StoreError
 
-PIECE_SECONDS = 0.5  # what a piece should take: long against Dask's milliseconds, short against a lost one
+PIECES = 256  # at least so many, for workers that come later; and so many
+PIECES_PER_WORKER = 8  # of those that are there or were asked for, so that all end together
 LARGEST_PIECE = 1024  # entries
 ATTEMPTS = 3  # of an entry by itself, before it is to blame for the workers that it costs
+LOOK_SECONDS = 0.5  # between two looks at who is there
 ASK_AGAIN_SECONDS = 20  # a cluster that was asked for workers is asked for those that it lost; above Dask's 15 to notice
 
 
@@ -60,19 +61,18 @@ class Dispatcher:
     """One batch on one cluster; `run` does it."""
 
     def __init__(self, client: Any, manifest: Manifest, store: Store, *, timeout: float, jobs: int, patience: float,
-                 read_back: bool, display: Display, ask: Optional[Callable[[], None]] = None) -> None:
+                 read_back: bool, display: Display, ask: Optional[Callable[[], None]] = None, asked: int = 0) -> None:
         self._client, self._manifest, self._store, self._display = client, manifest, store, display
-        self._timeout, self._jobs, self._patience, self._read_back, self._ask = timeout, jobs, patience, read_back, ask
-        self._pending: deque[list[int]] = deque([list(range(len(manifest)))])
+        self._timeout, self._jobs, self._patience, self._read_back = timeout, jobs, patience, read_back
+        self._ask, self._expected = ask, asked
         self._open = set(range(len(manifest)))  # entries that nobody has finished
         self._attempts: dict[int, int] = {}
-        self._present: dict[str, int] = {}  # address: threads
+        self._present: set[str] = set()
         self._barred: set[str] = set()
-        self._pieces: dict[Any, tuple[list[int], Optional[set[str]]]] = {}  # by future: entries, and who may make them
+        self._pieces: dict[Any, list[int]] = {}  # by future
         self._answers: queue.SimpleQueue[tuple[Any, Any]] = queue.SimpleQueue()
-        self._names = (f"pellucid-{uuid.uuid4().hex[:8]}-{n}" for n in itertools.count())
         self._readers = ThreadPoolExecutor(8)
-        self._entry_seconds = 0.0
+        self._looked = self._alone = self._asked = time.monotonic()
         self._last_trouble = ""
         self.summary = Summary(entries=len(manifest), duplicates=manifest.duplicates)
 
@@ -84,35 +84,29 @@ class Dispatcher:
         BatchError
             The output is full or gone; NoWorker: the scheduler is gone, or no worker came for longer than `patience`.
         """
-        start = alone = asked = time.monotonic()
-        looked = 0.0
+        start = time.monotonic()
         for _, message in self._manifest.errors:
             self._entry_failed(message)
         try:
             packed = pickle.dumps(self._manifest)
             self._name = f"pellucid-{hashlib.sha256(packed).hexdigest()}"
             distributed.Variable(self._name, client=self._client).set(packed)  # the scheduler keeps it; each worker asks once
+            self._look()
+            count = len(self._manifest)
+            size = count // max(PIECES, PIECES_PER_WORKER * max(len(self._present), self._expected))
+            size = max(1, min(LARGEST_PIECE, size))
+            for first in range(0, count, size):
+                self._submit(list(range(first, min(first + size, count))))
             while self._open:
-                now = time.monotonic()
-                if now - looked > 0.5:
-                    self._look_for_workers()
-                    looked = now
-                if self._ask and now - asked > ASK_AGAIN_SECONDS:
-                    self._ask()
-                    asked = now
-                if set(self._present) - self._barred:
-                    alone = now
-                elif now - alone > self._patience:
-                    why = f"; the last trouble was: {self._last_trouble}" if self._last_trouble else ""
-                    raise NoWorker(f"no worker for {self._patience:.0f} s{why}")
-                self._hand_out()
+                if time.monotonic() - self._looked > LOOK_SECONDS:
+                    self._look()
                 self._display.show(self.summary.entries - len(self._open))
                 with contextlib.suppress(queue.Empty):
                     self._handle(*self._answers.get(timeout=0.1))
                     while True:
                         self._handle(*self._answers.get_nowait())
             with contextlib.suppress(NoWorker):
-                self._look_for_workers()  # who was lost last
+                self._look()  # who was lost last
         except BatchError as e:
             e.summary = self.summary
             raise
@@ -127,21 +121,27 @@ class Dispatcher:
 
     # --- workers come and go ---
 
-    def _look_for_workers(self) -> None:
+    def _look(self) -> None:
+        """Who is there, who is lost, and whether anybody can work."""
         try:
-            present = self._client.nthreads()
+            present = set(self._client.nthreads())
         except (OSError, TimeoutError, asyncio.TimeoutError) as e:
             raise NoWorker(f"the scheduler {self._client.scheduler.address} does not answer any more ({e}); what is made is kept, and the "
                            "same call goes on from there when a scheduler is back") from e
-        for address in set(self._present) - set(present) - self._barred:
+        now = self._looked = time.monotonic()
+        for address in self._present - present - self._barred:
             self.summary.workers_lost += 1
             self._trouble(f"worker {address} is gone")
-        self._present = dict(present)
-        self._barred &= set(present)
-        # Dask would wait for workers that a piece was meant for.
-        for future, (_, may) in list(self._pieces.items()):
-            if may is not None and not may & set(present):
-                self._take_back(future)
+        self._present = present
+        self._barred &= present
+        if self._ask and now - self._asked > ASK_AGAIN_SECONDS:
+            self._ask()
+            self._asked = now
+        if present - self._barred:
+            self._alone = now
+        elif now - self._alone > self._patience:
+            why = f"; the last trouble was: {self._last_trouble}" if self._last_trouble else ""
+            raise NoWorker(f"no worker for {self._patience:.0f} s{why}")
 
     def _bar(self, address: str, why: str, restart: bool = True) -> None:
         """Gives it no more work; a nanny, where there is one, puts a fresh process in its place unless that would be no better."""
@@ -151,9 +151,10 @@ class Dispatcher:
         self.summary.workers_dismissed += 1
         self._trouble(why)
         with contextlib.suppress(Exception):  # the scheduler may be gone
-            keys = set(self._client.processing([address]).get(address, ()))
-            for future in [f for f in self._pieces if f.key in keys]:
-                self._take_back(future)
+            waiting = set(self._client.processing([address]).get(address, ()))
+            for future in [f for f in self._pieces if f.key in waiting]:
+                self._submit(self._pieces.pop(future))
+                self._client.cancel([future], force=True)
 
         def renew() -> None:
             with contextlib.suppress(Exception):
@@ -162,51 +163,56 @@ class Dispatcher:
         if restart:
             threading.Thread(target=renew, daemon=True).start()
 
-    def _take_back(self, future: Any) -> None:
-        self._pending.appendleft(self._pieces.pop(future)[0])
-        self._client.cancel([future], force=True)
-
     def _trouble(self, message: str) -> None:
         self._last_trouble = message
         self._display.message(message)
 
     # --- work goes out ---
 
-    def _hand_out(self) -> None:
-        usable = {a: n for a, n in self._present.items() if a not in self._barred}
-        may = set(usable) if self._barred else None
-        while self._pending and len(self._pieces) < 2 * sum(usable.values()):  # one waits while another runs
-            size = int(PIECE_SECONDS / self._entry_seconds) if self._entry_seconds else 4
-            size = max(1, min(size, LARGEST_PIECE, -(-len(self._open) // (2 * len(usable)))))
-            head = self._pending.popleft()
-            if head[size:]:
-                self._pending.appendleft(head[size:])
-            indices = [i for i in head[:size] if i in self._open]
-            if not indices:
-                continue
-            future = self._client.submit(on_worker, self._name, __version__, indices, self._store.out, self._jobs, self._timeout,
-                                         key=next(self._names), workers=sorted(may) if may else None, pure=False)
-            self._pieces[future] = indices, may
-            future.add_done_callback(self._answered)
+    def _submit(self, indices: list[int]) -> None:
+        usable = sorted(self._present - self._barred) if self._barred else None  # if all of them go, Dask asks others
+        future = self._client.submit(on_worker, self._name, __version__, indices, self._store.out, self._jobs, self._timeout,
+                                     workers=usable or None, allow_other_workers=bool(usable), pure=False)
+        self._pieces[future] = indices
+        future.add_done_callback(self._answered)
+
+    def _again(self, indices: list[int]) -> None:
+        """Hands entries out once more, in halves: one of them may be what costs the workers."""
+        indices = [i for i in indices if i in self._open]
+        if not indices:
+            return
+        self.summary.retried += 1
+        if len(indices) > 1:
+            self._submit(indices[:len(indices) // 2])
+            self._submit(indices[len(indices) // 2:])
+            return
+        (index,) = indices
+        self._attempts[index] = self._attempts.get(index, 0) + 1
+        if self._attempts[index] < ATTEMPTS:
+            self._submit(indices)
+        else:
+            self._close_failed(index, f"given up after {ATTEMPTS} attempts; the last trouble was: {self._last_trouble}")
+
+    # --- answers come in ---
 
     def _answered(self, future: Any) -> None:
         with contextlib.suppress(RuntimeError):  # the batch has ended
-            self._readers.submit(self._receive, future, self._pieces[future][0] if future in self._pieces else [])
+            self._readers.submit(self._receive, future)
 
-    def _receive(self, future: Any, indices: list[int]) -> None:
+    def _receive(self, future: Any) -> None:
         """On a thread of its own: fetches an answer and reads the files that it speaks of."""
         try:
             address, kind, answer = future.result()
             if kind == "made":
                 try:
-                    answer = answer[0], [(a, self._check(a, indices)) for a in answer[1]]
+                    answer = [(a, self._check(a, self._pieces.get(future, ()))) for a in answer]
                 except (LookupError, TypeError, ValueError):
-                    kind, answer = "garbage", f"no answer of a known form for {len(indices)} entries"
+                    kind, answer = "garbage", "no answer of a known form"
             self._answers.put((future, (address, kind, answer)))
         except BaseException as e:  # what Dask raises, an output that is gone
             self._answers.put((future, e))
 
-    def _check(self, answer: dict[str, Any], indices: list[int]) -> bool:
+    def _check(self, answer: dict[str, Any], indices: Sequence[int]) -> bool:
         """Whether an entry's file is there, whole, and what the worker says. Raises where the answer has no known form."""
         index, what = answer["index"], answer["what"]
         if index not in indices or what not in work.KINDS:
@@ -218,50 +224,28 @@ class Dispatcher:
         data = self._store.read(self._manifest.entries[index].file)
         return data is not None and self._manifest.holds(index, data) and hashlib.sha256(data).hexdigest() == answer["sum"]
 
-    def _again(self, indices: list[int]) -> None:
-        """Hands entries out once more, in halves: one of them may be what costs the workers."""
-        indices = [i for i in indices if i in self._open]
-        if not indices:
-            return
-        self.summary.retried += 1
-        if len(indices) > 1:
-            self._pending.extend((indices[:len(indices) // 2], indices[len(indices) // 2:]))
-            return
-        (index,) = indices
-        self._attempts[index] = self._attempts.get(index, 0) + 1
-        if self._attempts[index] < ATTEMPTS:
-            self._pending.append(indices)
-        else:
-            self._close_failed(index, f"given up after {ATTEMPTS} attempts; the last trouble was: {self._last_trouble}")
-
-    # --- answers come in ---
-
     def _handle(self, future: Any, result: Any) -> None:
-        piece = self._pieces.pop(future, None)
-        if piece is None:
-            return  # taken back before
-        indices = piece[0]
+        indices = self._pieces.pop(future, None)
+        if indices is None:
+            return  # another future does it
         if isinstance(result, StoreError):
             raise BatchError(str(result)) from result
-        if isinstance(result, (CancelledError, asyncio.CancelledError, OSError)):  # the scheduler is gone, or soon found to be
-            self._pending.appendleft(indices)
-            return
-        if isinstance(result, BaseException):  # KilledWorker, an answer that cannot be read, ...
+        if isinstance(result, (CancelledError, asyncio.CancelledError, OSError)):  # the scheduler is gone, or was for a moment
+            self._look()
+            self._submit(indices)
+        elif isinstance(result, BaseException):  # KilledWorker, an answer that cannot be read, ...
             self._trouble(f"work was lost: {type(result).__name__}: {result}")
             self._again(indices)
-            return
-        address, kind, answer = result
-        if kind == "unfit":  # no entry is to blame, and a restart is no help
-            self._bar(address, f"worker {address} gets no work: {answer}", restart=False)
-            self._pending.appendleft(indices)
-        elif kind == "garbage":
-            self._bar(address, f"worker {address} gave garbage: {answer}")
+        elif result[1] == "unfit":  # no entry is to blame, and a restart is no help
+            self._bar(result[0], f"worker {result[0]} gets no work: {result[2]}", restart=False)
+            self._submit(indices)
+        elif result[1] == "garbage":
+            self._bar(result[0], f"worker {result[0]} gave garbage: {result[2]}")
             self._again(indices)
         else:
-            self._made(address, indices, *answer)
+            self._made(result[0], indices, result[2])
 
-    def _made(self, address: str, indices: list[int], seconds: float, answers: list[tuple[dict[str, Any], bool]]) -> None:
-        self._entry_seconds = max(seconds, 1e-3) / len(indices)
+    def _made(self, address: str, indices: list[int], answers: list[tuple[dict[str, Any], bool]]) -> None:
         broken = 0
         for answer, true in answers:
             index, what = answer["index"], answer["what"]
@@ -281,7 +265,7 @@ class Dispatcher:
                       "that it wrote (all machines must see one and the same folder)")
         elif broken and broken == len(answers):
             self._bar(address, f"worker {address}: its device fails: {self._last_trouble}")
-        self._again([i for i in indices if i in self._open])
+        self._again(indices)
 
     def _close(self, address: str, index: int, what: str) -> None:
         self._open.discard(index)

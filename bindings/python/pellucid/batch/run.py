@@ -132,4 +132,4 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
         if ask:
             ask()
         return Dispatcher(client, manifest, store, timeout=timeout, jobs=jobs, patience=patience, read_back=read_back,
-                          display=Display(len(manifest), quiet=not progress), ask=ask).run()
+                          display=Display(len(manifest), quiet=not progress), ask=ask, asked=workers or 0).run()

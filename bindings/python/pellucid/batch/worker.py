@@ -5,7 +5,6 @@ import hashlib
 import os
 import pickle
 import threading
-import time
 from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures import TimeoutError as NothingYet
 from typing import Any
@@ -71,19 +70,20 @@ def make_entry(manifest: Manifest, index: int, store: Store, device: Device) -> 
         return {"index": index, "what": what, "message": str(e)}
 
 
-def make_entries(name: str, version: str, indices: list[int], out: str, jobs: int, timeout: float) -> tuple[float, list[Any]]:
+def make_entries(name: str, version: str, indices: list[int], out: str, jobs: int, timeout: float) -> list[dict[str, Any]]:
     """Makes entries, several at a time: one integrates while another waits for the disk or the store.
 
-    Returns how many seconds it took and what happened to each.
+    Returns what happened to each.
     """
-    start, manifest, store = time.monotonic(), manifest_of(name, version), Store(out)
+    manifest, store = manifest_of(name, version), Store(out)
     try:
         device = device_of("")
     except PellucidError as e:
         if e.code == ErrorCode.NO_DEVICE:
             raise UnfitWorker(str(e)) from None
-        return 0, [{"index": i, "what": DEVICE_FAILED, "message": str(e)} for i in indices]
-    pool, answers = ThreadPoolExecutor(min(len(indices), jobs or 4 * (os.cpu_count() or 1), 256)), []
+        return [{"index": i, "what": DEVICE_FAILED, "message": str(e)} for i in indices]
+    pool = ThreadPoolExecutor(min(len(indices), jobs or 4 * (os.cpu_count() or 1), 256))
+    answers: list[dict[str, Any]] = []
     waiting = [(i, pool.submit(make_entry, manifest, i, store, device)) for i in indices]
     patience = timeout
     for index, entry in waiting:
@@ -93,4 +93,4 @@ def make_entries(name: str, version: str, indices: list[int], out: str, jobs: in
             patience = 0  # the others had that long as well
             answers.append({"index": index, "what": DEVICE_FAILED, "message": f"it did nothing for {timeout:g} s"})
     pool.shutdown(wait=False, cancel_futures=True)
-    return time.monotonic() - start, answers
+    return answers
