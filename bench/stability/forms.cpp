@@ -1,7 +1,7 @@
 // Wide shadow and thickness from shadow maps of every form: each pixel is a place on open ground, with a
 // normal of its own.
 #include "faceworks_material.h"
-#include "shading/shadow_form_scene.h"
+#include "shading/shadow_form_truth.h"
 
 #include "vectors.h"
 
@@ -35,11 +35,12 @@ const PelMaterial& materialOf(uint32_t id) {
 // A map of one form, as the device and as the oracle take it.
 struct Scene {
     FormLight light;
-    std::function<double(const PelMaterial&, Vec3, Vec3)> wide, thickness;
+    FormTruth truth;
+    std::shared_ptr<const void> from;  // what the truth refers to
 };
-
-reference::WideFilterParams filterOf(const PelLight& l, const PelMaterial& m) {
-    return {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness, l.shadowConeSlope, int(l.shadowFilterTexels)};
+template <class Light>
+Scene sceneOf(FormLight light, std::shared_ptr<Light> from) {
+    return {std::move(light), truthOf(*from), from};
 }
 
 void setLight(PelLight& l, size_t number) {
@@ -54,20 +55,8 @@ Scene planeScene(bool perspective, size_t number) {
                                                     {0.6, 0.3, 0.3 + 0.5 * double(number)}, {16, 8, 5}, 50,
                                                     60 + 40 * uint32_t(number)));
     setLight(from->light.params, number);
-    Scene s;
-    s.light.params = from->light.params;
-    s.light.maps = {{PEL_LIGHT_SHADOW_MAP, from->light.mapSize, from->light.mapSize, 1, from->light.map.values}};
-    s.wide = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
-        return reference::wideShadow(from->map, from->view, p, n, filterOf(from->light.params, m));
-    };
-    s.thickness = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
-        return reference::thickness(from->map,
-                                    reference::shadowCoordinates(matrixOf(from->light.params.worldToShadow),
-                                                                 p, n, m.deepScatterNormalOffset),
-                                    diskTaps(m.thicknessTaps), m.thicknessFilterRadius, from->view.decoding,
-                                    reference::MapFilter::bilinear);
-    };
-    return s;
+    const uint32_t size = from->light.mapSize;
+    return sceneOf({from->light.params, {{PEL_LIGHT_SHADOW_MAP, size, size, 1, from->light.map.values}}}, from);
 }
 
 Scene cubeScene(bool radial, size_t number) {
@@ -80,80 +69,21 @@ Scene cubeScene(bool radial, size_t number) {
     auto from = std::make_shared<CubeLight>(
         cubeLight(32u << number, radial, turnTo({0, 0, -1}, aims[number]), lamp, bumps));
     setLight(from->light.params, number);
-    Scene s;
-    s.light = from->light;
-    s.wide = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
-        return reference::cubeWideShadow(from->map, from->turn(p - from->position), from->turn(n),
-                                         filterOf(from->light.params, m));
-    };
-    s.thickness = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
-        return reference::cubeThickness(from->map,
-                                        from->turn(p - double(m.deepScatterNormalOffset) * n - from->position),
-                                        diskTaps(m.thicknessTaps), m.thicknessFilterRadius);
-    };
-    return s;
+    return sceneOf(from->light, from);
 }
 
 Scene cascadeScene(size_t number) {
     auto from =
         std::make_shared<CascadeLight>(cascadeLight({14, 24, 36, 52}, number % 2, 60 + 30 * uint32_t(number)));
     setLight(from->light.params, number);
-    Scene s;
-    s.light = from->light;
-    std::vector<reference::Matrix4> matrices{matrixOf(s.light.params.worldToShadow)};
-    for (int i = 0; i < 3; ++i) matrices.push_back(matrixOf(s.light.params.cascadeToShadow[i]));
-    s.wide = [from, matrices](const PelMaterial& m, Vec3 p, Vec3 n) {
-        const int k = reference::cascadeOf(matrices, p, m.shadowFilterWidth / 2);
-        return k < 0 ? 1
-                     : reference::wideShadow(from->maps[size_t(k)].map, from->maps[size_t(k)].view, p, n,
-                                             filterOf(from->light.params, m));
-    };
-    s.thickness = [from, matrices](const PelMaterial& m, Vec3 p, Vec3 n) {
-        const Vec3 inside = p - double(m.deepScatterNormalOffset) * n;
-        const double radius = m.thicknessFilterRadius / reference::uvPerLength(matrices[0], 0);
-        const int k = reference::cascadeOf(matrices, inside, radius);
-        if (k < 0) return 0.0;
-        return reference::thickness(
-            from->maps[size_t(k)].map, reference::shadowCoordinates(matrices[size_t(k)], inside, {0, 0, 0}, 0),
-            diskTaps(m.thicknessTaps), radius * reference::uvPerLength(matrices[size_t(k)], 0),
-            from->maps[size_t(k)].view.decoding, reference::MapFilter::bilinear);
-    };
-    return s;
+    return sceneOf(from->light, from);
 }
 
 Scene contentScene(PelShadowContent content, size_t number) {
     auto from = std::make_shared<ContentLight>(
         contentLight(content, number & 1, number & 2, 60 + 20 * uint32_t(number)));
     setLight(from->light.params, number);
-    Scene s;
-    s.light = from->light;
-    const auto uvz = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
-        return reference::shadowCoordinates(matrixOf(from->light.params.worldToShadow), p, n,
-                                            m.deepScatterNormalOffset);
-    };
-    if (content == PEL_SHADOW_CONTENT_MOMENTS) {
-        s.wide = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
-            const PelLight& l = from->light.params;
-            return reference::momentShadow(from->first, from->second, from->from.view, p, n, filterOf(l, m),
-                                           {l.shadowMinDeviation, l.shadowBleeding});
-        };
-        s.thickness = [from, uvz](const PelMaterial& m, Vec3 p, Vec3 n) {
-            return reference::thickness(from->first, uvz(m, p, n), diskTaps(m.thicknessTaps),
-                                        m.thicknessFilterRadius, from->from.view.decoding,
-                                        reference::MapFilter::bilinear);
-        };
-    } else {
-        s.wide = [from](const PelMaterial& m, Vec3 p, Vec3 n) {
-            return reference::exponentialShadow(from->first, from->light.params.shadowExponent,
-                                                from->from.view, p, n, filterOf(from->light.params, m));
-        };
-        s.thickness = [from, uvz](const PelMaterial& m, Vec3 p, Vec3 n) {
-            return reference::exponentialThickness(from->first, from->light.params.shadowExponent,
-                                                   uvz(m, p, n), diskTaps(m.thicknessTaps),
-                                                   m.thicknessFilterRadius, from->from.view.decoding);
-        };
-    }
-    return s;
+    return sceneOf(from->light, from);
 }
 
 Scene makeScene(Form form, size_t number) {
@@ -172,7 +102,7 @@ Scene makeScene(Form form, size_t number) {
             return contentScene(PEL_SHADOW_CONTENT_EXPONENTIAL, number);
     }
 }
-const Scene& sceneOf(Form form, size_t number) {
+const Scene& madeScene(Form form, size_t number) {
     static std::map<std::pair<Form, size_t>, Scene> made;
     const auto [at, fresh] = made.try_emplace({form, number});
     if (fresh) at->second = makeScene(form, number);
@@ -182,7 +112,7 @@ const Scene& sceneOf(Form form, size_t number) {
 class Mapped : public Pixels {
   public:
     Mapped(Form form, bool thickness, double limit, size_t number, const std::vector<Point>& points)
-        : scene_(sceneOf(form, number)), thickness_(thickness), limit_(limit) {
+        : scene_(madeScene(form, number)), thickness_(thickness), limit_(limit) {
         frame_ = formFrame(1, 64, uint32_t((points.size() + 63) / 64));
         frame_.materials.clear();
         for (uint32_t id = 1; id <= materials; ++id) frame_.materials[id] = materialOf(id);
@@ -218,14 +148,17 @@ class Mapped : public Pixels {
         const PelMaterial& m = materialOf(uint32_t(frame_.slots[PEL_SLOT_MATERIAL].at(i)));
         const Vec3 p = frame_.slots[PEL_SLOT_POSITION].vec(i) + column_,
                    n = reference::normalized(frame_.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i));
-        const auto& of = thickness_ ? scene_.thickness : scene_.wide;
-        const double value = of(m, p, n);
+        const auto of = [&](Vec3 at) {
+            return thickness_ ? scene_.truth.thickness(m, at, n, diskTaps(m.thicknessTaps))
+                              : scene_.truth.wide(m, at, n);
+        };
+        const double value = of(p);
         // Which face or cascade is taken, and every how manieth texel is read, are decisions.
         for (int c = 0; c < 3; ++c)
             for (const double side : {-1e-5, 1e-5}) {
                 Vec3 beside = p;
                 beside[c] += side;
-                if (std::abs(of(m, beside, n) - value) > limit_ / 2) return {NAN};
+                if (std::abs(of(beside) - value) > limit_ / 2) return {NAN};
             }
         return {value};
     }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <pellucid/pellucid.hpp>
 
+#include "diffusion/shown_images.h"
 #include "io/image/image_file.h"
 #include "reference/lut.h"
 #include "reference/profile.h"
@@ -148,45 +149,36 @@ struct Shown {
 // By the shader, at an albedo of 1. `given`: with the ruler's irradiance, else from the map's shadow.
 inline Shown shade(const Device& device, const Ruler& r, PelScattering scattering, bool given,
                    bool withMap = true, float targetError = pelShaderOptionsDefaults().targetError) {
-    pellucid::Shader shader(device);
+    scatter_scene::ShownImages shown(device, r.side, r.side);
     PelShaderOptions options = pelShaderOptionsDefaults();
     options.millimetresPerUnit = 10;
     options.countPixels = 1;
     options.targetError = targetError;
-    shader.set(options);
-    const Buffer p(device, r.positions), n(device, r.normals), e(device, r.irradiance), i(device, r.ids),
-        map(device, r.map), out(device, std::vector<float>(r.positions.size(), 0.0f));
-    const auto rgb = [&](const Buffer& b) { return pellucid::imageDesc(b, PEL_FORMAT_RGB32F, r.side, r.side); };
-    shader.set(PEL_SLOT_RADIANCE, rgb(out));
-    shader.set(PEL_SLOT_POSITION, rgb(p));
-    shader.set(PEL_SLOT_NORMAL_SHADING, rgb(n));
-    if (given) shader.set(PEL_SLOT_IRRADIANCE, rgb(e));
-    shader.set(PEL_SLOT_MATERIAL, pellucid::imageDesc(i, PEL_FORMAT_R8_UINT, r.side, r.side));
-    PelMaterial material = pelMaterialDefaults();
+    shown.shader.set(options);
+    shown.set(PEL_SLOT_POSITION, r.positions);
+    shown.set(PEL_SLOT_NORMAL_SHADING, r.normals);
+    if (given) shown.set(PEL_SLOT_IRRADIANCE, r.irradiance);
+    shown.set(PEL_SLOT_MATERIAL, r.ids);
     const Profile skin = profile();
-    material.profile = skin.get();
-    material.scattering = scattering;
+    PelMaterial material = scatter_scene::whiteMaterial(skin, scattering);
     material.specular = 0;
     if (r.profileScale != 1) material.diffusionRadius = float(skin.info().radius) * r.profileScale / 10;
-    std::fill_n(material.albedo, 3, 1.0f);
-    shader.setMaterial(1, material);
+    shown.shader.setMaterial(1, material);
     // Of clip = (x, z, y + camera - 1, y + camera): only where the camera stands matters.
     PelCamera camera = pelCameraDefaults();
     std::fill_n(camera.inverseViewProjection, 16, 0.0f);
     camera.position[1] = -r.camera;
     camera.inverseViewProjection[0] = camera.inverseViewProjection[9] = camera.inverseViewProjection[14] = 1;
     camera.inverseViewProjection[6] = -r.camera;
-    shader.set(camera);
+    shown.shader.set(camera);
     PelLight light = r.light;
     std::fill_n(light.color, 3, 1.0f);
-    shader.set(std::vector<PelLight>{light});
-    if (withMap)
-        shader.set(0, PEL_LIGHT_SHADOW_MAP, pellucid::imageDesc(map, PEL_FORMAT_R32F, r.mapSide, r.mapSide));
-    shader.commit();
-    shader.execute();
-    shader.execute();
-    const PelShaderStats stats = shader.stats();
-    return {out.readAll<float>(), stats, stats.deviceMilliseconds};
+    shown.shader.set(std::vector<PelLight>{light});
+    if (withMap) shown.setMap(PEL_LIGHT_SHADOW_MAP, r.map, r.mapSide, r.mapSide);
+    shown.execute();
+    std::vector<float> result = shown.execute();
+    const PelShaderStats stats = shown.shader.stats();
+    return {std::move(result), stats, stats.deviceMilliseconds};
 }
 
 // Root mean square per channel over the ruler's pixels that are wholly covered, in 1e-4 of radiance. `unlit`: of those without light.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "diffusion/shown_images.h"
 #include "io/image/image_file.h"
 #include "io/image/npy_read.h"
 
@@ -89,6 +90,19 @@ inline void standAt(float (&m)[16]) {
     std::fill(m, m + 16, 0.0f);
     m[0] = m[9] = 1;
     m[6] = -60, m[14] = 1;
+}
+
+// The head's own images but its light, and where the camera stands.
+inline void setHead(scatter_scene::ShownImages& shown, const Head& head) {
+    PelShaderOptions options = pelShaderOptionsDefaults();
+    options.millimetresPerUnit = 10;
+    shown.shader.set(options);
+    shown.set(PEL_SLOT_POSITION, head.positions);
+    shown.set(PEL_SLOT_NORMAL_SHADING, head.normals);
+    shown.set(PEL_SLOT_MATERIAL, head.ids);
+    PelCamera camera = pelCameraDefaults();
+    standAt(camera.inverseViewProjection);
+    shown.shader.set(camera);
 }
 
 // The light and its shadow map, whose texels are 0.33 mm wide (head_side.json).

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "diffusion/scatter_scene.h"
+#include "diffusion/shown_images.h"
 #include "tolerances.h"
 
 using namespace scatter_scene;
@@ -163,37 +164,23 @@ struct Lit {
 
 Lit shaded(const Picture& p, const LitBall& ball, PelScattering scattering, const Profile& profile,
            float profileRadius = 0) {
-    const Buffer e(device(), p.irradiance), x(device(), p.positions), i(device(), p.ids);
+    ShownImages shown(device(), p.width, p.height);
     std::vector<float> normals = p.positions;
     for (float& n : normals) n /= float(radius);
-    const Buffer n(device(), normals), out(device(), std::vector<float>(p.irradiance.size(), 0.0f));
-    const auto rgb = [&](const Buffer& b) {
-        return pellucid::imageDesc(b, PEL_FORMAT_RGB32F, p.width, p.height);
-    };
-    pellucid::Shader shader(device());
-    shader.set(PEL_SLOT_RADIANCE, rgb(out));
-    shader.set(PEL_SLOT_POSITION, rgb(x));
-    shader.set(PEL_SLOT_NORMAL_SHADING, rgb(n));
-    shader.set(PEL_SLOT_IRRADIANCE, rgb(e));
-    shader.set(PEL_SLOT_MATERIAL, pellucid::imageDesc(i, PEL_FORMAT_R8_UINT, p.width, p.height));
-    PelMaterial material = pelMaterialDefaults();
-    material.profile = profile.get();
+    shown.set(PEL_SLOT_POSITION, p.positions);
+    shown.set(PEL_SLOT_NORMAL_SHADING, normals);
+    shown.set(PEL_SLOT_IRRADIANCE, p.irradiance);
+    shown.set(PEL_SLOT_MATERIAL, p.ids);
+    PelMaterial material = whiteMaterial(profile, scattering);
     material.diffusionRadius = profileRadius;
-    material.scattering = scattering;
     material.specular = 0;
-    std::fill_n(material.albedo, 3, 1.0f);
-    shader.setMaterial(1, material);
-    shader.set(std::vector<PelLight>{ball.light});
-    std::vector<Buffer> maps;
-    for (size_t k = 0; k < ball.maps.size(); ++k) {
-        maps.emplace_back(device(), ball.maps[k]);
-        shader.set(0, PelLightSlot(PEL_LIGHT_SHADOW_MAP + (k ? PEL_LIGHT_CASCADE_1 - PEL_LIGHT_SHADOW_MAP : 0)),
-                   pellucid::imageDesc(maps.back(), ball.components == 2 ? PEL_FORMAT_RG32F : PEL_FORMAT_R32F,
-                                       ball.width, ball.height));
-    }
-    shader.commit();
-    shader.execute();
-    return {out.readAll<float>(), shader.stats(), shader.warnings()};
+    shown.shader.setMaterial(1, material);
+    shown.shader.set(std::vector<PelLight>{ball.light});
+    for (size_t k = 0; k < ball.maps.size(); ++k)
+        shown.setMap(PelLightSlot(k ? PEL_LIGHT_CASCADE_1 + int(k) - 1 : int(PEL_LIGHT_SHADOW_MAP)),
+                     ball.maps[k], ball.width, ball.height);
+    std::vector<float> light = shown.execute();
+    return {std::move(light), shown.shader.stats(), shown.shader.warnings()};
 }
 
 // Over the lit part, by midpoints in the angles round the light.

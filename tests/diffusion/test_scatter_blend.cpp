@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "diffusion/scatter_scene.h"
+#include "diffusion/shown_images.h"
 #include "tolerances.h"
 
 using namespace scatter_scene;
@@ -26,29 +27,20 @@ struct Frame {
     }
     std::vector<float> shade(PelShaderStats* stats = nullptr) const {
         const Picture& p = picture;
-        pellucid::Shader shader(device());
-        std::vector<Buffer> kept;
-        const auto set = [&](PelImageSlot slot, const auto& values, PelFormat format) {
-            kept.emplace_back(device(), values);
-            shader.set(slot, pellucid::imageDesc(kept.back(), format, p.width, p.height));
-        };
-        set(PEL_SLOT_RADIANCE, std::vector<float>(p.positions.size()), PEL_FORMAT_RGB32F);
-        const Buffer out = kept.back();
-        set(PEL_SLOT_POSITION, p.positions, PEL_FORMAT_RGB32F);
-        set(PEL_SLOT_NORMAL_SHADING, normals, PEL_FORMAT_RGB32F);
-        set(PEL_SLOT_MATERIAL, p.ids, PEL_FORMAT_R8_UINT);
-        if (giveIrradiance) set(PEL_SLOT_IRRADIANCE, p.irradiance, PEL_FORMAT_RGB32F);
-        if (!albedo.empty()) set(PEL_SLOT_ALBEDO, albedo, PEL_FORMAT_RGB32F);
-        if (!weight.empty()) set(PEL_SLOT_SCATTER_WEIGHT, weight, PEL_FORMAT_R32F);
-        if (!back.empty()) set(PEL_SLOT_IRRADIANCE_BACK, back, PEL_FORMAT_RGB32F);
-        shader.setMaterial(1, material);
-        shader.set(lights);
-        PelCamera camera = pelCameraDefaults();
-        shader.set(camera);
-        shader.commit();
-        shader.execute();
-        if (stats) *stats = shader.stats();
-        return out.readAll<float>();
+        ShownImages shown(device(), p.width, p.height);
+        shown.set(PEL_SLOT_POSITION, p.positions);
+        shown.set(PEL_SLOT_NORMAL_SHADING, normals);
+        shown.set(PEL_SLOT_MATERIAL, p.ids);
+        if (giveIrradiance) shown.set(PEL_SLOT_IRRADIANCE, p.irradiance);
+        if (!albedo.empty()) shown.set(PEL_SLOT_ALBEDO, albedo);
+        if (!weight.empty()) shown.set(PEL_SLOT_SCATTER_WEIGHT, weight);
+        if (!back.empty()) shown.set(PEL_SLOT_IRRADIANCE_BACK, back);
+        shown.shader.setMaterial(1, material);
+        shown.shader.set(lights);
+        shown.shader.set(pelCameraDefaults());
+        std::vector<float> radiance = shown.execute();
+        if (stats) *stats = shown.shader.stats();
+        return radiance;
     }
 };
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "diffusion/scatter_scene.h"
+#include "diffusion/shown_images.h"
 #include "tolerances.h"
 
 using namespace scatter_scene;
@@ -9,31 +10,22 @@ using namespace scatter_scene;
 namespace {
 
 std::vector<float> shaded(const Picture& p, PelScattering scattering, PelShaderStats* stats = nullptr) {
-    const Buffer e(device(), p.irradiance), x(device(), p.positions), i(device(), p.ids);
+    ShownImages shown(device(), p.width, p.height);
     std::vector<float> normals = p.positions;
     for (float& n : normals) n /= 10;
-    const Buffer n(device(), normals), out(device(), std::vector<float>(p.irradiance.size(), 0.0f));
-    const auto rgb = [&](const Buffer& b) {
-        return pellucid::imageDesc(b, PEL_FORMAT_RGB32F, p.width, p.height);
-    };
-    pellucid::Shader shader(device());
-    shader.set(PEL_SLOT_RADIANCE, rgb(out));
-    shader.set(PEL_SLOT_POSITION, rgb(x));
-    shader.set(PEL_SLOT_NORMAL_SHADING, rgb(n));
-    shader.set(PEL_SLOT_IRRADIANCE, rgb(e));
-    shader.set(PEL_SLOT_MATERIAL, pellucid::imageDesc(i, PEL_FORMAT_R8_UINT, p.width, p.height));
-    PelMaterial material = pelMaterialDefaults();
-    material.scattering = scattering;
+    shown.set(PEL_SLOT_POSITION, p.positions);
+    shown.set(PEL_SLOT_NORMAL_SHADING, normals);
+    shown.set(PEL_SLOT_IRRADIANCE, p.irradiance);
+    shown.set(PEL_SLOT_MATERIAL, p.ids);
     const Profile skin = Profile::skin();
-    if (scattering == PEL_SCATTERING_AUTO)
-        material.profile = skin.get();  // the others have skin's without one
+    PelMaterial material = whiteMaterial(skin, scattering);
+    if (scattering != PEL_SCATTERING_AUTO) material.profile = nullptr;  // skin's without one
     material.specular = 0;
     for (float& a : material.albedo) a = 0.5f;
-    shader.setMaterial(1, material);
-    shader.commit();
-    shader.execute();
-    if (stats) *stats = shader.stats();
-    return out.readAll<float>();
+    shown.shader.setMaterial(1, material);
+    std::vector<float> radiance = shown.execute();
+    if (stats) *stats = shown.shader.stats();
+    return radiance;
 }
 
 }  // namespace

@@ -20,38 +20,17 @@ const char* folder(const char* name) {
 std::vector<float> shade(const ruler::Head& head, PelScattering scattering, float scale,
                          const std::vector<float>& map) {
     const auto side = uint32_t(head.side);
-    const Buffer positions(device(), head.positions), normals(device(), head.normals),
-        curvature(device(), head.curvature), ids(device(), head.ids),
-        texels(device(), map.empty() ? std::vector<float>(1) : map), irradiance(device(), head.irradiance),
-        out(device(), head.positions.size() * sizeof(float));
-    const auto rgb = [&](const Buffer& b) { return pellucid::imageDesc(b, PEL_FORMAT_RGB32F, side, side); };
-    pellucid::Shader shader(device());
-    PelShaderOptions options = pelShaderOptionsDefaults();
-    options.millimetresPerUnit = 10;
-    shader.set(options);
-    shader.set(PEL_SLOT_RADIANCE, rgb(out));
-    shader.set(PEL_SLOT_POSITION, rgb(positions));
-    shader.set(PEL_SLOT_NORMAL_SHADING, rgb(normals));
-    shader.set(PEL_SLOT_CURVATURE, pellucid::imageDesc(curvature, PEL_FORMAT_R32F, side, side));
-    shader.set(PEL_SLOT_MATERIAL, pellucid::imageDesc(ids, PEL_FORMAT_R8_UINT, side, side));
-    if (map.empty()) shader.set(PEL_SLOT_IRRADIANCE, rgb(irradiance));
+    ShownImages shown(device(), side, side);
+    ruler::setHead(shown, head);
+    shown.set(PEL_SLOT_CURVATURE, head.curvature);
+    if (map.empty()) shown.set(PEL_SLOT_IRRADIANCE, head.irradiance);
     const Profile profile = ruler::profile(scale);
-    PelMaterial material = pelMaterialDefaults();
-    std::fill_n(material.albedo, 3, 1.0f);
-    material.profile = profile.get();
-    material.scattering = scattering;
-    shader.setMaterial(1, material);
-    PelCamera camera = pelCameraDefaults();
-    ruler::standAt(camera.inverseViewProjection);
-    shader.set(camera);
+    shown.shader.setMaterial(1, whiteMaterial(profile, scattering));
     PelLight light = ruler::light();
     light.shadowFilterTexels = 48;
-    shader.set(std::vector<PelLight>{light});
-    if (!map.empty())
-        shader.set(0, PEL_LIGHT_SHADOW_MAP, pellucid::imageDesc(texels, PEL_FORMAT_R32F, 1024, 1024));
-    shader.commit();
-    shader.execute();
-    return out.readAll<float>();
+    shown.shader.set(std::vector<PelLight>{light});
+    if (!map.empty()) shown.setMap(PEL_LIGHT_SHADOW_MAP, map, 1024, 1024);
+    return shown.execute();
 }
 
 void print(const char* what, const std::array<double, 3>& e) {

@@ -94,31 +94,15 @@ struct Shaded {
 
 Shaded shadeHead(const ruler::Head& head, PelScattering scattering, uint32_t taps, float scale) {
     const auto side = uint32_t(head.side);
-    const Buffer positions(device(), head.positions), normals(device(), head.normals), ids(device(), head.ids),
-        irradiance(device(), head.irradiance), out(device(), head.positions.size() * sizeof(float));
-    const auto rgb = [&](const Buffer& b) { return pellucid::imageDesc(b, PEL_FORMAT_RGB32F, side, side); };
-    pellucid::Shader shader(device());
-    PelShaderOptions options = pelShaderOptionsDefaults();
-    options.millimetresPerUnit = 10;
-    shader.set(options);
-    shader.set(PEL_SLOT_RADIANCE, rgb(out));
-    shader.set(PEL_SLOT_POSITION, rgb(positions));
-    shader.set(PEL_SLOT_NORMAL_SHADING, rgb(normals));
-    shader.set(PEL_SLOT_MATERIAL, pellucid::imageDesc(ids, PEL_FORMAT_R8_UINT, side, side));
-    shader.set(PEL_SLOT_IRRADIANCE, rgb(irradiance));
+    ShownImages shown(device(), side, side);
+    ruler::setHead(shown, head);
+    shown.set(PEL_SLOT_IRRADIANCE, head.irradiance);
     const Profile profile = ruler::profile(scale);
-    PelMaterial material = pelMaterialDefaults();
-    std::fill_n(material.albedo, 3, 1.0f);
-    material.profile = profile.get();
-    material.scattering = scattering;
+    PelMaterial material = whiteMaterial(profile, scattering);
     material.scatterTaps = taps;
-    shader.setMaterial(1, material);
-    PelCamera camera = pelCameraDefaults();
-    ruler::standAt(camera.inverseViewProjection);
-    shader.set(camera);
-    shader.commit();
-    shader.execute();
-    return {out.readAll<float>(), shader.stats()};
+    shown.shader.setMaterial(1, material);
+    std::vector<float> light = shown.execute();
+    return {std::move(light), shown.shader.stats()};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "diffusion/scatter_scene.h"
+#include "diffusion/shown_images.h"
 #include "reference/diffusion_texture.h"
 #include "tolerances.h"
 
@@ -322,26 +323,21 @@ TEST(TextureScatter, ShadersSampleIt) {
             normals.insert(normals.end(), {0, 0, 1});
             ids.push_back(x < 16 ? 1 : 2);
         }
-    const Buffer t(device(), texture), u(device(), uvs), n(device(), normals), e(device(), irradiance),
-        i(device(), ids), out(device(), 3 * side * side * sizeof(float));
-    const auto rgb = [&](const Buffer& b) { return pellucid::imageDesc(b, PEL_FORMAT_RGB32F, side, side); };
-    pellucid::Shader shader(device());
-    shader.set(PEL_SLOT_RADIANCE, rgb(out));
-    shader.set(PEL_SLOT_NORMAL_SHADING, rgb(n));
-    shader.set(PEL_SLOT_IRRADIANCE, rgb(e));
-    shader.set(PEL_SLOT_MATERIAL, pellucid::imageDesc(i, PEL_FORMAT_R8_UINT, side, side));
+    scatter_scene::ShownImages shown(device(), side, side);
+    pellucid::Shader& shader = shown.shader;
+    shown.set(PEL_SLOT_NORMAL_SHADING, normals);
+    shown.set(PEL_SLOT_IRRADIANCE, irradiance);
+    shown.set(PEL_SLOT_MATERIAL, ids);
     PelMaterial material = pelMaterialDefaults();
     material.scattering = PEL_SCATTERING_NONE;
     shader.setMaterial(2, material);
     material.scattering = PEL_SCATTERING_TEXTURE;
     shader.setMaterial(1, material);
     EXPECT_THROW(shader.commit(), pellucid::Error);  // no texture
-    shader.setScatteredTexture(1, pellucid::imageDesc(t, PEL_FORMAT_RGB32F, 8, 8));
+    shader.setScatteredTexture(1, pellucid::imageDesc(Buffer(device(), texture), PEL_FORMAT_RGB32F, 8, 8));
     EXPECT_THROW(shader.commit(), pellucid::Error);  // no coordinates
-    shader.set(PEL_SLOT_UV, pellucid::imageDesc(u, PEL_FORMAT_RG32F, side, side));
-    shader.commit();
-    shader.execute();
-    const auto result = out.readAll<float>();
+    shown.set(PEL_SLOT_UV, uvs);
+    const auto result = shown.execute();
     const auto bilinear = [&](double u, double v, int c) {
         const auto at = [&](int x, int y) {
             return double(texture[3 * size_t((y & 7) * 8 + (x & 7)) + size_t(c)]);

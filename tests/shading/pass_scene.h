@@ -64,6 +64,11 @@ inline void showBlurredNormal(Frame& f) {
     for (auto& [id, m] : f.materials)
         for (int c = 0; c < 3; ++c) m.normalBlend[c] = m.albedo[c] = 1;
 }
+// The largest difference of a component.
+inline double distance(reference::Vec3 a, reference::Vec3 b) {
+    return reference::magnitude(a - b);
+}
+
 inline reference::Vec3 shownNormal(const std::vector<float>& radiance, size_t i) {
     return 2.0 * (reference::Vec3{radiance[3 * i], radiance[3 * i + 1], radiance[3 * i + 2]} -
                   reference::Vec3{1, 1, 1});

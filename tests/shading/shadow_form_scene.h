@@ -139,26 +139,6 @@ inline std::vector<reference::Vec2> tapsOf(const Frame& f, const PelMaterial& m,
                                 : taps;
 }
 
-struct Worst {
-    double wide = 0, thickness = 0;
-    size_t penumbra = 0, thick = 0;  // pixels: there is something to see
-};
-// truth(pixel, its material, w, thickness) returns false for pixels that hang on a decision.
-inline Worst worstOf(const Frame& f, const Seen& seen,
-                     const std::function<bool(size_t, const PelMaterial&, double&, double&)>& truth) {
-    Worst worst;
-    for (size_t i = 0; i < f.pixels(); ++i) {
-        const PelMaterial* m = materialAt(f, i);
-        double wide = 1, thickness = 0;
-        if (!m || !truth(i, *m, wide, thickness)) continue;
-        worst.wide = std::max(worst.wide, std::abs(wide - seen.wide[i]));
-        worst.thickness = std::max(worst.thickness, std::abs(thickness - seen.thickness[i]));
-        worst.penumbra += wide > 0.1 && wide < 0.9;
-        worst.thick += thickness > 1;
-    }
-    return worst;
-}
-
 // --- cubes ---
 
 struct Turn {

@@ -15,10 +15,6 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-double difference(Vec3 a, Vec3 b) {
-    return reference::magnitude(a - b);
-}
-
 struct Worst {
     double error = 0;
     size_t compared = 0, doubtful = 0;
@@ -34,7 +30,7 @@ Worst againstOracle(const Frame& f, const std::vector<float>& radiance) {
             continue;
         }
         ++worst.compared;
-        worst.error = std::max(worst.error, difference(shownNormal(radiance, i), *truth[i]));
+        worst.error = std::max(worst.error, distance(shownNormal(radiance, i), *truth[i]));
     }
     return worst;
 }
@@ -120,7 +116,7 @@ TEST(BlurNormals, NothingCrossesADepthEdgeOrAMaterial) {
             f.options.blurNormals = 1;
             const auto shown = shade(device(), f, tables());
             for (size_t i = 0; i < f.pixels(); ++i)
-                EXPECT_LE(difference(shownNormal(shown, i), f.slots[PEL_SLOT_NORMAL_SHADING].vec(i)), tolerance::shadeTerm)
+                EXPECT_LE(distance(shownNormal(shown, i), f.slots[PEL_SLOT_NORMAL_SHADING].vec(i)), tolerance::shadeTerm)
                     << "gap " << gap << ", pixel " << i;
         }
 }

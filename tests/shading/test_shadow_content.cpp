@@ -3,7 +3,8 @@
 
 #include <limits>
 
-#include "shadow_form_scene.h"
+#include "shader_ready.h"
+#include "shadow_form_truth.h"
 #include "tolerances.h"
 
 using namespace shade_test;
@@ -11,29 +12,6 @@ using namespace shade_test;
 namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-
-Worst worstContent(const Frame& f, const ContentLight& from, const Seen& seen) {
-    const PelLight& l = from.light.params;
-    const auto matrix = matrixOf(l.worldToShadow);
-    return worstOf(f, seen, [&](size_t i, const PelMaterial& m, double& wide, double& thickness) {
-        const Vec3 p = f.slots[PEL_SLOT_POSITION].vec(i), n = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i);
-        const reference::WideFilterParams filter{m.shadowFilterWidth, l.shadowBias, l.shadowSoftness,
-                                                 l.shadowConeSlope, int(l.shadowFilterTexels)};
-        const Vec3 uvz = reference::shadowCoordinates(matrix, p, n, m.deepScatterNormalOffset);
-        const auto taps = diskTaps(m.thicknessTaps);
-        if (l.shadowContent == PEL_SHADOW_CONTENT_MOMENTS) {
-            wide = reference::momentShadow(from.first, from.second, from.from.view, p, n, filter,
-                                           {l.shadowMinDeviation, l.shadowBleeding});
-            thickness = reference::thickness(from.first, uvz, taps, m.thicknessFilterRadius,
-                                             from.from.view.decoding, reference::MapFilter::bilinear);
-        } else {
-            wide = reference::exponentialShadow(from.first, l.shadowExponent, from.from.view, p, n, filter);
-            thickness = reference::exponentialThickness(from.first, l.shadowExponent, uvz, taps,
-                                                        m.thicknessFilterRadius, from.from.view.decoding);
-        }
-        return true;
-    });
-}
 
 TEST(ShadowContent, MatchesTheOracle) {
     const Frame f = formFrame();
@@ -45,7 +23,7 @@ TEST(ShadowContent, MatchesTheOracle) {
                 EXPECT_TRUE(seen.stats.features &
                             (content == PEL_SHADOW_CONTENT_MOMENTS ? PEL_FEATURE_SHADOW_MOMENTS
                                                                    : PEL_FEATURE_SHADOW_EXPONENTIAL));
-                const Worst worst = worstContent(f, from, seen);
+                const Worst worst = worstOf(f, seen, truthOf(from));
                 const auto what = testing::Message() << "content " << content << ", perspective "
                                                      << perspective << ", reversed " << reversed;
                 EXPECT_LE(worst.wide, tolerance::contentShadow) << what;
@@ -135,7 +113,7 @@ TEST(ShadowContent, BadTexels) {
             from.first.depth[i] = bad[i % 4];
         }
         const Seen seen = shadeForms(f, {from.light});
-        EXPECT_LE(worstContent(f, from, seen).wide, tolerance::contentShadow)
+        EXPECT_LE(worstOf(f, seen, truthOf(from)).wide, tolerance::contentShadow)
             << "such texels throw no shadow, content " << content;
         for (size_t i = 0; i < f.pixels(); ++i) EXPECT_TRUE(std::isfinite(seen.thickness[i])) << i;
     }
@@ -146,14 +124,7 @@ TEST(ShadowContent, WhatIsRefused) {
         ContentLight from = contentLight(content, false, false, 31);
         std::vector<FormLight> lights{from.light};
         change(lights);
-        try {
-            shadeForms(formFrame(1, 9, 3), lights);
-            ADD_FAILURE() << "no error about " << word;
-        } catch (const pellucid::Error& e) {
-            EXPECT_EQ(e.code(), code) << e.what();
-            EXPECT_NE(std::string(e.what()).find(word), std::string::npos)
-                << "\"" << word << "\" in: " << e.what();
-        }
+        expectError(code, {word}, [&] { shadeForms(formFrame(1, 9, 3), lights); });
     };
     using Lights = std::vector<FormLight>;
     const auto invalid = PEL_ERROR_INVALID_ARGUMENT;

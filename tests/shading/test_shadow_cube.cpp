@@ -3,7 +3,8 @@
 
 #include <limits>
 
-#include "shadow_form_scene.h"
+#include "shader_ready.h"
+#include "shadow_form_truth.h"
 #include "tolerances.h"
 
 using namespace shade_test;
@@ -22,20 +23,6 @@ double bumps(Vec3 d, int texel) {
     return std::min(ground, 500.0) - (cell % 3 ? 9 + cell % 23 : 0) / reference::length(d);
 }
 
-Worst worstCube(const Frame& f, const CubeLight& from, const Seen& seen) {
-    const PelLight& l = from.light.params;
-    return worstOf(f, seen, [&](size_t i, const PelMaterial& m, double& wide, double& thickness) {
-        const Vec3 p = f.slots[PEL_SLOT_POSITION].vec(i), n = f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i);
-        wide = reference::cubeWideShadow(from.map, from.turn(p - from.position), from.turn(n),
-                                         {m.shadowFilterWidth, l.shadowBias, l.shadowSoftness,
-                                          l.shadowConeSlope, int(l.shadowFilterTexels)});
-        thickness = reference::cubeThickness(
-            from.map, from.turn(p - double(m.deepScatterNormalOffset) * n - from.position), tapsOf(f, m, i),
-            m.thicknessFilterRadius);
-        return true;
-    });
-}
-
 TEST(ShadowCube, MatchesTheOracle) {
     for (const bool radial : {false, true})
         for (const Vec3 aim : aims)
@@ -45,7 +32,7 @@ TEST(ShadowCube, MatchesTheOracle) {
                 f.options.rotateTaps = radial && size == 16;
                 const Seen seen = shadeForms(f, {from.light});
                 EXPECT_TRUE(seen.stats.features & PEL_FEATURE_SHADOW_CUBE);
-                const Worst worst = worstCube(f, from, seen);
+                const Worst worst = worstOf(f, seen, truthOf(from));
                 const auto what = testing::Message()
                                   << "radial " << radial << ", aim " << aim.x << aim.y << ", " << size;
                 EXPECT_LE(worst.wide, tolerance::wideShadow) << what;
@@ -139,7 +126,7 @@ TEST(ShadowCube, BadTexelsAndPlaces) {
     for (size_t i = 0; i < from.map.depth.size(); i += 5)
         from.light.maps[0].values[i] = nan, from.map.depth[i] = NAN;
     Frame f = formFrame();
-    Worst worst = worstCube(f, from, shadeForms(f, {from.light}));
+    Worst worst = worstOf(f, shadeForms(f, {from.light}), truthOf(from));
     EXPECT_LE(worst.wide, tolerance::wideShadow) << "such texels throw no shadow";
     // Of thickness the oracle's NaN taps count as none too.
     EXPECT_LE(worst.thickness, tolerance::cubeThickness);
@@ -159,7 +146,7 @@ TEST(ShadowCube, BadTexelsAndPlaces) {
     // The smallest of cubes.
     const CubeLight tiny = cubeLight(1, true, turnTo(down, aims[1]), lamp, bumps);
     f = formFrame(1, 9, 3);
-    worst = worstCube(f, tiny, shadeForms(f, {tiny.light}));
+    worst = worstOf(f, shadeForms(f, {tiny.light}), truthOf(tiny));
     EXPECT_LE(worst.wide, tolerance::wideShadow);
     EXPECT_LE(worst.thickness, tolerance::cubeThickness);
 }
@@ -168,14 +155,7 @@ TEST(ShadowCube, WhatIsRefused) {
     const auto refused = [&](const char* word, auto change) {
         CubeLight from = cubeLight(16, false, turnTo(down, aims[0]), lamp, bumps);
         change(from.light);
-        try {
-            shadeForms(formFrame(1, 9, 3), {from.light});
-            ADD_FAILURE() << "no error about " << word;
-        } catch (const pellucid::Error& e) {
-            EXPECT_EQ(e.code(), PEL_ERROR_INVALID_ARGUMENT) << e.what();
-            EXPECT_NE(std::string(e.what()).find(word), std::string::npos)
-                << "\"" << word << "\" in: " << e.what();
-        }
+        expectError(PEL_ERROR_INVALID_ARGUMENT, {word}, [&] { shadeForms(formFrame(1, 9, 3), {from.light}); });
     };
     refused("16 x 96", [](FormLight& l) { l.maps[0].height = 95; });
     refused("directional", [](FormLight& l) { l.params.type = PEL_LIGHT_DIRECTIONAL; });
