@@ -7,45 +7,23 @@
 #include <cstdio>
 
 #include "demo_files.h"
+#include "head/curvature_view.h"
 #include "io/image/image_file.h"
-#include "io/image/picture.h"
-#include "sample/gbuffer.h"
 
 using namespace pellucid;
 
 namespace {
 
-constexpr int viewWidth = 240, viewHeight = 280, supersampling = 3;
+constexpr int viewWidth = 240, viewHeight = 280;
 constexpr float high = 0.25f;  // 1/mm: sharper than a radius of 4 mm are the rims of lids, lips and teeth only
-constexpr io::Srgb8 background{20, 20, 20};
 
-// Darkened where the surface turns away, so that its shape can be read.
 io::Picture seen(const io::MeshData& mesh, const std::vector<float>& values, float low, float high) {
-    const int width = viewWidth * supersampling, height = viewHeight * supersampling;
     const sample::Scene scene(
         sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, values, mesh.triangles, {}});
     sample::Framing framing;
     framing.azimuth = 20;
     framing.fill = 1.15;  // the box is deeper than the head is wide
-    const sample::Camera camera =
-        frameHead(scene.bounds(), {{0, 1, 0}, {0, 0, 1}}, framing, double(width) / height);
-    sample::GBufferOptions options;
-    options.detail.enabled = false;
-    const sample::GBuffer g = renderGBuffer(scene, camera, width, height, options);
-    io::Picture picture = io::colored(width, height, g.curvature.data, low, high, g.coverage.data, background);
-    const sample::Vec3 toEye = camera.forward() * -1.0;
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            if (g.coverage.at(0, x, y) == 0) continue;
-            const sample::Vec3 n{g.geometricNormal.at(0, x, y), g.geometricNormal.at(1, x, y),
-                                 g.geometricNormal.at(2, x, y)};
-            const float facing = float(0.55 + 0.45 * std::abs(dot(n, toEye)));
-            uint8_t* rgb = &picture.rgb[3 * (size_t(y) * size_t(width) + size_t(x))];
-            for (int c = 0; c < 3; ++c)
-                rgb[c] =
-                    uint8_t(255.0f * io::encodeSrgb(facing * io::decodeSrgb(float(rgb[c]) / 255.0f)) + 0.5f);
-        }
-    return io::shrunk(picture, supersampling);
+    return head::curvatureView(scene, {{0, 1, 0}, {0, 0, 1}}, framing, viewWidth, viewHeight, 3, low, high);
 }
 
 void run(const std::string& figure, const std::string& meshFile) {
@@ -74,7 +52,7 @@ void run(const std::string& figure, const std::string& meshFile) {
             below.push_back({std::string(names[e]) + " - quadric", seen(mesh, difference, -high, high)});
     }
     // In the last place of the second row: both scales.
-    io::Picture bars(viewWidth, viewHeight, background);
+    io::Picture bars(viewWidth, viewHeight, head::viewBackground);
     bars.write(10, 70, "upper row", {200, 200, 200});
     bars.paste(0, 84, io::colorBar(viewWidth - 6, 0, high, "1/mm", 1));
     bars.write(10, 170, "differences", {200, 200, 200});

@@ -1,41 +1,12 @@
 #include "curvature_picture.h"
 
+#include "head/curvature_view.h"
 #include "io/image/image_file.h"
-#include "io/image/picture.h"
-#include "sample/gbuffer.h"
 
 namespace pellucid::cli {
 namespace {
 
 constexpr int viewWidth = 900, viewHeight = 1000;
-constexpr int supersampling = 2;
-constexpr io::Srgb8 background{20, 20, 20};
-
-// Values as colours, darkened a little where the surface turns away, so that its shape can be read.
-io::Picture view(const sample::Scene& scene, const sample::HeadPose& pose, double azimuth, float low, float high) {
-    const int width = viewWidth * supersampling, height = viewHeight * supersampling;
-    sample::Framing framing;
-    framing.azimuth = azimuth;
-    const sample::Camera camera = frameHead(scene.bounds(), pose, framing, double(width) / height);
-    sample::GBufferOptions options;
-    options.detail.enabled = false;
-    const sample::GBuffer g = renderGBuffer(scene, camera, width, height, options);
-    const std::vector<float> covered(g.coverage.data);
-    io::Picture picture = io::colored(width, height, g.curvature.data, low, high, covered, background);
-    const sample::Vec3 toEye = camera.forward() * -1.0;
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            if (g.coverage.at(0, x, y) == 0) continue;
-            const sample::Vec3 n{g.geometricNormal.at(0, x, y), g.geometricNormal.at(1, x, y),
-                                 g.geometricNormal.at(2, x, y)};
-            const float facing = float(0.55 + 0.45 * std::abs(dot(n, toEye)));
-            uint8_t* rgb = &picture.rgb[3 * (size_t(y) * size_t(width) + size_t(x))];
-            for (int c = 0; c < 3; ++c)
-                rgb[c] =
-                    uint8_t(255.0f * io::encodeSrgb(facing * io::decodeSrgb(float(rgb[c]) / 255.0f)) + 0.5f);
-        }
-    return io::shrunk(picture, supersampling);
-}
 
 }  // namespace
 
@@ -49,10 +20,15 @@ void writeCurvaturePicture(const std::string& path, const io::MeshData& mesh, co
     const sample::Scene scene(viewed);
     sample::HeadPose pose;
     if (up == 'y') pose = {{0, 1, 0}, {0, 0, 1}};
+    const auto view = [&](double azimuth) {
+        sample::Framing framing;
+        framing.azimuth = azimuth;
+        return head::curvatureView(scene, pose, framing, viewWidth, viewHeight, 2, low, high);
+    };
     const io::Picture bar = io::colorBar(2 * viewWidth - 40, low, high, unit);
-    io::Picture page(2 * viewWidth, viewHeight + bar.height + 40, background);
-    page.paste(0, 0, view(scene, pose, 0, low, high));
-    page.paste(viewWidth, 0, view(scene, pose, 60, low, high));
+    io::Picture page(2 * viewWidth, viewHeight + bar.height + 40, head::viewBackground);
+    page.paste(0, 0, view(0));
+    page.paste(viewWidth, 0, view(60));
     page.paste(20, viewHeight + 20, bar);
     io::writeImage8(path, page.width, page.height, 3, page.rgb);
 }
