@@ -1,4 +1,4 @@
-// host/io/mesh/mesh_file.h: what is loaded, what is refused and with which message.
+// host/io/mesh/mesh_file.h: what is loaded, what is refused and with which message. PLY: test_mesh_file_ply.cpp.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -6,27 +6,11 @@
 #include <map>
 #include <set>
 
-#include "io/file_error.h"
-#include "io/mesh/mesh_file.h"
-#include "io_files.h"
+#include "mesh_files.h"
 
 using namespace pellucid::io;
 
 namespace {
-
-// A regular tetrahedron, faces outwards.
-const std::vector<float> corners = {1, 1, 1, -1, -1, 1, -1, 1, -1, 1, -1, -1};
-const std::vector<uint32_t> tetrahedron = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
-const char* offTetrahedron =
-    "OFF\n4 4 6\n1 1 1\n-1 -1 1\n-1 1 -1\n1 -1 -1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
-
-class MeshFile : public FolderTest {
-  protected:
-    std::string loadError(const std::string& name, const std::string& text) const {
-        const std::string file = write(name, text);
-        return messageOf<FileError>([&] { loadMesh(file); });
-    }
-};
 
 std::string binaryStl(const std::vector<float>& facets) {
     std::string out(80, ' ');
@@ -108,32 +92,6 @@ TEST_F(MeshFile, StlBothWays) {
     EXPECT_EQ(ascii.triangles, binary.triangles);
 }
 
-TEST_F(MeshFile, PlyWrittenIsPlyRead) {
-    MeshData mesh = loadMesh(write("a.off", offTetrahedron));
-    computeNormals(mesh);
-    const std::vector<float> quality = {0, 1, 2, 3};
-    writePly(path("o.ply"), mesh, quality, 0, 3);
-    const MeshData again = loadMesh(path("o.ply"));
-    EXPECT_EQ(again.positions, mesh.positions);
-    EXPECT_EQ(again.triangles, mesh.triangles);
-    ASSERT_EQ(again.normals.size(), mesh.normals.size());
-    for (size_t i = 0; i < mesh.normals.size(); ++i) EXPECT_FLOAT_EQ(again.normals[i], mesh.normals[i]);
-    const std::string file = read(path("o.ply"));
-    EXPECT_TRUE(contains(file, "property float quality"));
-    float last;  // of the fourth vertex: 6 floats, then quality, then three colours
-    std::memcpy(&last, file.data() + file.find("end_header\n") + 11 + 3 * 31 + 24, 4);
-    EXPECT_EQ(last, 3.0f);
-}
-
-TEST_F(MeshFile, AsciiPlyKeepsNonManifoldFaces) {
-    const MeshData mesh = loadMesh(
-        write("n.ply",
-              "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float "
-              "z\nelement face 3\nproperty list uchar int vertex_indices\nend_header\n"
-              "0 0 0\n1 0 0\n0 1 0\n0 -1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 1 4\n"));
-    EXPECT_EQ(mesh.triangles, (std::vector<uint32_t>{0, 1, 2, 0, 1, 3, 0, 1, 4}));
-}
-
 TEST_F(MeshFile, NonManifoldOffSurvivesButIsNotSubdivided) {
     MeshData mesh = loadMesh(
         write("n.off", "OFF\n5 3 0\n0 0 0\n1 0 0\n0 1 0\n0 -1 0\n0 0 1\n3 0 1 2\n3 1 0 3\n3 0 1 4\n"));
@@ -180,61 +138,6 @@ TEST_F(MeshFile, BadFilesSayWhere) {
     std::vector<float> facets = facetsOfTetrahedron();
     facets[13] = NAN;
     EXPECT_TRUE(contains(loadError("nan.stl", binaryStl(facets)), "facet 1"));
-}
-
-TEST_F(MeshFile, BadPlyFilesSayWhere) {
-    const std::string header =
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
-        "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-    EXPECT_TRUE(
-        contains(loadError("n.ply", header + "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"), "n.ply:11: y is 'nan'"));
-    EXPECT_TRUE(contains(loadError("t.ply", header + "0 0 0\n1 0 0\n"), "ends early"));
-    EXPECT_TRUE(contains(loadError("i.ply", header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n"),
-                         "face 0 (counted from 0) refers to vertex 7"));
-    EXPECT_TRUE(contains(loadError("x.ply", "nonsense"), "x.ply:1: does not start with 'ply'"));
-    const auto replaced = [&](std::string text, const std::string& from, const std::string& to) {
-        return text.replace(text.find(from), from.size(), to);
-    };
-    const std::string body = "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-    EXPECT_TRUE(contains(loadError("f.ply", replaced(header, "ascii 1.0", "ascii") + body),
-                         "f.ply:2: 'format ENCODING 1.0'"));
-    EXPECT_TRUE(contains(loadError("p.ply", replaced(header, "float z", "floot z") + body),
-                         "p.ply:6: has the type 'floot'"));
-    EXPECT_TRUE(
-        contains(loadError("z.ply", replaced(header, "float z", "float w") + body), "vertices need 'z'"));
-    EXPECT_TRUE(
-        contains(loadError("e.ply", replaced(header, "end_header", "end") + body), "no line 'end_header'"));
-    EXPECT_TRUE(
-        contains(loadError("l.ply", header + "0 0 0\n1 0 0\n0 1 0\n4 0 1 2\n"), "l.ply:13: the list"));
-    EXPECT_EQ(loadError("o.ply", replaced(header, "element vertex", "obj_info element 7\nelement vertex") + body),
-              "");
-    MeshData mesh = loadMesh(write("a.off", offTetrahedron));
-    mesh.positions[4] = NAN;
-    writePly(path("b.ply"), mesh, std::vector<float>(4, 0.0f), 0, 1);
-    EXPECT_TRUE(contains(messageOf<FileError>([&] { loadMesh(path("b.ply")); }), "vertex 1"));
-    const std::string whole = read(path("b.ply"));
-    EXPECT_TRUE(contains(loadError("c.ply", whole.substr(0, whole.size() - 20)), "ends early"));
-}
-
-// A length of -1 in one byte is 255 to who does not look at its type, and all those values are there.
-TEST_F(MeshFile, LengthsOfPlyListsAreWholeAndNotNegative) {
-    const auto file = [&](const std::string& type, const std::string& length) {
-        const std::string header =
-            "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float "
-            "y\nproperty float z\n"
-            "element face 1\nproperty list " +
-            type + " int vertex_indices\nend_header\n";
-        const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-        return header + std::string(reinterpret_cast<const char*>(positions), sizeof positions) + length;
-    };
-    const int32_t triangle[3] = {0, 1, 2};
-    const std::string corners(reinterpret_cast<const char*>(triangle), sizeof triangle), many(4 * 255, '\0');
-    EXPECT_EQ(loadError("good.ply", file("int", std::string("\3\0\0\0", 4) + corners)), "");
-    EXPECT_TRUE(contains(loadError("negative.ply", file("char", "\xff" + many)), "negative length"));
-    EXPECT_TRUE(contains(loadError("short.ply", file("short", "\xff\xff" + std::string(4 * 65535, '\0'))),
-                         "negative length"));
-    EXPECT_TRUE(contains(loadError("float.ply", file("float", std::string(4, '\0'))),
-                         "float.ply:8: the lengths of a list are whole"));
 }
 
 TEST_F(MeshFile, NormalsPointOutwardsAlsoAcrossSeams) {
@@ -303,106 +206,4 @@ TEST_F(MeshFile, ScaleToHeight) {
     MeshData mesh = loadMesh(write("a.off", offTetrahedron));
     EXPECT_EQ(scaleToHeight(mesh, 240, 1), 120.0f);
     EXPECT_EQ(mesh.positions[1], 120.0f);
-}
-
-namespace {
-
-// Values of any PLY type as bytes of either order.
-class PlyBytes {
-  public:
-    explicit PlyBytes(bool big) : big_(big) {}
-    PlyBytes& add(const std::string& type, double value) {
-        if (type == "char") append(int8_t(value));
-        if (type == "uchar") append(uint8_t(value));
-        if (type == "short") append(int16_t(value));
-        if (type == "ushort") append(uint16_t(value));
-        if (type == "int") append(int32_t(value));
-        if (type == "uint") append(uint32_t(value));
-        if (type == "float") append(float(value));
-        if (type == "double") append(value);
-        return *this;
-    }
-    std::string bytes;
-
-  private:
-    template <class T>
-    void append(T value) {
-        char raw[sizeof value];
-        std::memcpy(raw, &value, sizeof value);
-        if (big_ == (std::endian::native == std::endian::little)) std::reverse(raw, raw + sizeof value);
-        bytes.append(raw, sizeof value);
-    }
-    const bool big_;
-};
-
-}  // namespace
-
-// Lists of any type of length and value, in vertices and faces, before, between and after what is wanted.
-TEST_F(MeshFile, PlyListsOfEitherByteOrder) {
-    const std::vector<std::string> lengths = {"char", "uchar", "short", "ushort", "int", "uint"},
-                                   values = {"char", "uchar", "short", "ushort",
-                                             "int",  "uint",  "float", "double"};
-    for (bool big : {false, true})
-        for (const std::string& length : lengths)
-            for (const std::string& value : values) {
-                const bool whole = value != "float" && value != "double";
-                const std::string index = whole ? value : "int";
-                const std::string header = std::string("ply\nformat ") +
-                                           (big ? "binary_big_endian" : "binary_little_endian") +
-                                           " 1.0\nelement vertex 300\nproperty list " + length + " " + value +
-                                           " extra\nproperty float x\nproperty double y\nproperty " + value +
-                                           " other\nproperty float z\nproperty list " + length + " " + value +
-                                           " more\nelement face 2\nproperty list " + length + " " + value +
-                                           " before\nproperty list " + length + " " + index +
-                                           " vertex_indices\nproperty short flags\nend_header\n";
-                PlyBytes out(big);
-                for (int v = 0; v < 300; ++v) {
-                    out.add(length, v % 3);
-                    for (int i = 0; i < v % 3; ++i) out.add(value, 100 + i);
-                    out.add("float", v + 0.25).add("double", -v - 0.5).add(value, 77).add("float", 2 * v);
-                    out.add(length, 1).add(value, 101);
-                }
-                const int last = index == "char" ? 127 : index == "uchar" ? 255 : 299;
-                for (const std::vector<int>& face :
-                     {std::vector<int>{0, 1, last}, std::vector<int>{3, 2, 1, last - 1}}) {
-                    out.add(length, 2).add(value, 1).add(value, 2);
-                    out.add(length, double(face.size()));
-                    for (int corner : face) out.add(index, corner);
-                    out.add("short", -9);
-                }
-                const std::string name =
-                    std::string(big ? "big" : "little") + "_" + length + "_" + value + ".ply";
-                const MeshData mesh = loadMesh(write(name, header + out.bytes));
-                ASSERT_EQ(mesh.vertexCount(), 300u) << name;
-                for (uint32_t v : {0u, 1u, 2u, 255u, 299u}) {
-                    EXPECT_EQ(mesh.positions[3 * v], v + 0.25f) << name;
-                    EXPECT_EQ(mesh.positions[3 * v + 1], -0.5f - float(v)) << name;
-                    EXPECT_EQ(mesh.positions[3 * v + 2], 2.0f * float(v)) << name;
-                }
-                const uint32_t l = uint32_t(last);
-                EXPECT_EQ(mesh.triangles, (std::vector<uint32_t>{0, 1, l, 3, 2, 1, 3, 1, l - 1})) << name;
-            }
-}
-
-TEST_F(MeshFile, LengthsOfBigEndianPlyListsAreChecked) {
-    const auto file = [&](const std::string& type, const std::string& rest) {
-        PlyBytes out(true);
-        for (double x : {0, 0, 0, 1, 0, 0, 0, 1, 0}) out.add("float", x);
-        return "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float x\nproperty float "
-               "y\nproperty float z\n"
-               "element face 1\nproperty list " +
-               type + " int vertex_indices\nend_header\n" + out.bytes + rest;
-    };
-    const std::string corners = PlyBytes(true).add("int", 0).add("int", 1).add("int", 2).bytes;
-    EXPECT_EQ(loadError("good.ply", file("short", std::string("\0\3", 2) + corners)), "");
-    EXPECT_TRUE(
-        contains(loadError("swapped.ply", file("short", std::string("\3\0", 2) + corners)), "ends early"));
-    EXPECT_TRUE(
-        contains(loadError("negative.ply", file("int", "\xff\xff\xff\xff" + corners)), "negative length"));
-    EXPECT_TRUE(contains(
-        loadError("far.ply", file("short", std::string("\0\3", 2) +
-                                               PlyBytes(true).add("int", 0).add("int", 1).add("int", 3).bytes)),
-        "refers to vertex 3"));
-    const std::string whole = file("short", std::string("\0\3", 2) + corners);
-    EXPECT_TRUE(contains(loadError("cut.ply", whole.substr(0, whole.size() - 1)), "ends early"));
 }

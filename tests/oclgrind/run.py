@@ -34,7 +34,7 @@ def fail(message):
 def plugin(build):
     """Compiles defined.cpp where it is newer than what was compiled."""
     source, target = HERE / "defined.cpp", build / "oclgrind" / "defined.so"
-    if target.exists() and target.stat().st_mtime > source.stat().st_mtime:
+    if target.exists() and target.stat().st_mtime > max(f.stat().st_mtime for f in (source, HERE / "lanes.h")):
         return target
     libraries = subprocess.run(["ldd", "/usr/lib/oclgrind/liboclgrind-rt.so"], capture_output=True, text=True).stdout
     version = re.search(r"libLLVM-(\d+)", libraries)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from shader_view import View
 
 import pellucid as pel
 
@@ -62,3 +63,8 @@ def make_sphere():
 @pytest.fixture
 def sphere(make_sphere):
     return make_sphere(10.0)
+
+
+@pytest.fixture(scope="module")
+def view():
+    return View()
