@@ -14,8 +14,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 const char* unitName(Unit unit) {
-    constexpr const char* names[] = {"absolute, relative above 1", "of the largest", "mm", "beyond rounding",
-                                     "of a step, beyond rounding"};
+    constexpr const char* names[] = {"absolute, relative above 1", "of the largest", "mm"};
     return names[int(unit)];
 }
 
@@ -74,9 +73,8 @@ int main(int argc, char** argv) try {
     CLI11_PARSE(app, argc, argv);
     Json records = Json::array();
     bool within = true;
-    for (const auto& some : {tableOperations(), profileOperations(), encodingOperations(), meshOperations(),
-                             smoothingOperations(), screenOperations(), normalOperations(),
-                             shadingOperations(), formOperations(), formatOperations()})
+    for (const auto& some : {tableOperations(), profileOperations(), meshOperations(), smoothingOperations(),
+                             screenOperations(), normalOperations(), shadingOperations(), formOperations()})
         for (const Operation& o : some) {
             if (o.header.name.find(only) == std::string::npos) continue;
             if (list) {

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "half_bits.h"
 #include "shading/pass_scene.h"
 #include "tolerances.h"
 
@@ -51,9 +50,7 @@ class Jitter {
 enum class Unit {
     absolute,  // relative where the truth is above 1
     largest,   // of the largest value
-    length,    // mm
-    rounding,  // absolute, beyond what rounding to the nearest half float takes
-    steps      // of eight bits, likewise
+    length     // mm
 };
 
 // What the page says of an operation.
@@ -117,12 +114,6 @@ inline std::string text(const char* format, double a, double b = 0, double c = 0
     return buffer;
 }
 
-// How much further than half a step a half float is from the truth.
-inline double beyondHalf(uint16_t half, double truth) {
-    const int exponent = std::max(truth == 0 ? -14 : std::ilogb(truth), -14);
-    return std::max(0.0, std::abs(fromHalf(half) - truth) - std::ldexp(0.5, exponent - 10));
-}
-
 // A NaN is the worst of all errors, and stays it.
 inline void keepWorst(double& worst, double e) {
     if (std::isnan(e) || e > worst) worst = e;
@@ -148,13 +139,11 @@ Found search(const Operation& operation, double share, double seconds);
 
 std::vector<Operation> tableOperations();
 std::vector<Operation> profileOperations();
-std::vector<Operation> encodingOperations();
 std::vector<Operation> meshOperations();
 std::vector<Operation> smoothingOperations();
 std::vector<Operation> screenOperations();
 std::vector<Operation> shadingOperations();
 std::vector<Operation> formOperations();
 std::vector<Operation> normalOperations();
-std::vector<Operation> formatOperations();
 
 }  // namespace stability

@@ -43,8 +43,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"bindings/python", {"host/include/pellucid", "host/io", "host/sample", "bindings/head"}},
     {"examples", {"host/include/pellucid"}},
     {"bench",
-     {"kernels/shared", "kernels/lib", "host/include/pellucid", "host/io", "host/sample", "tests/reference",
-      "tests"}},
+     {"kernels/shared", "kernels/lib", "host/include/pellucid", "host/io", "host/sample", "bindings/head",
+      "tests/reference", "tests"}},
     // host/cl: the files of compiled programs, which no call of the library shows.
     {"tests",
      {"kernels/shared", "host/include/pellucid", "host/cl", "host/io", "host/sample", "bindings/bench",
