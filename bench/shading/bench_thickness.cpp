@@ -73,7 +73,7 @@ int main(int argc, char** argv) try {
         return Vec3{v[3 * i], v[3 * i + 1], v[3 * i + 2]};
     };
     const Vec3 l{light.toLight[0], light.toLight[1], light.toLight[2]};
-    // Of the material that is set, skin; eyes and teeth have others.
+    // Skin alone: it has the material that is set; eyes and teeth have others.
     const auto skin = float(scene.materials[0].id);
     const auto behind = [&](size_t i) { return id[i] == skin && dot(at(normal, i), l) < 0.3; };
     std::vector<std::pair<size_t, double>> truth;  // pixels, 16 of each block

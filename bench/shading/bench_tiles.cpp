@@ -60,7 +60,7 @@ std::vector<uint8_t> discs(double share, uint8_t inside, uint8_t outside) {
     return ids;
 }
 
-// All cases read the same memory: where it lies in pages makes a difference of its own.
+// All cases read the same memory: its place in pages changes the time, too.
 const Buffer& onDevice(const std::vector<float>& image) {
     static std::map<const float*, Buffer> buffers;
     Buffer& buffer = buffers[image.data()];

@@ -9,7 +9,7 @@
 
 namespace pellucid::sample {
 
-// Somebody else's arrays.
+// Arrays that the caller keeps.
 struct MeshView {
     std::span<const float> positions;     // xyz per vertex, mm
     std::span<const float> normals;       // unit xyz per vertex; empty: the normal of each triangle

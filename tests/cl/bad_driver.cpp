@@ -1,5 +1,5 @@
-// For LD_PRELOAD: a driver that does not come back from making one kernel, or dies of it.
-//   BAD_KERNEL   its name
+// For LD_PRELOAD: a driver that hangs or crashes when one kernel is created.
+//   BAD_KERNEL   the name of that kernel
 //   BAD_ENDING   hang, or crash
 #include <CL/cl.h>
 #include <dlfcn.h>

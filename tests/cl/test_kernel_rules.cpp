@@ -1,4 +1,4 @@
-// What kernels must not do though OpenCL C allows it, since a driver gets it wrong, and how their parts are named.
+// What OpenCL C allows and kernels must not do, because a driver compiles it wrongly; and the rules for names in kernels.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -177,7 +177,7 @@ TEST_F(PoclCache, AFullDiskIsAnError) {
     if (own == 99) GTEST_SKIP() << "this user may not mount";
     EXPECT_EQ(own, PEL_ERROR_DEVICE);
     EXPECT_NE(read(path("message")).find(path("full")), std::string::npos) << read(path("message"));
-    // Without a wish of the user's, another folder is taken.
+    // Where the user set no folder, another one is taken.
     EXPECT_EQ(table([&] {
                   mounted("size=4m,mode=700")();
                   ::setenv("HOME", path("full").c_str(), 1);

@@ -47,7 +47,7 @@ TEST_F(ProgramKey, HasTheDriversSettings) {
         }
         ::unsetenv(name);
     }
-    // What says nothing about the output: other variables, and where it is kept.
+    // Variables that do not change the compiled program: others, and the one for the cache folder.
     for (const char* name : {"UNRELATED_TEST", "POCL_CACHE_TEST"}) {
         ::setenv(name, "1", 1);
         EXPECT_EQ(table(), (Counts{first.stored, 0})) << name;

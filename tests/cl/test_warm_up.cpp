@@ -1,6 +1,6 @@
 // Programs built ahead of their first use: nothing is left to build, nothing of the caller's is touched, and it can be stopped.
 //
-// This program's own clBuildProgram comes before libOpenCL's, so that it can count.
+// This program defines clBuildProgram itself, which is linked before libOpenCL's, and counts the calls.
 #include <CL/cl.h>
 #include <dlfcn.h>
 #include <gtest/gtest.h>

@@ -60,7 +60,7 @@ TEST_F(ProgramsOnDisk, ASecondProcessCompilesNothingAndComputesTheSameBits) {
     EXPECT_EQ(other.at("loaded"), 0);
     EXPECT_EQ(other.at("stored"), programs);
 
-    // Damaged, cut short, somebody else's: compiled again and put right.
+    // A file that is damaged, cut short or of another program: compiled again and replaced.
     const std::vector<fs::path> all = files();
     for (size_t i = 0; i < all.size(); ++i) {
         std::string text = read(all[i].string());

@@ -80,7 +80,7 @@ TEST_F(Shade, PicturesThatCannotBeAreRefused) {
     expectRefused(arguments, 2, "-o is a picture already");
 }
 
-// A frame of NaN is no black picture that nobody speaks of.
+// A frame of NaN gives a warning, not a black picture without a word.
 TEST_F(Shade, InvalidPixelsAreCountedAndWarnedOf) {
     const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()};
     for (const bool all : {true, false})

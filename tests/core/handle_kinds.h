@@ -14,7 +14,7 @@ struct Kind {
     std::function<Handle()> create;
     std::function<void(Handle)> retain, release;
     std::function<PelError(Handle)> use;
-    // Another object that keeps this one, as a question whether it still works.
+    // Makes another object that holds this one, and says whether that one still works.
     std::function<std::function<bool()>(Handle)> hold;
 };
 

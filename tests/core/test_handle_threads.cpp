@@ -29,7 +29,7 @@ void onThreads(const std::function<void(unsigned)>& work) {
     for (unsigned t = 0; t < threadCount; ++t) threads.emplace_back([&work, t] { work(t); });
 }
 
-// Places with a handle in each, which every thread takes, uses and puts new ones into. A place's handle is
+// Each place holds a handle. Every thread takes handles out, uses them and puts new ones in. A handle is
 // released once, by whoever took it out; all else that is done to it meanwhile may be an error, or not.
 TEST(HandleThreads, SharedPlaces) {
     const auto end = deadline(2);

@@ -1,4 +1,4 @@
-// Handles of every type, used as nobody should: released twice, after their release, invented, of another
+// Handles of every type, used wrongly: released twice, used after their release, invented, of another
 // type. Each is an error that says so, and no object suffers.
 #include <gtest/gtest.h>
 
@@ -75,7 +75,7 @@ TEST_P(EachKind, ReleasedTwiceIsAnError) {
     EXPECT_EQ(heard.errors.size(), 0u);
 }
 
-// What others hold is theirs: no number of releases reaches it.
+// References that the library holds itself: no number of releases by the caller removes them.
 TEST_P(EachKind, InternalHoldersKeepTheirs) {
     const Handle made = kind().create();
     const std::function<bool()> works = kind().hold(made);

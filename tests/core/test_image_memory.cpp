@@ -113,7 +113,7 @@ TEST(ImageMemory, TwoBuffersOverTheSameHostMemory) {
         EXPECT_EQ(pass.shade(rgb(whole, 0), rgb(whole, imageBytes), target), PEL_ERROR_INVALID_ARGUMENT);
         EXPECT_NE(std::strstr(pelGetErrorMessage(), "overlap"), nullptr) << pelGetErrorMessage();
     }
-    // Inputs may be read through as many as one likes.
+    // Any number of inputs may share memory.
     EXPECT_EQ(pass.shade(rgb(same, 0), rgb(albedoTail, 0), rgb(whole, 2 * imageBytes)), PEL_SUCCESS)
         << pelGetErrorMessage();
 }
@@ -156,7 +156,7 @@ TEST(ImageMemory, PlanesOfPaddedRows) {
         for (uint32_t c = 0; c < 3; ++c) right[at(i, c)] = albedoAt(i, c);
     const std::vector<float> out = radiance.readAll<float>();
     for (size_t i = 0; i < out.size(); ++i) ASSERT_NEAR(out[i], right[i], 1e-6) << i;
-    // And no byte less will do: the last plane ends with the last pixel of its last row.
+    // One byte less is too small: the last plane ends with the last pixel of its last row.
     const uint64_t needed = 2 * plane + (height - 1) * rowStride + width * sizeof(float);
     const Buffer enough(device(), needed), less(device(), needed - 4);
     EXPECT_EQ(

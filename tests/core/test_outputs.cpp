@@ -1,4 +1,4 @@
-// What a call writes to its caller: nothing where it was not asked for, and nothing at all where the call is
+// What a call writes into memory of its caller: nothing that was not asked for, and nothing at all if the call is
 // refused.
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // With default settings no method is further from light than Lambert with a ray-traced shadow, in no channel
 // and no sub-set. A method is held to it when `holds` says so; of the others the table of errors is printed,
-// and whoever mends one sets it.
+// and whoever improves one sets `holds`.
 #include <gtest/gtest.h>
 
 #include <cstdio>

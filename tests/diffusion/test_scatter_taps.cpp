@@ -134,7 +134,7 @@ TEST(ScatterTaps, IsTheOracle) {
         }
 }
 
-// What all of them owe: uniform light stays, in every profile, size, border and weight.
+// What holds for all of them: uniform light stays as it is, for every profile, size, border and weight.
 TEST(ScatterTaps, UniformLightStaysAsItIs) {
     for (const auto& [method, taps] : methods) {
         Picture p = scene();
@@ -154,7 +154,7 @@ TEST(ScatterTaps, NothingFlowsOverBordersUnlessAsked) {
             for (int c = 0; c < 3; ++c) p.irradiance[3 * i + c] = p.ids[i] == 2 ? 1.0f : 0.0f;
         const auto apart = scatterBy(p, Profile::skin(), 1, controls(method, taps)).scattered;
         for (size_t i = 0; i < apart.size(); ++i) ASSERT_EQ(apart[i], p.irradiance[i]) << i;
-        // All of it: as if there were one id.
+        // A border of 1: as if all pixels had one id.
         const auto open = scatterBy(p, Profile::skin(), 1, controls(method, taps, 1)).scattered;
         Picture one = p;
         for (uint8_t& id : one.ids) id = id ? 1 : 0;

@@ -1,4 +1,4 @@
-// A file system in memory that is soon full.
+// A small file system in memory, to be filled.
 #pragma once
 #include <gtest/gtest.h>
 #include <sched.h>

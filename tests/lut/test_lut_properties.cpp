@@ -267,7 +267,7 @@ TEST(LutProperties, WeightsAndVariancesAtTheEdgesOfFloat) {
             EXPECT_EQ(texels(Profile::gaussians({{1, {unit, unit, unit}}, {4, {unit, 3 * unit, unit}}}), form,
                              1, 50, 0),
                       expected);
-        // A term that weighs nothing beside the others, however wide; but it sets the profile's radius, and
+        // A term whose weight is negligible, however wide it is; but it sets the profile's radius, and
         // with it where an arc is cut.
         if (form != PEL_FORM_ARC) {
             const auto beside = texels(

@@ -144,7 +144,7 @@ TEST(MeshTopologyFile, DamageIsRefused) {
         std::vector<char> bytes = sound;
         const size_t at = random() % bytes.size();
         bytes[at] = char(bytes[at] ^ (1 << random() % 8));
-        // The counts of the report beyond those that sizes follow from are only told, never followed.
+        // The other counts of the report are shown only; no size is derived from them.
         PelMeshTopology topology = nullptr;
         if (pelMeshTopologyLoad(device().get(), bytes.data(), bytes.size(), &topology, nullptr) == PEL_SUCCESS) {
             EXPECT_LT(at, 200u) << "damage behind the header";

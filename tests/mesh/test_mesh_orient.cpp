@@ -96,7 +96,7 @@ TEST(MeshOrient, CountsEdgesWhoseTrianglesDisagree) {
         EXPECT_EQ(reported(mesh), inconsistent(mesh.indices)) << share;
         EXPECT_EQ(reported(mesh) > 0, share < 1) << share;
     }
-    // With a third triangle at an edge no two of them are held against each other; alone at it there is nobody to disagree with.
+    // Where three triangles share an edge no two of them are compared; a triangle alone at an edge has none to compare with.
     mesh = {};
     mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1};
     mesh.indices = {0, 1, 2, 0, 1, 3};

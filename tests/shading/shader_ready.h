@@ -1,4 +1,4 @@
-// A shader that only lacks what a test takes away or gets wrong, and the error that follows.
+// A shader on which everything is set. Tests take something away or set it wrongly, and expect an error.
 #pragma once
 #include <gtest/gtest.h>
 

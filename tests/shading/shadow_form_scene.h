@@ -42,7 +42,7 @@ inline reference::Matrix4 matrixOf(const float (&m)[16]) {
     return out;
 }
 
-// Lights that make every test run the one program that knows all forms: black ones, over maps of next to nothing.
+// Adds black lights with tiny maps of all forms, so that every test runs the same program, the one with all forms.
 inline std::vector<FormLight> withAllForms(std::vector<FormLight> lights) {
     const PelLight like = lights[0].params;  // whose place changes as others join
     const float e = like.shadowContent == PEL_SHADOW_CONTENT_EXPONENTIAL ? like.shadowExponent : 0;

@@ -107,7 +107,7 @@ TEST(ShadeIrradiance, TheHostsIsUsedAsItIs) {
                         tolerance::shadeSum)
                 << i;
     }
-    // Not a number there is the invalid colour here, and nowhere else; materials that scatter by tables do
+    // A NaN in the irradiance gives the invalid colour in its own pixel alone; materials that scatter by tables do
     // not read it.
     e.values[3 * 1000 + 1] = std::numeric_limits<float>::quiet_NaN();
     f.slots[PEL_SLOT_MATERIAL].values[1000] = 2;

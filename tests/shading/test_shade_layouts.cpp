@@ -302,7 +302,7 @@ TEST(ShadeLayouts, PositionsFromDepth) {
         shader.set(PEL_SLOT_DEPTH, imageDesc(upload(device(), depth), PEL_FORMAT_R32F, f.width, f.height));
         const auto result = shadeInto(shader, f);
         EXPECT_LE(worstError(f, result), tolerance::shadeFromDepth) << "reversed " << reversed;
-        // Depth that is no number leaves its pixel alone bad.
+        // A NaN in the depth makes its own pixel invalid and no other.
         size_t at = 0;
         while (f.slots[PEL_SLOT_MATERIAL].values[at] == 0) ++at;
         for (const float bad : {NAN, INFINITY}) {

@@ -85,7 +85,7 @@ TEST(ShadeProgress, IsToldAndMayCancel) {
     EXPECT_EQ(patient.heard.front(), 0);
     EXPECT_EQ(patient.heard.back(), 1);
     EXPECT_TRUE(std::is_sorted(patient.heard.begin(), patient.heard.end()));
-    // Submitted without waiting there is nobody to ask.
+    // Work that is submitted without waiting tells no progress, so it cannot be cancelled.
     patient.heard.clear();
     PelEvent done_ = nullptr;
     PelSubmit submit{};

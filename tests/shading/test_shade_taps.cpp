@@ -1,4 +1,4 @@
-// Thickness taps turned from pixel to pixel: against the oracle, and what turning must and must not change.
+// Thickness taps on a disk that is rotated from pixel to pixel: against the oracle, and what the rotation may change.
 #include <gtest/gtest.h>
 
 #include "shade_scene.h"

@@ -62,7 +62,7 @@ TEST(ShadeThreads, ShadersOnOneDeviceAndOnTwo) {
     }
 }
 
-// Bands fill constants between launches: those of another shader must not be meant.
+// Constants are written between the bands of a frame. Another shader's must not be overwritten.
 TEST(ShadeThreads, SubmissionsOfSeveralShadersInOneQueue) {
     std::vector<Frame> frames;
     std::vector<Shader> shaders;

@@ -1,6 +1,6 @@
 // Variants of the shading kernel: few, equal for shaders that mean the same; and tiles shaded by those with less in them.
 //
-// This program's own clBuildProgram comes before libOpenCL's: to count programs it need not wait for their compilation.
+// This program defines clBuildProgram itself, which is linked before libOpenCL's: it counts programs without compiling them.
 #include <CL/cl.h>
 #include <dlfcn.h>
 #include <gtest/gtest.h>
@@ -223,7 +223,7 @@ TEST(ShadeVariants, TilesThatNeedLessGetTheSameBits) {
     }
 }
 
-// What a pixel's own material does not read cannot spoil it.
+// NaN in an image that the pixel's material does not read does not make the pixel invalid.
 TEST(ShadeVariants, InputsThatAMaterialDoesNotReadMayBeNoNumbers) {
     Frame f = randomFrame(3, 64, 4, 1);
     for (float& id : f.slots[PEL_SLOT_MATERIAL].values) id = 1;
@@ -243,7 +243,7 @@ TEST(ShadeVariants, InputsThatAMaterialDoesNotReadMayBeNoNumbers) {
     EXPECT_EQ(shadeMixed(f, stats), right);
 }
 
-// A frame without skin: one look at the ids, and nothing else.
+// A frame without skin: the ids are read, and nothing else is done.
 TEST(ShadeVariants, AFrameWithoutMaterialsCostsOneClassification) {
     Frame f = mixedFrame(4);
     for (float& id : f.slots[PEL_SLOT_MATERIAL].values) id = 0;

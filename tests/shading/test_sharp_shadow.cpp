@@ -106,7 +106,7 @@ TEST(SharpShadow, APlaneThrowsNoneOnItselfAtAnyAngleInAnyUnit) {
             }
 }
 
-// Its own limb is the hardest: there the plane is right over less than a texel. What is lost or gained is
+// A ball's own limb is the hardest case: there the tangent plane fits over less than a texel. The error is of
 // irradiance.
 TEST(SharpShadow, ABallIsLitUpToItsTerminator) {
     for (double radius : {10.0, 3.0})
@@ -190,7 +190,7 @@ TEST(SharpShadow, OneCascadeIsTheMap) {
     EXPECT_EQ(lit(s), lit(s, 1, 1));
 }
 
-// What lies outside of the map is lit, and texels that are no number throw no shadow.
+// Points outside of the map are lit, and texels of NaN throw no shadow.
 TEST(SharpShadow, NoShadowFromWhatIsNotThere) {
     Scene s = sceneOf(lightAt(0.7, 1), false, false, ground);
     for (double away : {100.0, 1e4, 1e9}) s.points.push_back({away, away, 0}), s.normals.push_back({0, 0, 1});
