@@ -112,15 +112,17 @@ inline constexpr Tolerance orderTensorIrregular{"orderTensorIrregular", 0.8,
                                                 "first order on irregular meshes"};
 inline constexpr Tolerance diffusionAmplitude{
     "diffusionAmplitude", 0.01, "part of a wave left by a blur, on meshes of 30 and 60 vertices a wave"};
-inline constexpr Tolerance diffusionAmplitudeArea{
-    "diffusionAmplitudeArea", 0.04,
-    "the same by areas, which spread a tenth less along than across where vertices are moved"};
+inline constexpr Tolerance diffusionAmplitudeArea{"diffusionAmplitudeArea", 0.02,
+                                                  "the same by weights that are never negative"};
 inline constexpr Tolerance densityIndependence{"densityIndependence", 0.01,
                                                "RMS between a mesh and one of four times its triangles"};
 inline constexpr Tolerance noisyTorus{"noisyTorus", 0.1,
                                       "RMS, noise of 2 % of the edges, smoothed to three edges"};
 inline constexpr Tolerance heatKernel{"heatKernel", 0.02,
                                       "of the peak, at any distance and radius from two edges on"};
+inline constexpr Tolerance heatSpread{
+    "heatSpread", 0.02,
+    "radius that a point reaches in a lattice moved by .4 of an edge; half of what its variance is off"};
 inline constexpr Tolerance heatMass{"heatMass", 1e-5, "relative: float sums of hundreds of stages"};
 inline constexpr Tolerance heatHarmonic{"heatHarmonic", 0.01,
                                         "relative, the eighth, of which 0.039 is left: 0.0083 on 2,562 "

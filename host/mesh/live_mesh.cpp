@@ -1,9 +1,11 @@
 // Which rows an update works on. Distances are in edges. A changed vertex reaches: its own gathered row (0);
-// normals that are made, and smoothing weights (1; one more at creases and for area weights); estimates
-// (`estimateReach_`); and one more for each smoothing pass. The estimates of all other rows are kept. Values
+// normals that are made, and smoothing weights (1; one more at creases, two more for area weights); estimates
+// (`estimateReach_`); and one more for each smoothing pass, the first of which reaches as far as weights do. The estimates of all other rows are kept. Values
 // between passes are not kept, so pass p of P works on P - p more rows than it must, from which the later
 // passes read. Work is done in whole slices of rows.
 #include "mesh/live_mesh.h"
+
+#include <algorithm>
 
 namespace pel {
 namespace {
@@ -41,9 +43,8 @@ const cl::Memory& LiveMesh::keep(Memory& memory, size_t bytes) {
 void LiveMesh::find(const std::vector<PelVertexRange>& changed) {
     if (listed_ && sameRanges(changed, changed_)) return;
     if (!reacher_) reacher_ = std::make_unique<MeshReacher>(*topology_);
-    const uint32_t stored = estimateReach_ + passes_;
     listed_ = false;
-    reach_ = reacher_->reach(changed, stored + (passes_ > 0 ? passes_ - 1 : 0), stored);
+    reach_ = reacher_->reach(changed, storedReach_ + (passes_ > 0 ? passes_ - 1 : 0), storedReach_);
     changed_ = changed;
     // Copied now: the queue may be busy and is not used for this.
     const auto upload = [&](const std::vector<uint32_t>& values) {
@@ -96,20 +97,22 @@ void LiveMesh::update(const VertexView& positions, const VertexView& normals, co
     if (all)
         listed_ = false;
     else
-        find(ranges);  // passes_ is known from the first update
+        find(ranges);  // passes_ and storedReach_ are known from the first update
     const SlotData data =
         gatherBySlot(topology, positions, normals, scratch, rowsUpTo(0, other), rowsUpTo(1, other));
     const Diffusion diffusion = planDiffusion(topology, data, params_, scratch);
     passes_ = params_.smoothingPasses + diffusion.passes();
     estimateCurvature(topology, params_, data, estimated, rowsUpTo(estimateReach_, estimates));
+    const uint32_t weightReach = diffusion.passes() > 0 ? diffusion.weightReach(madeNormals_) : 0;
+    storedReach_ =
+        std::max(estimateReach_ + passes_, weightReach > 0 ? weightReach + diffusion.passes() - 1 : 0);
     // Another target holds nothing yet: smoothing and storing start again from the estimates.
-    const uint32_t farthest = elsewhere ? UINT32_MAX / 2 : estimateReach_ + passes_;
+    const uint32_t farthest = elsewhere ? UINT32_MAX / 2 : storedReach_;
     const auto rowsOfPass = [&](uint32_t pass) { return rowsUpTo(farthest + passes_ - 1 - pass, smoothing); };
     smoothUniform(topology, passDefines(topology, params_, data.stride), params_.smoothingPasses, values,
                   rowsOfPass);
     if (diffusion.passes() > 0)
-        smoothToRadius(topology, data, diffusion, values, scratch,
-                       rowsUpTo(diffusion.weightReach(madeNormals_), other),
+        smoothToRadius(topology, data, diffusion, values, scratch, rowsUpTo(weightReach, other),
                        [&](uint32_t stage) { return rowsOfPass(params_.smoothingPasses + stage); });
     const Rows stored = rowsUpTo(farthest, storing);
     if (stored.list) {

@@ -41,7 +41,7 @@ class LiveMesh final : public Object {
     std::vector<PelVertexRange> changed_;
     MeshReach reach_;
     bool listed_ = false;
-    uint32_t estimateReach_ = 0, passes_ = 0;
+    uint32_t estimateReach_ = 0, storedReach_ = 0, passes_ = 0;
     cl::Memory list_, lanes_;
     PelLiveMeshStats stats_ = pelLiveMeshStatsDefaults();
 };

@@ -22,15 +22,23 @@ cl::Program program(const MeshTopology& topology, const SlotData& data, const Ro
 const cl::Memory& makeWeights(MeshTopology& topology, const SlotData& data, PelSmoothingWeights kind,
                               float limit, float crease2, const Scratch& scratch, const Rows& rows) {
     const cl::Memory& weights = scratch(MeshTopology::scratchWeights, topology.ringEntries() * sizeof(float));
-    const cl::Memory& rates =
-        scratch(MeshTopology::scratchRates, (topology.slots() + PEL_MESH_LANES) * sizeof(float));
+    const size_t slotBytes = (topology.slots() + PEL_MESH_LANES) * sizeof(float);
+    const cl::Memory rates = scratch(MeshTopology::scratchRates, slotBytes);
+    const bool area = kind == PEL_SMOOTHING_AREA;
+    const cl::Memory factors = area ? scratch(MeshTopology::scratchFactors, slotBytes) : rates;
     cl::Launch launch(program(topology, data, rows, kind), "diffuse_weights");
     ringArguments(topology, launch, rows);
     launch.arg(data.positions.memory).arg(data.positions.layout.offset);
     launch.arg(data.normals.memory).arg(data.normals.layout.offset);
-    launch.arg(limit).arg(crease2).arg(weights).arg(rates);
+    launch.arg(limit).arg(crease2).arg(weights).arg(factors);
     launchRows(topology, launch, rows, width(topology.device()));
-    if (kind == PEL_SMOOTHING_AREA && limit > 0) {
+    if (area) {
+        cl::Launch balance(program(topology, data, rows, kind), "diffuse_balance");
+        ringArguments(topology, balance, rows);
+        balance.arg(weights).arg(factors).arg(rates);
+        launchRows(topology, balance, rows, width(topology.device()));
+    }
+    if (area && limit > 0) {
         cl::Launch slow(program(topology, data, rows, kind), "diffuse_limit");
         ringArguments(topology, slow, rows);
         slow.arg(limit).arg(weights).arg(rates);

@@ -32,7 +32,8 @@ struct Diffusion {
     uint32_t passes() const { return coefficients.empty() ? 0 : uint32_t(coefficients.size()) - 1; }
     // By how many edges changed positions change weights beyond the changed vertices.
     uint32_t weightReach(bool madeNormals) const {
-        return (madeNormals && turn2 > 0 ? 2 : 1) + (weights == PEL_SMOOTHING_AREA ? 1 : 0);
+        // By areas a weight depends on factors of both ends, and its limit on the rates of both.
+        return (madeNormals && turn2 > 0 ? 2 : 1) + (weights == PEL_SMOOTHING_AREA ? 2 : 0);
     }
 };
 Diffusion planDiffusion(MeshTopology& topology, const SlotData& data, const PelCurvatureParams& params,

@@ -49,6 +49,7 @@ class MeshTopology final : public Object {
         scratchReduce,
         scratchWeights,
         scratchRates,
+        scratchFactors,
         scratchSum,
         scratchNormals,
         scratchLinks,

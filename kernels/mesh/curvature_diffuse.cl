@@ -2,9 +2,10 @@
 // a standard deviation of the radius (a Gaussian blur where the surface is flat). Twice the triangles give
 // the same answer.
 //
-// The Laplacian L is the cotangent one [Pinkall & Polthier 1993] over Voronoi areas; or, with DIFFUSE_AREA, each edge has
-// the area of its triangles over the square of its length, and the slot the sum of those areas over 4: the ring's
-// second moment, the sum of weight times length^2, is then that of the Laplacian, 4, and no weight is negative.
+// The Laplacian L is the cotangent one [Pinkall & Polthier 1993] over Voronoi areas. With DIFFUSE_AREA no weight is negative, and
+// the sum of value times area (a third of each triangle for each corner) is kept: negative cotangents become 0, which spreads too
+// much, and the others are lessened until the ring's second moment, the sum of weight times length^2, is again what all
+// cotangents together have: 4 Voronoi areas. Each edge takes the mean of its two ends' factors.
 //
 // What is left after a time, exp(time L), is summed up in Chebyshev polynomials of L [Tal-Ezer, Spectral Methods in Time for
 // Parabolic Problems, SIAM J. Numer. Anal. 26, 1989]: one stage each, their number grows with radius / edge, not with its
@@ -18,7 +19,7 @@
 
 // Writes, for each entry of the rings, weight / area / limit, so that a stage needs nothing else; and the slot's rate, the sum
 // of weight / area, 1/length^2. A slot whose rate exceeds the limit is slowed down to it, which keeps every stage stable on
-// slivers (with DIFFUSE_AREA by diffuse_limit, from weight / area). crease2: square of the change of normal at which weights
+// slivers. With DIFFUSE_AREA weights are not limited here, and `rates` is the slot's factor for diffuse_balance. crease2: square of the change of normal at which weights
 // fall to 1/e; 0: none do.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_weights(
     uint slots, uint listed, __global const uint* list, __global const uint* slices,
@@ -36,7 +37,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffus
     Vec3w origin;
     gather3(positions, ring.last, ring.self, &origin.x, &origin.y, &origin.z);
 
-    floatw area = zero, pending = zero;
+    floatw area = zero, nearest = zero, pending = zero;
     Vec3w start = none, previous = none;
     RingWalk walk = {0, 0};
     uintw startRow = (uintw)(begin);
@@ -52,17 +53,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffus
         const maskw triangle = step.triangle & finitew(doubled2) &
                                (doubled2 > PEL_TRIANGLE_FLAT * dot3(previous, previous) * dot3(other, other));
         const floatw doubled = sqrt(selectw((floatw)(1.0f), doubled2, triangle));
-#if DIFFUSE_AREA
-        // What stands at a neighbour belongs to the edge to the other one, as the cotangents do.
-        const floatw atOther = selectw(zero, 4.0f * doubled / dot3(previous, previous), triangle);
-        const floatw atPrevious = selectw(zero, 4.0f * doubled / dot3(other, other), triangle);
-        const floatw part = doubled;  // the triangle at both of its edges
-#else
         const floatw atOther = selectw(zero, -dot3(other, between) / doubled, triangle);
         const floatw atPrevious = selectw(zero, dot3(previous, between) / doubled, triangle);
-        const floatw part = cornerArea(previous, other, doubled);
-#endif
-        area += selectw(zero, part, triangle & finitew(part));
+        const floatw voronoi = cornerArea(previous, other, doubled);
+        nearest += selectw(zero, voronoi, triangle & finitew(voronoi));
+        area += selectw(zero, doubled / 6.0f, triangle & finitew(doubled));
         if (ring.row > begin) {
             const uint at = (ring.row - 1) * PEL_MESH_LANES + ring.lane;
             storew(selectw(zero, pending + atOther, step.walking), at, weights);
@@ -83,11 +78,22 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffus
     Vec3w n;
     gather3(normals, ring.last, ring.self, &n.x, &n.y, &n.z);
     usableNormals(&n.x, &n.y, &n.z);
+#if !DIFFUSE_AREA
+    area = nearest;
+#endif
     const floatw half_ = selectw(zero, 0.5f / area, area > zero);
-    floatw rate = zero;
+    floatw rate = zero, moment = zero;
     for (ring.row = begin; ring.row < ring.end; ++ring.row) {
         const uint at = ring.row * PEL_MESH_LANES + ring.lane;
         floatw weight = loadw(at, weights) * half_;
+#if DIFFUSE_AREA
+        Vec3w edge;
+        gather3(positions, ring.last, ringEntry(&ring, rings, runs).slots, &edge.x, &edge.y, &edge.z);
+        edge = sub3(edge, origin);
+        weight = fmax(weight, zero);
+        const floatw share = weight * dot3(edge, edge);
+        moment += selectw(zero, share, finitew(share));
+#endif
         if (crease2 > 0.0f) {
             Vec3w m;
             gather3(normals, ring.last, ringEntry(&ring, rings, runs).slots, &m.x, &m.y, &m.z);
@@ -107,11 +113,34 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffus
         const floatw weight = loadw(at, weights);
         storew(selectw(zero, weight * slowed, weight != zero), at, weights);
     }
+#else
+    rate = selectw(zero, 4.0f * nearest / (area * moment), moment > zero);
+    rate = selectw(zero, rate, finitew(rate));
 #endif
     storew(rate, first, rates);
 }
 
 #if DIFFUSE_AREA
+// Multiplies each weight by the mean of the factors of its edge's ends, alike from both, so that nothing is lost between them. Writes
+// the slot's rate.
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_balance(
+    uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,
+    __global const uint* runs, __global float* weights, __global const float* factors, __global float* rates) {
+    const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
+    if (first >= slots) return;
+    RingCursor ring = ringBegin(first, slots, slices);
+    const floatw own = loadw(first, factors);
+    floatw rate = 0.0f;
+    for (; ring.row < ring.end; ++ring.row) {
+        const uint at = ring.row * PEL_MESH_LANES + ring.lane;
+        const floatw other = gather1(factors, ringEntry(&ring, rings, runs).slots);
+        const floatw weight = loadw(at, weights) * 0.5f * (own + other);
+        rate += weight;
+        storew(weight, at, weights);
+    }
+    storew(rate, first, rates);
+}
+
 // Slows an edge down as the faster one of its ends asks for: alike from both, so that nothing is lost between them.
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void diffuse_limit(
     uint slots, uint listed, __global const uint* list, __global const uint* slices, __global const uint* rings,

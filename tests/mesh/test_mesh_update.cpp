@@ -105,6 +105,32 @@ TEST(LiveMesh, APartGivesTheBitsOfTheWhole) {
     }
 }
 
+TEST(LiveMesh, FewStagesReachAsFarAsTheirWeights) {
+    const Mesh mesh = irregularTorus(200, 100);
+    std::mt19937 random(8);
+    for (auto weights : {PEL_SMOOTHING_COTANGENT, PEL_SMOOTHING_AREA})
+        for (bool given : {true, false})
+            for (uint32_t stages : {1u, 2u}) {
+                PelCurvatureParams params = paramsOf(PEL_CURVATURE_EDGE, PEL_QUANTITY_ABSOLUTE);
+                params.smoothingPasses = 0;
+                params.smoothingRadius = 0.1f;
+                params.smoothingStages = stages;
+                params.smoothingCrease = 0.5f;
+                params.smoothingWeights = weights;
+                Pose pose(mesh, given, 1);
+                const MeshTopology topology(device(), topologyDesc(pose.mesh));
+                const LiveMesh live(topology, params);
+                pose.update(live, nullptr);
+                for (int step = 0; step < 8; ++step) {
+                    const std::vector<PelVertexRange> changed{{uint32_t(random() % pose.n), 1}};
+                    pose.move(changed[0], 0.02f);
+                    pose.update(live, &changed);
+                    ASSERT_EQ(pose.result.readAll<float>(), pose.anew(topology, params))
+                        << int(weights) << given << stages << " step " << step;
+                }
+            }
+}
+
 TEST(LiveMesh, WorksOnNoMoreRowsThanTheChangeReaches) {
     const Mesh mesh = torus(400, 200);
     Pose pose(mesh, true, 1);

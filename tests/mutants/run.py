@@ -12,9 +12,9 @@ any fault, to see which lines it executes (gcov), which kernels it launches (PoC
 --seconds: how long the tests of one fault may take by that measurement (120); those that do not fit are not run. A line that no
 test executes is a survivor. A test that hangs has noticed; a fault that does not compile does not count, nor does one whose name
 stands in equivalent.txt.
---nearest: a first sieve for machines with little time. Nothing is measured beforehand: of each fault the K tests of nearest kinship run,
-that is tests whose name shares most with the file's, whether they execute the line or not. What they notice is noticed; the
-rest is judged again by a run without this option and with --again.
+--nearest: a first sieve for machines with little time. No line is counted: of each fault the K tests of nearest kinship run, that is
+tests whose name shares most with the file's; of a fault in a kernel, those that launch it. What they notice is noticed; the rest is
+judged again by a run without this option and with --again.
 --only: faults in files whose path matches. --again: survivors of earlier runs once more, after tests were added. --list: names only.
 --as-is: goes on with the copy as it is, while the tree changes.
 Ends with 1 when less than 92 % were noticed. build/mutants/tree may be a link to a folder where the compiler's cache knows the tree.
@@ -44,8 +44,8 @@ BUILD = TREE / "build" / "release"
 EQUIVALENT = Path(__file__).with_name("equivalent.txt")
 SOURCES = ["kernels/**/*.cl", "kernels/**/*.clh", "kernels/**/*.h", "host/**/*.cpp", "host/**/*.h", "bindings/cli/*.cpp",
            "bindings/python/pellucid/**/*.py", "bindings/python/native/*.cpp"]
-# Declarations that every program is built from (tests/abi has their values), and letters.
-LEFT_OUT = {"host/include/pellucid/pellucid.h", "host/io/image/font.cpp"}
+# Declarations that every program is built from: tests/abi has their values.
+LEFT_OUT = {"host/include/pellucid/pellucid.h"}
 GOAL = 0.92
 MOST_MEASURED = 4  # tests that one fault may be the first to run, once one executes it
 PASSED = (0, 77)  # 77: something was skipped
@@ -351,25 +351,37 @@ def judge(place, coverage, fault, seconds):
             shutil.rmtree(path, ignore_errors=True)
 
 
+def plain(place, name):
+    """A test without any fault, measured once: whether it passes, its time, the kernels that it launches."""
+    file, log = WORK / "plain.json", WORK / "test.log"
+    tests = json.loads(file.read_text()) if file.exists() else {}
+    if name not in tests:
+        kernels = set()
+        python = name.endswith(".py")
+        if place.python() if python else place.build(name):
+            with launched(kernels) as trace:
+                status, seconds = place.test(name, 900, log, POCL_TRACING="text", POCL_TRACING_OPT=trace)
+        else:
+            status, seconds = "does not build", 0
+        tests[name] = {"good": status in PASSED, "seconds": seconds, "kernels": sorted(kernels)}
+        file.write_text(json.dumps(tests))
+        say(f"{seconds:7.1f} s  {len(kernels):3} kernels  {name}{'' if status in PASSED else f' fails without any fault ({status})'}")
+    return tests[name]
+
+
 def sieve(place, coverage, fault, nearest):
     """(verdict, by what) by the nearest tests alone."""
     original = (TREE / fault.path).read_text()
     python, kernel = fault.path.startswith("bindings/python"), fault.path.startswith("kernels")
     known = set((WORK / "pocl").glob("*/*"))
     log = WORK / "test.log"
-    sound = WORK / "sound.json"  # tests that pass without any fault, and their time
-    passed = json.loads(sound.read_text()) if sound.exists() else {}
-    names = []
+    names, wanted, tried = [], coverage.kernels_with(fault.path) if kernel else set(), 0
     for name in coverage.kin(fault):
-        if len(names) == nearest:
+        if len(names) == nearest or tried == 4 * nearest:
             break
-        if name not in passed:
-            status, seconds = (place.test(name, 900, log) if (place.python() if python else place.build(name))
-                               else ("does not build", 0))
-            passed[name] = seconds if status in PASSED else None
-            sound.write_text(json.dumps(passed))
-            say(f"{seconds:7.1f} s  {name}{'' if status in PASSED else f' fails without any fault ({status})'}")
-        if passed[name] is not None:
+        tried += 1
+        test = plain(place, name)
+        if test["good"] and (not kernel or wanted & set(test["kernels"])):
             names.append(name)
     place.apply(fault, original)
     try:
@@ -378,7 +390,7 @@ def sieve(place, coverage, fault, nearest):
         for name in names:
             if not python and not place.build(name):
                 return "does not compile", ""
-            status, _ = place.test(name, 120 + 10 * passed[name], log)
+            status, _ = place.test(name, 120 + 10 * plain(place, name)["seconds"], log)
             if status not in PASSED:
                 if kernel and "did not build with" in log.read_text(errors="replace"):
                     return "does not compile", ""

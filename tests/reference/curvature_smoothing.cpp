@@ -11,7 +11,7 @@ std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> value
         double weight;
     };
     std::vector<std::vector<Edge>> edges(count);
-    std::vector<double> areas(count);
+    std::vector<double> areas(count), voronoi(count);
     const auto add = [&](int from, int to, double weight) {
         for (Edge& e : edges[size_t(from)])
             if (e.to == to) return void(e.weight += weight);
@@ -26,11 +26,27 @@ std::vector<double> smoothedToRadius(const Mesh& mesh, std::vector<double> value
             const int j = (i + 1) % 3, k = (i + 2) % 3;
             const Vec3 toJ = p[j] - p[i], toK = p[k] - p[i], between = p[k] - p[j];
             if (doubled * doubled <= flatTriangle * dot(toJ, toJ) * dot(toK, toK)) continue;
-            areas[size_t(t[i])] += how.byArea ? doubled : nearest[size_t(i)];
+            voronoi[size_t(t[i])] += nearest[size_t(i)];
+            areas[size_t(t[i])] += how.byArea ? doubled / 6 : nearest[size_t(i)];
             // The edge to j has the cotangent at k, and the other way round.
-            add(t[i], t[j], how.byArea ? 4 * doubled / dot(toJ, toJ) : dot(toK, between) / doubled);
-            add(t[i], t[k], how.byArea ? 4 * doubled / dot(toK, toK) : -dot(toJ, between) / doubled);
+            add(t[i], t[j], dot(toK, between) / doubled);
+            add(t[i], t[k], -dot(toJ, between) / doubled);
         }
+    }
+    if (how.byArea) {
+        // Nothing negative; then the second moment that all cotangents together have.
+        std::vector<double> factors(count);
+        for (size_t i = 0; i < count; ++i) {
+            double moment = 0;
+            for (Edge& e : edges[i]) {
+                const Vec3 along = mesh.positions[size_t(e.to)] - mesh.positions[i];
+                e.weight = max0(e.weight);
+                moment += e.weight * dot(along, along);
+            }
+            factors[i] = moment > 0 ? 8 * voronoi[i] / moment : 0;
+        }
+        for (size_t i = 0; i < count; ++i)
+            for (Edge& e : edges[i]) e.weight *= (factors[i] + factors[size_t(e.to)]) / 2;
     }
     // What so many stages can do: slots that even out faster are slowed down to it.
     const double time = how.radius * how.radius / 2, wide = (how.stages > 1 ? how.stages - 1 : 0.5) / 2.63,

@@ -350,9 +350,9 @@ typedef enum PelSmoothingWeights {
         0, /* cotangents over Voronoi areas [Pinkall & Polthier 1993]: spreads equally in all directions,
                                     whatever the triangles look like. Default */
     PEL_SMOOTHING_AREA =
-        1 /* area of an edge's triangles over the square of its length: never negative, and keeps the sum
-                                    of value times area over all vertices; on stretched cells it spreads further along
-                                    than across */
+        1 /* of the cotangents those that are not negative, lessened so that a radius stays the same: no value
+                                    leaves the range of its neighbours, and the sum of value times area (a third of the
+                                    triangles) is kept; on stretched irregular cells less even than cotangents */
 } PelSmoothingWeights;
 
 typedef struct PelCurvatureParams {
