@@ -12,18 +12,20 @@ any fault, to see which lines it executes (gcov), which kernels it launches (PoC
 --seconds: how long the tests of one fault may take by that measurement (120); those that do not fit are not run. A line that no
 test executes is a survivor. A test that hangs has noticed; a fault that does not compile does not count, nor does one whose name
 stands in equivalent.txt.
---nearest: a first sieve for machines with little time. No line is counted: of each fault the K tests of nearest kinship run, that is
-tests whose name shares most with the file's; of a fault in a kernel, those that launch it. What they notice is noticed; the rest is
+--nearest: a first sieve for machines with little time. No line is counted: of each fault the K tests of nearest kinship run, by the
+words that a test and the file share; of a fault in a kernel, those that launch it. What they notice is noticed; the rest is
 judged again by a run without this option and with --again.
 --only: faults in files whose path matches. --again: survivors of earlier runs once more, after tests were added. --list: names only.
 --as-is: goes on with the copy as it is, while the tree changes.
 Ends with 1 when less than 92 % were noticed. build/mutants/tree may be a link to a folder where the compiler's cache knows the tree.
 """
 import argparse
+import collections
 import contextlib
 import difflib
 import hashlib
 import json
+import math
 import os
 import re
 import resource
@@ -197,6 +199,11 @@ def launched(kernels):
         reader.join()
 
 
+def words_of(text):
+    """The words of names, also of those written together."""
+    return [w.lower() for w in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", text) if len(w) > 2]
+
+
 class Coverage:
     """Which test executes which lines and launches which kernels, and how long it takes."""
 
@@ -205,6 +212,7 @@ class Coverage:
         self.tests = json.loads(self.file.read_text()) if self.file.exists() else {}
         self.folders = {p.stem: p.parent.name for p in TREE.glob("tests/*/test_*.cpp")}
         self.scripts = sorted(str(p.relative_to(TREE)) for p in TREE.glob("bindings/python/tests/test_*.py"))
+        self.words, self.rarity = {}, {}
         self.digests = {str(p.relative_to(TREE)): hashlib.sha256(p.read_bytes()).hexdigest()[:8]
                         for folder in ("host", "bindings/cli", "tests") for p in (TREE / folder).rglob("*") if p.is_file()}
 
@@ -272,18 +280,29 @@ class Coverage:
                 for kernel in re.findall(r"__kernel\b[^{;]*?\bvoid\s+(\w+)\s*\(", texts.get(name, ""))}
 
     def kin(self, fault):
-        """Every test that could execute a fault, the likeliest and quickest first."""
+        """Every test that could execute a fault, the likeliest and quickest first: by the words that the two files share."""
         path = Path(fault.path)
-        words = set(re.split(r"[_.]", path.name.lower()))
-        if fault.path.startswith("bindings/python"):
-            stem = path.parts[3].partition(".")[0]
-            return sorted(self.scripts, key=lambda name: (f"test_{stem}" not in name, self.tests.get(name, {}).get("seconds", 20)))
+        names = self.scripts if fault.path.startswith("bindings/python/pellucid") else sorted(self.folders)
+        if not self.words:
+            for p in [*TREE.glob("tests/*/test_*.cpp"), *(TREE / script for script in self.scripts)]:
+                key = str(p.relative_to(TREE)) if p.suffix == ".py" else p.stem
+                self.words[key] = words_of(p.stem) * 5 + words_of(p.parent.name) * 5 + words_of(p.read_text())
+            known = [set(words) for words in self.words.values()]
+            self.rarity = {word: math.log(len(known) / sum(word in k for k in known)) for word in set().union(*known)}
+        own = self.weighed(words_of(str(path.with_suffix(""))) * 5 + words_of((TREE / path).read_text()))
 
         def distance(name):
-            near = 2 * (self.folders[name] in path.parts) + 2 * len(words & set(name.split("_"))) + (name == "test_small")
-            return (1 + self.tests.get(name, {}).get("seconds", 20)) / 3 ** near, name
+            other = self.weighed(self.words[name])
+            near = sum(weight * other.get(word, 0) for word, weight in own.items())
+            return -near / (1 + self.tests.get(name, {}).get("seconds", 10) / 20) ** 0.5, name
 
-        return sorted(self.folders, key=distance)
+        return sorted(names, key=distance)
+
+    def weighed(self, words):
+        """{word: weight}, of length 1: rare words count most, and the tenth of a kind little more than the first."""
+        row = {word: (1 + math.log(n)) * self.rarity.get(word, 0) for word, n in collections.Counter(words).items()}
+        length = math.sqrt(sum(w * w for w in row.values())) or 1
+        return {word: w / length for word, w in row.items()}
 
     def executes(self, name, fault):
         test = self.of(name, fault)
