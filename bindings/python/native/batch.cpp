@@ -36,16 +36,17 @@ const pellucid::io::BatchEntry& entryOf(const BatchManifest& m, size_t index) {
 }
 
 py::bytes made(const BatchManifest& m, const Device& device, size_t index) {
-    const auto bytes = std::make_shared<std::string>();
-    callInterruptibly([bytes, entry = entryOf(m, index), d = device.handle] {
+    const pellucid::io::BatchEntry& entry = entryOf(m, index);
+    std::string bytes;
+    call([&] {
         try {
-            *bytes = pellucid::io::makeEntryFile(d, entry);
+            bytes = pellucid::io::makeEntryFile(device.handle, entry);
             return PEL_SUCCESS;
         } catch (const pellucid::Error& e) {
             return e.code();
         }
     });
-    return py::bytes(*bytes);
+    return py::bytes(bytes);
 }
 }  // namespace
 

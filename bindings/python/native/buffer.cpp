@@ -9,21 +9,9 @@ void bindBuffer(py::module_& module) {
         call([&] { return create(&handle); });
         return Buffer(handle);
     };
-    // Copying what may be gigabytes.
-    const auto filled = [](const Device& d, size_t bytes, uintptr_t initial) {
-        const auto buffer = std::make_shared<Buffer>();
-        callInterruptibly([=, device = d.handle] {
-            PelBuffer handle = nullptr;
-            const PelError error = pelBufferCreate(device.get(), bytes, pointer(initial), &handle);
-            *buffer = Buffer(handle);
-            return error;
-        });
-        return *buffer;
-    };
     py::class_<Buffer, Owner<Buffer>>(module, "Buffer")
         .def_static("create",
-                    [made, filled](const Device& d, size_t bytes, uintptr_t initial) {
-                        if (initial) return filled(d, bytes, initial);
+                    [made](const Device& d, size_t bytes, uintptr_t initial) {
                         return made([&](PelBuffer* out) {
                             return pelBufferCreate(d.handle.get(), bytes, pointer(initial), out);
                         });
@@ -54,13 +42,13 @@ void bindBuffer(py::module_& module) {
              })
         .def("read",
              [](const Buffer& b, size_t offset, size_t bytes, uintptr_t to, const Waits& waits) {
-                 return submitInterruptibly(waits, [=](const PelSubmit* submit) {
+                 return submitted(waits, [&](const PelSubmit* submit) {
                      return pelBufferRead(b.get(), offset, bytes, pointer(to), submit);
                  });
              })
         .def("write",
              [](const Buffer& b, size_t offset, size_t bytes, uintptr_t from, const Waits& waits) {
-                 return submitInterruptibly(waits, [=](const PelSubmit* submit) {
+                 return submitted(waits, [&](const PelSubmit* submit) {
                      return pelBufferWrite(b.get(), offset, bytes, pointer(from), submit);
                  });
              })

@@ -17,18 +17,20 @@ void onError(void*, PelError code, const char* message) {
     }
 }
 
-std::unique_ptr<Device> created(std::function<pellucid::Device()> create) {
+// `create()` makes a pellucid::Device.
+template <class Create>
+std::unique_ptr<Device> created(Create create) {
     opensDevices();
-    const auto device = std::make_shared<pellucid::Device>();
-    callInterruptibly([device, create = std::move(create)] {
+    pellucid::Device device;
+    call([&] {
         try {
-            *device = create();
+            device = create();
             return PEL_SUCCESS;
         } catch (const pellucid::Error& e) {
             return e.code();
         }
     });
-    return std::make_unique<Device>(*device);
+    return std::make_unique<Device>(std::move(device));
 }
 }  // namespace
 
@@ -55,14 +57,17 @@ void bindDevice(py::module_& module) {
         }
         return infos;
     });
+    py::class_<Cancel, std::shared_ptr<Cancel>>(module, "Cancel")
+        .def(py::init<>())
+        .def("watch", &Cancel::watch)
+        .def("ask", &Cancel::ask);
     py::class_<Device>(module, "Device")
-        .def_static("create",
-                    [](const std::string& selector) {
-                        return created([selector] { return pellucid::Device(selector); });
-                    })
+        .def_static(
+            "create",
+            [](const std::string& selector) { return created([&] { return pellucid::Device(selector); }); })
         .def_static("from_cl",
                     [](uintptr_t context, uintptr_t device, uintptr_t queue) {
-                        return created([=] {
+                        return created([&] {
                             return pellucid::Device::fromCl(pointer(context), pointer(device), pointer(queue));
                         });
                     })
@@ -84,15 +89,8 @@ void bindDevice(py::module_& module) {
                  call([&] { return pelDeviceGetCl(d.handle.get(), &context, &device, &queue); });
                  return py::make_tuple(address(context), address(device), address(queue));
              })
-        // The handle is copied, so that an abandoned wait keeps the device alive.
-        .def("finish",
-             [](const Device& d) {
-                 callInterruptibly([device = d.handle] { return pelDeviceFinish(device.get()); });
-             })
-        .def("settle", [](const Device& d) { return Settling(d.handle); })
+        .def("marker", [](const Device& d) { return markerOf(d.handle); })
         .def_readwrite("progress", &Device::progress);
-
-    py::class_<Settling>(module, "Settling").def("is_done", &Settling::done).def("wait", &Settling::wait);
 
     py::class_<pellucid::Event, Owner<pellucid::Event>>(module, "Event")
         .def_static("from_cl",

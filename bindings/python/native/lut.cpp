@@ -9,36 +9,27 @@ namespace {
 // The table, and the event of its integration.
 template <class Desc, PelError (*Create)(PelDevice, const Desc*, PelLut*, const PelSubmit*)>
 std::pair<pellucid::Lut, pellucid::Event> created(const Device& d, const py::object& desc, const Waits& waits) {
-    const auto lut = std::make_shared<pellucid::Lut>();
-    const pellucid::Event done = submitInterruptibly(
-        waits, [lut, device = d.handle, what = *structOf<Desc>(desc)](const PelSubmit* submit) {
-            PelLut handle = nullptr;
-            const PelError error = Create(device.get(), &what, &handle, submit);
-            *lut = pellucid::Lut(handle);
-            return error;
-        });
-    return {*lut, done};
+    PelLut handle = nullptr;
+    const pellucid::Event done = submitted(waits, [&, what = structOf<Desc>(desc)](const PelSubmit* submit) {
+        return Create(d.handle.get(), what, &handle, submit);
+    });
+    return {pellucid::Lut(handle), done};
 }
 
-// Blocks of three halves per texel, and what they cost. On a copy of the texels, for Ctrl-C may abandon it.
-py::tuple encodedBc6h(uint32_t width, uint32_t height, uintptr_t texels) {
-    struct Work {
-        std::vector<uint16_t> texels;
-        std::vector<uint8_t> blocks;
-        pellucid::io::TexelError error;
-    };
-    const auto work = std::make_shared<Work>();
-    const auto* first = static_cast<const uint16_t*>(pointer(texels));
-    work->texels.assign(first, first + size_t(width) * height * 3);
-    callInterruptibly([work, width, height] {
-        work->blocks = pellucid::io::encodeBc6h(width, height, work->texels, &abandoned);
-        if (work->blocks.empty()) return PEL_ERROR_CANCELLED;
-        work->error =
-            pellucid::io::differenceOf(work->texels, pellucid::io::decodeBc6h(width, height, work->blocks));
+// Blocks of three halves per texel, and what they cost.
+py::tuple encodedBc6h(uint32_t width, uint32_t height, uintptr_t halves) {
+    const std::span texels(static_cast<const uint16_t*>(pointer(halves)), size_t(width) * height * 3);
+    std::vector<uint8_t> blocks;
+    pellucid::io::TexelError error;
+    call([&] {
+        blocks = pellucid::io::encodeBc6h(width, height, texels, signalled);
+        if (!blocks.empty())
+            error = pellucid::io::differenceOf(texels, pellucid::io::decodeBc6h(width, height, blocks));
         return PEL_SUCCESS;
     });
-    return py::make_tuple(py::bytes(reinterpret_cast<const char*>(work->blocks.data()), work->blocks.size()),
-                          work->error.max, work->error.rms);
+    if (blocks.empty()) throw py::error_already_set();
+    return py::make_tuple(py::bytes(reinterpret_cast<const char*>(blocks.data()), blocks.size()), error.max,
+                          error.rms);
 }
 }  // namespace
 
@@ -52,15 +43,13 @@ void bindLut(py::module_& module) {
         .def_static("eye", created<PelEyeLutDesc, pelEyeLutCreate>)
         .def_static("from_texels",
                     [](const Device& d, const py::object& info, uintptr_t texels, size_t bytes) {
-                        const auto lut = std::make_shared<Lut>();
-                        callInterruptibly([=, device = d.handle, what = *structOf<PelLutInfo>(info)] {
-                            PelLut handle = nullptr;
-                            const PelError error = pelLutCreateFromTexels(
-                                device.get(), &what, static_cast<const float*>(pointer(texels)), bytes, &handle);
-                            *lut = Lut(handle);
-                            return error;
+                        PelLut handle = nullptr;
+                        call([&, what = structOf<PelLutInfo>(info)] {
+                            return pelLutCreateFromTexels(d.handle.get(), what,
+                                                          static_cast<const float*>(pointer(texels)), bytes,
+                                                          &handle);
                         });
-                        return *lut;
+                        return Lut(handle);
                     })
         .def("info",
              [](const Lut& l) {
@@ -70,12 +59,12 @@ void bindLut(py::module_& module) {
              })
         .def("clipped",
              [](const Lut& l) {
-                 const auto clipped = std::make_shared<uint64_t>();
-                 callInterruptibly([l, clipped] { return pelLutCountClipped(l.get(), clipped.get()); });
-                 return *clipped;
+                 uint64_t clipped = 0;
+                 call([&] { return pelLutCountClipped(l.get(), &clipped); });
+                 return clipped;
              })
         .def("read", [](const Lut& l, uint32_t encoding, uintptr_t to, size_t bytes, const Waits& waits) {
-            return submitInterruptibly(waits, [=](const PelSubmit* submit) {
+            return submitted(waits, [&](const PelSubmit* submit) {
                 return pelLutRead(l.get(), PelLutEncoding(encoding), pointer(to), bytes, submit);
             });
         });

@@ -12,11 +12,11 @@ void bindLiveMesh(py::module_& module) {
     py::class_<LiveMesh, Owner<LiveMesh>>(module, "LiveMesh")
         .def_static("create",
                     [](const pellucid::MeshTopology& t, const py::object& params) {
-                        const auto made = std::make_shared<PelLiveMesh>();
-                        callInterruptibly([made, t, p = *structOf<PelCurvatureParams>(params)] {
-                            return pelLiveMeshCreate(t.get(), &p, made.get());
+                        PelLiveMesh made = nullptr;
+                        call([&, p = structOf<PelCurvatureParams>(params)] {
+                            return pelLiveMeshCreate(t.get(), p, &made);
                         });
-                        return LiveMesh(*made);
+                        return LiveMesh(made);
                     })
         .def("update",
              [](const LiveMesh& live, const VertexView& positions, const std::optional<VertexView>& normals,
@@ -30,12 +30,11 @@ void bindLiveMesh(py::module_& module) {
                      for (const auto& [first, count] : *changed) ranges.push_back({first, count});
                      ranges.push_back({0, 0});  // so that there is a pointer to no ranges
                  }
-                 return submitInterruptibly(
-                     waits, [=, given = bool(normals), listed = bool(changed)](const PelSubmit* submit) {
-                         return pelLiveMeshUpdate(live.get(), &p, given ? &n : nullptr, &c,
-                                                  listed ? ranges.data() : nullptr,
-                                                  listed ? uint32_t(ranges.size() - 1) : 0, submit);
-                     });
+                 return submitted(waits, [&](const PelSubmit* submit) {
+                     return pelLiveMeshUpdate(live.get(), &p, normals ? &n : nullptr, &c,
+                                              changed ? ranges.data() : nullptr,
+                                              changed ? uint32_t(ranges.size() - 1) : 0, submit);
+                 });
              })
         .def("stats", [](const LiveMesh& live) {
             PelLiveMeshStats stats = pelLiveMeshStatsDefaults();
@@ -54,77 +53,44 @@ void bindScreen(py::module_& module) {
         };
         const PelImageDesc n = imageDesc(normals), p = desc(positions), z = desc(depth), i = desc(ids);
         const PelImageDesc c = imageDesc(curvature);
-        const auto settings = *structOf<PelScreenCurvatureParams>(params);
-        // Buffers of images that the call's arguments hold.
-        const auto held = std::make_tuple(normals, positions, depth, ids, curvature);
-        const bool hasP = bool(positions), hasZ = bool(depth), hasI = bool(ids);
-        return submitInterruptibly(waits, [=, device = d.handle](const PelSubmit* submit) {
-            (void)held;
-            return pelScreenCurvature(device.get(), &settings, &n, hasP ? &p : nullptr, hasZ ? &z : nullptr,
-                                      hasI ? &i : nullptr, &c, submit);
+        return submitted(waits, [&, s = structOf<PelScreenCurvatureParams>(params)](const PelSubmit* submit) {
+            return pelScreenCurvature(d.handle.get(), s, &n, positions ? &p : nullptr, depth ? &z : nullptr,
+                                      ids ? &i : nullptr, &c, submit);
         });
     });
 }
 
 void bindSurfaceIntegral(py::module_& module) {
-    module.def("surface_integral",
-               [](const Device& d, uintptr_t positions, uint32_t vertices, uintptr_t indices, uint64_t count,
-                  uintptr_t irradiance, uint64_t lights, uint32_t at, const pellucid::Profile* profile,
-                  float radius, float unit, const std::array<float, 3>& cut, float tolerance,
-                  const VertexView& points, const VertexView& result, const Waits& waits) {
-                   // Copies: a call that was left behind goes on reading them.
-                   struct Mesh {
-                       std::vector<float> positions, irradiance;
-                       std::vector<uint32_t> indices;
-                       pellucid::Profile profile;
-                   };
-                   const auto mesh = std::make_shared<Mesh>();
-                   const auto floats = [](uintptr_t from, uint64_t n) {
-                       return std::vector<float>(static_cast<const float*>(pointer(from)),
-                                                 static_cast<const float*>(pointer(from)) + n);
-                   };
-                   mesh->positions = floats(positions, 3 * uint64_t(vertices));
-                   mesh->irradiance = floats(irradiance, 3 * lights);
-                   mesh->indices.assign(static_cast<const uint32_t*>(pointer(indices)),
-                                        static_cast<const uint32_t*>(pointer(indices)) + count);
-                   if (profile) mesh->profile = *profile;
-                   PelSurfaceIntegralDesc desc = pelSurfaceIntegralDescDefaults();
-                   desc.numVertices = vertices;
-                   desc.positions = mesh->positions.data();
-                   desc.indices = mesh->indices.data();
-                   desc.numIndices = count;
-                   desc.irradiance = mesh->irradiance.data();
-                   desc.irradianceAt = PelIrradianceAt(at);
-                   desc.profile = mesh->profile.get();
-                   desc.diffusionRadius = radius;
-                   desc.millimetresPerUnit = unit;
-                   std::copy(cut.begin(), cut.end(), desc.cut);
-                   desc.tolerance = tolerance;
-                   return submitInterruptibly(waits, [=, device = d.handle](const PelSubmit* submit) {
-                       PelSurfaceIntegralDesc full = desc;
-                       full.points = vertexView(points);
-                       full.result = vertexView(result);
-                       (void)mesh;
-                       return pelSurfaceIntegral(device.get(), &full, submit);
-                   });
-               });
+    module.def("surface_integral", [](const Device& d, uintptr_t positions, uint32_t vertices,
+                                      uintptr_t indices, uint64_t count, uintptr_t irradiance, uint32_t at,
+                                      const pellucid::Profile* profile, float radius, float unit,
+                                      const std::array<float, 3>& cut, float tolerance,
+                                      const VertexView& points, const VertexView& result, const Waits& waits) {
+        PelSurfaceIntegralDesc desc = pelSurfaceIntegralDescDefaults();
+        desc.numVertices = vertices;
+        desc.positions = static_cast<const float*>(pointer(positions));
+        desc.indices = static_cast<const uint32_t*>(pointer(indices));
+        desc.numIndices = count;
+        desc.irradiance = static_cast<const float*>(pointer(irradiance));
+        desc.irradianceAt = PelIrradianceAt(at);
+        desc.profile = profile ? profile->get() : nullptr;
+        desc.diffusionRadius = radius;
+        desc.millimetresPerUnit = unit;
+        std::copy(cut.begin(), cut.end(), desc.cut);
+        desc.tolerance = tolerance;
+        desc.points = vertexView(points);
+        desc.result = vertexView(result);
+        return submitted(
+            waits, [&](const PelSubmit* submit) { return pelSurfaceIntegral(d.handle.get(), &desc, submit); });
+    });
 }
 
-// A topology, and the report in Python's memory once it is made.
-pellucid::MeshTopology topologyFrom(const py::object& report,
-                                    std::function<PelError(PelMeshTopology*, PelMeshReport*)> create) {
-    struct Made {
-        PelMeshTopology handle = nullptr;
-        PelMeshReport report;
-        ~Made() {
-            if (handle) pelMeshTopologyRelease(handle);
-        }
-    };
-    const auto made = std::make_shared<Made>();
-    made->report = *structOf<PelMeshReport>(report);
-    callInterruptibly([made, create = std::move(create)] { return create(&made->handle, &made->report); });
-    *structOf<PelMeshReport>(report) = made->report;
-    return pellucid::MeshTopology(std::exchange(made->handle, nullptr));
+// `create(handle, report)`; the report is Python's memory.
+template <class Create>
+pellucid::MeshTopology topologyFrom(const py::object& report, Create create) {
+    PelMeshTopology made = nullptr;
+    call([&, found = structOf<PelMeshReport>(report)] { return create(&made, found); });
+    return pellucid::MeshTopology(made);
 }
 
 PelMeshTopologyDesc topologyDesc(uint32_t numVertices, uintptr_t indices, uint64_t numIndices, uint32_t weld,
@@ -169,33 +135,31 @@ void bindMesh(py::module_& module) {
                float tolerance, uintptr_t positions, uint32_t positionStride, const py::object& report) {
                 const PelMeshTopologyDesc desc =
                     topologyDesc(numVertices, indices, numIndices, weld, tolerance, positions, positionStride);
-                return topologyFrom(report,
-                                    [desc, device = d.handle](PelMeshTopology* made, PelMeshReport* found) {
-                                        return pelMeshTopologyCreate(device.get(), &desc, made, found);
-                                    });
+                return topologyFrom(report, [&](PelMeshTopology* made, PelMeshReport* found) {
+                    return pelMeshTopologyCreate(d.handle.get(), &desc, made, found);
+                });
             })
         .def_static("load",
                     [](const Device& d, const py::bytes& bytes, const py::object& report) {
                         const std::string_view data = bytes;
-                        return topologyFrom(
-                            report, [data, device = d.handle](PelMeshTopology* made, PelMeshReport* found) {
-                                return pelMeshTopologyLoad(device.get(), data.data(), data.size(), made, found);
-                            });
+                        return topologyFrom(report, [&](PelMeshTopology* made, PelMeshReport* found) {
+                            return pelMeshTopologyLoad(d.handle.get(), data.data(), data.size(), made, found);
+                        });
                     })
         .def("save",
              [](const MeshTopology& t) {
-                 const auto bytes = std::make_shared<std::string>();
-                 callInterruptibly([t, bytes] {
+                 std::string bytes;
+                 call([&] {
                      size_t size = 0;
                      const PelError error = pelMeshTopologySave(t.get(), nullptr, &size);
-                     bytes->resize(size);
-                     return error ? error : pelMeshTopologySave(t.get(), bytes->data(), &size);
+                     bytes.resize(size);
+                     return error ? error : pelMeshTopologySave(t.get(), bytes.data(), &size);
                  });
-                 return py::bytes(*bytes);
+                 return py::bytes(bytes);
              })
         .def("normals",
              [](const MeshTopology& t, const VertexView& positions, const VertexView& normals, const Waits& waits) {
-                 return submitInterruptibly(waits, [=](const PelSubmit* submit) {
+                 return submitted(waits, [&](const PelSubmit* submit) {
                      const PelVertexView p = vertexView(positions), n = vertexView(normals);
                      return pelMeshNormals(t.get(), &p, &n, submit);
                  });
@@ -204,26 +168,19 @@ void bindMesh(py::module_& module) {
              [](const MeshTopology& t, const py::object& params, const VertexView& positions,
                 const std::optional<VertexView>& normals, const VertexView& curvature,
                 const py::object& report, const Waits& waits) {
-                 const auto settings = *structOf<PelCurvatureParams>(params);
-                 const auto found = std::make_shared<PelMeshReport>();
-                 const bool reports = !report.is_none();
-                 if (reports) *found = *structOf<PelMeshReport>(report);
-                 const pellucid::Event done = submitInterruptibly(waits, [=](const PelSubmit* submit) {
-                     const PelVertexView p = vertexView(positions), c = vertexView(curvature);
-                     const PelVertexView n = normals ? vertexView(*normals) : PelVertexView{};
-                     return pelMeshCurvature(t.get(), &settings, &p, normals ? &n : nullptr, &c,
-                                             reports ? found.get() : nullptr, submit);
+                 const PelVertexView p = vertexView(positions), c = vertexView(curvature);
+                 const PelVertexView n = normals ? vertexView(*normals) : PelVertexView{};
+                 PelMeshReport* found = report.is_none() ? nullptr : structOf<PelMeshReport>(report);
+                 return submitted(waits, [&, settings = structOf<PelCurvatureParams>(params)](
+                                             const PelSubmit* submit) {
+                     return pelMeshCurvature(t.get(), settings, &p, normals ? &n : nullptr, &c, found, submit);
                  });
-                 if (reports) *structOf<PelMeshReport>(report) = *found;
-                 return done;
              })
         .def("uv_scale", [](const MeshTopology& t, const VertexView& positions, const VertexView& uvs) {
-            const auto scale = std::make_shared<float>();
-            callInterruptibly([=] {
-                const PelVertexView p = vertexView(positions), u = vertexView(uvs);
-                return pelMeshUvScale(t.get(), &p, &u, scale.get());
-            });
-            return *scale;
+            const PelVertexView p = vertexView(positions), u = vertexView(uvs);
+            float scale = 0;
+            call([&] { return pelMeshUvScale(t.get(), &p, &u, &scale); });
+            return scale;
         });
 }
 

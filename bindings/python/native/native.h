@@ -1,5 +1,5 @@
 // What the files of the native module share: errors as Python exceptions, the GIL let go during calls, waiting that
-// Ctrl-C can end, and structures passed as their bytes. Everything a user sees is in the Python files beside this.
+// Ctrl-C can end, and structures passed as their bytes. Arguments are Python's: whoever calls keeps them alive. Everything a user sees is in the Python files beside this.
 #pragma once
 #include <pellucid/pellucid.h>
 #include <pybind11/pybind11.h>
@@ -57,24 +57,21 @@ class WithGil {
 void opensDevices();
 void refuseForked();
 
-// Runs `body` without the GIL and throws its error. An exception that a progress callback raised comes first.
+// Runs `body` without the GIL and throws its error. An exception that a progress callback raised comes first, KeyboardInterrupt
+// among them: the library tells its progress where work is long.
 void call(const std::function<PelError()>& body);
 
 // Waits without the GIL, looking for Ctrl-C meanwhile; the work itself goes on when that comes.
 void waitInterruptibly(const pellucid::Event& event);
 
-// Runs a call that may take long on a thread of its own, likewise: Ctrl-C leaves it behind, and it is cancelled where it next tells
-// its progress. What `body` uses must therefore be its own, not this call's arguments, but for memory of Python's, which the caller
-// keeps alive by Settling. On other threads than Python's main one, which no signal reaches, the same as `call`.
-void callInterruptibly(std::function<PelError()> body);
+// Whether a signal handler raised something, such as KeyboardInterrupt: the body of a `call` that takes long asks, ends early, and
+// py::error_already_set is thrown after it.
+bool signalled();
 
-// Whether the call that this thread runs was left behind.
-bool abandoned();
+// Done when everything is that was given to the device before.
+pellucid::Event markerOf(const pellucid::Device& device);
 
-// Whether this thread calls a progress callback for a call that waits for the answer elsewhere.
-bool answersProgress();
-
-// At the end of the process, on the thread that ends it: waits until none of those threads is left.
+// On the thread that ends the process: others that ask for the GIL from here on wait for ever.
 void interpreterEnds();
 
 // The bytes of a C structure that a Python object holds; throws unless they are one T.
@@ -114,34 +111,15 @@ using Owner = std::unique_ptr<T, DeletedWithoutGil<T>>;
 
 using Waits = std::vector<pellucid::Event>;
 
-// PelSubmit over a list of events, with room for the event of the submitted work.
-class Submit {
-  public:
-    explicit Submit(const Waits& waits) : waits_(waits) {
-        for (const pellucid::Event& e : waits_) handles_.push_back(e.get());
-        submit_ = {handles_.data(), uint32_t(handles_.size()), &done_};
-    }
-    Submit(const Submit&) = delete;
-    Submit& operator=(const Submit&) = delete;
-    ~Submit() {
-        if (done_) pelEventRelease(done_);  // nobody took it: the call was left behind
-    }
-    const PelSubmit* get() const { return &submit_; }
-    pellucid::Event done() { return pellucid::Event(std::exchange(done_, nullptr)); }
-
-  private:
-    Waits waits_;
-    std::vector<PelEvent> handles_;
-    PelEvent done_ = nullptr;
-    PelSubmit submit_;
-};
-
-// Calls `body` with a PelSubmit over copies of `waits`, interruptibly; returns the event.
+// Calls `body` with a PelSubmit after `waits`; returns the event.
 template <class Body>
-pellucid::Event submitInterruptibly(const Waits& waits, Body body) {
-    const auto submit = std::make_shared<Submit>(waits);
-    callInterruptibly([submit, body = std::move(body)] { return body(submit->get()); });
-    return submit->done();
+pellucid::Event submitted(const Waits& waits, Body&& body) {
+    std::vector<PelEvent> handles;
+    for (const pellucid::Event& e : waits) handles.push_back(e.get());
+    PelEvent done = nullptr;
+    const PelSubmit submit{handles.data(), uint32_t(handles.size()), &done};
+    call([&] { return body(&submit); });
+    return pellucid::Event(done);
 }
 
 // Vertex data as Python passes it: buffer, byte offset, byte stride, count.

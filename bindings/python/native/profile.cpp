@@ -80,26 +80,20 @@ void bindProfile(py::module_& module) {
              })
         .def("evaluate",
              [](const Profile& p, uintptr_t distances, uint32_t count, uintptr_t radial, uintptr_t spread) {
-                 struct Work {
-                     std::vector<double> distances, radial, spread;
-                 };
-                 const auto work = std::make_shared<Work>();
-                 const auto* first = static_cast<const double*>(pointer(distances));
-                 work->distances.assign(first, first + count);
-                 work->radial.resize(3 * size_t(count)), work->spread.resize(3 * size_t(count));
-                 callInterruptibly([p, work, count] {
-                     // In pieces, so that one that was left behind ends soon.
+                 const auto* at = static_cast<const double*>(pointer(distances));
+                 auto *r = static_cast<double*>(pointer(radial)), *s = static_cast<double*>(pointer(spread));
+                 bool stopped = false;
+                 call([&] {
                      PelError error = PEL_SUCCESS;
-                     for (uint32_t from = 0, n; from < count && !error && !abandoned(); from += n) {
+                     // In pieces, so that Ctrl-C is soon noticed.
+                     for (uint32_t from = 0, n; from < count && !error && !(stopped = signalled()); from += n) {
                          n = std::min(count - from, 4096u);
-                         error = pelProfileEvaluate(p.get(), &work->distances[from], n,
-                                                    &work->radial[3 * size_t(from)],
-                                                    &work->spread[3 * size_t(from)]);
+                         error = pelProfileEvaluate(p.get(), at + from, n, r + 3 * size_t(from),
+                                                    s + 3 * size_t(from));
                      }
                      return error;
                  });
-                 std::copy(work->radial.begin(), work->radial.end(), static_cast<double*>(pointer(radial)));
-                 std::copy(work->spread.begin(), work->spread.end(), static_cast<double*>(pointer(spread)));
+                 if (stopped) throw py::error_already_set();
              })
         .def("address", [](const Profile& p) { return address(p.get()); });
 }

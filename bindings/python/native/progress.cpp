@@ -8,18 +8,15 @@ namespace {
 // What the callback raised, kept until the cancelled call has returned on the same thread.
 thread_local std::unique_ptr<py::error_already_set> raised;
 
-int onProgress(void* user, double fraction, const char* what) {
-    const Device& device = *static_cast<Device*>(user);
-    if (const std::optional<int> answer = relayProgress(device, fraction, what)) return *answer;
-    WithGil gil;
-    return tellProgress(device, fraction, what);
-}
-}  // namespace
+thread_local std::shared_ptr<Cancel> watched;
 
-int tellProgress(const Device& device, double fraction, const char* what) {
+// Also where long work notices Ctrl-C. 0 cancels.
+int onProgress(void* user, double fraction, const char* what) {
+    if (watched && watched->asked()) return 0;
+    WithGil gil;
     try {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-        const py::object callback = device.progress;
+        const py::object callback = static_cast<Device*>(user)->progress;
         if (callback.is_none()) return 1;
         const py::object answer = callback(fraction, what);
         return answer.is_none() || answer.cast<bool>();
@@ -31,6 +28,11 @@ int tellProgress(const Device& device, double fraction, const char* what) {
     }
     return 0;
 }
+}  // namespace
+
+void Cancel::watch() {
+    watched = shared_from_this();
+}
 
 void raiseProgressException() {
     if (!raised) return;
@@ -38,7 +40,6 @@ void raiseProgressException() {
     throw py::error_already_set(*error);
 }
 
-// Always installed, because it is also where long work notices Ctrl-C.
 Device::Device(pellucid::Device device) : handle(std::move(device)) {
     pelDeviceSetProgress(handle.get(), onProgress, this);
 }

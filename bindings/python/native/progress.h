@@ -1,5 +1,6 @@
 // A Python callable as the library's progress callback.
 #pragma once
+#include <atomic>
 #include <memory>
 
 #include "native.h"
@@ -17,21 +18,15 @@ struct Device {
     Device& operator=(const Device&) = delete;
 };
 
-// Calls the device's callback, on the thread that Python called from: 0 cancels. Needs the GIL.
-int tellProgress(const Device& device, double fraction, const char* what);
-// Asks that thread to, from one of callInterruptibly's; nothing on others.
-std::optional<int> relayProgress(const Device& device, double fraction, const char* what);
-
-// Work that may still use Python's memory: calls that were left behind, and what the device has to do. Done when all of it is.
-class Settling {
+// Ends the call of the thread that watches it, where that call next tells its progress.
+class Cancel : public std::enable_shared_from_this<Cancel> {
   public:
-    explicit Settling(pellucid::Device device);
-    bool done() const;
-    void wait() const;
+    void watch();
+    void ask() { asked_ = true; }
+    bool asked() const { return asked_; }
 
   private:
-    struct State;
-    std::shared_ptr<State> state_;
+    std::atomic<bool> asked_{false};
 };
 
 // Raises what a progress callback on this thread raised (or Ctrl-C seen there), if anything. Needs the GIL.

@@ -38,13 +38,9 @@ void bindScatter(py::module_& module) {
                  const PelImageDesc e = imageDesc(irradiance), p = desc(positions), z = desc(depth),
                                     i = desc(ids), o = imageDesc(out);
                  const auto settings = *structOf<PelScatterParams>(params);
-                 // Buffers of images that the call's arguments hold.
-                 const auto held = std::make_tuple(irradiance, positions, depth, ids, out);
-                 const bool hasP = bool(positions), hasZ = bool(depth), hasI = bool(ids);
-                 return submitInterruptibly(waits, [=](const PelSubmit* submit) {
-                     (void)held;
-                     return pelScatterExecute(s.get(), &settings, &e, hasP ? &p : nullptr,
-                                              hasZ ? &z : nullptr, hasI ? &i : nullptr, &o, submit);
+                 return submitted(waits, [&](const PelSubmit* submit) {
+                     return pelScatterExecute(s.get(), &settings, &e, positions ? &p : nullptr,
+                                              depth ? &z : nullptr, ids ? &i : nullptr, &o, submit);
                  });
              })
         .def("stats", [](const Scatter& s) {

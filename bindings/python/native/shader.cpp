@@ -8,24 +8,19 @@
 namespace pel::python {
 
 namespace {
-// A shader, and a lock that lets later calls wait for one that Ctrl-C left behind.
+// A shader, and a lock that lets calls from other threads wait, and later ones for a call that Ctrl-C left behind.
 struct Shader {
-    std::shared_ptr<std::recursive_mutex> busy = std::make_shared<std::recursive_mutex>();
+    std::unique_ptr<std::recursive_mutex> busy = std::make_unique<std::recursive_mutex>();
     pellucid::Shader handle;
 
     explicit Shader(PelShader shader) : handle(shader) {}
     PelShader get() const { return handle.get(); }
 };
 
-// Free inside a progress callback, which may ask for counters: the call that tells of its progress has the lock and waits.
-std::unique_lock<std::recursive_mutex> locking(const Shader& shader) {
-    return answersProgress() ? std::unique_lock<std::recursive_mutex>() : std::unique_lock(*shader.busy);
-}
-
 template <class Body>
 void locked(const Shader& shader, Body&& body) {
     call([&] {
-        const auto lock = locking(shader);
+        const std::scoped_lock lock(*shader.busy);
         return body();
     });
 }
@@ -114,29 +109,17 @@ void bindShader(py::module_& module) {
              [](const Shader& s, const py::object& camera) {
                  locked(s, [&, c = structOf<PelCamera>(camera)] { return pelShaderSetCamera(s.get(), c); });
              })
-        // Compilers take seconds, on some devices minutes.
-        .def("commit",
-             [](const Shader& s) {
-                 callInterruptibly([s] {
-                     const auto lock = locking(s);
-                     return pelShaderCommit(s.get());
-                 });
-             })
+        .def("commit", [](const Shader& s) { locked(s, [&] { return pelShaderCommit(s.get()); }); })
         .def("execute",
              [](const Shader& s, const Waits& waits) {
-                 return submitInterruptibly(waits, [s](const PelSubmit* submit) {
-                     const auto lock = locking(s);
+                 return submitted(waits, [&](const PelSubmit* submit) {
+                     const std::scoped_lock lock(*s.busy);
                      return pelShaderExecute(s.get(), submit);
                  });
              })
         // Blocking, so that the device's progress callback is told.
         .def("execute_told",
-             [](const Shader& s) {
-                 callInterruptibly([s] {
-                     const auto lock = locking(s);
-                     return pelShaderExecute(s.get(), nullptr);
-                 });
-             })
+             [](const Shader& s) { locked(s, [&] { return pelShaderExecute(s.get(), nullptr); }); })
         .def("material",
              [](const Shader& s, uint32_t id) {
                  PelMaterial material = pelMaterialDefaults();
@@ -160,26 +143,27 @@ void bindShader(py::module_& module) {
             locked(s, [&] { return pelShaderGetStats(s.get(), &stats); });
             return bytesOf(stats);
         });
-    module.def("warm_up_programs",
-               [](const Device& d, uint32_t groups, const std::vector<Shader>& shaders, uint32_t threads) {
-                   const auto built = std::make_shared<uint32_t>();
-                   callInterruptibly([=, device = d.handle] {
-                       std::vector<PelShader> handles;
-                       for (const Shader& s : shaders) handles.push_back(s.get());
-                       // In one order for all threads, whatever the order of their lists: two would wait for each other otherwise.
-                       std::map<std::recursive_mutex*, const Shader*, std::less<>> order;
-                       for (const Shader& s : shaders) order.emplace(s.busy.get(), &s);
-                       std::vector<std::unique_lock<std::recursive_mutex>> locks;
-                       for (const auto& [mutex, shader] : order) locks.push_back(locking(*shader));
-                       PelWarmUp work = pelWarmUpDefaults();
-                       work.groups = groups;
-                       work.shaders = handles.data();
-                       work.numShaders = uint32_t(handles.size());
-                       work.threads = threads;
-                       return pelWarmUpPrograms(device.get(), &work, built.get());
-                   });
-                   return *built;
-               });
+    module.def("warm_up_programs", [](const Device& d, uint32_t groups,
+                                      const std::vector<const Shader*>& shaders, uint32_t threads) {
+        uint32_t built = 0;
+        call([&] {
+            std::vector<PelShader> handles;
+            // In one order for all threads, whatever the order of their lists: two would wait for each other otherwise.
+            std::map<std::recursive_mutex*, std::unique_lock<std::recursive_mutex>, std::less<>> locks;
+            for (const Shader* s : shaders) {
+                handles.push_back(s->get());
+                locks.try_emplace(s->busy.get(), *s->busy, std::defer_lock);
+            }
+            for (auto& [mutex, lock] : locks) lock.lock();
+            PelWarmUp work = pelWarmUpDefaults();
+            work.groups = groups;
+            work.shaders = handles.data();
+            work.numShaders = uint32_t(handles.size());
+            work.threads = threads;
+            return pelWarmUpPrograms(d.handle.get(), &work, &built);
+        });
+        return built;
+    });
 }
 
 }  // namespace pel::python

@@ -20,8 +20,7 @@ void bindTextureScatter(py::module_& module) {
         .def("set_positions",
              [](const TextureScatter& s, const VertexView& positions, const Waits& waits) {
                  const PelVertexView p = vertexView(positions);
-                 return submitInterruptibly(waits, [=, held = std::get<0>(positions)](const PelSubmit* submit) {
-                     (void)held;
+                 return submitted(waits, [&](const PelSubmit* submit) {
                      return pelTextureScatterSetPositions(s.get(), &p, submit);
                  });
              })
@@ -30,9 +29,7 @@ void bindTextureScatter(py::module_& module) {
                 const Waits& waits) {
                  const PelVertexView v = vertexView(values);
                  const PelImageDesc o = imageDesc(out);
-                 const auto held = std::make_tuple(values, out);
-                 return submitInterruptibly(waits, [=](const PelSubmit* submit) {
-                     (void)held;
+                 return submitted(waits, [&](const PelSubmit* submit) {
                      return pelTextureScatterDraw(s.get(), &v, unit, &o, submit);
                  });
              })
@@ -44,11 +41,8 @@ void bindTextureScatter(py::module_& module) {
                  settings.profile = profile ? profile->get() : nullptr;
                  const PelImageDesc e = imageDesc(irradiance), o = imageDesc(out),
                                     a = albedo ? imageDesc(*albedo) : pelImageDescDefaults();
-                 const auto held = std::make_tuple(irradiance, albedo, out, profile);
-                 const bool hasA = bool(albedo);
-                 return submitInterruptibly(waits, [=](const PelSubmit* submit) {
-                     (void)held;
-                     return pelTextureScatterExecute(s.get(), &settings, &e, hasA ? &a : nullptr, &o, submit);
+                 return submitted(waits, [&](const PelSubmit* submit) {
+                     return pelTextureScatterExecute(s.get(), &settings, &e, albedo ? &a : nullptr, &o, submit);
                  });
              })
         .def("stats", [](const TextureScatter& s) {

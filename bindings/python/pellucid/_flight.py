@@ -1,32 +1,86 @@
-"""What submitted work still uses. Python's memory given to the device must outlive the work, whoever lets go of it."""
+"""What is still used after Ctrl-C, or while submitted work is under way: Python's memory must outlive it, whoever lets go of it.
+
+Ctrl-C is noticed where a call tells its progress and where an event is waited for. What does neither runs `aside`.
+"""
 from __future__ import annotations
 
 import atexit
 import contextlib
 import itertools
 import os
+import threading
 from collections.abc import Iterator
-from typing import Any, Union
+from typing import Any, Callable, Optional, Union
 
 from . import _native
 
 # By the order of submission. No lock: finalizers and signal handlers submit work, too, and may come in the middle of any line here;
 # each operation on the dictionary is one step.
-_flying: dict[int, tuple[Union[_native.Event, _native.Settling], tuple[Any, ...]]] = {}
+_flying: dict[int, tuple[Union[_native.Event, _Aside], tuple[Any, ...]]] = {}
 _numbers = itertools.count()
+
+
+class _Aside:
+    """A call on a thread of its own."""
+
+    result: Any = None
+    error: Optional[BaseException] = None
+
+    def __init__(self, call: Callable[[], Any]) -> None:
+        self._done, self._cancel = threading.Event(), _native.Cancel()
+        threading.Thread(target=self._run, args=(call,), daemon=True).start()
+
+    def _run(self, call: Callable[[], Any]) -> None:
+        try:
+            self._cancel.watch()
+            self.result = call()
+        except BaseException as error:
+            self.error = error
+        finally:
+            self._done.set()
+
+    def cancel(self) -> None:
+        """Where it next tells its progress, if it does."""
+        self._cancel.ask()
+
+    def is_done(self) -> bool:
+        return self._done.is_set()
+
+    def wait(self) -> None:
+        self._done.wait()  # signals come through
+
+
+def aside(call: Callable[[], Any], *used: Any) -> Any:
+    """Returns call(), which Ctrl-C can leave behind: it then goes on, and `used` lives until it is done.
+
+    For calls of the library that may take long without telling their progress. No signal reaches other threads than Python's main one.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        return call()
+    running = _Aside(call)
+    try:
+        running.wait()
+    except BaseException:
+        running.cancel()
+        hold(running, *used)
+        raise
+    if running.error is not None:
+        error, running.error = running.error, None
+        raise error
+    return running.result
 
 
 @contextlib.contextmanager
 def kept(device: _native.Device, *used: Any) -> Iterator[None]:
-    """Keeps `used` alive where Ctrl-C, or another exception, leaves a call behind that still works on it."""
+    """Keeps `used` alive where something goes wrong after a part of the work was submitted."""
     try:
         yield
     except BaseException:
-        hold(device.settle(), *used)
+        hold(device.marker(), *used)
         raise
 
 
-def hold(event: Union[_native.Event, _native.Settling], *used: Any) -> None:
+def hold(event: Union[_native.Event, _Aside], *used: Any) -> None:
     """Keeps `used` alive until `event` is done."""
     sweep()
     _flying[next(_numbers)] = (event, used)
@@ -45,7 +99,7 @@ def in_flight() -> int:
     return len(_flying)
 
 
-def _finished(event: Union[_native.Event, _native.Settling]) -> bool:
+def _finished(event: Union[_native.Event, _Aside]) -> bool:
     try:
         return event.is_done()
     except Exception:  # failed work uses nothing any more; whoever waits for it gets the error

@@ -59,7 +59,7 @@ class Device(OfThisProcess):
     _instead = "make one there, pellucid.Device(selector)"
 
     def __init__(self, selector: str | int = "") -> None:
-        self._open(_native.Device.create(str(selector)))
+        self._open(_flight.aside(lambda: _native.Device.create(str(selector))))
 
     def _open(self, handle: _native.Device) -> None:
         self._handle = handle
@@ -101,7 +101,7 @@ class Device(OfThisProcess):
 
     def finish(self) -> None:
         """Waits until everything submitted has finished."""
-        self._handle.finish()
+        self._handle.marker().wait()
         _flight.sweep()
 
     def set_progress(self, callback: Progress | bool | None) -> None:
@@ -112,7 +112,8 @@ class Device(OfThisProcess):
         callback : callable, True or None
             Called with a fraction in [0, 1] and what is being done; returning False cancels: the call then raises
             PellucidError with the code CANCELLED. An exception cancels too and is passed on. True: a `tqdm` bar, or
-            plain lines on stderr where tqdm is not installed. None: nothing.
+            plain lines on stderr where tqdm is not installed. None: nothing. It runs on the thread of the call; where that waits for
+            a compiler or for counts (Shader.commit, warm_up_programs, curvature with a report), on a thread of its own.
         """
         self._handle.progress = progress_bar() if callback is True else (callback or None)
 
@@ -205,8 +206,8 @@ class Buffer(OfThisProcess):
             self._setup(device, _native.Buffer.create(device._handle, int(initial), 0))
         else:
             values = np.ascontiguousarray(initial)
-            with _flight.kept(device._handle, values):
-                self._setup(device, _native.Buffer.create(device._handle, values.nbytes, values.ctypes.data))
+            self._setup(device, _flight.aside(
+                lambda: _native.Buffer.create(device._handle, values.nbytes, values.ctypes.data), values))
 
     def _setup(self, device: Device, handle: _native.Buffer, owner: Any = None) -> None:
         self.device = device

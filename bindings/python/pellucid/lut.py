@@ -93,9 +93,7 @@ class Lut(OfThisProcess):
             setattr(settings, name, value)
         if profile is not None:
             settings.profile = profile
-        with _flight.kept(device._handle, getattr(settings, "profile", None)):
-            made = cls._made(device, *create(device._handle, settings._data, _handles(waits)))
-        return made._waited(wait)
+        return cls._made(device, *create(device._handle, settings._data, _handles(waits)))._waited(wait)
 
     @classmethod
     def from_texels(cls, device: Device, info: LutInfo, texels: NDArray[np.float32]) -> Lut:
@@ -103,8 +101,7 @@ class Lut(OfThisProcess):
         if texels.dtype != np.float32:
             raise ValueError(f"texels are {texels.dtype}; float32 is needed")
         packed = np.ascontiguousarray(texels)
-        with _flight.kept(device._handle, packed):
-            handle = _native.Lut.from_texels(device._handle, info._data, packed.ctypes.data, packed.nbytes)
+        handle = _flight.aside(lambda: _native.Lut.from_texels(device._handle, info._data, packed.ctypes.data, packed.nbytes), packed, info)
         return cls._made(device, handle, None)
 
     def _waited(self, wait: bool) -> Lut:
@@ -127,7 +124,7 @@ class Lut(OfThisProcess):
 
         0 for other kinds. Waits for the table.
         """
-        return self._handle.clipped()
+        return _flight.aside(self._handle.clipped)
 
     def read(self, encoding: LutEncoding | str = LutEncoding.FLOAT, out: Optional[NDArray[Any]] = None) -> NDArray[Any]:
         """The texels, top row first.

@@ -50,10 +50,9 @@ class MeshTopology(OfThisProcess):
         packed, held, stride, self.num_vertices = _triangles(indices, num_vertices, positions)
         self.device = device
         self.report = MeshReport()
-        with _flight.kept(device._handle, packed, held):
-            self._handle = _native.MeshTopology.create(device._handle, self.num_vertices, packed.ctypes.data, packed.size,
-                                                       int(to_enum(Weld, weld, "weld")), weld_tolerance, _address(held), stride,
-                                                       self.report._data)
+        self._handle = _native.MeshTopology.create(device._handle, self.num_vertices, packed.ctypes.data, packed.size,
+                                                   int(to_enum(Weld, weld, "weld")), weld_tolerance, _address(held), stride,
+                                                   self.report._data)
 
     @classmethod
     def load(cls, device: Device, data: bytes | bytearray | memoryview) -> MeshTopology:
@@ -67,8 +66,7 @@ class MeshTopology(OfThisProcess):
         self = cls.__new__(cls)
         self.device, self.report = device, MeshReport()
         packed = bytes(data)
-        with _flight.kept(device._handle, packed):
-            self._handle = _native.MeshTopology.load(device._handle, packed, self.report._data)
+        self._handle = _native.MeshTopology.load(device._handle, packed, self.report._data)
         self.num_vertices = int(self.report.vertices)
         return self
 
@@ -147,8 +145,13 @@ class MeshTopology(OfThisProcess):
         if normals is not None:
             views.append(vertex_view(self.device, normals, 3, "normals"))
             n = views[-1].native
-        return Event(submit(self.device, views, _handles(waits), lambda w: self._handle.curvature(
-            params._data, p, n, c, None if report is None else report._data, w), self))
+        if report is None:
+            def enqueue(w: list[_native.Event]) -> Any:
+                return self._handle.curvature(params._data, p, n, c, None, w)
+        else:
+            def enqueue(w: list[_native.Event]) -> Any:  # waits for the counts
+                return _flight.aside(lambda: self._handle.curvature(params._data, p, n, c, report._data, w), views, report)
+        return Event(submit(self.device, views, _handles(waits), enqueue, self))
 
     def uv_scale(self, positions: Any, uvs: Any) -> float:
         """Geometric mean over triangles of longest edge / longest UV edge, in length per UV unit.
@@ -166,7 +169,7 @@ class MeshTopology(OfThisProcess):
         views = [vertex_view(self.device, positions, 3, "positions"), vertex_view(self.device, uvs, 2, "uvs")]
         p, u = (v.native for v in views)
         scale: list[float] = []
-        submit(self.device, views, [], lambda waits: scale.append(self._handle.uv_scale(p, u)))
+        submit(self.device, views, [], lambda waits: scale.append(_flight.aside(lambda: self._handle.uv_scale(p, u), views)))
         return scale[0]
 
 

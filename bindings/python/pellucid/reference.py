@@ -71,7 +71,7 @@ def submit_surface_integral(device: Device, positions: Any, triangles: Any, irra
     x, s = (v.native for v in views)
     handle = None if profile is None else profile._handle
     return Event(submit(device, views, _handles(waits), lambda w: _native.surface_integral(
-        device._handle, p.ctypes.data, len(p), t.ctypes.data, t.size, e.ctypes.data, e.size // 3, int(at), handle, diffusion_radius,
+        device._handle, p.ctypes.data, len(p), t.ctypes.data, t.size, e.ctypes.data, int(at), handle, diffusion_radius,
         millimetres_per_unit, list(cut), tolerance, x, s, w)))
 
 

@@ -7,7 +7,7 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _native
+from . import _flight, _native
 from ._arrays import Image, submit
 from ._struct import OfThisProcess, to_enum
 from ._types import Ambient, Camera, Eye, Format, ImageSlot, Light, LightSlot, Material, ProgramGroup, ShaderOptions, ShaderStats
@@ -203,7 +203,7 @@ class Shader(OfThisProcess):
         PellucidError
             What is missing or does not fit.
         """
-        self._handle.commit()
+        _flight.aside(self._handle.commit)  # compilers take seconds, on some devices minutes
         return self
 
     def execute(self) -> None:
@@ -272,7 +272,8 @@ def warm_up_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Se
     PellucidError
         What a shader's commit would raise; CANCELLED.
     """
-    return int(_native.warm_up_programs(device._handle, int(groups), [s._handle for s in shaders], threads))
+    handles = [s._handle for s in shaders]
+    return int(_flight.aside(lambda: _native.warm_up_programs(device._handle, int(groups), handles, threads)))
 
 
 def _below(faces: Any, which: str) -> Any:

@@ -7,7 +7,7 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _flight, _native
+from . import _native
 from ._arrays import Image, submit, vertex_view
 from ._struct import OfThisProcess
 from ._types import TextureScatterParams, TextureScatterStats
@@ -45,9 +45,8 @@ class TextureScatter(OfThisProcess):
             raise ValueError(f"uvs have the shape {coordinates.shape}; (n, 2) is needed")
         packed = np.ascontiguousarray(triangles, np.uint32)
         self.device, self.width, self.height = device, width, height
-        with _flight.kept(device._handle, packed, coordinates):
-            self._handle = _native.TextureScatter.create(device._handle, width, height, len(coordinates), packed.ctypes.data,
-                                                         packed.size, coordinates.ctypes.data)
+        self._handle = _native.TextureScatter.create(device._handle, width, height, len(coordinates), packed.ctypes.data,
+                                                     packed.size, coordinates.ctypes.data)
 
     def set_positions(self, positions: Any) -> None:
         """Where the vertices are, (n, 3) float32: before anything else, and again when the mesh moved."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 
-from .. import _native
+from .. import _flight, _native
 from ..device import Device
 
 if not hasattr(_native, "Manifest"):
@@ -67,7 +67,7 @@ class Manifest:
         PellucidError
             INVALID_ARGUMENT and the like: the entry cannot be made anywhere. DEVICE, OUT_OF_MEMORY: not here.
         """
-        return self._handle.make(device._handle, index)
+        return bytes(_flight.aside(lambda: self._handle.make(device._handle, index)))
 
     def holds(self, index: int, file: bytes) -> bool:
         """Whether these bytes are entry `index`: whole, unchanged, and made for this request."""
