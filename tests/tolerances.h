@@ -322,6 +322,8 @@ inline constexpr Tolerance samplePixel{"samplePixel", 1e-4, "pixels: float round
 inline constexpr Tolerance sampleMatrix{"sampleMatrix", 1e-9, "double-precision matrices and closed forms"};
 inline constexpr Tolerance sampleDerivative{"sampleDerivative", 1e-6,
                                             "relative: a central difference of step 1e-5"};
+inline constexpr Tolerance litSphere{"litSphere", 1e-3,
+                                     "area and flux of a sphere's facets: 100 rings leave 6e-4"};
 inline constexpr Tolerance sampleRandomField{"sampleRandomField", 0.15,
                                              "relative: a sum of 100 waves over a few hundred wavelengths"};
 inline constexpr Tolerance sampleMeanSquare{"sampleMeanSquare", 0.03,
