@@ -23,7 +23,7 @@ struct Setting {
     Method shade;
 };
 
-// Methods enter here as the library gets them: name, what is swept, and how to shade.
+// The methods: name, what is swept, and how to shade. New ones are added here.
 std::vector<Setting> settings() {
     std::vector<Setting> all;
     all.push_back({"Lambert", "", shadeLambert});

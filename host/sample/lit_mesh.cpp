@@ -64,7 +64,7 @@ Sample sampleLight(const SurfaceLight& light, const Place& place) {
     return s;
 }
 
-// Of up to a packet of points.
+// For up to a packet of points.
 void lightPacket(const Scene& scene, const Lighting& lighting, const SurfacePoint* points, int count,
                  double lift, float* out) {
     Place places[Scene::packetSize];
@@ -224,7 +224,7 @@ std::vector<float> irradianceAt(const Scene& scene, const Lighting& lighting,
 LitMesh lightMesh(const Scene& scene, const Lighting& lighting, const LitMeshOptions& options,
                   const std::function<void(double)>& progress) {
     Refiner refiner(scene, lighting, options);
-    // What is bright is known from the start, so that the order of triangles does not matter.
+    // The largest irradiance is known before, so that the order of triangles does not matter.
     std::vector<SurfacePoint> corners;
     const auto count = uint32_t(scene.mesh().triangles.size() / 3);
     for (uint32_t t = 0; t < count; ++t) corners.push_back({t, {1 / 3., 1 / 3., 1 / 3.}});

@@ -10,7 +10,7 @@
 
 namespace pellucid::sample {
 
-// As PelLight says it, hard: a point, or infinitely far.
+// A light of PelLight with hard shadows: a point light or a directional one.
 struct SurfaceLight {
     enum class Type { Directional, Point, Spot };
     Type type = Type::Directional;

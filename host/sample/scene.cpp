@@ -145,7 +145,7 @@ bool visitTriangle(RTCPointQueryFunctionArguments* arguments) {
     nearestOfTriangle(query.p, a, b, c, hit.weights);
     hit.triangle = arguments->primID;
     hit.distance = length(a * hit.weights[0] + b * hit.weights[1] + c * hit.weights[2] - query.p);
-    // Of equally near ones the first, whatever the order of the walk.
+    // Of equally near points that of the first triangle, whatever the order of the walk.
     if (hit.distance > query.best->distance ||
         (hit.distance == query.best->distance && hit.triangle > query.best->triangle))
         return false;
@@ -183,7 +183,7 @@ void Scene::refine(const Ray& ray, Hit& hit) const {
         hit.weights[2] = dot(ray.direction, q) / determinant;
         hit.distance = dot(ac, q) / determinant;
     }
-    // A ray that Embree counts in through an edge may pass a hair outside of it.
+    // A ray that Embree counts as a hit at an edge may pass just outside of the triangle.
     hit.weights[1] = std::clamp(hit.weights[1], 0.0, 1.0);
     hit.weights[2] = std::clamp(hit.weights[2], 0.0, 1 - hit.weights[1]);
     hit.weights[0] = 1 - hit.weights[1] - hit.weights[2];

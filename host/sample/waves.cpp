@@ -33,7 +33,7 @@ float attenuation(Vec3 k, const Footprint& f) {
     return float(-0.5 * f.sigma * f.sigma * tangential);
 }
 
-// Weaker than this (e^-12), a wave is not worth a sine.
+// A wave weaker than this (e^-12) is left out.
 constexpr float negligible = -12;
 
 }  // namespace

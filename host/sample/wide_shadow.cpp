@@ -14,7 +14,7 @@ constexpr double pi = std::numbers::pi;
 // distance.
 constexpr double flattestCosine = 0.2;
 
-// Smaller filters would see texels come and go.
+// In smaller filters the number of texels would change from pixel to pixel.
 constexpr float leastRadius = 2;  // texels
 
 // By value, not by reference as std::max: else the loop below has branches and is not vectorised.

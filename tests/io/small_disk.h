@@ -11,7 +11,7 @@
 #include <fstream>
 #include <string>
 
-// A tmpfs of so many KiB, seen by this program and its children alone, gone with it. Mounting needs root.
+// A tmpfs of so many KiB, which only this program and its children see. It ends with the program. Mounting needs root.
 class SmallDisk {
   public:
     explicit SmallDisk(size_t kibibytes) {
@@ -45,7 +45,7 @@ class SmallDisk {
         for (const auto& entry : std::filesystem::directory_iterator(folder_))
             std::filesystem::remove_all(entry);
     }
-    // Names but for that of fill().
+    // Names of the files, without that of fill().
     size_t files() const {
         size_t count = 0;
         for (const auto& entry : std::filesystem::directory_iterator(folder_))

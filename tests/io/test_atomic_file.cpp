@@ -1,7 +1,7 @@
-// host/io/atomic_file.h and input_file.h: files that appear whole or not at all, under names that nobody
-// foresees; what is no file; limits.
+// host/io/atomic_file.h and input_file.h: files that appear whole or not at all, under temporary names that nobody can
+// foresee; what is no regular file; limits.
 //
-// This program's own calls to the disk come before the C library's, and fail on demand.
+// This program defines calls to the disk itself, which are linked before the C library's and fail on demand.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/file.h>

@@ -29,7 +29,7 @@ void fill(T& field, float value) {
         field = T(value);
 }
 
-// As a file says it.
+// A number as it is written in a file.
 template <class T>
 std::string said(float value) {
     char number[32];

@@ -105,7 +105,7 @@ TEST(FullDisk, EveryWriterFailsAndLeavesWhatWasThere) {
         const std::string path = disk.path(w.file);
         w.write(path);
         const size_t whole = std::filesystem::file_size(path);
-        // Full, almost full, and full but for the last page of this file.
+        // A disk that is full, one that is almost full, and one that lacks the last page of this file.
         for (size_t left : {size_t{0}, size_t{4096}, (whole - 1) / 4096 * 4096}) {
             if (left / 4096 >= (whole + 4095) / 4096) continue;  // a small one fits
             disk.empty();

@@ -275,7 +275,7 @@ TEST(LutProperties, WeightsAndVariancesAtTheEdgesOfFloat) {
             for (size_t i = 0; i < beside.size(); ++i)
                 EXPECT_NEAR(beside[i], expected[i], tolerance::lutTexelGaussians) << int(form) << ' ' << i;
         }
-        // No width at all: the light itself. Endless width: hardly any light where it is spread along an arc,
+        // A width of almost 0 gives the light itself. A very large width leaves hardly any light where it spreads along an arc,
         // and even light where what there is stays on the circle or the sphere.
         const auto narrow = texels(Profile::gaussians({{tiny, {1, 1, 1}}}), form, 1, 50, 0);
         const auto wide = texels(Profile::gaussians({{most, {1, 1, 1}}}), form, 1, 50, 0);

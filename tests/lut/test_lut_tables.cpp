@@ -148,7 +148,7 @@ TEST(LutTables, MeanOverTheSphereIsAQuarter) {
             curvatureTexels(device, table.ours(), PEL_FORM_SPHERE, 2049, sized(8u, 1u)), 2049, table.name);
 }
 
-// A table that holds nothing within reach has no answer but the light itself.
+// Where a table has nothing within reach the result is the light itself.
 TEST(LutTables, NothingWithinReachScattersNothing) {
     const Device device("");
     const Profile far = Profile::table({1, 1.5f, 2}, {0, 0, 0, 1, 1, 1, 0, 0, 0});

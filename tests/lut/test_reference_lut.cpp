@@ -183,7 +183,7 @@ TEST(ReferenceLut, EveryFormAndProfileEqualsBoostQuadrature) {
                 const double u = std::uniform_real_distribution<>(-1, 1)(random);
                 const double r = std::pow(10, std::uniform_real_distribution<>(-0.3, 2.5)(random));
                 const Rgb d = curvatureD(form, *profile, u, r);
-                // Boost meets the singular profile's logarithm without a substitution: less is asked of it.
+                // Boost integrates the singular profile's logarithm without a substitution, so its tolerance is larger.
                 const double bound =
                     profile->singularAtZero() ? tolerance::oracleSingular : tolerance::oracleQuadrature;
                 for (int c = 0; c < (nested ? 1 : 3); ++c)

@@ -65,7 +65,7 @@ inline Mesh latLongSphere(uint32_t rings, uint32_t columns, double radius) {
     return mesh;
 }
 
-// The same surface with its vertices in an order without sense: vertex v of the other stands at newOf[v].
+// The same surface with its vertices in random order: vertex v becomes newOf[v].
 struct Shuffled {
     Mesh mesh;
     std::vector<uint32_t> newOf;

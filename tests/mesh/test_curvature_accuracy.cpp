@@ -130,7 +130,7 @@ TEST(CurvatureAccuracy, EverySurface) {
 }
 
 TEST(CurvatureAccuracy, SliversAtThePolesOfASphere) {
-    // The fit's coordinates are as wide as long there; and the wide circle round a pole is no neighbourhood.
+    // At a pole the coordinates of the fit are as wide as long, and the wide circle round it is not part of its neighbourhood.
     for (double radius : {1.0, 1e-6, 1e6}) {
         const Mesh mesh = latLongSphere(200, 400, radius);
         const std::vector<float> k = principal(mesh, PEL_CURVATURE_QUADRIC);
@@ -176,7 +176,7 @@ TEST(CurvatureAccuracy, NormalsOfAMeshWithFoldedTriangles) {
 }
 
 TEST(CurvatureAccuracy, ANormalInItsOwnPlaneIsReplaced) {
-    // As noise leaves it that folds a sliver over. Its neighbours' normals say what it should be.
+    // A normal as noise leaves it that folds a sliver over. The normals of its neighbours show what is right.
     const Mesh mesh =
         pairOf(tessellate(reference::torusSurface(3, 1), 100, 60, Tessellation::irregular).mesh).mesh;
     Mesh broken = mesh;

@@ -20,7 +20,7 @@ bool contains(const std::string& text, const char* part) {
 }
 
 // Vertices whose value differs from that of the sound mesh, beyond those within `rings` edges of the faulty
-// one, are ones that a fault has spread to.
+// one: a fault has spread to them.
 std::vector<bool> within(const Mesh& mesh, uint32_t vertex, uint32_t rings) {
     std::vector<bool> inside(mesh.vertices());
     inside[vertex] = true;

@@ -96,7 +96,7 @@ TEST(CurvatureScattered, FitsOfLowerDegreeAreCounted) {
     fixture::Mesh closed = torus(60, 40);
     EXPECT_EQ(curvature(closed, topologyDesc(closed), meanParams(PEL_CURVATURE_QUADRIC)).report.lowDegreeFits,
               0u);
-    // Eight triangles: nowhere nine points. With made normals, and again over what a call before counted.
+    // Eight triangles: no vertex has nine points. With made normals, and once more, to see that the counts begin at 0.
     closed.positions = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
     closed.normals = closed.positions;
     closed.indices = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
@@ -131,7 +131,7 @@ TEST(CurvatureScattered, TheDefaultIsNearTheTruth) {
 
 TEST(CurvatureScattered, UniformPassesMoveValuesByWhatTheyMustOnly) {
     // Two passes take a value from where its neighbours stand in the mean; on random triangles that is not
-    // where the vertex stands. What they may add to the truth smoothed alike is next to nothing.
+    // where the vertex stands. Compared with the truth, smoothed likewise, they may add next to nothing.
     const FlatMesh flat = delaunay(uniformPoints(20000, 1));
     for (const auto& [surface, shape] : surfaces) {
         AnalyticMesh mesh = lifted(flat, shape);

@@ -40,7 +40,7 @@ struct Options {
     PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
 };
 
-// Every component at every second float, in rows with something behind them.
+// Strided images: each component at every second float, and rows with padding.
 std::vector<float> apart(const std::vector<float>& packed, uint32_t width, uint32_t height) {
     std::vector<float> wide(size_t(height) * (width * 5 + 3), notANumber);
     for (uint32_t y = 0; y < height; ++y)
@@ -248,7 +248,7 @@ TEST(ScreenCurvature, FromDepthAsFromPositions) {
 }
 
 TEST(ScreenCurvature, SeparatesObjectsThatTouch) {
-    // Two halves of a plane bent at the middle, the one another object: without ids the fold is curved.
+    // Two half planes that meet at an angle and belong to two objects. Without ids the fold counts as curvature.
     GBuffer g(20, 10);
     for (size_t i = 0; i < g.ids.size(); ++i) {
         const double x = double(i % 20) - 10;
@@ -282,7 +282,8 @@ TEST(ScreenCurvature, NamesWhatIsWrong) {
     const PelImageDesc other = imageDesc(b, PEL_FORMAT_RGB32F, 8, 7), over = imageDesc(b, PEL_FORMAT_R32F, 8, 8);
     EXPECT_NE(message(nullptr, &three, &other, nullptr, &one).find("one size"), std::string::npos);
     EXPECT_NE(message(nullptr, &three, &three, nullptr, &over).find("overlaps"), std::string::npos);
-    // A component of its own between others is no overlap, one of the normal's is, and so is the same memory by another name.
+    // An output that is a component of its own between others does not overlap. One that is a component of the normal does, and so does
+    // the same memory through another buffer.
     const Buffer both(device(), 8 * 8 * 16);
     PelImageDesc four = imageDesc(both, PEL_FORMAT_RGB32F, 8, 8), part = imageDesc(both, PEL_FORMAT_R32F, 8, 8);
     four.pixelStride = part.pixelStride = 16;

@@ -1,4 +1,4 @@
-// What a shader refuses, and with which words.
+// What a shader refuses, and what the messages say.
 #include <cstring>
 #include <limits>
 
@@ -95,7 +95,7 @@ TEST(ShadeBadInput, ImagesThatDoNotFit) {
     expectError(invalid, {"another PelDevice"}, [&] {
         r.shader.set(PEL_SLOT_CURVATURE, imageDesc(Buffer(other, 4096), PEL_FORMAT_R32F, 32, 16));
     });
-    // None of it changed anything.
+    // The refused calls changed nothing.
     r.shader.commit().execute();
     EXPECT_EQ(r.target.readAll<float>(), shade(device(), r.frame, tables()));
 }

@@ -1,4 +1,4 @@
-// Pixels that are NaN, infinite or of no material stay alone.
+// Pixels with NaN, Inf or no material do not change their neighbours.
 #include <cstring>
 #include <limits>
 
@@ -48,7 +48,7 @@ TEST(ShadeBadPixels, NanAndInfStayInTheirPixel) {
     }
 }
 
-// Counted without asking, in each way of finding tiles, where nothing else of pixels is.
+// Invalid pixels are always counted, by each kind of tile list, also where other pixels are not counted.
 TEST(ShadeBadPixels, AFrameOfNothingElseIsCountedAlways) {
     for (const float value : {nan, inf, -inf})
         for (const PelTileLists lists : {PEL_TILES_ONE_LIST, PEL_TILES_PER_VARIANT, PEL_TILES_NO_LIST}) {
@@ -66,7 +66,7 @@ TEST(ShadeBadPixels, AFrameOfNothingElseIsCountedAlways) {
         }
 }
 
-// What stands in the image already is an input too.
+// With `accumulate` the values that are in the image are an input, too.
 TEST(ShadeBadPixels, AccumulatingOntoNanGivesTheInvalidColor) {
     for (const uint32_t components : {3u, 4u}) {
         Frame f = randomFrame(4, 49, 21);
@@ -121,7 +121,7 @@ TEST(ShadeBadPixels, AnythingGivesFiniteOutput) {
             if (seed == 3)
                 for (int k = 12; k < 16; ++k) light.params.worldToShadow[k] *= -1;  // the other hand
         }
-        // A light in the surface.
+        // A point light that lies in the surface.
         std::copy_n(f.slots[PEL_SLOT_POSITION].values.begin(), 3, f.lights[1].params.position);
         for (float& p : f.lights[1].params.position)
             if (!std::isfinite(p)) p = 0;

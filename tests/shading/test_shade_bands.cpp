@@ -1,4 +1,4 @@
-// Frames shaded in bands of rows, to keep to a budget of scratch memory: the same bits as at once.
+// Frames that are shaded in bands of rows, within a budget of scratch memory: the same bits as in one piece.
 #include <gtest/gtest.h>
 
 #include "pass_scene.h"
@@ -124,7 +124,7 @@ TEST(ShadeBands, ABudgetThatIsTooSmallSaysWhatWouldDo) {
     }
     f.options.scratchBudget = 150 * 48 * 61 + 2 * 400 * 40;
     shader.set(f.options).commit().execute();
-    // Without passes there is nothing to limit.
+    // Without passes there is no scratch memory to limit.
     f.options.blurNormals = 0;
     f.options.scratchBudget = 1;
     for (Light& light : f.lights) light.params.shadowFilterTexels = 0;

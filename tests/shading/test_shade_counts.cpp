@@ -98,7 +98,7 @@ TEST_P(ShadeCounts, PixelsAreTheHostsOwn) {
     }
 }
 
-// A second execution counts anew, and one without the option counts no more than what is always counted.
+// A second execution counts from 0. Without the option only what is always counted is counted.
 TEST_P(ShadeCounts, AnExecutionStartsAtZero) {
     const pellucid::Device device = deviceOf(GetParam());
     const Tables tables = makeTables(device);

@@ -108,7 +108,7 @@ TEST(ShadeCube, AddsToHarmonicsAndComesThrough) {
         const auto result = shade(device(), f, tables(), &stats);
         EXPECT_TRUE(stats.features & PEL_FEATURE_AMBIENT_SCATTER);
         EXPECT_LE(worstError(f, result), tolerance::shadeSum);
-        // Skipping changes no bit, also beside texels that are no numbers.
+        // Skipping changes no bit, also beside texels of NaN.
         f.cube.texels[3 + 20 * seed].y = std::numeric_limits<double>::quiet_NaN();
         f.options.disableSkipping = 1;
         const auto all = shade(device(), f, tables());
@@ -206,7 +206,7 @@ TEST(ShadeCube, OfASkyItIsNearerThanHarmonics) {
 }
 
 TEST(ShadeCube, HasNoSeams) {
-    // Pairs on both sides of an edge, all twelve of them and all along; white noise would show any step.
+    // Pairs of directions on both sides of each of the twelve edges, along its whole length. White noise would show any step.
     Random random(9);
     std::vector<Vec3> normals;
     for (int i = 0; i < 4000; ++i) {

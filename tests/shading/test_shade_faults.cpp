@@ -1,7 +1,7 @@
 // Every allocation of a shader fails, alone or with all that come after it: an error each time, or less memory at a time, and
 // nothing broken after it.
 //
-// This program's own operator new and OpenCL calls come before the library's: they count calls that the library makes, and let
+// This program defines operator new and OpenCL calls itself, which are linked before the others: they count calls of the library, and let
 // one of them fail.
 #include <CL/cl.h>
 #include <dlfcn.h>
@@ -150,7 +150,7 @@ TEST_P(ShadeFaults, EachAllocationInTurn) {
             EXPECT_EQ(code, PEL_ERROR_OUT_OF_MEMORY) << "call " << n << ": " << message;
             EXPECT_FALSE(message.empty());
         }
-        // Whatever was left of that one, another shader works, and so does the same one when it is asked again.
+        // After a failure another shader works, and so does the same one when it is executed again.
         if (n % 7 == 0) {
             shader.execute();
             EXPECT_EQ(target.readAll<float>(), right) << "after call " << n;
