@@ -92,8 +92,8 @@ Json measureCases(const Request& request) {
     const auto tell = [&](const Json& event) {
         if (request.event) request.event(event);
     };
-    const auto begin = [&](const Json& entry, bool preparing) {
-        tell({{"begin", entry["name"]}, {"group", entry["group"]}, {"preparing", preparing}});
+    const auto begin = [&](const Json& entry) {
+        tell({{"begin", entry["name"]}, {"group", entry["group"]}});
     };
     const Device device(request.device);
     std::vector<Factory> factories;
@@ -113,7 +113,7 @@ Json measureCases(const Request& request) {
         Running r;
         r.entry = {{"name", f.name}, {"group", f.group}};
         tell({{"say", f.name + ": prepared, compared with the truth"}});
-        begin(r.entry, true);
+        begin(r.entry);
         try {
             r.work = f.make();
             r.entry["what"] = r.work.what;
@@ -131,12 +131,10 @@ Json measureCases(const Request& request) {
             const double once = std::max(milliseconds() - start, 1e-3);
             r.repeats = int(std::clamp((request.quick ? 2.0 : 10.0) / once, 1.0, 100.0));
             r.rounds = int(std::clamp(request.limitSeconds * 1e3 / (once * r.repeats), 1.0, double(rounds)));
-            tell({{"tried", f.name}});
-            if (!request.trying) running.push_back(std::move(r));
+            running.push_back(std::move(r));
         } catch (const std::exception& e) {
             r.entry["failed"] = e.what();
             failed.push_back(r.entry);
-            tell({{"failed", r.entry}});
         }
     }
     std::mt19937 random(1);
@@ -147,7 +145,7 @@ Json measureCases(const Request& request) {
         std::shuffle(order.begin(), order.end(), random);
         for (const size_t i : order) {
             if (round >= running[i].rounds) continue;
-            begin(running[i].entry, false);
+            begin(running[i].entry);
             sample(device, running[i]);
         }
     }

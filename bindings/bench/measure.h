@@ -17,11 +17,10 @@ struct Request {
     bool quick = false;                // small sizes, few repetitions
     std::vector<std::string> only;     // parts of names; empty: every operation
     std::vector<std::string> without;  // names that are left out
-    bool trying = false;               // prepare each case once, measure none
     double limitSeconds = 120;         // that a case may take to be prepared, and again for all its runs
     std::string command;               // path of the pellucid command, for processes of their own
     std::function<void(const std::string&)> progress;  // a line now and then
-    // What happens, for whoever waits: {"begin": name, "group", "preparing"}, {"tried": name}, {"failed": operation}, {"say": text}
+    // What happens, for whoever waits: {"begin": name, "group"}, {"say": text}
     std::function<void(const nlohmann::ordered_json&)> event;
     std::function<bool()> cancelled;
 };

@@ -28,14 +28,12 @@ std::string noResult(const Request& request) {
 
 // The result of one process.
 struct Outcome {
-    Json report;                     // null: it did not get there
-    Json at;                         // {"begin", "group", "preparing"} of the case that it was at
-    std::string why;                 // it did not get there
-    std::vector<std::string> tried;  // cases that were prepared
-    std::vector<Json> failed;        // and those that could not be
+    Json report;      // null: it did not get there
+    Json at;          // {"begin", "group"} of the case that it was at
+    std::string why;  // it did not get there
 };
 
-Outcome runApart(const Request& request, const std::set<std::string>& without, bool trying) {
+Outcome runApart(const Request& request, const std::set<std::string>& without) {
     std::vector<std::string> command{request.command,
                                      "bench",
                                      "--events",
@@ -44,7 +42,6 @@ Outcome runApart(const Request& request, const std::set<std::string>& without, b
                                      "--limit",
                                      std::to_string(request.limitSeconds)};
     if (request.quick) command.push_back("--quick");
-    if (trying) command.push_back("--try");
     for (const std::string& name : request.only) command.insert(command.end(), {"--only", name});
     for (const std::string& name : without) command.insert(command.end(), {"--without", name});
     ChildProcess child(command, {}, true);
@@ -64,8 +61,6 @@ Outcome runApart(const Request& request, const std::set<std::string>& without, b
         const Json event = Json::parse(line, nullptr, false);
         if (!event.is_object()) continue;
         if (event.contains("begin")) outcome.at = event;
-        if (event.contains("tried")) outcome.tried.push_back(event["tried"]);
-        if (event.contains("failed")) outcome.failed.push_back(event["failed"]);
         if (event.contains("say") && request.progress) request.progress(event["say"]);
         if (event.contains("report")) outcome.report = event["report"];
     }
@@ -77,24 +72,14 @@ Outcome runApart(const Request& request, const std::set<std::string>& without, b
 }  // namespace
 
 Json measureCasesApart(const Request& request) {
-    std::set<std::string> without, tried;
+    std::set<std::string> without;
     Json lost = Json::array();
-    // After a loss the rest is tried case by case, then the remaining ones are measured together.
-    for (bool trying = false;;) {
-        std::set<std::string> leftOut = without;
-        if (trying) leftOut.insert(tried.begin(), tried.end());
-        Outcome outcome = runApart(request, leftOut, trying);
-        if (!outcome.report.is_null() && !trying) {
+    // After a loss all others are measured again.
+    for (;;) {
+        Outcome outcome = runApart(request, without);
+        if (!outcome.report.is_null()) {
             for (const Json& e : lost) outcome.report["operations"].push_back(e);
             return outcome.report;
-        }
-        tried.insert(outcome.tried.begin(), outcome.tried.end());
-        for (const Json& e : outcome.failed) {
-            if (without.insert(e.at("name")).second) lost.push_back(e);
-        }
-        if (!outcome.report.is_null()) {
-            trying = false;
-            continue;
         }
         if (outcome.at.is_null()) outcome.at = {{"begin", "start"}, {"group", "device"}};
         const std::string name = outcome.at.at("begin");
@@ -103,7 +88,6 @@ Json measureCasesApart(const Request& request) {
         // The process did not reach any case, or reached one that it was told to leave out.
         if (name == "start" || !without.insert(name).second)
             return {{"copy_bytes_per_second", Json()}, {"operations_per_second", Json()}, {"operations", lost}};
-        trying = outcome.at.at("preparing");
     }
 }
 

@@ -26,7 +26,7 @@ struct Arguments {
     std::string output, before, after;
     double limitSeconds = 0;  // 0: depends on `quick`
     bool quick = false, json = false, firstUse = false;
-    bool events = false, trying = false;  // a process of this command's own: tells what it does, line by line
+    bool events = false;  // a process of this command's own: tells what it does, line by line
 };
 
 std::atomic<bool> stopped{false};
@@ -51,7 +51,6 @@ bench::Request requestOf(const Arguments& a, const std::string& device) {
     request.quick = a.quick;
     request.only = a.only;
     request.without = a.without;
-    request.trying = a.trying;
     request.limitSeconds = a.limitSeconds > 0 ? a.limitSeconds : a.quick ? 60 : 120;
     return request;
 }
@@ -191,7 +190,6 @@ void addBench(CLI::App& app) {
                      "with --quick 60)")
         ->check(CLI::PositiveNumber);
     command->add_flag("--events", a->events)->group("");
-    command->add_flag("--try", a->trying)->group("");
     command->add_option("--without", a->without)->group("");
     command->add_flag("--json", a->json, "print one JSON object on standard output");
     command->add_flag("--first-use", a->firstUse,
