@@ -337,8 +337,6 @@ inline constexpr Tolerance sampleWideShadow{
 inline constexpr Tolerance sampleSky{"sampleSky", 0.02, "what orders above 2 carry of a sky with a soft lamp"};
 
 // --- what the search of bench/stability may find beyond the ranges of the tests ---
-inline constexpr Tolerance byteBoundary{"byteBoundary", 0.01,
-                                        "of an 8-bit step: 255 times 13 (the slope of sRGB at 0) times 2e-6"};
 inline constexpr Tolerance stretchedNormals{"stretchedNormals", 5e-5,
                                             "as normalComponent, triangles 50 times longer than wide"};
 inline constexpr Tolerance finePixels{
