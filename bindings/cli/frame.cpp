@@ -59,6 +59,11 @@ bool isScreenCurvature(const io::Image& gbuffer, const io::SceneFile& scene) {
                         [](const auto& c) { return c.name == "screen"; });
 }
 
+// A shadow map with the pixels of these channels; without a name, of all.
+io::Image readMap(const std::string& file, const std::string& channel, const std::string& second) {
+    return channel.empty() ? io::readImage(file) : io::readChannels(file, {channel, second});
+}
+
 // R, G and B, or the first three channels; `need` says what the image should have.
 std::vector<std::string> colorChannels(const std::string& file, const io::Image& image, const char* need) {
     if (image.channels.size() < 3)
@@ -135,7 +140,7 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
         const auto setMap = [&](PelLightSlot slot, const std::string& file, const std::string& channel,
                                 const std::string& second) {
             const auto known = shadowMaps.find(file);
-            const io::Image read = known == shadowMaps.end() ? io::readImage(file) : io::Image();
+            const io::Image read = known == shadowMaps.end() ? readMap(file, channel, second) : io::Image();
             const io::Image& map = known == shadowMaps.end() ? read : known->second;
             std::vector<std::string> channels{channel.empty() && map.channels.size() == 1 ? map.channels[0].name
                                                                                           : channel};
@@ -240,8 +245,11 @@ PelImageDesc Frame::upload(const Device& device, const io::Image& image,
                            const std::vector<std::string>& channels) {
     static constexpr PelFormat formats[] = {PEL_FORMAT_R32F, PEL_FORMAT_RG32F, PEL_FORMAT_RGB32F,
                                             PEL_FORMAT_RGBA32F};
-    inputs_.emplace_back(device, image.interleaved(channels));
-    inputBytes_ += inputs_.back().bytes();
+    for (const std::string& name : channels) image.channel(name);  // an error before memory is taken
+    const Buffer& buffer = inputs_.emplace_back(device, channels.size() * image.pixelCount() * sizeof(float));
+    image.interleave(channels, static_cast<float*>(buffer.map()));
+    buffer.unmap();
+    inputBytes_ += buffer.bytes();
     return imageDesc(inputs_.back(), formats[channels.size() - 1], uint32_t(image.width), uint32_t(image.height));
 }
 

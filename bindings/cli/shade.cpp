@@ -37,6 +37,14 @@ std::vector<std::pair<PelImageSlot, std::string>> outputFiles(const Arguments& a
     return files;
 }
 
+// The channels of the G-buffer that the scene names.
+std::vector<std::string> channelsOf(const io::SceneFile& scene) {
+    std::vector<std::string> names;
+    for (const auto& slot : scene.channels) names.insert(names.end(), slot.begin(), slot.end());
+    for (const io::SceneLight& light : scene.lights) names.push_back(light.wideShadow);
+    return names;
+}
+
 void writeOutput(const std::string& path, PelImageSlot slot, const io::Image& gbuffer, const Frame& frame) {
     (slot == PEL_SLOT_OUT_THICKNESS ? writeThickness : writeRadiance)(path, gbuffer.width, gbuffer.height,
                                                                       frame.output(slot));
@@ -85,7 +93,7 @@ void run(const Arguments& a) {
         throw UsageError("--picture: -o is a picture already; write -o to an .exr, or leave --picture out");
     Run run(a.run);
     const io::SceneFile scene = io::readScene(a.scene);
-    const io::Image gbuffer = io::readImage(a.gbuffer);
+    const io::Image gbuffer = io::readChannels(a.gbuffer, channelsOf(scene));
     const auto files = outputFiles(a, scene);
     std::vector<PelImageSlot> outputs;
     std::set<std::string> distinct{a.output, a.picture};

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <thread>
@@ -38,6 +39,18 @@ class Files : public CommandTest {
 };
 
 }  // namespace
+
+// Some 250 libraries come with OpenImageIO; the command starts without them. tests/outside checks that they are found.
+TEST_F(Files, PicturesAreAModuleOfTheirOwn) {
+    const std::string libraries = run({"--version"}, "LD_TRACE_LOADED_OBJECTS=1").out;
+    EXPECT_TRUE(contains(libraries, "libpellucid.so"));
+    EXPECT_FALSE(contains(libraries, "OpenImageIO"));
+    EXPECT_LT(std::ranges::count(libraries, '\n'), 40);
+    EXPECT_FALSE(contains(
+        run({"lut", "specular", "--size", "4x4", "-o", path("t.exr")}, "LD_DEBUG=files").err, "OpenImageIO"));
+    EXPECT_TRUE(contains(run({"lut", "specular", "--size", "4x4", "-o", path("t.png")}, "LD_DEBUG=files").err,
+                         "OpenImageIO"));
+}
 
 TEST_F(Files, AFullDiskIsAnErrorOfEveryCommand) {
     const SmallDisk disk(256);

@@ -110,6 +110,53 @@ TEST_F(ImageFile, PartsAreWalkedAndPlacedByDataWindow) {
     EXPECT_FALSE(image.has("Z"));
 }
 
+// Bands end inside the picture: 300 rows are no multiple of any chunk or tile.
+TEST_F(ImageFile, EveryCompressionIsReadAsOpenImageIoReadsIt) {
+    using namespace OIIO;
+    const int width = 37, height = 300;
+    std::vector<float> pixels(size_t(width) * height * 2);
+    for (size_t i = 0; i < pixels.size(); ++i) pixels[i] = std::sin(0.01f * float(i));
+    for (const char* how : {"none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"})
+        for (const int tile : {0, 16}) {
+            SCOPED_TRACE(std::string(how) + " " + std::to_string(tile));
+            ImageSpec spec(width, height, 2, TypeDesc::HALF);
+            spec.channelnames = {"N.X", "Z"};
+            spec.attribute("compression", how);
+            spec.tile_width = spec.tile_height = tile;
+            auto out = ImageOutput::create(path("c.exr"));
+            ASSERT_TRUE(out->open(path("c.exr"), spec) && out->write_image(TypeDesc::FLOAT, pixels.data()) &&
+                        out->close());
+            const auto in = ImageInput::open(path("c.exr"));
+            std::vector<float> expected(pixels.size());
+            ASSERT_TRUE(in->read_image(0, 0, 0, 2, TypeDesc::FLOAT, expected.data()));
+            const Image image = readImage(path("c.exr"));
+            EXPECT_TRUE(sameBits(image.interleaved(in->spec().channelnames), expected));
+        }
+}
+
+TEST_F(ImageFile, OnlyTheNamedChannelsAreRead) {
+    Image image = makeImage(3, 2);
+    const std::string names[] = {"View.N.X", "View.N.Y", "View.Z", "Other.Z"};
+    image.addInterleaved(names, std::vector<float>(24, 0.25f));
+    writeExr(path("n.exr"), image);
+    const Image some = readChannels(path("n.exr"), {"N.Y", "Z", "", "missing"});
+    ASSERT_EQ(some.channels.size(), 4u);  // all are known, for messages
+    for (const Channel& c : some.channels)
+        EXPECT_EQ(c.pixels.size(), c.name == "View.N.Y" ? 6u : 0u) << c.name;
+    EXPECT_EQ(some.interleaved(std::vector<std::string>{"N.Y"}), std::vector<float>(6, 0.25f));
+    EXPECT_THROW(some.interleaved(std::vector<std::string>{"View.Z"}), std::logic_error);
+    EXPECT_TRUE(contains(messageOf<FileError>([&] { some.channel("Z"); }), "several"));
+}
+
+TEST_F(ImageFile, IntegersOfExrKeepTheirValues) {
+    OIIO::ImageSpec spec(2, 1, 1, OIIO::TypeDesc::UINT32);
+    spec.channelnames = {"Material.I"};
+    auto out = OIIO::ImageOutput::create(path("i.exr"));
+    const uint32_t ids[2] = {3, 70000};
+    ASSERT_TRUE(out->open(path("i.exr"), spec) && out->write_image(OIIO::TypeDesc::UINT32, ids) && out->close());
+    EXPECT_EQ(readImage(path("i.exr")).channel("I").pixels, (std::vector<float>{3, 70000}));
+}
+
 TEST_F(ImageFile, ChannelsAreFoundByNameOrTheErrorListsThem) {
     Image image = makeImage(1, 1);
     image.source = "g.exr";

@@ -1,7 +1,7 @@
 """Meshes and images from files, and pictures to look at.
 
-A module of its own: it needs the package built where OpenMesh and OpenImageIO are installed (Debian: libopenmesh-dev,
-libopenimageio-dev).
+A module of its own: it needs the package built where OpenMesh, OpenEXR and OpenImageIO are installed (Debian: libopenmesh-dev,
+libopenexr-dev, libopenimageio-dev).
 """
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 try:
     from . import _files
 except ImportError as error:
-    raise ImportError("this build of pellucid reads no files: install libopenmesh-dev, libopenimageio-dev and libtomlplusplus-dev "
+    raise ImportError("this build of pellucid reads no files: install libopenmesh-dev, libopenexr-dev, libopenimageio-dev and libtomlplusplus-dev "
                       f"(or their equivalents) and build the package again ({error})") from error
 
 FileError = _files.FileError

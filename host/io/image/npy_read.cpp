@@ -1,7 +1,7 @@
 // The .npy format, versions 1.0 and 2.0 (NumPy Enhancement Proposal 1).
 #include "io/image/npy_read.h"
 
-#include <OpenImageIO/half.h>
+#include <Imath/half.h>
 
 #include <charconv>
 #include <cstdint>

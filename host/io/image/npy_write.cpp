@@ -1,5 +1,5 @@
 // The .npy format, version 1.0 (NumPy Enhancement Proposal 1).
-#include <OpenImageIO/half.h>
+#include <Imath/half.h>
 
 #include <bit>
 #include <functional>

@@ -3,22 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <stdexcept>
 
-#include <OpenImageIO/imagebufalgo.h>
+#include "io/image/picture_library.h"
 
 namespace pellucid::io {
 namespace {
 
 constexpr Srgb8 paper = {28, 28, 30}, ink = {225, 225, 225};
 
-constexpr const char* fontFile = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
-
-// Where Debian puts it, else wherever OpenImageIO looks for fonts.
-std::string font() {
-    return std::filesystem::exists(fontFile) ? fontFile : "DejaVuSans";
-}
 constexpr int fontSize(int scale) {
     return 8 * scale;
 }
@@ -61,16 +54,14 @@ void Picture::paste(int x, int y, const Picture& other) {
 }
 
 int Picture::write(int x, int y, std::string_view text, Srgb8 color, int scale) {
-    OIIO::ImageBuf pixels(OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::UINT8), rgb.data());
     const float ink_[3] = {color[0] / 255.0f, color[1] / 255.0f, color[2] / 255.0f};
-    OIIO::ImageBufAlgo::render_text(pixels, x, y + 7 * scale, std::string(text), fontSize(scale), font(),
-                                    ink_);  // y: the baseline
+    pictureLibrary("a label").drawText(rgb.data(), width, height, x, y + 7 * scale, std::string(text),
+                                       fontSize(scale), ink_);  // y: the baseline
     return x + textWidth(text, scale);
 }
 
 int textWidth(std::string_view text, int scale) {
-    const OIIO::ROI size = OIIO::ImageBufAlgo::text_size(std::string(text), fontSize(scale), font());
-    return size.defined() ? std::max(size.xend, 0) : 0;
+    return pictureLibrary("a label").textWidth(std::string(text), fontSize(scale));
 }
 
 Picture shrunk(const Picture& picture, int factor) {

@@ -1,0 +1,237 @@
+// OpenEXR files in. Bands of rows are decoded side by side, each by a reader of its own over the same bytes: no pool of threads that
+// a forked process would miss.
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfCompressionAttribute.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfFloatVectorAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfTileDescriptionAttribute.h>
+#include <OpenEXR/ImfVecAttribute.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "io/file_error.h"
+#include "io/image/exr_file.h"
+#include "io/image/image_format.h"
+
+namespace pellucid::io {
+namespace {
+
+class MemoryStream final : public Imf::IStream {
+  public:
+    MemoryStream(const std::string& path, const std::string& bytes) : IStream(path.c_str()), bytes_(bytes) {}
+    bool read(char to[], int count) override {
+        need(count);
+        std::memcpy(to, bytes_.data() + at_, size_t(count));
+        at_ += uint64_t(count);
+        return at_ < bytes_.size();
+    }
+    uint64_t tellg() override { return at_; }
+    void seekg(uint64_t at) override { at_ = at; }
+
+  private:
+    void need(int count) const {
+        if (count < 0 || at_ > bytes_.size() || bytes_.size() - at_ < uint64_t(count))
+            throw Iex::InputExc("it ends too early");
+    }
+    const std::string& bytes_;
+    uint64_t at_ = 0;
+};
+
+// What to read of a part.
+struct PartPlan {
+    Imath::Box2i data;
+    int rows = 1;  // of a band: whole chunks, or whole tiles
+    size_t first = 0;
+    std::vector<std::string> names;  // of its channels, in the order of the image
+};
+
+// Colours in the order in which people name them, channels otherwise by name; layer by layer.
+void sortChannels(std::vector<std::string>& names) {
+    const auto key = [](const std::string& name) {
+        const size_t dot = name.rfind('.');
+        const std::string layer = dot == std::string::npos ? "" : name.substr(0, dot);
+        const std::string own = dot == std::string::npos ? name : name.substr(dot + 1);
+        const size_t color = own.size() == 1 ? std::string_view("RGBA").find(own[0]) : std::string_view::npos;
+        return std::tuple(layer, color, own);
+    };
+    std::ranges::sort(names, {}, key);
+}
+
+void copyAttributes(Image& image, const Imf::Header& header) {
+    for (auto i = header.begin(); i != header.end(); ++i) {
+        const Imf::Attribute& a = i.attribute();
+        const auto take = [&](auto value) { image.attributes.emplace_back(i.name(), std::move(value)); };
+        const auto floats = [&](const float* values, size_t count) {
+            take(std::vector<float>(values, values + count));
+        };
+        if (const auto* s = dynamic_cast<const Imf::StringAttribute*>(&a))
+            take(s->value());
+        else if (const auto* n = dynamic_cast<const Imf::IntAttribute*>(&a))
+            take(n->value());
+        else if (const auto* f = dynamic_cast<const Imf::FloatAttribute*>(&a))
+            take(f->value());
+        else if (const auto* v2 = dynamic_cast<const Imf::V2fAttribute*>(&a))
+            floats(&v2->value().x, 2);
+        else if (const auto* v3 = dynamic_cast<const Imf::V3fAttribute*>(&a))
+            floats(&v3->value().x, 3);
+        else if (const auto* m3 = dynamic_cast<const Imf::M33fAttribute*>(&a))
+            floats(m3->value().x[0], 9);
+        else if (const auto* m4 = dynamic_cast<const Imf::M44fAttribute*>(&a))
+            floats(m4->value().x[0], 16);
+        else if (const auto* v = dynamic_cast<const Imf::FloatVectorAttribute*>(&a))
+            take(v->value());
+    }
+}
+
+PartPlan planPart(Image& image, const Imf::Header& header, int part, bool severalParts, uint64_t limit) {
+    const Imath::Box2i& display = header.displayWindow();
+    const int width = display.max.x - display.min.x + 1, height = display.max.y - display.min.y + 1;
+    if (part == 0) image.width = width, image.height = height;
+    if (width != image.width || height != image.height)
+        throw FileError(image.source, "part " + std::to_string(part) + " is " + std::to_string(width) +
+                                          " x " + std::to_string(height) + " pixels, part 0 is " +
+                                          std::to_string(image.width) + " x " + std::to_string(image.height) +
+                                          "; all parts must have one display window");
+    PartPlan plan;
+    plan.data = header.dataWindow();
+    plan.first = image.channels.size();
+    for (auto c = header.channels().begin(); c != header.channels().end(); ++c)
+        plan.names.emplace_back(c.name());
+    sortChannels(plan.names);
+    checkImageSize(image.source, plan.data.max.x - plan.data.min.x + 1, plan.data.max.y - plan.data.min.y + 1,
+                   double(plan.names.size()), limit);
+    // A channel with its part's name, unless the file has one part only or the name says it already.
+    const std::string prefix =
+        severalParts && header.hasName() && !header.name().empty() ? header.name() + "." : "";
+    for (const std::string& name : plan.names) {
+        const bool half = header.channels()[name].type == Imf::HALF;
+        image.channels.push_back(
+            {name.starts_with(prefix) ? name : prefix + name, half ? ChannelType::Half : ChannelType::Float, {}});
+    }
+    constexpr int wholeChunks = 32, wholeChunksOfDwab = 256;
+    plan.rows = header.compression() == Imf::DWAB_COMPRESSION ? wholeChunksOfDwab : wholeChunks;
+    if (header.hasTileDescription()) plan.rows = int(std::min(header.tileDescription().ySize, 1u << 20));
+    return plan;
+}
+
+// Rows from `begin` to before `end` of a part into those channels that have pixels.
+void readBand(Image& image, Imf::MultiPartInputFile& file, int part, const PartPlan& plan, int begin, int end) {
+    const Imath::Box2i &data = plan.data, display = file.header(part).displayWindow();
+    const size_t width = size_t(data.max.x - data.min.x + 1);
+    const bool direct = data.min.x == display.min.x && data.max.x == display.max.x &&
+                        data.min.y >= display.min.y && data.max.y <= display.max.y;
+    std::vector<std::vector<float>> bands;
+    std::vector<Channel*> wanted;
+    Imf::FrameBuffer frame;
+    for (size_t c = 0; c < plan.names.size(); ++c) {
+        Channel& channel = image.channels[plan.first + c];
+        if (channel.pixels.empty()) continue;
+        wanted.push_back(&channel);
+        if (!direct) bands.emplace_back(width * size_t(end - begin));
+        float* firstPixel =
+            direct ? channel.pixels.data() + size_t(begin - display.min.y) * width : bands.back().data();
+        // OpenEXR wants the place where the pixel (0, 0) of its coordinates would be, which may lie outside.
+        const int64_t origin = (int64_t(begin) * int64_t(width) + data.min.x) * int64_t(sizeof(float));
+        char* base = reinterpret_cast<char*>(reinterpret_cast<uintptr_t>(firstPixel) - uintptr_t(origin));
+        frame.insert(plan.names[c], Imf::Slice(Imf::FLOAT, base, sizeof(float), width * sizeof(float)));
+    }
+    if (wanted.empty()) return;
+    Imf::InputPart input(file, part);
+    input.setFrameBuffer(frame);
+    input.readPixels(begin, end - 1);
+    if (direct) return;
+    const int left = std::max(data.min.x, display.min.x), right = std::min(data.max.x, display.max.x);
+    if (left > right) return;
+    for (int y = std::max(begin, display.min.y); y < std::min(end, display.max.y + 1); ++y)
+        for (size_t c = 0; c < wanted.size(); ++c)
+            std::copy_n(bands[c].data() + size_t(y - begin) * width + size_t(left - data.min.x),
+                        size_t(right - left + 1),
+                        wanted[c]->pixels.data() + size_t(y - display.min.y) * size_t(image.width) +
+                            size_t(left - display.min.x));
+}
+
+struct Band {
+    int part, begin, end;
+};
+
+// Runs worker(next) on every processor; next() gives one number below `count` after another to whoever asks. What one throws ends
+// all and is thrown here.
+template <class Worker>
+void onProcessors(size_t count, const Worker& worker) {
+    std::atomic<size_t> next{0};
+    std::mutex mutex;
+    std::exception_ptr failed;
+    const auto work = [&] {
+        try {
+            worker([&]() -> std::optional<size_t> {
+                const size_t i = next++;
+                return i < count ? std::optional(i) : std::nullopt;
+            });
+        } catch (...) {
+            next = count;
+            const std::lock_guard lock(mutex);
+            failed = std::current_exception();
+        }
+    };
+    const size_t most = std::min<size_t>(std::max(std::thread::hardware_concurrency(), 1u), count);
+    {
+        std::vector<std::jthread> helpers;
+        while (helpers.size() + 1 < most) helpers.emplace_back(work);
+        work();
+    }
+    if (failed) std::rethrow_exception(failed);
+}
+
+}  // namespace
+
+void decodeExr(Image& image, const std::string& bytes, const std::function<void(const Image&)>& check,
+               uint64_t limit, const std::vector<std::string>* names) try {
+    MemoryStream stream(image.source, bytes);
+    Imf::MultiPartInputFile file(stream, 0);
+    copyAttributes(image, file.header(0));
+    std::vector<PartPlan> parts;
+    for (int part = 0; part < file.parts(); ++part)
+        parts.push_back(planPart(image, file.header(part), part, file.parts() > 1, limit));
+    checkImageSize(image.source, image.width, image.height, double(image.channels.size()), limit);
+    if (check) check(image);
+    std::vector<bool> wanted(image.channels.size(), !names);
+    if (names)
+        for (const std::string& name : *names)
+            if (image.has(name)) wanted[size_t(&image.channel(name) - image.channels.data())] = true;
+    onProcessors(wanted.size(), [&](auto&& next) {
+        while (const auto c = next())
+            if (wanted[*c]) image.channels[*c].pixels.resize(image.pixelCount());
+    });
+    std::vector<Band> bands;
+    for (size_t part = 0; part < parts.size(); ++part) {
+        const PartPlan& plan = parts[part];
+        for (int64_t y = plan.data.min.y; y <= plan.data.max.y; y += plan.rows)
+            bands.push_back(
+                {int(part), int(y), int(std::min<int64_t>(y + plan.rows, int64_t(plan.data.max.y) + 1))});
+    }
+    onProcessors(bands.size(), [&](auto&& next) {
+        MemoryStream own(image.source, bytes);
+        Imf::MultiPartInputFile reader(own, 0);
+        while (const auto i = next())
+            readBand(image, reader, bands[*i].part, parts[size_t(bands[*i].part)], bands[*i].begin,
+                     bands[*i].end);
+    });
+} catch (const Iex::BaseExc& e) {
+    throw FileError(image.source, std::string("is damaged or cut off: ") + e.what());
+}
+
+}  // namespace pellucid::io

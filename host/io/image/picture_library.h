@@ -1,0 +1,33 @@
+// What OpenImageIO does for us: PNG, JPEG, TGA and BMP files, and text in pictures. It brings some 250 shared libraries, which take
+// a quarter of a second to load. So the code that calls it is a module of its own (host/io/image/pictures), which is loaded when such
+// a file or a label is first needed; programs that read and write EXR and NPY files never load it.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "io/image/image_file.h"
+#include "io/image/image_format.h"
+
+namespace pellucid::io {
+
+// Set by the module. Strings and images belong to the caller; FileError passes through.
+struct PictureLibrary {
+    const char* version;  // of Pellucid
+    // decodeImage for bytes that imageFormat accepted.
+    void (*decode)(Image& image, const ImageFormat& format, const std::function<void(const Image&)>& check,
+                   uint64_t limit);
+    // The bytes of a file as writeImage8 describes it.
+    std::string (*encode)(const std::string& path, int width, int height, int channels,
+                          std::span<const uint8_t> pixels, bool srgb);
+    // Draws on RGB pixels; y is the baseline, ink three numbers from 0 to 1.
+    void (*drawText)(uint8_t* rgb, int width, int height, int x, int y, const std::string& text, int size,
+                     const float* ink);
+    int (*textWidth)(const std::string& text, int size);  // pixels
+};
+
+// Loads the module the first time. Throws FileError, which names `path`, if it cannot be loaded.
+const PictureLibrary& pictureLibrary(const std::string& path);
+
+}  // namespace pellucid::io
