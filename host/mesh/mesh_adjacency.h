@@ -1,8 +1,9 @@
 // One-ring lists of a triangle mesh from raw index arrays: any connectivity, manifold or not.
 #pragma once
 #include <cstdint>
-#include <functional>
 #include <vector>
+
+#include "mesh/mesh_ring.h"
 
 namespace pel {
 
@@ -15,9 +16,20 @@ struct MeshAdjacency {
     uint32_t inconsistentEdges = 0;  // edges whose two triangles run along them in the same direction
 };
 
-// `triangles`: three slots each, all different and < slots. `progress` gets a fraction in [0, 1].
-MeshAdjacency buildAdjacency(const std::vector<uint32_t>& triangles, uint32_t slots,
-                             const std::function<void(double)>& progress);
+// The corners of all triangles, sorted by the slot that they are at: those of a slot from begins[slot] to before begins[slot + 1].
+struct CornerTable {
+    std::vector<uint32_t> begins;  // slots + 1
+    std::vector<Corner> corners;
+};
+
+// `triangles`: three slots each, all different and < slots.
+CornerTable sortCorners(const std::vector<uint32_t>& triangles, uint32_t slots);
+
+// Changes the order of the corners of a slot, on which no ring depends.
+MeshAdjacency buildAdjacency(CornerTable& table);
+
+// The same triangles where slot s has become numbers[s].
+CornerTable renumberCorners(const CornerTable& table, const std::vector<uint32_t>& numbers);
 
 // Whether neighbours are so far apart in memory that every access misses the caches.
 bool isScattered(const std::vector<uint32_t>& triangles, uint32_t slots);

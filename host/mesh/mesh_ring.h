@@ -15,6 +15,10 @@ class RingBuilder {
     struct Edges {
         uint32_t all = 0, border = 0, nonManifold = 0;  // to slots above `slot`
         uint32_t inconsistent = 0;  // edges whose two triangles run along them in the same direction
+        Edges& operator+=(const Edges& b) {
+            all += b.all, border += b.border, nonManifold += b.nonManifold, inconsistent += b.inconsistent;
+            return *this;
+        }
     };
     // Appends the list of `slot` to `out`. `corners` (count of them) may be reordered.
     Edges build(uint32_t slot, Corner* corners, uint32_t count, std::vector<uint32_t>& out);

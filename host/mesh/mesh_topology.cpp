@@ -57,15 +57,19 @@ Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopology
             triangles.insert(triangles.end(), v, v + 3);
     }
     report.unreferencedVertices = uint32_t(std::count(used.begin(), used.end(), false));
-    MeshAdjacency adjacency =
-        buildAdjacency(triangles, weld.slots, [&](double fraction) { progress(0.3 + 0.4 * fraction); });
+    progress(0.3);
+    CornerTable corners = sortCorners(triangles, weld.slots);
+    progress(0.5);
+    MeshAdjacency adjacency = buildAdjacency(corners);
+    progress(0.7);
     if (isScattered(triangles, weld.slots)) {
         // Passes then work in an order of their own. Only the first and the last pass use the caller's order.
         const std::vector<uint32_t> numbers = breadthFirstNumbers(adjacency);
         renumberSlots(weld, numbers);
-        for (uint32_t& slot : triangles) slot = numbers[slot];
-        adjacency =
-            buildAdjacency(triangles, weld.slots, [&](double fraction) { progress(0.7 + 0.2 * fraction); });
+        corners = renumberCorners(corners, numbers);
+        progress(0.8);
+        adjacency = buildAdjacency(corners);
+        progress(0.9);
     }
     report.edges = adjacency.edges;
     report.borderEdges = adjacency.borderEdges;
