@@ -25,12 +25,6 @@
 #define PEL_SHARP_FLATTEST 0.05f
 #define PEL_SHARP_TEXELS 0.5f
 
-// PEL_WIDTH filters, one field after another.
-typedef struct Filters {
-    float x[PEL_WIDTH], y[PEL_WIDTH], z[PEL_WIDTH], dzdx[PEL_WIDTH], dzdy[PEL_WIDTH];
-    float radiusX[PEL_WIDTH], radiusY[PEL_WIDTH], cone[PEL_WIDTH], scale[PEL_WIDTH], step[PEL_WIDTH];
-} Filters;
-
 // Where a point is in a map, and the tangent plane there.
 typedef struct Receiver {
     floatw u, v, z, w;
@@ -227,16 +221,19 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                     const maskw held = makeFilters(light, &shape, p, n, &f) & left;
                     if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(held);
                     left &= notw(held);
-                    const bool bounded = PEL_BOUNDS && boundsPay(frame, list, &light->map);
-#define PEL_FILTER_(k, s)                                                                           \
-    if (held s) {                                                                                   \
-        const WideFilter one = {f.x[k],       f.y[k],       f.z[k],    f.dzdx[k],  f.dzdy[k],       \
-                                f.radiusX[k], f.radiusY[k], f.cone[k], f.scale[k], (int)f.step[k]}; \
-        shown[k] = bounded ? uniformShadow(bounds + light->bounds, &light->map, &one) : -1.0f;      \
-        if (shown[k] < 0.0f) {                                                                      \
-            ++texels;                                                                               \
-            shown[k] = wideShadowOfPixel(PEL_FORMAT_SHADOW_MAP, map, &light->map, &one, &content);  \
-        }                                                                                           \
+                    float decided[PEL_WIDTH];
+                    storew((floatw)(-1.0f), 0, decided);
+                    if (PEL_BOUNDS && boundsPay(frame, list, &light->map))
+                        uniformShadows(bounds + light->bounds, &light->map, &f, held, decided);
+#define PEL_FILTER_(k, s)                                                                               \
+    if (held s) {                                                                                       \
+        shown[k] = decided[k];                                                                          \
+        if (shown[k] < 0.0f) {                                                                          \
+            const WideFilter one = {f.x[k],       f.y[k],       f.z[k],    f.dzdx[k],  f.dzdy[k],       \
+                                    f.radiusX[k], f.radiusY[k], f.cone[k], f.scale[k], (int)f.step[k]}; \
+            ++texels;                                                                                   \
+            shown[k] = wideShadowOfPixel(PEL_FORMAT_SHADOW_MAP, map, &light->map, &one, &content);      \
+        }                                                                                               \
     }
                     PEL_EACH_LANE(PEL_FILTER_)
 #undef PEL_FILTER_
