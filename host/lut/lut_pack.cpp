@@ -36,6 +36,16 @@ Encoding encodingOf(const Lut& lut, PelLutEncoding encoding) {
                     " is unknown; PEL_LUT_FLOAT (0), PEL_LUT_HALF (1) or PEL_LUT_FACEWORKS8 (2) is needed");
 }
 
+// Nothing is computed for this encoding: copying here spares a program, which takes a CPU longer to compile than a table to make.
+void readFloats(const Lut& lut, float* destination) {
+    const size_t rowTexels = lut.layout().rowTexels, width = lut.width(), height = lut.height();
+    std::vector<cl_float4> texels(rowTexels * height);
+    lut.device().read(lut.texels().get(), 0, texels.size() * sizeof(cl_float4), texels.data(), true);
+    for (size_t y = 0; y < height; ++y)
+        for (size_t x = 0; x < width; ++x)
+            for (size_t c = 0; c < 3; ++c) *destination++ = texels[y * rowTexels + x].s[c];
+}
+
 }  // namespace
 
 Ref<Lut> uploadLut(Ref<Device> device, const PelLutInfo& info, const float* texels, size_t bytes) {
@@ -69,6 +79,7 @@ void readLut(const Lut& lut, PelLutEncoding encoding, void* destination, bool bl
     Device& device = lut.device();
     const Encoding how = encodingOf(lut, encoding);
     const size_t bytes = packedBytes(lut, encoding);
+    if (encoding == PEL_LUT_FLOAT && blocking) return readFloats(lut, static_cast<float*>(destination));
     const cl::Memory packed = device.allocate(bytes);
     constexpr size_t group = 64;
     cl::Launch launch(device.programs().get("lut/lut_encode.cl", {{"PEL_GROUP", std::to_string(group)}}),

@@ -17,13 +17,13 @@ const char* estimatorKernel(PelCurvatureEstimator estimator) {
 }
 
 // What the quadric estimator must know about the neighbours of neighbours. Made at the first call.
-void linkRings(MeshTopology& topology) {
+void linkRings(MeshTopology& topology, const cl::Program& program) {
     const cl::Memory& links =
         topology.scratch(MeshTopology::scratchLinks, topology.ringEntries() * sizeof(uint32_t));
     const cl::Memory& rounds =
         topology.scratch(MeshTopology::scratchRounds, topology.slots() * sizeof(uint32_t));
     if (topology.linked) return;
-    cl::Launch launch(topology.device().programs().get("mesh/mesh_links.cl", {}), "mesh_links");
+    cl::Launch launch(program, "mesh_links");
     launch.arg(topology.slots()).arg(topology.slices()).arg(topology.rings()).arg(links).arg(rounds);
     topology.device().launch(launch, over(topology.slots()));
     topology.linked = true;
@@ -120,13 +120,16 @@ void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params,
         defines["PEL_MESH_RUNS"] = "0";  // they compute much more than they read
         defines.erase("PEL_MESH_QUANTITY");
     }
-    cl::Launch estimate(
-        topology.device().programs().get(text("mesh/", edge ? "curvature" : kernel, ".cl"), defines), kernel);
+    cl::ProgramKey key{{text("mesh/", edge ? "curvature" : kernel, ".cl")}, defines};
+    // In one program, for each one costs a CPU's compiler a tenth of a second before its first kernel.
+    if (params.estimator == PEL_CURVATURE_QUADRIC) key.files.push_back("mesh/mesh_links.cl");
+    const cl::Program program = topology.device().programs().get(key);
+    cl::Launch estimate(program, kernel);
     ringArguments(topology, estimate, rows);
     estimate.arg(data.positions.memory).arg(data.positions.layout.offset);
     estimate.arg(data.normals.memory).arg(data.normals.layout.offset).arg(planeStrideOf(topology)).arg(planes);
     if (params.estimator == PEL_CURVATURE_QUADRIC) {
-        linkRings(topology);
+        linkRings(topology, program);
         estimate.arg(topology.scratch(MeshTopology::scratchLinks, 0));
         estimate.arg(topology.scratch(MeshTopology::scratchRounds, 0)).arg(counts);
     }
