@@ -2,6 +2,7 @@
 // give.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "half_bits.h"
@@ -222,28 +223,6 @@ std::vector<uint8_t> packUint(Image& image) {
     return bytes;
 }
 
-class ShadePacked : public testing::TestWithParam<std::tuple<Packed, bool>> {};
-
-TEST_P(ShadePacked, ShadesWhatItDecodesTo) {
-    const auto& [packed, padded] = GetParam();
-    Frame f = randomFrame(9, 70, 24, 1);
-    Shader shader(device());
-    setFrame(device(), shader, f, tables());
-    std::vector<uint8_t> bytes = packed.pack(f.slots[packed.slot]);
-    const size_t pixel = bytes.size() / f.pixels();
-    PelImageDesc desc = imageDesc(Buffer(), packed.format, f.width, f.height);
-    if (padded) {
-        std::vector<uint8_t> wide(bytes.size() * 2, 0xa5);
-        for (size_t i = 0; i < f.pixels(); ++i) std::memcpy(&wide[i * 2 * pixel], &bytes[i * pixel], pixel);
-        bytes = wide;
-        desc.pixelStride = 2 * pixel;
-    }
-    const Buffer buffer(device(), bytes);
-    desc.buffer = buffer.get();
-    shader.set(packed.slot, desc);
-    EXPECT_LE(worstError(f, shadeInto(shader, f)), tolerance::shadeSum);
-}
-
 const Packed packs[] = {
     {"HalfRgbPosition", PEL_FORMAT_RGB16F, PEL_SLOT_POSITION, packHalf<3>},
     {"HalfRgbaAlbedo", PEL_FORMAT_RGBA16F, PEL_SLOT_ALBEDO, packHalf<4>},
@@ -260,10 +239,52 @@ const Packed packs[] = {
     {"Id16", PEL_FORMAT_R16_UINT, PEL_SLOT_MATERIAL, packUint<uint16_t>},
     {"Id32", PEL_FORMAT_R32_UINT, PEL_SLOT_MATERIAL, packUint<uint32_t>},
 };
-INSTANTIATE_TEST_SUITE_P(Formats, ShadePacked, testing::Combine(testing::ValuesIn(packs), testing::Bool()),
+
+// Formats of different slots are tested in one frame, for compiling the kernel takes seconds.
+std::vector<std::vector<Packed>> frames() {
+    std::vector<std::vector<Packed>> frames;
+    for (const Packed& pack : packs) {
+        const auto free = [&](const std::vector<Packed>& frame) {
+            return std::ranges::none_of(frame, [&](const Packed& other) { return other.slot == pack.slot; });
+        };
+        auto frame = std::ranges::find_if(frames, free);
+        if (frame == frames.end()) frame = frames.emplace(frames.end());
+        frame->push_back(pack);
+    }
+    return frames;
+}
+
+class ShadePacked : public testing::TestWithParam<std::tuple<std::vector<Packed>, bool>> {};
+
+TEST_P(ShadePacked, ShadesWhatItDecodesTo) {
+    const auto& [packed, padded] = GetParam();
+    Frame f = randomFrame(9, 70, 24, 1);
+    Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    std::vector<Buffer> buffers;
+    for (const Packed& one : packed) {
+        std::vector<uint8_t> bytes = one.pack(f.slots[one.slot]);
+        const size_t pixel = bytes.size() / f.pixels();
+        PelImageDesc desc = imageDesc(Buffer(), one.format, f.width, f.height);
+        if (padded) {
+            std::vector<uint8_t> wide(bytes.size() * 2, 0xa5);
+            for (size_t i = 0; i < f.pixels(); ++i)
+                std::memcpy(&wide[i * 2 * pixel], &bytes[i * pixel], pixel);
+            bytes = wide;
+            desc.pixelStride = 2 * pixel;
+        }
+        buffers.emplace_back(device(), bytes);
+        desc.buffer = buffers.back().get();
+        shader.set(one.slot, desc);
+    }
+    EXPECT_LE(worstError(f, shadeInto(shader, f)), tolerance::shadeSum);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, ShadePacked, testing::Combine(testing::ValuesIn(frames()), testing::Bool()),
                          [](const auto& info) {
-                             return std::string(std::get<0>(info.param).name) +
-                                    (std::get<1>(info.param) ? "Padded" : "Tight");
+                             std::string name;
+                             for (const Packed& one : std::get<0>(info.param)) name += one.name;
+                             return name + (std::get<1>(info.param) ? "Padded" : "Tight");
                          });
 
 TEST(ShadeLayouts, HalfOutputRoundsToNearest) {
