@@ -196,10 +196,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                     selectw(shape.width, sqrt(dot3(q, q)) * (8.0f / (float)wideShadow->map.width), sharp);
                 left &= makeCubeFilters(wideShadow, &shape, q, cubeTurned(m, n), PEL_FLATTEST_COSINE, &f);
                 if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(left), texels += countw(left);
-#define PEL_FILTER_(k, s) \
-    if (left s) shown[k] = wideShadowInCube(PEL_FORMAT_SHADOW_MAP, map, wideShadow, &f, k, &content);
-                PEL_EACH_LANE(PEL_FILTER_)
-#undef PEL_FILTER_
+                int wanted[PEL_WIDTH];
+                storew(left, 0, wanted);
+                for (int k = 0; k < PEL_WIDTH; ++k)  // unrolled, a compiler would copy the whole filter for each lane
+                    if (wanted[k])
+                        shown[k] = wideShadowInCube(PEL_FORMAT_SHADOW_MAP, map, wideShadow, &f, k, &content);
             } else {
                 left &= notw(sharp);
                 for (uint cascade = 0; cascade < maps && anyw(left | sharp); ++cascade) {
@@ -225,18 +226,18 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                     storew((floatw)(-1.0f), 0, decided);
                     if (PEL_BOUNDS && boundsPay(frame, list, &light->map))
                         uniformShadows(bounds + light->bounds, &light->map, &f, held, decided);
-#define PEL_FILTER_(k, s)                                                                               \
-    if (held s) {                                                                                       \
-        shown[k] = decided[k];                                                                          \
-        if (shown[k] < 0.0f) {                                                                          \
-            const WideFilter one = {f.x[k],       f.y[k],       f.z[k],    f.dzdx[k],  f.dzdy[k],       \
-                                    f.radiusX[k], f.radiusY[k], f.cone[k], f.scale[k], (int)f.step[k]}; \
-            ++texels;                                                                                   \
-            shown[k] = wideShadowOfPixel(PEL_FORMAT_SHADOW_MAP, map, &light->map, &one, &content);      \
-        }                                                                                               \
-    }
-                    PEL_EACH_LANE(PEL_FILTER_)
-#undef PEL_FILTER_
+                    int wanted[PEL_WIDTH];
+                    storew(held, 0, wanted);
+                    for (int k = 0; k < PEL_WIDTH; ++k) {
+                        if (!wanted[k]) continue;
+                        shown[k] = decided[k];
+                        if (shown[k] >= 0.0f) continue;
+                        const WideFilter one = {f.x[k],     f.y[k],        f.z[k],       f.dzdx[k],
+                                                f.dzdy[k],  f.radiusX[k],  f.radiusY[k], f.cone[k],
+                                                f.scale[k], (int)f.step[k]};
+                        ++texels;
+                        shown[k] = wideShadowOfPixel(PEL_FORMAT_SHADOW_MAP, map, &light->map, &one, &content);
+                    }
                 }
             }
             const Span target = imageSpan(out, &wideShadow->out, first, y);
