@@ -60,7 +60,7 @@ enum class Storage { float32, packed };
 enum class Given { all, noBlurredNormal, noWideShadow };  // what the host does not give, the library makes
 
 Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage = Storage::float32,
-                 Given given = Given::all) {
+                 Given given = Given::all, uint32_t filterTexels = 48) {
     const auto w = uint32_t(s.frame.width), h = uint32_t(s.frame.height);
     const bool packed = storage == Storage::packed;
     Prepared p{Shader(device()), Buffer(device(), size_t(w) * h * 12)};
@@ -84,7 +84,7 @@ Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage =
     }
     std::vector<PelLight> all(lights, s.light);
     for (uint32_t i = 1; i < lights; ++i) std::swap(all[i].toLight[i % 3], all[i].toLight[(i + 1) % 3]);
-    if (given == Given::noWideShadow) all[0].shadowFilterTexels = 48;
+    if (given == Given::noWideShadow) all[0].shadowFilterTexels = filterTexels;
     p.shader.set(all).set(s.camera);
     if (terms != Terms::plain) {
         p.shader.set(s.ambient);
@@ -139,6 +139,23 @@ void library(benchmark::State& state, View view, int taps, int coverage, uint32_
     const Scene& s = scene(view, taps, coverage);
     const Prepared p = prepare(s, lights, terms, storage, given);
     for (auto _ : state) p.shader.execute();
+    perPixel(state, s.frame);
+}
+
+// The wide shadow filtered from the shadow map by at most so many texels across, and how far radiance is from that by all texels: root
+// mean square over pixels of skin.
+void wideShadow(benchmark::State& state, View view, uint32_t filterTexels) {
+    const Scene& s = scene(view, 32);
+    const Prepared p = prepare(s, 1, Terms::scattering, Storage::float32, Given::noWideShadow, filterTexels);
+    for (auto _ : state) p.shader.execute();
+    constexpr uint32_t allTexels = 256;
+    const auto exact =
+        prepare(s, 1, Terms::scattering, Storage::float32, Given::noWideShadow, allTexels).target.readAll<float>();
+    const auto shown = p.target.readAll<float>();
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < shown.size(); ++i)
+        if (s.frame.id[i / 3] == 1) sum += std::pow(double(shown[i]) - exact[i], 2), count += 1;
+    state.counters["radiance_rms"] = std::sqrt(sum / count);
     perPixel(state, s.frame);
 }
 
@@ -227,8 +244,8 @@ int main(int argc, char** argv) {
             add("library/" + name + "_lit_packed", shadeLibrary, view, 32, 100, 1u, Terms::lit, Storage::packed);
             add("library/" + name + "_blur", shadeLibrary, view, 32, 100, 1u, Terms::scattering,
                 Storage::float32, Given::noBlurredNormal);
-            add("library/" + name + "_filter", shadeLibrary, view, 32, 100, 1u, Terms::scattering,
-                Storage::float32, Given::noWideShadow);
+            for (const uint32_t texels : {256, 48, 24, 16, 12, 8})
+                add("wideShadow/" + name + "/texels:" + std::to_string(texels), wideShadow, view, texels);
             add("openMp/" + name, openMp, view, 32, Effort::Straight);
             add("openMp/" + name + "_skipping", openMp, view, 32, Effort::Skipping);
             add("port/" + name, port, view, 32);
