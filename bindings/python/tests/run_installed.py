@@ -7,6 +7,7 @@ the wheel is built with them, and the tests run with the sanitizer's library loa
 something was skipped, so that CTest says so.
 """
 import os
+import shutil
 import subprocess
 import sys
 import venv
@@ -22,9 +23,15 @@ def run(*command, **options):
     return subprocess.run([str(c) for c in command], **options)
 
 
+def compiler_cache():
+    """The environment with ccache before the compilers, where it is installed: most files were compiled a moment ago for the tests in C++."""
+    launchers = {f"CMAKE_{language}_COMPILER_LAUNCHER": "ccache" for language in ("C", "CXX")} if shutil.which("ccache") else {}
+    return {**launchers, **os.environ}
+
+
 def pip(environment, *arguments):
     result = run(environment / "bin/python", "-m", "pip", "--disable-pip-version-check", *arguments,
-                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=compiler_cache())
     if result.returncode:
         print(result.stdout)
         if "No matching distribution" in result.stdout or "Failed to establish a new connection" in result.stdout:
