@@ -16,7 +16,7 @@ import traceback
 import bpy
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from gbuffer import geometry, lights, passes, scene_file, surface  # noqa: E402
+from gbuffer import eyes, geometry, lights, passes, scene_file, surface  # noqa: E402
 from gbuffer.fault import Fault  # noqa: E402
 
 
@@ -102,6 +102,7 @@ def main():
     things = geometry.realise(source, scene)
     if not options.no_curvature:
         geometry.measure_curvature(things, options.pellucid, options.smooth)
+    found = eyes.find(things, unit)
     materials = surface.prepare(things)
     bounds = geometry.Bounds(things)
     frame = passes.frame_size(source, options)
@@ -114,7 +115,7 @@ def main():
     for lamp in lamps:
         lights.render_shadow_map(scene, lamp, bounds, options, taken)
     sky = lights.ambient(source, options.output)
-    scene_file.write(os.path.join(options.output, "scene.toml"), unit, camera, lamps, sky, materials, not options.no_curvature)
+    scene_file.write(os.path.join(options.output, "scene.toml"), unit, camera, lamps, sky, materials, found, not options.no_curvature)
     print(f"pellucid: {options.output}/gbuffer.exr, {options.output}/scene.toml", flush=True)
 
 

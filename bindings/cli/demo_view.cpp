@@ -99,7 +99,8 @@ std::vector<io::SceneMaterial> materialsOf(const DemoHead& head) {
     materials[0].material = skin();
     materials[0].profile = profileName;
     if (materials.size() > 1) {
-        materials[demo::DEMO_EYES - 1].material = glossy(0.6f, 0.08f);
+        // Their gloss is that of the film of tears.
+        materials[demo::DEMO_EYES - 1].material = materials[demo::DEMO_RIGHT_EYE - 1].material = glossy(0, 1);
         materials[demo::DEMO_TEETH - 1].material = glossy(0.5f, 0.15f);
         materials[demo::DEMO_TONGUE - 1].material = glossy(0.4f, 0.2f);
         materials[demo::DEMO_CUT - 1].material = glossy(0, 1);
@@ -131,6 +132,9 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
 
     sample::GBufferOptions look;
     look.looks = head.looks, look.tints = head.tints, look.eyes = head.eyes;
+    for (sample::EyeLook& eye : look.eyes)
+        eye.irisRadius = eye.pupilRadius = 1e-3;  // the models have their own
+    view.scene.eyes = head.eyeModels;
     if (!head.looks.empty()) look.detail.blotchAmount = 0.02;  // the tints are enough
     sample::GBuffer g;
     view.gbufferMilliseconds = timed([&] { g = sample::renderGBuffer(mesh, camera, width, height, look); });

@@ -155,7 +155,9 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
         }
     }
     shader_.set(scene.ambient);
-    if (!scene.ambientCube.empty()) setAmbientCube(device, scene.ambientCube);
+    for (const io::SceneEye& e : scene.eyes) setEye(device, scene, e);
+    if (!scene.ambientCube.empty()) shader_.setAmbientCube(uploadCube(device, scene.ambientCube));
+    if (!scene.reflectionCube.empty()) shader_.setReflectionCube(uploadCube(device, scene.reflectionCube));
     shader_.set(scene.camera);
     shader_.commit();
 }
@@ -184,15 +186,31 @@ void Frame::setMaterial(const io::SceneFile& scene, const io::SceneMaterial& m, 
     shader_.setMaterial(m.id, material, curvature, shadow);
 }
 
-void Frame::setAmbientCube(const Device& device, const std::string& file) {
+void Frame::setEye(const Device& device, const io::SceneFile& scene, const io::SceneEye& e) {
+    PelEye eye = e.eye;
+    Profile profile;
+    try {
+        if (!e.irisProfile.empty()) profile = io::findProfile(e.irisProfile).profile;
+        eye.irisProfile = profile.get();
+        shader_.setEye(e.material, eye, e.caustics.empty() ? Lut() : io::readLut(device, e.caustics));
+    } catch (const Error& error) {
+        throw io::FileError(scene.source, error.what(), e.line);
+    }
+    if (e.irisTexture.empty()) return;
+    const io::Image image = io::readImage(e.irisTexture);
+    shader_.setIrisTexture(
+        e.material,
+        upload(device, image, colorChannels(e.irisTexture, image, "the texture of an iris needs three")));
+}
+
+PelImageDesc Frame::uploadCube(const Device& device, const std::string& file) {
     const io::Image image = io::readImage(file);
     if (image.height != 6 * image.width && image.width != 6 * image.height)
         throw io::FileError(
             file,
             "is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
                 "; a cube map is six square faces, one below the other (n x 6n) or side by side (6n x n)");
-    shader_.setAmbientCube(
-        upload(device, image, colorChannels(file, image, "a cube map needs three: red, green, blue")));
+    return upload(device, image, colorChannels(file, image, "a cube map needs three: red, green, blue"));
 }
 
 void Frame::setNormalMap(const Device& device, uint32_t id, const std::string& file) {
@@ -323,6 +341,10 @@ nlohmann::ordered_json toJson(const PelShaderStats& s) {
             {"pixels_shadow_lut", s.pixelsShadowLut},
             {"pixels_thickness", s.pixelsThickness},
             {"pixels_specular", s.pixelsSpecular},
+            {"pixels_eye", s.pixelsEye},
+            {"pixels_iris", s.pixelsIris},
+            {"pixels_caustic", s.pixelsCaustic},
+            {"tiles_eye", s.tilesEye},
             {"pixels_wide_shadow", s.pixelsWideShadow},
             {"pixels_shadow_texels", s.pixelsShadowTexels},
             {"bands", s.bands},

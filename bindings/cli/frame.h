@@ -48,11 +48,12 @@ class Frame {
 
   private:
     void setMaterial(const io::SceneFile& scene, const io::SceneMaterial& m, LutStore& luts);
+    void setEye(const Device& device, const io::SceneFile& scene, const io::SceneEye& e);
     void setNormalMap(const Device& device, uint32_t id, const std::string& file);
     void setScatteredTexture(const Device& device, uint32_t id, const std::string& file);
     // Curvature from normals and positions or depth of the G-buffer (pelScreenCurvature).
     PelImageDesc measureCurvature(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene);
-    void setAmbientCube(const Device& device, const std::string& file);
+    PelImageDesc uploadCube(const Device& device, const std::string& file);
     PelImageDesc upload(const Device& device, const io::Image& image, const std::vector<std::string>& channels);
 
     Shader shader_;

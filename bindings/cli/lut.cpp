@@ -1,7 +1,10 @@
-// pellucid lut curvature|shadow: integrates a look-up table and writes it.
+// pellucid lut curvature|shadow|specular|eye: integrates a look-up table and writes it.
 #include "io/choice_keys.h"
 #include "io/lut/lut_file.h"
 #include "io/lut/profile_file.h"
+
+#include <cstdio>
+#include <type_traits>
 
 #include "command.h"
 #include "io/atomic_file.h"
@@ -13,10 +16,12 @@ namespace {
 
 struct Arguments {
     Run::Options run;
-    std::string output, size = "512x512", encoding, form = "arc", axis = "linear", profile = "skin";
+    std::string output, size = "512x512", encoding, irisProfile, form = "arc", axis = "linear",
+                        profile = "skin";
     PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
     PelShadowLutDesc shadow = pelShadowLutDescDefaults();
     PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
+    PelEyeLutDesc eye = pelEyeLutDescDefaults();
     CLI::Option* radius = nullptr;  // --diffusion-radius of the requested table
 };
 
@@ -37,9 +42,27 @@ void writeTablePicture(const std::string& path, const Lut& lut, uint32_t width, 
     io::writeImage8(path, int(width), int(height), 3, io::toSrgb8(lut.read<float>(PEL_LUT_FLOAT), plain));
 }
 
+// WxHxD of an eye's table.
+void parseEyeSize(const std::string& text, PelEyeLutDesc& desc) {
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%ux%ux%u%c", &desc.width, &desc.height, &desc.depth, &rest) != 3)
+        throw UsageError("--size: '" + text + "' is not three numbers such as 64x64x32");
+}
+
+uint32_t rowsOf(const PelEyeLutDesc& desc) {
+    return desc.height * desc.depth;
+}
+template <class Desc>
+uint32_t rowsOf(const Desc& desc) {
+    return desc.height;
+}
+
 template <class Desc>
 void integrate(Arguments& arguments, Desc& desc) {
-    parseSize(arguments.size, desc.width, desc.height);
+    if constexpr (std::is_same_v<Desc, PelEyeLutDesc>)
+        parseEyeSize(arguments.size, desc);
+    else
+        parseSize(arguments.size, desc.width, desc.height);
     const bool bc6h = arguments.encoding == "bc6h";
     const bool picture = arguments.encoding.empty() && io::isPicture(arguments.output);
     std::optional<PelLutEncoding> encoding;
@@ -63,7 +86,7 @@ void integrate(Arguments& arguments, Desc& desc) {
         run.report["encoding_error_max"] = error.max;
         run.report["encoding_error_rms"] = error.rms;
     } else if (picture) {
-        writeTablePicture(arguments.output, lut, desc.width, desc.height);
+        writeTablePicture(arguments.output, lut, desc.width, rowsOf(desc));
     } else {
         io::writeLut(arguments.output, lut, encoding);
     }
@@ -73,16 +96,16 @@ void integrate(Arguments& arguments, Desc& desc) {
                                        : names[*encoding];
     run.report["width"] = desc.width;
     run.report["height"] = desc.height;
-    run.report["texels"] = uint64_t(desc.width) * desc.height;
+    run.report["texels"] = uint64_t(desc.width) * rowsOf(desc);
     if (encoding == PEL_LUT_FACEWORKS8 && lut.info().kind == PEL_LUT_CURVATURE)
         run.report["clipped_texels"] = lut.clippedTexels();
     run.finish();
 }
 
-void addCommon(CLI::App& command, Arguments& a) {
+void addCommon(CLI::App& command, Arguments& a, const char* size = "texels, WxH") {
     command.add_option("-o,--output", a.output, "file to write: .exr, .png, .bmp, .tga, .npy, .dds or .ktx2")
         ->required();
-    command.add_option("--size", a.size, "texels, WxH")->capture_default_str();
+    command.add_option("--size", a.size, size)->capture_default_str();
     command
         .add_option("--encoding", a.encoding,
                     "float, half, faceworks8 (.png, .bmp, .tga for engines), or bc6h for .dds and .ktx2 "
@@ -146,6 +169,27 @@ void addLut(CLI::App& app) {
     CLI::App* specular = lut->add_subcommand("specular", "Beckmann's distribution over n.h and roughness");
     addCommon(*specular, *a);
     specular->callback([a] { integrate(*a, a->specular); });
+
+    CLI::App* eye = lut->add_subcommand(
+        "eye", "Light on the iris behind a cornea, over place and the light's angle: slice below slice");
+    addCommon(*eye, *a, "texels, WxHxD; 64x64x32 by default");
+    eye->add_option("--profile", a->irisProfile, "of the iris, in which light scatters (default: none)");
+    const std::pair<const char*, float*> lengths[] = {
+        {"--sclera-radius", &a->eye.scleraRadius}, {"--cornea-radius", &a->eye.corneaRadius},
+        {"--limbus-radius", &a->eye.limbusRadius}, {"--chamber-depth", &a->eye.chamberDepth},
+        {"--iris-radius", &a->eye.irisRadius},     {"--iris-concavity", &a->eye.irisConcavity},
+    };
+    for (const auto& [name, value] : lengths) eye->add_option(name, *value, "mm")->capture_default_str();
+    eye->add_option("--cornea-conic", a->eye.corneaConic, "conic constant")->capture_default_str();
+    eye->add_option("--cornea-index", a->eye.corneaIndex, "refractive index")->capture_default_str();
+    eye->add_option("--aqueous-index", a->eye.aqueousIndex, "refractive index")->capture_default_str();
+    eye->callback([a, eye] {
+        if (!eye->count("--size")) a->size = "64x64x32";
+        Profile profile;
+        if (!a->irisProfile.empty()) profile = io::findProfile(a->irisProfile).profile;
+        a->eye.profile = profile.get();
+        integrate(*a, a->eye);
+    });
 }
 
 }  // namespace pellucid::cli

@@ -59,6 +59,21 @@ std::vector<sample::Tint> tintsOf(const io::PartedMesh& head, const Bounds (&eye
     return tints;
 }
 
+// An adult's eye, as large as the ball.
+io::SceneEye modelOf(const sample::EyeLook& look, uint32_t material) {
+    io::SceneEye model;
+    model.material = material;
+    PelEye& eye = model.eye;
+    const Vec3 centre = look.centre, gaze = look.gaze;
+    const double place[3] = {centre.x, centre.y, centre.z}, direction[3] = {gaze.x, gaze.y, gaze.z};
+    for (int i = 0; i < 3; ++i) eye.center[i] = float(place[i]), eye.gaze[i] = float(direction[i]);
+    const float scale = float(look.radius) / eye.scleraRadius;
+    for (float* length : {&eye.scleraRadius, &eye.corneaRadius, &eye.limbusRadius, &eye.limbusWidth,
+                          &eye.chamberDepth, &eye.pupilRadius})
+        *length *= scale;
+    return model;
+}
+
 }  // namespace
 
 bool hasHeadParts(const std::string& path) {
@@ -76,15 +91,16 @@ DemoHead loadDemoHead(const std::string& path, int levels) {
     out.pose = {{0, 1, 0}, {0, 0, 1}};
     for (const uint32_t part : head.partOf) {
         const std::string& name = head.parts[part];
-        out.materials.push_back(name.starts_with("eye")      ? DEMO_EYES
+        out.materials.push_back(name == "eye_right"          ? DEMO_RIGHT_EYE
+                                : name.starts_with("eye")    ? DEMO_EYES
                                 : name.starts_with("teeth")  ? DEMO_TEETH
                                 : name.starts_with("tongue") ? DEMO_TONGUE
                                 : name == "cut"              ? DEMO_CUT
                                                              : DEMO_SKIN);
     }
-    out.looks.resize(5);
+    out.looks.resize(6);
     out.looks[DEMO_SKIN - 1].albedo = {0.76f, 0.54f, 0.44f};
-    out.looks[DEMO_EYES - 1].kind = sample::Look::Kind::Eye;
+    out.looks[DEMO_EYES - 1].kind = out.looks[DEMO_RIGHT_EYE - 1].kind = sample::Look::Kind::Eye;
     out.looks[DEMO_TEETH - 1] = {sample::Look::Kind::Plain, {0.75f, 0.70f, 0.58f}};
     out.looks[DEMO_TONGUE - 1] = {sample::Look::Kind::Plain, {0.55f, 0.22f, 0.20f}};
     out.looks[DEMO_CUT - 1] = {sample::Look::Kind::Plain, {0.02f, 0.02f, 0.02f}};
@@ -103,6 +119,7 @@ DemoHead loadDemoHead(const std::string& path, int levels) {
         eye.irisRadius = 0.42 * eye.radius;
         eye.pupilRadius = 0.16 * eye.radius;
         out.eyes.push_back(eye);
+        out.eyeModels.push_back(modelOf(eye, &ball == eyes ? DEMO_EYES : DEMO_RIGHT_EYE));
     }
     if (!eyes[0].empty() && !eyes[1].empty() && !mouth.empty()) out.tints = tintsOf(head, eyes, mouth, skin);
     out.frame = skin;

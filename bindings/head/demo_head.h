@@ -4,20 +4,29 @@
 #include <vector>
 
 #include "io/mesh/mesh_file.h"
+#include "io/scene/scene_file.h"
 #include "sample/camera.h"
 #include "sample/look.h"
 
 namespace pellucid::demo {
 
 // Material ids of the demo.
-enum DemoMaterial : uint32_t { DEMO_SKIN = 1, DEMO_EYES = 2, DEMO_TEETH = 3, DEMO_TONGUE = 4, DEMO_CUT = 5 };
+enum DemoMaterial : uint32_t {
+    DEMO_SKIN = 1,
+    DEMO_EYES = 2,
+    DEMO_TEETH = 3,
+    DEMO_TONGUE = 4,
+    DEMO_CUT = 5,
+    DEMO_RIGHT_EYE = 6
+};
 
 struct DemoHead {
-    io::MeshData mesh;                // mm
-    std::vector<uint32_t> materials;  // DemoMaterial per triangle; empty: all skin
-    std::vector<sample::Look> looks;  // of the ids 1, 2, ...
-    std::vector<sample::Tint> tints;  // lips, cheeks, ears
-    std::vector<sample::EyeLook> eyes;
+    io::MeshData mesh;                    // mm
+    std::vector<uint32_t> materials;      // DemoMaterial per triangle; empty: all skin
+    std::vector<sample::Look> looks;      // of the ids 1, 2, ...
+    std::vector<sample::Tint> tints;      // lips, cheeks, ears
+    std::vector<sample::EyeLook> eyes;    // painted, for renderers without models
+    std::vector<io::SceneEye> eyeModels;  // the same as PelEye, around DEMO_EYES and DEMO_RIGHT_EYE
     sample::HeadPose pose;
     sample::Bounds frame;  // what the picture shows: a neck that was cut off is left out
 };

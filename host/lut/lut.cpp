@@ -23,8 +23,6 @@ PelLutInfo resolved(PelLutInfo info, const Profile& profile) {
         std::memset(info.profile, 0, sizeof info.profile);
         std::strncpy(info.profile, profile.name().c_str(), sizeof info.profile - 1);
     }
-    if (info.kind == PEL_LUT_EYE && !profileHandle(info))
-        std::strncpy(info.profile, "none", sizeof info.profile);
     for (float* radius : {&info.curvature.diffusionRadius, &info.shadow.diffusionRadius})
         if (*radius == 0) *radius = float(profile.radius());
     if (info.eye.irisRadius == 0) info.eye.irisRadius = info.eye.limbusRadius;

@@ -1,4 +1,4 @@
-// The ambient cube map in the form that the shading kernel reads (lib/shading/ambient_cube.clh), made from
+// The ambient cube map, and the one that eyes reflect, in the form that the shading kernel reads (lib/shading/ambient_cube.clh), made from
 // the host's six faces once per execution.
 #include <algorithm>
 
@@ -14,12 +14,14 @@ uint32_t edgeOf(const ImageView& faces) {
     return std::min(faces.width, faces.height);
 }
 
-class AmbientCube final : public Pass {
+// The cube map `Faces` of a state, as nodes in `Nodes` of a plan.
+template <ImageView ShaderState::*Faces, cl::Memory ShaderPlan::*Nodes, uint32_t Feature>
+class CubeNodes final : public Pass {
   public:
-    static bool needed(const ShaderPlan& plan) { return bool(plan.state.ambientCube); }
+    static bool needed(const ShaderPlan& plan) { return plan.state.*Faces && plan.features & Feature; }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
-        const size_t across = edgeOf(plan.state.ambientCube) + size_t(2),
+        const size_t across = edgeOf(plan.state.*Faces) + size_t(2),
                      bytes = 18 * across * across * sizeof(float);
         if (bytes != bytes_) {
             bytes_ = 0;
@@ -27,7 +29,7 @@ class AmbientCube final : public Pass {
             nodes_ = device->allocate(bytes);
             bytes_ = bytes;
         }
-        plan.ambientNodes = nodes_;
+        plan.*Nodes = nodes_;
     }
     size_t bytes() const override { return bytes_; }
 
@@ -35,11 +37,11 @@ class AmbientCube final : public Pass {
         return {{{"shading/ambient_cube.cl"},
                  {{"PEL_GROUP", text(group)},
                   {"PEL_WIDTH", "1"},
-                  {"PEL_FORMAT_CUBE", text(formatCode(plan.state.ambientCube, 1))}}}};
+                  {"PEL_FORMAT_CUBE", text(formatCode(plan.state.*Faces, 1))}}}};
     }
 
     void enqueueFrame(PassWork& work) const override {
-        const ImageView& faces = work.plan.state.ambientCube;
+        const ImageView& faces = work.plan.state.*Faces;
         const cl_uint size = edgeOf(faces);
         // Bytes from one face to the next.
         const uint64_t step = faces.height > faces.width ? size * faces.rowStride : size * faces.pixelStride;
@@ -59,6 +61,9 @@ class AmbientCube final : public Pass {
 
 }  // namespace
 
-constinit const PassKind ambientCubePass = passKind<AmbientCube>();
+constinit const PassKind ambientCubePass =
+    passKind<CubeNodes<&ShaderState::ambientCube, &ShaderPlan::ambientNodes, PEL_FEATURE_AMBIENT_CUBE>>();
+constinit const PassKind reflectionCubePass =
+    passKind<CubeNodes<&ShaderState::reflectionCube, &ShaderPlan::reflectionNodes, PEL_FEATURE_REFLECTION_CUBE>>();
 
 }  // namespace pel

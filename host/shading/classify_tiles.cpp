@@ -41,11 +41,13 @@ class ClassifyTiles final : public Pass {
         std::vector<cl_uint> counts(std::max<size_t>(bands, 1) * PEL_TILE_LISTS);
         device.read(bands > 1 ? bandCounts_.get() : lists_.get(), 0, counts.size() * sizeof(cl_uint),
                     counts.data(), true);
-        stats.tilesShaded = 0;
+        stats.tilesShaded = stats.tilesEye = 0;
         for (size_t i = 0; i < counts.size(); ++i) {
             const size_t list = i % PEL_TILE_LISTS;
             if (plan.variants.size() > 1 ? list > 0 : list == 0) stats.tilesShaded += counts[i];
             if (list > 1) stats.tilesPartial += counts[i];
+            const bool counted = plan.variants.size() > 1 ? list > 0 : list == 0;
+            if (counted && plan.variants[list ? list - 1 : 0] & PEL_FEATURE_EYE) stats.tilesEye += counts[i];
         }
     }
 

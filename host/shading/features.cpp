@@ -40,20 +40,20 @@ void checkSizes(const ShaderState& state) {
                 "read");
     };
     for (int slot = 1; slot < PEL_SLOT_COUNT; ++slot) check(state.images[slot], slotName(slot), slot);
-    if (const ImageView& cube = state.ambientCube) {
-        checkOutputs(cube, "ambient cube", -1);
-        if (overlapsElsewhere(target, cube))
-            invalidArgument("the radiance image overlaps the ambient cube in memory");
-    }
+    const auto checkApart = [&](const ImageView& view, const std::string& what) {
+        if (!view) return;
+        checkOutputs(view, what, -1);
+        if (overlapsElsewhere(target, view))
+            invalidArgument("the radiance image overlaps the ", what, " in memory");
+    };
+    checkApart(state.ambientCube, "ambient cube");
+    checkApart(state.reflectionCube, "reflection cube");
+    for (const auto& [id, material] : state.materials)
+        if (material.eye) checkApart(material.eye->iris, text("iris texture of material ", id));
     for (size_t i = 0; i < state.lights.size(); ++i) {
         check(state.lights[i].images[PEL_LIGHT_WIDE_SHADOW], text("wide shadow ", i));
         for (int slot = PEL_LIGHT_SHADOW_MAP; slot < PEL_LIGHT_SLOT_COUNT; ++slot) {
-            const ImageView& map = state.lights[i].images[slot];
-            if (!map) continue;
-            const std::string what = text(lightSlotName(PelLightSlot(slot)), " ", i);
-            checkOutputs(map, what, -1);
-            if (overlapsElsewhere(target, map))
-                invalidArgument("the radiance image overlaps ", what, " in memory");
+            checkApart(state.lights[i].images[slot], text(lightSlotName(PelLightSlot(slot)), " ", i));
         }
     }
 }
@@ -172,6 +172,7 @@ uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material)
         if (m.specular > 0) needs |= PEL_FEATURE_SPECULAR;
         if (m.specular > 0 && m.specularModel == PEL_SPECULAR_GGX) needs |= PEL_FEATURE_GGX;
     }
+    if (material.eye) needs |= PEL_FEATURE_EYE | (state.reflectionCube ? PEL_FEATURE_REFLECTION_CUBE : 0);
     const bool ambient = !isBlack(state.ambient) || state.ambientCube;
     if (ambient && images[PEL_SLOT_THICKNESS] && m.deepScatterAmbient > 0 && !black(m.deepScatterColor))
         needs |= PEL_FEATURE_AMBIENT_SCATTER;
@@ -187,8 +188,6 @@ uint32_t deriveFeatures(const ShaderState& state) {
         invalidArgument("no material is set: pelShaderSetMaterial gives an id its material");
     if (!images[PEL_SLOT_MATERIAL] && !state.materials.contains(1))
         invalidArgument("without a material image all pixels are of material 1, which is not set");
-    if (std::ranges::any_of(state.materials, [](const auto& m) { return m.second.eye.has_value(); }))
-        fail(PEL_ERROR_UNSUPPORTED, "this build of the library does not shade eyes yet");
     checkLightFormats(state, PEL_LIGHT_WIDE_SHADOW);
     checkLightFormats(state, PEL_LIGHT_SHADOW_MAP);
     checkShadowMaps(state);
@@ -237,6 +236,7 @@ uint32_t deriveFeatures(const ShaderState& state) {
     if (features & PEL_FEATURE_SPECULAR) need(position, what, "by the specular term");
     if (features & PEL_FEATURE_BLUR_NORMALS) need(position, what, "to blur normals over a length");
     if (filtered) need(position, what, "to filter a wide shadow from a shadow map");
+    if (features & PEL_FEATURE_EYE) need(position, what, "by eyes");
     if (positional) need(position, what, "by point and spot lights");
     return features;
 }

@@ -5,6 +5,6 @@
 namespace pel {
 
 extern const PassKind ambientCubePass, classifyTilesPass, blurNormalsPass, normalMapPass, shadowBoundsPass,
-    wideShadowPass, irradiancePass, shadePass;
+    wideShadowPass, irradiancePass, reflectionCubePass, irisesPass, shadePass;
 
 }  // namespace pel

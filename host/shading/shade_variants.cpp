@@ -83,10 +83,15 @@ cl::Range classifyRange(const Device& device, size_t tiles) {
 
 std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t features) {
     std::vector<uint32_t> variants{features};
-    // Other outputs must not depend on the variant; and tests want every term everywhere.
-    if (!state.images[PEL_SLOT_MATERIAL] || state.options.tileLists != PEL_TILES_PER_VARIANT ||
-        state.options.disableSkipping || features & PEL_FEATURE_OUTPUTS)
+    // Tests want every term everywhere.
+    if (!state.images[PEL_SLOT_MATERIAL] || state.options.tileLists == PEL_TILES_NO_LIST ||
+        state.options.disableSkipping)
         return variants;
+    // Tiles without an eye have no code for eyes.
+    if (features & PEL_FEATURE_EYE)
+        variants.push_back(features & ~uint32_t(PEL_FEATURE_EYE | PEL_FEATURE_REFLECTION_CUBE));
+    // Other outputs must not depend on further variants.
+    if (state.options.tileLists != PEL_TILES_PER_VARIANT || features & PEL_FEATURE_OUTPUTS) return variants;
     std::set<uint32_t> needed;
     for (const auto& [id, material] : state.materials) needed.insert(materialNeeds(state, material));
     std::vector<uint32_t> partial;
@@ -98,8 +103,9 @@ std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t feature
             partial.push_back(left);
     }
     std::ranges::stable_sort(partial, std::greater{}, [](uint32_t f) { return std::popcount(f); });
+    std::erase(partial, variants.back());
     // The cheapest ones.
-    const size_t most = PEL_TILE_VARIANTS - 1;
+    const size_t most = PEL_TILE_VARIANTS - variants.size();
     if (partial.size() > most) partial.erase(partial.begin(), partial.end() - ptrdiff_t(most));
     variants.insert(variants.end(), partial.begin(), partial.end());
     return variants;

@@ -6,6 +6,7 @@
 #include "shading/choose_method.h"
 #include "shading/features.h"
 #include "shading/image_slots.h"
+#include "shading/irises.h"
 #include "shading/scatter_controls.h"
 #include "shading/shade_variants.h"
 
@@ -39,6 +40,7 @@ void Shader::commit() {
 
 // Makes a plan and the memory of its passes, in bands of at most this many rows of tiles.
 void Shader::allocate(uint32_t mostRows) {
+    prepareEyes(device_, state_.materials);
     ShaderPlan plan = planOf(state_, methods());
     checkMethods(plan.state);
     checkScattering(plan.state);
@@ -199,6 +201,7 @@ PelShaderStats Shader::stats() {
     stats.launches = launches_;
     stats.bytesUploaded = uploadedBefore_;
     stats.tilesTotal = stats.tilesShaded = constants_.frame().tiles;
+    if (plan_.features & PEL_FEATURE_EYE) stats.tilesEye = stats.tilesTotal;  // unless there are lists
     stats.pixelsTotal = uint64_t(constants_.frame().width) * constants_.frame().height;
     stats.bands = bands_;
     stats.variants = plan_.variants.size();
@@ -213,6 +216,9 @@ PelShaderStats Shader::stats() {
         stats.pixelsWideShadow = counts[PEL_COUNT_WIDE_SHADOW];
         stats.pixelsShadowTexels = counts[PEL_COUNT_SHADOW_TEXELS];
         stats.pixelsIrradiance = counts[PEL_COUNT_IRRADIANCE];
+        stats.pixelsEye = counts[PEL_COUNT_EYE];
+        stats.pixelsIris = counts[PEL_COUNT_IRIS];
+        stats.pixelsCaustic = counts[PEL_COUNT_CAUSTIC];
         static_assert(std::size(decltype(stats.pixelsByScattering){}) == PEL_SCATTERS);
         for (int i = 0; i < PEL_SCATTERS; ++i) {
             stats.pixelsByScattering[i] = counts[PEL_COUNT_SCATTERING + i];

@@ -34,11 +34,13 @@ struct ShaderPlan {
     bool wholeFrame = false;
     bool scratch = false;  // whether a pass makes images, which hold the rows of a band and of its halo
 
-    cl::Memory counters;        // PEL_COUNTERS
-    cl::Memory tileLists;       // lists of tiles; none without a material image
-    cl::Memory ambientNodes;    // of the ambient cube
-    uint32_t scratchPlane = 0;  // floats from plane to plane of images that passes make (scratch_planes.h)
-    ImageView arriving;         // irradiance before it is scattered, where a pass needs it later
+    cl::Memory counters;         // PEL_COUNTERS
+    cl::Memory tileLists;        // lists of tiles; none without a material image
+    cl::Memory ambientNodes;     // of the ambient cube
+    cl::Memory reflectionNodes;  // of the cube that eyes reflect
+    cl::Memory irises;           // texels of all eyes' irises
+    uint32_t scratchPlane = 0;   // floats from plane to plane of images that passes make (scratch_planes.h)
+    ImageView arriving;          // irradiance before it is scattered, where a pass needs it later
     std::vector<FilteredLight> filteredLights;
     std::vector<BoundedMap> boundedMaps;
     cl::Memory bounds;

@@ -107,7 +107,9 @@ void Shader::setEye(uint32_t id, const PelEye* eye, Lut* caustics) {
         return;
     }
     ShaderEye set = material.eye.value_or(ShaderEye());  // which may have a texture
+    const PelEye before = set.params;
     set.params = resolvedEye(*eye);
+    set.ambientKnown &= sameShape(before, set.params);
     if (caustics && &caustics->device() != device_.get())
         invalidArgument("the caustics belong to another PelDevice than the shader");
     if (caustics && caustics->info().kind != PEL_LUT_EYE)
@@ -116,8 +118,12 @@ void Shader::setEye(uint32_t id, const PelEye* eye, Lut* caustics) {
         std::ranges::count_if(state_.materials, [](const auto& m) { return m.second.eye.has_value(); });
     if (!material.eye && eyes >= PEL_EYES)
         invalidArgument("material ", id, " would be eye ", eyes + 1, "; ", PEL_EYES, " are the most");
-    set.irisProfile = eye->irisProfile ? fromHandle<Profile>(eye->irisProfile) : Ref<Profile>();
-    set.caustics = Ref(caustics);
+    const Ref<Profile> profile = eye->irisProfile ? fromHandle<Profile>(eye->irisProfile) : Ref<Profile>();
+    // An eye that only moves keeps its table.
+    const bool keeps = !caustics && set.ownCaustics && set.irisProfile.get() == profile.get() &&
+                       sameShape(before, set.params);
+    if (!keeps) set.caustics = Ref(caustics);
+    set.irisProfile = profile;
     set.ownCaustics = caustics == nullptr;
     material.eye = std::move(set);
     committed_ = false;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/image_view.h"
+#include "eye/eye_constants.h"
 #include "lut/lut.h"
 #include "lut/profile.h"
 
@@ -13,12 +14,22 @@ namespace pel {
 
 // The eye around a material that is its sclera.
 struct ShaderEye {
-    PelEye params;  // checked, with its defaults filled in (eye/check_eye.h)
+    PelEye params{};  // checked, with its defaults filled in (eye/check_eye.h)
     Ref<Profile> irisProfile;
     Ref<Lut> caustics;  // the caller's, or made at commit
     bool ownCaustics = false;
+    AmbientNodes ambient{};
+    bool ambientKnown = false;
     ImageView iris;  // texture; none: fibres are drawn
 };
+
+// Texels along a side of its iris in the form that shading samples, and how many there are with a copied column and row.
+inline uint32_t irisTexels(const ShaderEye& eye) {
+    return eye.iris ? eye.iris.width : PEL_FIBRE_TEXELS;
+}
+inline uint32_t paddedTexels(uint32_t side) {
+    return (side + 1) * (side + 1);
+}
 
 struct ShaderMaterial {
     PelMaterial given;  // by the caller, with

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "eye/eye_constants.h"
 #include "shading/features.h"
 #include "shading/material.h"
 
@@ -50,11 +51,13 @@ size_t ShadingConstants::update(Device& device, const ShaderState& state,
     frame_.listTiles = listTiles;
     const auto materials = describeMaterials(state, variants);
     const auto lights = describeLights(state);
+    const auto eyes = describeEyes(state);
     const size_t frameBytes = frameUpload_.update(device, &frame_, sizeof frame_);
     if (frameBytes) band_ = {frame_.tiles, frame_.firstTile, frame_.scratchRow};
     return frameBytes +
            materialUpload_.update(device, materials.data(), materials.size() * sizeof materials[0]) +
-           lightUpload_.update(device, lights.data(), lights.size() * sizeof(PelShadeLight));
+           lightUpload_.update(device, lights.data(), lights.size() * sizeof(PelShadeLight)) +
+           (eyes.empty() ? 0 : eyeUpload_.update(device, eyes.data(), eyes.size() * sizeof eyes[0]));
 }
 
 void ShadingConstants::setBand(Device& device, uint32_t firstTile, uint32_t tiles, uint32_t scratchRow) {
@@ -75,7 +78,8 @@ size_t ShadingConstants::scratchBytes() const {
 void ShadingConstants::gatherLuts(Device& device, const ShaderState& state) {
     std::vector<Ref<Lut>> wanted;
     for (const auto& [id, material] : state.materials)
-        for (const Ref<Lut>& lut : {material.curvatureLut, material.shadowLut, material.transmission})
+        for (const Ref<Lut>& lut : {material.curvatureLut, material.shadowLut, material.transmission,
+                                    material.eye ? material.eye->caustics : Ref<Lut>()})
             if (lut && std::none_of(wanted.begin(), wanted.end(), [&](auto& w) { return w.get() == lut.get(); }))
                 wanted.push_back(lut);
     const bool same = std::equal(wanted.begin(), wanted.end(), gathered_.begin(), gathered_.end(),
@@ -109,13 +113,17 @@ void ShadingConstants::gatherLuts(Device& device, const ShaderState& state) {
     offsets_ = std::move(offsets);
 }
 
+uint32_t ShadingConstants::offsetOf(const Lut* lut) const {
+    const auto found =
+        std::find_if(gathered_.begin(), gathered_.end(), [&](const auto& g) { return g.get() == lut; });
+    return offsets_[size_t(found - gathered_.begin())];
+}
+
 PelShadeLut ShadingConstants::describe(const Lut* lut, float materialRadius) const {
     PelShadeLut result{};
     if (!lut) return result;
-    const auto found =
-        std::find_if(gathered_.begin(), gathered_.end(), [&](const auto& g) { return g.get() == lut; });
     result.layout = lut->layout();
-    result.offset = offsets_[size_t(found - gathered_.begin())];
+    result.offset = offsetOf(lut);
     result.radiusRatio = float(double(materialRadius) / lut->diffusionRadius());
     return result;
 }
@@ -133,6 +141,7 @@ void ShadingConstants::fillFrame(const ShaderState& state) {
     copy(frame_.inverseViewProjection, state.camera.inverseViewProjection);
     copy(frame_.invalidColor, state.options.invalidColor);
     frame_.cubeSize = std::min(state.ambientCube.width, state.ambientCube.height);
+    frame_.reflectionSize = std::min(state.reflectionCube.width, state.reflectionCube.height);
     // Factors of the orthonormal real spherical harmonics.
     const double pi = 3.14159265358979323846, one = std::sqrt(3 / (4 * pi)), two = std::sqrt(15 / (4 * pi));
     const double factors[9] = {std::sqrt(1 / (4 * pi)),  one, one,      one, two, two,
@@ -147,6 +156,7 @@ void ShadingConstants::fillFrame(const ShaderState& state) {
 std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(const ShaderState& state,
                                                                   const std::vector<uint32_t>& variants) const {
     std::vector<PelShadeMaterial> table(state.materials.empty() ? 1 : state.materials.rbegin()->first + 1);
+    uint32_t eyes = 0;
     for (const auto& [id, from] : state.materials) {
         const PelMaterial& m = from.params;
         PelShadeMaterial& to = table[id];
@@ -188,9 +198,34 @@ std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(const ShaderSt
         }
         copy(to.gain, from.gain);
         to.hasNormalMap = !from.normalMap.empty();
+        if (from.eye) to.eye = ++eyes;
         to.needs = materialNeeds(state, from);
         for (size_t i = 0; i < variants.size(); ++i)
             if (!(to.needs & ~variants[i])) to.variants |= 1u << i;
+    }
+    return table;
+}
+
+std::vector<PelShadeEye> ShadingConstants::describeEyes(const ShaderState& state) const {
+    std::vector<PelShadeEye> table;
+    uint32_t texels = 0;
+    for (const auto& [id, material] : state.materials) {
+        if (!material.eye) continue;
+        const ShaderEye& from = *material.eye;
+        PelShadeEye to = describeEye(from.params, from.ambient, state.options.millimetresPerUnit);
+        static constexpr float brown[3] = {0.22f, 0.12f, 0.06f};
+        for (int c = 0; c < 3; ++c)
+            if (to.irisColor[c] < 0) to.irisColor[c] = from.iris ? 1 : brown[c];
+        to.textureSize = irisTexels(from);
+        to.textureOffset = texels;
+        texels += paddedTexels(to.textureSize);
+        const PelEyeLutDesc& lut = from.caustics->info().eye;
+        to.causticOffset = offsetOf(from.caustics.get());
+        to.causticWidth = lut.width;
+        to.causticHeight = lut.height;
+        to.causticDepth = lut.depth;
+        to.slicesPerRadian = float((lut.depth - 1) / EyeShape(lut, "PelEyeLutDesc").largestAngle);
+        table.push_back(to);
     }
     return table;
 }

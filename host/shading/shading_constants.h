@@ -5,6 +5,7 @@
 
 #include "lut/lut.h"
 #include "shading/cached_upload.h"
+#include "shared/eye.h"
 #include "shared/shade.h"
 
 namespace pel {
@@ -26,13 +27,16 @@ class ShadingConstants {
     const cl::Memory& materials() const { return materialUpload_.memory(); }
     const cl::Memory& lights() const { return lightUpload_.memory(); }
     const cl::Memory& luts() const { return luts_; }
+    const cl::Memory& eyes() const { return eyeUpload_.memory(); }
     // Distinct buffers of the lights' images: the kernel's arguments light0...
     const std::vector<cl::Memory>& lightBuffers() const { return lightBuffers_; }
     size_t scratchBytes() const;
 
   private:
     void gatherLuts(Device& device, const ShaderState& state);
+    uint32_t offsetOf(const Lut* lut) const;  // texels, in luts()
     PelShadeLut describe(const Lut* lut, float materialRadius) const;
+    std::vector<PelShadeEye> describeEyes(const ShaderState& state) const;
     uint32_t lightBuffer(const cl::Memory& memory);
     void fillFrame(const ShaderState& state);
     std::vector<PelShadeMaterial> describeMaterials(const ShaderState& state,
@@ -41,7 +45,7 @@ class ShadingConstants {
 
     PelShadeFrame frame_{};
     std::array<uint32_t, 3> band_{};  // tiles, firstTile and scratchRow as the device has them
-    CachedUpload frameUpload_, materialUpload_, lightUpload_;
+    CachedUpload frameUpload_, materialUpload_, lightUpload_, eyeUpload_;
     std::vector<Ref<Lut>> gathered_;
     std::vector<uint32_t> offsets_;  // texels, of gathered_
     cl::Memory luts_;

@@ -29,7 +29,7 @@ typedef struct Pixels {
     Vec3w ng, n, nb;
     NormalPair pair;
     Vec3w albedo, irradiance;
-    floatw curvature, occlusion, thickness, roughness, specular;
+    floatw curvature, occlusion, thickness, roughness, specular, wetness;
     floatw tapCosine, tapSine;  // of the disk of taps; PEL_BIT_ROTATE_TAPS only
     maskw valid;                // no input that every material reads is NaN or Inf
     uintw invalidBits;          // PEL_BIT_... of features with NaN or Inf in an input
@@ -41,6 +41,8 @@ typedef struct Parts {
     floatw thickness;
     bool measured;  // thickness is
 } Parts;
+
+#include "shading/shade_eye.clh"
 
 // Marks features with NaN or Inf in an input. Inputs of ambient light and of positional lights are read by
 // every material.
@@ -98,6 +100,8 @@ static inline Pixels loadPixels(const Scene* scene, uint x, uint y) {
     LOAD_SCALAR(ROUGHNESS, roughness)
     LOAD_SCALAR(SPECULAR, specular)
 #undef LOAD_SCALAR
+    if (HAS(PEL_BIT_EYE) && PEL_FORMAT_WETNESS)
+        p.wetness = satw(loadScalar(PEL_FORMAT_WETNESS, SPAN(WETNESS)));
     return p;
 }
 
@@ -358,20 +362,36 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
             if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = deep;
         }
     }
+    const bool isEye = HAS(PEL_BIT_EYE) && material->eye;
+    __global const PelShadeEye* eye = &scene->eyes[isEye ? material->eye - 1 : 0];
+    EyeLight inEye;
+    maskw outside = active;  // where the material itself is seen
+    if (isEye) {
+        inEye = beginEye(scene, eye, p, active & p->valid, counts);
+        outside &= inEye.view.cornea < 1.0f;
+    }
     const bool lit = !SKIPPING || !scattered || PEL_FORMAT_OUT_THICKNESS ||
-                     (material->needs & (PEL_BIT_SPECULAR | PEL_BIT_DEEP_SCATTER));
+                     (material->needs & (PEL_BIT_SPECULAR | PEL_BIT_DEEP_SCATTER | PEL_BIT_EYE));
     for (uint i = 0; lit && i < frame->lights; ++i) {
         __global const PelShadeLight* light = &scene->lights[i];
         const floatw w = loadWideShadow(scene, light, x, y);
         p->valid &= finitew(w);
-        addLight(scene, material, light, p, w, active & p->valid, scattered, &diffuse, &specular, parts, counts);
+        addLight(scene, material, light, p, w, outside & p->valid, scattered, &diffuse, &specular, parts, counts);
+        if (isEye) addToEye(scene, material, eye, light, p, w, active & p->valid, &inEye, counts);
     }
     const Vec3w albedo = PEL_FORMAT_ALBEDO ? p->albedo : loadUniform3(material->albedo);
     if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = add3(mul3(parts->diffuse, albedo), before);
     if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = mul3(parts->deepScatter, albedo);
     *specularPart = specular;
-    const Vec3w radiance = add3(mul3(albedo, diffuse), specular);
-    return HAS(PEL_BIT_IRRADIANCE) ? add3(radiance, before) : radiance;
+    const Vec3w radiance = add3(mul3(albedo, diffuse), specular),
+                whole = HAS(PEL_BIT_IRRADIANCE) ? add3(radiance, before) : radiance;
+    if (!isEye) return whole;
+    const floatw sclera = 1.0f - inEye.view.cornea;
+    const Vec3w iris = irisRadiance(scene, eye, &inEye);
+    *specularPart = add3(scale3(specular, sclera), inEye.reflected);
+    if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = add3(scale3(parts->diffuse, sclera), iris);
+    if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = scale3(parts->deepScatter, sclera);
+    return add3(add3(scale3(whole, sclera), iris), inEye.reflected);
 }
 
 // Writes one part beside radiance.

@@ -20,7 +20,7 @@
 // Lists of tiles in one buffer: PEL_TILE_LISTS counts, then the lists, each with room for
 // PelShadeFrame.listTiles. List 0 has every tile with a material; list 1 + i has the tiles of variant i of
 // the shading kernel, if there are several.
-#define PEL_TILE_VARIANTS 3
+#define PEL_TILE_VARIANTS 4
 #define PEL_TILE_LISTS (1 + PEL_TILE_VARIANTS)
 #define PEL_EVERY_TILE 0xffffffffu  // instead of a list's number: visit all tiles
 // Transmittance below 2^-16 counts as 0: taps can stop early, and it is a third of the promised accuracy.

@@ -3,6 +3,7 @@
 # Lengths of the defaults, in millimetres.
 SKIN = {"diffusion_radius": 2.7, "shadow_filter_width": 8.0, "deep_scatter_radius": 6.0, "deep_scatter_normal_offset": 0.2}
 OTHERS = {"deep_scatter_color": (0.7, 0.16, 0.05), "specular": 0.35}
+EYES = {"scattering": "none", "thickness_taps": 0}  # the sclera; its gloss is that of the film of tears
 PREFIX = "pellucid_"  # custom properties of a Blender material that set a key of [[material]]
 
 
@@ -27,8 +28,8 @@ def comment(name):
     return "# " + "".join(c if c.isprintable() else " " for c in name)
 
 
-def write(path, unit, camera, lamps, sky, materials, curvature):
-    """unit: millimetres per Blender unit. materials: (id, Blender material)."""
+def write(path, unit, camera, lamps, sky, materials, eyes, curvature):
+    """unit: millimetres per Blender unit. materials: (id, Blender material). eyes: (Blender material, keys)."""
     lines = [
         "# Written by bindings/blender/render_gbuffer.py. Axes: Blender's world, Z up. Lengths: Blender units,",
         f"# of {unit:g} mm each.",
@@ -66,16 +67,19 @@ def write(path, unit, camera, lamps, sky, materials, curvature):
             else:
                 lines += ['projection = "perspective"', "depth_a = " + number(lamp.depth_a), "depth_b = " + number(lamp.depth_b)]
     extents = [lamp.extent for lamp in lamps if lamp.map_file and lamp.kind == "SUN"]
+    of_eyes = {material.name: keys for material, keys in eyes}
     for id_, material in materials:
+        if material.name in of_eyes:
+            lines += ["", "[[eye]]", f"material = {id_}", *(f"{key} = {value(v)}" for key, v in of_eyes[material.name].items())]
         keys = {key: length / unit for key, length in SKIN.items()}
-        keys.update(OTHERS)
+        keys.update(EYES if material.name in of_eyes else OTHERS)
         if extents:
             keys["thickness_filter_radius"] = 3 / unit / max(extents)  # 3 mm
         keys["shadow_lut"] = "skin"
         if curvature:
             keys["curvature_lut"] = "skin"
         for name in material.keys():
-            if name.startswith(PREFIX):
+            if name.startswith(PREFIX) and not name.startswith("pellucid_eye"):
                 own = material[name]
                 keys[name[len(PREFIX) :]] = own if isinstance(own, (int, float, str)) else tuple(own)
         lines += ["", "[[material]]  " + comment(material.name), f"id = {id_}"]

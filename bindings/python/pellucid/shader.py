@@ -142,8 +142,8 @@ class Shader(OfThisProcess):
         id : int
             A material that is an eye.
         texture : array, Image or None
-            (n, n, 3 or 4), whose inscribed circle is the iris' rim, row 0 at Eye.up, as one sees it who faces the eye. Read at
-            each execution; None removes it: fibres are drawn by Eye.iris_seed.
+            (n, n, 3 or 4), whose inscribed circle is the iris' rim, row 0 at Eye.up, as one sees it who faces the eye. Read by
+            the first execution after a commit; None removes it: fibres are drawn by Eye.iris_seed.
         """
         self._keep(("iris_texture", id), texture, f"iris texture of material {id}", False, False,
                    lambda native: self._handle.set_iris_texture(id, native))

@@ -81,7 +81,7 @@ def test_every_setting_changes_the_picture(session):
     reset(session)
     before = session.radiance(None, 160, 90)
     changes = {"profile": "jade", "radius_scale": 3.0, "method": "none", "albedo": (0.5, 1, 1), "specular": 0.9, "roughness": 0.6,
-               "f0": 0.1, "ggx": True, "pores": 0.4, "ambient": 0.5}
+               "f0": 0.1, "ggx": True, "pores": 0.4, "ambient": 0.5, "pupil": 3.5}
     for name, value in changes.items():
         reset(session)
         setattr(session.look, name, value)

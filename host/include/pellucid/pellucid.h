@@ -895,7 +895,7 @@ typedef struct PelEye {
     float corneaRadius;    /* mm, of curvature at its apex; 7.8 [Le Grand] */
     float corneaConic;     /* conic constant: 0 is a sphere, -1 a paraboloid; -0.26 [Navarro] */
     float limbusRadius;    /* mm, of the circle in which cornea and sclera meet; 6 */
-    float limbusWidth;     /* mm, of the soft border between them; 1 */
+    float limbusWidth;     /* mm, of the soft border between them, inwards from there; 1 */
     float limbusDarkening; /* 0 to 1: share of the light that the iris' rim absorbs where the border begins; grows with the slant of the view; 0.6 */
     float chamberDepth; /* mm, from the cornea's apex to the plane of the iris' rim; 3.05 [Le Grand, Navarro] */
     float corneaIndex; /* refractive index, 1 to 3; 1.376 [Navarro]. The cornea has no thickness, but reflects on both of its sides */
@@ -1039,8 +1039,8 @@ PEL_API PelError pelShaderSetScatteredTexture(PelShader shader, uint32_t id, con
  * names the field. */
 PEL_API PelError pelShaderSetEye(PelShader shader, uint32_t id, const PelEye* eye, PelLut caustics);
 /* The albedo of the iris of material `id`, which must be an eye: a square image whose inscribed circle is the iris' rim, as one sees it who
- * faces the eye, row 0 at PelEye.up; a colour format; bilinear. Read at each execution. NULL removes it: fibres are drawn by
- * PelEye.irisSeed. */
+ * faces the eye, row 0 at PelEye.up; a colour format; bilinear. Read at the first execution after a commit. NULL
+ * removes it: fibres are drawn by PelEye.irisSeed. */
 PEL_API PelError pelShaderSetIrisTexture(PelShader shader, uint32_t id, const PelImageDesc* texture);
 /* The surroundings that eyes reflect: radiance / pi, six faces as in pelShaderSetAmbientCube, as sharp as the film of tears should show
  * them. Bilinear; negative values count as 0. Read at each execution. NULL removes it. Other materials do not read it. */

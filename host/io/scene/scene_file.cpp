@@ -1,5 +1,6 @@
 #include "io/scene/scene_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -53,6 +54,18 @@ void readLight(TomlReader& reader, SceneFile& scene) {
     scene.lights.push_back(std::move(light));
 }
 
+void readEye(TomlReader& reader, SceneFile& scene) {
+    SceneEye eye;
+    eye.line = reader.line();
+    eyeKeys(reader, eye);
+    for (const char* key : {"material", "center", "gaze"})
+        if (!reader.has(key)) reader.fail(key, "is missing; an eye needs it");
+    for (const SceneEye& other : scene.eyes)
+        if (other.material == eye.material)
+            reader.fail("material", "is that of another [[eye]] too; give each eye a material of its own");
+    scene.eyes.push_back(std::move(eye));
+}
+
 // Names that must exist and numbers that must differ: checks that involve several keys.
 void checkReferences(const SceneFile& scene, const TomlReader& channels) {
     if (scene.channels[PEL_SLOT_NORMAL_SHADING].empty())
@@ -98,6 +111,20 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
     }
 }
 
+// Of eyes: their materials, and the inputs that they need.
+void checkEyes(const SceneFile& scene, const TomlReader& channels) {
+    for (const SceneEye& eye : scene.eyes) {
+        const auto isIts = [&](const SceneMaterial& m) { return m.id == eye.material; };
+        if (std::none_of(scene.materials.begin(), scene.materials.end(), isIts))
+            throw FileError(scene.source,
+                            "the eye of material " + std::to_string(eye.material) +
+                                " has no such material: a [[material]] of that id is its sclera",
+                            eye.line);
+        if (scene.channels[PEL_SLOT_POSITION].empty() && scene.channels[PEL_SLOT_DEPTH].empty())
+            channels.fail("position", "is missing, and so is depth; eyes need one of them");
+    }
+}
+
 }  // namespace
 
 const SceneLut* SceneFile::lut(const std::string& name, PelLutKind kind) const {
@@ -135,6 +162,8 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
         materialKeys(r, material);
         scene.materials.push_back(std::move(material));
     });
+    reader.tables("eye", [&](TomlReader& r) { readEye(r, scene); });
+    reader.text("reflection_cube", scene.reflectionCube);
     reader.tables("light", [&](TomlReader& r) { readLight(r, scene); });
     if (!reader.has("channels"))
         reader.fail("channels", "is missing; it says which channels of the G-buffer are what");
@@ -142,6 +171,7 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
         channelKeys(r, scene);
         r.finish();
         checkReferences(scene, r);
+        checkEyes(scene, r);
     });
     reader.finish();
 
@@ -155,6 +185,12 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
         if (!m.scatteredTexture.empty()) m.scatteredTexture = (folder / m.scatteredTexture).string();
         if (!m.normalMap.empty()) m.normalMap = (folder / m.normalMap).string();
     }
+    for (SceneEye& e : scene.eyes) {
+        for (std::string* file : {&e.irisTexture, &e.caustics})
+            if (!file->empty()) *file = (folder / *file).string();
+        if (e.irisProfile.ends_with(".toml")) e.irisProfile = (folder / e.irisProfile).string();
+    }
+    if (!scene.reflectionCube.empty()) scene.reflectionCube = (folder / scene.reflectionCube).string();
     if (!scene.ambientCube.empty()) scene.ambientCube = (folder / scene.ambientCube).string();
     for (std::string& output : scene.outputs) {
         if (!output.empty()) output = (folder / output).string();

@@ -37,6 +37,16 @@ struct SceneMaterial {
     int line = 0;
 };
 
+// An eye around a material, which is its sclera.
+struct SceneEye {
+    uint32_t material = 1;  // its id
+    PelEye eye = pelEyeDefaults();
+    std::string irisTexture;  // square image, linear; "": fibres are drawn
+    std::string irisProfile;  // a material's name or a profile file; "": light does not scatter in the iris
+    std::string caustics;     // a float or half EXR written by `pellucid lut eye`; "": made for this eye
+    int line = 0;
+};
+
 // One of a light's cascades beyond the first, whose matrix and range are in PelLight.
 struct SceneCascade {
     std::string file;           // "": the first's
@@ -62,12 +72,14 @@ struct SceneFile {
     uint32_t frameIndex = 0;                                        // PelShaderOptions.frameIndex
     float targetError = pelShaderOptionsDefaults().targetError;  // PelShaderOptions.targetError
     float unitMm = 1;                                            // PelShaderOptions.millimetresPerUnit
+    std::string reflectionCube;  // image of the surroundings that eyes reflect, as ambientCube; "": none
     std::string ambientCube;  // image of an irradiance cube map, six faces below or beside one another; "": none
     std::array<std::string, PEL_SLOT_COUNT> outputs;  // EXR files to write per output slot beside radiance; "": none
     PelCamera camera = pelCameraDefaults();
     PelAmbient ambient = pelAmbientDefaults();
     std::vector<SceneLight> lights;
     std::vector<SceneMaterial> materials;
+    std::vector<SceneEye> eyes;
     std::vector<SceneLut> luts;
 
     const SceneLut* lut(const std::string& name, PelLutKind kind) const;  // nullptr if there is none

@@ -149,6 +149,35 @@ void materialKeys(Visitor& v, Material& m) {
     v.text("scattered_texture", m.scatteredTexture);
 }
 
+template <class Visitor, class Eye>
+void eyeKeys(Visitor& v, Eye& e) {
+    v.integer("material", e.material, {1, 255});
+    v.numbers("center", e.eye.center, 3, range::any);
+    v.numbers("gaze", e.eye.gaze, 3, range::any);
+    v.numbers("up", e.eye.up, 3, range::any);
+    v.number("sclera_radius", e.eye.scleraRadius, range::eye::scleraRadius);
+    v.number("cornea_radius", e.eye.corneaRadius, range::eye::corneaRadius);
+    v.number("cornea_conic", e.eye.corneaConic, range::eye::corneaConic);
+    v.number("limbus_radius", e.eye.limbusRadius, range::eye::limbusRadius);
+    v.number("limbus_width", e.eye.limbusWidth, range::eye::limbusWidth);
+    v.number("limbus_darkening", e.eye.limbusDarkening, range::eye::limbusDarkening);
+    v.number("chamber_depth", e.eye.chamberDepth, range::eye::chamberDepth);
+    v.number("cornea_index", e.eye.corneaIndex, range::eye::corneaIndex);
+    v.number("aqueous_index", e.eye.aqueousIndex, range::eye::aqueousIndex);
+    v.number("iris_radius", e.eye.irisRadius, range::eye::irisRadius);
+    v.number("iris_concavity", e.eye.irisConcavity, range::eye::irisConcavity);
+    v.number("pupil_radius", e.eye.pupilRadius, range::eye::pupilRadius);
+    v.number("texture_pupil", e.eye.texturePupil, range::eye::texturePupil);
+    v.numbers("iris_color", e.eye.irisColor, 3, range::eye::irisColor);
+    v.integer("iris_seed", e.eye.irisSeed, range::notNegative);
+    v.number("tear_roughness", e.eye.tearRoughness, range::eye::tearRoughness);
+    v.number("wet_line_roughness", e.eye.wetLineRoughness, range::eye::wetLineRoughness);
+    v.number("tear_index", e.eye.tearIndex, range::eye::tearIndex);
+    v.text("iris_texture", e.irisTexture);
+    v.text("iris_profile", e.irisProfile);
+    v.text("caustics", e.caustics);
+}
+
 template <class Visitor, class Lut>
 void curvatureLutKeys(Visitor& v, Lut& l) {
     v.text("name", l.name);

@@ -90,6 +90,7 @@ void writeScene(const std::string& path, const SceneFile& scene) {
         TomlWriter(out).number("target_error", scene.targetError, range::options::targetError);
     if (scene.unitMm != 1)
         TomlWriter(out).number("unit_mm", scene.unitMm, range::options::millimetresPerUnit);
+    if (!scene.reflectionCube.empty()) TomlWriter(out).text("reflection_cube", scene.reflectionCube);
     const auto table = [&](const std::string& header, const std::string& name, auto&& function) {
         out += "\n" + header + "\n";
         TomlWriter writer(out, name);
@@ -105,6 +106,9 @@ void writeScene(const std::string& path, const SceneFile& scene) {
     }
     for (const SceneMaterial& material : scene.materials) {
         table("[[material]]", "material", [&](TomlWriter& w) { materialKeys(w, material); });
+    }
+    for (const SceneEye& eye : scene.eyes) {
+        table("[[eye]]", "eye", [&](TomlWriter& w) { eyeKeys(w, eye); });
     }
     for (const SceneLut& lut : scene.luts) {
         const bool curvature = lut.info.kind == PEL_LUT_CURVATURE;

@@ -49,6 +49,9 @@ def scene_text(session: Session, look: Look, width: int, height: int) -> str:
                 text += _lines(deep_scatter_color=m.deep_scatter_color)
         text += _lines(thickness_taps=m.thickness_taps, specular=m.specular, roughness=m.roughness, f0=m.f0,
                        specular_model=m.specular_model.name.lower(), roughness2=m.roughness2, lobe_mix=m.lobe_mix)
+    for id, eye in session.eyes(look).items():
+        text += "\n[[eye]]\n" + _lines(material=id, **{key: getattr(eye, key) for key in (
+            "center", "gaze", "up", "sclera_radius", "cornea_radius", "limbus_radius", "limbus_width", "chamber_depth", "pupil_radius")})
     return text
 
 

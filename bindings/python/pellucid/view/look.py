@@ -32,7 +32,7 @@ METHODS = {
 }
 
 # Material ids of the heads that come with the package.
-SKIN, EYES, TEETH, TONGUE, CUT = 1, 2, 3, 4, 5
+SKIN, EYES, TEETH, TONGUE, CUT, RIGHT_EYE = 1, 2, 3, 4, 5, 6  # EYES: the left one
 
 
 @dataclass
@@ -72,6 +72,7 @@ class Look:
     roughness2: float = 0.15
     lobe_mix: float = 0.15
     pores: float = 0.06              # slope of the relief that the renderer adds
+    pupil: float = 2.0               # mm, radius, of an eye of an adult's size
     ambient: float = 0.12            # irradiance / pi from everywhere
     lamps: list[Lamp] = field(default_factory=_lamps)
     shadow_size: int = 1024          # texels a side

@@ -201,6 +201,7 @@ class Page:
         self.slider("Second roughness", self.look, "roughness2", 0.05, 1, 0.01)
         self.slider("Its share", self.look, "lobe_mix", 0, 1, 0.01)
         self.slider("Pores", self.look, "pores", 0, 0.5, 0.01)
+        self.slider("Pupil of eyes, mm", self.look, "pupil", 0.5, 4, 0.1)
         for c, name in enumerate(("Albedo red, times", "green", "blue")):
             self.channel(name, "albedo", c, 0.0, 2.0, 0.01)
         for c, name in enumerate(("Deep scatter red", "green", "blue")):

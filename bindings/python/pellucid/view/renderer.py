@@ -102,7 +102,8 @@ class Renderer:
             pad = [*eyes, eyes[-1]][:2]
             program["eye_centre"].value = [tuple(e["centre"]) for e in pad]
             program["eye_gaze"].value = [tuple(e["gaze"]) for e in pad]
-            program["eye_size"].value = [(e["radius"], e["iris_radius"], e["pupil_radius"]) for e in pad]
+            # The sclera alone: the shader's eyes have irises of their own.
+            program["eye_size"].value = [(e["radius"], 1e-3 * e["radius"], 1e-4 * e["radius"]) for e in pad]
             program["sclera"].value, program["iris"].value = tuple(eyes[0]["sclera"]), tuple(eyes[0]["iris"])
         self._draw.render()
         for attachment, memory in enumerate(self._memory):

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import files
-from .._types import Ambient, Camera, Light, Material
+from .._types import Ambient, Camera, Eye, Light, Material
 from ..device import Device
 from ..mesh import MeshTopology
 from ..profile import Profile
 from ..shader import Shader
 from .camera import Orbit, direction
-from .look import CUT, EYES, SKIN, TEETH, TONGUE, Lamp, Look
+from .look import CUT, EYES, RIGHT_EYE, SKIN, TEETH, TONGUE, Lamp, Look
 from .renderer import GBuffer, Renderer
 
 
@@ -36,7 +36,8 @@ class ShadowMap:
 
 
 # (specular, roughness) of what is not skin, as in the demo.
-_GLOSS = {EYES: (0.6, 0.08), TEETH: (0.5, 0.15), TONGUE: (0.4, 0.2), CUT: (0.0, 1.0)}
+# Eyes: that of their film of tears.
+_GLOSS = {EYES: (0.0, 1.0), RIGHT_EYE: (0.0, 1.0), TEETH: (0.5, 0.15), TONGUE: (0.4, 0.2), CUT: (0.0, 1.0)}
 _OUTPUTS = {"diffuse": "out_diffuse", "specular": "out_specular", "deep_scatter": "out_deep_scatter", "thickness": "out_thickness"}
 
 
@@ -149,6 +150,17 @@ class Session:
         present = {1} if self.mesh.ids is None else set(np.unique(self.mesh.ids).tolist())
         return {id: m for id, m in made.items() if id in present}
 
+    def eyes(self, look: Look) -> dict[int, Eye]:
+        """The eyes of the mesh, an adult's as large as its balls, by material id."""
+        found = {}
+        for id, ball in zip((EYES, RIGHT_EYE), self.mesh.eyes):
+            eye = Eye(center=ball["centre"], gaze=ball["gaze"], up=self.mesh.up, pupil_radius=look.pupil)
+            scale = ball["radius"] * self.mm / eye.sclera_radius
+            for length in ("sclera_radius", "cornea_radius", "limbus_radius", "limbus_width", "chamber_depth", "pupil_radius"):
+                setattr(eye, length, scale * getattr(eye, length))
+            found[id] = eye
+        return found
+
     def lights(self, look: Look, small: bool = False) -> list[tuple[Light, Optional[ShadowMap]]]:
         found: list[tuple[Light, Optional[ShadowMap]]] = []
         for lamp in look.lamps:
@@ -197,11 +209,16 @@ class Session:
             for m in materials.values():
                 m.albedo, m.specular = (1.0, 1.0, 1.0), 0.0
 
+        eyes = {id: eye for id, eye in self.eyes(look).items() if albedo and id in materials}
+
         def set_materials() -> None:
             for id in _GLOSS | {SKIN: None}:
                 s.set_material(id, materials.get(id))
+                if id in materials:
+                    s.set_eye(id, eyes.get(id))
 
-        p.tell("materials", {k: (m._data.tobytes(), id(m._profile)) for k, m in materials.items()}, set_materials)
+        told = {k: (m._data.tobytes(), id(m._profile)) for k, m in materials.items()}
+        p.tell("materials", (told, {k: e._data.tobytes() for k, e in eyes.items()}), set_materials)
         lights = self.lights(look, small)
 
         def set_lights() -> None:
@@ -260,8 +277,8 @@ class Session:
         elif mode == "albedo":
             shown = g.albedo
         elif mode == "materials":
-            shown = np.array([[0, 0, 0], [.8, .4, .3], [.2, .5, .9], [.9, .9, .5], [.9, .2, .4], [.2, .2, .2]], np.float32)[
-                np.minimum(g.material.astype(int), 5)]
+            shown = np.array([[0, 0, 0], [.8, .4, .3], [.2, .5, .9], [.9, .9, .5], [.9, .2, .4], [.2, .2, .2], [.2, .8, .9]],
+                             np.float32)[np.minimum(g.material.astype(int), 6)]
         else:
             shown = p.outputs["radiance"]
         linear = mode in ("final", "lambert", "diffuse", "specular", "deep_scatter", "irradiance", "reference", "albedo")

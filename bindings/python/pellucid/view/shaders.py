@@ -65,7 +65,7 @@ void main() {
         float fine = 1.0 - smoothstep(0.3, 0.9, pixel), coarse = 1.0 - smoothstep(1.5, 5.0, pixel);
         vec3 bump = 1.6 * fine * slope(p / 0.7) + 0.5 * coarse * slope(p / 4.0);
         n = normalize(ng - pores * (bump - ng * dot(ng, bump)));
-    } else if (id == 2.0 && eyes > 0) {
+    } else if ((id == 2.0 || id == 6.0) && eyes > 0) {
         color = eye_color(position);
     }
     out_position = vec4(position, id);

@@ -1,0 +1,133 @@
+#include "eye/eye_constants.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace pel {
+namespace {
+
+// Steps of the integral over directions from one point of the iris: its error is below 1e-3.
+constexpr int tiltSteps = 48, turnSteps = 64;
+constexpr float softRim = 0.02f, softPupil = 0.1f;  // widest edge of the pupil, of the iris' and of its own radius
+constexpr double mostDepth = 7;                     // optical, of a rim that darkens entirely
+
+// 1 - reflectance (section 13 of the mathematics).
+double transmitted(double cosine, double from, double to) {
+    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) * from / to;
+    if (sine >= 1) return 0;
+    const double behind = std::sqrt(1 - sine * sine);
+    const double s = (from * cosine - to * behind) / (from * cosine + to * behind),
+                 p = (from * behind - to * cosine) / (from * behind + to * cosine);
+    return 1 - 0.5 * (s * s + p * p);
+}
+
+// Light at a distance from the axis: the share of radiance from each direction that comes through the cornea, times the square
+// of the index, over a hemisphere weighed by the cosine.
+double ambientAt(const EyeShape& shape, const PelEyeLutDesc& desc, double r) {
+    const double bend = shape.concavity / (shape.iris * shape.iris), slope = 2 * bend * r,
+                 upright = 1 / std::hypot(1, slope);
+    const double z = shape.irisZ - shape.concavity + bend * r * r, conic1 = 1 + shape.conic;
+    const double nc = desc.corneaIndex, na = desc.aqueousIndex;
+    double sum = 0;
+    for (int i = 0; i < tiltSteps; ++i)
+        for (int j = 0; j < turnSteps; ++j) {
+            // The disc under the hemisphere, in the iris' own plane: x away from the axis.
+            const double s = std::sqrt((i + 0.5) / tiltSteps), turn = std::numbers::pi * (j + 0.5) / turnSteps;
+            const double lx = s * std::cos(turn), ly = s * std::sin(turn), lz = std::sqrt(1 - s * s);
+            const double dx = upright * (lx - slope * lz), dy = ly, dz = upright * (slope * lx + lz);
+            // The cornea from inside.
+            const double w = shape.apexZ - z, a = dx * dx + dy * dy + conic1 * dz * dz;
+            const double b = r * dx + (shape.cornea - conic1 * w) * dz,
+                         c = r * r + conic1 * w * w - 2 * shape.cornea * w;
+            const double root = std::sqrt(std::max(0.0, b * b - a * c));
+            // c is below 0: one root lies ahead.
+            const double t = b > 0 ? -c / (b + root) : (root - b) / a;
+            const double x = r + t * dx, y = t * dy, height = z + t * dz;
+            if (!(t > 0) || std::hypot(x, y) > shape.limbus || height < shape.limbusZ) continue;
+            double nx = x, ny = y, nz = shape.cornea - conic1 * (shape.apexZ - height);
+            const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
+            nx /= length, ny /= length, nz /= length;
+            const double inside = dx * nx + dy * ny + dz * nz;
+            const double between2 = 1 - (1 - inside * inside) * na * na / (nc * nc);
+            if (between2 <= 0) continue;
+            const double through = transmitted(inside, na, nc) * transmitted(std::sqrt(between2), nc, 1);
+            if (through <= 0) continue;
+            // Outside it may run into the sclera.
+            const double out = std::sqrt(std::max(0.0, 1 - (1 - inside * inside) * na * na)),
+                         k = out - na * inside;
+            const double ox = na * dx + k * nx, oy = na * dy + k * ny, oz = na * dz + k * nz;
+            const double ahead = x * ox + y * oy + height * oz,
+                         above = x * x + y * y + height * height - shape.sclera * shape.sclera;
+            if (ahead < 0 && ahead * ahead > above) continue;
+            sum += na * na * through;
+        }
+    return sum / (tiltSteps * turnSteps);
+}
+
+}  // namespace
+
+PelEyeShape describeShape(const EyeShape& s, const PelEyeLutDesc& desc, double scale) {
+    PelEyeShape shape{};
+    shape.sclera2 = float(s.sclera * scale * s.sclera * scale);
+    shape.cornea = float(s.cornea * scale);
+    shape.conic1 = float(1 + s.conic);
+    shape.limbus = float(s.limbus * scale);
+    shape.limbusZ = float(s.limbusZ * scale);
+    shape.apexZ = float(s.apexZ * scale);
+    shape.iris = float(s.iris * scale);
+    shape.irisZ = float((s.irisZ - s.concavity) * scale);
+    shape.irisBend = float(s.concavity / (s.iris * s.iris) / scale);
+    shape.corneaIndex = desc.corneaIndex;
+    shape.aqueousIndex = desc.aqueousIndex;
+    return shape;
+}
+
+AmbientNodes ambientNodes(const PelEye& eye) {
+    const PelEyeLutDesc desc = pelEyeLutDescOf(&eye);
+    const EyeShape shape(desc, "PelEye");
+    AmbientNodes nodes{};
+    for (int i = 0; i < PEL_AMBIENT_NODES; ++i)
+        nodes[size_t(i)] = float(ambientAt(shape, desc, shape.iris * i / (PEL_AMBIENT_NODES - 1)));
+    return nodes;
+}
+
+bool sameShape(const PelEye& a, const PelEye& b) {
+    return a.scleraRadius == b.scleraRadius && a.corneaRadius == b.corneaRadius &&
+           a.corneaConic == b.corneaConic && a.limbusRadius == b.limbusRadius &&
+           a.chamberDepth == b.chamberDepth && a.corneaIndex == b.corneaIndex &&
+           a.aqueousIndex == b.aqueousIndex && a.irisRadius == b.irisRadius &&
+           a.irisConcavity == b.irisConcavity;
+}
+
+PelShadeEye describeEye(const PelEye& eye, const AmbientNodes& ambient, double millimetresPerUnit) {
+    const PelEyeLutDesc desc = pelEyeLutDescOf(&eye);
+    const EyeShape shape(desc, "PelEye");
+    PelShadeEye to{};
+    to.shape = describeShape(shape, desc, 1);
+    for (int i = 0; i < 3; ++i) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        to.center[i] = eye.center[i];
+        to.right[i] = eye.up[j] * eye.gaze[k] - eye.up[k] * eye.gaze[j];
+        to.up[i] = eye.up[i];
+        to.gaze[i] = eye.gaze[i];
+        to.irisColor[i] = eye.irisColor[i];
+    }
+    to.mmPerUnit = float(millimetresPerUnit);
+    to.limbusPerWidth = 1 / std::max(eye.limbusWidth, 1e-6f * eye.limbusRadius);
+    to.limbusDepth = float(std::min(-std::log(std::max(1.0 - eye.limbusDarkening, 1e-30)), mostDepth));
+    to.pupil = eye.pupilRadius;
+    if (eye.pupilRadius > 0)
+        to.pupilPerWidth = 1 / std::min(softRim * eye.irisRadius, softPupil * eye.pupilRadius);
+    else
+        to.pupilBase = 1;
+    to.textureScale = (1 - eye.texturePupil) / (eye.irisRadius - eye.pupilRadius);
+    to.textureBase = eye.texturePupil - to.textureScale * eye.pupilRadius;
+    to.tearRoughness = eye.tearRoughness;
+    to.wetLineRoughness = eye.wetLineRoughness;
+    to.tearIndex = eye.tearIndex;
+    std::copy(ambient.begin(), ambient.end(), to.ambient);
+    return to;
+}
+
+}  // namespace pel

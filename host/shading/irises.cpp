@@ -1,0 +1,113 @@
+// The irises of all eyes in one buffer, in the form that shading samples: beside kernels/eye/iris_texels.cl. Made by the first execution after a commit.
+#include "shading/irises.h"
+
+#include <utility>
+
+#include "core/handle_table.h"
+#include "eye/eye_constants.h"
+#include "eye/eye_lut.h"
+#include "shading/launch_ranges.h"
+#include "shading/passes.h"
+#include "shading/scratch_image.h"
+
+namespace pel {
+namespace {
+
+constexpr size_t group = 16;
+
+class Irises final : public Pass {
+  public:
+    static bool needed(const ShaderPlan& plan) { return plan.features & PEL_FEATURE_EYE; }
+
+    void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
+        size_t texels = 0;
+        for (const auto& [id, material] : plan.state.materials)
+            if (material.eye) texels += paddedTexels(irisTexels(*material.eye));
+        if (texels > UINT32_MAX)
+            fail(PEL_ERROR_UNSUPPORTED, "the irises of all eyes hold ", texels, " texels; 2^32 is the most");
+        if (texels * sizeof(cl_float4) != bytes_) {
+            bytes_ = 0;
+            texels_ = cl::Memory();
+            texels_ = device->allocate(texels * sizeof(cl_float4));
+            bytes_ = texels * sizeof(cl_float4);
+        }
+        plan.irises = texels_;
+    }
+    size_t bytes() const override { return bytes_; }
+
+    std::vector<cl::ProgramKey> programs(const Device&, const ShaderPlan& plan) const override {
+        std::vector<cl::ProgramKey> keys;
+        for (const auto& [id, material] : plan.state.materials)
+            if (material.eye)
+                keys.push_back({{"eye/iris_texels.cl"},
+                                {{"PEL_GROUP", text(group)},
+                                 {"PEL_WIDTH", "1"},
+                                 {"PEL_FORMAT_IRIS", text(formatCode(material.eye->iris, 1))}}});
+        return keys;
+    }
+
+    size_t upload(Device&, ShaderPlan&) override {
+        pending_ = true;
+        return 0;
+    }
+
+    void enqueueFrame(PassWork& work) const override {
+        if (!std::exchange(pending_, false)) return;
+        size_t eye = 0;
+        cl_uint first = 0;
+        for (const auto& [id, material] : work.plan.state.materials) {
+            if (!material.eye) continue;
+            const ImageView& image = material.eye->iris;
+            const cl_uint side = irisTexels(*material.eye);
+            cl::Launch launch(program(eye++), "iris_texels");
+            launch.arg(memoryOf(image)).arg(cl_ulong(image.byteOffset)).arg(cl_ulong(image.rowStride));
+            launch.arg(cl_ulong(image.planeStride)).arg(cl_uint(image.pixelStride)).arg(side);
+            launch.arg(cl_uint(material.eye->params.irisSeed)).arg(first).arg(texels_);
+            work.launch(launch, {{side + size_t(1), side + size_t(1), 1}, {group, 1, 1}});
+            first += paddedTexels(side);
+        }
+    }
+
+  private:
+    cl::Memory texels_;
+    size_t bytes_ = 0;
+    mutable bool pending_ = false;  // until the first execution after a commit
+};
+
+}  // namespace
+
+namespace {
+
+Ref<Lut> causticsOf(const Ref<Device>& device, const ShaderEye& eye) {
+    PelEyeLutDesc desc = pelEyeLutDescOf(&eye.params);
+    desc.profile = nullptr;
+    if (!eye.irisProfile) return integrateEyeLut(device, desc);
+    const LentHandle<PelProfile, Profile> lent{eye.irisProfile};
+    desc.profile = lent.get();
+    return integrateEyeLut(device, desc);
+}
+
+}  // namespace
+
+void prepareEyes(const Ref<Device>& device, std::map<uint32_t, ShaderMaterial>& materials) {
+    for (auto& [id, material] : materials) {
+        if (!material.eye || (material.eye->caustics && material.eye->ambientKnown)) continue;
+        ShaderEye& eye = *material.eye;
+        for (const auto& [otherId, other] : materials) {
+            if (!other.eye || !sameShape(other.eye->params, eye.params)) continue;
+            if (other.eye->ambientKnown) {
+                eye.ambient = other.eye->ambient;
+                eye.ambientKnown = true;
+            }
+            if (!eye.caustics && other.eye->ownCaustics && other.eye->irisProfile.get() == eye.irisProfile.get())
+                eye.caustics = other.eye->caustics;
+        }
+        if (!eye.ambientKnown) eye.ambient = ambientNodes(eye.params);
+        eye.ambientKnown = true;
+        if (!eye.caustics) eye.caustics = causticsOf(device, eye);
+    }
+}
+
+constinit const PassKind irisesPass = passKind<Irises>();
+
+}  // namespace pel

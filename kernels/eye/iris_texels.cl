@@ -1,0 +1,61 @@
+// The albedo of an iris in the form that shading samples: float4 texels with a copied column and row (shared/lut.h), from the
+// host's square image or drawn as fibres.
+//
+// One work-item: one texel of the padded square. Variants: PEL_FORMAT_IRIS, the image's format or 0: drawn by `seed`.
+// PEL_WIDTH is 1.
+#include "lib/image/image.clh"
+#include "shared/eye.h"
+
+#if !PEL_FORMAT_IRIS
+// A number from 0 to 1 for each whole number [Wellons, hash32: lowbias32].
+static inline float noiseAt(uint n, uint seed) {
+    uint h = n + seed * 0x9e3779b9u;
+    h ^= h >> 16;
+    h *= 0x7feb352du;
+    h ^= h >> 15;
+    h *= 0x846ca68bu;
+    h ^= h >> 16;
+    return (float)(h >> 8) * (1.0f / 16777216.0f);
+}
+
+// Smooth noise of `count` values round a circle; turn from 0 to 1.
+static inline float noiseRound(float turn, uint count, uint seed) {
+    const float at = turn * (float)count;
+    const uint i = min((uint)at, count - 1);
+    const float f = at - (float)i, t = f * f * (3.0f - 2.0f * f);
+    return mix(noiseAt(i, seed), noiseAt((i + 1) % count, seed), t);
+}
+
+// Brightness about 1: fibres from pupil to rim, a bright wavy ring a third of the way out (the collarette), and a dark rim.
+static inline float drawn(float x, float y, uint seed) {
+    const float r = fmin(hypot(x, y), 1.0f), turn = clamp(atan2(y, x) * 0.159154943f + 0.5f, 0.0f, 1.0f);
+    const float bent = turn + 0.004f * (noiseRound(turn, 40, seed + 7u) - 0.5f) * sin(9.0f * r);
+    const float around = bent - floor(bent);
+    const float fibres = 0.55f * noiseRound(around, 180, seed) + 0.3f * noiseRound(around, 420, seed + 1u) +
+                         0.15f * noiseRound(around, 61, seed + 2u);
+    const float ring = 0.48f + 0.05f * (noiseRound(turn, 23, seed + 3u) - 0.5f), d = (r - ring) / 0.07f;
+    const float inner = smoothstep(ring + 0.06f, ring - 0.06f, r);
+    const float rim = 1.0f - 0.7f * smoothstep(0.8f, 1.0f, r);
+    return (0.45f + 1.1f * fibres * mix(1.0f, 0.75f, inner) + 0.35f * exp(-d * d)) * rim;
+}
+#endif
+
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void iris_texels(
+    __global const uchar* image, ulong offset, ulong row, ulong plane, uint pixel, uint size, uint seed,
+    uint first, __global float4* texels) {
+    const uint i = get_global_id(0), j = get_global_id(1);
+    if (i > size) return;
+    const uint x = min(i, size - 1), y = min(j, size - 1);
+#if PEL_FORMAT_IRIS
+    __global const uchar* p = image + offset + y * row + (ulong)x * pixel;
+    float4 texel = (float4)(0.0f);
+    texel.x = pixelComponent(PEL_FORMAT_IRIS, p, plane, 0);
+    texel.y = pixelComponent(PEL_FORMAT_IRIS, p, plane, 1);
+    texel.z = pixelComponent(PEL_FORMAT_IRIS, p, plane, 2);
+#else
+    const float side = 2.0f / (float)size;
+    const float value = drawn(((float)x + 0.5f) * side - 1.0f, ((float)y + 0.5f) * side - 1.0f, seed);
+    const float4 texel = (float4)(value, value, value, 0.0f);
+#endif
+    texels[first + (size_t)j * (size + 1) + i] = texel;
+}

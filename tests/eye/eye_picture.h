@@ -1,0 +1,250 @@
+// A picture of one eye: the G-buffer of its exact surface, shaded by the library and by the tracer.
+#pragma once
+#include "eye/eye_lut_error.h"
+#include "reference/eye.h"
+
+#include <pellucid/pellucid.hpp>
+
+#include <cmath>
+#include <map>
+#include <vector>
+
+namespace eye_test {
+
+using reference::Rgb;
+using reference::Vec3;
+
+struct EyeScene {
+    PelEye eye = pelEyeDefaults();
+    PelMaterial sclera = pelMaterialDefaults();
+    std::vector<PelLight> lights;
+    PelAmbient ambient = pelAmbientDefaults();
+    double unit = 10;  // mm
+    Vec3 camera{5.2, 1.1, 9.3};
+    int size = 128, textureSize = 0;
+    std::vector<float> texture;          // RGB
+    std::vector<float> wetness, shadow;  // per pixel; empty: none
+    bool skipping = true;
+
+    EyeScene() {
+        sclera.albedo[0] = 0.8f, sclera.albedo[1] = 0.75f, sclera.albedo[2] = 0.7f;
+        sclera.scattering = PEL_SCATTERING_NONE;
+        const float center[3] = {1.5f, -0.4f, 2}, gaze[3] = {0.3f, 0.1f, 0.9f};
+        for (int i = 0; i < 3; ++i) eye.center[i] = center[i], eye.gaze[i] = gaze[i];
+    }
+    void addLight(Vec3 toLight, Rgb color) {
+        PelLight light = pelLightDefaults();
+        const Vec3 l = normalized(toLight);
+        for (int i = 0; i < 3; ++i) light.toLight[i] = float(l[i]), light.color[i] = float(color[i]);
+        lights.push_back(light);
+    }
+    // Bands round and rays outwards, of three colours.
+    void makeTexture(int n) {
+        textureSize = n;
+        for (int j = 0; j < n; ++j)
+            for (int i = 0; i < n; ++i) {
+                const double x = (i + 0.5) / n * 2 - 1, y = (j + 0.5) / n * 2 - 1, r = std::hypot(x, y),
+                             a = std::atan2(y, x);
+                for (int c = 0; c < 3; ++c)
+                    texture.push_back(float(0.5 + 0.3 * std::sin(12 * r + c) * std::cos((5 + c) * a) + 0.1 * x));
+            }
+    }
+};
+
+struct EyePixel {
+    reference::EyeHit hit;
+    Vec3 position, normal, toCamera;  // world
+    Vec3 eyeToCamera;                 // in the eye's space
+    bool shown = false;
+};
+
+class EyePicture {
+  public:
+    explicit EyePicture(const EyeScene& scene) : s_(scene), truth_(referenceOf(scene.eye)) {
+        z_ = normalized(vec(s_.eye.gaze));
+        y_ = vec(s_.eye.up);
+        y_ = normalized(y_ - dot(y_, z_) * z_);
+        x_ = cross(y_, z_);
+        const Vec3 forward = normalized(vec(s_.eye.center) - s_.camera);
+        const Vec3 right = normalized(cross(forward, Vec3{0, 1, 0})), down = cross(forward, right);
+        const double half = 1.15 * s_.eye.scleraRadius / s_.unit / length(vec(s_.eye.center) - s_.camera);
+        for (int j = 0; j < s_.size; ++j)
+            for (int i = 0; i < s_.size; ++i) {
+                const Vec3 d = normalized(forward + half * (2 * (i + 0.5) / s_.size - 1) * right +
+                                          half * (2 * (j + 0.5) / s_.size - 1) * down);
+                pixels.push_back(pixel(d));
+            }
+    }
+
+    // `table`: of the caustics; the library's own size without it.
+    std::vector<float> shade(PelShaderStats* stats = nullptr, const PelEyeLutDesc* table = nullptr) const {
+        const pellucid::Device device("");
+        const size_t n = pixels.size();
+        std::vector<float> position, normal;
+        std::vector<uint8_t> id;
+        for (const EyePixel& p : pixels) {
+            for (int c = 0; c < 3; ++c)
+                position.push_back(float(p.position[c])), normal.push_back(float(p.normal[c]));
+            id.push_back(p.shown);
+        }
+        const auto side = uint32_t(s_.size);
+        const pellucid::Buffer positions(device, position), normals(device, normal), ids(device, id),
+            out(device, std::vector<float>(3 * n));
+        pellucid::Shader shader(device);
+        PelShaderOptions options = pelShaderOptionsDefaults();
+        options.millimetresPerUnit = float(s_.unit);
+        options.countPixels = 1;
+        options.disableSkipping = !s_.skipping;
+        PelCamera camera = pelCameraDefaults();
+        for (int i = 0; i < 3; ++i) camera.position[i] = float(s_.camera[i]);
+        shader.set(options)
+            .set(camera)
+            .set(s_.ambient)
+            .setMaterial(1, s_.sclera)
+            .setEye(1, s_.eye, table ? pellucid::Lut(device, *table) : pellucid::Lut())
+            .set(s_.lights);
+        shader.set(PEL_SLOT_RADIANCE, imageDesc(out, PEL_FORMAT_RGB32F, side, side));
+        shader.set(PEL_SLOT_POSITION, imageDesc(positions, PEL_FORMAT_RGB32F, side, side));
+        shader.set(PEL_SLOT_NORMAL_SHADING, imageDesc(normals, PEL_FORMAT_RGB32F, side, side));
+        shader.set(PEL_SLOT_MATERIAL, imageDesc(ids, PEL_FORMAT_R8_UINT, side, side));
+        pellucid::Buffer texels, wet, shadows;
+        if (s_.textureSize) {
+            texels = pellucid::Buffer(device, s_.texture);
+            shader.setIrisTexture(
+                1, imageDesc(texels, PEL_FORMAT_RGB32F, uint32_t(s_.textureSize), uint32_t(s_.textureSize)));
+        }
+        if (!s_.wetness.empty()) {
+            wet = pellucid::Buffer(device, s_.wetness);
+            shader.set(PEL_SLOT_WETNESS, imageDesc(wet, PEL_FORMAT_R32F, side, side));
+        }
+        if (!s_.shadow.empty()) {
+            shadows = pellucid::Buffer(device, s_.shadow);
+            shader.set(0, PEL_LIGHT_WIDE_SHADOW, imageDesc(shadows, PEL_FORMAT_R32F, side, side));
+        }
+        shader.commit().execute();
+        if (stats) *stats = shader.stats();
+        return out.readAll<float>();
+    }
+
+    // The tracer's picture. Caustics by `photons` for each light.
+    std::vector<double> trace(uint64_t photons = 1'000'000) const {
+        std::vector<reference::Caustic> caustics;
+        for (const PelLight& light : s_.lights)
+            caustics.push_back(tracePhotons(
+                truth_, std::acos(std::clamp(toEye(vec(light.toLight)).z, -1.0, 1.0)), 128, 64, photons, 5));
+        std::map<int, double> ambient;  // by 1/64 of the iris' radius
+        std::vector<double> picture;
+        for (size_t k = 0; k < pixels.size(); ++k) {
+            const EyePixel& p = pixels[k];
+            Rgb sum;
+            if (p.shown) sum = radiance(p, k, caustics, ambient);
+            for (int c = 0; c < 3; ++c) picture.push_back(sum[c]);
+        }
+        return picture;
+    }
+
+    std::vector<EyePixel> pixels;
+
+  private:
+    static Vec3 vec(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
+    Vec3 toEye(Vec3 v) const { return {dot(v, x_), dot(v, y_), dot(v, z_)}; }
+    Vec3 fromEye(Vec3 v) const { return v.x * x_ + v.y * y_ + v.z * z_; }
+
+    EyePixel pixel(Vec3 d) const {
+        EyePixel p;
+        const Vec3 local = toEye(d), origin = s_.unit * toEye(s_.camera - vec(s_.eye.center));
+        p.hit = traceEye(truth_, origin, local);
+        const Vec3 nearest = origin - dot(origin, local) * local;
+        p.shown = p.hit.cornea || length(nearest) < truth_.sclera;
+        if (!p.shown) return p;
+        p.position = vec(s_.eye.center) + fromEye(p.hit.point) / s_.unit;
+        p.normal = fromEye(p.hit.normal);
+        p.toCamera = normalized(s_.camera - p.position);
+        p.eyeToCamera = toEye(p.toCamera);
+        return p;
+    }
+
+    Rgb textureAt(reference::Vec2 uv) const {
+        const int n = s_.textureSize;
+        const double x = std::clamp(uv.x * n - 0.5, 0.0, n - 1.0), y = std::clamp(uv.y * n - 0.5, 0.0, n - 1.0);
+        const int i = std::min(int(x), n - 2), j = std::min(int(y), n - 2);
+        Rgb sum;
+        for (int c = 0; c < 3; ++c) {
+            const auto at = [&](int a, int b) {
+                return double(s_.texture[size_t(3 * ((j + b) * n + i + a) + c)]);
+            };
+            const double fx = x - i, fy = y - j;
+            sum[c] =
+                (1 - fy) * ((1 - fx) * at(0, 0) + fx * at(1, 0)) + fy * ((1 - fx) * at(0, 1) + fx * at(1, 1));
+        }
+        return sum;
+    }
+
+    Rgb radiance(const EyePixel& p, size_t k, const std::vector<reference::Caustic>& caustics,
+                 std::map<int, double>& known) const {
+        const reference::EyeHit& h = p.hit;
+        Rgb onIris, onSclera, gloss;
+        const Vec3 corneal = truth_.corneaNormal(h.point.x, h.point.y);
+        const Vec3 n = h.share > 0 ? normalized(mix(h.normal, corneal, h.share)) : h.normal;
+        const double wet = s_.wetness.empty() ? 0 : s_.wetness[k];
+        const double roughness = truth_.tearRoughness + wet * (truth_.wetLineRoughness - truth_.tearRoughness);
+        for (size_t i = 0; i < s_.lights.size(); ++i) {
+            const double w = i == 0 && !s_.shadow.empty() ? s_.shadow[k] : 1;
+            const Vec3 l = toEye(vec(s_.lights[i].toLight));
+            const Rgb color = w * vec(s_.lights[i].color);
+            onSclera = onSclera + reference::max0(dot(h.normal, l)) * color;
+            gloss = gloss + reference::tearGloss(n, l, p.eyeToCamera, roughness, truth_.nTear) * color;
+            if (h.share > 0) {
+                const double side = std::hypot(l.x, l.y), ex = side > 1e-9 ? l.x / side : 1,
+                             ey = side > 1e-9 ? l.y / side : 0;
+                onIris =
+                    onIris + caustics[i].at(h.px * ex + h.py * ey, h.py * ex - h.px * ey, truth_.iris) * color;
+            }
+        }
+        const Rgb everywhere = vec(s_.ambient.constant);
+        onSclera = onSclera + everywhere;
+        if (h.share > 0 && everywhere.x > 0) {
+            const double at = h.radius / truth_.iris * 64;
+            const int i = std::min(int(at), 63);
+            for (const int j : {i, i + 1})
+                if (!known.contains(j)) known[j] = ambientOnIris(truth_, truth_.iris * j / 64, 96);
+            onIris = onIris + (known[i] + (at - i) * (known[i + 1] - known[i])) * everywhere;
+        }
+        Rgb sum = (1 - h.share) * (vec(s_.sclera.albedo) * onSclera) + gloss;
+        if (h.share > 0) {
+            const Rgb albedo = s_.textureSize ? textureAt(irisTexture(truth_, h)) : Rgb{1, 1, 1};
+            const double through =
+                irisVisible(truth_, h) * h.transmittance / (truth_.nAqueous * truth_.nAqueous);
+            sum = sum + h.share * through * (albedo * onIris);
+        }
+        return sum;
+    }
+
+    const EyeScene& s_;
+    reference::Eye truth_;
+    Vec3 x_, y_, z_;
+};
+
+struct PictureError {
+    double rms = 0, worst = 0;
+    size_t worstPixel = 0;
+};
+
+inline PictureError differenceOf(const EyePicture& picture, const std::vector<float>& is,
+                                 const std::vector<double>& should) {
+    PictureError error;
+    double sum = 0;
+    size_t count = 0;
+    for (size_t k = 0; k < picture.pixels.size(); ++k) {
+        if (!picture.pixels[k].shown) continue;
+        for (size_t c = 0; c < 3; ++c) {
+            const double d = std::abs(is[3 * k + c] - should[3 * k + c]);
+            sum += d * d, ++count;
+            if (d > error.worst) error.worst = d, error.worstPixel = k;
+        }
+    }
+    error.rms = std::sqrt(sum / double(count));
+    return error;
+}
+
+}  // namespace eye_test

@@ -1,0 +1,171 @@
+// Tables of caustics: against photons in double precision, and what must hold exactly.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "eye/eye_lut_error.h"
+#include "tolerances.h"
+
+using namespace pellucid;
+using namespace eye_test;
+
+namespace {
+
+PelEyeLutDesc descOf(const PelEye& eye) {
+    return pelEyeLutDescOf(&eye);
+}
+
+std::vector<float> tableOf(const PelEyeLutDesc& desc) {
+    return Lut(Device(""), desc).read<float>(PEL_LUT_FLOAT);
+}
+
+// Some slices. 10^8 photons for a table leave noise of 1.2 % of its mean, so that each slice has more: bench/eye/sweep_eye.cpp has all.
+LutError errorOf(const PelEye& eye, std::initializer_list<uint32_t> slices, uint64_t photons) {
+    const PelEyeLutDesc desc = descOf(eye);
+    const std::vector<float> texels = tableOf(desc);
+    LutError error;
+    for (const uint32_t z : slices) addSlice(desc, referenceOf(eye), texels, z, photons, &error);
+    return error;
+}
+
+constexpr uint64_t perSlice = 16'000'000;
+
+}  // namespace
+
+TEST(EyeLut, MatchesPhotons) {
+    const LutError error = errorOf(pelEyeDefaults(), {0, 7, 13, 19, 24, 28}, perSlice);
+    std::printf("RMS %.3g of the mean, flux %.2g, after a reflection inside %.2g of it\n", error.rms(),
+                error.fluxError(), error.bounced / error.trueFlux);
+    EXPECT_LT(error.rms(), tolerance::eyeLutRms);
+    EXPECT_LT(error.fluxError(), tolerance::eyeLutFlux);
+}
+
+TEST(EyeLut, MatchesPhotonsOfOtherEyes) {
+    PelEye eyes[3] = {pelEyeDefaults(), pelEyeDefaults(), pelEyeDefaults()};
+    eyes[0].irisConcavity = 0.6f, eyes[0].irisRadius = 5.6f;
+    eyes[1].corneaConic = 0, eyes[1].chamberDepth = 3.6f;
+    eyes[2].corneaIndex = eyes[2].aqueousIndex = 1.5f, eyes[2].corneaConic = -1.2f;
+    for (const PelEye& eye : eyes) {
+        const LutError error = errorOf(eye, {2, 14, 22}, perSlice);
+        std::printf("RMS %.3g of the mean, flux %.2g\n", error.rms(), error.fluxError());
+        EXPECT_LT(error.rms(), tolerance::eyeLutRms);
+        EXPECT_LT(error.fluxError(), tolerance::eyeLutFlux);
+    }
+}
+
+// Light that is not refracted: the cosine of its angle, wherever the cornea lets it through.
+TEST(EyeLut, AnIndexOfOneLeavesLightWhereItIs) {
+    PelEye eye = pelEyeDefaults();
+    eye.corneaIndex = eye.aqueousIndex = 1;
+    const PelEyeLutDesc desc = descOf(eye);
+    const std::vector<float> texels = tableOf(desc);
+    const double largest = largestAngle(referenceOf(eye));
+    size_t lit = 0;
+    for (uint32_t z = 0; z < 12; ++z)
+        for (uint32_t j = 0; j < desc.height; ++j)
+            for (uint32_t i = 0; i < desc.width; ++i) {
+                // Along the ray to the limbus' plane.
+                const double angle = largest * z / 31, x = ((i + 0.5) / 32 - 1) * 6, y = (j + 0.5) / 64 * 6;
+                const double below = referenceOf(eye).limbusZ() - referenceOf(eye).irisZ();
+                if (std::hypot(x + below * std::tan(angle), y) > 5.6) continue;
+                ++lit;
+                ASSERT_NEAR(texels[3 * ((size_t(z) * 64 + j) * 64 + i)], std::cos(angle), tolerance::eyeLutPlain)
+                    << i << ", " << j << ", " << z;
+            }
+    EXPECT_GT(lit, 30000u);
+}
+
+TEST(EyeLut, LightAlongTheGazeIsSymmetric) {
+    const PelEyeLutDesc desc = descOf(pelEyeDefaults());
+    const std::vector<float> texels = tableOf(desc);
+    for (uint32_t j = 0; j < desc.height; ++j)
+        for (uint32_t i = 0; i < desc.width / 2; ++i)
+            EXPECT_NEAR(texels[3 * (j * 64 + i)], texels[3 * (j * 64 + 63 - i)], tolerance::eyeLutPlain);
+    // And round the axis: the same places along x and along y, which have texels of 3/16 and 3/32 mm.
+    for (uint32_t k = 4; k < 30; ++k) {
+        const double alongX = 0.5 * (texels[3 * (32 + k)] + texels[3 * (32 + k - 1)]),
+                     alongY = 0.5 * (texels[3 * ((2 * k) * 64 + 32)] + texels[3 * ((2 * k - 1) * 64 + 32)]);
+        EXPECT_NEAR(alongX, alongY, tolerance::eyeLutRound);
+    }
+}
+
+TEST(EyeLut, HasNoScaleAndTheSameBits) {
+    PelEyeLutDesc desc = descOf(pelEyeDefaults());
+    const std::vector<float> texels = tableOf(desc);
+    EXPECT_EQ(tableOf(desc), texels);
+    for (float* length : {&desc.scleraRadius, &desc.corneaRadius, &desc.limbusRadius, &desc.chamberDepth,
+                          &desc.irisRadius, &desc.irisConcavity})
+        *length *= 4;
+    EXPECT_EQ(tableOf(desc), texels);
+}
+
+// The mean over the iris is the flux that arrives, over its area.
+TEST(EyeLut, MeanIsTheFlux) {
+    const PelEye eye = pelEyeDefaults();
+    const PelEyeLutDesc desc = descOf(eye);
+    const std::vector<float> texels = tableOf(desc);
+    const reference::Eye truth = referenceOf(eye);
+    for (const uint32_t z : {0u, 6u, 13u, 19u, 25u}) {
+        double sum = 0, area = 0;
+        for (uint32_t j = 0; j < desc.height; ++j)
+            for (uint32_t i = 0; i < desc.width; ++i) {
+                // The share of the texel that lies on the iris.
+                int on = 0;
+                for (int v = 0; v < 8; ++v)
+                    for (int u = 0; u < 8; ++u)
+                        on += std::hypot((i + (u + 0.5) / 8) / 32 - 1, (j + (v + 0.5) / 8) / 64) < 1;
+                sum += texels[3 * ((size_t(z) * 64 + j) * 64 + i)] * on / 64.0;
+                area += on / 64.0;
+            }
+        const double flux = fluxOnIris(truth, largestAngle(truth) * z / 31, 1200);
+        EXPECT_NEAR(sum / area, flux / (std::acos(-1.0) * 36), tolerance::eyeLutMean);
+    }
+}
+
+TEST(EyeLut, ScattersByTheProfile) {
+    PelEyeLutDesc desc = descOf(pelEyeDefaults());
+    const std::vector<float> plain = tableOf(desc);
+    const std::vector<PelGaussian> terms{{0.09f, {1, 0.5f, 0}}, {0.01f, {0, 0.5f, 1}}};
+    const Profile profile = Profile::gaussians(terms);
+    desc.profile = profile.get();
+    const std::vector<float> scattered = tableOf(desc);
+    // The sum over the plane, from the plain table by brute force; sub-texels stand for the profile's narrow part.
+    const double dx = 12.0 / 64, dy = 6.0 / 64;
+    for (const auto& [z, j, i] :
+         {std::array{8, 0, 40}, std::array{8, 13, 20}, std::array{16, 30, 33}, std::array{3, 5, 60}})
+        for (int c = 0; c < 3; ++c) {
+            double sum = 0;
+            for (int v = -64; v < 64; ++v)
+                for (int u = 0; u < 64; ++u) {
+                    const int row = v < 0 ? -1 - v : v;
+                    if (std::hypot((u + 0.5) / 32 - 1, (row + 0.5) / 64) > 1) continue;
+                    double r = 0;
+                    for (int b = 0; b < 8; ++b)
+                        for (int a = 0; a < 8; ++a) {
+                            const double d2 = std::pow((u - i + (a + 0.5) / 8 - 0.5) * dx, 2) +
+                                              std::pow((v - j + (b + 0.5) / 8 - 0.5) * dy, 2);
+                            for (const PelGaussian& g : terms)
+                                r += g.weight[c] * std::exp(-d2 / (2 * g.variance)) /
+                                     (2 * std::acos(-1.0) * g.variance) / 64;
+                        }
+                    sum += r * dx * dy * plain[3 * ((size_t(z) * 64 + size_t(row)) * 64 + size_t(u))];
+                }
+            EXPECT_NEAR(scattered[3 * ((size_t(z) * 64 + size_t(j)) * 64 + size_t(i)) + size_t(c)], sum,
+                        tolerance::eyeLutScattered)
+                << z << ", " << j << ", " << i << ", " << c;
+        }
+}
+
+TEST(EyeLut, TexelsComeBack) {
+    const Device device("");
+    PelEyeLutDesc desc = descOf(pelEyeDefaults());
+    desc.width = 16, desc.height = 8, desc.depth = 5;
+    const Lut lut(device, desc);
+    const std::vector<float> texels = lut.read<float>(PEL_LUT_FLOAT);
+    ASSERT_EQ(texels.size(), 16u * 8 * 5 * 3);
+    EXPECT_EQ(Lut(device, lut.info(), texels).read<float>(PEL_LUT_FLOAT), texels);
+    EXPECT_EQ(lut.info().eye.irisRadius, 6);
+    EXPECT_EQ(lut.read<uint16_t>(PEL_LUT_HALF).size(), texels.size());
+    EXPECT_THROW(lut.read<uint8_t>(PEL_LUT_FACEWORKS8), Error);
+}

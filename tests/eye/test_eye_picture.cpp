@@ -1,0 +1,83 @@
+// The whole picture of an eye against the tracer in double precision.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "eye/eye_picture.h"
+#include "tolerances.h"
+
+using namespace pellucid;
+using namespace eye_test;
+
+namespace {
+
+PictureError errorOf(const EyeScene& scene, const char* what) {
+    const EyePicture picture(scene);
+    const PictureError error = differenceOf(picture, picture.shade(), picture.trace());
+    std::printf("%s: RMS %.3g, worst %.3g at (%d, %d)\n", what, error.rms, error.worst,
+                int(error.worstPixel) % scene.size, int(error.worstPixel) / scene.size);
+    return error;
+}
+
+}  // namespace
+
+TEST(EyePicture, RefractsAsTheTracer) {
+    EyeScene scene;
+    scene.makeTexture(256);
+    scene.ambient.constant[0] = scene.ambient.constant[1] = scene.ambient.constant[2] = 1;
+    EXPECT_LT(errorOf(scene, "refraction").rms, tolerance::eyePictureRms);
+    scene.eye.irisConcavity = 0.7f;
+    scene.eye.pupilRadius = 3.2f;
+    scene.eye.corneaConic = -1.1f;
+    scene.camera = {1, -0.2, 7};
+    EXPECT_LT(errorOf(scene, "concave iris, hyperboloid").rms, tolerance::eyePictureRms);
+    scene.eye.corneaIndex = scene.eye.aqueousIndex = 1;
+    EXPECT_LT(errorOf(scene, "index 1").rms, tolerance::eyePictureRms);
+}
+
+TEST(EyePicture, GlossAsTheTracer) {
+    EyeScene scene;
+    for (float& c : scene.sclera.albedo) c = 0;
+    for (float& c : scene.eye.irisColor) c = 0;
+    scene.makeTexture(4);
+    std::fill(scene.texture.begin(), scene.texture.end(), 0.0f);
+    scene.addLight({0.6, 0.5, 0.8}, {1, 0.9, 0.8});
+    scene.addLight({-0.6, 0.2, 0.5}, {0.3, 0.4, 0.5});
+    EXPECT_LT(errorOf(scene, "gloss").rms, tolerance::eyePictureRms);
+    scene.wetness.assign(size_t(scene.size) * size_t(scene.size), 0.0f);
+    for (size_t k = 0; k < scene.wetness.size(); ++k) scene.wetness[k] = float(k % 128) / 127;
+    EXPECT_LT(errorOf(scene, "gloss with a wet line").rms, tolerance::eyePictureRms);
+}
+
+TEST(EyePicture, CausticsAsTheTracer) {
+    EyeScene scene;
+    scene.makeTexture(256);
+    scene.addLight({0.9, 0.3, 0.35}, {1, 0.9, 0.8});
+    EXPECT_LT(errorOf(scene, "light from the side").rms, tolerance::eyeCausticRms);
+    scene.lights.clear();
+    scene.addLight({0.3, 0.9, 0.5}, {0.8, 0.8, 0.8});
+    scene.addLight({-0.2, 0.1, 0.9}, {0.2, 0.3, 0.4});
+    EXPECT_LT(errorOf(scene, "two lights").rms, tolerance::eyeCausticRms);
+    scene.shadow.assign(size_t(scene.size) * size_t(scene.size), 1.0f);
+    for (size_t k = 0; k < scene.shadow.size() / 2; ++k)
+        scene.shadow[k] = float(k) / float(scene.shadow.size() / 2);
+    EXPECT_LT(errorOf(scene, "under a lid").rms, tolerance::eyeCausticRms);
+}
+
+TEST(EyePicture, SkippingChangesNothing) {
+    EyeScene scene;
+    scene.makeTexture(64);
+    scene.addLight({0.9, 0.3, 0.35}, {1, 0.9, 0.8});
+    scene.ambient.constant[0] = 0.2f;
+    scene.shadow.assign(size_t(scene.size) * size_t(scene.size), 1.0f);
+    std::fill(scene.shadow.begin(), scene.shadow.begin() + 5000, 0.0f);
+    PelShaderStats stats;
+    const std::vector<float> skipped = EyePicture(scene).shade(&stats);
+    // The pupil reads no table, and neither does what lies in shadow or is sclera.
+    EXPECT_GT(stats.pixelsIris, 0u);
+    EXPECT_LT(stats.pixelsIris, stats.pixelsEye / 2);
+    EXPECT_LT(stats.pixelsCaustic, stats.pixelsIris);
+    EXPECT_GT(stats.pixelsCaustic, 0u);
+    scene.skipping = false;
+    EXPECT_EQ(EyePicture(scene).shade(), skipped);
+}
