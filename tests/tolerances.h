@@ -427,15 +427,18 @@ inline constexpr Tolerance bc6hMax{
 inline constexpr Tolerance bc6hRms{"bc6hRms", 1.6e-3, "64x64: 1.4e-3 measured"};
 
 // --- eyes ---
-inline constexpr Tolerance eyeLutRms{"eyeLutRms", 1e-2,
-                                     "RMS, of the table's mean; 0.7 % measured, of which the photons' noise is half"};
+inline constexpr Tolerance eyeLutRms{
+    "eyeLutRms", 1e-2, "RMS, of the table's mean; 0.7 % measured, of which the photons' noise is half"};
 inline constexpr Tolerance eyeLutFlux{"eyeLutFlux", 1e-3, "flux on the texels, relative"};
-inline constexpr Tolerance eyeLutPlain{"eyeLutPlain", 2e-2,
-                                       "one texel without its own cell on each side: about 2.5 cells make a mean"};
+inline constexpr Tolerance eyeLutPlain{
+    "eyeLutPlain", 2e-2, "one texel without its own cell on each side: about 2.5 cells make a mean"};
 inline constexpr Tolerance eyeLutRound{"eyeLutRound", 2e-2, "texels are twice as long across as along"};
 inline constexpr Tolerance eyeLutMean{"eyeLutMean", 2e-3, "texels that the rim cuts count by their area"};
-inline constexpr Tolerance eyeLutScattered{"eyeLutScattered", 2e-4, "means over texels by 8 x 8 points in both"};
-inline constexpr Tolerance eyePictureRms{"eyePictureRms", 2e-3, "RMS of an eye's pixels, white is 1: refraction, gloss"};
-inline constexpr Tolerance eyeCausticRms{"eyeCausticRms", 1e-2, "the same, with caustics from a table of 64 x 64 x 32"};
+inline constexpr Tolerance eyeLutScattered{"eyeLutScattered", 2e-4,
+                                           "means over texels by 8 x 8 points in both"};
+inline constexpr Tolerance eyePictureRms{"eyePictureRms", 2e-3,
+                                         "RMS of an eye's pixels, white is 1: refraction, gloss"};
+inline constexpr Tolerance eyeCausticRms{"eyeCausticRms", 1e-2,
+                                         "the same, with caustics from a table of 64 x 64 x 32"};
 
 }  // namespace tolerance
