@@ -1,6 +1,5 @@
 // The `pellucid` command. Exit codes: 0 done, 2 wrong use, 3 bad input file, 4 no device or device failure.
 #include <fcntl.h>
-#include <malloc.h>
 
 #include <csignal>
 #include <cstdio>
@@ -48,19 +47,10 @@ void holdStandardStreams() {
             std::exit(exitWrongUse);
 }
 
-// Images come and go: memory that was freed is used again, instead of going back to the system, which clears each page anew.
-void keepMemory() {
-#ifdef __GLIBC__
-    ::mallopt(M_MMAP_THRESHOLD, 1 << 30);
-    ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
-#endif
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
     holdStandardStreams();
-    keepMemory();
     std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes becomes an error like a full disk
     CLI::App app("Subsurface scattering for deferred renderers on OpenCL", "pellucid");
     app.require_subcommand(1);
