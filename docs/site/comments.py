@@ -11,7 +11,6 @@ HEADING = re.compile(r"-{4}")
 def marked(text: str) -> str:
     """The same text, line for line, with documentation marks."""
     out = []
-    inside = False  # a run of // lines that describes what follows
     for line in text.split("\n"):
         before, mark, rest = line.partition("//")
         if mark and '"' not in before and not HEADING.search(rest):
