@@ -10,6 +10,16 @@ if(TARGET pellucid_cli)
   set_target_properties(pellucid_cli PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS pellucid_cli)
   install(TARGETS pellucid_pictures LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  # Manual pages and completions, made from the command that was built; a command for another machine cannot be asked.
+  find_package(Python3 COMPONENTS Interpreter)
+  if(Python3_FOUND AND NOT CMAKE_CROSSCOMPILING)
+    set(pages ${PROJECT_BINARY_DIR}/command_pages)
+    add_custom_command(OUTPUT ${pages}/share/man/man1/pellucid.1
+                       COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/packaging/command_pages $<TARGET_FILE:pellucid_cli> --install ${pages}
+                       DEPENDS pellucid_cli ${PROJECT_SOURCE_DIR}/packaging/command_pages COMMENT "Manual pages and completions")
+    add_custom_target(command_pages ALL DEPENDS ${pages}/share/man/man1/pellucid.1)
+    install(DIRECTORY ${pages}/share/ DESTINATION ${CMAKE_INSTALL_DATADIR})
+  endif()
 endif()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pellucid)

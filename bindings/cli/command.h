@@ -93,5 +93,9 @@ void addCompare(CLI::App& app);
 void addPrefill(CLI::App& app);
 void addDemo(CLI::App& app);
 void addBench(CLI::App& app);
+void addDescribe(CLI::App& app);
+
+// After CLI::ExtrasError: which words are not expected, and what may have been meant.
+std::string unknownOptions(const CLI::App& app);
 
 }  // namespace pellucid::cli

@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "io/file_error.h"
+#include "io/spelling.h"
 
 using namespace pellucid;
 using namespace pellucid::cli;
@@ -24,12 +25,16 @@ int fail(ExitCode code, const char* message) {
 void checkSubcommand(const CLI::App& app, int argc, char** argv, const std::string& path = "") {
     if (argc < 2 || argv[1][0] == '-' || app.get_require_subcommand_min() == 0) return;
     std::string names;
+    std::vector<std::string> all;
     for (const CLI::App* known : app.get_subcommands({})) {
         if (known->get_name() == argv[1])
             return checkSubcommand(*known, argc - 1, argv + 1, path + argv[1] + " ");
         names += (names.empty() ? "" : ", ") + known->get_name();
+        all.push_back(known->get_name());
     }
-    throw UsageError("there is no subcommand '" + path + argv[1] + "'; there are " + names);
+    const std::string nearest = io::nearestWord(argv[1], all);
+    throw UsageError("there is no subcommand '" + path + argv[1] + "'; " +
+                     (nearest.empty() ? "" : "did you mean " + nearest + "? ") + "there are " + names);
 }
 
 // Closes standard output: if the report cannot be written, the command has failed.
@@ -67,6 +72,7 @@ int main(int argc, char** argv) {
     addPrefill(app);
     addDemo(app);
     addBench(app);
+    addDescribe(app);
     try {
         checkSubcommand(app, argc, argv);
         app.parse(argc, argv);
@@ -75,6 +81,8 @@ int main(int argc, char** argv) {
         return finish(app.exit(e));  // --help and --version
     } catch (const CLI::RuntimeError& e) {
         return finish(e.get_exit_code());  // a subcommand's own
+    } catch (const CLI::ExtrasError&) {
+        return fail(exitWrongUse, unknownOptions(app).c_str());
     } catch (const CLI::ParseError& e) {
         app.exit(e);
         return exitWrongUse;

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <sstream>
 
 #include "io/file_error.h"
 #include "io/input_file.h"
+#include "io/spelling.h"
 
 namespace pellucid::io {
 namespace {
@@ -23,22 +23,6 @@ std::string quoted(std::string_view text) {
     out += text;
     out += '\'';
     return out;
-}
-
-// Edits (insert, delete, replace) between two words [Levenshtein 1966].
-size_t distance(std::string_view a, std::string_view b) {
-    std::vector<size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), size_t{0});
-    for (size_t i = 0; i < a.size(); ++i) {
-        size_t diagonal = row[0];
-        row[0] = i + 1;
-        for (size_t j = 0; j < b.size(); ++j) {
-            const size_t replaced = diagonal + (a[i] != b[j]);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, replaced});
-        }
-    }
-    return row.back();
 }
 
 }  // namespace
@@ -251,14 +235,11 @@ void TomlReader::finish() const {
     for (const auto& [key, node] : table_) {
         const std::string_view given = key.str();
         if (std::find(known_.begin(), known_.end(), given) != known_.end()) continue;
-        const auto nearest = std::min_element(known_.begin(), known_.end(), [&](const auto& a, const auto& b) {
-            return distance(a, given) < distance(b, given);
-        });
+        const std::string nearest = nearestWord(given, known_);
         std::string list;
         for (const std::string& k : known_) list += (list.empty() ? "" : ", ") + k;
-        const bool close = nearest != known_.end() && distance(*nearest, given) <= 1 + given.size() / 3;
-        fail(given, close ? "is not known; did you mean " + quoted(*nearest) + "? Known: " + list
-                          : "is not known; known: " + list);
+        fail(given, nearest.empty() ? "is not known; known: " + list
+                                    : "is not known; did you mean " + quoted(nearest) + "? Known: " + list);
     }
 }
 

@@ -83,10 +83,12 @@ TEST_F(Cli, DevicesAreChosenOrNamedMissing) {
 TEST_F(Cli, WrongUseIsRefused) {
     expectRefused({}, 2, "subcommand");
     expectRefused({"lut", "curvatur"}, 2,
-                  "no subcommand 'lut curvatur'; there are curvature, shadow, specular");
+                  "no subcommand 'lut curvatur'; did you mean curvature? there are curvature, shadow, specular");
     expectRefused({"curvatur"}, 2, "curvatur");
     expectRefused({"lut", "curvature"}, 2, "--output");
-    expectRefused({"lut", "curvature", "-o", path("l.npy"), "--sise", "8x8"}, 2, "--sise");
+    expectRefused({"lut", "curvature", "-o", path("l.npy"), "--sise", "8x8"}, 2,
+                  "pellucid lut curvature has no '--sise'; did you mean --size?");
+    expectRefused({"shde"}, 2, "no subcommand 'shde'; did you mean shade?");
     for (const char* size : {"8", "8x", "0x8", "-1x8", "8x8x8", "eight"}) {
         expectRefused({"lut", "curvature", "-o", path("l.npy"), std::string("--size=") + size}, 2, "--size");
     }

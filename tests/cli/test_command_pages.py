@@ -1,0 +1,66 @@
+"""Manual pages and completions are made from the command itself, and the guide's tables are what it says today.
+
+    test_command_pages.py COMMAND
+"""
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = ROOT / "packaging/command_pages"
+COMMAND = ""
+
+
+class CommandPages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.out = Path(cls.folder.name)
+        subprocess.run([sys.executable, PAGES, COMMAND, "--install", cls.out], check=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def completed(self, *words):
+        """What bash offers for the last word."""
+        script = ('source "$1"; shift; COMP_WORDS=(pellucid "$@"); COMP_CWORD=$#; _pellucid; printf "%s\\n" "${COMPREPLY[@]}"')
+        file = self.out / "share/bash-completion/completions/pellucid"
+        out = subprocess.run(["bash", "-c", script, "bash", file, *words], check=True, capture_output=True, text=True, cwd=self.out)
+        return out.stdout.split()
+
+    def test_the_guide_is_up_to_date(self):
+        subprocess.run([sys.executable, PAGES, COMMAND, "--check"], check=True)
+
+    def test_bash(self):
+        self.assertEqual(self.completed("sha"), ["shade", "share"])  # a subcommand, and a folder
+        self.assertEqual(self.completed("lut", "sp"), ["specular"])
+        self.assertIn("--smooth-weights", self.completed("curvature", "m.ply", "--smooth-w"))
+        self.assertEqual(self.completed("curvature", "m.ply", "--smooth-weights", "a"), ["area"])
+        self.assertEqual(self.completed("shade", "g.exr", "--show", "spec"), ["specular"])
+        self.assertNotIn("--smooth", self.completed("shade", "--s"))
+
+    def test_other_shells_can_read_theirs(self):
+        for shell, file in (("zsh", "zsh/site-functions/_pellucid"), ("fish", "fish/vendor_completions.d/pellucid.fish")):
+            path = self.out / "share" / file
+            self.assertIn("smooth-weights", path.read_text())
+            if shutil.which(shell):
+                subprocess.run([shell, "-n", path], check=True)
+
+    def test_manual_pages(self):
+        pages = sorted(p.name for p in (self.out / "share/man/man1").iterdir())
+        self.assertIn("pellucid.1", pages)
+        self.assertIn("pellucid-lut-curvature.1", pages)
+        shade = (self.out / "share/man/man1/pellucid-shade.1").read_text()
+        self.assertIn("scene file (TOML)", shade)
+        if shutil.which("groff"):
+            read = subprocess.run(["groff", "-man", "-ww", "-z", *(self.out / "share/man/man1").iterdir()], capture_output=True, text=True)
+            self.assertEqual((read.returncode, read.stderr), (0, ""))
+
+
+if __name__ == "__main__":
+    COMMAND = sys.argv.pop(1)
+    unittest.main()
