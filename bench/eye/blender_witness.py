@@ -104,8 +104,8 @@ scene.camera = eye
 scene.render.engine = "CYCLES"
 scene.cycles.samples = int(words[1]) if len(words) > 1 else 512
 scene.cycles.use_adaptive_sampling = scene.cycles.use_denoising = False
-scene.cycles.max_bounces = 1  # direct light alone, as the library has it
-scene.cycles.diffuse_bounces = 1
+scene.cycles.max_bounces = 8
+scene.cycles.diffuse_bounces = 1  # 0 would switch the manifold estimation off
 scene.cycles.caustics_reflective = scene.cycles.caustics_refractive = True
 scene.cycles.sample_clamp_indirect = 0
 scene.cycles.filter_width = 0.01

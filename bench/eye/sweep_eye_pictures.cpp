@@ -93,6 +93,7 @@ void tracer(const std::string& folder) {
     scene.camera = {3.2, 1.2, 6.5};
     scene.makeTexture(256);
     for (float& v : scene.texture) v *= 0.6f;
+    for (float& c : scene.eye.irisColor) c = -1;
     const EyePicture picture(scene);
     const std::vector<float> is = picture.shade();
     const std::vector<double> truth = picture.trace(20'000'000);

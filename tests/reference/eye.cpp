@@ -152,7 +152,9 @@ double irisVisible(const Eye& eye, const EyeHit& hit) {
     if (eye.pupil > 0)
         visible = saturate((hit.radius - eye.pupil) / std::min(0.02 * eye.iris, 0.1 * eye.pupil));
     const double width = std::max(eye.limbusWidth, 1e-6 * eye.limbus);
-    const double rim = smoothstep01(saturate((hit.radius - eye.iris + width) / width));
+    const double border = eye.limbus - width, from = std::hypot(hit.point.x, hit.point.y);
+    const double rim = std::max(smoothstep01(saturate((hit.radius - (eye.iris - width)) / width)),
+                                smoothstep01(saturate((from - (border - width)) / width)));
     const double depth = std::min(-std::log(std::max(1 - eye.limbusDarkening, 1e-30)), 7.0);
     return visible * std::exp(-depth * rim / std::max(hit.cosine, 0.1));
 }
