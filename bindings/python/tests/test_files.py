@@ -9,7 +9,7 @@ def test_a_head_comes_with_the_package():
     mesh = files.load_mesh(files.standard_head(), subdivide=1)
     n = len(mesh.positions)
     assert mesh.triangles.max() == n - 1
-    assert mesh.ids.shape == (n,) and set(np.unique(mesh.ids)) == {1, 2, 3, 4, 5}
+    assert mesh.ids.shape == (n,) and set(np.unique(mesh.ids)) == {1, 2, 3, 4, 5, 6}
     assert mesh.albedo.shape == (n, 3) and 0 < mesh.albedo.min() and mesh.albedo.max() < 1.1
     assert np.allclose(np.linalg.norm(mesh.normals, axis=1), 1, atol=1e-4)
     assert mesh.up == (0, 1, 0) and mesh.front == (0, 0, 1)
