@@ -2,6 +2,7 @@
 
 #include <condition_variable>
 #include <exception>
+#include <string>
 #include <thread>
 
 #include "core/handle_table.h"
@@ -141,7 +142,10 @@ void runJobs(Device& device, const WarmUpJobs& jobs, uint32_t threads) {
     };
     if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
     std::vector<std::jthread> workers;
-    const auto tell = [&](double fraction) { device.progress(fraction, "building programs"); };
+    const auto tell = [&](size_t ready) {
+        const std::string what = "building kernels " + std::to_string(ready) + "/" + std::to_string(jobs.size());
+        device.progress(jobs.empty() ? 1 : double(ready) / double(jobs.size()), what.c_str());
+    };
     tell(0);
     try {
         for (size_t i = 0; i < std::min<size_t>(threads, jobs.size()); ++i) {
@@ -171,7 +175,7 @@ void runJobs(Device& device, const WarmUpJobs& jobs, uint32_t threads) {
         lock.unlock();
         std::exception_ptr cancelled;
         try {
-            tell(double(told) / double(jobs.size()));
+            tell(told);
         } catch (...) {
             cancelled = std::current_exception();
         }

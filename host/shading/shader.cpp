@@ -2,6 +2,7 @@
 #include "shading/shader.h"
 
 #include <algorithm>
+#include <mutex>
 
 #include "shading/choose_method.h"
 #include "shading/features.h"
@@ -174,19 +175,37 @@ void Shader::addWarmUpJobs(std::vector<std::function<void()>>& jobs) const {
     });
     for (const cl::ProgramKey& key : keys)
         jobs.push_back([device = device_, key] { device->programs().get(key); });
-    jobs.push_back([shader] {
-        shader->finishPlan();
-        shader->launchOnNothing();
-    });
+    // A job for each pass, for drivers compile kernels when they are launched first. Whichever job comes next launches the next pass: passes
+    // read what those before them made.
+    struct Launches {
+        std::mutex alone;
+        std::vector<Pass*> passes;
+        size_t next = 0;
+    };
+    const auto launches = std::make_shared<Launches>();
+    shader->passes_.each([&](Pass& pass) { launches->passes.push_back(&pass); });
+    for (size_t i = 0; i < launches->passes.size(); ++i)
+        jobs.push_back([shader, launches] {
+            const std::lock_guard alone(launches->alone);
+            if (launches->next == 0) shader->beginOnNothing();
+            shader->launchOnNothing(*launches->passes[launches->next++]);
+        });
 }
 
-// Launches every kernel of an execution, in a frame without tiles.
-void Shader::launchOnNothing() {
+// A frame without tiles: an execution launches every kernel, and none does anything.
+void Shader::beginOnNothing() {
+    finishPlan();
     PassWork work = beginWork();
     constants_.setBand(*device_, 0, 0, 0);
     work.rows = work.around = {0, 1};
     passes_.each([&](Pass& pass) { pass.enqueueAround(work); });
-    passes_.each([&](Pass& pass) { pass.enqueue(work); });
+    device_->finish();
+}
+
+void Shader::launchOnNothing(Pass& pass) {
+    PassWork work{*device_, plan_, constants_, events_};
+    work.rows = work.around = {0, 1};
+    pass.enqueue(work);
     device_->finish();
 }
 

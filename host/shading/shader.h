@@ -54,7 +54,8 @@ class Shader final : public Object {
     void checkMethods(const ShaderState& state) const;
     void finishPlan();
     void send();
-    void launchOnNothing();
+    void beginOnNothing();
+    void launchOnNothing(Pass& pass);
     PassWork beginWork();
     void runBand(PassWork& work);
     void setRows(const PassWork& work, TileRows rows);
