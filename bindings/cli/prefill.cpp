@@ -1,8 +1,9 @@
 // pellucid prefill (warm-up): builds programs before they are needed. The driver's cache on disk keeps them.
 #include <set>
 
-#include "frame.h"
+#include "command.h"
 #include "io/file_error.h"
+#include "io/scene/scene_frame.h"
 
 namespace pellucid::cli {
 namespace {
@@ -31,7 +32,7 @@ void prefillScene(const Device& device, const std::string& path) {
     for (size_t slot = 0; slot < scene.channels.size(); ++slot)
         if (slot != PEL_SLOT_CURVATURE || scene.channels[slot] != std::vector<std::string>{"screen"})
             channels.insert(scene.channels[slot].begin(), scene.channels[slot].end());
-    ShadowMaps maps;
+    io::ShadowMaps maps;
     for (const io::SceneLight& light : scene.lights) {
         channels.insert(light.wideShadow);
         if (light.shadowMapFile.empty()) continue;
@@ -45,8 +46,8 @@ void prefillScene(const Device& device, const std::string& path) {
             add(light.cascades[k].file, light.cascades[k].channel, light.cascades[k].secondChannel);
         for (const auto& [file, names] : files) maps[file] = blank(names, cube ? 6 * 16 : 2);
     }
-    LutStore luts(device);
-    Frame frame(device, blank(channels), scene, luts, maps);
+    io::LutStore luts(device);
+    io::SceneFrame frame(device, blank(channels), scene, luts, maps);
     frame.shade();
 }
 

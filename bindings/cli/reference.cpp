@@ -3,12 +3,12 @@
 #include <cmath>
 
 #include "command.h"
-#include "frame.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/image/image_file.h"
 #include "io/input_file.h"
 #include "io/lut/profile_file.h"
+#include "io/scene/scene_frame.h"
 #include "surface_reference.h"
 
 namespace pellucid::cli {

@@ -3,10 +3,11 @@
 #include <set>
 #include <sstream>
 
-#include "frame.h"
+#include "command.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/input_file.h"
+#include "io/scene/scene_frame.h"
 #include "io/scene/scene_keys.h"
 #include "shade_picture.h"
 
@@ -45,9 +46,10 @@ std::vector<std::string> channelsOf(const io::SceneFile& scene) {
     return names;
 }
 
-void writeOutput(const std::string& path, PelImageSlot slot, const io::Image& gbuffer, const Frame& frame) {
-    (slot == PEL_SLOT_OUT_THICKNESS ? writeThickness : writeRadiance)(path, gbuffer.width, gbuffer.height,
-                                                                      frame.output(slot));
+void writeOutput(const std::string& path, PelImageSlot slot, const io::Image& gbuffer,
+                 const io::SceneFrame& frame) {
+    (slot == PEL_SLOT_OUT_THICKNESS ? io::writeThickness : io::writeRadiance)(
+        path, gbuffer.width, gbuffer.height, frame.output(slot));
 }
 
 // Warns of settings that have no effect.
@@ -72,6 +74,34 @@ void warnOfInvalid(Run& run, const PelShaderStats& stats) {
         stats.pixelsInvalid == stats.pixelsShaded ? "all " : std::to_string(stats.pixelsInvalid) + " of ";
     run.warn(share + std::to_string(stats.pixelsShaded) +
              " pixels of a material have NaN or Inf in an input or in their result; they are black");
+}
+
+// The counters as an object of the report.
+nlohmann::ordered_json toJson(const PelShaderStats& s) {
+    nlohmann::ordered_json features = nlohmann::ordered_json::array();
+    for (const auto& [bit, name] : io::featureKeys)
+        if (s.features & bit) features.push_back(name);
+    return {{"features", features},
+            {"programs_built", s.programsBuilt},
+            {"launches", s.launches},
+            {"scratch_bytes", s.scratchBytes},
+            {"bytes_uploaded", s.bytesUploaded},
+            {"tiles_total", s.tilesTotal},
+            {"tiles_shaded", s.tilesShaded},
+            {"pixels_total", s.pixelsTotal},
+            {"pixels_shaded", s.pixelsShaded},
+            {"pixels_shadow_lut", s.pixelsShadowLut},
+            {"pixels_thickness", s.pixelsThickness},
+            {"pixels_specular", s.pixelsSpecular},
+            {"pixels_eye", s.pixelsEye},
+            {"pixels_iris", s.pixelsIris},
+            {"pixels_caustic", s.pixelsCaustic},
+            {"tiles_eye", s.tilesEye},
+            {"pixels_wide_shadow", s.pixelsWideShadow},
+            {"pixels_shadow_texels", s.pixelsShadowTexels},
+            {"bands", s.bands},
+            {"pixels_invalid", s.pixelsInvalid},
+            {"shade_ms", s.deviceMilliseconds}};
 }
 
 void run(const Arguments& a) {
@@ -109,20 +139,20 @@ void run(const Arguments& a) {
             if (const PelImageSlot slot = slotOfPart(part);
                 slot != PEL_SLOT_RADIANCE && std::ranges::find(outputs, slot) == outputs.end())
                 outputs.push_back(slot);
-    LutStore luts(run.device());
+    io::LutStore luts(run.device());
     PelShaderOptions options = pelShaderOptionsDefaults();
     options.countPixels = a.stats;
     options.scratchBudget = a.scratchMib << 20;
     try {
-        Frame frame(run.device(), gbuffer, scene, luts, {}, options, outputs);
+        io::SceneFrame frame(run.device(), gbuffer, scene, luts, {}, options, outputs);
         frame.shade();
         const PelShaderStats stats = frame.stats();
         warnOfNothing(run, scene, outputs, stats.features);
         std::istringstream warnings(frame.warnings());
         for (std::string line; std::getline(warnings, line);) run.warn(line);
-        for (const std::string& sentence : unlikely(gbuffer, scene)) run.warn(sentence);
+        for (const std::string& sentence : io::unlikely(gbuffer, scene)) run.warn(sentence);
         warnOfInvalid(run, stats);
-        if (picture != a.output) writeRadiance(a.output, gbuffer.width, gbuffer.height, frame.radiance());
+        if (picture != a.output) io::writeRadiance(a.output, gbuffer.width, gbuffer.height, frame.radiance());
         if (!picture.empty()) writeShadePicture(picture, gbuffer, frame, a.show, a.tone);
         for (const auto& [slot, file] : files) writeOutput(file, slot, gbuffer, frame);
         run.report["output"] = a.output;

@@ -24,7 +24,7 @@ PelImageSlot slotOfPart(const std::string& part) {
     return PEL_SLOT_RADIANCE;
 }
 
-void writeShadePicture(const std::string& path, const io::Image& gbuffer, const Frame& frame,
+void writeShadePicture(const std::string& path, const io::Image& gbuffer, const io::SceneFrame& frame,
                        const std::vector<std::string>& parts, const io::ToneMap& tone) {
     std::vector<io::Tile> tiles;
     for (const std::string& part : parts) {

@@ -3,8 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "frame.h"
+#include "command.h"
 #include "io/image/tone_map.h"
+#include "io/scene/scene_frame.h"
 
 namespace pellucid::cli {
 
@@ -15,7 +16,7 @@ PelImageSlot slotOfPart(const std::string& part);
 
 // The parts side by side, labelled where there is more than one, lengths as colours with a bar. `frame` was shaded with their
 // slots as outputs.
-void writeShadePicture(const std::string& path, const io::Image& gbuffer, const Frame& frame,
+void writeShadePicture(const std::string& path, const io::Image& gbuffer, const io::SceneFrame& frame,
                        const std::vector<std::string>& parts, const io::ToneMap& tone);
 
 // --exposure and --tonemap.

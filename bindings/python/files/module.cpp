@@ -1,4 +1,4 @@
-// The extension module pellucid._files: meshes and images from files, and the heads of the demo.
+// The extension module pellucid._files: meshes, images and scenes from files, and the heads of the demo.
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -12,6 +12,7 @@
 #include "io/image/image_format.h"
 #include "io/image/tone_map.h"
 #include "io/mesh/mesh_file.h"
+#include "scene.h"
 
 namespace py = pybind11;
 
@@ -49,7 +50,9 @@ py::dict loadMesh(const std::string& path, int levels, bool normals) {
     io::MeshData mesh;
     {
         const py::gil_scoped_release free;
-        mesh = io::loadMesh(path);
+        io::MeshLoadOptions options;
+        options.splitUvSeams = levels == 0;  // subdivision would round the sides of a seam off by themselves
+        mesh = io::loadMesh(path, options);
         if (levels > 0) io::loopSubdivide(mesh, levels);
         if (normals && mesh.normals.empty()) io::computeNormals(mesh);
     }
@@ -153,7 +156,7 @@ Bytes toneMapped(const Pixels& rgb, float exposure, float shoulder, const std::s
 }  // namespace
 
 PYBIND11_MODULE(_files, module) {
-    module.doc() = "Meshes and images from files, for the Python files of this package alone.";
+    module.doc() = "Meshes, images and scenes from files, for the Python files of this package alone.";
     py::register_exception<io::FileError>(module, "FileError", PyExc_OSError);
     module.def("load_mesh", &loadMesh);
     module.def("load_head", &loadHead);
@@ -161,4 +164,5 @@ PYBIND11_MODULE(_files, module) {
     module.def("write_exr", &writeExr);
     module.def("write_bytes", &writeBytes);
     module.def("tone_mapped", &toneMapped);
+    python::bindScene(module);
 }

@@ -71,6 +71,7 @@ void bindDevice(py::module_& module) {
                             return pellucid::Device::fromCl(pointer(context), pointer(device), pointer(queue));
                         });
                     })
+        .def("address", [](const Device& d) { return reinterpret_cast<uintptr_t>(d.handle.get()); })
         .def("info",
              [](const Device& d) {
                  PelDeviceInfo info = pelDeviceInfoDefaults();

@@ -7,6 +7,8 @@ GIL, and arrays stay alive until the work that uses them is done. Failures raise
 """
 from __future__ import annotations
 
+from typing import Any
+
 from . import _native
 from ._arrays import Image, Vertices
 from ._errors import PellucidError
@@ -19,13 +21,25 @@ from .mesh import MeshTopology, orient_mesh
 from .profile import Profile
 from .reference import compare, submit_surface_integral, surface_integral
 from .scatter import Scatter
+from .scene import Scene, Shaded, load_scene, shade
 from .shader import Shader, warm_up_programs
 from .texture_scatter import TextureScatter
+
+
+def __getattr__(name: str) -> Any:
+    # Of a module that not every build has.
+    if name in ("load_mesh", "read_image", "tonemap", "write_image"):
+        from . import files
+
+        return getattr(files, name)
+    raise AttributeError(f"module 'pellucid' has no attribute {name!r}")
+
 
 _number = _native.version()
 __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
 
 __all__ = [  # noqa: PLE0604
-    "Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile", "Scatter", "Shader",
-    "TextureScatter", "Vertices", "compare", "devices", "orient_mesh", "warm_up_programs", "screen_curvature", "set_error_callback",
+    "Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile", "Scatter", "Scene", "Shaded",
+    "Shader",
+    "TextureScatter", "Vertices", "compare", "devices", "load_scene", "orient_mesh", "shade", "warm_up_programs", "screen_curvature", "set_error_callback",
     "submit_screen_curvature", "submit_surface_integral", "surface_integral", *_type_names]

@@ -76,3 +76,16 @@ def test_wrong_use_says_what_would_be_right(tmp_path):
         files.write_image(tmp_path / "nowhere" / "a.png", np.zeros((2, 2, 3)))
     with pytest.raises(files.FileError):
         files.read_image(tmp_path / "missing.exr")
+
+
+def test_seams_of_texture_coordinates_are_kept(tmp_path):
+    path = tmp_path / "strip.obj"  # two squares that share an edge, whose coordinates differ there
+    path.write_text("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\n"
+                    "vt 0 0\nvt .4 0\nvt .4 .4\nvt 0 .4\nvt .6 0\nvt 1 0\nvt 1 .4\nvt .6 .4\n"
+                    "f 1/1 2/2 5/3 4/4\nf 2/5 3/6 6/7 5/8\n")
+    mesh = files.load_mesh(path)
+    assert len(mesh.positions) == 8 and mesh.uvs.shape == (8, 2)
+    seam = np.abs(mesh.positions[:, 0] - 1) < 1e-6
+    assert sorted(mesh.uvs[seam, 0].round(3).tolist()) == pytest.approx([0.4, 0.4, 0.6, 0.6])
+    assert np.allclose(mesh.normals, [0, 0, 1])
+    assert files.load_mesh(path, subdivide=1).uvs is None

@@ -1,4 +1,4 @@
-#include "frame.h"
+#include "io/scene/scene_frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,23 +11,23 @@
 #include "io/lut/lut_file.h"
 #include "io/lut/profile_file.h"
 
-namespace pellucid::cli {
+namespace pellucid::io {
 
 namespace {
 
 // Equal requests give equal bits, so that the description is the key. Its structures have no padding.
-bool sameTable(const io::SceneLut& a, const io::SceneLut& b) {
+bool sameTable(const SceneLut& a, const SceneLut& b) {
     return a.file == b.file && a.expected == b.expected && a.profile == b.profile &&
            std::memcmp(&a.info, &b.info, sizeof a.info) == 0;
 }
 
-Lut make(const Device& device, const io::SceneLut& request) {
+Lut make(const Device& device, const SceneLut& request) {
     if (!request.file.empty()) {
-        const Lut lut = io::readLut(device, request.file);
-        io::checkLutInfo(request.file, lut.info(), request.info, request.expected);
+        const Lut lut = readLut(device, request.file);
+        checkLutInfo(request.file, lut.info(), request.info, request.expected);
         return lut;
     }
-    const Profile profile = request.profile.empty() ? Profile() : io::findProfile(request.profile).profile;
+    const Profile profile = request.profile.empty() ? Profile() : findProfile(request.profile).profile;
     PelLutInfo info = request.info;
     info.curvature.profile = info.shadow.profile = profile.get();
     return info.kind == PEL_LUT_CURVATURE ? Lut(device, info.curvature) : Lut(device, info.shadow);
@@ -41,7 +41,7 @@ std::string shown(float value) {
 
 // The values of a slot at each pixel that may have a material.
 template <class Use>
-void eachPixel(const io::Image& gbuffer, const io::SceneFile& scene, PelImageSlot slot, Use&& use) {
+void eachPixel(const Image& gbuffer, const SceneFile& scene, PelImageSlot slot, Use&& use) {
     const std::vector<float> values = gbuffer.interleaved(scene.channels[slot]);
     const size_t components = scene.channels[slot].size();
     std::vector<float> ids;
@@ -52,7 +52,7 @@ void eachPixel(const io::Image& gbuffer, const io::SceneFile& scene, PelImageSlo
 }
 
 // The scene asks for curvature from the picture itself; a channel of that name would be meant instead.
-bool isScreenCurvature(const io::Image& gbuffer, const io::SceneFile& scene) {
+bool isScreenCurvature(const Image& gbuffer, const SceneFile& scene) {
     const std::vector<std::string>& channel = scene.channels[PEL_SLOT_CURVATURE];
     if (channel != std::vector<std::string>{"screen"}) return false;
     return std::none_of(gbuffer.channels.begin(), gbuffer.channels.end(),
@@ -60,14 +60,19 @@ bool isScreenCurvature(const io::Image& gbuffer, const io::SceneFile& scene) {
 }
 
 // A shadow map with the pixels of these channels; without a name, of all.
-io::Image readMap(const std::string& file, const std::string& channel, const std::string& second) {
-    return channel.empty() ? io::readImage(file) : io::readChannels(file, {channel, second});
+Image readMap(const std::string& file, const std::string& channel, const std::string& second) {
+    return channel.empty() ? readImage(file) : readChannels(file, {channel, second});
+}
+
+void clear(const Buffer& buffer) {
+    std::memset(buffer.map(), 0, buffer.bytes());
+    buffer.unmap();
 }
 
 // R, G and B, or the first three channels; `need` says what the image should have.
-std::vector<std::string> colorChannels(const std::string& file, const io::Image& image, const char* need) {
+std::vector<std::string> colorChannels(const std::string& file, const Image& image, const char* need) {
     if (image.channels.size() < 3)
-        throw io::FileError(file, "has " + std::to_string(image.channels.size()) + " channels; " + need);
+        throw FileError(file, "has " + std::to_string(image.channels.size()) + " channels; " + need);
     std::vector<std::string> names{"R", "G", "B"};
     if (!(image.has("R") && image.has("G") && image.has("B")))
         for (size_t c = 0; c < 3; ++c) names[c] = image.channels[c].name;
@@ -88,28 +93,24 @@ Lut LutStore::faceworks(const Profile& profile, PelLutKind kind) {
     return faceworks_.back().second;
 }
 
-Lut LutStore::get(const io::SceneFile& scene, const std::string& name, PelLutKind kind) {
+Lut LutStore::get(const SceneFile& scene, const std::string& name, PelLutKind kind) {
     if (name.empty()) return {};
-    const io::SceneLut* request = scene.lut(name, kind);
-    if (!request)
-        throw io::FileError(scene.source, "no look-up table of this kind is named \"" + name + "\"");
+    const SceneLut* request = scene.lut(name, kind);
+    if (!request) throw FileError(scene.source, "no look-up table of this kind is named \"" + name + "\"");
     for (const auto& [known, lut] : luts_)
         if (sameTable(known, *request)) return lut;
     luts_.emplace_back(*request, make(device_, *request));
     return luts_.back().second;
 }
 
-Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene, LutStore& luts,
-             const ShadowMaps& shadowMaps, const PelShaderOptions& options,
-             const std::vector<PelImageSlot>& outputs)
-    : shader_(device), radiance_(device, gbuffer.pixelCount() * 3 * sizeof(float)) {
-    PelShaderOptions all = options;
-    all.blurNormals |= scene.blurNormals;
-    all.rotateTaps |= scene.rotateTaps;
-    all.targetError = scene.targetError;
-    if (scene.frameIndex) all.frameIndex = scene.frameIndex;
-    all.millimetresPerUnit = scene.unitMm;
-    shader_.set(all);
+SceneFrame::SceneFrame(const Device& device, const Image& gbuffer, const SceneFile& scene, LutStore& luts,
+                       const ShadowMaps& shadowMaps, const PelShaderOptions& options,
+                       const std::vector<PelImageSlot>& outputs)
+    : device_(device),
+      gbuffer_(gbuffer),
+      shadowMaps_(&shadowMaps),
+      shader_(device),
+      radiance_(device, gbuffer.pixelCount() * 3 * sizeof(float)) {
     shader_.set(PEL_SLOT_RADIANCE,
                 imageDesc(radiance_, PEL_FORMAT_RGB32F, uint32_t(gbuffer.width), uint32_t(gbuffer.height)));
     for (PelImageSlot slot : outputs) {
@@ -121,123 +122,161 @@ Frame::Frame(const Device& device, const io::Image& gbuffer, const io::SceneFile
     }
     for (size_t slot = 0; slot < scene.channels.size(); ++slot)
         if (slot == PEL_SLOT_CURVATURE && isScreenCurvature(gbuffer, scene))
-            shader_.set(PEL_SLOT_CURVATURE, measureCurvature(device, gbuffer, scene));
+            shader_.set(PEL_SLOT_CURVATURE, measureCurvature(scene));
         else if (!scene.channels[slot].empty())
-            shader_.set(PelImageSlot(slot), upload(device, gbuffer, scene.channels[slot]));
-    for (const io::SceneMaterial& m : scene.materials) setMaterial(scene, m, luts);
-    for (const io::SceneMaterial& m : scene.materials)
-        if (!m.normalMap.empty()) setNormalMap(device, m.id, m.normalMap);
-    for (const io::SceneMaterial& m : scene.materials)
-        if (!m.scatteredTexture.empty()) setScatteredTexture(device, m.id, m.scatteredTexture);
-    std::vector<PelLight> lights;
-    for (const io::SceneLight& l : scene.lights) lights.push_back(l.light);
-    shader_.set(lights);
-    for (uint32_t i = 0; i < scene.lights.size(); ++i) {
-        const io::SceneLight& l = scene.lights[i];
-        if (!l.wideShadow.empty())
-            shader_.set(i, PEL_LIGHT_WIDE_SHADOW, upload(device, gbuffer, {l.wideShadow}));
-        if (l.shadowMapFile.empty()) continue;
-        const auto setMap = [&](PelLightSlot slot, const std::string& file, const std::string& channel,
-                                const std::string& second) {
-            const auto known = shadowMaps.find(file);
-            const io::Image read = known == shadowMaps.end() ? readMap(file, channel, second) : io::Image();
-            const io::Image& map = known == shadowMaps.end() ? read : known->second;
-            std::vector<std::string> channels{channel.empty() && map.channels.size() == 1 ? map.channels[0].name
-                                                                                          : channel};
-            if (!second.empty()) channels.push_back(second);
-            shader_.set(i, slot, upload(device, map, channels));
-        };
-        setMap(PEL_LIGHT_SHADOW_MAP, l.shadowMapFile, l.shadowMapChannel, l.secondChannel);
-        for (uint32_t k = 0; k + 1 < l.light.shadowCascades; ++k) {
-            const io::SceneCascade& c = l.cascades[k];
-            setMap(PelLightSlot(PEL_LIGHT_CASCADE_1 + k), c.file.empty() ? l.shadowMapFile : c.file,
-                   c.channel, c.secondChannel);
-        }
+            shader_.set(PelImageSlot(slot), upload(gbuffer, scene.channels[slot]));
+    update(scene, luts, options);
+    shadowMaps_ = nullptr;
+}
+
+void SceneFrame::update(const SceneFile& scene, LutStore& luts, const PelShaderOptions& options) {
+    PelShaderOptions all = options;
+    all.blurNormals |= scene.blurNormals;
+    all.rotateTaps |= scene.rotateTaps;
+    all.targetError = scene.targetError;
+    if (scene.frameIndex) all.frameIndex = scene.frameIndex;
+    all.millimetresPerUnit = scene.unitMm;
+    shader_.set(all);
+    // Pixels whose material goes are not written any more.
+    if (!materials_.empty()) {
+        clear(radiance_);
+        for (const auto& [slot, buffer] : outputs_) clear(buffer);
     }
+    for (uint32_t id : materials_) check(pelShaderSetMaterial(shader_.get(), id, nullptr, nullptr, nullptr));
+    materials_.clear();
+    for (const SceneMaterial& m : scene.materials) setMaterial(scene, m, luts);
+    for (const SceneMaterial& m : scene.materials)
+        if (!m.normalMap.empty()) shader_.setNormalMap(m.id, normalMap(m.normalMap));
+    for (const SceneMaterial& m : scene.materials)
+        if (!m.scatteredTexture.empty())
+            shader_.setScatteredTexture(m.id,
+                                        colorImage(m.scatteredTexture, "a scattered texture needs three"));
+    setLights(scene);
     shader_.set(scene.ambient);
-    for (const io::SceneEye& e : scene.eyes) setEye(device, scene, e);
-    if (!scene.ambientCube.empty()) shader_.setAmbientCube(uploadCube(device, scene.ambientCube));
-    if (!scene.reflectionCube.empty()) shader_.setReflectionCube(uploadCube(device, scene.reflectionCube));
+    for (const SceneEye& e : scene.eyes) setEye(scene, e);
+    if (scene.ambientCube.empty())
+        shader_.clearAmbientCube();
+    else
+        shader_.setAmbientCube(cubeImage(scene.ambientCube));
+    if (scene.reflectionCube.empty())
+        shader_.clearReflectionCube();
+    else
+        shader_.setReflectionCube(cubeImage(scene.reflectionCube));
     shader_.set(scene.camera);
+    warmUpPrograms(device_, 0, {shader_});
     shader_.commit();
 }
 
-void Frame::setMaterial(const io::SceneFile& scene, const io::SceneMaterial& m, LutStore& luts) {
+void SceneFrame::setLights(const SceneFile& scene) {
+    std::vector<PelLight> lights;
+    for (const SceneLight& l : scene.lights) lights.push_back(l.light);
+    shader_.set(lights);
+    for (uint32_t i = 0; i < scene.lights.size(); ++i) {
+        const SceneLight& l = scene.lights[i];
+        if (!l.wideShadow.empty()) {
+            PelImageDesc& wide = images_[{"", l.wideShadow}];
+            if (!wide.buffer) wide = upload(gbuffer_, {l.wideShadow});
+            shader_.set(i, PEL_LIGHT_WIDE_SHADOW, wide);
+        }
+        if (l.shadowMapFile.empty()) continue;
+        shader_.set(i, PEL_LIGHT_SHADOW_MAP, mapOf(l.shadowMapFile, l.shadowMapChannel, l.secondChannel));
+        for (uint32_t k = 0; k + 1 < l.light.shadowCascades; ++k) {
+            const SceneCascade& c = l.cascades[k];
+            shader_.set(i, PelLightSlot(PEL_LIGHT_CASCADE_1 + k),
+                        mapOf(c.file.empty() ? l.shadowMapFile : c.file, c.channel, c.secondChannel));
+        }
+    }
+}
+
+PelImageDesc SceneFrame::mapOf(const std::string& file, const std::string& channel, const std::string& second) {
+    const std::vector<std::string> key{file, channel, second};
+    if (const auto kept = images_.find(key); kept != images_.end()) return kept->second;
+    const Image* known = nullptr;
+    if (shadowMaps_)
+        if (const auto given = shadowMaps_->find(file); given != shadowMaps_->end()) known = &given->second;
+    const Image read = known ? Image() : readMap(file, channel, second);
+    const Image& map = known ? *known : read;
+    std::vector<std::string> channels{channel.empty() && map.channels.size() == 1 ? map.channels[0].name
+                                                                                  : channel};
+    if (!second.empty()) channels.push_back(second);
+    return images_[key] = upload(map, channels);
+}
+
+void SceneFrame::setMaterial(const SceneFile& scene, const SceneMaterial& m, LutStore& luts) {
     PelMaterial material = m.material;
     Lut curvature = luts.get(scene, m.curvatureLut, PEL_LUT_CURVATURE),
         shadow = luts.get(scene, m.shadowLut, PEL_LUT_SHADOW);
     Profile profile;
     try {
-        if (!m.profile.empty()) profile = io::findProfile(m.profile).profile;
-    } catch (const io::FileError& e) {
-        throw io::FileError(scene.source,
-                            "the profile of material " + std::to_string(m.id) + " is refused: " + e.what(),
-                            m.line);
+        if (!m.profile.empty()) profile = findProfile(m.profile).profile;
+    } catch (const FileError& e) {
+        throw FileError(scene.source,
+                        "the profile of material " + std::to_string(m.id) + " is refused: " + e.what(), m.line);
     }
-    if (m.preset == io::ScenePreset::faceworks) {
+    if (m.preset == ScenePreset::faceworks) {
         if (!profile) profile = Profile::skin();
         if (!curvature) curvature = luts.faceworks(profile, PEL_LUT_CURVATURE);
         if (!shadow) shadow = luts.faceworks(profile, PEL_LUT_SHADOW);
         if (material.scattering == PEL_SCATTERING_AUTO) material.scattering = PEL_SCATTERING_PREINTEGRATED;
         if (material.diffusionRadius == 0) material.diffusionRadius = profile.info().radius / scene.unitMm;
-    } else {
+    } else if (profile) {
         material.profile = profile.get();
     }
     shader_.setMaterial(m.id, material, curvature, shadow);
+    materials_.push_back(m.id);
 }
 
-void Frame::setEye(const Device& device, const io::SceneFile& scene, const io::SceneEye& e) {
+void SceneFrame::setEye(const SceneFile& scene, const SceneEye& e) {
     PelEye eye = e.eye;
     Profile profile;
     try {
-        if (!e.irisProfile.empty()) profile = io::findProfile(e.irisProfile).profile;
+        if (!e.irisProfile.empty()) profile = findProfile(e.irisProfile).profile;
         eye.irisProfile = profile.get();
-        shader_.setEye(e.material, eye, e.caustics.empty() ? Lut() : io::readLut(device, e.caustics));
+        shader_.setEye(e.material, eye, e.caustics.empty() ? Lut() : readLut(device_, e.caustics));
     } catch (const Error& error) {
-        throw io::FileError(scene.source, error.what(), e.line);
+        throw FileError(scene.source, error.what(), e.line);
     }
-    if (e.irisTexture.empty()) return;
-    const io::Image image = io::readImage(e.irisTexture);
-    shader_.setIrisTexture(
-        e.material,
-        upload(device, image, colorChannels(e.irisTexture, image, "the texture of an iris needs three")));
+    if (!e.irisTexture.empty())
+        shader_.setIrisTexture(e.material, colorImage(e.irisTexture, "the texture of an iris needs three"));
 }
 
-PelImageDesc Frame::uploadCube(const Device& device, const std::string& file) {
-    const io::Image image = io::readImage(file);
+PelImageDesc SceneFrame::cubeImage(const std::string& file) {
+    if (const auto kept = images_.find({file}); kept != images_.end()) return kept->second;
+    const Image image = readImage(file);
     if (image.height != 6 * image.width && image.width != 6 * image.height)
-        throw io::FileError(
+        throw FileError(
             file,
             "is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
                 "; a cube map is six square faces, one below the other (n x 6n) or side by side (6n x n)");
-    return upload(device, image, colorChannels(file, image, "a cube map needs three: red, green, blue"));
+    return images_[{file}] =
+               upload(image, colorChannels(file, image, "a cube map needs three: red, green, blue"));
 }
 
-void Frame::setNormalMap(const Device& device, uint32_t id, const std::string& file) {
-    const io::Image image = io::readImage(file);
+const std::vector<PelImageDesc>& SceneFrame::normalMap(const std::string& file) {
+    std::vector<PelImageDesc>& levels = normalMaps_[file];
+    if (!levels.empty()) return levels;
+    const Image image = readImage(file);
     std::vector<float> normals =
         image.interleaved(colorChannels(file, image, "a normal map needs three: x, y, z, from 0 to 1"));
     for (float& v : normals) v = 2 * v - 1;
-    const io::MipChain chain = io::mipChain(image.width, image.height, std::move(normals));
-    inputs_.emplace_back(device, chain.texels);
+    const MipChain chain = mipChain(image.width, image.height, std::move(normals));
+    inputs_.emplace_back(device_, chain.texels);
     inputBytes_ += inputs_.back().bytes();
-    std::vector<PelImageDesc> levels;
-    for (const io::MipLevel& level : chain.levels)
+    for (const MipLevel& level : chain.levels)
         levels.push_back(imageDesc(inputs_.back(), PEL_FORMAT_RGB32F, uint32_t(level.width),
                                    uint32_t(level.height), level.byteOffset));
-    shader_.setNormalMap(id, levels);
+    return levels;
 }
 
-void Frame::setScatteredTexture(const Device& device, uint32_t id, const std::string& file) {
-    const io::Image image = io::readImage(file);
-    shader_.setScatteredTexture(
-        id, upload(device, image, colorChannels(file, image, "a scattered texture needs three")));
+PelImageDesc SceneFrame::colorImage(const std::string& file, const char* need) {
+    if (const auto kept = images_.find({file}); kept != images_.end()) return kept->second;
+    const Image image = readImage(file);
+    return images_[{file}] = upload(image, colorChannels(file, image, need));
 }
 
-PelImageDesc Frame::measureCurvature(const Device& device, const io::Image& gbuffer, const io::SceneFile& scene) {
+PelImageDesc SceneFrame::measureCurvature(const SceneFile& scene) {
     const auto image = [&](PelImageSlot slot) {
-        return scene.channels[slot].empty() ? pelImageDescDefaults()
-                                            : upload(device, gbuffer, scene.channels[slot]);
+        return scene.channels[slot].empty() ? pelImageDescDefaults() : upload(gbuffer_, scene.channels[slot]);
     };
     // The surface's own normals where there are: those of a normal map turn without the surface doing so.
     const PelImageDesc normals =
@@ -246,32 +285,31 @@ PelImageDesc Frame::measureCurvature(const Device& device, const io::Image& gbuf
     const PelImageDesc positions = image(PEL_SLOT_POSITION), ids = image(PEL_SLOT_MATERIAL);
     const PelImageDesc depth = positions.buffer ? pelImageDescDefaults() : image(PEL_SLOT_DEPTH);
     if (!positions.buffer && !depth.buffer)
-        throw io::FileError(scene.source,
-                            "[channels] curvature = \"screen\" is measured from positions or depth; "
-                            "name their channels");
+        throw FileError(scene.source,
+                        "[channels] curvature = \"screen\" is measured from positions or depth; "
+                        "name their channels");
     PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
     std::copy_n(scene.camera.inverseViewProjection, 16, params.inverseViewProjection);
-    inputs_.emplace_back(device, gbuffer.pixelCount() * sizeof(float));
+    inputs_.emplace_back(device_, gbuffer_.pixelCount() * sizeof(float));
     const PelImageDesc curvature =
-        imageDesc(inputs_.back(), PEL_FORMAT_R32F, uint32_t(gbuffer.width), uint32_t(gbuffer.height));
-    screenCurvature(device, params, normals, positions.buffer ? &positions : nullptr,
+        imageDesc(inputs_.back(), PEL_FORMAT_R32F, uint32_t(gbuffer_.width), uint32_t(gbuffer_.height));
+    screenCurvature(device_, params, normals, positions.buffer ? &positions : nullptr,
                     depth.buffer ? &depth : nullptr, ids.buffer ? &ids : nullptr, curvature);
     return curvature;
 }
 
-PelImageDesc Frame::upload(const Device& device, const io::Image& image,
-                           const std::vector<std::string>& channels) {
+PelImageDesc SceneFrame::upload(const Image& image, const std::vector<std::string>& channels) {
     static constexpr PelFormat formats[] = {PEL_FORMAT_R32F, PEL_FORMAT_RG32F, PEL_FORMAT_RGB32F,
                                             PEL_FORMAT_RGBA32F};
     for (const std::string& name : channels) image.channel(name);  // an error before memory is taken
-    const Buffer& buffer = inputs_.emplace_back(device, channels.size() * image.pixelCount() * sizeof(float));
+    const Buffer& buffer = inputs_.emplace_back(device_, channels.size() * image.pixelCount() * sizeof(float));
     image.interleave(channels, static_cast<float*>(buffer.map()));
     buffer.unmap();
     inputBytes_ += buffer.bytes();
     return imageDesc(inputs_.back(), formats[channels.size() - 1], uint32_t(image.width), uint32_t(image.height));
 }
 
-std::vector<std::string> unlikely(const io::Image& gbuffer, const io::SceneFile& scene) {
+std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene) {
     std::vector<std::string> found;
     if (!scene.channels[PEL_SLOT_DEPTH].empty() && scene.channels[PEL_SLOT_POSITION].empty()) {
         float furthest = 0;
@@ -296,9 +334,9 @@ std::vector<std::string> unlikely(const io::Image& gbuffer, const io::SceneFile&
     });
     if (!any) return found;
     const float size = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}) * scene.unitMm;
-    for (const io::SceneMaterial& m : scene.materials) {
+    for (const SceneMaterial& m : scene.materials) {
         if (m.profile.empty()) continue;
-        const float reach = io::findProfile(m.profile).profile.info().reach;
+        const float reach = findProfile(m.profile).profile.info().reach;
         // Seen whole, nothing of skin is smaller than a fingertip, nor larger than a few people.
         if (size > 2.3f * reach && size < 500 * reach) continue;
         found.push_back("what is seen is " + shown(size) + " mm long with unit_mm = " + shown(scene.unitMm) +
@@ -310,46 +348,19 @@ std::vector<std::string> unlikely(const io::Image& gbuffer, const io::SceneFile&
 }
 
 void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance) {
-    io::Image image;
+    Image image;
     image.width = width;
     image.height = height;
     image.addInterleaved(std::vector<std::string>{"R", "G", "B"}, radiance);
-    io::writeExr(path, image);
+    writeExr(path, image);
 }
 
 void writeThickness(const std::string& path, int width, int height, const std::vector<float>& lengths) {
-    io::Image image;
+    Image image;
     image.width = width;
     image.height = height;
     image.addInterleaved(std::vector<std::string>{"Thickness.V"}, lengths);
-    io::writeExr(path, image);
+    writeExr(path, image);
 }
 
-nlohmann::ordered_json toJson(const PelShaderStats& s) {
-    nlohmann::ordered_json features = nlohmann::ordered_json::array();
-    for (const auto& [bit, name] : io::featureKeys)
-        if (s.features & bit) features.push_back(name);
-    return {{"features", features},
-            {"programs_built", s.programsBuilt},
-            {"launches", s.launches},
-            {"scratch_bytes", s.scratchBytes},
-            {"bytes_uploaded", s.bytesUploaded},
-            {"tiles_total", s.tilesTotal},
-            {"tiles_shaded", s.tilesShaded},
-            {"pixels_total", s.pixelsTotal},
-            {"pixels_shaded", s.pixelsShaded},
-            {"pixels_shadow_lut", s.pixelsShadowLut},
-            {"pixels_thickness", s.pixelsThickness},
-            {"pixels_specular", s.pixelsSpecular},
-            {"pixels_eye", s.pixelsEye},
-            {"pixels_iris", s.pixelsIris},
-            {"pixels_caustic", s.pixelsCaustic},
-            {"tiles_eye", s.tilesEye},
-            {"pixels_wide_shadow", s.pixelsWideShadow},
-            {"pixels_shadow_texels", s.pixelsShadowTexels},
-            {"bands", s.bands},
-            {"pixels_invalid", s.pixelsInvalid},
-            {"shade_ms", s.deviceMilliseconds}};
-}
-
-}  // namespace pellucid::cli
+}  // namespace pellucid::io

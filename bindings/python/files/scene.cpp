@@ -1,0 +1,283 @@
+// Scenes for Python: what `pellucid shade` reads and shades, as an object whose structures Python changes.
+#include "scene.h"
+
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <sstream>
+
+#include "io/scene/scene_frame.h"
+#include "io/scene/scene_keys.h"
+
+namespace pellucid::python {
+namespace {
+
+using Pixels = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+template <class T>
+py::bytes bytesOf(const T& value) {
+    return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+template <class T>
+T structOf(const std::string& bytes) {
+    if (bytes.size() != sizeof(T)) throw py::value_error("a structure of another version of the library");
+    T value;
+    std::memcpy(&value, bytes.data(), sizeof value);
+    return value;
+}
+
+// A further reference to a device of the other native module.
+struct SharedDevice : Device {
+    explicit SharedDevice(PelDevice device) {
+        pelDeviceRetain(device);
+        h_ = device;
+    }
+};
+
+// The shader of a scene on one device, with the outputs that were wanted.
+struct OnDevice {
+    Device device;
+    io::LutStore luts;
+    std::vector<PelImageSlot> outputs;
+    std::optional<io::SceneFrame> frame;
+
+    explicit OnDevice(PelDevice shared) : device(SharedDevice(shared)), luts(device) {}
+};
+
+class Scene {
+  public:
+    explicit Scene(const std::string& path) {
+        const py::gil_scoped_release free;
+        scene_ = io::readScene(path);
+    }
+
+    const std::string& source() const { return scene_.source; }
+
+    py::dict channels() const {
+        py::dict found;
+        for (const io::SlotKey& k : io::slotKeys)
+            if (!scene_.channels[k.slot].empty())
+                found[py::str(std::string(k.key))] = scene_.channels[k.slot];
+        return found;
+    }
+    py::list materials() const {
+        py::list found;
+        for (const io::SceneMaterial& m : scene_.materials)
+            found.append(py::make_tuple(m.id, bytesOf(m.material), m.profile));
+        return found;
+    }
+    py::list lights() const {
+        py::list found;
+        for (const io::SceneLight& l : scene_.lights) found.append(bytesOf(l.light));
+        return found;
+    }
+    py::bytes ambient() const { return bytesOf(scene_.ambient); }
+    py::bytes camera() const { return bytesOf(scene_.camera); }
+    py::bytes options() const {
+        PelShaderOptions o = pelShaderOptionsDefaults();
+        o.blurNormals = scene_.blurNormals;
+        o.rotateTaps = scene_.rotateTaps;
+        o.frameIndex = scene_.frameIndex;
+        o.targetError = scene_.targetError;
+        o.millimetresPerUnit = scene_.unitMm;
+        return bytesOf(o);
+    }
+
+    void readGBuffer(const std::string& path) {
+        const py::gil_scoped_release free;
+        take(io::readImage(path));
+    }
+    void setGBuffer(const std::map<std::string, Pixels>& channels) {
+        io::Image image;
+        for (const auto& [name, pixels] : channels) {
+            if (pixels.ndim() != 2)
+                throw py::value_error("channel " + name + " must have the shape (height, width)");
+            const int height = int(pixels.shape(0)), width = int(pixels.shape(1));
+            if (!image.channels.empty() && (height != image.height || width != image.width))
+                throw py::value_error("channel " + name + " is " + std::to_string(width) + " x " +
+                                      std::to_string(height) + ", others are " + std::to_string(image.width) +
+                                      " x " + std::to_string(image.height));
+            image.height = height, image.width = width;
+            image.channels.push_back(
+                {name, io::ChannelType::Float, {pixels.data(), pixels.data() + pixels.size()}});
+        }
+        image.source = "the G-buffer";
+        take(std::move(image));
+    }
+    bool hasGBuffer() const { return gbuffer_.has_value(); }
+
+    using Material = std::tuple<uint32_t, std::string, std::string>;  // id, bytes, name of the profile
+    py::dict shade(uintptr_t device, const std::vector<Material>& materials,
+                   const std::vector<std::string>& lights, const std::string& ambient, const std::string& camera,
+                   const std::string& options, const std::vector<std::string>& outputs) {
+        const io::SceneFile scene = changed(materials, lights, ambient, camera, options);
+        const auto o = structOf<PelShaderOptions>(options);
+        std::vector<PelImageSlot> wanted;
+        for (const io::OutputKey& k : io::outputKeys)
+            if (std::ranges::find(outputs, k.key) != outputs.end()) wanted.push_back(k.slot);
+
+        std::vector<float> radiance;
+        std::vector<std::vector<float>> parts;
+        PelShaderStats stats;
+        std::vector<std::string> warnings;
+        {
+            const py::gil_scoped_release free;
+            io::SceneFrame& frame = frameFor(reinterpret_cast<PelDevice>(device), scene, o, wanted);
+            frame.shade();
+            radiance = frame.radiance();
+            for (const PelImageSlot slot : wanted) parts.push_back(frame.output(slot));
+            stats = frame.stats();
+            std::istringstream lines(frame.warnings());
+            for (std::string line; std::getline(lines, line);) warnings.push_back(line);
+            for (const std::string& sentence : io::unlikely(*gbuffer_, scene)) warnings.push_back(sentence);
+        }
+        py::dict result;
+        result["radiance"] = image(radiance, 3);
+        py::dict others;
+        for (size_t i = 0; i < wanted.size(); ++i)
+            for (const io::OutputKey& k : io::outputKeys)
+                if (k.slot == wanted[i])
+                    others[py::str(std::string(k.key))] =
+                        image(parts[i], wanted[i] == PEL_SLOT_OUT_THICKNESS ? 1 : 3);
+        result["outputs"] = others;
+        result["stats"] = bytesOf(stats);
+        result["warnings"] = warnings;
+        return result;
+    }
+
+    // Files are named relative to the folder that the scene is written to.
+    void save(const std::string& path, const std::vector<Material>& materials,
+              const std::vector<std::string>& lights, const std::string& ambient, const std::string& camera,
+              const std::string& options) const {
+        for (const auto& [id, bytes, profile] : materials)
+            if (structOf<PelMaterial>(bytes).profile)
+                throw py::value_error(
+                    "material " + std::to_string(id) +
+                    " has a profile of its own, which a scene file can only name: set Scene.profiles[" +
+                    std::to_string(id) + "] to the name or the file of one");
+        io::SceneFile scene = changed(materials, lights, ambient, camera, options);
+        namespace fs = std::filesystem;
+        const fs::path folder = fs::absolute(path).parent_path();
+        const auto move = [&](std::string& file) {
+            if (!file.empty() && fs::exists(file))
+                file = fs::absolute(file).lexically_relative(folder).string();
+        };
+        for (io::SceneLight& l : scene.lights) {
+            move(l.shadowMapFile);
+            for (io::SceneCascade& c : l.cascades) move(c.file);
+        }
+        for (io::SceneMaterial& m : scene.materials)
+            move(m.profile), move(m.scatteredTexture), move(m.normalMap);
+        for (io::SceneLut& l : scene.luts) move(l.file), move(l.profile);
+        for (io::SceneEye& e : scene.eyes) move(e.irisProfile), move(e.irisTexture), move(e.caustics);
+        move(scene.ambientCube), move(scene.reflectionCube);
+        io::writeScene(path, scene);
+    }
+
+  private:
+    io::SceneFile changed(const std::vector<Material>& materials, const std::vector<std::string>& lights,
+                          const std::string& ambient, const std::string& camera,
+                          const std::string& options) const {
+        io::SceneFile scene = scene_;
+        setMaterials(scene, materials);
+        std::erase_if(scene.eyes, [&](const io::SceneEye& e) {
+            return std::ranges::none_of(scene.materials,
+                                        [&](const io::SceneMaterial& m) { return m.id == e.material; });
+        });
+        scene.lights.resize(lights.size());
+        for (size_t i = 0; i < lights.size(); ++i) scene.lights[i].light = structOf<PelLight>(lights[i]);
+        scene.ambient = structOf<PelAmbient>(ambient);
+        scene.camera = structOf<PelCamera>(camera);
+        const auto o = structOf<PelShaderOptions>(options);
+        scene.blurNormals = o.blurNormals;
+        scene.rotateTaps = o.rotateTaps;
+        scene.frameIndex = o.frameIndex;
+        scene.targetError = o.targetError;
+        scene.unitMm = o.millimetresPerUnit;
+        return scene;
+    }
+    void take(io::Image image) {
+        onDevice_.reset();
+        gbuffer_ = std::move(image);
+    }
+    // Materials that the file does not have have no files of their own.
+    static void setMaterials(io::SceneFile& scene, const std::vector<Material>& materials) {
+        std::vector<io::SceneMaterial> all;
+        for (const auto& [id, bytes, profile] : materials) {
+            io::SceneMaterial m;
+            for (const io::SceneMaterial& known : scene.materials)
+                if (known.id == id) m = known;
+            m.id = id;
+            m.material = structOf<PelMaterial>(bytes);
+            m.profile = m.material.profile ? "" : profile;
+            all.push_back(std::move(m));
+        }
+        scene.materials = std::move(all);
+    }
+    // Kept from call to call, so that only what changed is set again.
+    io::SceneFrame& frameFor(PelDevice device, const io::SceneFile& scene, const PelShaderOptions& options,
+                             const std::vector<PelImageSlot>& outputs) {
+        if (onDevice_ && onDevice_->frame && onDevice_->device.get() == device && onDevice_->outputs == outputs) {
+            try {
+                onDevice_->frame->update(scene, onDevice_->luts, options);
+            } catch (...) {
+                onDevice_->frame.reset();
+                throw;
+            }
+            return *onDevice_->frame;
+        }
+        if (!onDevice_ || onDevice_->device.get() != device) onDevice_.emplace(device);
+        onDevice_->frame.reset();
+        onDevice_->outputs = outputs;
+        onDevice_->frame.emplace(onDevice_->device, *gbuffer_, scene, onDevice_->luts, io::ShadowMaps(),
+                                 options, outputs);
+        return *onDevice_->frame;
+    }
+    py::array_t<float> image(const std::vector<float>& values, int components) const {
+        std::vector<py::ssize_t> shape{gbuffer_->height, gbuffer_->width};
+        if (components > 1) shape.push_back(components);
+        py::array_t<float> result(shape);
+        std::memcpy(result.mutable_data(), values.data(), values.size() * sizeof(float));
+        return result;
+    }
+
+    io::SceneFile scene_;
+    std::optional<io::Image> gbuffer_;
+    std::optional<OnDevice> onDevice_;
+};
+
+}  // namespace
+
+void bindScene(py::module_& module) {
+    py::class_<Scene>(module, "Scene")
+        .def(py::init<const std::string&>())
+        .def_property_readonly("source", &Scene::source)
+        .def("channels", &Scene::channels)
+        .def("materials", &Scene::materials)
+        .def("lights", &Scene::lights)
+        .def("ambient", &Scene::ambient)
+        .def("camera", &Scene::camera)
+        .def("options", &Scene::options)
+        .def("read_gbuffer", &Scene::readGBuffer)
+        .def("set_gbuffer", &Scene::setGBuffer)
+        .def("has_gbuffer", &Scene::hasGBuffer)
+        .def("shade", &Scene::shade)
+        .def("save", &Scene::save);
+    py::register_exception_translator([](std::exception_ptr pending) {
+        try {
+            if (pending) std::rethrow_exception(pending);
+        } catch (const Error& e) {
+            const py::object type = py::module_::import("pellucid._errors").attr("PellucidError");
+            const py::object value = type(int(e.code()), std::string(e.what()));
+            PyErr_SetObject(type.ptr(), value.ptr());
+        }
+    });
+}
+
+}  // namespace pellucid::python

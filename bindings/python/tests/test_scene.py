@@ -1,0 +1,162 @@
+"""Scene files from Python: what they hold, and pictures to the bits of the command."""
+import os
+import subprocess
+
+import numpy as np
+import pytest
+
+import pellucid as pel
+
+files = pytest.importorskip("pellucid.files", reason="this build reads no files")
+
+SCENE = """version = 1
+target_error = 0.004
+[channels]
+position = ["Position.X", "Position.Y", "Position.Z"]
+normal_geometric = ["Normal.X", "Normal.Y", "Normal.Z"]
+normal_shading = ["Normal.X", "Normal.Y", "Normal.Z"]
+curvature = "Curvature.V"
+material = "Id.I"
+[camera]
+position = [0, 0, 300]
+[ambient]
+constant = [0.05, 0.06, 0.07]
+[[light]]
+type = "directional"
+to_light = [0.8, 0.0, 0.6]
+color = [1.0, 0.9, 0.8]
+[light.shadow_map]
+file = "map.exr"
+channel = "Z"
+projection = "parallel"
+world_to_shadow = [0.01, 0, 0, 0.5, 0, 0.01, 0, 0.5, -0.004, 0, -0.003, 0.5, 0, 0, 0, 1]
+depth_range = 200
+[[material]]
+id = 1
+profile = "skin"
+specular = 0.4
+[[material]]
+id = 2
+scattering = "none"
+albedo = [0.2, 0.3, 0.4]
+"""
+
+
+def ball(width=96, height=80, radius=35.0):
+    y, x = np.mgrid[height / 2 - 0.5:-height / 2:-1, -width / 2 + 0.5:width / 2]
+    z = np.sqrt(np.maximum(radius**2 - x**2 - y**2, 0))
+    inside = z > 0
+    n = np.stack([x, y, z], -1) / radius
+    channels = {"Position.X": x, "Position.Y": y, "Position.Z": z, "Curvature.V": np.full_like(x, 1 / radius),
+                "Id.I": np.where(inside, np.where(y > 20, 2, 1), 0), **{f"Normal.{c}": n[..., i] for i, c in enumerate("XYZ")}}
+    return {k: np.float32(np.where(inside, v, 0)) for k, v in channels.items()}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "scene.toml").write_text(SCENE)
+    gbuffer = ball()
+    files.write_image(tmp_path / "gbuffer.exr", np.stack(list(gbuffer.values()), -1), channels=list(gbuffer))
+    files.write_image(tmp_path / "map.exr", np.full((64, 64), 0.3, np.float32), channels=["Z"])
+    return tmp_path
+
+
+def command(folder, scene="scene.toml"):
+    program = os.environ.get("PELLUCID_COMMAND")
+    if not program:
+        pytest.skip("the pellucid command is not built")
+    subprocess.run([program, "shade", "gbuffer.exr", "--scene", scene, "-o", "again.exr"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    image = files.read_image(folder / "again.exr")
+    return np.stack([image[c] for c in "RGB"], -1)
+
+
+def test_what_a_scene_holds(folder):
+    scene = pel.load_scene(folder / "scene.toml")
+    assert set(scene.materials) == {1, 2} and scene.profiles == {1: "skin", 2: ""}
+    assert scene.materials[1].specular == pytest.approx(0.4) and scene.materials[2].scattering.name == "NONE"
+    assert len(scene.lights) == 1 and np.allclose(scene.lights[0].to_light, (0.8, 0, 0.6))
+    assert np.allclose(scene.ambient.constant, (0.05, 0.06, 0.07)) and np.allclose(scene.camera.position, (0, 0, 300))
+    assert scene.options.target_error == pytest.approx(0.004)
+    assert scene.channels["curvature"] == ["Curvature.V"]
+    assert "2 materials, 1 lights" in repr(scene)
+
+
+def test_the_bits_are_those_of_the_command(folder, device):
+    made = pel.shade(pel.load_scene(folder / "scene.toml"), device)
+    assert made.radiance.shape == (80, 96, 3) and made.radiance.max() > 0.1
+    assert np.array_equal(made.radiance, command(folder))
+    assert made._repr_png_().startswith(b"\x89PNG") and "96 x 80" in repr(made)
+    made.save(folder / "picture.png")
+    assert files.read_image(folder / "picture.png")["R"].shape == (80, 96)
+
+
+def test_changes_count_and_come_back(folder, device):
+    scene = pel.load_scene(folder / "scene.toml", ball())
+    first = pel.shade(scene, device)
+    built = device.stats().programs_built
+    scene.materials[1].roughness = 0.5
+    scene.materials[1].profile = "marble"
+    scene.lights[0].color = (0.5, 0.9, 0.8)
+    second = pel.shade(scene)
+    assert not np.array_equal(first.radiance, second.radiance)
+    assert device.stats().programs_built == built
+    fresh = pel.load_scene(folder / "scene.toml", ball())
+    fresh.materials[1].roughness, fresh.profiles[1], fresh.lights[0].color = 0.5, "marble", (0.5, 0.9, 0.8)
+    assert np.array_equal(pel.shade(fresh, device).radiance, second.radiance)
+    scene.materials[1].roughness, scene.lights[0].color = pel.load_scene(folder / "scene.toml").materials[1].roughness, (1.0, 0.9, 0.8)
+    scene.materials[1].profile = None
+    assert np.array_equal(pel.shade(scene).radiance, first.radiance)
+    second_material = ball()["Id.I"] == 2
+    del scene.materials[2]
+    assert not pel.shade(scene).radiance[second_material].any() and first.radiance[second_material].all()
+    scene.lights.append(pel.Light(to_light=(-1, 0, 0), color=(1, 1, 1)))
+    assert pel.shade(scene).radiance[40, 15].max() > first.radiance[40, 15].max() + 0.05
+
+
+def test_outputs_and_counters(folder, device):
+    scene = pel.load_scene(folder / "scene.toml")
+    made = pel.shade(scene, device, outputs=["specular", "diffuse", "thickness"], count=True)
+    assert set(made.outputs) == {"specular", "diffuse", "thickness"} and made.outputs["thickness"].shape == (80, 96)
+    assert made.stats.pixels_shaded == (ball()["Id.I"] > 0).sum() and not scene.options.count_pixels
+    assert np.allclose(made.outputs["diffuse"] + made.outputs["specular"], made.radiance, atol=1e-5)
+    with pytest.raises(ValueError, match="no output 'gloss'"):
+        pel.shade(scene, outputs=["gloss"])
+
+
+def test_what_is_saved_shades_the_same(folder, device, tmp_path_factory):
+    scene = pel.load_scene(folder / "scene.toml")
+    scene.materials[1].specular, scene.profiles[1] = 0.7, "skin-pale"
+    scene.options.target_error = 0.01
+    made = pel.shade(scene, device).radiance
+    (folder / "deeper").mkdir()
+    scene.save(folder / "deeper/changed.toml")
+    assert 'file = "../map.exr"' in (folder / "deeper/changed.toml").read_text()
+    again = pel.load_scene(folder / "deeper/changed.toml", folder / "gbuffer.exr")
+    assert np.array_equal(pel.shade(again, device).radiance, made)
+    scene.materials[1].profile = pel.Profile.burley_distance(0.5)
+    with pytest.raises(ValueError, match="material 1 has a profile of its own"):
+        scene.save(folder / "own.toml")
+
+
+def test_what_is_wrong_is_told(folder, device, tmp_path):
+    with pytest.raises(files.FileError, match="none.toml"):
+        pel.load_scene(folder / "none.toml")
+    (folder / "gbuffer.exr").unlink()
+    with pytest.raises(ValueError, match="no G-buffer"):
+        pel.shade(pel.load_scene(folder / "scene.toml"), device)
+    channels = ball()
+    del channels["Curvature.V"]
+    with pytest.raises(files.FileError, match="Curvature.V"):
+        pel.shade(pel.load_scene(folder / "scene.toml", channels), device)
+    scene = pel.load_scene(folder / "scene.toml", ball())
+    scene.materials[1].roughness = -1.0
+    with pytest.raises(pel.PellucidError, match="roughness"):
+        pel.shade(scene, device)
+    scene.materials[1].roughness = 0.3
+    assert pel.shade(scene).radiance.max() > 0.1
+    with pytest.raises(ValueError, match="Position.Y is 3 x 2"):
+        pel.load_scene(folder / "scene.toml", {"Position.X": np.zeros((4, 4)), "Position.Y": np.zeros((2, 3))})
+    with pytest.raises(TypeError, match="load it there"):
+        import pickle
+
+        pickle.dumps(scene)

@@ -1,0 +1,90 @@
+// A G-buffer shaded as a scene file says: what `pellucid shade`, the demo and the Python package have in common.
+#pragma once
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/image/image_file.h"
+#include "io/scene/scene_file.h"
+#include "pellucid/pellucid.hpp"
+
+namespace pellucid::io {
+
+// The look-up tables of scenes: each distinct one is read or integrated once.
+class LutStore {
+  public:
+    explicit LutStore(const Device& device) : device_(device) {}
+    // An empty handle for an empty name.
+    Lut get(const SceneFile& scene, const std::string& name, PelLutKind kind);
+    // Made by the formulas of FaceWorks.
+    Lut faceworks(const Profile& profile, PelLutKind kind);
+
+  private:
+    Device device_;
+    std::vector<std::pair<SceneLut, Lut>> luts_;
+    std::vector<std::pair<std::pair<std::string, PelLutKind>, Lut>> faceworks_;  // by the profile's name
+};
+
+// Shadow maps by file, already in memory.
+using ShadowMaps = std::map<std::string, Image>;
+
+class SceneFrame {
+  public:
+    // Uploads what the scene names, sets it and commits; kernels are built first, with progress. `outputs`: slots beside radiance that are
+    // wanted. `shadowMaps` holds maps that are in memory already, by the name that the scene gives them; others are read from
+    // files. The G-buffer must live as long as the frame is updated. Throws FileError when a channel is missing.
+    SceneFrame(const Device& device, const Image& gbuffer, const SceneFile& scene, LutStore& luts,
+               const ShadowMaps& shadowMaps = {}, const PelShaderOptions& options = pelShaderOptionsDefaults(),
+               const std::vector<PelImageSlot>& outputs = {});
+
+    // Sets everything but the channels again: materials, lights, ambient light, camera, options. Files that were read are not read again.
+    void update(const SceneFile& scene, LutStore& luts,
+                const PelShaderOptions& options = pelShaderOptionsDefaults());
+
+    void shade() { shader_.execute(); }
+    // RGB per pixel, interleaved; 0 where there is no material.
+    std::vector<float> radiance() const { return radiance_.readAll<float>(); }
+    // One of `outputs`: RGB interleaved, or a value per pixel of PEL_SLOT_OUT_THICKNESS.
+    std::vector<float> output(PelImageSlot slot) const { return outputs_.at(slot).readAll<float>(); }
+    PelShaderStats stats() const { return shader_.stats(); }
+    std::string warnings() const { return shader_.warnings(); }
+    // Material `id` with every default filled in.
+    PelMaterial material(uint32_t id) const { return shader_.material(id); }
+    uint64_t inputBytes() const { return inputBytes_; }
+
+  private:
+    void setMaterial(const SceneFile& scene, const SceneMaterial& m, LutStore& luts);
+    void setLights(const SceneFile& scene);
+    // Images of files are kept by their names, wide shadows by their channels.
+    PelImageDesc mapOf(const std::string& file, const std::string& channel, const std::string& second);
+    const std::vector<PelImageDesc>& normalMap(const std::string& file);
+    PelImageDesc colorImage(const std::string& file, const char* need);
+    // Curvature from normals and positions or depth of the G-buffer (pelScreenCurvature).
+    PelImageDesc measureCurvature(const SceneFile& scene);
+    PelImageDesc cubeImage(const std::string& file);
+    void setEye(const SceneFile& scene, const SceneEye& e);
+    PelImageDesc upload(const Image& image, const std::vector<std::string>& channels);
+
+    Device device_;
+    const Image& gbuffer_;
+    const ShadowMaps* shadowMaps_;  // while the constructor runs
+    Shader shader_;
+    Buffer radiance_;
+    std::vector<Buffer> inputs_;
+    std::map<PelImageSlot, Buffer> outputs_;
+    std::map<std::vector<std::string>, PelImageDesc> images_;
+    std::map<std::string, std::vector<PelImageDesc>> normalMaps_;
+    std::vector<uint32_t> materials_;  // that are set
+    uint64_t inputBytes_ = 0;
+};
+
+// Sentences about sizes that are probably wrong: depth that is not device depth, bodies whose size does not
+// match their profile.
+std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene);
+
+// Writes RGB radiance as R, G, B of a float EXR, lengths as Thickness.V.
+void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance);
+void writeThickness(const std::string& path, int width, int height, const std::vector<float>& lengths);
+
+}  // namespace pellucid::io
