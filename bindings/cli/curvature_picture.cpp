@@ -18,12 +18,10 @@ void writeCurvaturePicture(const std::string& path, const io::MeshData& mesh, co
     viewed.curvature = values;
     viewed.triangles = mesh.triangles;
     const sample::Scene scene(viewed);
-    sample::HeadPose pose;
-    if (up == 'y') pose = {{0, 1, 0}, {0, 0, 1}};
     const auto view = [&](double azimuth) {
         sample::Framing framing;
         framing.azimuth = azimuth;
-        return head::curvatureView(scene, pose, framing, viewWidth, viewHeight, 2, low, high);
+        return head::curvatureView(scene, sample::poseWithUp(up), framing, viewWidth, viewHeight, 2, low, high);
     };
     const io::Picture bar = io::colorBar(2 * viewWidth - 40, low, high, unit);
     io::Picture page(2 * viewWidth, viewHeight + bar.height + 40, head::viewBackground);

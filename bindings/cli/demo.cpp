@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "demo_pictures.h"
+#include "demo_reference.h"
 #include "demo_view.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
@@ -29,6 +30,13 @@ std::string standardHead() {
         "OFF, OBJ, PLY or STL file");
 }
 
+// What the head is made of in the last row of the sheet, with tints for an albedo of skin, chosen by eye.
+constexpr struct {
+    const char* profile;
+    float tint[3];
+} demoMaterials[] = {{"skin-pale", {1.1f, 1.15f, 1.15f}}, {"skin-dark", {0.45f, 0.4f, 0.38f}},
+                     {"marble", {1.05f, 1.4f, 1.6f}},     {"jade", {0.35f, 1.2f, 0.75f}},
+                     {"paraffin", {1.15f, 1.35f, 1.1f}},  {"cream", {1.2f, 1.5f, 1.5f}}};
 constexpr float headHeight = 240;  // mm, chin to crown of an adult with some neck
 
 struct Arguments {
@@ -37,7 +45,7 @@ struct Arguments {
     uint32_t smoothing = 2;
     std::optional<int> subdivide;
     float height = headHeight;
-    bool orient = false;
+    bool orient = false, reference = true;
 };
 
 // Most OBJ files have y up, most scans in the other formats z.
@@ -54,7 +62,7 @@ DemoHead loadMeshAsHead(Run& run, const Arguments& a) {
     io::MeshData& mesh = head.mesh;
     for (const std::string& warning : mesh.warnings) run.warn(warning);
     const bool y = yIsUp(a);
-    if (y) head.pose = {{0, 1, 0}, {0, 0, 1}};
+    head.pose = sample::poseWithUp(y ? 'y' : 'z');
     io::scaleToHeight(mesh, a.height, y ? 1 : 2);
     const int levels = a.subdivide.value_or(1);
     if (levels > 0) {
@@ -91,9 +99,20 @@ std::vector<DemoViewRequest> requests(const Arguments& a) {
     return {key, back};
 }
 
-// One view: G-buffer, three shadings, files.
-ShadedView shadeView(Run& run, Stages& stages, LutStore& luts, const sample::Scene& scene,
-                     const DemoHead& head, const DemoViewRequest& request, const std::string& folder) {
+// Shades a variant of a view's scene as a stage.
+std::vector<float> shadeAs(Run& run, Stages& stages, io::LutStore& luts, const DemoView& view,
+                           const char* name, const io::SceneFile& scene) {
+    std::optional<io::SceneFrame> frame;
+    stages.prepare([&] { frame.emplace(run.device(), view.gbuffer, scene, luts, view.shadowMaps); });
+    const uint64_t pixels = view.gbuffer.pixelCount();
+    stages.measure(view.name + ": shade, " + name, pixels, "pixels",
+                   frame->inputBytes() + pixels * 3 * sizeof(float), [&] { frame->shade(); });
+    return frame->radiance();
+}
+
+// One view: G-buffer, shadings, reference, files.
+ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample::Scene& scene,
+                     const DemoHead& head, const DemoViewRequest& request, const Arguments& a) {
     DemoView view = renderDemoView(scene, head, request);
     const uint64_t pixels = view.gbuffer.pixelCount();
     const uint64_t gbufferBytes = pixels * view.gbuffer.channels.size() * sizeof(float);
@@ -107,19 +126,23 @@ ShadedView shadeView(Run& run, Stages& stages, LutStore& luts, const sample::Sce
                pixels * sizeof(float));
 
     ShadedView shaded;
-    const io::SceneFile variants[] = {withoutScattering(view.scene), byTables(view.scene), view.scene};
-    const char* names[] = {"Lambert", "by tables", "auto"};
-    for (int i = 0; i < 3; ++i) {
-        Frame frame(run.device(), view.gbuffer, variants[i], luts, view.shadowMaps);
-        stages.measure(view.name + ": shade, " + names[i], pixels, "pixels",
-                       frame.inputBytes() + pixels * 3 * sizeof(float), [&] { frame.shade(); });
-        shaded.pictures.push_back({names[i], frame.radiance()});
+    shaded.lambert = shadeAs(run, stages, luts, view, "Lambert", withoutScattering(view.scene));
+    shaded.tables = shadeAs(run, stages, luts, view, "by tables", byTables(view.scene));
+    shaded.complete = shadeAs(run, stages, luts, view, "auto", view.scene);
+    if (a.reference) {
+        io::SceneFrame smooth(run.device(), view.gbuffer, smoothAndDull(view.scene), luts, view.shadowMaps);
+        smooth.shade();
+        stages.measure(view.name + ": reference", pixels / (referenceStride * referenceStride), "pixels", 0, [&] {
+            shaded.reference = demoReference(run.device(), scene, head, view, smooth.radiance());
+        });
+        run.report["rms_against_reference"][view.name] = shaded.reference->rms;
     }
+    const std::string& folder = a.output;
     const auto path = [&](const std::string& suffix) { return folder + "/" + view.name + suffix; };
     io::writeExr(path("_gbuffer.exr"), view.gbuffer);
     for (const auto& [file, map] : view.shadowMaps) io::writeExr(folder + "/" + file, map);
     io::writeScene(path(".toml"), view.scene);
-    writeRadiance(path(".exr"), view.gbuffer.width, view.gbuffer.height, shaded.pictures.back().radiance);
+    io::writeRadiance(path(".exr"), view.gbuffer.width, view.gbuffer.height, shaded.complete);
     shaded.view = std::move(view);
     return shaded;
 }
@@ -142,32 +165,42 @@ void run(Arguments a) {
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     params.smoothingPasses = a.smoothing;
     MeshCurvature curvature;
-    stages.measure("curvature", mesh.vertexCount(), "vertices",
-                   mesh.vertexCount() * 28 + mesh.triangles.size() * 4,
-                   [&] { curvature = meshCurvature(run, mesh, params); });
+    stages.measureWarm("curvature", mesh.vertexCount(), "vertices",
+                       mesh.vertexCount() * 28 + mesh.triangles.size() * 4,
+                       [&] { curvature = meshCurvature(run, mesh, params); });
     reportMesh(run, curvature.report);
 
-    LutStore luts(run.device());
+    io::LutStore luts(run.device());
     const io::SceneFile standard = standardLuts();
     const uint64_t texels = 512 * 512;
     Lut curvatureLut, shadowLut;
-    stages.measure("curvature LUT", texels, "texels", texels * 16,
-                   [&] { curvatureLut = luts.get(standard, standard.luts[0].name, PEL_LUT_CURVATURE); });
-    stages.measure("shadow LUT", texels, "texels", texels * 16,
-                   [&] { shadowLut = luts.get(standard, standard.luts[1].name, PEL_LUT_SHADOW); });
+    // A store of its own, which has nothing yet.
+    stages.measureWarm("curvature LUT", texels, "texels", texels * 16, [&] {
+        curvatureLut = io::LutStore(run.device()).get(standard, standard.luts[0].name, PEL_LUT_CURVATURE);
+    });
+    stages.measureWarm("shadow LUT", texels, "texels", texels * 16, [&] {
+        shadowLut = io::LutStore(run.device()).get(standard, standard.luts[1].name, PEL_LUT_SHADOW);
+    });
 
     const sample::Scene scene(sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, curvature.values,
                                                mesh.triangles, head.materials});
     std::vector<ShadedView> views;
     for (const DemoViewRequest& request : requests(a))
-        views.push_back(shadeView(run, stages, luts, scene, head, request, a.output));
+        views.push_back(shadeView(run, stages, luts, scene, head, request, a));
+    std::vector<ShadedPicture> materials;
+    for (const auto& m : demoMaterials) {
+        const DemoView made = madeOf(views.front().view, m.profile, m.tint);
+        materials.push_back({m.profile, shadeAs(run, stages, luts, made, m.profile, made.scene)});
+    }
+    stages.addPreparation();
 
-    std::vector<std::string> files = writePictures(a.output, views, curvatureLut, shadowLut);
+    std::vector<std::string> files = writePictures(a.output, views, materials, curvatureLut, shadowLut);
     const DemoView& backlit = views.back().view;
     // By tables, for thickness and transmission are parts of theirs alone.
-    Frame parts(run.device(), backlit.gbuffer, byTables(backlit.scene), luts, backlit.shadowMaps,
-                pelShaderOptionsDefaults(),
-                {PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER, PEL_SLOT_OUT_SPECULAR, PEL_SLOT_OUT_THICKNESS});
+    io::SceneFrame parts(
+        run.device(), backlit.gbuffer, byTables(backlit.scene), luts, backlit.shadowMaps,
+        pelShaderOptionsDefaults(),
+        {PEL_SLOT_OUT_DIFFUSE, PEL_SLOT_OUT_DEEP_SCATTER, PEL_SLOT_OUT_SPECULAR, PEL_SLOT_OUT_THICKNESS});
     parts.shade();
     files.push_back(writeParts(a.output, backlit, parts));
     run.report["output"] = a.output;
@@ -205,6 +238,8 @@ void addDemo(CLI::App& app) {
     command->add_option("--smooth", a->smoothing, "smoothing passes of the curvature")
         ->check(CLI::Range(0, 1000))
         ->capture_default_str();
+    command->add_flag("!--no-reference", a->reference,
+                      "leave the surface integral out, which takes longer than all the rest");
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });
 }

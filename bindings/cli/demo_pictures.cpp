@@ -10,8 +10,8 @@
 namespace pellucid::cli {
 namespace {
 
-constexpr int sheetShrink = 2;  // the sheet shows pictures at half size, so that three fit a screen
-constexpr int lutSize = 320;    // pixels a side on the sheet
+constexpr int sheetShrink = referenceStride;  // the sheet shows pictures at half size, so that they fit a screen
+constexpr int lutSize = 200;                  // pixels a side on the sheet
 
 // Before a dark backdrop that is lighter in the middle.
 io::Picture developed(const DemoView& view, std::vector<float> radiance) {
@@ -70,6 +70,75 @@ io::Picture cropped(const io::Picture& picture, const Crop& c) {
     return part;
 }
 
+Crop shrunk(const Crop& c) {
+    return {c.left / sheetShrink, c.top / sheetShrink, c.right / sheetShrink, c.bottom / sheetShrink};
+}
+
+// Grey where a difference is nothing, and its colour where it is something.
+io::Picture amplified(int width, int height, std::vector<float> difference, float times) {
+    for (float& v : difference) v = 0.2f + times * v;
+    return {width, height, io::toSrgb8(difference, {1.0f, 1.0f, io::ToneCurve::none})};
+}
+
+io::Picture difference(const ShadedView& view, float times) {
+    std::vector<float> d(view.complete);
+    for (size_t i = 0; i < d.size(); ++i) d[i] -= view.lambert[i];
+    return amplified(view.view.gbuffer.width, view.view.gbuffer.height, std::move(d), times);
+}
+
+// The reference before the same backdrop as the others, and with their eyes and teeth.
+io::Picture small(const ShadedView& shaded) {
+    const DemoReference& reference = *shaded.reference;
+    const std::vector<float>& all = shaded.view.gbuffer.channel("Material.I").pixels;
+    DemoView view;
+    view.gbuffer.width = reference.width;
+    view.gbuffer.height = reference.height;
+    std::vector<float> ids(reference.radiance.size() / 3), radiance(reference.radiance);
+    for (int y = 0; y < reference.height; ++y)
+        for (int x = 0; x < reference.width; ++x) {
+            const size_t to = size_t(y) * reference.width + x,
+                         from = size_t(y) * referenceStride * shaded.view.gbuffer.width +
+                                size_t(x) * referenceStride;
+            ids[to] = all[from];
+            if (all[from] != float(demo::DEMO_SKIN))
+                std::copy_n(&shaded.complete[3 * from], 3, &radiance[3 * to]);
+        }
+    view.gbuffer.channels.push_back({"Material.I", io::ChannelType::Float, std::move(ids)});
+    return developed(view, std::move(radiance));
+}
+
+// The part of a head where scattering and transmission add most red light: a backlit ear.
+Crop brightestChange(const ShadedView& view) {
+    constexpr int step = 8;
+    const int width = view.view.gbuffer.width, height = view.view.gbuffer.height;
+    const int w = std::min(width, height / 6), h = std::min(height, height / 6);
+    Crop best{0, 0, w, h};
+    double most = -1;
+    for (int y = 0; y + h <= height; y += step)
+        for (int x = 0; x + w <= width; x += step) {
+            double sum = 0;
+            for (int v = y; v < y + h; v += step)
+                for (int u = x; u < x + w; u += step) {
+                    const size_t i = 3 * (size_t(v) * width + u);
+                    // Light that came through is red; what Lambert lights is bright enough, and has pores.
+                    const auto redness = [i](const std::vector<float>& v) { return v[i] - v[i + 2]; };
+                    if (view.lambert[i] < 0.15f) sum += redness(view.complete) - redness(view.lambert);
+                }
+            if (sum > most) most = sum, best = {x, y, x + w, y + h};
+        }
+    return best;
+}
+
+// Twice as large, pixel by pixel.
+io::Picture magnified(const io::Picture& picture) {
+    io::Picture large(2 * picture.width, 2 * picture.height);
+    for (int y = 0; y < large.height; ++y)
+        for (int x = 0; x < large.width; ++x)
+            std::copy_n(&picture.rgb[3 * (size_t(y / 2) * picture.width + x / 2)], 3,
+                        &large.rgb[3 * (size_t(y) * large.width + x)]);
+    return large;
+}
+
 io::Picture curvatureMap(const DemoView& view) {
     const std::vector<float>& curvature = view.gbuffer.channel("Curvature.V").pixels;
     const std::vector<float>& material = view.gbuffer.channel("Material.I").pixels;
@@ -84,7 +153,7 @@ io::Picture curvatureMap(const DemoView& view) {
 
 }  // namespace
 
-std::string writeParts(const std::string& folder, const DemoView& view, const Frame& frame) {
+std::string writeParts(const std::string& folder, const DemoView& view, const io::SceneFrame& frame) {
     constexpr float longest = 30;  // mm; hardly anything comes through more
     const Crop part = coveredPart(view);
     std::vector<io::Tile> tiles;
@@ -105,24 +174,56 @@ std::string writeParts(const std::string& folder, const DemoView& view, const Fr
 }
 
 std::vector<std::string> writePictures(const std::string& folder, const std::vector<ShadedView>& views,
-                                       const Lut& curvatureLut, const Lut& shadowLut) {
+                                       const std::vector<ShadedPicture>& materials, const Lut& curvatureLut,
+                                       const Lut& shadowLut) {
     std::vector<std::string> files;
     const auto write = [&](const std::string& name, const io::Picture& p) {
         files.push_back(folder + "/" + name);
         io::writeImage8(files.back(), p.width, p.height, 3, p.rgb);
     };
     std::vector<io::Tile> tiles;
+    const size_t columns = views.front().reference ? 6 : 4;
+    const auto fill = [&] {  // the rest of a row
+        while (tiles.size() % columns) tiles.push_back({"", io::Picture(1, 1, io::Srgb8{20, 20, 20})});
+    };
     for (const ShadedView& view : views) {
+        const std::string& name = view.view.name;
         const Crop part = coveredPart(view.view);
-        write(view.view.name + ".png", cropped(developed(view.view, view.pictures.back().radiance), part));
-        for (const ShadedPicture& p : view.pictures)
-            tiles.push_back({view.view.name + ": " + p.title,
-                             io::shrunk(cropped(developed(view.view, p.radiance), part), sheetShrink)});
+        const auto add = [&](const char* title, const std::vector<float>& radiance) {
+            tiles.push_back({name + ": " + title,
+                             io::shrunk(cropped(developed(view.view, radiance), part), sheetShrink)});
+        };
+        write(name + ".png", cropped(developed(view.view, view.complete), part));
+        add("Lambert", view.lambert);
+        add("by tables", view.tables);
+        add("auto", view.complete);
+        if (view.reference) tiles.push_back({name + ": reference", cropped(small(view), shrunk(part))});
+        tiles.push_back({"auto - Lambert, x 4", io::shrunk(cropped(difference(view, 4), part), sheetShrink)});
+        if (view.reference)
+            tiles.push_back(
+                {"auto - reference, x 10",
+                 cropped(amplified(view.reference->width, view.reference->height, view.reference->error, 10),
+                         shrunk(part))});
     }
+    const ShadedView& lit = views.back();
+    const Crop glow = brightestChange(lit);
+    const auto close = [&](const char* title, const std::vector<float>& radiance) {
+        tiles.push_back(
+            {std::string("from behind: ") + title, magnified(cropped(developed(lit.view, radiance), glow))});
+    };
+    close("Lambert", lit.lambert);
+    close("by tables", lit.tables);
+    close("auto", lit.complete);
     tiles.push_back({"curvature", curvatureMap(views.front().view)});
-    tiles.push_back({"curvature LUT: N.L across, curvature down", lutPicture(curvatureLut)});
-    tiles.push_back({"shadow LUT: shadow across, 1/width down", lutPicture(shadowLut)});
-    write("demo.png", io::contactSheet(tiles, 3));
+    if (columns == 4) fill();
+    tiles.push_back({"curvature LUT: N.L across", lutPicture(curvatureLut)});
+    tiles.push_back({"shadow LUT: shadow across", lutPicture(shadowLut)});
+    fill();
+    for (const ShadedPicture& m : materials)
+        tiles.push_back({m.title, io::shrunk(cropped(developed(views.front().view, m.radiance),
+                                                     coveredPart(views.front().view)),
+                                             sheetShrink)});
+    write("demo.png", io::contactSheet(tiles, int(columns)));
     return files;
 }
 

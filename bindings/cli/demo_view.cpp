@@ -177,6 +177,27 @@ io::SceneFile byTables(io::SceneFile scene) {
     return scene;
 }
 
+io::SceneFile smoothAndDull(io::SceneFile scene) {
+    for (io::SceneMaterial& m : scene.materials) m.material.specular = 0;
+    scene.channels[PEL_SLOT_NORMAL_BLURRED].clear();
+    scene.channels[PEL_SLOT_NORMAL_SHADING] = scene.channels[PEL_SLOT_NORMAL_GEOMETRIC];
+    return scene;
+}
+
+DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3]) {
+    view.scene.materials[0].profile = profile;
+    view.scene.materials[0].material.shadowFilterWidth = 0;  // the profile's own
+    const std::vector<float> ids = view.gbuffer.channel("Material.I").pixels;
+    for (io::Channel& channel : view.gbuffer.channels)
+        for (size_t c = 0; c < 3; ++c) {
+            if (channel.name != view.scene.channels[PEL_SLOT_ALBEDO][c]) continue;
+            for (size_t i = 0; i < ids.size(); ++i)
+                if (ids[i] == float(demo::DEMO_SKIN))
+                    channel.pixels[i] = std::min(1.0f, channel.pixels[i] * tint[c]);
+        }
+    return view;
+}
+
 io::SceneFile withoutScattering(io::SceneFile scene) {
     for (io::SceneMaterial& m : scene.materials) m.profile.clear();
     // One normal for all channels, as a renderer without scattering has.

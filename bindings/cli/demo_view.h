@@ -2,8 +2,8 @@
 #pragma once
 #include <string>
 
-#include "frame.h"
 #include "head/demo_head.h"
+#include "io/scene/scene_frame.h"
 #include "sample/camera.h"
 #include "sample/scene.h"
 
@@ -15,7 +15,7 @@ struct DemoView {
     std::string name;
     io::Image gbuffer;
     io::SceneFile scene;
-    ShadowMaps shadowMaps;
+    io::ShadowMaps shadowMaps;
     double gbufferMilliseconds = 0, shadowMapMilliseconds = 0, wideShadowMilliseconds = 0;
 };
 
@@ -44,5 +44,9 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
 // The same scene shaded plainly, by Lambert, or by tables.
 io::SceneFile withoutScattering(io::SceneFile scene);
 io::SceneFile byTables(io::SceneFile scene);
+// By the mesh's own normals and without gloss, to be compared with the reference.
+io::SceneFile smoothAndDull(io::SceneFile scene);
+// The view with its skin made of another material of the library, and its albedo multiplied by a tint.
+DemoView madeOf(DemoView view, const std::string& profile, const float (&tint)[3]);
 
 }  // namespace pellucid::cli

@@ -24,6 +24,21 @@ class Stages {
         const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
         add(name, wall.count(), run_.deviceMilliseconds() - device, count, unit, bytes);
     }
+    // The same for work whose kernels may have to be compiled: it is done twice, the second time is the stage's, and what the first
+    // took longer belongs to the time of preparation.
+    template <class Work>
+    void measureWarm(const std::string& name, uint64_t count, const char* unit, uint64_t bytes, Work&& work) {
+        const double first = milliseconds(work);
+        measure(name, count, unit, bytes, work);
+        preparation_ += std::max(0.0, first - stages_.back().wall);
+    }
+    // Work that makes ready for a stage: uploads, tables, kernels.
+    template <class Work>
+    void prepare(Work&& work) {
+        preparation_ += milliseconds(work);
+    }
+    // A line for what prepared the others.
+    void addPreparation() { add("uploads, compiling kernels", preparation_, 0, 0, "", 0); }
     // A stage that was measured elsewhere; deviceMilliseconds is 0 for work of the host.
     void add(const std::string& name, double wallMilliseconds, double deviceMilliseconds, uint64_t count,
              const char* unit, uint64_t bytes);
@@ -31,6 +46,12 @@ class Stages {
     nlohmann::ordered_json json() const;
 
   private:
+    template <class Work>
+    static double milliseconds(Work&& work) {
+        const auto start = std::chrono::steady_clock::now();
+        work();
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    }
     struct Stage {
         std::string name, unit;
         double wall, device;  // ms
@@ -42,6 +63,7 @@ class Stages {
     };
     const Run& run_;
     std::vector<Stage> stages_;
+    double preparation_ = 0;  // ms
 };
 
 }  // namespace pellucid::cli

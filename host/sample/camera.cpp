@@ -30,6 +30,10 @@ Matrix4 Camera::inverseViewProjection(double aspect) const {
     return viewProjection(aspect).inverse();
 }
 
+HeadPose poseWithUp(char axis) {
+    return axis == 'y' ? HeadPose{{0, 1, 0}, {0, 0, 1}} : HeadPose{};
+}
+
 Vec3 headDirection(const HeadPose& pose, double azimuth, double elevation) {
     const Vec3 left = cross(pose.up, pose.front);
     const double a = azimuth * degrees, e = elevation * degrees;

@@ -356,6 +356,14 @@ TEST(SampleCamera, DirectionsRoundTheHead) {
     EXPECT_NEAR(length(sample::headDirection(pose, 0, 0) - Vec3{0, -1, 0}), 0, tolerance::sampleMatrix);
     EXPECT_NEAR(length(sample::headDirection(pose, 90, 0) - Vec3{1, 0, 0}), 0, tolerance::sampleMatrix);
     EXPECT_NEAR(length(sample::headDirection(pose, 200, 90) - Vec3{0, 0, 1}), 0, tolerance::sampleMatrix);
+    // The same head with y up is turned about x: what was at -y is at +z.
+    const sample::HeadPose upright = sample::poseWithUp('y');
+    EXPECT_NEAR(length(sample::headDirection(upright, 0, 0) - Vec3{0, 0, 1}), 0, tolerance::sampleMatrix);
+    EXPECT_NEAR(length(sample::headDirection(upright, 90, 0) - Vec3{1, 0, 0}), 0, tolerance::sampleMatrix);
+    EXPECT_NEAR(length(sample::headDirection(upright, 200, 90) - Vec3{0, 1, 0}), 0, tolerance::sampleMatrix);
+    EXPECT_NEAR(
+        length(sample::headDirection(sample::poseWithUp('z'), 30, 10) - sample::headDirection(pose, 30, 10)),
+        0, tolerance::sampleMatrix);
     // Seen from the front, the left ear is on the right of the picture.
     const sample::Camera camera{.eye = {0, -500, 0}};
     EXPECT_GT(camera.viewProjection(1).project(sample::headDirection(pose, 90, 0)).x, 0);
