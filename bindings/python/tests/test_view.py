@@ -8,9 +8,12 @@ import pytest
 
 pytest.importorskip("moderngl", reason="moderngl is not installed")
 files = pytest.importorskip("pellucid.files", reason="this build reads no files")
+from pellucid import Device  # noqa: E402
 from pellucid.view.camera import Orbit, direction  # noqa: E402
 from pellucid.view.export import export  # noqa: E402
 from pellucid.view.look import EYES, MODES, PRESETS, SKIN, Look  # noqa: E402
+from pellucid.view.scene_session import SceneSession  # noqa: E402
+from pellucid.view.server import Pace  # noqa: E402
 from pellucid.view.session import Session  # noqa: E402
 
 
@@ -133,6 +136,161 @@ def test_what_is_exported_renders_to_the_same_bits(session, tmp_path, profile):
     one, two = (files.read_image(tmp_path / "look" / name) for name in ("picture.exr", "again.exr"))
     assert all(np.array_equal(one[c], two[c]) for c in "RGB") and one["R"].max() > 0.2
     assert Look.from_dict(json.loads((tmp_path / "look/look.json").read_text())) == session.look
+
+
+def test_a_scene_file_is_shown_as_it_was_exported(session, tmp_path):
+    reset(session)
+    session.look.exposure, session.look.shoulder = 1.3, 0.7
+    folder = tmp_path / "look"
+    export(session, folder, 192, 108)
+    shown = SceneSession(folder / "scene.toml", device=session.device)
+    shown.look.exposure, shown.look.shoulder = 1.3, 0.7
+    picture = files.read_image(folder / "picture.png")
+    known = np.rint(255 * np.stack([picture[c] for c in "RGB"], -1)).astype(np.uint8)
+    whole = shown.frame().pixels
+    assert np.array_equal(whole, known)
+    assert shown.frame(small=True).pixels.shape == (54, 96, 3)
+    seen = {"final": whole.tobytes()}
+    for mode in ("lambert", "difference", "diffuse", "specular"):
+        shown.look.mode = mode
+        seen[mode] = shown.frame().pixels.tobytes()
+    assert len(set(seen.values())) == len(seen)
+    shown.look.mode = "final"
+    assert shown.frame().pixels.tobytes() == seen["final"]  # nothing sticks
+    built = shown.device.stats().programs_built
+    for change in (lambda: setattr(shown.scene.materials[1], "roughness", 0.7), lambda: shown.scene.profiles.update({1: "marble"}),
+                   lambda: shown.look.lights.__setitem__(0, 0.5), lambda: setattr(shown.look, "ambient", 2.0)):
+        before = shown.frame().pixels
+        change()
+        assert not np.array_equal(shown.frame().pixels, before)
+    assert shown.device.stats().programs_built == built
+    now = shown.frame().pixels
+    shown.save(folder / "changed.toml")
+    again = SceneSession(folder / "changed.toml", folder / "gbuffer.exr", session.device)
+    again.look.exposure, again.look.shoulder = 1.3, 0.7
+    assert np.array_equal(again.frame().pixels, now)
+    (folder / "gbuffer.exr").unlink()
+    with pytest.raises(ValueError, match="no G-buffer beside it"):
+        SceneSession(folder / "scene.toml", device=session.device)
+
+
+def test_moving_pictures_look_like_those_at_rest(session):
+    whole = Session(session.device)
+    whole.load(files.standard_head())
+    rest, moving = whole.frame(240, 136).pixels.astype(int), whole.frame(240, 136, small=True).pixels.astype(int)
+    assert whole.renderer.level(1e9) >= 1 and whole._level(True) > 0  # a coarser mesh is in use
+    off = np.abs(rest - moving).max(2)
+    assert np.median(off) <= 2 and (off > 40).mean() < 0.03
+    # What moved only in part is not drawn again.
+    drawn = whole.renderer.gbuffer
+    calls = []
+    whole.renderer.gbuffer = lambda *a, **k: calls.append(a) or drawn(*a, **k)
+    whole.look.roughness = 0.6
+    whole.frame(240, 136, small=True)
+    assert calls == []
+    maps = whole.renderer.shadow_map
+    whole.renderer.shadow_map = lambda *a, **k: calls.append(a) or maps(*a, **k)
+    whole.orbit.azimuth += 1
+    whole.frame(240, 136, small=True)
+    assert len(calls) == 1  # the G-buffer; shadow maps are kept
+    whole.look.lamps[0].azimuth += 1
+    whole.frame(240, 136, small=True)
+    assert len(calls) == 2  # the one map
+
+
+def test_edges_become_smooth(session):
+    reset(session)
+    rough = session.frame(160, 90).pixels
+    smooth = session.smooth(160, 90)
+    background = session.gbuffer(160, 90).material == 0
+    # Pixels of the outline are between head and background now, and elsewhere hardly anything changes.
+    between = background & (smooth.max(2) > 8)
+    assert background.any() and not rough[background].any() and 50 < between.sum() < 1500
+    inside = np.abs(smooth.astype(int) - rough).max(2)[~background]
+    assert np.median(inside) < 6
+    assert np.array_equal(session.frame(160, 90).pixels, rough) and np.array_equal(session.smooth(160, 90), smooth)
+
+
+def test_tiles_are_those_that_the_shader_counts(session):
+    reset(session)
+    for method in ("auto", "screen", "separable"):
+        session.look.method = method
+        g = session.gbuffer(320, 176)
+        from pellucid.view.pictures import TILE_COLORS, chosen_method, tiles
+
+        shown, p = tiles(session, session.look, 320, 176, False)
+        name = chosen_method(p, session.look)
+        assert method in ("auto", name)
+        # The brightest pixel of each tile tells its state.
+        hue = shown.reshape(11, 16, 20, 16, 3).max((1, 3))
+        seen = (g.material > 0).reshape(11, 16, 20, 16).any((1, 3))
+        assert ((hue.max(2) > 0) == seen).all()
+        tapped = (hue.max(2) > 0.45 * max(TILE_COLORS[name])).sum()
+        session.count = True
+        counted = p.shader.stats()
+        session.count = False
+        by = dict(zip(("none", "preintegrated", "separable", "screen", "light", "texture"), counted.tiles_by_scattering))
+        # Where shadows end, the picture without scattering has an edge of a millimetre and the other a sharp one: a few tiles more.
+        assert abs(int(by[name]) - int(tapped)) <= 0.15 * tapped + 2, (method, tapped, by)
+
+
+def test_the_method_in_the_texture(session, tmp_path):
+    reset(session)
+    session.look.method = "texture"
+    with pytest.raises(ValueError, match="no texture coordinates"):
+        session.frame(160, 90)
+    reset(session)
+    # A sheet that bends, with coordinates, half in the shadow of a flap.
+    n = 40
+    u, v = np.meshgrid(np.arange(n + 1) / n, np.arange(n + 1) / n)
+    lines = [f"v {100 * x - 50} {100 * y - 50} {20 * np.cos(3 * x)}" for x, y in zip(u.ravel(), v.ravel())]
+    lines += [f"vt {x} {y}" for x, y in zip(u.ravel(), v.ravel())]
+    for j in range(n):
+        for i in range(n):
+            a, b = j * (n + 1) + i + 1, (j + 1) * (n + 1) + i + 1
+            lines.append(f"f {a}/{a} {a + 1}/{a + 1} {b + 1}/{b + 1} {b}/{b}")
+    (tmp_path / "sheet.obj").write_text("\n".join(lines) + "\n")
+    own = Session(session.device)
+    own.load(tmp_path / "sheet.obj")
+    own.look.pores = 0.0
+    pictures = {}
+    for method in ("none", "texture", "screen"):
+        own.look.method = method
+        pictures[method] = own.radiance(None, 160, 90)
+    assert not np.array_equal(pictures["none"], pictures["texture"])
+    lit = pictures["screen"].max(2) > 0.05
+    assert np.abs(pictures["texture"] - pictures["screen"])[lit].mean() < 0.03
+    own.look.lamps[0].intensity = 0.2  # made again
+    own.look.method = "texture"
+    assert own.radiance(None, 160, 90)[lit].mean() < 0.8 * pictures["texture"][lit].mean()
+    export(own, tmp_path / "look", 160, 90)
+    command = os.environ.get("PELLUCID_COMMAND")
+    if command:
+        subprocess.run([command, "shade", "gbuffer.exr", "--scene", "scene.toml", "-o", "again.exr"], cwd=tmp_path / "look", check=True,
+                       stdout=subprocess.DEVNULL)
+        one, two = (files.read_image(tmp_path / "look" / name) for name in ("picture.exr", "again.exr"))
+        assert all(np.array_equal(one[c], two[c]) for c in "RGB")
+
+
+def test_another_device_shows_the_same(session):
+    reset(session)
+    session.look.roughness, session.orbit.azimuth = 0.5, 60.0
+    before = session.frame(160, 90).pixels
+    again = session.restarted(Device())
+    assert np.array_equal(again.frame(160, 90).pixels, before)
+
+
+def test_pictures_are_as_small_as_the_time_asks():
+    slow, fast = Pace(), Pace()
+    assert slow.scale == 0.5
+    for i in range(60):
+        slow.shown(0.2 * i, True)
+        fast.shown(0.01 * i, True)
+    assert slow.scale == min(Pace.SCALES) and fast.scale == 1.0
+    steady = Pace()
+    for i in range(60):
+        steady.shown(0.045 * i, True)
+    assert steady.scale == 0.5
 
 
 def test_presets_and_looks():

@@ -1,5 +1,6 @@
 """The viewer's page in a real browser without a screen."""
 import base64
+import contextlib
 import io
 import json
 import os
@@ -25,6 +26,8 @@ from selenium.webdriver.common.action_chains import ActionChains  # noqa: E402
 from selenium.webdriver.common.by import By  # noqa: E402
 from selenium.webdriver.common.keys import Keys  # noqa: E402
 
+from pellucid.view.look import Look  # noqa: E402
+
 CHROMIUM, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 pytestmark = pytest.mark.skipif(not (CHROMIUM and DRIVER), reason="chromium is not installed")
 PATIENCE = 120  # seconds: kernels are compiled at the first picture
@@ -40,15 +43,45 @@ def wait_for(condition, what, seconds=PATIENCE):
     raise AssertionError(f"waited {seconds} s for {what}")
 
 
+# The viewer, with a device that is gone once the file LOST is there, and without the pictures that make edges smooth at rest.
+PROGRAM = """
+import os, sys
+import pellucid as pel
+import pellucid.view.session
+pellucid.view.session.SAMPLES = 1
+flag, execute, lost = sys.argv.pop(1), pel.Shader.execute, []
+def broken(shader):
+    if os.path.exists(flag):
+        lost.append(shader.device)
+        os.remove(flag)
+    if any(shader.device is device for device in lost):
+        raise pel.PellucidError(pel.ErrorCode.NO_DEVICE, "the device is gone")
+    return execute(shader)
+pel.Shader.execute = broken
+from pellucid.view.__main__ import main
+raise SystemExit(main())
+"""
+
+
+def look(**values):
+    return json.dumps(Look(ggx=True, **values).to_dict())
+
+
 @pytest.fixture(scope="module")
-def address(tmp_path_factory):
+def lost(tmp_path_factory):
+    return tmp_path_factory.mktemp("lost") / "LOST"
+
+
+@contextlib.contextmanager
+def served(lost, folder, *arguments):
+    """The address of a viewer with these arguments."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    log = tmp_path_factory.mktemp("view") / "log"
+    log = folder / "log"
     # As a program of its own: pytest's variable would make NiceGUI wait for a test client.
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("PYTEST", "NICEGUI"))}
-    process = subprocess.Popen([sys.executable, "-m", "pellucid.view", "--no-browser", "--port", str(port), "--subdivide", "1"],
+    process = subprocess.Popen([sys.executable, "-c", PROGRAM, str(lost), "--no-browser", "--port", str(port), *arguments],
                                stdout=log.open("w"), stderr=subprocess.STDOUT, env=environment, cwd=log.parent)
     try:
         found = wait_for(lambda: process.poll() is not None or re.search(r"http://\S+token=\S+", log.read_text()), "the address")
@@ -73,9 +106,17 @@ def address(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
+def address(tmp_path_factory, lost):
+    folder = tmp_path_factory.mktemp("view")
+    (folder / "look.json").write_text(look(profile="custom", distance=(1.2, 0.6, 0.4)))
+    with served(lost, folder, "--subdivide", "1", "--look", str(folder / "look.json")) as url:
+        yield url
+
+
+@pytest.fixture(scope="module")
 def page(address, tmp_path_factory):
     options = webdriver.ChromeOptions()
-    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1000,700"):
+    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=900,700"):
         options.add_argument(argument)
     options.binary_location = CHROMIUM
     downloads = tmp_path_factory.mktemp("downloads")
@@ -155,32 +196,90 @@ def test_the_wheel_zooms(page):
     assert differ(before, after)
 
 
-@pytest.mark.parametrize("name", ["exposure", "radius_scale", "specular", "roughness", "f0", "pores", "albedo-1", "target_error", "transmission"])
-def test_sliders_change_the_picture(page, name):
-    slider = page.find_element(By.CSS_SELECTOR, f"[data-pel='slider-{name}']")
+def unfold(page, heading):
+    """Opens a panel, if it is not open."""
+    title = page.find_element(By.XPATH, f"//*[contains(@class,'q-expansion-item')]//*[text()='{heading}']")
+    if title.find_elements(By.XPATH, "./ancestor::*[contains(@class,'q-expansion-item--collapsed')]"):
+        page.execute_script("arguments[0].scrollIntoView({block: 'center'})", title)
+        title.click()
+        time.sleep(0.6)  # it slides open
+
+
+def sliders(page):
+    return [e.get_attribute("data-pel") for e in page.find_elements(By.CSS_SELECTOR, "[data-pel^='slider-']")]
+
+
+def click_slider(page, name, share):
+    slider = page.find_element(By.CSS_SELECTOR, f"[data-pel='{name}']")
     page.execute_script("arguments[0].scrollIntoView({block: 'center'})", slider)
+    ActionChains(page, duration=0).move_to_element_with_offset(slider, int((share - 0.5) * slider.size["width"]), 0).click().perform()
 
-    def pull():
-        width = slider.size["width"]
-        ActionChains(page).move_to_element_with_offset(slider, int(0.4 * width), 0).click().perform()
 
-    before, after = act_and_compare(page, pull)
-    if name not in ("target_error", "transmission"):  # where nothing thin is lit from behind, they may change nothing that shows
-        assert differ(before, after)
+def upload(page, label, path):
+    entry = page.find_element(By.XPATH, f"//*[contains(@class,'q-uploader')][.//*[contains(text(),'{label}')]]//input[@type='file']")
+    entry.send_keys(str(path))
+
+
+def changes_by(page, name):
+    """Whether the picture of a slider near its left end differs from that near its right end."""
+    seen = []
+    for share in (0.15, 0.85):
+        count = page.execute_script("return window.pelFrames")
+        click_slider(page, name, share)
+        with contextlib.suppress(AssertionError):  # it may have been there already
+            wait_for(lambda: page.execute_script("return window.pelFrames") > count, f"a picture by {name}", 4)
+        seen.append(picture(page))
+    return not np.array_equal(*seen)
+
+
+def test_every_slider_changes_the_picture(page, tmp_path):
+    for heading in ("Material", "Lights", "Profile", "Compare"):
+        unfold(page, heading)
+    kernels = page.execute_script("return window.pelKernels")
+    # These need a light behind and tables, which the second look has, or a second setting to compare with.
+    later = [n for n in sliders(page) if n.startswith("slider-deep_scatter") or n in ("slider-wipe", "slider-transmission")]
+    assert len(later) == 5 and len(sliders(page)) > 25
+    idle = [n for n in sliders(page) if n not in later and not changes_by(page, n)]
+    assert not idle
+    assert page.execute_script("return window.pelKernels") == kernels  # no slider compiles anything
+    unfold(page, "Export")
+    second = tmp_path / "look.json"
+    behind = json.loads(look(method="preintegrated"))
+    behind["lamps"][0].update(azimuth=160.0, intensity=3.0)
+    second.write_text(json.dumps(behind))
+    upload(page, "Read a look", second)
+    time.sleep(1)
+    for heading in ("Material", "Compare"):
+        unfold(page, heading)
+    page.execute_script("document.querySelector('[data-pel=wipe-keep]').click()")
+    time.sleep(0.3)
+    click_slider(page, "slider-specular", 0.9)
+    assert not [n for n in later if not changes_by(page, n)]
+    page.execute_script("document.querySelector('[data-pel=wipe-drop]').click()")
+
+
+def test_a_lost_device_is_told_and_opened_again(page, lost):
+    lost.touch()
+    click_slider(page, "slider-exposure", 0.3)
+    box = page.find_element(By.ID, "pel-error")
+    wait_for(box.is_displayed, "the message", 20)
+    assert "the device is gone" in box.text
+    count = page.execute_script("return window.pelFrames")
+    page.find_element(By.ID, "pel-again").click()
+    wait_for(lambda: page.execute_script("return window.pelFrames") > count, "a picture", 60)
+    assert not box.is_displayed() and picture(page).std() > 10
 
 
 def test_export_renders_again(page, tmp_path):
-    button = page.find_element(By.XPATH, "//*[contains(@class,'q-expansion-item')]//*[text()='Export']")
-    page.execute_script("arguments[0].scrollIntoView()", button)
-    button.click()
+    unfold(page, "Export")
     pack = wait_for(lambda: [b for b in page.find_elements(By.CSS_SELECTOR, "[data-pel='export']") if b.is_displayed()], "the button", 10)[0]
-    time.sleep(0.5)
+    page.execute_script("arguments[0].scrollIntoView({block: 'center'})", pack)
     pack.click()
     archive = wait_for(lambda: list(page.downloads.glob("*.zip")), "the download", 60)[0]
     with zipfile.ZipFile(archive) as z:
         z.extractall(tmp_path)
     folder = tmp_path / "pellucid-look"
-    assert json.loads((folder / "look.json").read_text())["method"] == "auto"
+    assert json.loads((folder / "look.json").read_text())["method"] in ("auto", "preintegrated")
     command = os.environ.get("PELLUCID_COMMAND")
     if not command:
         pytest.skip("the pellucid command is not built")
@@ -190,12 +289,34 @@ def test_export_renders_again(page, tmp_path):
     assert all(np.array_equal(one[c], two[c]) for c in "RGB")
 
 
+def test_a_scene_file_is_shown_and_tuned(page, address, lost, tmp_path):
+    folder = next(iter(page.downloads.glob("*.zip")), None)
+    if folder is None:
+        pytest.skip("nothing was exported before")
+    with zipfile.ZipFile(folder) as z:
+        z.extractall(tmp_path)
+    scene = tmp_path / "pellucid-look" / "scene.toml"
+    try:
+        with served(lost, tmp_path, str(scene)) as url:
+            page.get(url)
+            wait_for(lambda: page.execute_script("return window.pelFrames"), "the first picture")
+            first = picture(page)
+            known = np.asarray(Image.open(scene.with_name("picture.png")).convert("RGB")).astype(int)
+            assert first.shape == known.shape
+            ActionChains(page, duration=0).drag_and_drop_by_offset(page.find_element(By.ID, "pel-canvas"), 60, 0).perform()
+            time.sleep(0.5)
+            assert np.array_equal(picture(page), first)  # the camera of a scene stays
+            assert all(changes_by(page, f"slider-{name}-1") for name in ("specular", "roughness"))
+    finally:
+        page.get(address)
+        wait_for(lambda: page.execute_script("return window.pelFrames"), "the first picture")
+
+
 def test_a_bad_mesh_is_shown_and_the_old_one_stays(page, tmp_path):
     bad = tmp_path / "bad.obj"
     bad.write_text("v 0 0 0\nf 1 2 3\n")
     before = picture(page)
-    entry = [e for e in page.find_elements(By.CSS_SELECTOR, "input[type=file]")][0]
-    entry.send_keys(str(bad))
+    upload(page, "Drop an OFF", bad)
     told = wait_for(lambda: [e.text for e in page.find_elements(By.CSS_SELECTOR, ".q-notification") if "obj" in e.text], "a message", 20)
     assert "3" in told[0] or "vertex" in told[0]
     assert not differ(before, picture(page))

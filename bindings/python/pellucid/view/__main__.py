@@ -1,15 +1,18 @@
-"""``python -m pellucid.view [MESH]``"""
+"""``python -m pellucid.view [MESH|SCENE]``"""
 from __future__ import annotations
 
 import argparse
 import ipaddress
 import secrets
 import sys
+from typing import Any
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="pellucid view", description="A look-dev viewer in the browser.")
-    parser.add_argument("mesh", nargs="?", help="OFF, OBJ, PLY or STL file (default: a head that comes with pellucid)")
+    parser.add_argument("mesh", nargs="?", metavar="MESH|SCENE", help="OFF, OBJ, PLY or STL file, or a scene (.toml) with its G-buffer "
+                        "(default: a head that comes with pellucid)")
+    parser.add_argument("--gbuffer", help="of a scene (default: SCENE_gbuffer.exr or gbuffer.exr beside it)")
     parser.add_argument("--up", choices=("auto", "y", "z"), default="auto", help="which way is up in the mesh (auto: y in OBJ files)")
     parser.add_argument("--unit-mm", type=float, default=1.0, help="millimetres per unit of the mesh (1)")
     parser.add_argument("--subdivide", type=int, help="levels of subdivision (2 for the heads, 0 for others)")
@@ -34,15 +37,22 @@ def main() -> int:
 
     from .. import Device, PellucidError, files
     from .look import Look
+    from .scene_session import SceneSession
     from .session import Session
 
+    def opened(device: Device) -> Any:
+        if a.mesh and a.mesh.lower().endswith(".toml"):
+            return SceneSession(a.mesh, a.gbuffer, device)
+        session = Session(device, a.unit_mm)
+        if a.look:
+            with open(a.look, encoding="utf-8") as file:
+                session.look = Look.from_dict(json.load(file))
+        session.load(a.mesh or files.standard_head(), a.subdivide, a.up)
+        return session
+
     try:
-        look = Look.from_dict(json.load(open(a.look, encoding="utf-8"))) if a.look else Look()
-        viewer = Viewer(lambda: Session(Device(a.device), a.unit_mm))
-        viewer.session.look = look
-        mesh = a.mesh or files.standard_head()
-        viewer._thread.submit(lambda: viewer.session.load(mesh, a.subdivide, a.up)).result()
-    except (OSError, ValueError, RuntimeError, PellucidError) as error:
+        viewer = Viewer(lambda: Device(a.device), opened)
+    except (OSError, ValueError, TypeError, RuntimeError, PellucidError) as error:
         print(f"pellucid view: {error}", file=sys.stderr)
         return 3
     token = a.token or secrets.token_urlsafe(16)

@@ -9,7 +9,8 @@ import numpy as np
 
 from ..files import write_image
 from .look import SKIN, Look
-from .session import Session, tinted
+from .passes import tinted
+from .session import Session
 
 
 def _toml(value: Any) -> str:
@@ -32,7 +33,8 @@ def scene_text(session: Session, look: Look, width: int, height: int) -> str:
     profile = "profile.toml" if look.profile == "custom" else look.profile
     text = _lines(version=1, unit_mm=float(session.mm), target_error=float(np.float32(look.target_error))) + "\n[channels]\n"
     for key, name, components in (("material", "Id", "I"), ("position", "Position", "XYZ"), ("normal_geometric", "NormalGeometric", "XYZ"),
-                                  ("normal_shading", "NormalShading", "XYZ"), ("curvature", "Curvature", "V"), ("albedo", "Albedo", "RGB")):
+                                  ("normal_shading", "NormalShading", "XYZ"), ("curvature", "Curvature", "V"), ("albedo", "Albedo", "RGB"),
+                                  *([("uv", "Uv", "XY")] if look.method == "texture" else [])):
         names = [f"{name}.{c}" for c in components]
         text += _lines(**{key: names if len(names) > 1 else names[0]}).replace("'", '"')
     text += "\n[camera]\n" + _lines(position=np.float32(eye)) + "\n[ambient]\n" + _lines(constant=np.float32([look.ambient] * 3))
@@ -40,13 +42,17 @@ def scene_text(session: Session, look: Look, width: int, height: int) -> str:
         text += "\n[[light]]\n" + _lines(type="directional", to_light=light.to_light, color=light.color)
         if map is not None:
             text += "[light.shadow_map]\n" + _lines(file=f"shadow_{i}.exr", channel="Z", projection="parallel",
-                                                    world_to_shadow=light.world_to_shadow, depth_range=light.shadow_depth_range)
+                                                    world_to_shadow=light.world_to_shadow, depth_range=light.shadow_depth_range, filter_texels=light.shadow_filter_texels)
     for id, m in session.materials(look).items():
         text += "\n[[material]]\n" + _lines(id=id, scattering=m.scattering.name.lower())
         if m.profile is not None:
             text += _lines(profile=profile, transmission=m.transmission, diffusion_radius=m.diffusion_radius)
             if any(m.deep_scatter_color):
                 text += _lines(deep_scatter_color=m.deep_scatter_color)
+        if look.method == "texture" and id == SKIN:
+            text += _lines(scattered_texture="scattered.exr")
+        if m.shadow_filter_width:
+            text += _lines(shadow_filter_width=m.shadow_filter_width)
         text += _lines(thickness_taps=m.thickness_taps, specular=m.specular, roughness=m.roughness, f0=m.f0,
                        specular_model=m.specular_model.name.lower(), roughness2=m.roughness2, lobe_mix=m.lobe_mix)
     for id, eye in session.eyes(look).items():
@@ -101,6 +107,9 @@ def export(session: Session, folder: Any, width: int = 1280, height: int = 720) 
         values = np.concatenate([g.material[..., None], g.position, g.normal_geometric, g.normal_shading, g.curvature[..., None], tinted(g, look)], 2)
         names = ["Id.I", *(f"{n}.{c}" for n in ("Position", "NormalGeometric", "NormalShading") for c in "XYZ"), "Curvature.V",
                  *(f"Albedo.{c}" for c in "RGB")]
+        if look.method == "texture":
+            values, names = np.concatenate([values, g.u[..., None], g.v[..., None]], 2), [*names, "Uv.X", "Uv.Y"]
+            write_image(out / "scattered.exr", session.texture(look).light)
         write_image(out / "gbuffer.exr", values, channels=names)
         for i, (_, map) in enumerate(session.lights(look)):
             if map is not None:

@@ -20,6 +20,7 @@ MODES = {
     "normals": "Shading normals",
     "albedo": "Albedo",
     "materials": "Material ids",
+    "tiles": "Tiles by method (dark: kept their irradiance)",
 }
 
 METHODS = {
@@ -29,10 +30,11 @@ METHODS = {
     "separable": "Separable, on the screen",
     "screen": "Disk, on the screen",
     "light": "From the light's map",
+    "texture": "In the mesh's texture",
 }
 
 # Material ids of the heads that come with the package.
-SKIN, EYES, TEETH, TONGUE, CUT, RIGHT_EYE = 1, 2, 3, 4, 5, 6  # EYES: the left one
+SKIN, EYES, TEETH, TONGUE, CUT, RIGHT_EYE = MATERIALS = 1, 2, 3, 4, 5, 6  # EYES: the left one
 
 
 @dataclass

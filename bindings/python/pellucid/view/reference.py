@@ -5,14 +5,17 @@ shadows are therefore as sharp as the mesh is fine: `pellucid reference` traces 
 """
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..reference import surface_integral
 from .look import SKIN, Look
-from .session import Session, tinted
+from .passes import tinted
+
+if TYPE_CHECKING:
+    from .session import Session
 
 
 def _lit(map: Any, positions: NDArray[Any], normals: NDArray[Any], texel: float) -> NDArray[np.float32]:
@@ -44,12 +47,12 @@ def vertex_irradiance(session: Session, look: Look) -> NDArray[np.float32]:
     return e
 
 
-def reference(session: Session, look: Look, width: int, height: int) -> NDArray[np.float32]:
+def reference(session: Session, look: Look, width: int, height: int, small: bool = False) -> NDArray[np.float32]:
     """Diffuse radiance of the skin that is seen, (height, width, 3); 0 elsewhere. Kept until light, camera or profile change."""
-    g = session.gbuffer(width, height)
+    g = session.gbuffer(width, height, small)
     lights = [(lamp.azimuth, lamp.elevation, lamp.color, lamp.intensity, lamp.shadow, lamp.on) for lamp in look.lamps]
-    key = (session._drawn, lights, look.ambient, look.profile, look.distance, look.radius_scale, look.shadow_size)
-    if session._reference is None or session._reference[0] != key:
+    key = (session.drawn_state(width, height, small), lights, look.ambient, look.profile, look.distance, look.radius_scale, look.shadow_size)
+    if session.reference_made is None or session.reference_made[0] != key:
         mesh, seen = session.mesh, g.material == SKIN
         triangles = mesh.triangles if mesh.ids is None else mesh.triangles[mesh.ids[mesh.triangles[:, 0]] == SKIN]
         profile = session.profile(look)
@@ -59,5 +62,5 @@ def reference(session: Session, look: Look, width: int, height: int) -> NDArray[
                                                np.ascontiguousarray(g.position[seen]), profile=profile,
                                                diffusion_radius=profile.info.radius * look.radius_scale,
                                                millimetres_per_unit=session.mm)
-        session._reference = (key, scattered)
-    return session._reference[1] * tinted(g, look)
+        session.reference_made = (key, scattered)
+    return session.reference_made[1] * tinted(g, look)

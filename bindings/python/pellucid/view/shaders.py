@@ -5,12 +5,14 @@ GBUFFER_VERTEX = """
 uniform mat4 clip;           // world to clip space, y turned round: the first row of the image is its top
 in vec3 in_position, in_normal, in_albedo;
 in vec2 in_material;         // id, curvature
+in vec2 in_uv;
 out vec3 position, normal, albedo;
+out vec2 uv;
 out float curvature;
 flat out float id;
 void main() {
     position = in_position; normal = in_normal; albedo = in_albedo;
-    id = in_material.x; curvature = in_material.y;
+    id = in_material.x; curvature = in_material.y; uv = in_uv;
     gl_Position = clip * vec4(in_position, 1.0);
 }
 """
@@ -26,12 +28,13 @@ uniform vec3 eye_centre[EYES], eye_gaze[EYES];
 uniform vec3 eye_size[EYES];  // radius of ball, iris, pupil
 uniform vec3 sclera, iris;
 in vec3 position, normal, albedo;
+in vec2 uv;
 in float curvature;
 flat in float id;
 layout(location = 0) out vec4 out_position;   // xyz, id
 layout(location = 1) out vec4 out_geometric;  // Ng, curvature
-layout(location = 2) out vec4 out_shading;    // N, 0
-layout(location = 3) out vec4 out_albedo;
+layout(location = 2) out vec4 out_shading;    // N, u
+layout(location = 3) out vec4 out_albedo;     // rgb, v
 
 vec3 hash(vec3 p) {
     uvec3 q = uvec3(ivec3(p)) * uvec3(1597334673u, 3812015801u, 2798796415u);
@@ -70,8 +73,8 @@ void main() {
     }
     out_position = vec4(position, id);
     out_geometric = vec4(ng, curvature);
-    out_shading = vec4(n, 0.0);
-    out_albedo = vec4(color, 1.0);
+    out_shading = vec4(n, uv.x);
+    out_albedo = vec4(color, uv.y);
 }
 """
 

@@ -1,0 +1,130 @@
+"""A shader and its last settings: what did not change is not set again, and compiles nothing again."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._types import Ambient, Camera
+from ..device import Device
+from ..shader import Shader, warm_up_programs
+from .look import MATERIALS, SKIN, Look
+from .texture import Texture
+
+if TYPE_CHECKING:
+    from .renderer import GBuffer
+    from .session import Session
+
+OUTPUTS = {"diffuse": "out_diffuse", "specular": "out_specular", "deep_scatter": "out_deep_scatter", "thickness": "out_thickness"}
+
+
+def tinted(g: GBuffer, look: Look) -> NDArray[np.float32]:
+    """The albedo with the look's tint on skin, (h, w, 3)."""
+    return np.where(g.material[..., None] == SKIN, np.minimum(g.albedo * np.asarray(look.albedo, np.float32), 1.0), g.albedo)
+
+
+class Pass:
+    def __init__(self, device: Device) -> None:
+        self.device = device
+        self.shader = Shader(device)
+        self.outputs: dict[str, NDArray[np.float32]] = {}
+        self._told: dict[str, Any] = {}
+        self._structure: Any = None
+        self._texture: Texture | None = None
+        self._uv = np.zeros((0, 0, 2), np.float32)
+
+    def _tell(self, what: str, value: Any, how: Callable[[], Any]) -> None:
+        if what not in self._told or self._told[what] != value:
+            how()
+            self._told[what] = value
+            self._told["committed"] = False
+
+    def shade(self, session: Session, g: GBuffer, look: Look, outputs: tuple[str, ...], small: bool, albedo: bool) -> Pass:
+        """`albedo` False: irradiance alone."""
+        self._images(g, look, albedo)
+        height, width = g.material.shape
+        memory = (g.position.ctypes.data, width, height)
+
+        def parts() -> None:
+            for slot in OUTPUTS.values():
+                wanted = slot in outputs
+                if wanted:
+                    self.outputs[slot] = np.zeros((height, width) + (() if slot == "out_thickness" else (3,)), np.float32)
+                self.shader.set_image(slot, self.outputs[slot] if wanted else None)
+
+        self._tell("parts", (memory, outputs), parts)
+        materials = session.materials(look)
+        if not albedo:
+            for m in materials.values():
+                m.albedo, m.specular = (1.0, 1.0, 1.0), 0.0
+
+        eyes = {id: eye for id, eye in session.eyes(look).items() if albedo and id in materials}
+
+        def set_materials() -> None:
+            for id in MATERIALS:
+                self.shader.set_material(id, materials.get(id))
+                if id in materials:
+                    self.shader.set_eye(id, eyes.get(id))
+            self._told.pop("texture", None)  # which went with its material
+
+        told = {k: (m._data.tobytes(), id(m._profile)) for k, m in materials.items()}
+        self._tell("materials", (told, {k: e._data.tobytes() for k, e in eyes.items()}), set_materials)
+        lights = session.lights(look, small)
+
+        def set_lights() -> None:
+            self.shader.set_lights([light for light, _ in lights])
+            for i, (_, map) in enumerate(lights):
+                self.shader.set_light_image(i, "shadow_map", None if map is None else map.depth)
+
+        self._tell("lights", [(light._data.tobytes(), id(map)) for light, map in lights], set_lights)
+        self._tell("ambient", look.ambient, lambda: self.shader.set_ambient(Ambient(constant=[look.ambient] * 3)))
+        eye, _ = session.camera(width / height)
+        self._tell("camera", eye.tobytes(), lambda: self.shader.set_camera(Camera(position=eye)))
+        self._tell("options", (look.target_error, session.count, session.mm), lambda: self.shader.set_options(
+            target_error=look.target_error, millimetres_per_unit=session.mm, count_pixels=int(session.count)))
+        self._scattered_texture(session, g, look, small)
+        if not self._told.get("committed"):
+            structure = (outputs, albedo, len(eyes), look.method, look.ggx, len(lights), [m.specular > 0 for m in materials.values()])
+            if structure != self._structure:  # only then may kernels have to be compiled: with progress
+                warm_up_programs(self.device, shaders=[self.shader])
+                self._structure = structure
+            self.shader.commit()
+            self._told["committed"] = True
+        self.outputs["radiance"][...] = 0
+        self.shader.execute()
+        return self
+
+    def _images(self, g: GBuffer, look: Look, albedo: bool) -> None:
+        height, width = g.material.shape
+        memory = (g.position.ctypes.data, width, height)
+
+        def images() -> None:
+            for slot in ("position", "material", "normal_geometric", "normal_shading", "curvature"):
+                self.shader.set_image(slot, getattr(g, slot))
+            self.outputs = {"radiance": np.zeros((height, width, 3), np.float32)}
+            self.shader.set_image("radiance", self.outputs["radiance"])
+
+        self._tell("images", memory, images)
+        tints = albedo and tuple(look.albedo) != (1.0, 1.0, 1.0)
+        if tints:  # host work: only where a tint is set
+            values = tinted(g, look)
+            if self.outputs.get("albedo") is None or self.outputs["albedo"].shape != values.shape:
+                self.outputs["albedo"] = values
+                self._told.pop("albedo", None)
+            else:
+                self.outputs["albedo"][...] = values
+        self._tell("albedo", (memory, albedo, tints), lambda: self.shader.set_image(
+            "albedo", None if not albedo else self.outputs["albedo"] if tints else g.albedo))
+
+    def _scattered_texture(self, session: Session, g: GBuffer, look: Look, small: bool) -> None:
+        if look.method != "texture":
+            self._tell("uv", None, lambda: self.shader.set_image("uv", None))
+            return
+        if self._uv.shape[:2] != g.u.shape:
+            self._uv = np.empty((*g.u.shape, 2), np.float32)
+        self._uv[..., 0], self._uv[..., 1] = g.u, g.v
+        self._tell("uv", self._uv.ctypes.data, lambda: self.shader.set_image("uv", self._uv))
+        texture = session.texture(look, small)
+        self._tell("texture", id(texture), lambda: self.shader.set_scattered_texture(SKIN, texture.light))
+        self._texture = texture
