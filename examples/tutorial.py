@@ -1,43 +1,54 @@
-"""From a mesh to a picture with Pellucid: tutorial.py MESH PICTURE.png
+"""From a mesh to a picture with Pellucid: tutorial.py PICTURE.png [MESH] [--up auto|y|z]
 
-The library shades what a renderer hands it; trimesh and Embree stand in for the renderer here.
-Install: pip install . trimesh scipy embreex pillow
+The library shades what a renderer hands it; the package's small OpenGL renderer stands in for yours here.
+Install: pip install 'pellucid[view]'
 """
-import sys
+import argparse
 
 import numpy as np
-import trimesh
-from PIL import Image
 
 import pellucid as pel
+from pellucid import files
+from pellucid.view.camera import Orbit, direction
+from pellucid.view.renderer import Renderer
+from pellucid.view.session import eyes_of
 
-# 1. A mesh, scaled to a head 240 mm high, y up; all lengths are in mm from here on.
-mesh = trimesh.load(sys.argv[1], force="mesh")
-mesh.apply_translation(-mesh.bounds.mean(0))
-mesh.apply_scale(240 / mesh.extents[1])
-normals = np.float32(mesh.vertex_normals)
+arguments = argparse.ArgumentParser()
+arguments.add_argument("picture")
+arguments.add_argument("mesh", nargs="?", default=files.standard_head())
+arguments.add_argument("--up", default="auto", choices=("auto", "y", "z"))
+a = arguments.parse_args()
+
+# 1. A mesh; all lengths are in its unit, and 240 mm is the height of a head.
+mesh = files.load_mesh(a.mesh, up=a.up)
+size = np.subtract(mesh.high, mesh.low)
+mm = 240 / float(size @ np.abs(mesh.up))
 
 # 2. Curvature of each vertex, on the device.
 device = pel.Device()
-topology = pel.MeshTopology(device, mesh.faces, positions=np.float32(mesh.vertices), weld="exact")
-curvature = topology.curvature(np.float32(mesh.vertices), normals)
+topology = pel.MeshTopology(device, mesh.triangles, positions=mesh.positions, weld="exact")
+curvature = topology.curvature(mesh.positions, mesh.normals, smoothing_passes=2)
 
-# 3. A G-buffer: one parallel ray per pixel, looking down -z; vertex data interpolated where it hits.
-y, x = np.mgrid[135:-135:360j, -135:135:360j]
-start = np.stack([x, y, np.full_like(x, 500)], -1).reshape(-1, 3)
-points, ray, face = mesh.ray.intersects_location(start, np.tile([0.0, 0, -1], (len(start), 1)), multiple_hits=False)
-weights = np.float32(trimesh.triangles.points_to_barycentric(mesh.triangles[face], points))
-normal, curve, skin = np.zeros((*x.shape, 3), "f4"), np.zeros(x.shape, "f4"), np.zeros(x.shape, "u1")
-hit = np.unravel_index(ray, x.shape)
-n = np.einsum("ij,ijk->ik", weights, normals[mesh.faces[face]])
-normal[hit] = n / np.linalg.norm(n, axis=1, keepdims=True)
-curve[hit], skin[hit] = (weights * curvature[mesh.faces[face]]).sum(1), 1
+# 3. A G-buffer, and depth seen from the light: what your renderer has already.
+renderer, orbit = Renderer(), Orbit(azimuth=25)
+renderer.set_mesh(mesh, curvature, mm)
+orbit.frame(mesh.low, mesh.high, aspect=1)
+eye, matrix = orbit.matrices(mesh.up, mesh.front, np.add(mesh.low, mesh.high) / 2, 2 * renderer.radius, aspect=1)
+g = renderer.gbuffer(matrix, 480, 480)
+depth, light = renderer.shadow_map(direction(mesh.up, mesh.front, azimuth=100, elevation=20), 1024, mesh.up)
+light.shadow_filter_texels = 48  # shadows are made from the map
 
-# 4. Shade it with light from the side: plain on the left, scattering on the right.
-picture = np.zeros((*x.shape[:1], 2 * x.shape[1], 3), np.float32)
-for half, lut in enumerate([None, pel.Lut.curvature(device)]):
-    shader = pel.Shader(device).set_image("radiance", picture[:, 360 * half:][:, :360])
-    shader.set_image("normal_shading", normal).set_image("curvature", curve).set_image("material", skin)
-    shader.set_material(1, pel.Material(albedo=(0.8, 0.6, 0.5)), lut)
-    shader.set_lights([pel.Light(to_light=(0.96, 0.2, 0.2))]).commit().execute()
-Image.fromarray(np.uint8(255 * np.clip(picture, 0, 1) ** (1 / 2.2))).save(sys.argv[2])
+# 4. Shade it: plain on the left, scattering on the right.
+picture = np.zeros((480, 960, 3), np.float32)
+other = pel.Material(scattering="none", specular=0.0, shadow_filter_width=1 / mm)
+for half, skin in enumerate([pel.Material(specular=0.3, shadow_filter_width=1 / mm), pel.Material(profile="skin", specular=0.3)]):
+    shader = pel.Shader(device).set_options(millimetres_per_unit=mm).set_image("radiance", picture[:, 480 * half:][:, :480])
+    for slot in ("position", "normal_geometric", "normal_shading", "curvature", "albedo", "material"):
+        shader.set_image(slot, getattr(g, slot))
+    for id in np.unique(g.material[g.material > 0]):  # 1 is skin; the eyes and teeth of the head have others
+        shader.set_material(int(id), skin if id == 1 else other)
+    for id, model in eyes_of(mesh, mm=mm).items():
+        shader.set_eye(id, model)
+    shader.set_lights([light]).set_light_image(0, "shadow_map", depth)
+    shader.set_ambient(pel.Ambient(constant=[0.05] * 3)).set_camera(pel.Camera(position=eye)).commit().execute()
+files.write_image(a.picture, picture)

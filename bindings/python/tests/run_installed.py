@@ -15,7 +15,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 BUILD_NEEDS = ["scikit-build-core>=0.10", "pybind11>=2.10"]
-TEST_NEEDS = ["pytest>=7", "tqdm", "pyopencl", "trimesh", "scipy", "embreex", "pillow", "distributed", "fsspec",
+TEST_NEEDS = ["pytest>=7", "tqdm", "pyopencl", "pillow", "distributed", "fsspec",
               "matplotlib", "nicegui", "moderngl", "selenium", "dask-jobqueue", "cryptography", "dask-kubernetes", "jsonschema"]
 
 
