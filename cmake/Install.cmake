@@ -6,7 +6,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/host/include/pellucid DESTINATION ${CMAK
 # The device functions that a renderer may include in its own kernels.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/kernels/lib ${PROJECT_SOURCE_DIR}/kernels/shared
         DESTINATION ${CMAKE_INSTALL_DATADIR}/pellucid/kernels)
-if(TARGET pellucid_cli)
+if(TARGET pellucid_cli AND NOT PELLUCID_PYTHON)  # the package has a place of its own for it
   set_target_properties(pellucid_cli PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS pellucid_cli)
   install(TARGETS pellucid_pictures LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})

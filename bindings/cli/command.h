@@ -93,6 +93,7 @@ void addCompare(CLI::App& app);
 void addPrefill(CLI::App& app);
 void addDemo(CLI::App& app);
 void addBench(CLI::App& app);
+void addView(CLI::App& app);  // and gallery
 void addDescribe(CLI::App& app);
 
 // After CLI::ExtrasError: which words are not expected, and what may have been meant.

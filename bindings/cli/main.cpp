@@ -72,6 +72,7 @@ int main(int argc, char** argv) {
     addPrefill(app);
     addDemo(app);
     addBench(app);
+    addView(app);
     addDescribe(app);
     try {
         checkSubcommand(app, argc, argv);

@@ -331,3 +331,20 @@ TEST_F(Cli, ShadowLutAndItsFlags) {
     EXPECT_EQ(info.shadow.sharpening, 5.0f);
     EXPECT_EQ(info.shadow.diffusionRadius, 1.5f);
 }
+
+// The viewer is the Python package's: what starts it hands its arguments over unread, and says what is missing.
+TEST_F(Cli, ViewStartsThePython) {
+    const std::string python = write("python", "#!/bin/sh\nprintf '%s\\n' \"$@\" | tail -n +7\n");
+    std::filesystem::permissions(python, std::filesystem::perms::owner_all);
+    setenv("PELLUCID_PYTHON", python.c_str(), 1);
+    for (const std::string command : {"view", "gallery"}) {
+        const Result handed = run({command, "--port", "8351", "head.obj", "--no-browser"});
+        EXPECT_EQ(handed.exitCode, 0) << handed.err;
+        EXPECT_NE(handed.out.find(command == "view" ? "pellucid.view\n" : "pellucid.view.gallery\n"), std::string::npos)
+            << handed.out;
+        EXPECT_NE(handed.out.find("--port\n8351\nhead.obj\n--no-browser\n"), std::string::npos) << handed.out;
+    }
+    setenv("PELLUCID_PYTHON", path("none").c_str(), 1);
+    expectRefused({"view"}, 2, "cannot be started");
+    unsetenv("PELLUCID_PYTHON");
+}
