@@ -3,7 +3,8 @@
 //
 //   sweep_auto_time [REPEATS, 15]
 //
-// Medians of wall clock and of the kernels' time. `pellucid demo -o out/demo` comes first (or PELLUCID_DEMO_DIR).
+// Medians of wall clock and of the kernels' time; pixels that were scattered and that were left as they are, and taps for each of
+// the former. `pellucid demo -o out/demo` comes first (or PELLUCID_DEMO_DIR).
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -85,9 +86,14 @@ int main(int argc, char** argv) {
                 std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
             way.device.push_back(way.shader.stats().deviceMilliseconds);
         }
-    std::printf("%-24s %10s %10s %8s\n", "", "wall ms", "kernels ms", "ratio");
-    for (const Way& way : ways)
-        std::printf("%-24s %10.2f %10.2f %8.3f\n", way.name, median(way.wall), median(way.device),
-                    median(way.device) / median(ways[0].device));
+    std::printf("%-24s %10s %10s %8s %10s %10s %8s\n", "", "wall ms", "kernels ms", "ratio", "scattered",
+                "kept", "taps");
+    for (const Way& way : ways) {
+        const PelShaderStats stats = way.shader.stats();
+        std::printf("%-24s %10.2f %10.2f %8.3f %10llu %10llu %8.1f\n", way.name, median(way.wall),
+                    median(way.device), median(way.device) / median(ways[0].device),
+                    (unsigned long long)stats.pixelsScattered, (unsigned long long)stats.pixelsKept,
+                    double(stats.scatterTaps) / double(std::max<uint64_t>(stats.pixelsScattered, 1)));
+    }
     return 0;
 }

@@ -32,7 +32,7 @@ std::vector<Setting> settings() {
                        [size](const Device& d, const LitScene& s, const Profile& p, double k, double* t) {
                            return shadePreintegrated(d, s, p, k, t, size);
                        }});
-    // With visibility given, as an image.
+    // With visibility given, as an image; what the camera does not see is in the map.
     const auto add = [&](const char* method, const std::string& setting, const ShadeRequest& request) {
         all.push_back({method, setting,
                        [request](const Device& d, const LitScene& s, const Profile& p, double k, double* t) {
@@ -53,15 +53,23 @@ std::vector<Setting> settings() {
         request.traced = true;
         add("disk", std::to_string(taps) + " taps", request);
     }
-    for (float target : {1e-3f, 2e-3f, 5e-3f, 1e-2f}) {
+    for (float target : {5e-4f, 2e-3f, 5e-3f, 1e-2f, 2e-2f}) {
         ShadeRequest request;
-        request.scattering = PEL_SCATTERING_SCREEN;
         request.targetError = target;
         request.traced = true;
         char setting[32];
         std::snprintf(setting, sizeof setting, "error %g", double(target));
-        add("screen", setting, request);
+        add("auto", setting, request);
     }
+    ShadeRequest light;
+    light.scattering = PEL_SCATTERING_LIGHT;
+    light.traced = true;
+    add("light", "", light);
+    ShadeRequest faceworks;
+    faceworks.scattering = PEL_SCATTERING_PREINTEGRATED;
+    faceworks.faceworks = true;
+    faceworks.tableSize = 512;
+    add("FaceWorks", "", faceworks);
     return all;
 }
 

@@ -13,6 +13,8 @@ namespace {
 
 using Matrix = std::array<double, 16>;
 
+constexpr uint32_t mostTexels = 4;  // along a side, taken together
+
 // Gauss-Jordan with pivots. Returns false for singular matrices.
 bool invert(const Matrix& m, Matrix& inverse) {
     std::array<std::array<double, 8>, 4> a{};
@@ -78,7 +80,7 @@ Matrix faceMatrix(const float (&toCube)[16], int face, const PelLight& light) {
 }
 
 PelLightMap describe(const ShaderLight& light, uint32_t number, Matrix m, const ImageView& image,
-                     uint32_t width, uint32_t height, const float origin[3]) {
+                     uint32_t width, uint32_t height, const float origin[3], double coarsest) {
     const PelLight& l = light.params;
     PelLightMap to{};
     for (int r = 0; r < 4; ++r)
@@ -103,17 +105,24 @@ PelLightMap describe(const ShaderLight& light, uint32_t number, Matrix m, const 
     std::copy_n(l.color, 3, to.color);
     if (l.shadowProjection == PEL_SHADOW_CUBE_RADIAL) to.radialRange = l.shadowDepthRange;
     if (l.shadowExponent != 0) to.perExponent = float(std::log(2.0) / l.shadowExponent);
-    to.texel = float(std::max(1 / (perLength(m, 0) * width), 1 / (perLength(m, 1) * height)));
+    const double texel = std::max(1 / (perLength(m, 0) * width), 1 / (perLength(m, 1) * height));
+    to.step = 1;  // how wide a texel of a perspective map is depends on where the surface lies
+    if (rowOf(m, 3).length() == 0)
+        while (to.step < mostTexels && 2 * to.step * texel <= coarsest) to.step *= 2;
+    to.texel = float(texel * to.step);
+    to.size[0] = float(double(width) / to.step), to.size[1] = float(double(height) / to.step);
+    to.middle = float((to.step / 2 + 0.5) / to.step);
+    to.width = width, to.height = height;
     to.light = number;
     to.map = describeImage(image);
-    to.level[0].width = width;
-    to.level[0].height = height;
+    to.level[0].width = (width + to.step - 1) / to.step;
+    to.level[0].height = (height + to.step - 1) / to.step;
     return to;
 }
 
 }  // namespace
 
-std::vector<LightMap> lightMaps(const std::vector<ShaderLight>& lights, const float origin[3]) {
+std::vector<LightMap> lightMaps(const std::vector<ShaderLight>& lights, const float origin[3], double coarsest) {
     std::vector<LightMap> all;
     for (uint32_t i = 0; i < lights.size(); ++i) {
         const ShaderLight& light = lights[i];
@@ -125,7 +134,7 @@ std::vector<LightMap> lightMaps(const std::vector<ShaderLight>& lights, const fl
         for (uint32_t k = 0; k < count; ++k) {
             if (isCube(l)) {
                 LightMap map{describe(light, i, faceMatrix(l.worldToShadow, int(k), l), first, first.width,
-                                      first.width, origin),
+                                      first.width, origin, coarsest),
                              first};
                 map.constants.firstRow = k * first.width;
                 all.push_back(map);
@@ -135,8 +144,9 @@ std::vector<LightMap> lightMaps(const std::vector<ShaderLight>& lights, const fl
             if (!*cascade.map) continue;
             Matrix m;
             std::copy_n(*cascade.worldToShadow, 16, m.begin());
-            LightMap map{describe(light, i, m, *cascade.map, cascade.map->width, cascade.map->height, origin),
-                         *cascade.map};
+            LightMap map{
+                describe(light, i, m, *cascade.map, cascade.map->width, cascade.map->height, origin, coarsest),
+                *cascade.map};
             map.constants.finer = k;
             all.push_back(map);
         }

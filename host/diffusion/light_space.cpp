@@ -12,6 +12,9 @@ namespace {
 
 enum Program { SEEN, TEXELS, REDUCE, CLASSIFY, SCATTER };
 
+// Texels are to be this much finer than a profile reaches.
+constexpr double texelsPerReach = 16;
+
 uint32_t pointsOf(uint32_t level) {
     return level ? 2 : 1;
 }
@@ -88,11 +91,21 @@ void LightSpace::announce(const std::vector<ShaderLight>& lights, bool hidden) {
     }
 }
 
-void LightSpace::prepare(const std::vector<ShaderLight>& lights, const float origin[3], size_t tileCount) {
-    maps_ = lightMaps(lights, origin);
+void LightSpace::prepare(const std::vector<ShaderLight>& lights, const float origin[3], double narrowest,
+                         size_t tileCount, size_t blocks) {
+    maps_ = lightMaps(lights, origin, hidden_ ? narrowest / texelsPerReach : 0);
     if (empty_) return;
     describeLevels();
-    const size_t bytes = tileCount * sizeof(cl_uint);
+    const size_t hiddenBytes = hidden_ ? blocks * sizeof(float) : 0;
+    if (hiddenBytes != hiddenBytes_) {
+        hiddenMemory_ = cl::Memory();
+        if (hiddenBytes) {
+            hiddenMemory_ = device_->allocate(hiddenBytes);
+            device_->fill(hiddenMemory_.get(), 0, hiddenBytes, 0);
+        }
+        hiddenBytes_ = hiddenBytes;
+    }
+    const size_t bytes = hidden_ ? sizeof(cl_uint) : tileCount * sizeof(cl_uint);
     if (bytes != partBytes_) parts_ = device_->allocate(bytes), partBytes_ = bytes;
     if (!counters_) counters_ = device_->allocate(PEL_LIGHT_COUNTERS * sizeof(cl_uint));
 }
@@ -115,7 +128,8 @@ std::vector<cl::ProgramKey> LightSpace::programs(const ScatterImages& images) co
             {{"diffusion/light_texels.cl"}, map},
             {{"diffusion/light_reduce.cl"}, kind},
             {{"diffusion/light_classify.cl"}, kind},
-            {{"diffusion/scatter_light.cl"}, out}};
+            hidden_ ? cl::ProgramKey{{"diffusion/light_hidden.cl"}, kind}
+                    : cl::ProgramKey{{"diffusion/scatter_light.cl"}, out}};
 }
 
 // Work-items of a vector of texels each.
@@ -140,7 +154,7 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
         seen.arg(screen.frame).arg(memory(images.positions ? images.positions : images.depth));
         seen.arg(memory(images.ids)).arg(mapMemory_).arg(cl_uint(k)).arg(memory(maps_[k].image));
         seen.arg(screen.pyramid).arg(seen_);
-        launch(seen, {{size_t((screen.width + lanes - 1) / lanes) * screen.height, 1, 1},
+        launch(seen, {{size_t((screen.width + lanes - 1) / lanes) * ((screen.height + 1) / 2), 1, 1},
                       {PEL_DIFFUSION_GROUP, 1, 1}});
     }
     for (uint32_t k = 0; k < maps_.size(); ++k) {
@@ -158,6 +172,21 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
     classify.arg(screen.frame).arg(screen.pyramid).arg(screen.tables).arg(screen.nodes).arg(screen.tiles);
     classify.arg(mapMemory_).arg(cl_uint(maps_.size())).arg(pyramid_).arg(parts_).arg(counters_);
     launch(classify, {{screen.tileCount, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
+}
+
+void LightSpace::enqueueHidden(const ScatterImages& images, const ScreenMemory& screen,
+                               std::vector<cl::Event>& events) {
+    cl::Launch hidden(device_->programs().get(programs(images)[SCATTER]), "light_hidden");
+    hidden.arg(screen.frame)
+        .arg(screen.pyramid)
+        .arg(screen.tables)
+        .arg(screen.nodes)
+        .arg(screen.tiles)
+        .arg(screen.sums);
+    hidden.arg(mapMemory_).arg(cl_uint(maps_.size())).arg(pyramid_).arg(hiddenMemory_).arg(counters_);
+    const size_t groups = std::min<size_t>(screen.tileCount, 64 * size_t(device_->info().computeUnits));
+    events.push_back(
+        device_->launch(hidden, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}}));
 }
 
 void LightSpace::enqueueSums(const ScatterImages& images, const ScreenMemory& screen,

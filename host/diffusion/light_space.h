@@ -7,7 +7,7 @@ namespace pel {
 
 // What ScreenScatter has on the device.
 struct ScreenMemory {
-    cl::Memory frame, pyramid, tables, nodes, tiles;
+    cl::Memory frame, pyramid, tables, nodes, tiles, sums;
     uint32_t width, height;
     size_t tileCount;
 };
@@ -23,16 +23,23 @@ class LightSpace {
     // What its programs follow from. `hidden`: texels that the camera does not see fill what the screen misses; else all texels are
     // the far part of the sum. The format and the content of all maps are one. Without a map nothing is done.
     void announce(const std::vector<ShaderLight>& lights, bool hidden);
-    void prepare(const std::vector<ShaderLight>& lights, const float origin[3], size_t tileCount);
+    // `narrowest`: reach of the profiles, length. `blocks`: floats that hold what is hidden from the screen's blocks.
+    void prepare(const std::vector<ShaderLight>& lights, const float origin[3], double narrowest,
+                 size_t tileCount, size_t blocks);
     bool empty() const { return empty_; }
     std::vector<cl::ProgramKey> programs(const ScatterImages& images) const;
     // After the screen's pyramid and its words are made: the lights' pyramids, and what they matter to.
     void enqueuePyramids(const ScatterImages& images, const ScreenMemory& screen, std::vector<cl::Event>& events);
-    // After what is scattered on the screen is written.
+    // After the screen's sums by levels: what the camera does not see, for the screen's last step.
+    void enqueueHidden(const ScatterImages& images, const ScreenMemory& screen, std::vector<cl::Event>& events);
+    const cl::Memory& hidden() const { return hiddenMemory_; }
+    // With the lights' texels alone, after the picture is copied.
     void enqueueSums(const ScatterImages& images, const ScreenMemory& screen, std::vector<cl::Event>& events);
     LightCounts counts();
     static uint64_t bytesFor(const std::vector<ShaderLight>& lights, bool hidden);
-    size_t bytes() const { return pyramidBytes_ + seenBytes_ + maps_.size() * sizeof(PelLightMap); }
+    size_t bytes() const {
+        return pyramidBytes_ + seenBytes_ + hiddenBytes_ + maps_.size() * sizeof(PelLightMap);
+    }
 
   private:
     void describeLevels();
@@ -44,8 +51,8 @@ class LightSpace {
     std::vector<PelLightMap> sent_;
     bool empty_ = true, hidden_ = true;
     uint32_t mapFormat_ = 0, content_ = 0;
-    cl::Memory mapMemory_, pyramid_, seen_, parts_, counters_;
-    size_t pyramidBytes_ = 0, seenBytes_ = 0, partBytes_ = 0;
+    cl::Memory mapMemory_, pyramid_, seen_, parts_, hiddenMemory_, counters_;
+    size_t pyramidBytes_ = 0, seenBytes_ = 0, partBytes_ = 0, hiddenBytes_ = 0;
 };
 
 }  // namespace pel

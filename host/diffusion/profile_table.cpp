@@ -45,6 +45,72 @@ double radiusOfNode(uint32_t bits) {
     return std::sqrt(double(std::bit_cast<float>(bits)));
 }
 
+// Solves A x = b for a symmetric positive definite A (Cholesky), three right sides at a time.
+void solve(std::vector<double>& a, std::vector<Rgb>& b) {
+    const size_t n = b.size();
+    for (size_t j = 0; j < n; ++j)
+        for (size_t i = j; i < n; ++i) {
+            double sum = a[i * n + j];
+            for (size_t k = 0; k < j; ++k) sum -= a[i * n + k] * a[j * n + k];
+            a[i * n + j] = i == j ? std::sqrt(sum) : sum / a[j * n + j];
+        }
+    for (size_t i = 0; i < n; ++i)
+        for (int c = 0; c < 3; ++c) {
+            for (size_t k = 0; k < i; ++k) b[i][c] -= a[i * n + k] * b[k][c];
+            b[i][c] /= a[i * n + i];
+        }
+    for (size_t i = n; i-- > 0;)
+        for (int c = 0; c < 3; ++c) {
+            for (size_t k = i + 1; k < n; ++k) b[i][c] -= a[k * n + i] * b[k][c];
+            b[i][c] /= a[i * n + i];
+        }
+}
+
+// Least squares of the light in each part of an octave, from the reach down to a 2^8th of it. The terms are so alike that a small
+// multiple of the unit matrix keeps them apart.
+template <class Density>
+std::vector<Rgb> gaussiansOf(const Density& density, double widest, double reach) {
+    constexpr int perTerm = 16, n = PEL_PROFILE_TERMS;
+    std::vector<double> a(n * n), columns[n];
+    std::vector<Rgb> b(n), light;
+    for (int s = 0; s <= perTerm * n; ++s) {
+        const double r = reach * std::exp2(-0.5 * s / perTerm), lightPerLog = 2 * std::numbers::pi * r * r;
+        const Rgb value = density(r);
+        light.push_back({value[0] * lightPerLog, value[1] * lightPerLog, value[2] * lightPerLog});
+        for (int i = 0; i < n; ++i)
+            columns[i].push_back(lightPerLog * std::exp2(-widest * std::exp2(i) * r * r));
+    }
+    // In between an error of the light and one relative to it: tails are little light, and all that comes through an ear.
+    double most = 0;
+    for (const Rgb& l : light) most = std::max({most, l[0], l[1], l[2]});
+    for (size_t s = 0; s < light.size(); ++s) {
+        const double weight = 1 / std::sqrt(std::max({light[s][0], light[s][1], light[s][2]}) + 3e-3 * most);
+        for (int c = 0; c < 3; ++c) light[s][c] *= weight;
+        for (int i = 0; i < n; ++i) columns[i][s] *= weight;
+    }
+    double lengths[n];
+    for (int i = 0; i < n; ++i) {
+        double square = 0;
+        for (double v : columns[i]) square += v * v;
+        lengths[i] = std::sqrt(square);
+    }
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j <= i; ++j) {
+            double sum = 0;
+            for (size_t s = 0; s < light.size(); ++s) sum += columns[i][s] * columns[j][s];
+            a[size_t(i * n + j)] = a[size_t(j * n + i)] = sum / (lengths[i] * lengths[j]) + (i == j ? 1e-6 : 0);
+        }
+    for (int i = 0; i < n; ++i)
+        for (int c = 0; c < 3; ++c) {
+            for (size_t s = 0; s < light.size(); ++s) b[i][c] += columns[i][s] * light[s][c];
+            b[i][c] /= lengths[i];
+        }
+    solve(a, b);
+    for (int i = 0; i < n; ++i)
+        for (int c = 0; c < 3; ++c) b[i][c] /= lengths[i];
+    return b;
+}
+
 }  // namespace
 
 ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
@@ -83,7 +149,9 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
     ++nodes;  // the last one: no light is left
 
     ProfileNodes result;
-    result.table = {0, uint32_t(nodes), firstBits, float(radiusOfNode(firstBits + uint32_t(nodes - 1) * step))};
+    const double reach = radiusOfNode(firstBits + uint32_t(nodes - 1) * step);
+    const double fall = 4 / (reach * reach);  // of the widest Gaussian, which is 1/16 at the reach
+    result.table = {0, uint32_t(nodes), firstBits, float(reach), float(fall)};
     result.values.resize(12 * nodes);
     const Rgb all = shares[nodes - 1];
     for (size_t k = 0; k < nodes; ++k) {
@@ -98,6 +166,17 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
             result.values[4 * (nodes + k) + c] = float(shares[k][c] / all[c]);
         }
     }
+    const auto append = [&](const auto& density) {
+        for (const Rgb& term : gaussiansOf(density, fall, reach))
+            for (int c = 0; c < 4; ++c) result.values.push_back(c < 3 ? float(term[c]) : 0.0f);
+    };
+    const auto perArea = [&](const Rgb& density) {
+        Rgb scaled;
+        for (int c = 0; c < 3; ++c) scaled[c] = density[c] / (all[c] * scale * scale);
+        return scaled;
+    };
+    append([&](double r) { return perArea(shape.radial(r / scale)); });
+    append([&](double r) { return perArea(densityOfBlock(shape, r / scale)); });
     return result;
 }
 

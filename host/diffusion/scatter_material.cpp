@@ -12,13 +12,14 @@ ScreenScatter::Material profileOf(const ShaderMaterial& material) {
     return {std::move(profile), material.params.diffusionRadius / radius};
 }
 
-ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Buffer>& out) {
+ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Buffer>& out, bool inPlace) {
     auto& images = plan.state.images;
     const ImageView& frame = images[PEL_SLOT_RADIANCE];
-    resize(out, device, size_t(frame.width) * frame.height * 3 * sizeof(float));
-    ScatterImages taken{images[PEL_SLOT_IRRADIANCE], images[PEL_SLOT_POSITION],
-                        images[PEL_SLOT_POSITION] ? ImageView() : images[PEL_SLOT_DEPTH],
-                        images[PEL_SLOT_MATERIAL], scratchImage(out, frame, PEL_FORMAT_PLANAR_RGB32F)};
+    resize(out, device, inPlace ? 0 : size_t(frame.width) * frame.height * 3 * sizeof(float));
+    ScatterImages taken{
+        images[PEL_SLOT_IRRADIANCE], images[PEL_SLOT_POSITION],
+        images[PEL_SLOT_POSITION] ? ImageView() : images[PEL_SLOT_DEPTH], images[PEL_SLOT_MATERIAL],
+        inPlace ? images[PEL_SLOT_IRRADIANCE] : scratchImage(out, frame, PEL_FORMAT_PLANAR_RGB32F)};
     images[PEL_SLOT_IRRADIANCE] = taken.out;
     return taken;
 }

@@ -27,7 +27,7 @@ inline uint32_t scatterTapsOf(PelScattering scattering, uint32_t taps) {
 }
 
 // The plan's images for a method that scatters into `out`, which from now on is the plan's irradiance.
-ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Buffer>& out);
+ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Buffer>& out, bool inPlace = false);
 
 void addScatterCounts(const ScatterCounts& counts, PelScattering scattering, PelShaderStats& stats);
 

@@ -7,6 +7,7 @@
 #include "diffusion/scatter_material.h"
 #include "shading/features.h"
 #include "shading/mapped_lights.h"
+#include "shared/features.h"
 
 namespace pel {
 namespace {
@@ -21,6 +22,11 @@ bool scatters(const ShaderState& state, const ShaderMaterial& material, bool alo
     return methods >> material.params.scattering & 1 && !scattersOnDisk(material);
 }
 
+// Whether irradiance is the library's, and nobody asks for it once it is scattered: then it need not be copied.
+bool isOwn(const ShaderPlan& plan) {
+    return (plan.features & PEL_FEATURE_MAKE_IRRADIANCE) && !plan.state.images[PEL_SLOT_SCATTER_WEIGHT];
+}
+
 // `alone`: the lights' texels are all of the far part.
 template <bool alone>
 class ScatterPass final : public Pass {
@@ -33,14 +39,14 @@ class ScatterPass final : public Pass {
     // Neighbours may be as far away as the profile reaches.
     PassScratch scratch(const ShaderPlan& plan) const override {
         const ImageView& frame = plan.state.images[PEL_SLOT_RADIANCE];
-        return {3 * sizeof(float),
+        return {isOwn(plan) ? 0 : 3 * sizeof(float),
                 ScreenScatter::bytesFor(frame.width, frame.height) +
                     LightSpace::bytesFor(plan.state.lights, !alone),
                 0, true};
     }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
-        images_ = takeIrradiance(plan, device, out_);
+        images_ = takeIrradiance(plan, device, out_, isOwn(plan));
         if (!scatter_) scatter_.emplace(device);
         scatter_->announce({plan.state.lights, alone});
         materials_.clear();

@@ -24,7 +24,7 @@ bool samePixels(const ImageView& a, const ImageView& b) {
 }
 
 namespace {
-enum Program { SURFACE, REDUCE, CLASSIFY, SCATTER };
+enum Program { SURFACE, REDUCE, CLASSIFY, LEVEL, SCATTER };
 }  // namespace
 
 void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
@@ -37,12 +37,14 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
     }
     frame_.tables = uint32_t(distinct.size());
     if (materials == materials_ && tables_) return;
+    narrowest_ = 0;
     std::vector<PelProfileTable> tables;
     std::vector<float> values;
     for (const Material& material : distinct) {
         ProfileNodes nodes = profileNodes(material.profile->shape(), material.scale);
         nodes.table.offset = uint32_t(values.size() / 4);
         tables.push_back(nodes.table);
+        narrowest_ = narrowest_ > 0 ? std::min(narrowest_, double(nodes.table.reach)) : nodes.table.reach;
         values.insert(values.end(), nodes.values.begin(), nodes.values.end());
     }
     if (tables.empty()) tables.emplace_back(), values.resize(12);
@@ -67,9 +69,16 @@ static uint64_t layOutLevels(uint32_t width, uint32_t height, PelPyramidLevel (&
     return floats + 2 * PEL_PYRAMID_GUARD;
 }
 
+// Of the sums of levels 1 and on.
+static uint64_t sumFloats(const PelPyramidLevel (&levels)[PEL_PYRAMID_LEVELS], uint64_t floats) {
+    return (floats - 2 * PEL_PYRAMID_GUARD - levels[1].offset) / PEL_PYRAMID_PLANES * PEL_SUM_PLANES +
+           2 * PEL_PYRAMID_GUARD;
+}
+
 uint64_t ScreenScatter::bytesFor(uint32_t width, uint32_t height) {
     PelPyramidLevel levels[PEL_PYRAMID_LEVELS];
-    return layOutLevels(width, height, levels) * sizeof(float) +
+    const uint64_t floats = layOutLevels(width, height, levels);
+    return (floats + sumFloats(levels, floats)) * sizeof(float) +
            uint64_t((width + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE) *
                ((height + PEL_DIFFUSION_TILE - 1) / PEL_DIFFUSION_TILE) * sizeof(cl_uint);
 }
@@ -78,11 +87,15 @@ void ScreenScatter::describeLevels(uint32_t width, uint32_t height) {
     const size_t bytes = layOutLevels(width, height, frame_.level) * sizeof(float);
     if (bytes == pyramidBytes_ && !std::memcmp(frame_.level, constants_.sent().level, sizeof frame_.level))
         return;
-    pyramid_ = cl::Memory();
-    pyramidBytes_ = 0;
+    pyramid_ = sums_ = cl::Memory();
+    pyramidBytes_ = sumBytes_ = 0;
     pyramid_ = device_->allocate(bytes);
     pyramidBytes_ = bytes;
     device_->fill(pyramid_.get(), 0, bytes, 0);  // no area outside of the picture
+    const size_t sumBytes = sumFloats(frame_.level, bytes / sizeof(float)) * sizeof(float);
+    sums_ = device_->allocate(sumBytes);
+    sumBytes_ = sumBytes;
+    device_->fill(sums_.get(), 0, sumBytes, 0);  // vectors read beyond what is set
 }
 
 void ScreenScatter::announce(const ScatterLights& lights) {
@@ -96,6 +109,7 @@ ScreenMemory ScreenScatter::memory() const {
             tables_,
             nodes_,
             tiles_,
+            sums_,
             frame_.width,
             frame_.height,
             size_t(frame_.tilesX) * frame_.tilesY};
@@ -119,7 +133,10 @@ void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const
     frame_.out = describeImage(images.out);
     sendTables(materials);
     describeLevels(frame_.width, frame_.height);
-    light_.prepare(lights_.lights, frame_.origin, size_t(frame_.tilesX) * frame_.tilesY);
+    const PelPyramidLevel& pairs = frame_.level[1];
+    light_.prepare(lights_.lights, frame_.origin, narrowest_, size_t(frame_.tilesX) * frame_.tilesY,
+                   size_t(pairs.height + 2 * PEL_PYRAMID_ROWS) * PEL_HIDDEN_PLANES * pairs.stride +
+                       2 * PEL_PYRAMID_GUARD);
     const size_t tileBytes = size_t(frame_.tilesX) * frame_.tilesY * sizeof(cl_uint);
     if (tileBytes != tileBytes_) tiles_ = device_->allocate(tileBytes), tileBytes_ = tileBytes;
     if (!counters_) counters_ = device_->allocate(PEL_DIFFUSION_COUNTERS * sizeof(cl_uint));
@@ -134,10 +151,12 @@ std::vector<cl::ProgramKey> ScreenScatter::programs(const ScatterImages& images)
                              {"PEL_FORMAT_DEPTH", images.positions ? text(0) : code(images.depth)},
                              {"PEL_FORMAT_MATERIAL", code(images.ids)}};
     const cl::Defines outputs{{"PEL_FORMAT_IRRADIANCE", code(images.irradiance)},
-                              {"PEL_FORMAT_OUT", code(images.out)}};
+                              {"PEL_FORMAT_OUT", code(images.out)},
+                              {"PEL_HIDDEN", text(int(fillsHidden()))}};
     std::vector<cl::ProgramKey> keys{{{"diffusion/surface.cl"}, inputs},
                                      {{"diffusion/reduce.cl"}, {}},
                                      {{"diffusion/classify_scatter.cl"}, {{"PEL_WIDTH", text(1)}}},
+                                     {{"diffusion/scatter_level.cl"}, {}},
                                      {{"diffusion/scatter_screen.cl"}, outputs}};
     if (!light_.empty())
         for (cl::ProgramKey& key : light_.programs(images)) keys.push_back(std::move(key));
@@ -180,13 +199,22 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
     launch(classify, {{tiles, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
     if (!light_.empty()) light_.enqueuePyramids(images, this->memory(), events);
     // With the lights' texels alone the screen's sum only copies.
-    if (!light_.empty() && lights_.alone) device_->fill(tiles_.get(), 0, tileBytes_, 0);
+    const bool alone = !light_.empty() && lights_.alone;
+    if (alone) device_->fill(tiles_.get(), 0, tileBytes_, 0);
+    for (uint32_t k = frame_.levels - 1; k > 0 && !alone; --k) {
+        cl::Launch level(programs[LEVEL], "scatter_level");
+        level.arg(constants_.memory()).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_);
+        level.arg(cl_uint(k)).arg(sums_).arg(counters_);
+        launch(level, rows(frame_.level[k].width, frame_.level[k].height));
+    }
+    if (fillsHidden()) light_.enqueueHidden(images, this->memory(), events);
     cl::Launch scatter(programs[SCATTER], "scatter_screen");
     scatter.arg(constants_.memory()).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_);
+    scatter.arg(sums_).arg(fillsHidden() ? light_.hidden() : cl::Memory());
     scatter.arg(memory(images.irradiance)).arg(memory(images.out)).arg(counters_);
     const size_t groups = groupsFor(*device_, tiles);
     launch(scatter, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
-    if (!light_.empty()) light_.enqueueSums(images, this->memory(), events);
+    if (alone) light_.enqueueSums(images, this->memory(), events);
 }
 
 ScatterCounts ScreenScatter::counts() {

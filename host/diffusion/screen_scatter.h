@@ -54,12 +54,13 @@ class ScreenScatter {
     ScatterCounts counts();
     // That a picture takes, beside tables.
     static uint64_t bytesFor(uint32_t width, uint32_t height);
-    size_t bytes() const { return pyramidBytes_ + nodeBytes_ + tileBytes_ + light_.bytes(); }
+    size_t bytes() const { return pyramidBytes_ + sumBytes_ + nodeBytes_ + tileBytes_ + light_.bytes(); }
     LightCounts lightCounts() { return light_.counts(); }
 
   private:
     void sendTables(const std::map<uint32_t, Material>& materials);
     void describeLevels(uint32_t width, uint32_t height);
+    bool fillsHidden() const { return !light_.empty() && !lights_.alone; }
     ScreenMemory memory() const;
     cl::Range rows(uint32_t width, uint32_t height) const;
 
@@ -69,8 +70,9 @@ class ScreenScatter {
     std::map<uint32_t, Material> materials_;
     PelDiffusionFrame frame_{};
     SentConstants<PelDiffusionFrame> constants_;
-    cl::Memory tables_, nodes_, pyramid_, tiles_, counters_;
-    size_t pyramidBytes_ = 0, nodeBytes_ = 0, tileBytes_ = 0;
+    cl::Memory tables_, nodes_, pyramid_, sums_, tiles_, counters_;
+    double narrowest_ = 0;  // reach of the tables, length
+    size_t pyramidBytes_ = 0, sumBytes_ = 0, nodeBytes_ = 0, tileBytes_ = 0;
 };
 
 }  // namespace pel

@@ -1,9 +1,9 @@
 // Which texels of a shadow map show surface that the camera sees too (docs/mathematics.md, section 10, "Light space").
 //
-// A pixel's patch of surface, a parallelogram of its steps to the neighbours, falls on some texels; those whose depth is that of
-// the patch there show the same surface. Input: images of positions (length) or depth, and of ids. Output: a byte per texel, set
+// A pixel's patch of surface, a parallelogram of two of its steps to the neighbours, falls on some texels; those whose depth is that of
+// the patch there show the same surface. So one pixel of 2 x 2 is enough. Input: images of positions (length) or depth, and of ids. Output: a byte per texel, set
 // beforehand to 0: the pixel's id, or PEL_SEEN_OTHER where it does not scatter; which of several ids is the same each time, for equal
-// writes are all that meet inside of an object. One work-item: PEL_WIDTH pixels of a row. Variants: PEL_FORMAT_POSITION or
+// writes are all that meet inside of an object. One work-item: PEL_WIDTH pixels of every other row. Variants: PEL_FORMAT_POSITION or
 // PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT.
 #include "lib/diffusion/light_space.clh"
 #include "lib/diffusion/pyramid.clh"
@@ -11,7 +11,8 @@
 #include "lib/shading/position.clh"
 
 #define FARTHEST_TEXEL \
-    6.0f  // of a patch, from the pixel's own; wider ones are grazing, and their neighbours cover them
+    6.0f         // of a patch, from the pixel's own; wider ones are grazing, and their neighbours cover them
+#define EVERY 2  // pixel, along a side, has a patch
 #define OFF_PLANE 0.75f  // texels' lengths that a surface may be off the patch's plane
 
 static inline Vec3w loadPositions(__global const PelDiffusionFrame* frame, __global uchar* position, uint x,
@@ -75,15 +76,17 @@ static inline void markPatch(__global const PelLightMap* map, __global const uch
     const int top = max((int)ceil(row - acrossY), 0),
               bottom = min((int)floor(row + acrossY), (int)map->level[0].height - 1);
     for (int y = top; y <= bottom; ++y) {
-        __global const uchar* texels = first + (size_t)(map->firstRow + (uint)y) * map->map.rowStride;
+        __global const uchar* texels =
+            first + (size_t)(map->firstRow + imageTexel(y, map->step, map->height)) * map->map.rowStride;
         __global uchar* marks = seen + map->seen + (size_t)y * map->level[0].width;
         for (int x = left; x <= right; ++x) {
-            float there =
-                pixelComponent(PEL_FORMAT_SHADOW_MAP, texels + (size_t)(uint)x * map->map.pixelStride, 0, 0);
+            float there = pixelComponent(
+                PEL_FORMAT_SHADOW_MAP,
+                texels + (size_t)imageTexel(x, map->step, map->width) * map->map.pixelStride, 0, 0);
             if (PEL_SHADOW_CONTENT == PEL_CONTENT_EXPONENTIAL) there = log2(there) * map->perExponent;
             if (map->radialRange > 0.0f) {
-                const float s = (2.0f * (float)x + 1.0f) / (float)map->level[0].width - 1.0f,
-                            t = (2.0f * (float)y + 1.0f) / (float)map->level[0].height - 1.0f;
+                const float s = 2.0f * ((float)x + map->middle) / map->size[0] - 1.0f,
+                            t = 2.0f * ((float)y + map->middle) / map->size[1] - 1.0f;
                 there = sqrt(fma(s, s, fma(t, t, 1.0f))) / (there * map->radialRange);
             }
             const float plane = fma((float)x - column, slopeX, fma((float)y - row, slopeY, depth));
@@ -92,16 +95,26 @@ static inline void markPatch(__global const PelLightMap* map, __global const uch
     }
 }
 
+// Asks for the depths round a patch's middle: they lie far apart, and all lanes' may be on their way at once.
+static inline void fetchDepths(__global const PelLightMap* map, __global const uchar* first, float column,
+                               float row) {
+    const uint x = imageTexel((int)column, map->step, map->width);
+    for (int k = 0; k < 2; ++k) {
+        const uint y = imageTexel((int)row + k, map->step, map->height);
+        PEL_PREFETCH(first + (size_t)(map->firstRow + y) * map->map.rowStride + (size_t)x * map->map.pixelStride);
+    }
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_seen(
     __global const PelDiffusionFrame* frame, __global uchar* position, __global uchar* ids,
     __global const PelLightMap* maps, uint index, __global uchar* texels, __global const float* pyramid,
     __global uchar* seen) {
-    const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
+    const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across * EVERY;
     if (y >= frame->height) return;
     __global const PelLightMap* map = maps + index;
     const uint from = get_global_id(0) % across * PEL_WIDTH, x = vectorStart(from, frame->width);
     const intw column = lanesw() + (int)x;
-    const maskw mine = (column >= (int)from) & (column < (int)frame->width);
+    const maskw mine = (column >= (int)from) & (column < (int)frame->width) & (column % EVERY == 0);
     const Vec3w p = loadPositions(frame, position, x, y);
     const Vec3w above = loadPositions(frame, position, x, y > 0 ? y - 1 : min(y + 1, frame->height - 1)),
                 below = loadPositions(frame, position, x, y + 1 < frame->height ? y + 1 : max(y, 1u) - 1);
@@ -113,8 +126,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
                 after = vec3(AFTER(p.x), AFTER(p.y), AFTER(p.z));
 #endif
     Patch patch;
-    maskw on =
-        mine & finite3(p) & patchOf(map, p, shorterWay(p, before, after), shorterWay(p, above, below), &patch);
+    maskw on = mine & finite3(p) &
+               patchOf(map, p, scale3(shorterWay(p, before, after), (floatw)(EVERY)),
+                       scale3(shorterWay(p, above, below), (floatw)(EVERY)), &patch);
     uintw id = (uintw)(1);
 #if PEL_FORMAT_MATERIAL
     id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &frame->ids, x, y));
@@ -129,6 +143,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     on &= notw(dark & (as_uintw(loadw(PEL_PLANE_ID * stride, own)) != (uintw)(0)));
     if (!anyw(on)) return;
     __global const uchar* first = firstTexel(texels, &map->map);
+#define FETCH(k, s) \
+    if (on s) fetchDepths(map, first, patch.column s, patch.row s);
+    PEL_EACH_LANE(FETCH)
+#undef FETCH
 #define MARK(k, s)                                                                                             \
     if (on s)                                                                                                  \
         markPatch(map, first, seen, patch.column s, patch.row s, patch.depth s, patch.acrossX s,               \

@@ -108,15 +108,19 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void r
     const uint x = get_global_id(0) % across * PEL_WIDTH, stride = fine->stride;
     __global const float* upper = pyramid + pyramidRow(fine, 2 * (int)y) + 2 * x;
     const size_t rowValues = (size_t)stride * PEL_PYRAMID_PLANES;
-    const Pair a = loadPair(upper, stride), b = loadPair(upper + rowValues, stride);
     const size_t at = pyramidRow(coarse, (int)y) + x;
     const uint out = coarse->stride;
-    const Child largest = largerChild(largerChild(a.left, a.right), largerChild(b.left, b.right));
-    if (!anyw(largest.area > 0.0f)) {
+    // Most of many pictures is empty.
+    floatw left, right, lowerLeft, lowerRight;
+    loadEvenOdd(upper + PEL_PLANE_AREA * stride, &left, &right);
+    loadEvenOdd(upper + rowValues + PEL_PLANE_AREA * stride, &lowerLeft, &lowerRight);
+    if (!anyw((left > 0.0f) | (right > 0.0f) | (lowerLeft > 0.0f) | (lowerRight > 0.0f))) {
         storew((floatw)(0.0f), at + PEL_PLANE_AREA * out, pyramid);
         storew((floatw)(0.0f), at + PEL_PLANE_BEND * out, pyramid);
         return;
     }
+    const Pair a = loadPair(upper, stride), b = loadPair(upper + rowValues, stride);
+    const Child largest = largerChild(largerChild(a.left, a.right), largerChild(b.left, b.right));
     Child block;
     block.area = 0.0f, block.size = 0.0f;
     block.p = block.e = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));

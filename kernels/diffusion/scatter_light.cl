@@ -1,23 +1,17 @@
 // Irradiance scattered under the surface, with the texels of shadow maps as lit surface (docs/mathematics.md, sections 9 and 10, "Light space").
 //
-// Near the point the sum runs over pixels and is divided by its weights; further away it is a sum as it stands. Without PEL_HIDDEN the
-// far part is that over the lights' texels. With PEL_HIDDEN it is over the screen, and texels that the camera does not see fill what mass
-// is missing there.
+// Near the point the sum runs over pixels and is divided by its weights; further away it is that over the lights' texels, as it stands.
 //
 // Input: both pyramids, the words of light_classify. Output: pixels of its parts in an image like the irradiance's; others stay. One
-// work-group takes tiles, one work-item parts of them, pixel by pixel. Variants: PEL_HIDDEN, PEL_FORMAT_OUT.
+// work-group takes tiles, one work-item parts of them, pixel by pixel. Variants: PEL_HIDDEN is 0, PEL_FORMAT_OUT.
 #include "lib/diffusion/windowed.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 
-#define PART 4  // pixels along a side
-// Width of the window, in steps from pixel to pixel or in texels.
-#define STEPS 2.0f
-#define TEXELS 1.5f
+#define PART 4             // pixels along a side
+#define WINDOW 1.5f        // width, in steps from pixel to pixel or in texels
 #define LEAST_COSINE 0.2f  // to the light: texels on steeper surface count as if they were as long as on this
 #define NEARLY_PLANE 0.015f  // of the whole mass
-#define LEFT_ALONE 0.25f     // of the tolerance: less light from hidden texels changes nothing
-#define SURPLUS 0.01f        // mass beyond a plane's that may come of the pixels alone
 
 typedef struct Pixel {
     float3 p, e;
@@ -106,65 +100,37 @@ static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __globa
     place.p = here->p;
     place.id = here->id;
     place.slack = 0.0f;
-    place.rho = STEPS * longest;
-    if (!PEL_HIDDEN) {
-        const float3 normal = across * rsqrt(fmax(dot(across, across), FLT_MIN));
-        place.rho = TEXELS * longest;
-        for (uint k = 0; k < mapCount; ++k) {
-            const float length = TEXELS * texelOnSurface(maps + k, here->p, normal);
-            if (length > place.rho && length < FLT_MAX) place.rho = length;
-        }
+    place.rho = WINDOW * longest;
+    const float3 normal = across * rsqrt(fmax(dot(across, across), FLT_MIN));
+    for (uint k = 0; k < mapCount; ++k) {
+        const float length = WINDOW * texelOnSurface(maps + k, here->p, normal);
+        if (length > place.rho && length < FLT_MAX) place.rho = length;
     }
     if (!(place.rho > 0.0f)) return false;
     const float3 window = shareOfWindow(nodes, table, place.rho), none = (float3)(0.0f);
-    // The lights first: where they bring nothing that the camera does not see, the pixel is right as it is.
-    float3 far[PEL_LIGHT_MAPS], mass[PEL_LIGHT_MAPS], hiddenLight = none, hiddenMass = none, all = none;
-    uint lightCount = 0;
-    for (uint k = 0; k < mapCount; ++lightCount) {
+    const bool isLit = here->e.x + here->e.y + here->e.z > 0.0f;
+    float3 sum = none;
+    for (uint k = 0; k < mapCount;) {
         Windowed sums;
         clearWindowed(&sums);
         const uint light = maps[k].light;
         const float3 color = vload3(0, maps[k].color);
         for (; k < mapCount && maps[k].light == light; ++k)
             *texels += addMap(&sums, maps + k, lights, nodes, table, &place);
-        far[lightCount] = color * sumOfLanes3(sums.farLight);
-        mass[lightCount] = sumOfLanes3(sums.farMass);
-        const float3 near = color * sumOfLanes3(sums.nearLight);
-        hiddenLight += near;
-        hiddenMass = fmax(hiddenMass, sumOfLanes3(sums.nearMass));
-        all += near + far[lightCount];
+        const float3 far = color * sumOfLanes3(sums.farLight);
+        sum += isLit ? far * planeLike(sumOfLanes3(sums.farMass), 1.0f - window) : far;
     }
-    if (PEL_HIDDEN && fmax(all.x, fmax(all.y, all.z)) <= LEFT_ALONE * frame->tolerance) return false;
     Windowed screen;
     clearWindowed(&screen);
     PelProfileTable seen = table;
-    if (!PEL_HIDDEN) seen.reach = fmin(table.reach, 2.0f * place.rho);
+    seen.reach = fmin(table.reach, 2.0f * place.rho);
     uint levels = 1;
     while (levels < frame->levels && (float)(1u << levels) * shortest < seen.reach) ++levels;
     *blocks += addScreen(&screen, frame, pyramid, nodes, seen, &place, x, y, levels);
     const float3 own = shareOfPixel(nodes, table, here->area);
     const float3 nearMass = own + sumOfLanes3(screen.nearMass),
                  nearLight = own * here->e + sumOfLanes3(screen.nearLight);
-    if (!PEL_HIDDEN) {
-        const bool isLit = here->e.x + here->e.y + here->e.z > 0.0f;
-        float3 sum = window * meanLight(nearLight, nearMass, here->e);
-        for (uint k = 0; k < lightCount; ++k)
-            sum += isLit ? far[k] * planeLike(mass[k], 1.0f - window) : far[k];
-        *result = sum;
-        return true;
-    }
-    const float3 farMass = sumOfLanes3(screen.farMass), missing = fmax(1.0f - window - farMass, none);
-    float3 fill = none, filled = none;
-    for (uint k = 0; k < lightCount; ++k) {
-        fill += far[k] * fmin(missing / fmax(mass[k], (float3)(FLT_MIN)), (float3)(1.0f));
-        filled = fmax(filled, fmin(mass[k], missing));
-    }
-    const float3 shown = window * meanLight(nearLight + hiddenLight, nearMass + hiddenMass, here->e) +
-                         sumOfLanes3(screen.farLight);
-    // Mass of which nothing is known is as what is shown; more than there is of a plane is there, beyond what may be error.
-    const float3 known = window + farMass, surplus = fmax(known - 1.0f - SURPLUS, none);
-    const float3 whole = fmin(known, (float3)(1.0f)) + missing - filled + surplus;
-    *result = shown * (whole / fmax(known, (float3)(FLT_MIN))) + fill;
+    *result = sum + window * meanLight(nearLight, nearMass, here->e);
     return true;
 }
 

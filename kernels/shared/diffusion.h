@@ -22,7 +22,18 @@
 #define PEL_PLANE_SIZE 9  // length^2: the smaller of the squared steps to the next pixel; of a pixel
 #define PEL_PYRAMID_PLANES 10
 
-#define PEL_DIFFUSION_TILE 16  // pixels along a side: blocks of level 4
+// What light flows in to the blocks of a level from it and from all coarser ones: as the surface's pyramid, from level 1 on.
+#define PEL_SUM_LIGHT 0   // three planes: irradiance times mass
+#define PEL_SUM_MASS 3    // three: the share of the profile that was found
+#define PEL_SUM_CENTRE 6  // three: the share of what lies nearer, and was not looked for
+#define PEL_SUM_PLANES 9
+
+#define PEL_HIDDEN_PLANES \
+    6  // three of light, three of mass: what the camera does not see, for blocks of level 1
+
+// Words of tiles: 1 + the first level that is summed, levels << 8. 0: irradiance is right as it is.
+#define PEL_TILE_HIDDEN (1u << 16)  // light that the camera does not see may come in
+#define PEL_DIFFUSION_TILE 16       // pixels along a side: blocks of level 4
 #define PEL_TILE_LEVEL 4
 #define PEL_DIFFUSION_GROUP 16  // work-items
 #define PEL_ROW_PARTS 4         // that different work-items copy
@@ -30,6 +41,10 @@
 
 // A profile as three tables over the squared distance, four floats a node: R (1/length^2), the share of the light that stays within, and the
 // mean of R over a block of a ring at that distance. Nodes are equally spaced in the bits of a float, PEL_PROFILE_NODES to the octave. From the last node on R is 0 and the share 1.
+//
+// Behind the nodes R and the mean over a block stand once more, as sums of PEL_PROFILE_TERMS Gaussians, four floats a term: term i is
+// exp2(-widest 2^i d^2), so that each is the square of the one before it and a vector of distances needs no look-up.
+#define PEL_PROFILE_TERMS 16
 #define PEL_PROFILE_NODES 16
 #define PEL_PROFILE_NODE_BITS 19  // 23 bits of mantissa, less those of a node
 // Width of such blocks over their distance: the root of the mean square of all in a ring round a point, weighed by R that falls as
@@ -40,6 +55,7 @@ typedef struct PelProfileTable {
     PelUint32 nodes;
     PelUint32 firstBits;  // of the first node's squared distance
     float reach;          // length beyond which nothing is left
+    float widest;         // 1/length^2: log2 of the widest Gaussian falls by so much
 } PelProfileTable;
 
 typedef struct PelPyramidLevel {
@@ -77,7 +93,7 @@ typedef struct PelDiffusionFrame {
 #define PEL_DIFFUSION_COUNTERS 6
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelProfileTable) == 16 && sizeof(PelPyramidLevel) == 16);
+static_assert(sizeof(PelProfileTable) == 20 && sizeof(PelPyramidLevel) == 16);
 static_assert(sizeof(PelDiffusionFrame) ==
               4 * (10 + 3 + 16 + PEL_DIFFUSION_IDS) + 4 * 32 + PEL_PYRAMID_LEVELS * 16);
 #endif

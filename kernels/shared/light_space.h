@@ -31,9 +31,14 @@ typedef struct PelLightMap {
     float spotScale;  // 1 / (cosInner - cosOuter)
     float range2;     // length^2; FLT_MAX: no limit
     float color[3];
-    float radialRange;   // length per unit of depth where depth is the distance from the light; 0: it is not
-    float perExponent;   // depth per log2 of a texel; exponential maps
-    float texel;         // length of a texel over the homogeneous coordinate there
+    float radialRange;  // length per unit of depth where depth is the distance from the light; 0: it is not
+    float perExponent;  // depth per log2 of a texel; exponential maps
+    float texel;        // length of a texel over the homogeneous coordinate there
+    float size[2];      // texels across
+    float middle;       // of a texel's depth, from its edge: 0.5 where each of the image's is one
+    PelUint32 step;     // the image's texels along a side of one here; the depth is that of one of them
+    PelUint32 width;    // the image's texels; of a cube's face
+    PelUint32 height;
     PelUint32 finer;     // maps before this one that take the surface which they hold
     PelUint32 firstRow;  // of the image: a cube's face
     PelUint32 seen;      // where its texels begin in the buffer of what the camera sees
@@ -50,6 +55,6 @@ typedef struct PelLightMap {
 #define PEL_LIGHT_COUNTERS 3
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelLightMap) == 4 * (32 + 1 + 3 + 3 + 3 + 3 + 3 + 8) + 32 + PEL_LIGHT_LEVELS * 16);
+static_assert(sizeof(PelLightMap) == 4 * (32 + 1 + 3 + 3 + 3 + 3 + 3 + 8 + 6) + 32 + PEL_LIGHT_LEVELS * 16);
 #endif
 #endif

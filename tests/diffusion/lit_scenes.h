@@ -261,8 +261,9 @@ struct ShadeRequest {
     uint32_t scatterTaps = 0;
     uint32_t tableSize = 0;  // 0: the tables that the profile brings
     float targetError = pelShaderOptionsDefaults().targetError;
-    bool traced = false;    // irradiance with ray-traced shadows is given
-    bool curvature = true;  // the mesh's is given
+    bool traced = false;     // irradiance with ray-traced shadows is given
+    bool curvature = true;   // the mesh's is given
+    bool faceworks = false;  // tables and filter as FaceWorks makes them, of the profile; with a tableSize
 };
 
 // By the shader, all else at its default, shadows from the map.
@@ -282,8 +283,9 @@ inline std::vector<float> shade(const Device& device, const LitScene& s, const P
         PelShadowLutDesc shadowDesc = pelShadowLutDescDefaults();
         curvatureDesc.profile = shadowDesc.profile = profile.get();
         curvatureDesc.width = curvatureDesc.height = shadowDesc.width = shadowDesc.height = tableSize;
-        curvatureDesc.form = PEL_FORM_SPHERE;
-        shadowDesc.closedEnds = 1;
+        curvatureDesc.form = request.faceworks ? PEL_FORM_ARC : PEL_FORM_SPHERE;
+        shadowDesc.closedEnds = !request.faceworks;
+        if (request.faceworks) material.shadowFilterWidth = float(8 / s.unit);
         curvatureDesc.diffusionRadius = shadowDesc.diffusionRadius = radius;
         for (float* v :
              {&curvatureDesc.radiusMin, &curvatureDesc.radiusMax, &shadowDesc.widthMin, &shadowDesc.widthMax})

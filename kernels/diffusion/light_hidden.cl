@@ -1,0 +1,75 @@
+// What the texels of shadow maps that the camera does not see bring to blocks of 2 x 2 pixels, where the screen lacks mass
+// (docs/mathematics.md, section 10, "Light space").
+//
+// Input: the screen's pyramid, its tiles' words, the sums of level 1, the lights' pyramids. Output: light and mass per block of covered tiles, 0 where
+// they matter to nothing. One work-group takes tiles, one work-item blocks of them. Variants: PEL_HIDDEN is 1.
+#include "lib/diffusion/levels.clh"
+#include "lib/diffusion/windowed.clh"
+
+#define LEAST_MISSING 0.01f  // of the mass, that may be filled
+#define MOST_IN_CENTRE \
+    0.5f  // where more of it lies within the blocks that level 1 does not look at, what is missing is not known
+
+// Light, and the greatest mass of a light's texels.
+static inline void addHidden(__global const PelLightMap* maps, uint mapCount, __global const float* lights,
+                             __global const float* nodes, const PelProfileTable table, Place* place,
+                             float3* light, float3* mass, uint* texels) {
+    for (uint k = 0; k < mapCount;) {
+        Windowed sums;
+        clearWindowed(&sums);
+        const uint number = maps[k].light;
+        const float3 color = vload3(0, maps[k].color);
+        for (; k < mapCount && maps[k].light == number; ++k)
+            *texels += addMap(&sums, maps + k, lights, nodes, table, place);
+        *light += color * sumOfLanes3(sums.farLight);
+        *mass = fmax(*mass, sumOfLanes3(sums.farMass));
+    }
+}
+
+static inline float missingOf(__global const float* sums, uint stride) {
+    float most = 0.0f;
+    for (uint c = 0; c < 3; ++c) {
+        const float centre = sums[(PEL_SUM_CENTRE + c) * stride];
+        most = fmax(most, centre > MOST_IN_CENTRE ? 1.0f : 1.0f - centre - sums[(PEL_SUM_MASS + c) * stride]);
+    }
+    return most;
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_hidden(
+    __global const PelDiffusionFrame* frame, __global const float* pyramid,
+    __global const PelProfileTable* tables, __global const float* nodes, __global const uint* tiles,
+    __global const float* sums, __global const PelLightMap* maps, uint mapCount, __global const float* lights,
+    __global float* hidden, __global uint* counters) {
+    const uint count = frame->tilesX * frame->tilesY, side = PEL_DIFFUSION_TILE / 2;
+    __global const PelPyramidLevel* level = &frame->level[1];
+    const uint stride = level->stride;
+    uint texels = 0, pixels = 0;
+    for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
+        if (!tiles[tile]) continue;
+        const bool reached = tiles[tile] & PEL_TILE_HIDDEN;
+        for (uint item = get_local_id(0); item < side * side; item += PEL_DIFFUSION_GROUP) {
+            const uint x = tile % frame->tilesX * side + item % side,
+                       y = tile / frame->tilesX * side + item / side;
+            if (x >= level->width || y >= level->height) continue;
+            __global const float* block = pyramid + pyramidRow(level, (int)y) + x;
+            if (!(block[PEL_PLANE_AREA * stride] > 0.0f)) continue;
+            float3 light = (float3)(0.0f), mass = (float3)(0.0f);
+            const uint id = as_uint(block[PEL_PLANE_ID * stride]);
+            if (reached && missingOf(sums + sumRow(frame, 1, (int)y) + x, stride) > LEAST_MISSING) {
+                Place place;
+                place.id = id;
+                place.slack = 0.0f;
+                place.p = (float3)(block[PEL_PLANE_X * stride], block[PEL_PLANE_Y * stride],
+                                   block[PEL_PLANE_Z * stride]);
+                addHidden(maps, mapCount, lights, nodes, tables[frame->tableOf[id] - 1], &place, &light,
+                          &mass, &texels);
+                ++pixels;
+            }
+            __global float* to = hidden + hiddenRow(frame, (int)y) + x;
+            to[0] = light.x, to[stride] = light.y, to[2 * stride] = light.z;
+            to[3 * stride] = mass.x, to[4 * stride] = mass.y, to[5 * stride] = mass.z;
+        }
+    }
+    if (pixels) atomic_add(&counters[PEL_COUNT_LIGHT_PIXELS], pixels);
+    if (texels) atomic_add(&counters[PEL_COUNT_LIGHT_TEXELS], texels);
+}

@@ -1,0 +1,75 @@
+// What light flows in to the blocks of one level of the screen's pyramid, from it and from all coarser ones (docs/mathematics.md, section 10,
+// "Sums by levels").
+//
+// Blocks near tiles that classify_scatter has found take the sums of the next coarser level, interpolated, and add the band of their own; at level 1
+// only those of tiles whose first level it is. Others are left as they are. Input: the pyramid, the words of classify_scatter, the sums of
+// the coarser level. Output: the level's. One work-item: PEL_WIDTH blocks of a row.
+#include "lib/diffusion/levels.clh"
+
+// Whether some tile under blocks of the level from x to `end`, or as far round them as interpolation reaches, goes up to this level.
+static inline bool levelMatters(__global const PelDiffusionFrame* frame, __global const uint* tiles,
+                                uint level, uint x, uint end, uint y) {
+    const int reach = max(1 << level, PEL_DIFFUSION_TILE), tilesX = (int)frame->tilesX,
+              tilesY = (int)frame->tilesY;
+    const int left = max(((int)(x << level) - reach) / PEL_DIFFUSION_TILE, 0),
+              right = min(((int)(end << level) - 1 + reach) / PEL_DIFFUSION_TILE, tilesX - 1),
+              top = max(((int)(y << level) - reach) / PEL_DIFFUSION_TILE, 0),
+              bottom = min(((int)((y + 1) << level) - 1 + reach) / PEL_DIFFUSION_TILE, tilesY - 1);
+    for (int j = top; j <= bottom; ++j)
+        for (int i = left; i <= right; ++i)
+            if ((tiles[j * tilesX + i] >> 8 & 255u) > level) return true;
+    return false;
+}
+
+// The lanes of tiles that begin with level 1 or 0.
+static inline maskw beginHere(__global const PelDiffusionFrame* frame, __global const uint* tiles, uint x,
+                              uint y) {
+    const uint side = PEL_DIFFUSION_TILE / 2, last = frame->tilesX - 1;
+    __global const uint* row = tiles + min(y / side, frame->tilesY - 1) * frame->tilesX;
+#define BEGINS(i, s) (((row[min((x + i) / side, last)] & 255u) - 1u) <= 1u ? -1 : 0)
+    return (maskw)(PEL_LIST_LANES_(BEGINS));
+#undef BEGINS
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_level(
+    __global const PelDiffusionFrame* frame, __global const float* pyramid,
+    __global const PelProfileTable* tables, __global const float* nodes, __global const uint* tiles,
+    uint level, __global float* sums, __global uint* counters) {
+    __global const PelPyramidLevel* blocks = &frame->level[level];
+    const uint across = (blocks->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
+    if (y >= blocks->height) return;
+    const uint x = get_global_id(0) % across * PEL_WIDTH;
+    if (!levelMatters(frame, tiles, level, x, min(x + PEL_WIDTH, blocks->width), y)) return;
+    const uint stride = blocks->stride;
+    __global const float* at = pyramid + pyramidRow(blocks, (int)y) + x;
+    const Blocks here = loadBlocks(at, stride);
+    const maskw on = here.area > 0.0f;
+    if (!anyw(on)) return;
+    const Slope slope = slopeAt(at, stride, &here, loadPlanes3(at + PEL_PLANE_RED * stride, stride), on);
+    Sums result = noSums();
+    if (level + 1 < frame->levels) {
+        const Interpolated coarser = interpolateSums(frame, pyramid, sums, NULL, level + 1, x, y, &here, on);
+        result = coarser.sums;
+        result.light = movedLight(&result, &slope, coarser.place, &here);
+    }
+    const maskw adds = level == 1 ? on & beginHere(frame, tiles, x, y) : on;
+    const intw table = selectw((intw)(0), tablesOf(frame, here.id), adds);
+    for (uint t = 1; t <= frame->tables; ++t) {
+        const maskw mine = table == (intw)((int)t);
+        if (!anyw(mine)) continue;
+        Sums more = result;
+        addBand(at, stride, nodes, tables[t - 1], level, &here, &slope, mine, &more);
+        result.light = select3(result.light, more.light, mine);
+        result.mass = select3(result.mass, more.mass, mine);
+        result.centre = select3(result.centre,
+                                shareOfCentre(nodes, tables[t - 1], here.area,
+                                              here.size * (float)(1u << 2 * level), PEL_BAND_INSIDE),
+                                mine);
+    }
+    __global float* to = sums + sumRow(frame, level, (int)y) + x;
+    storePlanes3(result.light, to + PEL_SUM_LIGHT * stride, stride);
+    storePlanes3(result.mass, to + PEL_SUM_MASS * stride, stride);
+    storePlanes3(result.centre, to + PEL_SUM_CENTRE * stride, stride);
+    const uint taps = PEL_BAND * countw(adds);
+    if (taps) atomic_add(&counters[PEL_COUNT_TAPS], taps);
+}
