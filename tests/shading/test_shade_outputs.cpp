@@ -90,6 +90,14 @@ TEST(ShadeOutputs, SkippingChangesNoBit) {
     }
 }
 
+TEST(ShadeOutputs, ThicknessThatNothingMeasuresIsZero) {
+    Frame f = partsFrame(2);
+    for (auto& light : f.lights) light.mapSize = 0, light.map.values.clear();
+    const Shaded none = shadeParts(f);
+    for (size_t i = 0; i < f.pixels(); ++i)
+        EXPECT_EQ(none.thickness[i], f.slots[PEL_SLOT_MATERIAL].values[i] == 0 ? -1 : 0) << i;
+}
+
 TEST(ShadeOutputs, OneAloneInHalf) {
     const Frame f = partsFrame(2);
     const Shaded all = shadeParts(f);

@@ -162,6 +162,20 @@ TEST(WideShadow, BoundsDecideWithoutTexels) {
     EXPECT_GT(decided / all, 0.2) << decided << " of " << all;
 }
 
+// A matrix of homogeneous coordinates may have any factor.
+TEST(WideShadow, AFactorOfTheMatrixChangesNothing) {
+    for (const bool perspective : {false, true})
+        for (const bool reversed : {false, true}) {
+            Frame f = litRelief(mapLight(5, perspective, reversed, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 90));
+            const auto first = shade(device(), f, tables());
+            for (float factor : {0.25f, 4.0f}) {
+                Frame scaled = f;
+                for (float& m : scaled.lights[0].params.worldToShadow) m *= factor;
+                EXPECT_EQ(shade(device(), scaled, tables()), first) << factor << perspective << reversed;
+            }
+        }
+}
+
 TEST(WideShadow, BadTexelsAndPixels) {
     MapLight from = mapLight(3, true, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61);
     for (size_t i = 0; i < from.map.depth.size(); i += 5)

@@ -100,6 +100,27 @@ TEST(WideShadowEdges, UnderARoofThatComesDown) {
             }
 }
 
+// The map of a plane alone, lit at a slant: the bounds know its slope, so that hardly a filter reads texels.
+TEST(WideShadowEdges, ASlantedPlaneIsDecidedByItsSlope) {
+    MapLight from = mapLight(7, false, false, {0.8, 0.3, 0.5}, {26, 12, 0}, 120, 200);
+    for (size_t i = 0; i < from.light.map.values.size(); ++i) {
+        const auto& v = from.view;
+        const double right = (double(i % 200) + 0.5) / 200 - 0.5, down = (double(i / 200) + 0.5) / 200 - 0.5;
+        const reference::Vec3 p = v.origin + right * v.extent * v.right + down * v.extent * v.down;
+        setDepth(from, i, -p.z / v.forward.z);
+    }
+    from.light.params.shadowBias = 1;  // the plane itself is not its own shadow's border
+    Frame f = sceneUnder(from, 1);
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        f.slots[PEL_SLOT_POSITION].values[3 * i + 2] = 0;
+        for (int c = 0; c < 3; ++c) f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * i + size_t(c)] = c == 2;
+    }
+    for (auto& [id, material] : f.materials) material.shadowFilterWidth *= 0.4f;
+    const Seen seen = compare(f, from, "slanted plane");
+    EXPECT_GT(seen.filtered, 1000u);
+    EXPECT_LT(double(seen.read), 0.05 * double(seen.filtered));
+}
+
 // A plane under a roof that is the whole map: beyond each of its four borders light comes in, although the
 // outermost texels are near the light. With bias and slope, and with filters of which the map is a small
 // part.

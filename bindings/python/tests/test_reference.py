@@ -22,6 +22,10 @@ def test_surface_integral_of_an_evenly_lit_sheet(device):
     pel.submit_surface_integral(device, positions, triangles, np.broadcast_to(light, (len(positions), 3)), points, out,
                                 profile=pel.Profile.burley([1, 1, 1], [0.8, 0.8, 0.8]), cut=[2, 2, 2]).wait()
     assert np.allclose(out, light, atol=3e-4)
+    slanted = (positions[:, :1] > 0) * light
+    plain = pel.surface_integral(device, positions, triangles, slanted, points)
+    pel.submit_surface_integral(device, positions, triangles, slanted, points, out).wait()
+    assert np.array_equal(out, plain), "the same defaults with and without waiting"
     with pytest.raises(ValueError, match="irradiance has shape"):
         pel.surface_integral(device, positions, triangles, light, points)
     with pytest.raises(pel.PellucidError, match="tolerance"):
