@@ -13,7 +13,9 @@ void chooseBand(ShaderPlan& plan, const PassScratch& scratch, uint32_t mostRows)
     plan.scratch = scratch.pixelBytes > 0;
     plan.haloRows = scratch.haloRows;
     plan.wholeFrame = scratch.wholeFrame;
-    plan.bandRows = std::max(1u, plan.scratch ? std::min(plan.tileRows, mostRows) : plan.tileRows);
+    // A pass over the whole frame writes all rows of its images, whatever band the others work on.
+    plan.bandRows =
+        std::max(1u, plan.scratch && !plan.wholeFrame ? std::min(plan.tileRows, mostRows) : plan.tileRows);
     const uint64_t budget = plan.state.options.scratchBudget,
                    rowBytes = uint64_t(frame.width) * scratch.pixelBytes;
     const auto bytes = [&] { return plan.scratchRows() * rowBytes + scratch.guardBytes; };

@@ -82,8 +82,9 @@ TEST_F(Cli, DevicesAreChosenOrNamedMissing) {
 
 TEST_F(Cli, WrongUseIsRefused) {
     expectRefused({}, 2, "subcommand");
-    expectRefused({"lut", "curvatur"}, 2,
-                  "no subcommand 'lut curvatur'; did you mean curvature? there are curvature, shadow, specular");
+    expectRefused(
+        {"lut", "curvatur"}, 2,
+        "no subcommand 'lut curvatur'; did you mean curvature? there are curvature, shadow, specular");
     expectRefused({"curvatur"}, 2, "curvatur");
     expectRefused({"lut", "curvature"}, 2, "--output");
     expectRefused({"lut", "curvature", "-o", path("l.npy"), "--sise", "8x8"}, 2,
