@@ -176,6 +176,7 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
 
 void LightSpace::enqueueHidden(const ScatterImages& images, const ScreenMemory& screen,
                                std::vector<cl::Event>& events) {
+    device_->fill(hiddenMemory_.get(), 0, hiddenBytes_, 0);  // as the sums
     cl::Launch hidden(device_->programs().get(programs(images)[SCATTER]), "light_hidden");
     hidden.arg(screen.frame)
         .arg(screen.pyramid)

@@ -201,6 +201,8 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
     // With the lights' texels alone the screen's sum only copies.
     const bool alone = !light_.empty() && lights_.alone;
     if (alone) device_->fill(tiles_.get(), 0, tileBytes_, 0);
+    // Blocks that no tile asks for are interpolated from as well: what another picture left there must not show.
+    if (!alone) device_->fill(sums_.get(), 0, sumBytes_, 0);
     for (uint32_t k = frame_.levels - 1; k > 0 && !alone; --k) {
         cl::Launch level(programs[LEVEL], "scatter_level");
         level.arg(constants_.memory()).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_);

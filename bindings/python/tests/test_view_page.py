@@ -240,7 +240,7 @@ def test_every_slider_changes_the_picture(page, tmp_path):
     later = [n for n in sliders(page) if n.startswith("slider-deep_scatter") or n in ("slider-wipe", "slider-transmission")]
     assert len(later) == 5 and len(sliders(page)) > 25
     idle = [n for n in sliders(page) if n not in later and not changes_by(page, n)]
-    assert not idle
+    assert not [n for n in idle if not changes_by(page, n)]  # once more: a machine that does other work as well may have been slow
     assert page.execute_script("return window.pelKernels") == kernels  # no slider compiles anything
     unfold(page, "Export")
     second = tmp_path / "look.json"
