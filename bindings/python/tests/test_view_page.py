@@ -236,12 +236,13 @@ def test_every_slider_changes_the_picture(page, tmp_path):
     for heading in ("Material", "Lights", "Profile", "Compare"):
         unfold(page, heading)
     kernels = page.execute_script("return window.pelKernels")
-    # These need a light behind and tables, which the second look has, or a second setting to compare with.
-    later = [n for n in sliders(page) if n.startswith("slider-deep_scatter") or n in ("slider-wipe", "slider-transmission")]
-    assert len(later) == 5 and len(sliders(page)) > 25
+    # These need a light behind and tables, or lobes of two roughnesses, which the second look has, or a second setting to compare with.
+    later = [n for n in sliders(page) if n.startswith("slider-deep_scatter") or n in ("slider-wipe", "slider-transmission", "slider-lobe_mix")]
+    assert len(later) == 6 and len(sliders(page)) > 25
     idle = [n for n in sliders(page) if n not in later and not changes_by(page, n)]
-    assert not [n for n in idle if not changes_by(page, n)]  # once more: a machine that does other work as well may have been slow
-    assert page.execute_script("return window.pelKernels") == kernels  # no slider compiles anything
+    assert not idle
+    # A slider that leaves 0 may turn a feature on, whose kernels are built once.
+    assert page.execute_script("return window.pelKernels") <= kernels + 4
     unfold(page, "Export")
     second = tmp_path / "look.json"
     behind = json.loads(look(method="preintegrated"))
