@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "io/lut/profile_file.h"
-#include "sample/lit_mesh.h"
+#include "sample/surface_light.h"
 #include "surface_reference.h"
 
 namespace pellucid::cli {
@@ -12,24 +12,6 @@ namespace {
 
 // Light changes over a millimetre where skin lets it; edges of shadows are found to half of that.
 constexpr double finest = 0.5, coarsest = 4;  // mm
-
-std::vector<float> integrate(const Device& device, const sample::LitMesh& lit, const Profile& profile,
-                             const std::vector<float>& positions) {
-    const auto count = uint32_t(positions.size() / 3);
-    if (count == 0) return {};
-    const Buffer in(device, positions), out(device, positions.size() * sizeof(float));
-    PelSurfaceIntegralDesc desc = pelSurfaceIntegralDescDefaults();
-    desc.numVertices = uint32_t(lit.positions.size() / 3);
-    desc.positions = lit.positions.data();
-    desc.indices = lit.triangles.data();
-    desc.numIndices = lit.triangles.size();
-    desc.irradiance = lit.irradiance.data();
-    desc.profile = profile.get();
-    desc.points = vertexView(in, count);
-    desc.result = vertexView(out, count);
-    surfaceIntegral(device, desc);
-    return out.readAll<float>();
-}
 
 }  // namespace
 
@@ -60,7 +42,9 @@ DemoReference demoReference(const Device& device, const sample::Scene& mesh, con
     options.material = head.materials.empty() ? 0 : uint32_t(demo::DEMO_SKIN);
     const sample::LitMesh lit = sample::lightMesh(mesh, lightingOf(view.scene), options);
     const Profile profile = io::findProfile(view.scene.materials[0].profile).profile;
-    const std::vector<float> scattered = integrate(device, lit, profile, places);
+    PelSurfaceIntegralDesc desc = pelSurfaceIntegralDescDefaults();
+    desc.profile = profile.get();
+    const std::vector<float> scattered = sample::scatteredAt(device, lit, places, desc);
     double squares = 0;
     float brightest = 1e-6f;
     for (size_t k = 0; k < from.size(); ++k)

@@ -9,6 +9,7 @@
 #include "io/input_file.h"
 #include "io/lut/profile_file.h"
 #include "io/scene/scene_frame.h"
+#include "sample/surface_light.h"
 #include "surface_reference.h"
 
 namespace pellucid::cli {
@@ -101,24 +102,13 @@ Points pointsOf(Run& run, const sample::Scene& scene, const std::vector<float>& 
 
 std::vector<float> integrate(Run& run, const Arguments& a, const Diffusion& d, const sample::LitMesh& lit,
                              const std::vector<float>& positions) {
-    const auto count = uint32_t(positions.size() / 3);
-    if (count == 0) return {};
-    const Buffer in(run.device(), positions), out(run.device(), positions.size() * sizeof(float));
     PelSurfaceIntegralDesc desc = pelSurfaceIntegralDescDefaults();
-    desc.numVertices = uint32_t(lit.positions.size() / 3);
-    desc.positions = lit.positions.data();
-    desc.indices = lit.triangles.data();
-    desc.numIndices = lit.triangles.size();
-    desc.irradiance = lit.irradiance.data();
     desc.profile = d.profile.get();
     desc.diffusionRadius = d.radius;
     desc.millimetresPerUnit = d.unit;
     std::copy(a.cut.begin(), a.cut.end(), desc.cut);
     desc.tolerance = a.tolerance;
-    desc.points = vertexView(in, count);
-    desc.result = vertexView(out, count);
-    surfaceIntegral(run.device(), desc);
-    return out.readAll<float>();
+    return sample::scatteredAt(run.device(), lit, positions, desc);
 }
 
 std::vector<std::string> layer(const char* name) {

@@ -15,6 +15,7 @@
 #include "sample/gbuffer.h"
 #include "sample/lit_mesh.h"
 #include "sample/shadow_map.h"
+#include "sample/surface_light.h"
 
 namespace lit_scenes {
 
@@ -225,20 +226,11 @@ inline LitScene make(const Device& device, const Body& body, const SceneRequest&
     const sample::LitMesh lit = lightMesh(scene, lighting, options);
     std::vector<float> points;
     for (size_t i : where) points.insert(points.end(), &s.positions[3 * i], &s.positions[3 * i] + 3);
-    const Buffer in(device, points), out(device, points.size() * sizeof(float));
     PelSurfaceIntegralDesc desc = pelSurfaceIntegralDescDefaults();
-    desc.numVertices = uint32_t(lit.positions.size() / 3);
-    desc.positions = lit.positions.data();
-    desc.indices = lit.triangles.data();
-    desc.numIndices = lit.triangles.size();
-    desc.irradiance = lit.irradiance.data();
     desc.profile = profile.get();
     desc.diffusionRadius = float(info.radius * request.profileScale);
     desc.millimetresPerUnit = float(request.unit);
-    desc.points = vertexView(in, uint32_t(where.size()));
-    desc.result = vertexView(out, uint32_t(where.size()));
-    surfaceIntegral(device, desc);
-    const std::vector<float> S = out.readAll<float>();
+    const std::vector<float> S = sample::scatteredAt(device, lit, points, desc);
     for (size_t k = 0; k < where.size(); ++k) {
         for (size_t c = 0; c < 3; ++c) {
             s.irradiance[3 * where[k] + c] = E[3 * k + c];
