@@ -282,7 +282,7 @@ class Coverage:
     def kin(self, fault):
         """Every test that could execute a fault, the likeliest and quickest first: by the words that the two files share."""
         path = Path(fault.path)
-        names = self.scripts if fault.path.startswith("bindings/python/pellucid") else sorted(self.folders)
+        names = self.scripts if fault.path.startswith("bindings/python") else sorted(self.folders)
         if not self.words:
             for p in [*TREE.glob("tests/*/test_*.cpp"), *(TREE / script for script in self.scripts)]:
                 key = str(p.relative_to(TREE)) if p.suffix == ".py" else p.stem
