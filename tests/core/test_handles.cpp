@@ -75,7 +75,7 @@ TEST_P(EachKind, ReleasedTwiceIsAnError) {
     EXPECT_EQ(heard.errors.size(), 0u);
 }
 
-// References that the library holds itself: no number of releases by the caller removes them.
+// The library holds references of its own. However often the caller releases, these stay.
 TEST_P(EachKind, InternalHoldersKeepTheirs) {
     const Handle made = kind().create();
     const std::function<bool()> works = kind().hold(made);

@@ -131,7 +131,7 @@ TEST(CurvatureScattered, TheDefaultIsNearTheTruth) {
 
 TEST(CurvatureScattered, UniformPassesMoveValuesByWhatTheyMustOnly) {
     // Two passes take a value from where its neighbours stand in the mean; on random triangles that is not
-    // where the vertex stands. Compared with the truth, smoothed likewise, they may add next to nothing.
+    // where the vertex stands. The truth is smoothed in the same way; compared with that, they may add next to nothing.
     const FlatMesh flat = delaunay(uniformPoints(20000, 1));
     for (const auto& [surface, shape] : surfaces) {
         AnalyticMesh mesh = lifted(flat, shape);
