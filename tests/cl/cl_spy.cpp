@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 
 namespace {
 
@@ -15,6 +16,7 @@ constexpr const char* names[types] = {"contexts", "queues",  "memory objects",
                                       "programs", "kernels", "events"};
 std::atomic<int64_t> live[types];
 std::atomic<uint64_t> buffersMade, bytesCopied, transfers, launches;
+std::atomic<bool> warned;  // the compiler, about a kernel
 
 template <class F>
 F* next(const char* name) {
@@ -42,16 +44,29 @@ cl_int copied(cl_int code, const cl_event* event, size_t bytes) {
     return withEvent(code, event);
 }
 
+// Users see a compiler's warnings on their terminal.
+void lookForWarnings(cl_program program, cl_device_id device) {
+    const auto info = next<decltype(clGetProgramBuildInfo)>("clGetProgramBuildInfo");
+    size_t bytes = 0;
+    if (info(program, device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &bytes) != CL_SUCCESS) return;
+    std::string log(bytes, '\0');
+    info(program, device, CL_PROGRAM_BUILD_LOG, bytes, log.data(), nullptr);
+    if (log.find("warning:") == std::string::npos) return;
+    warned = true;
+    std::fprintf(stderr, "\n%s\n", log.c_str());
+}
+
 pid_t watched = 0;
 
 void check() {
     if (::getpid() != watched) return;  // a fork has counts of objects that are its parent's
     bool left = false;
     for (int i = 0; i < types; ++i) left |= live[i] != 0;
-    if (!left) return;
-    std::fprintf(stderr, "\nOpenCL objects that nobody released at the end of the program:");
+    if (!left && !warned) return;
+    if (left) std::fprintf(stderr, "\nOpenCL objects that nobody released at the end of the program:");
     for (int i = 0; i < types; ++i)
         if (live[i] != 0) std::fprintf(stderr, " %lld %s;", static_cast<long long>(live[i]), names[i]);
+    if (warned) std::fprintf(stderr, "\nkernels that compile with warnings: see above");
     std::fprintf(stderr, "\n");
     std::fflush(nullptr);
     ::_exit(1);
@@ -120,6 +135,12 @@ cl_program clCreateProgramWithBinary(cl_context context, cl_uint count, const cl
                                      cl_int* code) {
     return made(programs,
                 REAL(clCreateProgramWithBinary)(context, count, devices, sizes, binaries, status, code));
+}
+cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
+                      void(CL_CALLBACK* notify)(cl_program, void*), void* user) {
+    const cl_int code = REAL(clBuildProgram)(program, count, devices, options, notify, user);
+    if (code == CL_SUCCESS && count == 1) lookForWarnings(program, devices[0]);
+    return code;
 }
 cl_kernel clCreateKernel(cl_program program, const char* name, cl_int* code) {
     return made(kernels, REAL(clCreateKernel)(program, name, code));

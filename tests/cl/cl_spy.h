@@ -1,5 +1,6 @@
 // What the library asks of OpenCL, counted between it and the loader (cl_spy.cpp is linked before the loader
-// into each test program). At the end of the program nothing of OpenCL may be left: the spy then fails it.
+// into each test program). At the end of the program nothing of OpenCL may be left, and
+// no kernel may have compiled with warnings: the spy then fails it.
 #pragma once
 #include <cstdint>
 
