@@ -1,0 +1,136 @@
+"""A copy of the tree in build/mutants, its build, and its Python environment: where faults are put in."""
+import hashlib
+import json
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+WORK = ROOT / "build" / "mutants"
+TREE = (WORK / "tree").resolve()
+BUILD = TREE / "build" / "release"
+PASSED = (0, 77)  # 77: something was skipped
+
+
+def say(*words):
+    print(*words, flush=True)
+
+
+def command(words, limit, log, **environment):
+    """(exit status, processor seconds) of a command whose output goes to `log`. One that takes too long counts as failed."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    with open(log, "wb") as out:
+        process = subprocess.Popen([str(w) for w in words], cwd=BUILD, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT,
+                                   start_new_session=True, env={**os.environ, **{k: str(v) for k, v in environment.items()}})
+        try:
+            status = process.wait(limit)
+        except subprocess.TimeoutExpired:
+            status = "took too long"
+        finally:
+            # Children of a test that crashed or hangs.
+            try:
+                os.killpg(process.pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+            process.wait()
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return status, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+class Workplace:
+    """The copy of the tree, its build, and its Python environment."""
+
+    def __init__(self, as_is):
+        for folder in ("tmp", "pocl", "cache", "counts"):
+            (WORK / folder).mkdir(parents=True, exist_ok=True)
+        BUILD.mkdir(parents=True, exist_ok=True)
+        self.scratch = WORK / "tmp"
+        self.environment = {"TMPDIR": self.scratch, "XDG_CACHE_HOME": WORK / "cache", "PELLUCID_COMMAND": BUILD / "bin/pellucid",
+                            "GTEST_COLOR": "no"}
+        if self.applied.exists():  # a run was killed
+            path, text = json.loads(self.applied.read_text())
+            self.restore(path, text)
+        if not as_is:
+            self.copy()
+
+    applied = WORK / "applied.json"
+
+    def apply(self, fault, original):
+        self.applied.write_text(json.dumps([fault.path, original]))
+        (TREE / fault.path).write_text(fault.apply(original))
+
+    def restore(self, path, original):
+        (TREE / path).write_text(original)
+        self.applied.unlink(missing_ok=True)
+
+    def copy(self):
+        """Makes the copy as the tree is; what did not change keeps its time."""
+        listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "-z"], cwd=ROOT, capture_output=True, check=True)
+        wanted = {name for name in listed.stdout.decode().split("\0") if name and (ROOT / name).is_file()}
+        for name in wanted:
+            source, target = ROOT / name, TREE / name
+            if not target.exists() or target.read_bytes() != source.read_bytes():
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(source, target)
+        for path in [p for p in TREE.rglob("*") if p.is_file() and not p.is_relative_to(TREE / "build")]:
+            if str(path.relative_to(TREE)) not in wanted:
+                path.unlink()
+
+    counting = True  # whether the build counts lines
+
+    def build(self, *targets):
+        if not (BUILD / "build.ninja").exists():
+            launcher = ["-DCMAKE_C_COMPILER_LAUNCHER=ccache", "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+            counting = [f"-DCMAKE_PROJECT_pellucid_INCLUDE={TREE}/tests/mutants/count_lines.cmake",
+                        "-DCMAKE_EXE_LINKER_FLAGS=--coverage", "-DCMAKE_SHARED_LINKER_FLAGS=--coverage"] if self.counting else []
+            status, _ = command(["cmake", "-G", "Ninja", "-S", TREE, "-B", BUILD, "-DCMAKE_BUILD_TYPE=Release", *counting, *launcher],
+                                600, WORK / "build.log")
+            if status:
+                sys.exit((WORK / "build.log").read_text())
+        return command(["ninja", "-C", BUILD, *targets], 3000, WORK / "build.log")[0] == 0
+
+    def test(self, name, limit, log, **extra):
+        """A test program, or a file of Python tests."""
+        environment = {"POCL_CACHE_DIR": WORK / "pocl", "GCOV_PREFIX": WORK / "tmp" / "gcov", **self.environment, **extra}
+        if name.endswith(".py"):
+            words = [WORK / "python/test-environment/bin/python", "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--tb=short",
+                     "--rootdir", TREE, TREE / name]
+        else:
+            words = [BUILD / "bin" / name, "--gtest_fail_fast", "--gtest_brief=1"]
+        result = command(words, limit, log, **environment)
+        shutil.rmtree(self.scratch, ignore_errors=True)
+        self.scratch.mkdir()
+        return result
+
+    def python(self):
+        """The package in a virtual environment of its own; made again when anything compiled in it changed."""
+        home = WORK / "python"
+        text = hashlib.sha256()
+        faster = {"CMAKE_CXX_COMPILER_LAUNCHER": "ccache"} if shutil.which("ccache") else {}
+        for folder in ("host", "kernels", "bindings/python/native"):
+            for path in sorted(p for p in (TREE / folder).rglob("*") if p.is_file()):
+                text.update(path.read_bytes())
+        key = home / "key"
+        if key.exists() and key.read_text() == text.hexdigest():
+            installed = next((home / "test-environment").glob("lib/python*/site-packages/pellucid"))
+            shutil.copytree(TREE / "bindings/python/pellucid", installed, dirs_exist_ok=True)
+            return True
+        key.unlink(missing_ok=True)
+        log = WORK / "build.log"
+        environment = home / "test-environment/bin/python"
+        if environment.exists():
+            status, _ = command([home / "build-environment/bin/python", "-m", "pip", "wheel", "-q", "--no-build-isolation", "--no-deps",
+                                 f"--config-settings=build-dir={home / 'build'}", "-w", home / "wheels", TREE], 1800, log, **faster)
+            if not status:
+                status, _ = command([environment, "-m", "pip", "install", "-q", "--no-deps", "--force-reinstall",
+                                     *(home / "wheels").glob("*.whl")], 600, log)
+        else:
+            status, _ = command([sys.executable, TREE / "bindings/python/tests/run_installed.py", TREE, home, "--collect-only", "-q"],
+                                3000, log, **faster)
+        if status in PASSED:
+            key.write_text(text.hexdigest())
+        return status in PASSED
