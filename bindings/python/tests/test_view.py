@@ -2,6 +2,7 @@
 import json
 import os
 import subprocess
+import types
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from pellucid.view.camera import Orbit, direction  # noqa: E402
 from pellucid.view.export import export  # noqa: E402
 from pellucid.view.look import EYES, MODES, PRESETS, SKIN, Look  # noqa: E402
 from pellucid.view.scene_session import SceneSession  # noqa: E402
-from pellucid.view.server import Pace  # noqa: E402
+from pellucid.view.server import Pace, Viewer  # noqa: E402
 from pellucid.view.session import Session  # noqa: E402
 
 
@@ -291,6 +292,35 @@ def test_pictures_are_as_small_as_the_time_asks():
     for i in range(60):
         steady.shown(0.045 * i, True)
     assert steady.scale == 0.5
+
+
+def test_the_mouse_takes_the_object_along():
+    """A drag over a part of the picture's height: the point under the mouse follows it, seen from the front and from the side."""
+    look = Look()
+    shown = types.SimpleNamespace(orbit=Orbit(distance=30), look=look, other=None, renderer=types.SimpleNamespace(radius=10.0))
+    state = Viewer(lambda: types.SimpleNamespace(set_progress=lambda report: None), lambda device: shown)
+
+    def place(point=(0, 0, 0)):
+        """(x to the right, y down) in heights of the picture, and the distance."""
+        clip = shown.orbit.matrices((0, 0, 1), (0, -1, 0), (0, 0, 0), 10, 2)[1] @ (*point, 1)
+        return np.array([clip[0] / clip[3], -0.5 * clip[1] / clip[3]]), clip[3]
+
+    for shown.orbit.azimuth in (0, 70):
+        before = place()[0]
+        state.apply({"kind": "pan", "dx": 0.2, "dy": -0.1})
+        np.testing.assert_allclose(place()[0] - before, (0.2, -0.1), atol=1e-6)
+    shown.orbit = Orbit(azimuth=0, elevation=0, distance=30)
+    near = (0, -5, 0)  # of the front: it goes with the mouse when the object turns
+    state.apply({"kind": "orbit", "dx": 0.1, "dy": 0.0})
+    assert place(near)[0][0] > 0.01 and abs(place(near)[0][1]) < 1e-6
+    state.apply({"kind": "orbit", "dx": -0.1, "dy": 0.1})
+    assert abs(place(near)[0][0]) < 1e-6 and place(near)[0][1] > 0.01
+    before = place()[1]
+    state.apply({"kind": "zoom", "dy": -0.1})
+    assert place()[1] < 0.95 * before
+    azimuth, elevation = look.lamps[0].azimuth, look.lamps[0].elevation
+    state.apply({"kind": "light", "dx": 0.1, "dy": -0.1})
+    assert look.lamps[0].azimuth - azimuth == pytest.approx(12) and look.lamps[0].elevation - elevation == pytest.approx(12)
 
 
 def test_presets_and_looks():
