@@ -27,7 +27,6 @@ class TextScan {
             split(text.substr(0, text.find(comment_)));
             if (!words_.empty()) return true;
         }
-        words_.clear();
         return false;
     }
 
