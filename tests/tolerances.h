@@ -391,6 +391,15 @@ inline constexpr Tolerance scatterUnits{
     "scatterUnits", 1e-3,
     "RMS, a tenth of the maximum: a ring of blocks with 0.4 % of the light may count or not"};
 
+inline constexpr Tolerance lightFlux{"lightFlux", 6e-3,
+                                     "relative, RMS, far wider than the ball: areas of texels by steps to "
+                                     "one side, 0.004 off in radial cubes of 256 texels a side"};
+inline constexpr Tolerance lightPlaces{
+    "lightPlaces", 0.035, "as wide as the ball: blocks of texels half as wide as their distance"};
+inline constexpr Tolerance lightTails{"lightTails", 0.06, "the same in the tails of narrow Gaussians"};
+inline constexpr Tolerance lightHalves{"lightHalves", 2e-6, "the same sums in another order"};
+inline constexpr Tolerance lightsAddUp{
+    "lightsAddUp", 8e-3, "relative, RMS: hidden mass is known if either light shows it; 0.0055 measured"};
 inline constexpr Tolerance lightThroughBall{"lightThroughBall", 0.12,
                                             "relative, RMS: in the tails of Gaussians alone, blocks of "
                                             "texels half as wide as their distance are 10 % off"};

@@ -23,10 +23,10 @@ struct ShownImages {
         set(slot, values, formats[values.size() / (size_t(width) * height) - 1]);
     }
     void set(PelImageSlot slot, const std::vector<uint8_t>& ids) { set(slot, ids, PEL_FORMAT_R8_UINT); }
-    // A map of the first light.
-    void setMap(PelLightSlot slot, const std::vector<float>& values, uint32_t w, uint32_t h) {
+    // A map of a light, by default the first one.
+    void setMap(PelLightSlot slot, const std::vector<float>& values, uint32_t w, uint32_t h, uint32_t light = 0) {
         shader.set(
-            0, slot,
+            light, slot,
             pellucid::imageDesc(pellucid::Buffer(device, values),
                                 values.size() == size_t(w) * h ? PEL_FORMAT_R32F : PEL_FORMAT_RG32F, w, h));
     }

@@ -1,0 +1,252 @@
+#include "reference/diffusion_light.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "reference/cube.h"
+
+namespace reference {
+namespace {
+
+constexpr double noNumber = std::numeric_limits<double>::quiet_NaN();
+
+// Constants of the definition.
+constexpr double window = 1.5;         // steps or texels
+constexpr double leastCosine = 0.2;    // of texels' length on the surface
+constexpr double nearlyPlane = 0.015;  // of the mass; none of it from twice that on
+constexpr double longestSlope = 10;    // of a texel's surface, over its area across the light
+
+Vec3 rowOf(const Matrix4& m, int r) {
+    return {m[size_t(r)][0], m[size_t(r)][1], m[size_t(r)][2]};
+}
+
+double determinant(Vec3 a, Vec3 b, Vec3 c) {
+    return dot(a, cross(b, c));
+}
+
+// p with row . p + constant = 0 for three rows, by Cramer's rule.
+Vec3 meet(const std::array<Vec3, 3>& rows, const std::array<double, 3>& constants) {
+    const double all = determinant(rows[0], rows[1], rows[2]);
+    const Vec3 sum = constants[0] * cross(rows[1], rows[2]) + constants[1] * cross(rows[2], rows[0]) +
+                     constants[2] * cross(rows[0], rows[1]);
+    return -1 * sum / all;
+}
+
+// The point that is seen at (u, v, depth).
+Vec3 pointAt(const LightDepths& map, const MappedLight& light, double u, double v, double depth) {
+    if (map.face >= 0) {
+        const Vec3 d = cubeDirection(map.face, 2 * u - 1, 2 * v - 1);
+        const double along = map.decoding.distance(depth) / (map.radial ? length(d) : 1);
+        return light.position + along * d;
+    }
+    const Matrix4& m = map.worldToShadow;
+    std::array<Vec3, 3> rows;
+    std::array<double, 3> constants{};
+    const double at[] = {u, v, depth};
+    for (size_t r = 0; r < 3; ++r) {
+        rows[r] = rowOf(m, int(r)) - at[r] * rowOf(m, 3);
+        constants[r] = m[r][3] - at[r] * m[3][3];
+    }
+    return meet(rows, constants);
+}
+
+// The area that a beam through 1 in u and 1 in v has across the light, where it shines on `p`; by a unit of strength: of
+// directional light it is an area, of others a solid angle.
+double beam(const LightDepths& map, const MappedLight& light, Vec3 p) {
+    if (map.face >= 0) {
+        const Vec3 d = p - light.position;
+        const double axis = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
+        return 4 * std::pow(axis / length(d), 3);
+    }
+    const Matrix4& m = map.worldToShadow;
+    const Vec3 u = rowOf(m, 0), v = rowOf(m, 1), w = rowOf(m, 3);
+    if (light.directional) return m[3][3] * m[3][3] / std::abs(dot(cross(u, v), light.toLight));
+    const Vec3 d = normalized(p - light.position);
+    return std::pow(dot(w, d), 3) / std::abs(determinant(u, v, w));
+}
+
+double strength(const MappedLight& light, Vec3 p) {
+    if (!light.spot) return 1;
+    const double cosine = dot(normalized(p - light.position), light.spotDirection);
+    return smoothstep01(saturate((cosine - light.cosOuter) / (light.cosInner - light.cosOuter)));
+}
+
+bool holds(const LightDepths& map, Vec3 p) {
+    const Vec3 at = shadowCoordinates(map.worldToShadow, p, {}, 0);
+    return at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1 && at.z >= 0 && at.z <= 1;
+}
+
+// The longer side of a texel across the light, where it shines on `p`.
+double texelLength(const LightDepths& map, const MappedLight& light, Vec3 p) {
+    if (map.face >= 0) {
+        const CubeFace& face = cubeFaces[map.face];
+        return 2 * dot(p - light.position, face.out) / map.width;
+    }
+    const Matrix4& m = map.worldToShadow;
+    const Vec3 forward = rowOf(m, 3);
+    const double along = dot(forward, forward);
+    double longest = 0;
+    for (int r = 0; r < 2; ++r) {
+        Vec3 row = rowOf(m, r);
+        if (along > 0) row = row - (dot(row, forward) / along) * forward;
+        longest = std::max(longest, 1 / (length(row) * (r ? map.height : map.width)));
+    }
+    return longest * (dot(forward, p) + m[3][3]);
+}
+
+// The shorter of the ways to two places; what of it is no number does not count.
+Vec3 shorter(Vec3 p, Vec3 a, Vec3 b) {
+    const Vec3 toA = a - p, toB = b - p;
+    if (!std::isfinite(length(toA))) return toB;
+    if (!std::isfinite(length(toB))) return toA;
+    return length(toA) <= length(toB) ? toA : toB;
+}
+
+// Of the pixels that belong to the same object.
+struct Steps {
+    Vec3 right, down;
+};
+Steps stepsAt(const ScatterPicture& p, int x, int y) {
+    const auto place = [&](int u, int v) {
+        const bool there =
+            u >= 0 && v >= 0 && u < p.width && v < p.height && p.ids[p.at(u, v)] == p.ids[p.at(x, y)];
+        return there ? p.positions[p.at(u, v)] : Vec3{noNumber, noNumber, noNumber};
+    };
+    const Vec3 here = p.positions[p.at(x, y)];
+    const auto finite = [](Vec3 v) { return std::isfinite(length(v)) ? v : Vec3{}; };
+    return {finite(shorter(here, place(x - 1, y), place(x + 1, y))),
+            finite(shorter(here, place(x, y - 1), place(x, y + 1)))};
+}
+
+double nearShare(double distance, double rho) {
+    return saturate(2 - distance / rho);
+}
+
+// R as far as it reaches, so that all of it is 1.
+class Cut {
+  public:
+    explicit Cut(const Profile& profile)
+        : profile_(profile), reach_(scatterReach(profile)), all_(enclosedEnergy(profile, reach_)) {}
+    Rgb radial(double distance) const {
+        if (distance >= reach_) return {};
+        Rgb density = profile_.radial(distance);
+        for (int c = 0; c < 3; ++c) density[c] /= all_[c];
+        return density;
+    }
+    Rgb within(double distance) const {
+        Rgb share = enclosedEnergy(profile_, std::min(distance, reach_));
+        for (int c = 0; c < 3; ++c) share[c] /= all_[c];
+        return share;
+    }
+
+  private:
+    const Profile& profile_;
+    double reach_;
+    Rgb all_;
+};
+
+// The share of the light that comes from within the window, on a plane: g falls evenly from rho to 2 rho.
+Rgb shareOfWindow(const Cut& profile, double rho) {
+    constexpr int steps = 16;
+    Rgb sum;
+    for (int k = 0; k < steps; ++k) sum = sum + profile.within(rho * (1 + (k + 0.5) / steps));
+    return sum / steps;
+}
+
+// What the mass is to be multiplied by.
+double planeLike(double mass, double plane) {
+    const double off = mass - plane, trust = saturate(2 - std::abs(off) / nearlyPlane);
+    return mass > 0 ? (mass - off * trust) / mass : 0;
+}
+
+}  // namespace
+
+std::vector<LitTexel> litTexels(const MappedLight& light) {
+    std::vector<LitTexel> all;
+    for (size_t k = 0; k < light.maps.size(); ++k) {
+        const LightDepths& map = light.maps[k];
+        const auto place = [&](int x, int y, int depthX, int depthY) {
+            const int column = std::clamp(depthX, 0, map.width - 1), row = std::clamp(depthY, 0, map.height - 1);
+            const double depth = map.depth[size_t(row) * size_t(map.width) + size_t(column)];
+            return pointAt(map, light, (x + 0.5) / map.width, (y + 0.5) / map.height, depth);
+        };
+        for (int y = 0; y < map.height; ++y)
+            for (int x = 0; x < map.width; ++x) {
+                const Vec3 p = place(x, y, x, y);
+                if (!std::isfinite(length(p))) continue;
+                bool finer = false;
+                for (size_t f = 0; f < k && map.face < 0; ++f) finer |= holds(light.maps[f], p);
+                if (finer) continue;
+                const double texel = beam(map, light, p) / (double(map.width) * map.height);
+                const Vec3 from = light.position - p;
+                const double across = light.directional ? texel : texel * dot(from, from);
+                const Vec3 right = shorter(p, place(x - 1, y, x - 1, y), place(x + 1, y, x + 1, y)),
+                           down = shorter(p, place(x, y - 1, x, y - 1), place(x, y + 1, x, y + 1));
+                const double area = length(cross(right, down));
+                all.push_back({p, strength(light, p) * texel,
+                               std::min(std::isfinite(area) ? area : across, longestSlope * across)});
+            }
+    }
+    return all;
+}
+
+std::vector<Rgb> scatterFromLights(const ScatterPicture& p, const std::vector<MappedLight>& lights,
+                                   const Profile& whole) {
+    const Cut profile(whole);
+    std::vector<std::vector<LitTexel>> texels;
+    for (const MappedLight& light : lights) texels.push_back(litTexels(light));
+    std::vector<double> areas(p.positions.size());
+    for (int y = 0; y < p.height; ++y)
+        for (int x = 0; x < p.width; ++x)
+            if (p.ids[p.at(x, y)]) areas[p.at(x, y)] = surfaceArea(p, x, y);
+    std::vector<Rgb> result = p.irradiance;
+    for (int y = 0; y < p.height; ++y)
+        for (int x = 0; x < p.width; ++x) {
+            const size_t i = p.at(x, y);
+            if (!(areas[i] > 0)) continue;
+            const Vec3 here = p.positions[i];
+            const Steps steps = stepsAt(p, x, y);
+            const Vec3 across = cross(steps.right, steps.down),
+                       normal = across / std::max(length(across), 1e-300);
+            double rho = window * std::max(length(steps.right), length(steps.down));
+            for (const MappedLight& light : lights) {
+                const Vec3 toLight = light.directional ? light.toLight : normalized(light.position - here);
+                const double cosine = std::max(std::abs(dot(normal, toLight)), leastCosine);
+                for (const LightDepths& map : light.maps)
+                    rho = std::max(rho, window * texelLength(map, light, here) / cosine);
+            }
+            const Rgb within = shareOfWindow(profile, rho), lit = p.irradiance[i];
+            Rgb sum;
+            for (size_t k = 0; k < lights.size(); ++k) {
+                Rgb light, mass;
+                for (const LitTexel& t : texels[k]) {
+                    const double distance = length(t.position - here), far = 1 - nearShare(distance, rho);
+                    if (!(far > 0) || !(t.flux > 0)) continue;
+                    const Rgb density = far * profile.radial(distance);
+                    light = light + t.flux * density;
+                    mass = mass + t.extent * density;
+                }
+                for (int c = 0; c < 3; ++c)
+                    sum[c] += lights[k].color[c] * light[c] *
+                              (lit.x + lit.y + lit.z > 0 ? planeLike(mass[c], 1 - within[c]) : 1);
+            }
+            // Near: the mean of what pixels show.
+            const Rgb own = profile.within(std::sqrt(areas[i] / std::numbers::pi));
+            Rgb weights = own, near = own * lit;
+            for (size_t j = 0; j < p.positions.size(); ++j) {
+                if (j == i || !(areas[j] > 0) || p.ids[j] != p.ids[i]) continue;
+                const double distance = length(p.positions[j] - here), share = nearShare(distance, rho);
+                if (!(share > 0)) continue;
+                const Rgb weight = share * areas[j] * profile.radial(distance);
+                weights = weights + weight;
+                near = near + weight * p.irradiance[j];
+            }
+            for (int c = 0; c < 3; ++c)
+                result[i][c] = sum[c] + within[c] * (weights[c] > 0 ? near[c] / weights[c] : lit[c]);
+        }
+    return result;
+}
+
+}  // namespace reference
