@@ -40,8 +40,16 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     if (anyw(there)) {
         const floatw columns = convert_floatw(column), rows = (float)y;
         const Vec3w p = pointOfTexel(map, columns, rows, depth);
-        const Vec3w right = sub3(pointOfTexel(map, columns + 1.0f, rows, depth), p),
-                    down = sub3(pointOfTexel(map, columns, rows + 1.0f, depth), p);
+        // At equal depth. Texels of radial maps lie on a ball: steps to one side would lean.
+        Vec3w left = p, above = p;
+        float back = 0.0f;
+        if (map->radialRange > 0.0f) {
+            back = 0.5f;
+            left = pointOfTexel(map, columns - back, rows, depth);
+            above = pointOfTexel(map, columns, rows - back, depth);
+        }
+        const Vec3w right = sub3(pointOfTexel(map, columns + (1.0f - back), rows, depth), left),
+                    down = sub3(pointOfTexel(map, columns, rows + (1.0f - back), depth), above);
         Vec3w toLight;
         const floatw strength = lightAt(map, p, &toLight);
         const floatw across = fabs(dot3(cross3(right, down), toLight));
@@ -55,11 +63,12 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
         }
         there &= finite3(p) & finitew(across) & finitew(strength);
         flux = selectw((floatw)(0.0f), strength * across, there);
-        const Vec3w left = pointOfTexel(map, columns - 1.0f, rows, texelDepths(map, first, (int)x - 1, (int)y)),
+        const Vec3w before =
+                        pointOfTexel(map, columns - 1.0f, rows, texelDepths(map, first, (int)x - 1, (int)y)),
                     next = pointOfTexel(map, columns + 1.0f, rows, texelDepths(map, first, (int)x + 1, (int)y)),
-                    above = pointOfTexel(map, columns, rows - 1.0f, texelDepths(map, first, (int)x, (int)y - 1)),
+                    over = pointOfTexel(map, columns, rows - 1.0f, texelDepths(map, first, (int)x, (int)y - 1)),
                     below = pointOfTexel(map, columns, rows + 1.0f, texelDepths(map, first, (int)x, (int)y + 1));
-        const Vec3w area = cross3(shorterStep(p, left, next), shorterStep(p, above, below));
+        const Vec3w area = cross3(shorterStep(p, before, next), shorterStep(p, over, below));
         floatw extent = sqrt(dot3(area, area));
         extent = fmin(selectw(across, extent, finitew(extent)), LONGEST_SLOPE * across);
         const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
