@@ -7,7 +7,10 @@
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
+#include <mutex>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -18,9 +21,36 @@ std::atomic<int64_t> live[types];
 std::atomic<uint64_t> buffersMade, bytesCopied, transfers, launches;
 std::atomic<bool> warned;  // the compiler, about a kernel
 
+// Never destroyed: the library may launch until the very end.
+struct Seen {
+    std::mutex mutex;
+    std::map<std::string, uint64_t> launches;
+    std::vector<std::string> sources;
+};
+Seen& seen() {
+    static Seen* const all = new Seen;
+    return *all;
+}
+
+void remember(cl_uint count, const char* const* texts, const size_t* sizes) {
+    std::string source;
+    for (cl_uint i = 0; i < count; ++i)
+        source += sizes && sizes[i] ? std::string(texts[i], sizes[i]) : std::string(texts[i]);
+    const std::lock_guard lock(seen().mutex);
+    seen().sources.push_back(std::move(source));
+}
+
 template <class F>
 F* next(const char* name) {
     return reinterpret_cast<F*>(dlsym(RTLD_NEXT, name));
+}
+
+void remember(cl_kernel kernel) {
+    char name[256] = {};
+    const auto info = next<decltype(clGetKernelInfo)>("clGetKernelInfo");
+    if (info(kernel, CL_KERNEL_FUNCTION_NAME, sizeof name - 1, name, nullptr) != CL_SUCCESS) return;
+    const std::lock_guard lock(seen().mutex);
+    ++seen().launches[name];
 }
 
 template <class T>
@@ -87,6 +117,19 @@ Counts counts() {
             live[events],   buffersMade,  bytesCopied,  transfers,      launches};
 }
 
+uint64_t launchesOf(const char* kernel) {
+    const std::lock_guard lock(seen().mutex);
+    const auto found = seen().launches.find(kernel);
+    return found == seen().launches.end() ? 0 : found->second;
+}
+
+uint64_t programsWith(const char* kernel) {
+    const std::lock_guard lock(seen().mutex);
+    uint64_t count = 0;
+    for (const std::string& source : seen().sources) count += source.find(kernel) != std::string::npos;
+    return count;
+}
+
 }  // namespace spy
 
 #pragma GCC visibility push(default)
@@ -128,6 +171,7 @@ cl_mem clCreateSubBuffer(cl_mem whole, cl_mem_flags flags, cl_buffer_create_type
 }
 cl_program clCreateProgramWithSource(cl_context context, cl_uint count, const char** texts,
                                      const size_t* sizes, cl_int* code) {
+    if (texts) remember(count, texts, sizes);
     return made(programs, REAL(clCreateProgramWithSource)(context, count, texts, sizes, code));
 }
 cl_program clCreateProgramWithBinary(cl_context context, cl_uint count, const cl_device_id* devices,
@@ -153,7 +197,7 @@ cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint 
                               const cl_event* list, cl_event* event) {
     const cl_int code =
         REAL(clEnqueueNDRangeKernel)(queue, kernel, dimensions, offset, global, local, waits, list, event);
-    if (code == CL_SUCCESS) ++launches;
+    if (code == CL_SUCCESS) ++launches, remember(kernel);
     return withEvent(code, event);
 }
 cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t offset,

@@ -21,5 +21,8 @@ struct [[gnu::visibility("default")]] Counts {
 };
 
 [[gnu::visibility("default")]] Counts counts();
+// Of one kernel, since the program began; and programs that were made from source which has its name.
+[[gnu::visibility("default")]] uint64_t launchesOf(const char* kernel);
+[[gnu::visibility("default")]] uint64_t programsWith(const char* kernel);
 
 }  // namespace spy
