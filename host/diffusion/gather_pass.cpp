@@ -56,9 +56,13 @@ class GatherPass final : public Pass {
 
     void enqueue(PassWork& work) override { scatter_->enqueue(images_, work.events); }
 
-    void addStats(Device&, const ShaderPlan&, uint64_t, PelShaderStats& stats) const override {
-        addScatterCounts(scatter_->counts(),
-                         form == Form::disk ? PEL_SCATTERING_SCREEN : PEL_SCATTERING_SEPARABLE, stats);
+    void addStats(Device&, const ShaderPlan& plan, uint64_t, PelShaderStats& stats) const override {
+        const ScatterCounts counts = scatter_->counts();
+        addScatterCounts(counts, form == Form::disk ? PEL_SCATTERING_SCREEN : PEL_SCATTERING_SEPARABLE, stats);
+        if (std::ranges::all_of(plan.state.materials, [](const auto& m) {
+                return !takes(m.second) || m.second.given.scattering == PEL_SCATTERING_AUTO;
+            }))
+            addKeptChoices(counts, stats);
     }
 
   private:

@@ -1,5 +1,7 @@
 #include "diffusion/scatter_material.h"
 
+#include <algorithm>
+
 #include "shading/scratch_image.h"
 
 namespace pel {
@@ -29,6 +31,13 @@ void addScatterCounts(const ScatterCounts& counts, PelScattering scattering, Pel
     stats.pixelsScattered += counts.pixelsTapped;
     stats.pixelsKept += counts.pixelsCovered - counts.pixelsTapped;
     stats.scatterTaps += counts.taps;
+}
+
+void addKeptChoices(const ScatterCounts& counts, PelShaderStats& stats) {
+    uint64_t& chosen = stats.pixelsByChoice[PEL_SCATTERING_SCREEN];
+    const uint64_t kept = std::min<uint64_t>(counts.pixelsCovered - counts.pixelsTapped, chosen);
+    stats.pixelsByChoice[PEL_SCATTERING_NONE] += kept;
+    chosen -= kept;
 }
 
 }  // namespace pel

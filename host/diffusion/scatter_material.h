@@ -30,5 +30,7 @@ inline uint32_t scatterTapsOf(PelScattering scattering, uint32_t taps) {
 ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Buffer>& out, bool inPlace = false);
 
 void addScatterCounts(const ScatterCounts& counts, PelScattering scattering, PelShaderStats& stats);
+// Of materials of PEL_SCATTERING_AUTO that scatter on the screen: those that kept their irradiance have chosen nothing.
+void addKeptChoices(const ScatterCounts& counts, PelShaderStats& stats);
 
 }  // namespace pel

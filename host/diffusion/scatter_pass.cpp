@@ -83,10 +83,7 @@ class ScatterPass final : public Pass {
                            m.second.given.scattering != PEL_SCATTERING_AUTO;
                 }))
                 return;
-            uint64_t& chosen = stats.pixelsByChoice[PEL_SCATTERING_SCREEN];
-            const uint64_t kept = std::min<uint64_t>(counts.pixelsCovered - counts.pixelsTapped, chosen);
-            stats.pixelsByChoice[PEL_SCATTERING_NONE] += kept;
-            chosen -= kept;
+            addKeptChoices(counts, stats);
         }
     }
 

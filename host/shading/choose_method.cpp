@@ -10,11 +10,21 @@ namespace {
 // Of scratch: a pixel, with irradiance and the shadow of a light; a texel of a light's map.
 constexpr uint64_t bytesOnScreen = 96, bytesPerTexel = 33;
 
+// Of the disk that auto takes where the sums over blocks cannot do what is asked for.
+constexpr uint32_t diskTaps = 64;
+
 bool isAuto(const ShaderMaterial& material) {
     return material.given.scattering == PEL_SCATTERING_AUTO;
 }
 bool bringsTables(const ShaderMaterial& material) {
     return material.givenCurvatureLut || material.givenShadowLut;
+}
+
+// What is asked for that differs from pixel to pixel, and blocks of pixels do not know; "" if nothing is.
+const char* perPixel(const ShaderState& state, const PelMaterial& m) {
+    if (m.borderColor[0] > 0 || m.borderColor[1] > 0 || m.borderColor[2] > 0) return "it has a borderColor";
+    const ImageView& weight = state.images[PEL_SLOT_SCATTER_WEIGHT];
+    return weight && weight.info().components > 1 ? "the scatter weight image has radii" : "";
 }
 
 // Whether every light's shadow is sharp where irradiance is made, or can be made so.
@@ -52,6 +62,14 @@ std::string chooseMethods(ShaderState& state, uint32_t methods) {
         if (onScreen) {
             material.params.scattering = PEL_SCATTERING_SCREEN;
             scatters = true;
+            const std::string why = perPixel(state, material.params);
+            material.params.scatterTaps = why.empty() ? 0 : diskTaps;
+            if (!why.empty())
+                say("material ", id, " scatters by ", diskTaps, " taps on a disk, for ", why,
+                    ": without, it would scatter over the whole profile, and with what the lights' shadow "
+                    "maps "
+                    "show "
+                    "beside it");
         } else if (!fits) {
             say("material ", id, " scatters by its tables, for PelShaderOptions.scratchBudget is ",
                 state.options.scratchBudget,

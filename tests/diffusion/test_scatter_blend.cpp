@@ -18,16 +18,19 @@ struct Frame {
     PelMaterial material = pelMaterialDefaults();
     Profile profile = Profile::skin();
     std::vector<PelLight> lights;
-    bool giveIrradiance = true;
+    bool giveIrradiance = true, both = false;  // the material is that of id 2 too
 
     explicit Frame(Picture p) : picture(std::move(p)), normals(picture.positions.size()) {
         for (size_t i = 0; i < picture.pixels(); ++i) normals[3 * i + 2] = 1;
         material.profile = profile.get();
         std::fill_n(material.albedo, 3, 1.0f);
     }
-    std::vector<float> shade(PelShaderStats* stats = nullptr) const {
+    std::vector<float> shade(PelShaderStats* stats = nullptr, std::string* said = nullptr) const {
         const Picture& p = picture;
         ShownImages shown(device(), p.width, p.height);
+        PelShaderOptions options = pelShaderOptionsDefaults();
+        options.countPixels = stats != nullptr;
+        shown.shader.set(options);
         shown.set(PEL_SLOT_POSITION, p.positions);
         shown.set(PEL_SLOT_NORMAL_SHADING, normals);
         shown.set(PEL_SLOT_MATERIAL, p.ids);
@@ -36,10 +39,12 @@ struct Frame {
         if (!weight.empty()) shown.set(PEL_SLOT_SCATTER_WEIGHT, weight);
         if (!back.empty()) shown.set(PEL_SLOT_IRRADIANCE_BACK, back);
         shown.shader.setMaterial(1, material);
+        if (both) shown.shader.setMaterial(2, material);
         shown.shader.set(lights);
         shown.shader.set(pelCameraDefaults());
         std::vector<float> radiance = shown.execute();
         if (stats) *stats = shown.shader.stats();
+        if (said) *said = shown.shader.warnings();
         return radiance;
     }
 };
@@ -173,6 +178,44 @@ TEST(ScatterBlend, AloneAddsAndMultiplies) {
         const auto again = out.readAll<float>();
         for (size_t i = 0; i < again.size(); ++i) ASSERT_NEAR(again[i], result[i], 1e-3) << i;
     }
+}
+
+// What blocks of pixels cannot do auto does by a disk of taps, and says so.
+TEST(ScatterBlend, AutoTakesADiskWhereItHasTo) {
+    const auto shade = [](PelScattering method, uint32_t taps, bool border, bool radii, PelShaderStats* stats,
+                          std::string* said) {
+        Frame f(stripes());
+        for (size_t i = 0; i < f.picture.pixels(); ++i) f.picture.ids[i] = uint8_t(1 + (i % 96 > 48));
+        f.material.scattering = method;
+        f.material.scatterTaps = taps;
+        f.material.specular = 0;
+        if (border) std::fill_n(f.material.borderColor, 3, 0.7f);
+        if (radii)
+            for (size_t i = 0; i < f.picture.pixels(); ++i)
+                f.weight.insert(f.weight.end(), {1, float(i % 96) / 96});
+        f.both = true;
+        const auto result = f.shade(stats, said);
+        return result;
+    };
+    for (const auto& [border, radii] : {std::pair{true, false}, {false, true}, {true, true}}) {
+        PelShaderStats stats, disk;
+        std::string said, nothing;
+        const auto automatic = shade(PEL_SCATTERING_AUTO, 0, border, radii, &stats, &said);
+        EXPECT_EQ(automatic, shade(PEL_SCATTERING_SCREEN, 64, border, radii, &disk, &nothing));
+        EXPECT_NE(automatic, shade(PEL_SCATTERING_AUTO, 0, false, false, nullptr, nullptr));
+        EXPECT_NE(said.find(border ? "64 taps on a disk, for it has a borderColor"
+                                   : "64 taps on a disk, for the scatter weight image has radii"),
+                  std::string::npos)
+            << said;
+        EXPECT_EQ(nothing, "");
+        EXPECT_EQ(stats.scatterTaps, disk.scatterTaps);
+        EXPECT_GT(stats.pixelsByChoice[PEL_SCATTERING_SCREEN], 0u);
+        EXPECT_EQ(stats.pixelsByChoice[PEL_SCATTERING_SCREEN], stats.pixelsScattered);
+        EXPECT_EQ(stats.pixelsByChoice[PEL_SCATTERING_NONE], stats.pixelsKept);
+    }
+    // scatterTaps alone is not auto's.
+    EXPECT_EQ(shade(PEL_SCATTERING_AUTO, 16, false, false, nullptr, nullptr),
+              shade(PEL_SCATTERING_AUTO, 0, false, false, nullptr, nullptr));
 }
 
 TEST(ScatterBlend, SaysWhatItCannot) {
