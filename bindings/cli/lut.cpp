@@ -16,8 +16,9 @@ namespace {
 
 struct Arguments {
     Run::Options run;
-    std::string output, size = "512x512", encoding, irisProfile, form = "arc", axis = "linear",
-                        profile = "skin";
+    std::string output, size = "512x512", encoding, irisProfile, form, axis, profile = "skin",
+                        preset = "material";
+    bool openEnds = false;
     PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
     PelShadowLutDesc shadow = pelShadowLutDescDefaults();
     PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
@@ -33,6 +34,18 @@ Profile takeProfile(const Arguments& arguments, Desc& desc) {
     if (arguments.radius->count() && desc.diffusionRadius == 0)
         throw UsageError("--diffusion-radius: diffusionRadius is 0; a length above 0 is needed");
     return profile;
+}
+
+constexpr std::string_view presets[] = {"material", "faceworks"};
+
+// What a preset says where nothing else is asked for: "material", the tables that a material makes of its profile; "faceworks", those of
+// FaceWorks.
+void applyPreset(Arguments& a, const CLI::App& command) {
+    const bool faceworks = a.preset == "faceworks";
+    if (!command.count("--size")) a.size = faceworks ? "512x512" : "64x64";
+    if (a.form.empty()) a.form = faceworks ? "arc" : "sphere";
+    if (a.axis.empty()) a.axis = faceworks ? "linear" : "root";
+    a.shadow.closedEnds = !faceworks && !a.openEnds;
 }
 
 // A picture of the table to look at: its values as linear light, from 0 to 1.
@@ -102,10 +115,10 @@ void integrate(Arguments& arguments, Desc& desc) {
     run.finish();
 }
 
-void addCommon(CLI::App& command, Arguments& a, const char* size = "texels, WxH") {
+void addCommon(CLI::App& command, Arguments& a, const char* size = "texels, WxH (default: 512x512)") {
     command.add_option("-o,--output", a.output, "file to write: .exr, .png, .bmp, .tga, .npy, .dds or .ktx2")
         ->required();
-    command.add_option("--size", a.size, size)->capture_default_str();
+    command.add_option("--size", a.size, size);
     command
         .add_option("--encoding", a.encoding,
                     "float, half, faceworks8 (.png, .bmp, .tga for engines), or bc6h for .dds and .ktx2 "
@@ -122,6 +135,21 @@ CLI::Option* addProfileOptions(CLI::App& command, Arguments& a, float& diffusion
                               "sigma of the widest Gaussian, mm (default: the profile's own)");
 }
 
+void addPreset(CLI::App& command, Arguments& a) {
+    command
+        .add_option("--preset", a.preset,
+                    "material: as a material makes it of its profile; faceworks: as FaceWorks does")
+        ->check(isOneOf(presets))
+        ->capture_default_str();
+    command
+        .add_option("--axis", a.axis,
+                    "spread of texels: linear, or root, by which small tables look up better (default: root; "
+                    "linear with --preset faceworks)")
+        ->check(isOneOf(io::lutAxes));
+}
+
+constexpr const char* tableSize = "texels, WxH (default: 64x64; 512x512 with --preset faceworks)";
+
 }  // namespace
 
 void addLut(CLI::App& app) {
@@ -131,21 +159,20 @@ void addLut(CLI::App& app) {
 
     CLI::App* curvature =
         lut->add_subcommand("curvature", "Light scattered round a curved surface, over N.L and curvature");
-    addCommon(*curvature, *a);
+    addCommon(*curvature, *a, tableSize);
+    addPreset(*curvature, *a);
     CLI::Option* curvatureRadius = addProfileOptions(*curvature, *a, a->curvature.diffusionRadius);
     curvature->add_option("--radius-min", a->curvature.radiusMin, "smallest radius of curvature, mm")
         ->capture_default_str();
     curvature->add_option("--radius-max", a->curvature.radiusMax, "largest radius of curvature, mm")
         ->capture_default_str();
-    curvature->add_option("--form", a->form, "geometry that light is integrated over")
-        ->check(isOneOf(io::curvatureForms))
-        ->capture_default_str();
     curvature
-        ->add_option("--axis", a->axis, "spread of texels: linear, or root (small tables look up better)")
-        ->check(isOneOf(io::lutAxes))
-        ->capture_default_str();
-    curvature->callback([a, curvatureRadius] {
+        ->add_option("--form", a->form,
+                     "geometry that light is integrated over (default: sphere; arc with --preset faceworks)")
+        ->check(isOneOf(io::curvatureForms));
+    curvature->callback([a, curvature, curvatureRadius] {
         a->radius = curvatureRadius;
+        applyPreset(*a, *curvature);
         const Profile profile = takeProfile(*a, a->curvature);
         a->curvature.form = chosen<PelCurvatureForm>(io::curvatureForms, a->form);
         a->curvature.axis = chosen<PelLutAxis>(io::lutAxes, a->axis);
@@ -154,15 +181,20 @@ void addLut(CLI::App& app) {
 
     CLI::App* shadow =
         lut->add_subcommand("shadow", "Light scattered across a shadow edge, over shadow value and 1/width");
-    addCommon(*shadow, *a);
+    addCommon(*shadow, *a, tableSize);
+    addPreset(*shadow, *a);
     CLI::Option* shadowRadius = addProfileOptions(*shadow, *a, a->shadow.diffusionRadius);
     shadow->add_option("--width-min", a->shadow.widthMin, "narrowest penumbra, mm")->capture_default_str();
     shadow->add_option("--width-max", a->shadow.widthMax, "widest penumbra, mm")->capture_default_str();
     shadow->add_option("--sharpening", a->shadow.sharpening, "how much narrower the shadow gets, from 1")
         ->capture_default_str();
-    shadow->callback([a, shadowRadius] {
+    shadow->add_flag("--open-ends", a->openEnds,
+                     "rows are not rescaled to run from 0 to 1 (--preset faceworks does not either)");
+    shadow->callback([a, shadow, shadowRadius] {
         a->radius = shadowRadius;
+        applyPreset(*a, *shadow);
         const Profile profile = takeProfile(*a, a->shadow);
+        a->shadow.axis = chosen<PelLutAxis>(io::lutAxes, a->axis);
         integrate(*a, a->shadow);
     });
 
@@ -172,7 +204,7 @@ void addLut(CLI::App& app) {
 
     CLI::App* eye = lut->add_subcommand(
         "eye", "Light on the iris behind a cornea, over place and the light's angle: slice below slice");
-    addCommon(*eye, *a, "texels, WxHxD; 64x64x32 by default");
+    addCommon(*eye, *a, "texels, WxHxD (default: 64x64x32)");
     eye->add_option("--profile", a->irisProfile, "of the iris, in which light scatters (default: none)");
     const std::pair<const char*, float*> lengths[] = {
         {"--sclera-radius", &a->eye.scleraRadius}, {"--cornea-radius", &a->eye.corneaRadius},

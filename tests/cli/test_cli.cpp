@@ -253,8 +253,9 @@ TEST_F(Cli, LutFilesHoldTheLibrarysTexels) {
     desc.radiusMin = 2;
     desc.radiusMax = 50;
     const Lut expected(device, desc);
-    const std::vector<std::string> common = {"lut", "curvature",    "--size", "24x10", "--radius-min",
-                                             "2",   "--radius-max", "50",     "-o"};
+    const std::vector<std::string> common = {"lut",   "curvature",    "--preset", "faceworks",    "--size",
+                                             "24x10", "--radius-min", "2",        "--radius-max", "50",
+                                             "-o"};
     const auto make = [&](const std::string& name, const std::string& encoding) {
         std::vector<std::string> arguments = common;
         arguments.push_back(path(name));
@@ -286,8 +287,8 @@ TEST_F(Cli, LutFilesHoldTheLibrarysTexels) {
             ASSERT_EQ(std::lround(255 * image.channels[i % 4].pixels[i / 4]), bytes.data[i]) << name << ' ' << i;
         }
     }
-    EXPECT_EQ(run({"lut", "curvature", "--size", "24x10", "--radius-min", "0.5", "--encoding", "faceworks8",
-                   "-o", path("c.png"), "--json"})
+    EXPECT_EQ(run({"lut", "curvature", "--preset", "faceworks", "--size", "24x10", "--radius-min", "0.5",
+                   "--encoding", "faceworks8", "-o", path("c.png"), "--json"})
                   .json()
                   .at("clipped_texels"),
               [&] {
@@ -299,6 +300,38 @@ TEST_F(Cli, LutFilesHoldTheLibrarysTexels) {
               }());
     make("h.exr", "half");
     EXPECT_EQ(io::readImage(path("h.exr")).channels[0].type, io::ChannelType::Half);
+}
+
+// Without more, the tables that a material makes of its profile; by a preset those of FaceWorks; and what is asked for by itself counts.
+TEST_F(Cli, TablesAreAMaterialsUnlessAPresetSaysOtherwise) {
+    const Device device("");
+    const auto info = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "lut");
+        arguments.insert(arguments.end(), {"-o", path("p.exr")});
+        const Result result = run(arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return io::readLut(device, path("p.exr")).info();
+    };
+    PelLutInfo i = info({"curvature"});
+    EXPECT_EQ(i.curvature.form, PEL_FORM_SPHERE);
+    EXPECT_EQ(i.curvature.axis, PEL_AXIS_ROOT);
+    EXPECT_EQ(i.curvature.width, 64u);
+    i = info({"curvature", "--preset", "faceworks", "--size", "32x8"});
+    EXPECT_EQ(i.curvature.form, PEL_FORM_ARC);
+    EXPECT_EQ(i.curvature.axis, PEL_AXIS_LINEAR);
+    EXPECT_EQ(i.curvature.height, 8u);
+    EXPECT_EQ(info({"curvature", "--preset", "faceworks", "--size", "32x8", "--axis", "root"}).curvature.axis,
+              PEL_AXIS_ROOT);
+    i = info({"shadow"});
+    EXPECT_EQ(i.shadow.closedEnds, 1u);
+    EXPECT_EQ(i.shadow.axis, PEL_AXIS_ROOT);
+    EXPECT_EQ(i.shadow.height, 64u);
+    EXPECT_EQ(info({"shadow", "--open-ends"}).shadow.closedEnds, 0u);
+    i = info({"shadow", "--preset", "faceworks"});
+    EXPECT_EQ(i.shadow.closedEnds, 0u);
+    EXPECT_EQ(i.shadow.axis, PEL_AXIS_LINEAR);
+    EXPECT_EQ(i.shadow.width, 512u);
+    expectRefused({"lut", "shadow", "--preset", "unity", "-o", path("p.exr")}, 2, "faceworks");
 }
 
 // A .png that no encoding was asked for is there to be looked at, and the report says so.
