@@ -16,21 +16,6 @@ namespace {
 // What the kernel calls the forms.
 #define NUMBER(name, number, key) {"PEL_FORM_" #name, #number},
 
-// Cubic Hermite interpolation between nodes, for each column of the unlit half.
-std::vector<LutColumn> columnsOf(uint32_t width, PelLutAxis axis, int nodes) {
-    std::vector<LutColumn> columns;
-    for (uint32_t x = 0; x < (width + 1) / 2; ++x) {
-        const double elevation = columnElevation(x, width, axis);
-        const double angle = std::asin(elevation);
-        int j = std::min(nodes - 1, int(nodes * std::pow(angle / (std::numbers::pi / 2), 0.25)));
-        while (j > 0 && nodeAngle(j, nodes) > angle) --j;
-        const double low = nodeAngle(j, nodes), step = nodeAngle(j + 1, nodes) - low, t = (angle - low) / step;
-        columns.push_back({float((1 + 2 * t) * (1 - t) * (1 - t)), float(-step * t * (1 - t) * (1 - t)),
-                           float(t * t * (3 - 2 * t)), float(step * t * t * (1 - t)), float(elevation), j});
-    }
-    return columns;
-}
-
 CurvatureLutParams paramsOf(const PelCurvatureLutDesc& desc, double curvatureMin, double curvatureMax,
                             size_t terms) {
     CurvatureLutParams params{};
@@ -76,7 +61,7 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
                                  {"PEL_NODES", std::to_string(quality.nodes)},
                                  {"PEL_POINTS", std::to_string(quality.points)},
                                  {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
-    const std::vector<LutColumn> columnWeights = columnsOf(desc.width, desc.axis, quality.nodes);
+    const std::vector<LutColumn> columnWeights = curvatureColumns(desc.width, desc.axis, quality.nodes);
     const cl::Memory gaussians = upload(*device, terms), nodes = upload(*device, meshOfNodes(quality.nodes)),
                      columns = upload(*device, columnWeights);
     const size_t record = PEL_CURVATURE_RECORD(quality.nodes);
@@ -88,7 +73,7 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
     device->launch(rowLaunch, {{(desc.height + lanes - 1) / lanes, 1, 1}, {group, 1, 1}});
 
     cl::Launch texelLaunch(program, "curvature_texels");
-    texelLaunch.arg(params).arg(rows).arg(columns).arg(lut->texels());
+    texelLaunch.arg(desc.width).arg(desc.height).arg(rows).arg(columns).arg(lut->texels());
     const size_t items = (columnWeights.size() + columnsPerItem - 1) / columnsPerItem;
     device->launch(texelLaunch, {{items, desc.height + 1, 1}, {group, 1, 1}});
     return lut;

@@ -45,6 +45,20 @@ double columnElevation(uint32_t x, uint32_t width, PelLutAxis axis) {
     return axis == PEL_AXIS_ROOT ? s * s : 1 - (x + 0.5) * 2 / width;
 }
 
+std::vector<LutColumn> curvatureColumns(uint32_t width, PelLutAxis axis, int nodes) {
+    std::vector<LutColumn> columns;
+    for (uint32_t x = 0; x < (width + 1) / 2; ++x) {
+        const double elevation = columnElevation(x, width, axis);
+        const double angle = std::asin(elevation);
+        int j = std::min(nodes - 1, int(nodes * std::pow(angle / (std::numbers::pi / 2), 0.25)));
+        while (j > 0 && nodeAngle(j, nodes) > angle) --j;
+        const double low = nodeAngle(j, nodes), step = nodeAngle(j + 1, nodes) - low, t = (angle - low) / step;
+        columns.push_back({float((1 + 2 * t) * (1 - t) * (1 - t)), float(-step * t * (1 - t) * (1 - t)),
+                           float(t * t * (3 - 2 * t)), float(step * t * t * (1 - t)), float(elevation), j});
+    }
+    return columns;
+}
+
 RowAxis rowAxis(PelLutAxis axis, uint32_t height, double least, double most) {
     const bool root = axis == PEL_AXIS_ROOT;
     const double first = root ? std::sqrt(least) : least, last = root ? std::sqrt(most) : most;

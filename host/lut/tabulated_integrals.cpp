@@ -1,6 +1,7 @@
 #include "lut/tabulated_integrals.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -11,6 +12,8 @@ namespace {
 constexpr double gaussAt[4] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526};
 constexpr double gaussWeight[4] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
                                    0.3478548451374538};
+// Below these angles chords are too near to the diameter for differences of moments, and of masses, in float.
+constexpr double nearAntipode = 0.8, antipodalAngle = 0.02;
 constexpr size_t knotsWorthCells = 128;  // a table with more is finer than the meshes here
 
 cl_float4 float4Of(const Rgb& v, double w) {
@@ -26,6 +29,30 @@ std::vector<double> withKnots(std::vector<double> borders, const std::vector<cl_
     std::sort(borders.begin(), borders.end());
     borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
     return borders;
+}
+
+std::vector<double> meshOfCells(double end, int cells) {
+    std::vector<double> mesh;
+    for (int i = 0; i <= cells; ++i) mesh.push_back(end * i / cells * i / cells);
+    return mesh;
+}
+
+Rgb lineSpread(const Profile& profile, double distance) {
+    Rgb P = profile.shape().lineSpread(distance * profile.radius());
+    for (double& value : P) value *= profile.radius();
+    return P;
+}
+
+// visit(distance from a, mass) for the points that stand for P from a to b. P behaves like the root of the distance before each
+// distance where R bends or ends, so a and b are such distances or have none between them, and points are even over that root.
+void eachPoint(const Profile& profile, double a, double b, auto&& visit) {
+    const double h = b - a;
+    for (int q = 0; q < 4; ++q) {
+        const double x = 0.5 + 0.5 * gaussAt[q], t = h * (1 - x * x), weight = gaussWeight[q] * h * x;
+        Rgb m = lineSpread(profile, a + t);
+        for (double& value : m) value *= weight;
+        visit(t, m);
+    }
 }
 
 }  // namespace
@@ -51,20 +78,10 @@ double tableReach(const Profile& profile) {
     return profile.shape().knots().back() / profile.radius();
 }
 
-// From the end inwards, cell by cell: each tail is the tail of the next cell plus what P adds within the
-// cell. P behaves like the root of the distance before each distance where R bends or ends, so cells are
-// split there and integrated over that root.
+// From the end inwards, cell by cell: each tail is the tail of the next cell plus what P adds within the cell.
 std::vector<cl_float4> tableTails(const Profile& profile, double end) {
-    const double unit = profile.radius();
-    const auto lineSpread = [&](double s) {
-        Rgb P = profile.shape().lineSpread(s * unit);
-        for (double& value : P) value *= unit;
-        return P;
-    };
-    std::vector<double> mesh;
-    for (int i = 0; i <= PEL_TAIL_CELLS; ++i) mesh.push_back(end * i / PEL_TAIL_CELLS * i / PEL_TAIL_CELLS);
-    const std::vector<double> borders = withKnots(mesh, tableKnots(profile));
-
+    const std::vector<double> mesh = meshOfCells(end, PEL_TAIL_CELLS),
+                              borders = withKnots(mesh, tableKnots(profile));
     std::vector<cl_float4> tails(size_t(PEL_TAIL_CELLS + 1) * PEL_TAIL_VALUES);
     Rgb mass{}, first{}, second{}, third{};
     size_t border = borders.size() - 1;
@@ -76,20 +93,17 @@ std::vector<cl_float4> tableTails(const Profile& profile, double end) {
                 second[c] += h * (first[c] + h * mass[c] / 2);
                 first[c] += h * mass[c];
             }
-            for (int q = 0; q < 4; ++q) {
-                const double x = 0.5 + 0.5 * gaussAt[q], t = h * (1 - x * x), weight = gaussWeight[q] * h * x;
-                const Rgb P = lineSpread(a + t);
+            eachPoint(profile, a, b, [&](double t, const Rgb& m) {
                 for (int c = 0; c < 3; ++c) {
-                    const double m = weight * P[c];
-                    mass[c] += m;
-                    first[c] += m * t;
-                    second[c] += m * t * t / 2;
-                    third[c] += m * t * t * t / 6;
+                    mass[c] += m[c];
+                    first[c] += m[c] * t;
+                    second[c] += m[c] * t * t / 2;
+                    third[c] += m[c] * t * t * t / 6;
                 }
-            }
+            });
         }
         cl_float4* out = tails.data() + size_t(i) * PEL_TAIL_VALUES;
-        out[PEL_TAIL_SPREAD] = float4Of(lineSpread(mesh[i]), 0);
+        out[PEL_TAIL_SPREAD] = float4Of(lineSpread(profile, mesh[i]), 0);
         out[PEL_TAIL_MASS] = float4Of(mass, 0);
         out[PEL_TAIL_FIRST] = float4Of(first, 0);
         out[PEL_TAIL_SECOND] = float4Of(second, 0);
@@ -98,10 +112,148 @@ std::vector<cl_float4> tableTails(const Profile& profile, double end) {
     return tails;
 }
 
+std::vector<cl_float4> lineSums(const Profile& profile, double end, int cells) {
+    const std::vector<double> mesh = meshOfCells(end, cells), borders = withKnots(mesh, tableKnots(profile));
+    std::vector<cl_float4> sums;
+    Rgb mass{}, moment{};
+    size_t border = 0;
+    for (double distance : mesh) {
+        while (borders[border] < distance) {
+            const double a = borders[border], b = borders[++border];
+            for (int c = 0; c < 3; ++c) moment[c] += (b - a) * mass[c];
+            eachPoint(profile, a, b, [&](double t, const Rgb& m) {
+                for (int c = 0; c < 3; ++c) {
+                    mass[c] += m[c];
+                    moment[c] += m[c] * (b - a - t);
+                }
+            });
+        }
+        sums.insert(sums.end(),
+                    {float4Of(lineSpread(profile, distance), 0), float4Of(mass, 0), float4Of(moment, 0)});
+    }
+    return sums;
+}
+
+std::vector<cl_float4> radialSums(const Profile& profile, double end, int cells) {
+    const std::vector<cl_float4> knots = tableKnots(profile);
+    std::vector<cl_float4> sums;
+    Rgb mass{}, moment{};
+    size_t piece = 0;
+    double at = 0;
+    const auto radial = [&](double distance, int c) {
+        const cl_float4 &low = knots[piece], &high = knots[piece + 1];
+        const double f = (distance - low.s[3]) / (double(high.s[3]) - low.s[3]);
+        return low.s[c] + f * (double(high.s[c]) - low.s[c]);
+    };
+    for (double distance : meshOfCells(end, cells)) {
+        while (at < distance) {
+            const bool last = piece + 2 == knots.size();
+            const double next = last ? distance : std::min<double>(distance, knots[piece + 1].s[3]),
+                         h = next - at;
+            for (int c = 0; c < 3; ++c) {
+                const double low = radial(at, c), high = radial(next, c);
+                moment[c] += h * mass[c] + h * h * (2 * low + high) / 6;
+                mass[c] += h * (low + high) / 2;
+            }
+            at = next;
+            if (next < distance) ++piece;
+        }
+        Rgb R;
+        for (int c = 0; c < 3; ++c) R[c] = std::max(radial(distance, c), 0.0);
+        sums.insert(sums.end(), {float4Of(R, 0), float4Of(mass, 0), float4Of(moment, 0)});
+    }
+    return sums;
+}
+
+std::vector<cl_float4> antipodes(const Profile& profile, bool radial, const std::vector<double>& radii) {
+    std::vector<cl_float4> densities;
+    for (double radius : radii) {
+        const double chord = 2 * radius * std::cos(antipodalAngle / 4);
+        Rgb density = lineSpread(profile, chord);
+        if (radial) {
+            density = profile.shape().radial(chord * profile.radius());
+            for (double& value : density) value *= profile.radius() * profile.radius();
+        }
+        densities.push_back(float4Of(density, 0));
+    }
+    return densities;
+}
+
+std::vector<TableInterval> tableMesh(int nodes, bool chord) {
+    std::vector<TableInterval> mesh;
+    for (int j = 0; j < nodes; ++j) {
+        const double low = nodeAngle(j, nodes), high = nodeAngle(j + 1, nodes),
+                     sine = std::sin((high - low) / 2);
+        // t: the angle of the mesh; points behind are at pi - t.
+        const auto side = [&](bool back) {
+            const auto distance = [&](double t) {
+                if (chord) return 2 * (back ? std::cos(t / 2) : std::sin(t / 2));
+                return back ? std::numbers::pi - t : t;
+            };
+            const double nearest = back ? distance(high) : distance(low),
+                         length = std::abs(distance(high) - distance(low));
+            // Least squares over the distances of the interval.
+            const auto fit = [&](auto&& weight) {
+                double sum = 0, moment = 0;
+                for (int q = 0; q < 4; ++q) {
+                    const double x = nearest + length * (1 + gaussAt[q]) / 2;
+                    double t = x, perDistance = 1;
+                    if (chord) t = 2 * std::asin(std::min(x / 2, 1.0)), perDistance = 1 / std::cos(t / 2);
+                    if (back) t = std::numbers::pi - t;
+                    const double w = weight(t) * perDistance * gaussWeight[q] / 2;
+                    sum += w, moment += w * gaussAt[q];
+                }
+                const double slope = 6 * moment / length;
+                return TableWeight{float(sum - slope * length / 2), float(slope)};
+            };
+            if (back && chord && high < antipodalAngle) {
+                const double h = high - low;
+                return TableSide{2,
+                                 2,
+                                 {float(2 * sine * sine), 0},
+                                 {float(std::sin(h)), 0},
+                                 {float(std::sin(high) - std::sin(low)), 0},
+                                 {float(h), 0}};
+            }
+            return TableSide{float(distance(low)),
+                             float(back && chord && high < nearAntipode),
+                             fit([&](double t) { return std::sin(t - low); }),
+                             fit([&](double t) { return std::cos(t - low); }),
+                             fit([](double t) { return std::cos(t); }),
+                             fit([](double) { return 1.0; })};
+        };
+        mesh.push_back({float(std::sin(high - low)), float(2 * sine * sine), side(false), side(true)});
+    }
+    return mesh;
+}
+
+std::vector<RampWeight> rampWeights() {
+    constexpr int parts = PEL_RAMP_PARTS;
+    std::vector<std::array<double, 4>> sums(2 * parts + 1);
+    for (int k = 0; k < 2 * parts; ++k)
+        for (int q = 0; q < 4; ++q) {
+            const double t = (1 + gaussAt[q]) / 2, u = 1 - t, y = (k + t) / parts - 1;
+            const double w = 0.75 * (1 - y * y) * gaussWeight[q] / (2 * parts);
+            const double value[2] = {u * u * (1 + 2 * t), t * t * (3 - 2 * t)},
+                         slope[2] = {u * u * t, -t * t * u};
+            const double valueToSlope[2] = {-6 * t * u, 6 * t * u},
+                         slopeToSlope[2] = {u * (1 - 3 * t), t * (3 * t - 2)};
+            for (int side = 0; side < 2; ++side) {
+                std::array<double, 4>& sum = sums[size_t(k + side)];
+                sum[0] += w * value[side], sum[1] += w * slope[side];
+                sum[2] += w * parts * valueToSlope[side], sum[3] += w * parts * slopeToSlope[side];
+            }
+        }
+    std::vector<RampWeight> weights;
+    for (const auto& sum : sums)
+        weights.push_back({float(sum[0]), float(sum[1]), float(sum[2]), float(sum[3])});
+    return weights;
+}
+
 // Two points in each cell, weighted so that linear f are exact for any R within the cell. Cells are narrow
 // near the shaded point, and at the end, where the circle round a sphere closes.
 std::vector<cl_float4> tablePoints(const std::vector<cl_float4>& knots, double diameter) {
-    constexpr int cells = 128;
+    constexpr int cells = 96;
     const double end = std::min<double>(knots.back().s[3], diameter);
     std::vector<double> borders;
     for (int i = 0; i <= cells; ++i)
@@ -109,7 +261,6 @@ std::vector<cl_float4> tablePoints(const std::vector<cl_float4>& knots, double d
     // Opposite to the light the mean over a circle has a corner where the circle is a great circle.
     const double quarter = diameter / std::numbers::sqrt2;
     if (quarter < end) borders.insert(std::upper_bound(borders.begin(), borders.end(), quarter), quarter);
-    borders = withKnots(borders, knots);
 
     std::vector<std::pair<Rgb, double>> points;
     Rgb all{};

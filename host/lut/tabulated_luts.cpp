@@ -11,18 +11,21 @@
 namespace pel {
 namespace {
 
-// Corners of tabulated profiles need a finer mesh than Gaussians do.
-constexpr int meshIntervals = 256;
-// Rows are integrated in parts, so that the records of one part stay below this many bytes.
-constexpr size_t recordBytes = size_t(64) << 20;
+// Intervals of the mesh. Corners of tabulated profiles need a finer one than Gaussians do.
+constexpr int sweptNodes = 128, sphereNodes = 95;
+// Of the sums of R, whose corners lie within cells; P is smoother, and dearer.
+constexpr int radialCells = 4096;
+// Rows of shadow tables have nodes up to so many for each texel.
+constexpr double nodesPerTexel = 2;
 
-std::vector<TableColumn> columnsOf(const PelCurvatureLutDesc& desc) {
-    std::vector<TableColumn> columns;
-    for (uint32_t x = 0; x < (desc.width + 1) / 2; ++x) {
-        const double elevation = columnElevation(x, desc.width, desc.axis);
-        columns.push_back({float(std::asin(elevation)), float(elevation)});
+// Of each row, in diffusion radii.
+std::vector<double> radiiOf(const PelCurvatureLutDesc& desc, const RowAxis& axis) {
+    std::vector<double> radii;
+    for (uint32_t row = 0; row < desc.height; ++row) {
+        const double value = axis.min + (row + 0.5) * axis.step;
+        radii.push_back(1 / (desc.axis == PEL_AXIS_ROOT ? value * value : value));
     }
-    return columns;
+    return radii;
 }
 
 // Rows on spheres so large that the table ends before a quarter of the way round share their points.
@@ -36,9 +39,8 @@ SpherePoints spherePoints(const Profile& profile, const PelCurvatureLutDesc& des
     const double end = knots.back().s[3];
     SpherePoints all;
     bool shared = false;  // rows go from large spheres to small ones
-    for (uint32_t row = 0; row < desc.height; ++row) {
-        const double value = axis.min + (row + 0.5) * axis.step;
-        const double diameter = 2 / (desc.axis == PEL_AXIS_ROOT ? value * value : value);
+    for (double radius : radiiOf(desc, axis)) {
+        const double diameter = 2 * radius;
         const bool large = diameter / std::numbers::sqrt2 >= end;
         if (shared && large) {
             all.ofRow.push_back(all.ofRow.back());
@@ -61,66 +63,51 @@ void integrateTabulatedCurvature(Lut& lut, double curvatureMin, double curvature
     const bool ring = desc.form == PEL_FORM_RING || desc.form == PEL_FORM_HALF_RING;
     const RowAxis axis = rowAxis(desc.axis, desc.height, curvatureMin, curvatureMax);
 
+    const bool sphere = desc.form == PEL_FORM_SPHERE, chord = desc.form != PEL_FORM_ARC;
+    const int intervals = sphere ? sphereNodes : sweptNodes;
+    const double end = ring || desc.form == PEL_FORM_PENNER_RING ? tableReach(profile) : tableEnd(profile);
     TabulatedCurvatureLutParams params{};
-    params.width = desc.width;
     params.height = desc.height;
     params.axis = uint32_t(desc.axis);
-    params.nodes = meshIntervals + 1;
     params.rowMin = float(axis.min);
     params.rowStep = float(axis.step);
-    const bool chord = desc.form == PEL_FORM_PENNER_RING;
-    const double end = chord ? tableReach(profile) : tableEnd(profile);
     params.end = float(end);
-
-    // What the rows of each form read.
-    cl::Memory source, ofRow;
-    if (ring) {
-        const std::vector<cl_float4> knots = tableKnots(profile);
-        params.knots = uint32_t(knots.size() - 1);
-        source = upload(device, knots);
-    } else if (desc.form == PEL_FORM_SPHERE) {
-        const SpherePoints sphere = spherePoints(profile, desc, axis);
-        source = upload(device, sphere.points);
-        ofRow = upload(device, sphere.ofRow);
-    } else {
-        source = upload(device, tableTails(profile, end));
-    }
-    params.slots = params.nodes + params.knots + 1;
-    if (!ring) params.slots = params.nodes;
+    params.cells = ring ? radialCells : PEL_TAIL_CELLS;
+    params.frontReach = float(chord ? std::numbers::sqrt2 : std::numbers::pi / 2);
+    params.normalised = chord;
 
     const uint32_t lanes = device.info().mathWidth;
     const auto [group, columnsPerItem, unused] = launchPolicy(device);
-    cl::Defines options{{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}};
+    cl::Defines options{{"PEL_GROUP", std::to_string(group)},
+                        {"PEL_NODES", std::to_string(intervals)},
+                        {"PEL_COLUMNS", std::to_string(columnsPerItem)}};
     if (desc.form == PEL_FORM_HALF_RING) options.emplace("PEL_HALF", "1");
-    if (chord) options.emplace("PEL_CHORD", "1");
     const cl::Program program = device.programs().get("lut/tabulated_curvature_lut.cl", options);
-    const std::vector<TableColumn> columnList = columnsOf(desc);
-    const cl::Memory nodes = upload(device, meshOfNodes(meshIntervals)), columns = upload(device, columnList);
-
-    const size_t record = PEL_TABLE_RECORD(size_t(params.slots)) * sizeof(cl_float4);
-    const uint32_t part = uint32_t(std::clamp<size_t>(recordBytes / record, 1, desc.height));
-    const cl::Memory rows = device.allocate(record * part);
-    for (params.firstRow = 0; params.firstRow < desc.height; params.firstRow += part) {
-        params.rows = std::min(part, desc.height - params.firstRow);
-        const char* name = ring                           ? "tabulated_ring_rows"
-                           : desc.form == PEL_FORM_SPHERE ? "tabulated_sphere_rows"
-                                                          : "tabulated_arc_rows";
-        cl::Launch rowLaunch(program, name);
-        rowLaunch.arg(params).arg(nodes);
-        if (desc.form == PEL_FORM_SPHERE) rowLaunch.arg(ofRow);
-        rowLaunch.arg(source).arg(rows);
-        if (desc.form == PEL_FORM_SPHERE)
-            device.launch(rowLaunch, {{(params.nodes + lanes - 1) / lanes, params.rows, 1}, {group, 1, 1}});
-        else
-            device.launch(rowLaunch, {{params.rows, 1, 1}, {group, 1, 1}});
-
-        cl::Launch texelLaunch(program, "tabulated_texels");
-        texelLaunch.arg(params).arg(rows).arg(columns).arg(lut.texels());
-        const bool last = params.firstRow + params.rows == desc.height;  // includes the copied row
-        device.launch(texelLaunch, {{(columnList.size() + columnsPerItem - 1) / columnsPerItem,
-                                     params.rows + (last ? 1 : 0), 1},
-                                    {group, 1, 1}});
+    const cl::Memory rows =
+        device.allocate(PEL_CURVATURE_RECORD(size_t(intervals)) * desc.height * sizeof(cl_float4));
+    if (sphere) {
+        const SpherePoints of = spherePoints(profile, desc, axis);
+        const cl::Memory nodes = upload(device, meshOfNodes(intervals)), ofRow = upload(device, of.ofRow),
+                         points = upload(device, of.points);
+        cl::Launch launch(program, "tabulated_sphere_rows");
+        launch.arg(params).arg(nodes).arg(ofRow).arg(points).arg(rows);
+        device.launch(launch, {{intervals / lanes + 1, desc.height, 1}, {group, 1, 1}});
+    } else {
+        const cl::Memory mesh = upload(device, tableMesh(intervals, chord)),
+                         sums = upload(device, ring ? radialSums(profile, end, radialCells)
+                                                    : lineSums(profile, end, PEL_TAIL_CELLS)),
+                         opposite = upload(device, antipodes(profile, ring, radiiOf(desc, axis)));
+        cl::Launch launch(program, "tabulated_rows");
+        launch.arg(params).arg(mesh).arg(sums).arg(opposite).arg(rows);
+        const size_t rowsPerItem = std::max(lanes / 4, 1u);
+        device.launch(launch, {{(desc.height + rowsPerItem - 1) / rowsPerItem, 1, 1}, {group, 1, 1}});
     }
+    const std::vector<LutColumn> columnWeights = curvatureColumns(desc.width, desc.axis, intervals);
+    const cl::Memory columns = upload(device, columnWeights);
+    cl::Launch texelLaunch(program, "curvature_texels");
+    texelLaunch.arg(desc.width).arg(desc.height).arg(rows).arg(columns).arg(lut.texels());
+    const size_t items = (columnWeights.size() + columnsPerItem - 1) / columnsPerItem;
+    device.launch(texelLaunch, {{items, desc.height + size_t(1), 1}, {group, 1, 1}});
 }
 
 void integrateTabulatedShadow(Lut& lut, double reciprocalMin, double reciprocalMax) {
@@ -128,15 +115,28 @@ void integrateTabulatedShadow(Lut& lut, double reciprocalMin, double reciprocalM
     const PelShadowLutDesc& desc = lut.info().shadow;
     const double end = tableEnd(*lut.profile());
     const RowAxis axis = rowAxis(desc.axis, desc.height, reciprocalMin, reciprocalMax);
-    const TabulatedShadowLutParams params{desc.width,      desc.height, float(axis.min),     float(axis.step),
-                                          desc.sharpening, float(end),  uint32_t(desc.axis), desc.closedEnds};
+    // Nodes reach to the ends of rows: PEL_RAMP_PARTS to a half width, of which `sharpening` are in half a row.
+    const double wanted = std::ceil(PEL_RAMP_PARTS * double(desc.sharpening) * (1 + 1e-6));
+    const uint32_t nodes = wanted <= nodesPerTexel * desc.width ? uint32_t(wanted) : 0;
+    const TabulatedShadowLutParams params{desc.width,          desc.height,     float(axis.min),
+                                          float(axis.step),    desc.sharpening, float(end),
+                                          uint32_t(desc.axis), desc.closedEnds, nodes};
     const auto [group, unused, columnsPerItem] = launchPolicy(device);
     const cl::Program program = device.programs().get(
         "lut/tabulated_shadow_lut.cl",
         {{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}});
     const cl::Memory tails = upload(device, tableTails(*lut.profile(), end));
-    cl::Launch launch(program, "table_shadow_texels");
-    launch.arg(params).arg(tails).arg(lut.texels());
+    const size_t record = PEL_RAMP_RECORD(size_t(nodes)), samples = 2 * PEL_RAMP_SAMPLES(size_t(nodes));
+    const cl::Memory ofRows = device.allocate(record * desc.height * sizeof(cl_float4));
+    if (nodes) {
+        const cl::Memory weights = upload(device, rampWeights()),
+                         scratch = device.allocate(samples * desc.height * sizeof(cl_float4));
+        cl::Launch rows(program, "tabulated_shadow_rows");
+        rows.arg(params).arg(tails).arg(weights).arg(scratch).arg(ofRows);
+        device.launch(rows, {{(desc.height + group - 1) / group * group, 1, 1}, {group, 1, 1}});
+    }
+    cl::Launch launch(program, "tabulated_shadow_texels");
+    launch.arg(params).arg(tails).arg(ofRows).arg(lut.texels());
     const size_t lit = desc.width - desc.width / 2;
     device.launch(launch,
                   {{(lit + columnsPerItem - 1) / columnsPerItem, desc.height + size_t(1), 1}, {group, 1, 1}});

@@ -20,13 +20,10 @@
 // serves all rows and profiles.
 //
 // Variants: PEL_WIDTH; PEL_FORM, one of PEL_FORM_ARC ... (PelCurvatureForm); PEL_GROUP, work-items in a group; PEL_NODES, N;
-// PEL_POINTS, Gauss points per mesh interval (1 to 3); PEL_COLUMNS, columns per work-item of curvature_texels.
+// PEL_POINTS, Gauss points per mesh interval (1 to 3); PEL_COLUMNS (curvature_texels.clh).
 #include "lib/lut/normal.clh"
 #include "lib/width.clh"
-#include "shared/lut.h"
-#include "shared/lut_integral.h"
-
-#define ROW_STRIDE PEL_CURVATURE_RECORD(PEL_NODES)
+#include "lut/curvature_texels.clh"
 
 #if PEL_POINTS == 1
 __constant float gaussAt[1] = {0.0f};
@@ -270,34 +267,4 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES + 2, back);
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES + 3, frontTotal);
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES + 4, scale);
-}
-
-// One work-item: PEL_COLUMNS columns of the unlit half of one row, and their mirror images in the lit half. A
-// copy of the last row and of the last column follows (shared/lut.h).
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_texels(
-    const CurvatureLutParams params, __global const float4* rows, __global const LutColumn* columns,
-    __global float4* texels) {
-    const uint unlit = (params.width + 1) / 2;
-    const uint first = get_global_id(0) * PEL_COLUMNS;
-    const uint y = get_global_id(1);
-    if (first >= unlit) return;
-    __global const float4* record = rows + (size_t)min(y, params.height - 1) * ROW_STRIDE;
-    __global float4* line = texels + (size_t)y * (params.width + 1);
-    const float4 back = record[2 * PEL_NODES + 2];
-    const float4 front = record[2 * PEL_NODES + 3];
-    const float4 scale = record[2 * PEL_NODES + 4];
-    const uint last = min(first + PEL_COLUMNS, unlit);
-    for (uint x = first; x < last; ++x) {
-        const LutColumn column = columns[x];
-        __global const float4* node = record + 2 * column.node;
-        float4 E = column.value0 * node[0];
-        E = fma((float4)(column.slope0), node[1], E);
-        E = fma((float4)(column.value1), node[2], E);
-        E = fma((float4)(column.slope1), node[3], E);
-        // A cubic may dip below 0 by rounding where E is nearly 0.
-        E = fmax(E, 0.0f) * scale;
-        line[x] = fma((float4)(column.elevation), back, E);
-        line[params.width - 1 - x] = fma((float4)(column.elevation), front, E);
-    }
-    if (first == 0) line[params.width] = line[params.width - 1];
 }

@@ -13,10 +13,8 @@ typedef struct LutGaussian {
     float blue;
 } LutGaussian;
 
-// A row's record of curvature_lut.cl, in float4: E, F at node 0, ... E, F at the last node, back, front, scale of E. And of
-// table_curvature_lut.cl, which has slots in place of nodes.
+// A row's record, in float4: E, F at node 0, ... E, F at the last node, back, front, scale of E (lut/curvature_lut.cl).
 #define PEL_CURVATURE_RECORD(nodes) (2 * (nodes) + 5)
-#define PEL_TABLE_RECORD(slots) (2 * (slots) + 3)
 
 // A node of the angular mesh, at angle (pi/2) (j/N)^4 behind the terminator, j = 0 ... N.
 typedef struct LutNode {
@@ -71,24 +69,48 @@ typedef struct ShadowLutParams {
 #define PEL_TAIL_THIRD 4   // ... of (t - s)^3 / 6 P
 #define PEL_TAIL_VALUES 5
 
-// A column of the dark half.
-typedef struct TableColumn {
-    float angle;      // behind the terminator, radians
-    float elevation;  // its sine, |N.L|
-} TableColumn;
+// A profile's density along the surface (P, or R for the rings) and its integrals from 0 on, at `cells` + 1 distances that are spread
+// in the same way: PEL_SUM_VALUES float4 (R, G, B, 0) each.
+#define PEL_SUM_DENSITY 0
+#define PEL_SUM_MASS 1    // integral of the density
+#define PEL_SUM_MOMENT 2  // integral of that
+#define PEL_SUM_VALUES 3
+
+// A weight w of the density on an interval of the mesh as the best linear function of the distance x, in radii of the circle,
+// from the interval's nearer end: at + slope x.
+typedef struct TableWeight {
+    float at;
+    float slope;
+} TableWeight;
+
+// What an interval of the mesh does with the density on one side of the shaded point.
+typedef struct TableSide {
+    float distance;  // of the node at the interval's smaller angle, in radii
+    float antipodal;  // 1: the moment of the mass comes from the density at both ends, for the ends are too near to one another for
+        // differences of sums in float; 2: the mass, too, and weights are for the angle instead
+    TableWeight toE;    // sin of the angle from that node on
+    TableWeight toF;    // its cos
+    TableWeight light;  // cos of the angle from the shaded point on
+    TableWeight mass;   // 1
+} TableSide;
+
+// An interval of the mesh, with the turn of E and F over it.
+typedef struct TableInterval {
+    float sine;
+    float versine;
+    TableSide front;
+    TableSide back;  // of the angles pi - t
+} TableInterval;
 
 typedef struct TabulatedCurvatureLutParams {
-    unsigned int width;
     unsigned int height;
-    unsigned int axis;      // LUT_AXIS_...
-    unsigned int nodes;     // of the angular mesh, at 0 ... pi/2
-    unsigned int knots;     // distances at which the table bends, without 0
-    unsigned int slots;     // nodes that a row's record has room for
-    unsigned int firstRow;  // of this launch
-    unsigned int rows;      // of this launch
-    float rowMin;           // as in CurvatureLutParams
+    unsigned int axis;  // LUT_AXIS_...
+    float rowMin;       // as in CurvatureLutParams
     float rowStep;
-    float end;  // where the tails end, diffusion radii
+    float end;                // where the sums end, diffusion radii
+    unsigned int cells;       // of the sums
+    float frontReach;         // distance of pi/2, in radii
+    unsigned int normalised;  // rows are divided by their mass
 } TabulatedCurvatureLutParams;
 
 // Which points represent the profile on the sphere of a row.
@@ -106,6 +128,24 @@ typedef struct TabulatedShadowLutParams {
     float end;                // where the tails end, diffusion radii
     unsigned int axis;        // LUT_AXIS_...
     unsigned int closedEnds;  // rows are rescaled to run from 0 to 1
+    unsigned int nodes;       // intervals between the nodes of a row; 0: rows have none
 } TabulatedShadowLutParams;
+
+// Rows with ramps of a smaller half width, in diffusion radii, have nodes: PEL_RAMP_PARTS to a half width.
+#define PEL_WIDE_RAMP 0.25f
+#define PEL_RAMP_PARTS 16
+#define PEL_RAMP_TOGETHER 4  // nodes that are made at once
+#define PEL_RAMP_SHARP 4     // nodes beyond a half width that are made by quadrature still
+#define PEL_RAMP_CELLS 8     // cells of the list of tails in a part of the quadrature
+#define PEL_RAMP_SAMPLES(nodes) ((nodes) + 1 + 2 * PEL_RAMP_PARTS + PEL_RAMP_TOGETHER)
+#define PEL_RAMP_RECORD(nodes) (2 * ((nodes) + 1))
+
+// What a sample of a function and its slope, per interval, add to its mean under the ramp, and to that of its slope, per half width.
+typedef struct RampWeight {
+    float value;
+    float slope;
+    float valueToSlope;
+    float slopeToSlope;
+} RampWeight;
 
 #endif
