@@ -69,30 +69,36 @@ typedef struct Field {
     bool alongY;
 } Field;
 
-// The lanes of `mask` whose pixel `offset` away along the axis has the same material. x, y: of the first lane.
-static inline maskw sameMaterial(const Field* f, int x, int y, int offset, size_t at, floatw id, maskw mask) {
-    if (f->alongY) {
-        if (y + offset < 0 || y + offset >= (int)f->frame->height) return mask & 0;
-    } else {
-        const intw column = lanesw() + (x + offset);
-        mask &= (column >= 0) & (column < (int)f->frame->width);
-    }
-    return mask & (fabs(loadw(at, f->tags)) == id);
+// The lanes of `mask` that have a pixel `offset` away along the axis. x, y: of the first lane.
+static inline maskw withinImage(const Field* f, int x, int y, int offset, maskw mask) {
+    if (f->alongY) return y + offset < 0 || y + offset >= (int)f->frame->height ? mask & 0 : mask;
+    if (x + offset >= 0 && x + offset + PEL_WIDTH <= (int)f->frame->width) return mask;
+    const intw column = lanesw() + (x + offset);
+    return mask & (column >= 0) & (column < (int)f->frame->width);
 }
 
-// Distance to a direct neighbour; Inf if there is none to compare with.
-static inline floatw neighbourDistance(const Field* f, int x, int y, int offset, size_t at, Vec3w p,
-                                       floatw id, maskw mask) {
-    mask = sameMaterial(f, x, y, offset, at, id, mask);
+static inline floatw distance2(Vec3w a, Vec3w b) {
+    const Vec3w between = sub3(a, b);
+    return dot3(between, between);
+}
+
+// Squared distance to a direct neighbour; Inf if there is none to compare with.
+static inline floatw neighbourDistance2(const Field* f, int x, int y, int offset, size_t at, Vec3w p,
+                                        floatw id, maskw mask) {
+    mask = withinImage(f, x, y, offset, mask) & (loadw(at, f->tags) == id);
     if (!anyw(mask)) return (floatw)(INFINITY);
-    mask &= loadw(at, f->tags) > 0.0f;
-    const Vec3w away = sub3(loadPlanes(f->positions, f->plane, at), p);
-    return selectw((floatw)(INFINITY), sqrt(dot3(away, away)), mask);
+    return selectw((floatw)(INFINITY), distance2(loadPlanes(f->positions, f->plane, at), p), mask);
 }
 
 // The greatest value of the lanes of `mask`, all of them positive; 0 for none.
 static inline int greatest(intw value, maskw mask) {
     return (int)greatestId(as_uintw(value), mask);
+}
+
+// The smallest whole number that is not below v > 0. Not ceil, which is a function call on some CPUs.
+static inline intw roundedUp(floatw v) {
+    const intw whole = convert_intw(v);
+    return selectw(whole, whole + 1, convert_floatw(whole) < v);
 }
 
 // The sum of a pixel's normal and of those along the axis, for the lanes of `mask`.
@@ -102,43 +108,61 @@ static inline Vec3w blurAlong(const Field* f, int x, int y, floatw id, floatw ra
     const Vec3w p = loadPlanes(f->positions, f->plane, centre);
     Vec3w sum = loadPlanes(f->normals, f->plane, centre);
     floatw total = 1.0f;
-    const floatw s = fmin(neighbourDistance(f, x, y, -1, centre - pixel, p, id, mask),
-                          neighbourDistance(f, x, y, 1, centre + pixel, p, id, mask));
-    const floatw taps = ceil(radius / (s * (float)PEL_BLUR_TAPS));  // Inf or NaN where two pixels lie in one place
-    const intw steps = convert_intw(fmin(fmax(taps, (floatw)(1.0f)), (floatw)((float)PEL_BLUR_STEP_MAX)));
+    const floatw s2 = fmin(neighbourDistance2(f, x, y, -1, centre - pixel, p, id, mask),
+                           neighbourDistance2(f, x, y, 1, centre + pixel, p, id, mask));
+    const floatw s = sqrt(s2);
+    const floatw taps = radius / (s * (float)PEL_BLUR_TAPS);  // Inf or NaN where two pixels lie in one place
+    const intw steps = roundedUp(fmin(fmax(taps, (floatw)(1.0f)), (floatw)((float)PEL_BLUR_STEP_MAX)));
     const floatw perRadius2 = 1.0f / (radius * radius);
-    maskw left = mask & (s < INFINITY);
+    maskw left = mask & (s2 < INFINITY);
     while (anyw(left)) {
         const int step = greatest(steps, left);
         const maskw these = left & (steps == step);
         left &= notw(these);
         for (int side = -1; side <= 1; side += 2) {
             Vec3w before = p;
-            floatw longest2 = squarew((float)step * s);
+            floatw longest2 = s2 * (float)(step * step);
             maskw on = these;
             for (int k = 1; k <= PEL_BLUR_TAPS; ++k) {
                 const int offset = side * k * step;
                 const size_t at = centre + (size_t)(offset * pixel);
-                on = sameMaterial(f, x, y, offset, at, id, on);
+                const floatw tag = loadw(at, f->tags);
+                on = withinImage(f, x, y, offset, on) & (fabs(tag) == id);
                 if (!anyw(on)) break;
-                const maskw valid = on & (loadw(at, f->tags) > 0.0f);
-                const Vec3w q = loadPlanes(f->positions, f->plane, at), away = sub3(q, p);
-                const Vec3w hop = sub3(q, before);
-                const floatw gap2 = dot3(hop, hop), d2 = dot3(away, away) * perRadius2;
-                const maskw end =
-                    valid & ((gap2 > (float)(PEL_BLUR_GAP * PEL_BLUR_GAP) * longest2) | (d2 >= 1.0f));
-                const maskw take = valid & notw(end);
-                const floatw weight = (1.0f - d2) * (1.0f - d2);
-                const Vec3w n = loadPlanes(f->normals, f->plane, at);
-                sum = select3(sum, add3(sum, scale3(n, weight)), take);
+                const Vec3w q = loadPlanes(f->positions, f->plane, at), n = loadPlanes(f->normals, f->plane, at);
+                const floatw gap2 = distance2(q, before), d2 = distance2(q, p) * perRadius2;
+                const maskw near = (gap2 <= (float)(PEL_BLUR_GAP * PEL_BLUR_GAP) * longest2) & (d2 < 1.0f);
+                const maskw valid = on & (tag > 0.0f), take = valid & near;
+                const floatw rest = 1.0f - d2, weight = rest * rest;
+                sum = select3(
+                    sum, vec3(fma(n.x, weight, sum.x), fma(n.y, weight, sum.y), fma(n.z, weight, sum.z)), take);
                 total = selectw(total, total + weight, take);
-                longest2 = selectw(longest2, fmax(longest2, gap2), take);
-                before = select3(before, q, take);
-                on &= notw(end);
+                // Lanes whose walk has ended need no values; those that skip a tap keep theirs.
+                const maskw skipped = on & notw(valid);
+                if (anyw(skipped)) {
+                    before = select3(before, q, take);
+                    longest2 = selectw(longest2, gap2, take & (gap2 > longest2));
+                } else {
+                    before = q;
+                    longest2 = selectw(longest2, gap2, gap2 > longest2);
+                }
+                on = take | skipped;
             }
         }
     }
     return scale3(sum, 1.0f / total);
+}
+
+// The blur's radius of each lane; 0 of materials that have a normal map, and of none.
+static inline floatw blurRadius(__global const PelShadeMaterial* materials, uintw id) {
+#define PEL_RADIUS_(id) ((id) && !materials[id].hasNormalMap ? materials[id].diffusionRadius : 0.0f)
+    const uint one = greatestId(id, id != 0);
+    const maskw same = id == one;
+    if (!anyw(notw(same) & (id != 0))) return selectw((floatw)(0.0f), (floatw)(PEL_RADIUS_(one)), same);
+#define PEL_LANE_RADIUS_(k, s) PEL_RADIUS_(id s)
+    return PEL_LANES(PEL_LANE_RADIUS_);
+#undef PEL_LANE_RADIUS_
+#undef PEL_RADIUS_
 }
 
 // `from` and `to` differ. Along y, `to` holds the unblurred normals, which are kept where the mean vanishes.
@@ -156,9 +180,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void blur_n
             if (x >= frame->width || y >= frame->height) continue;
             const uint first = vectorStart(x, frame->width);
             const uintw id = ownIds(frame, material, x, y, first);
-#define PEL_RADIUS_(k, s) (id s && !materials[id s].hasNormalMap ? materials[id s].diffusionRadius : 0.0f)
-            const floatw radius = PEL_LANES(PEL_RADIUS_);
-#undef PEL_RADIUS_
+            const floatw radius = blurRadius(materials, id);
             const maskw wanted = radius > 0.0f;
             if (!anyw(wanted)) continue;
             const size_t at = scratchIndex(frame, first, y);
