@@ -1,5 +1,5 @@
 // What each form of shadow map costs, and how far its picture is from that of a plain depth map: the demo's key view, its
-// wide shadow filtered here (48 texels across) and 32 thickness taps. Cases are wall clock of the whole frame.
+// wide shadow filtered here (24 texels across) and 32 thickness taps. Cases are wall clock of the whole frame.
 //     bench_shadow_forms [--picture OUT.png] [--benchmark_...]
 // Needs the views and the mesh of ./run demo (PELLUCID_DEMO_DIR, PELLUCID_DEMO_MESH).
 #include <benchmark/benchmark.h>
@@ -22,6 +22,9 @@
 using namespace pellucid;
 
 namespace {
+
+// Of the filter: half as many texels cost 4e-4 of radiance (docs/performance.md, "Passes before the shading kernel").
+constexpr uint32_t texelsAcross = 24;
 
 struct Map {
     PelLightSlot slot;
@@ -93,7 +96,7 @@ Map reduced(const Map& from, uint32_t step, uint32_t components, Function f) {
 
 void addParallelForms(View& v, const io::Image& image, const std::string& channel) {
     PelLight light = v.scene.lights.at(0).light;
-    light.shadowFilterTexels = 48;
+    light.shadowFilterTexels = texelsAcross;
     const auto size = uint32_t(image.width);
     const Map depth{PEL_LIGHT_SHADOW_MAP, size, size, 1, image.interleaved(std::vector{channel})};
     v.forms.push_back({"depth", light, {depth}, 0});
@@ -143,7 +146,7 @@ void addLampForms(View& v, const sample::Scene& scene) {
     const sample::Vec3 away = {to[0], to[1], to[2]}, lamp = centre + away * 320;
     PelLight light = v.scene.lights.at(0).light;
     light.type = PEL_LIGHT_POINT;
-    light.shadowFilterTexels = 48;
+    light.shadowFilterTexels = texelsAcross;
     const double position[3] = {lamp.x, lamp.y, lamp.z};
     for (int c = 0; c < 3; ++c) light.position[c] = float(position[c]), light.color[c] *= 320.0f * 320;
 

@@ -1,4 +1,4 @@
-// Bounds of the blocks of shadow maps of depths, which decide most wide shadows without reading texels.
+// Bounds of the blocks of shadow maps, which decide most wide shadows without reading texels.
 #include <algorithm>
 
 #include "shading/features.h"
@@ -68,8 +68,8 @@ class ShadowBounds final : public Pass {
 
   private:
     static bool isBounded(const ShaderPlan& plan, const ShaderLight& light) {
-        return !plan.state.options.disableSkipping && light.params.shadowContent == PEL_SHADOW_CONTENT_DEPTH &&
-               !isCube(light.params) && light.params.shadowFilterTexels > 0 &&
+        return !plan.state.options.disableSkipping && !isCube(light.params) &&
+               light.params.shadowFilterTexels > 0 &&
                std::ranges::any_of(plan.state.materials,
                                    [](const auto& m) { return !readsIrradiance(m.second); });
     }
