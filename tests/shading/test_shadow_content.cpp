@@ -60,6 +60,22 @@ TEST(ShadowContent, OfAFlatOccluderEqualsDepth) {
         }
 }
 
+// Filters that bounds of blocks decide give what their texels would, to the bit.
+TEST(ShadowContent, BoundsChangeNothing) {
+    Frame f = formFrame();
+    for (const auto content :
+         {PEL_SHADOW_CONTENT_DEPTH, PEL_SHADOW_CONTENT_MOMENTS, PEL_SHADOW_CONTENT_EXPONENTIAL})
+        for (const bool perspective : {false, true})
+            for (const bool reversed : {false, true}) {
+                const ContentLight from = contentLight(content, perspective, reversed, 131);
+                f.options.disableSkipping = 0;
+                const Seen bounded = shadeForms(f, {from.light});
+                f.options.disableSkipping = 1;
+                EXPECT_EQ(bounded.wide, shadeForms(f, {from.light}).wide)
+                    << "content " << content << ", perspective " << perspective << ", reversed " << reversed;
+            }
+}
+
 // What lies in front of a cube's face is seen alike in every form.
 TEST(ShadowContent, CubesAndCascadesHoldThemToo) {
     const Frame f = formFrame();
