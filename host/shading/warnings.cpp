@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shading/features.h"
+#include "shading/image_slots.h"
 #include "shading/mapped_lights.h"
 #include "shading/material.h"
 
@@ -25,6 +27,24 @@ bool isBlackColor(const float (&c)[3]) {
     return c[0] == 0 && c[1] == 0 && c[2] == 0;
 }
 
+// What is set and does nothing by the method that the material takes; "" if nothing is.
+std::string withoutEffect(const ShaderMaterial& material) {
+    const PelMaterial &m = material.params, &given = material.given;
+    const bool tables = !readsIrradiance(material);
+    std::string names;
+    const auto add = [&](bool idle, const char* name) {
+        if (idle) names += (names.empty() ? "" : ", ") + std::string(name);
+    };
+    add(given.scatterTaps && given.scattering != PEL_SCATTERING_SEPARABLE &&
+            given.scattering != PEL_SCATTERING_SCREEN,
+        "scatterTaps");
+    const bool stays = tables || m.scattering == PEL_SCATTERING_NONE;
+    add(stays && !isBlackColor(m.borderColor), "borderColor");
+    add(stays && m.albedoBefore > 0, "albedoBefore");
+    add(!tables && m.curvatureGain != 0, "curvatureGain");
+    return names;
+}
+
 }  // namespace
 
 std::string warningsOf(const ShaderState&, const ShaderState& state, uint32_t features) {
@@ -42,6 +62,9 @@ std::string warningsOf(const ShaderState&, const ShaderState& state, uint32_t fe
                  "shadow map and thicknessTaps above 0");
         if (material.curvatureLut && !state.lights.empty() && !state.images[PEL_SLOT_CURVATURE])
             warn("material ", id, " has a curvature table without effect: there is no curvature image");
+        if (const std::string idle = withoutEffect(material); !idle.empty())
+            warn("material ", id, " has ", idle, " without effect: it scatters by \"",
+                 scatteringName(m.scattering), "\" (docs/guide/methods.md, \"Controls\")");
         if (m.scattering == PEL_SCATTERING_LIGHT && !lightIsMapped(state))
             warn("material ", id,
                  " asks for PelMaterial.scattering light, and shadow maps do not hold all light: what lights "

@@ -218,6 +218,38 @@ TEST(ScatterBlend, AutoTakesADiskWhereItHasTo) {
               shade(PEL_SCATTERING_AUTO, 0, false, false, nullptr, nullptr));
 }
 
+TEST(ScatterBlend, SaysWhatHasNoEffect) {
+    const auto said = [](PelScattering method, const std::function<void(PelMaterial&)>& change) {
+        Frame f(stripes());
+        f.material.scattering = method;
+        change(f.material);
+        std::string said;
+        f.shade(nullptr, &said);
+        return said.find("without effect") == std::string::npos ? std::string() : said;
+    };
+    const auto taps = [](PelMaterial& m) { m.scatterTaps = 16; };
+    const auto border = [](PelMaterial& m) { m.borderColor[1] = 0.5f; };
+    const auto before = [](PelMaterial& m) { m.albedoBefore = 0.5f; };
+    for (PelScattering method : {PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_NONE}) {
+        EXPECT_NE(said(method, taps).find("scatterTaps"), std::string::npos);
+        EXPECT_NE(said(method, border).find("borderColor"), std::string::npos);
+        EXPECT_NE(said(method, before).find("albedoBefore"), std::string::npos);
+    }
+    EXPECT_NE(said(PEL_SCATTERING_AUTO, taps).find("scatterTaps"), std::string::npos);
+    EXPECT_EQ(said(PEL_SCATTERING_AUTO, border), "");
+    EXPECT_EQ(said(PEL_SCATTERING_AUTO, before), "");
+    for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE}) {
+        EXPECT_EQ(said(method, taps), "");
+        EXPECT_EQ(said(method, before), "");
+    }
+    EXPECT_EQ(said(PEL_SCATTERING_SEPARABLE, border), "");
+    const float path[] = {1, 0.5f, 0.2f}, albedo[] = {0.8f, 0.8f, 0.8f};
+    const Profile burley = Profile::burley(path, albedo);
+    const auto gain = [&](PelMaterial& m) { m.profile = burley.get(), m.curvatureGain = 1; };
+    EXPECT_NE(said(PEL_SCATTERING_SCREEN, gain).find("curvatureGain"), std::string::npos);
+    EXPECT_EQ(said(PEL_SCATTERING_PREINTEGRATED, gain), "");
+}
+
 TEST(ScatterBlend, SaysWhatItCannot) {
     const auto error = [](const std::function<void(PelMaterial&)>& change, bool radius = false) {
         Frame f(stripes());
