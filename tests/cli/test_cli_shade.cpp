@@ -174,7 +174,7 @@ TEST_F(Shade, BadFilesAreRefused) {
     };
     EXPECT_EQ(run(expecting("axis = \"root\"\nwidth = 8\nradius_max = 100")).exitCode, 0);
     expectRefused(expecting("axis = \"linear\""), 3, "axis is root; linear is asked for");
-    expectRefused(expecting("form = \"sphere\""), 3, "form is arc; sphere is asked for");
+    expectRefused(expecting("form = \"arc\""), 3, "form is sphere; arc is asked for");
     expectRefused(expecting("radius_min = 0.5"), 3, "radius_min is 1; 0.5 is asked for");
     expectRefused(expecting("diffusion_radius = 3"), 3, "diffusion_radius is 2.7; 3 is asked for");
     expectRefused({"shade", path("g.exr"), "--scene", path("s.toml"), "-o", path("no/o.exr")}, 2, "no folder");

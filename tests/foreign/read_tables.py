@@ -53,7 +53,7 @@ class Tables(unittest.TestCase):
                     pixels = channels[name].pixels
                     self.assertEqual(pixels.dtype, dtype)
                     self.assertTrue(np.array_equal(pixels, self.npy(encoding)[..., c]), (encoding, name))
-                self.assertEqual(header["pellucid:form"], "arc")
+                self.assertEqual(header["pellucid:form"], "sphere")
                 self.assertEqual(header["pellucid:axis"], "root")
                 self.assertAlmostEqual(header["pellucid:radiusMax"], 100)
 
