@@ -1,14 +1,16 @@
-// Run time against error of whole methods: every way to scatter, over its settings, on three scenes at the
-// usual radius and at four times that, against the surface integral. Writes one line of CSV per measurement;
-// bench/plot methods draws them.
+// Run time against error of whole methods: every way to scatter, over its settings, on one scene, against the surface integral.
 //
-//   sweep_error_time OUT.csv [PIXELS] [HEAD.obj]
+//   sweep_error_time make SCENE SCALE FILE [PIXELS] [HEAD.obj]   renders a scene and makes its references
+//   sweep_error_time measure FILE [REPEATS] [PICTURES]           prints a line of JSON per measurement
 //
-// Times are of all that a frame has beyond plain lighting, medians of seven. Errors are RMSE of radiance with
-// an albedo of 0.8 over the pixels of skin.
+// SCENE is side, ear or sphere; SCALE multiplies the profile's radius; a picture has PIXELS a side, 512. Into the folder PICTURES, if
+// given, go pictures of one setting of each method, raw floats. Times are of all kernels that a frame has beyond those of plain lighting
+// (irradiance given, nothing scattered), medians. Errors are RMSE
+// of radiance with an albedo of 0.8 over the pixels of skin. bench/diffusion/methods runs all of it.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <iostream>
 
 #include "diffusion/lit_scenes.h"
 
@@ -20,113 +22,215 @@ constexpr float albedo = 0.8f;
 
 struct Setting {
     std::string method, setting;
-    Method shade;
+    ShadeRequest request;
+    bool shown = false;  // its picture is written
 };
 
 // The methods: name, what is swept, and how to shade. New ones are added here.
 std::vector<Setting> settings() {
     std::vector<Setting> all;
-    all.push_back({"Lambert", "", shadeLambert});
-    for (uint32_t size : {16u, 64u, 256u, 512u})
-        all.push_back({"pre-integrated", std::to_string(size) + " texels",
-                       [size](const Device& d, const LitScene& s, const Profile& p, double k, double* t) {
-                           return shadePreintegrated(d, s, p, k, t, size);
-                       }});
-    // With visibility given, as an image; what the camera does not see is in the map.
-    const auto add = [&](const char* method, const std::string& setting, const ShadeRequest& request) {
-        all.push_back({method, setting,
-                       [request](const Device& d, const LitScene& s, const Profile& p, double k, double* t) {
-                           return shade(d, s, p, k, t, request);
-                       }});
+    const auto add = [&](const char* method, const std::string& setting, PelScattering scattering,
+                         bool traced) -> Setting& {
+        all.push_back({method, setting, {}});
+        all.back().request.scattering = scattering;
+        all.back().request.traced = traced;
+        return all.back();
     };
+    for (uint32_t size : {16u, 64u, 256u, 512u}) {
+        Setting& s =
+            add("pre-integrated", std::to_string(size) + " texels", PEL_SCATTERING_PREINTEGRATED, false);
+        s.request.tableSize = size;
+        s.shown = size == 64;
+    }
+    for (uint32_t size : {128u, 512u}) {
+        Setting& s = add("FaceWorks", std::to_string(size) + " texels", PEL_SCATTERING_PREINTEGRATED, false);
+        s.request.tableSize = size;
+        s.request.faceworks = true;
+        s.shown = size == 512;
+    }
+    // With visibility given, as an image; what the camera does not see is in the map.
     for (uint32_t taps : {9u, 17u, 25u, 51u, 101u}) {
-        ShadeRequest request;
-        request.scattering = PEL_SCATTERING_SEPARABLE;
-        request.scatterTaps = taps;
-        request.traced = true;
-        add("separable", "2 x " + std::to_string(taps) + " taps", request);
+        Setting& s = add("separable", "2 x " + std::to_string(taps) + " taps", PEL_SCATTERING_SEPARABLE, true);
+        s.request.scatterTaps = taps;
+        s.shown = taps == 25;
     }
     for (uint32_t taps : {8u, 16u, 32u, 64u, 128u, 256u}) {
-        ShadeRequest request;
-        request.scattering = PEL_SCATTERING_SCREEN;
-        request.scatterTaps = taps;
-        request.traced = true;
-        add("disk", std::to_string(taps) + " taps", request);
+        Setting& s = add("disk", std::to_string(taps) + " taps", PEL_SCATTERING_SCREEN, true);
+        s.request.scatterTaps = taps;
+        s.shown = taps == 32;
     }
-    for (float target : {5e-4f, 2e-3f, 5e-3f, 1e-2f, 2e-2f}) {
-        ShadeRequest request;
-        request.targetError = target;
-        request.traced = true;
+    for (float target : {0.0f, 5e-4f, 2e-3f, 5e-3f, 1e-2f, 2e-2f}) {
         char setting[32];
         std::snprintf(setting, sizeof setting, "error %g", double(target));
-        add("auto", setting, request);
+        Setting& s = add("auto", setting, PEL_SCATTERING_AUTO, true);
+        s.request.targetError = target;
+        s.shown = target == pelShaderOptionsDefaults().targetError;
     }
-    ShadeRequest light;
-    light.scattering = PEL_SCATTERING_LIGHT;
-    light.traced = true;
-    add("light", "", light);
-    ShadeRequest faceworks;
-    faceworks.scattering = PEL_SCATTERING_PREINTEGRATED;
-    faceworks.faceworks = true;
-    faceworks.tableSize = 512;
-    add("FaceWorks", "", faceworks);
+    add("auto, own shadows", "default", PEL_SCATTERING_AUTO, false);
+    add("light", "default", PEL_SCATTERING_LIGHT, true).shown = true;
     return all;
 }
 
-void measure(std::ofstream& out, const Device& device, const LitScene& s, const std::string& name,
-             const Profile& profile, double scale) {
-    std::vector<float> truth = s.truth;
-    for (float& v : truth) v *= albedo;
-    size_t covered = 0;
-    for (uint8_t c : s.covered) covered += c;
-    for (const Setting& setting : settings()) {
-        double seconds = 0;
-        std::vector<float> picture = setting.shade(device, s, profile, scale, &seconds);
-        for (float& v : picture) v *= albedo;
-        const io::ImageDifference d = io::compareImages(picture, truth, s.covered);
-        std::vector<uint8_t> dark(s.covered.size());
-        for (size_t i = 0; i < dark.size(); ++i) dark[i] = s.covered[i] && (s.subsets[i] & io::SUBSET_UNLIT);
-        const io::ImageDifference unlit = io::compareImages(picture, truth, dark);
-        out << name << "," << scale << "," << setting.method << "," << setting.setting << "," << covered
-            << "," << seconds * 1e3;
-        for (const auto* e : {&d, &unlit})
-            for (double rmse : e->rmse) out << "," << rmse;
-        out << "\n";
-        std::printf(
-            "%-10s x%g  %-16s %-12s %8.3f ms   RMSE 1e-4 %5.0f %5.0f %5.0f   unlit %5.0f %5.0f %5.0f\n",
-            name.c_str(), scale, setting.method.c_str(), setting.setting.c_str(), seconds * 1e3, 1e4 * d.rmse[0],
-            1e4 * d.rmse[1], 1e4 * d.rmse[2], 1e4 * unlit.rmse[0], 1e4 * unlit.rmse[1], 1e4 * unlit.rmse[2]);
-        std::fflush(stdout);
+// --- a scene in a file ---
+
+template <class T>
+void put(std::ostream& out, const std::vector<T>& values) {
+    const uint64_t count = values.size();
+    out.write(reinterpret_cast<const char*>(&count), sizeof count);
+    out.write(reinterpret_cast<const char*>(values.data()), std::streamsize(count * sizeof(T)));
+}
+template <class T>
+void get(std::istream& in, std::vector<T>& values) {
+    uint64_t count = 0;
+    in.read(reinterpret_cast<char*>(&count), sizeof count);
+    if (!in || count > 1u << 28) throw std::runtime_error("the file of the scene is damaged; make it again");
+    values.resize(count);
+    in.read(reinterpret_cast<char*>(values.data()), std::streamsize(count * sizeof(T)));
+}
+
+struct Stored {
+    LitScene scene;
+    std::string name;
+    double scale = 1;
+};
+
+// What shade() reads of a scene.
+template <class Stream, class Vectors>
+void each(Stream& stream, LitScene& s, const Vectors& vectors) {
+    vectors(stream, s.positions), vectors(stream, s.normals), vectors(stream, s.irradiance);
+    vectors(stream, s.truth), vectors(stream, s.covered), vectors(stream, s.subsets);
+    vectors(stream, s.gbuffer.curvature.data), vectors(stream, s.gbuffer.material), vectors(stream, s.map.depth);
+}
+
+void store(const std::string& path, Stored& stored) {
+    std::ofstream out(path, std::ios::binary);
+    LitScene& s = stored.scene;
+    out << stored.name << "\n";
+    std::vector<double> numbers{stored.scale, s.unit,      double(s.width),    double(s.height), s.toLight.x,
+                                s.toLight.y,  s.toLight.z, double(s.map.size), s.map.depthRange};
+    put(out, numbers);
+    put(out, std::vector<double>(s.map.worldToUvz.m.begin(), s.map.worldToUvz.m.end()));
+    each(out, s, [](std::ostream& to, const auto& values) { put(to, values); });
+    if (!out.flush()) throw std::runtime_error("cannot write " + path);
+}
+
+Stored load(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    if (!in) throw std::runtime_error("cannot read " + path + "; `make` writes it");
+    Stored stored;
+    std::getline(in, stored.name);
+    std::vector<double> numbers, matrix;
+    get(in, numbers);
+    get(in, matrix);
+    if (numbers.size() != 9 || matrix.size() != 16)
+        throw std::runtime_error(path + " is of another version; make it again");
+    LitScene& s = stored.scene;
+    stored.scale = numbers[0], s.unit = numbers[1];
+    s.width = int(numbers[2]), s.height = int(numbers[3]);
+    s.toLight = {numbers[4], numbers[5], numbers[6]};
+    s.map.size = int(numbers[7]), s.map.depthRange = numbers[8];
+    std::ranges::copy(matrix, s.map.worldToUvz.m.begin());
+    each(in, s, [](std::istream& from, auto& values) { get(from, values); });
+    return stored;
+}
+
+// --- commands ---
+
+// Christensen-Burley with the radii of a usual Blender material: d = 0.292, 0.109, 0.054 mm.
+Profile usualProfile() {
+    const float path[3] = {1.05f * 0.29205f, 1.05f * 0.10902f, 1.05f * 0.05411f},
+                albedos[3] = {0.8f, 0.8f, 0.8f};
+    return Profile::burley(path, albedos, PEL_BURLEY_SEARCHLIGHT);
+}
+
+int makeScene(const std::string& scene, double scale, const std::string& file, int size,
+              const std::string& headFile) {
+    const Device device("");
+    SceneRequest request;
+    request.size = size;
+    request.mapSize = 2048;
+    request.profileScale = scale;
+    if (scene == "ear") request.azimuth = 70, request.lightAzimuth = 200, request.lightElevation = 10;
+    if (scene == "sphere") request.azimuth = 0;
+    const Body body = scene == "sphere" ? ball(10, 320) : head(headFile, "head", 3);
+    Stored stored{make(device, body, request, usualProfile()),
+                  scene == "side"  ? "head, light from the side"
+                  : scene == "ear" ? "head and ear, light from behind"
+                                   : "sphere of 10 mm",
+                  scale};
+    store(file, stored);
+    return 0;
+}
+
+void print(const Stored& stored, const Setting& setting, double seconds, const std::vector<float>& picture) {
+    const LitScene& s = stored.scene;
+    std::vector<float> shown = picture, truth = s.truth;
+    for (std::vector<float>* values : {&shown, &truth})
+        for (float& v : *values) v *= albedo;
+    size_t pixels = 0;
+    std::vector<uint8_t> dark(s.covered.size());
+    for (size_t i = 0; i < dark.size(); ++i) {
+        pixels += s.covered[i];
+        dark[i] = s.covered[i] && (s.subsets[i] & io::SUBSET_UNLIT);
     }
+    const io::ImageDifference all = io::compareImages(shown, truth, s.covered),
+                              unlit = io::compareImages(shown, truth, dark);
+    std::printf(
+        "{\"scene\": \"%s\", \"scale\": %g, \"method\": \"%s\", \"setting\": \"%s\", \"pixels\": %zu, "
+        "\"ms\": %.4g, \"rmse\": [%.4g, %.4g, %.4g], \"unlit\": [%.4g, %.4g, %.4g]}\n",
+        stored.name.c_str(), stored.scale, setting.method.c_str(), setting.setting.c_str(), pixels,
+        seconds * 1e3, all.rmse[0], all.rmse[1], all.rmse[2], unlit.rmse[0], unlit.rmse[1], unlit.rmse[2]);
+    std::fflush(stdout);
+}
+
+void write(const std::string& folder, const std::string& name, const std::vector<float>& values) {
+    if (folder.empty()) return;
+    std::ofstream out(folder + "/" + name + ".f32", std::ios::binary);
+    out.write(reinterpret_cast<const char*>(values.data()), std::streamsize(values.size() * sizeof(float)));
+    if (!out.flush()) throw std::runtime_error("cannot write into " + folder);
+}
+
+int measure(const std::string& file, int repeats, const std::string& pictures) {
+    const Device device("");
+    const Profile profile = usualProfile();
+    const Stored stored = load(file);
+    const LitScene& s = stored.scene;
+    Setting plain{"Lambert", "", {}};
+    plain.request.scattering = PEL_SCATTERING_NONE;
+    plain.request.traced = true;
+    plain.request.repeats = repeats;
+    double plainSeconds = 0;
+    shade(device, s, profile, stored.scale, &plainSeconds, plain.request);
+    print(stored, plain, 0, s.irradiance);
+    write(pictures, "Lambert", s.irradiance);
+    write(pictures, "surface integral", s.truth);
+    for (Setting& setting : settings()) {
+        setting.request.repeats = repeats;
+        double seconds = 0;
+        const std::vector<float> picture = shade(device, s, profile, stored.scale, &seconds, setting.request);
+        print(stored, setting, std::max(seconds - plainSeconds, 0.0), picture);
+        if (setting.shown) write(pictures, setting.method, picture);
+    }
+    return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    if (argc < 2) {
-        std::fprintf(stderr, "sweep_error_time OUT.csv [PIXELS a side, 512] [HEAD.obj]\n");
-        return 2;
+    const std::vector<std::string> a(argv + 1, argv + argc);
+    const auto text = [&](size_t i, const std::string& otherwise) { return i < a.size() ? a[i] : otherwise; };
+    try {
+        if (a.size() >= 4 && a[0] == "make" && (a[1] == "side" || a[1] == "ear" || a[1] == "sphere") &&
+            std::atof(a[2].c_str()) > 0 && std::atoi(text(4, "512").c_str()) > 0)
+            return makeScene(a[1], std::atof(a[2].c_str()), a[3], std::atoi(text(4, "512").c_str()),
+                             text(5, PELLUCID_SOURCE_DIR "/data/heads/head_female.obj"));
+        if (a.size() >= 2 && a[0] == "measure" && std::atoi(text(2, "7").c_str()) > 0)
+            return measure(a[1], std::atoi(text(2, "7").c_str()), text(3, ""));
+    } catch (const std::exception& e) {
+        std::cerr << "sweep_error_time: " << e.what() << "\n";
+        return 1;
     }
-    const int size = argc > 2 ? std::atoi(argv[2]) : 512;
-    const std::string file = argc > 3 ? argv[3] : PELLUCID_SOURCE_DIR "/data/heads/head_female.obj";
-    const Device device("");
-    // Christensen-Burley with the radii of a usual Blender material: d = 0.292, 0.109, 0.054 mm.
-    const float path[3] = {1.05f * 0.29205f, 1.05f * 0.10902f, 1.05f * 0.05411f},
-                albedos[3] = {0.8f, 0.8f, 0.8f};
-    const Profile profile = Profile::burley(path, albedos, PEL_BURLEY_SEARCHLIGHT);
-    std::ofstream out(argv[1]);
-    out << "scene,scale,method,setting,pixels,ms,r,g,b,unlit_r,unlit_g,unlit_b\n";
-    const Body skull = head(file, "head", 3), sphere = ball(10, 320);
-    for (double scale : {1.0, 4.0}) {
-        SceneRequest side, ear, round;
-        side.size = ear.size = round.size = size;
-        side.mapSize = ear.mapSize = round.mapSize = 2048;
-        side.profileScale = ear.profileScale = round.profileScale = scale;
-        ear.azimuth = 70, ear.lightAzimuth = 200, ear.lightElevation = 10;
-        round.azimuth = 0;
-        measure(out, device, make(device, skull, side, profile), "head side", profile, scale);
-        measure(out, device, make(device, skull, ear, profile), "ear behind", profile, scale);
-        measure(out, device, make(device, sphere, round, profile), "sphere", profile, scale);
-    }
-    return out.good() ? 0 : 1;
+    std::cerr << "sweep_error_time make side|ear|sphere SCALE FILE [PIXELS] [HEAD.obj]\n"
+                 "sweep_error_time measure FILE [REPEATS] [PICTURES]\n";
+    return 2;
 }

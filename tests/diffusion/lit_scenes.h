@@ -256,6 +256,7 @@ struct ShadeRequest {
     bool traced = false;     // irradiance with ray-traced shadows is given
     bool curvature = true;   // the mesh's is given
     bool faceworks = false;  // tables and filter as FaceWorks makes them, of the profile; with a tableSize
+    int repeats = 7;         // of what is timed
 };
 
 // By the shader, all else at its default, shadows from the map.
@@ -315,12 +316,13 @@ inline std::vector<float> shade(const Device& device, const LitScene& s, const P
     shader.execute();
     if (seconds) {
         std::vector<double> times;
-        for (int i = 0; i < 7; ++i) {
+        for (int i = 0; i < request.repeats; ++i) {
             shader.execute();
             times.push_back(shader.stats().deviceMilliseconds * 1e-3);
         }
-        std::nth_element(times.begin(), times.begin() + 3, times.end());
-        *seconds = times[3];
+        const auto middle = times.begin() + request.repeats / 2;
+        std::nth_element(times.begin(), middle, times.end());
+        *seconds = *middle;
     }
     return radiance.readAll<float>();
 }
