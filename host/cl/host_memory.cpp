@@ -1,13 +1,12 @@
 #include "cl/host_memory.h"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <new>
+
+#include "cl/pages.h"
 
 namespace pel::cl {
 namespace {
@@ -23,12 +22,11 @@ class Block {
   public:
     Block(size_t bytes, bool zeros) : bytes_(bytes) {
         if (bytes >= mapped) {
-            at_ = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-            if (at_ == MAP_FAILED) none();
-            commit();
+            at_ = mapPages(bytes);
+            if (!at_) none();
         } else {
             const size_t alignment = bytes < page ? cacheLine : page;
-            at_ = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+            at_ = allocateAligned(alignment, (bytes + alignment - 1) / alignment * alignment);
             if (!at_) none();
             if (zeros) std::memset(at_, 0, bytes);
         }
@@ -36,9 +34,9 @@ class Block {
     }
     ~Block() {
         if (bytes_ >= mapped)
-            ::munmap(at_, bytes_);
+            unmapPages(at_, bytes_);
         else
-            std::free(at_);
+            freeAligned(at_);
         inUse.fetch_sub(bytes_, std::memory_order_relaxed);
     }
     Block(const Block&) = delete;
@@ -48,17 +46,6 @@ class Block {
   private:
     [[noreturn]] void none() const {
         fail(PEL_ERROR_OUT_OF_MEMORY, "the system has no ", bytes_, " bytes of memory for a buffer");
-    }
-    // Touch the pages now. The system promises more pages than it has, and ends the process that touches the
-    // last one.
-    void commit() {
-#ifdef MADV_HUGEPAGE
-        (void)::madvise(at_, bytes_, MADV_HUGEPAGE);
-#endif
-#ifdef MADV_POPULATE_WRITE
-        if (::madvise(at_, bytes_, MADV_POPULATE_WRITE) == 0) return;
-#endif
-        for (size_t i = 0; i < bytes_; i += page) static_cast<volatile char*>(at_)[i] = 0;
     }
     size_t bytes_;
     void* at_ = nullptr;

@@ -1,6 +1,7 @@
 #include "mesh/mesh_ring.h"
 
 #include <algorithm>
+#include <bit>
 #include <tuple>
 
 #include "shared/mesh.h"
@@ -11,6 +12,9 @@ namespace {
 // With more triangles than this, sorting costs less than a search per step.
 constexpr uint32_t largestFan = 24;
 
+// Up to here all triangles are compared with one at once.
+constexpr uint32_t smallFan = RingBuilder::readAhead;
+
 }  // namespace
 
 bool RingBuilder::End::operator<(const End& b) const {
@@ -18,10 +22,14 @@ bool RingBuilder::End::operator<(const End& b) const {
     return std::tie(node, backward, other, triangle) < std::tie(b.node, b.backward, b.other, b.triangle);
 }
 
-RingBuilder::Edges RingBuilder::build(uint32_t slot, Corner* corners, uint32_t count, std::vector<uint32_t>& out) {
+RingBuilder::Edges RingBuilder::build(uint32_t slot, const Corner* corners, uint32_t count,
+                                      LargeVector<uint32_t>& out) {
     const size_t begin = out.size();
     Edges edges;
-    if (count > 0 && !(count <= largestFan && buildFan(corners, count, out))) {
+    const bool isFan = count <= smallFan     ? buildSmallFan(corners, count, out)
+                       : count <= largestFan ? buildFan(corners, count, out)
+                                             : false;
+    if (count > 0 && !isFan) {
         buildTrails(corners, count, out);
         // A list of this kind can hold a neighbour several times.
         for (const Node& node : nodes_) {
@@ -35,16 +43,62 @@ RingBuilder::Edges RingBuilder::build(uint32_t slot, Corner* corners, uint32_t c
         return edges;
     }
     for (size_t e = begin; e < out.size(); ++e) {
-        if ((out[e] & PEL_MESH_SLOT) < slot) continue;
-        ++edges.all;
-        edges.border += (out[e] & PEL_MESH_SINGLE) != 0;
+        const uint32_t own = (out[e] & PEL_MESH_SLOT) >= slot;  // no branch: slots are in any order
+        edges.all += own;
+        edges.border += own & uint32_t((out[e] & PEL_MESH_SINGLE) != 0);
     }
     return edges;
 }
 
 // The usual vertex: one fan of triangles, all in the same order. For any other vertex returns false and
 // appends nothing.
-bool RingBuilder::buildFan(Corner* corners, uint32_t count, std::vector<uint32_t>& out) {
+bool RingBuilder::buildSmallFan(const Corner* corners, uint32_t count, LargeVector<uint32_t>& out) {
+    if (count == 0) return false;
+    // The corners whose `end` is `slot`, as bits. A loop over all eight becomes vector instructions.
+    constexpr uint32_t bits[smallFan] = {1, 2, 4, 8, 16, 32, 64, 128};
+    const uint32_t valid = (1u << count) - 1;
+    const auto with = [&](uint32_t Corner::*end, uint32_t slot) {
+        uint32_t found = 0;
+        for (uint32_t a = 0; a < smallFan; ++a) found |= corners[a].*end == slot ? bits[a] : 0;
+        return found & valid;
+    };
+    // Forwards from any corner until there is no next one, then backwards from it. A walk that takes each corner once has no two
+    // with the same `from` or `to`: one of them would be taken twice, or never.
+    const auto isOne = [](uint32_t found) { return (found & (found - 1)) == 0; };
+    uint32_t walk[2 * smallFan], begin = smallFan, end = smallFan, taken = 1;
+    walk[end++] = 0;
+    bool closed = false;
+    while (const uint32_t found = with(&Corner::from, corners[walk[end - 1]].to)) {
+        closed = found == 1;
+        if (closed) break;
+        if (!isOne(found) || (found & taken)) return false;
+        taken |= found;
+        walk[end++] = uint32_t(std::countr_zero(found));
+    }
+    while (const uint32_t found = closed ? 0 : with(&Corner::to, corners[walk[begin]].from)) {
+        if (!isOne(found) || (found & taken)) return false;
+        taken |= found;
+        walk[--begin] = uint32_t(std::countr_zero(found));
+    }
+    if (end - begin != count) return false;
+    const size_t at = out.size();
+    out.resize(at + count + (closed ? 0 : 1));
+    uint32_t* list = out.data() + at;
+    // A closed fan starts at the smallest neighbour: the list must not depend on the order of the triangles.
+    uint32_t first = begin;
+    for (uint32_t i = begin + 1; closed && i < end; ++i)
+        first = corners[walk[i]].from < corners[walk[first]].from ? i : first;
+    for (uint32_t i = first; i < end; ++i) *list++ = corners[walk[i]].from;
+    for (uint32_t i = begin; i < first; ++i) *list++ = corners[walk[i]].from;
+    out[at] |= closed ? PEL_MESH_START : PEL_MESH_START | PEL_MESH_SINGLE;
+    if (!closed) *list = corners[walk[end - 1]].to | PEL_MESH_SINGLE;
+    return true;
+}
+
+// The same for more triangles.
+bool RingBuilder::buildFan(const Corner* unordered, uint32_t count, LargeVector<uint32_t>& out) {
+    fan_.assign(unordered, unordered + count);
+    Corner* const corners = fan_.data();
     // Start at the corner that no triangle leads to, or at the smallest neighbour if there is none: the list
     // must not depend on the order of the triangles.
     uint32_t first = UINT32_MAX, entrances = 0;
@@ -83,7 +137,7 @@ RingBuilder::Node& RingBuilder::node(uint32_t slot) {
 
 // Any set of triangles. A walk that starts at a corner with an odd number of triangles ends at another such
 // corner. When there are none, every walk returns to its start.
-void RingBuilder::buildTrails(const Corner* corners, uint32_t count, std::vector<uint32_t>& out) {
+void RingBuilder::buildTrails(const Corner* corners, uint32_t count, LargeVector<uint32_t>& out) {
     ends_.clear();
     nodes_.clear();
     used_.assign(count, 0);
@@ -112,7 +166,7 @@ void RingBuilder::buildTrails(const Corner* corners, uint32_t count, std::vector
     for (size_t n = 0; n < nodes_.size(); ++n) nodes_[n].next = firsts[n];
 }
 
-void RingBuilder::walk(Node& start, std::vector<uint32_t>& out) {
+void RingBuilder::walk(Node& start, LargeVector<uint32_t>& out) {
     const bool open = start.free % 2;
     const auto emit = [&](Node& n, uint32_t flags) {
         out.push_back(n.slot | flags | (n.visited ? PEL_MESH_REPEAT : 0));

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh/large_vector.h"
+
 namespace pel {
 
 // The other two corners of a triangle at a slot, in the order of the triangle.
@@ -20,12 +22,15 @@ class RingBuilder {
             return *this;
         }
     };
-    // Appends the list of `slot` to `out`. `corners` (count of them) may be reordered.
-    Edges build(uint32_t slot, Corner* corners, uint32_t count, std::vector<uint32_t>& out);
+    // Appends the list of `slot` to `out`. Of `corners` (count of them) the first
+    // `readAhead` are read, whatever is there.
+    static constexpr uint32_t readAhead = 8;
+    Edges build(uint32_t slot, const Corner* corners, uint32_t count, LargeVector<uint32_t>& out);
 
   private:
-    bool buildFan(Corner* corners, uint32_t count, std::vector<uint32_t>& out);
-    void buildTrails(const Corner* corners, uint32_t count, std::vector<uint32_t>& out);
+    bool buildSmallFan(const Corner* corners, uint32_t count, LargeVector<uint32_t>& out);
+    bool buildFan(const Corner* corners, uint32_t count, LargeVector<uint32_t>& out);
+    void buildTrails(const Corner* corners, uint32_t count, LargeVector<uint32_t>& out);
 
     // One end of the edge that is opposite to the slot in a triangle.
     struct End {
@@ -38,8 +43,9 @@ class RingBuilder {
         bool visited;
     };
     Node& node(uint32_t slot);
-    void walk(Node& start, std::vector<uint32_t>& out);
+    void walk(Node& start, LargeVector<uint32_t>& out);
 
+    std::vector<Corner> fan_;
     std::vector<End> ends_;
     std::vector<Node> nodes_;
     std::vector<char> used_;  // per triangle

@@ -25,9 +25,9 @@ void checkTopologyDesc(const PelMeshTopologyDesc& desc) {
                             "; the mesh has ", desc.numVertices, " vertices, numbered from 0");
 }
 
-cl::Memory MeshTopology::upload(const std::vector<uint32_t>& values) {
+cl::Memory MeshTopology::upload(std::span<const uint32_t> values) {
     if (values.empty()) return {};
-    return device_->allocate(values.size() * sizeof(uint32_t), values.data());
+    return device_->allocate(values.size_bytes(), values.data());
 }
 
 Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopologyDesc& desc,
@@ -41,36 +41,21 @@ Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopology
     report.vertices = desc.numVertices;
     report.triangles = uint32_t(desc.numIndices / 3);
     report.uniquePositions = weld.slots;
-    std::vector<uint32_t> triangles;
-    triangles.reserve(desc.numIndices);
-    std::vector<bool> used(desc.numVertices);
-    for (uint64_t i = 0; i < desc.numIndices; i += 3) {
-        uint32_t v[3];
-        for (int c = 0; c < 3; ++c) {
-            const uint32_t vertex = desc.indices[i + c];
-            used[vertex] = true;
-            v[c] = weld.slotOf.empty() ? vertex : weld.slotOf[vertex];
-        }
-        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0])
-            ++report.degenerateTriangles;
-        else
-            triangles.insert(triangles.end(), v, v + 3);
-    }
-    report.unreferencedVertices = uint32_t(std::count(used.begin(), used.end(), false));
-    progress(0.3);
-    CornerTable corners = sortCorners(triangles, weld.slots);
+    const CornerTable corners =
+        sortCorners({desc.indices, desc.numIndices / 3, weld.slotOf, desc.numVertices, weld.slots});
+    report.degenerateTriangles = corners.degenerate;
+    report.unreferencedVertices = corners.unreferenced;
     progress(0.5);
-    MeshAdjacency adjacency = buildAdjacency(corners);
-    progress(0.7);
-    if (isScattered(triangles, weld.slots)) {
+    MeshAdjacency adjacency;
+    if (corners.scattered) {
         // Passes then work in an order of their own. Only the first and the last pass use the caller's order.
-        const std::vector<uint32_t> numbers = breadthFirstNumbers(adjacency);
+        std::vector<uint32_t> numbers;
+        adjacency = buildRenumbered(corners, numbers);
         renumberSlots(weld, numbers);
-        corners = renumberCorners(corners, numbers);
-        progress(0.8);
+    } else {
         adjacency = buildAdjacency(corners);
-        progress(0.9);
     }
+    progress(0.9);
     report.edges = adjacency.edges;
     report.borderEdges = adjacency.borderEdges;
     report.nonManifoldEdges = adjacency.nonManifoldEdges;

@@ -2,6 +2,7 @@
 // over it.
 #pragma once
 #include <functional>
+#include <span>
 
 #include "core/buffer.h"
 #include "shared/mesh.h"
@@ -74,7 +75,7 @@ class MeshTopology final : public Object {
 
   private:
     ~MeshTopology() override = default;
-    cl::Memory upload(const std::vector<uint32_t>& values);
+    cl::Memory upload(std::span<const uint32_t> values);
 
     Ref<Device> device_;
     PelMeshReport report_ = pelMeshReportDefaults();
