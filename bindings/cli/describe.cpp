@@ -34,7 +34,9 @@ nlohmann::ordered_json described(const CLI::App& app) {
     json["name"] = app.get_name();
     json["help"] = app.get_description();
     json["options"] = nlohmann::json::array();
-    for (const CLI::Option* option : app.get_options()) json["options"].push_back(described(*option));
+    for (const CLI::Option* option : app.get_options())
+        if (!option->get_group().empty())
+            json["options"].push_back(described(*option));  // the others are hidden
     json["subcommands"] = nlohmann::json::array();
     for (const CLI::App* sub : app.get_subcommands({})) json["subcommands"].push_back(described(*sub));
     return json;

@@ -38,7 +38,7 @@ PelError pelScatterSetImage(PelScatter scatter, PelImageSlot slot, const PelImag
         const Ref<Scatter> object = fromHandle<Scatter>(scatter);
         ImageView view;
         if (image)
-            view = makeImageView(readStruct(image, pelImageDescDefaults(), "PelImageDesc"), object->device(),
+            view = makeImageView(image, object->device(),
                                  uint32_t(slot) < PEL_SLOT_COUNT ? slotName(slot) : "further");
         object->setImage(slot, view);
     });
@@ -52,9 +52,7 @@ PelError pelScatterExecute(PelScatter scatter, const PelScatterParams* params, c
         const auto defaults = pelScatterParamsDefaults();
         const auto full = params ? readStruct(params, defaults, "PelScatterParams") : defaults;
         const auto view = [&](const PelImageDesc* desc, const char* name, bool needed) {
-            if (desc)
-                return makeImageView(readStruct(desc, pelImageDescDefaults(), "PelImageDesc"),
-                                     object->device(), name);
+            if (desc) return makeImageView(desc, object->device(), name);
             if (needed) invalidArgument("`", name, "` is needed, not NULL");
             return ImageView();
         };

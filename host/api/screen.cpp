@@ -12,8 +12,7 @@ PelError pelScreenCurvature(PelDevice device, const PelScreenCurvatureParams* pa
         const auto defaults = pelScreenCurvatureParamsDefaults();
         const auto full = params ? readStruct(params, defaults, "PelScreenCurvatureParams") : defaults;
         const auto view = [&](const PelImageDesc* desc, const char* name, bool needed) {
-            if (desc)
-                return makeImageView(readStruct(desc, pelImageDescDefaults(), "PelImageDesc"), *on, name);
+            if (desc) return makeImageView(desc, *on, name);
             if (needed) invalidArgument("`", name, "` is needed, not NULL");
             return ImageView();
         };

@@ -27,12 +27,7 @@ PelError pelShaderSetOptions(PelShader shader, const PelShaderOptions* options) 
 }
 
 PelError pelShaderSetImage(PelShader shader, PelImageSlot slot, const PelImageDesc* image) {
-    return entry([&] {
-        const Ref<Shader> s = fromHandle<Shader>(shader);
-        if (!image) return s->setImage(slot, nullptr);
-        const PelImageDesc desc = readStruct(image, pelImageDescDefaults(), "PelImageDesc");
-        s->setImage(slot, &desc);
-    });
+    return entry([&] { fromHandle<Shader>(shader)->setImage(slot, image); });
 }
 
 PelError pelShaderSetMaterial(PelShader shader, uint32_t id, const PelMaterial* material, PelLut curvatureLut,
@@ -52,12 +47,7 @@ PelError pelShaderSetNormalMap(PelShader shader, uint32_t id, const PelImageDesc
 }
 
 PelError pelShaderSetScatteredTexture(PelShader shader, uint32_t id, const PelImageDesc* texture) {
-    return entry([&] {
-        const Ref<Shader> s = fromHandle<Shader>(shader);
-        if (!texture) return s->setScatteredTexture(id, nullptr);
-        const PelImageDesc desc = readStruct(texture, pelImageDescDefaults(), "PelImageDesc");
-        s->setScatteredTexture(id, &desc);
-    });
+    return entry([&] { fromHandle<Shader>(shader)->setScatteredTexture(id, texture); });
 }
 
 PelError pelShaderSetEye(PelShader shader, uint32_t id, const PelEye* eye, PelLut caustics) {
@@ -71,21 +61,11 @@ PelError pelShaderSetEye(PelShader shader, uint32_t id, const PelEye* eye, PelLu
 }
 
 PelError pelShaderSetIrisTexture(PelShader shader, uint32_t id, const PelImageDesc* texture) {
-    return entry([&] {
-        const Ref<Shader> s = fromHandle<Shader>(shader);
-        if (!texture) return s->setIrisTexture(id, nullptr);
-        const PelImageDesc desc = readStruct(texture, pelImageDescDefaults(), "PelImageDesc");
-        s->setIrisTexture(id, &desc);
-    });
+    return entry([&] { fromHandle<Shader>(shader)->setIrisTexture(id, texture); });
 }
 
 PelError pelShaderSetReflectionCube(PelShader shader, const PelImageDesc* faces) {
-    return entry([&] {
-        const Ref<Shader> s = fromHandle<Shader>(shader);
-        if (!faces) return s->setReflectionCube(nullptr);
-        const PelImageDesc desc = readStruct(faces, pelImageDescDefaults(), "PelImageDesc");
-        s->setReflectionCube(&desc);
-    });
+    return entry([&] { fromHandle<Shader>(shader)->setReflectionCube(faces); });
 }
 
 PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t count) {
@@ -93,12 +73,7 @@ PelError pelShaderSetLights(PelShader shader, const PelLight* lights, uint32_t c
 }
 
 PelError pelShaderSetLightImage(PelShader shader, uint32_t light, PelLightSlot slot, const PelImageDesc* image) {
-    return entry([&] {
-        const Ref<Shader> s = fromHandle<Shader>(shader);
-        if (!image) return s->setLightImage(light, slot, nullptr);
-        const PelImageDesc desc = readStruct(image, pelImageDescDefaults(), "PelImageDesc");
-        s->setLightImage(light, slot, &desc);
-    });
+    return entry([&] { fromHandle<Shader>(shader)->setLightImage(light, slot, image); });
 }
 
 PelError pelShaderSetAmbient(PelShader shader, const PelAmbient* ambient) {
@@ -108,12 +83,7 @@ PelError pelShaderSetAmbient(PelShader shader, const PelAmbient* ambient) {
 }
 
 PelError pelShaderSetAmbientCube(PelShader shader, const PelImageDesc* faces) {
-    return entry([&] {
-        const Ref<Shader> s = fromHandle<Shader>(shader);
-        if (!faces) return s->setAmbientCube(nullptr);
-        const PelImageDesc desc = readStruct(faces, pelImageDescDefaults(), "PelImageDesc");
-        s->setAmbientCube(&desc);
-    });
+    return entry([&] { fromHandle<Shader>(shader)->setAmbientCube(faces); });
 }
 
 PelError pelShaderSetCamera(PelShader shader, const PelCamera* camera) {

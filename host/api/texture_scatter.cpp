@@ -9,7 +9,7 @@ namespace {
 
 ImageView viewOf(const PelImageDesc* desc, const TextureScatter& object, const char* name) {
     if (!desc) invalidArgument("`", name, "` is needed, not NULL");
-    return makeImageView(readStruct(desc, pelImageDescDefaults(), "PelImageDesc"), object.device(), name);
+    return makeImageView(desc, object.device(), name);
 }
 
 }  // namespace

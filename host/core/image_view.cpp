@@ -1,6 +1,8 @@
 #include "core/image_view.h"
 
+#include "core/about.h"
 #include "core/handle_table.h"
+#include "core/struct_size.h"
 #include "shared/formats.h"
 
 namespace pel {
@@ -28,7 +30,9 @@ uint64_t ImageView::byteEnd() const {
     return byteOffset + planes + (height - 1) * rowStride + (width - 1) * pixelStride + info().pixelBytes;
 }
 
-ImageView makeImageView(const PelImageDesc& desc, Device& device, const char* what) {
+ImageView makeImageView(const PelImageDesc* given, Device& device, const char* what) {
+    const PelImageDesc desc = about([&] { return readStruct(given, pelImageDescDefaults(), "PelImageDesc"); },
+                                    "the ", what, " image");
     const FormatInfo* format = formatInfo(desc.format);
     if (!format)
         invalidArgument("the ", what, " image has format ", int(desc.format),
@@ -37,7 +41,7 @@ ImageView makeImageView(const PelImageDesc& desc, Device& device, const char* wh
         invalidArgument("the ", what, " image is ", desc.width, " x ", desc.height,
                         "; both must be between 1 and 16384");
     ImageView view;
-    view.buffer = fromHandle<Buffer>(desc.buffer);
+    view.buffer = about([&] { return fromHandle<Buffer>(desc.buffer); }, "the buffer of the ", what, " image");
     if (&view.buffer->device() != &device)
         invalidArgument("the buffer of the ", what, " image belongs to another PelDevice than the shader");
     view.format = desc.format;

@@ -31,9 +31,9 @@ struct ImageView {
     bool tightlyPacked() const { return pixelStride == info().pixelBytes; }
 };
 
-// Checks format, alignment and strides, that all pixels are inside the buffer, and that the buffer is of
-// `device`. `what` names the image in messages.
-ImageView makeImageView(const PelImageDesc& desc, Device& device, const char* what);
+// Checks the caller's structure, its format, alignment and strides, that all pixels are inside the buffer, and
+// that the buffer is of `device`. `what` names the image in every message.
+ImageView makeImageView(const PelImageDesc* given, Device& device, const char* what);
 
 // Whether `a` and `b` share a byte of a pixel. Also finds buffers over the same host memory and parts of one
 // cl_mem.

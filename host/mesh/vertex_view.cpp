@@ -1,5 +1,6 @@
 #include "mesh/vertex_view.h"
 
+#include "core/about.h"
 #include "core/handle_table.h"
 
 namespace pel {
@@ -10,7 +11,8 @@ VertexView checkedView(const PelVertexView* view, const char* name, const Device
     if (view->count != count)
         invalidArgument("`", name, "` has ", view->count, " vertices, ", owner, " has ", count);
     if (count == 0) return {};
-    const Ref<Buffer> held = fromHandle<Buffer>(view->buffer);
+    const Ref<Buffer> held =
+        about([&] { return fromHandle<Buffer>(view->buffer); }, "the buffer of `", name, "`");
     const Buffer& buffer = *held;
     if (&buffer.device() != &device)
         invalidArgument("the buffer of `", name, "` belongs to another device than ", owner);

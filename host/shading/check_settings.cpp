@@ -64,12 +64,12 @@ void checkImage(PelImageSlot slot, const ImageView& view) {
     checkContent(view, imageSlot(slot).content, slotName(slot));
 }
 
-void checkLightImage(PelLightSlot slot, const ImageView& view) {
-    checkContent(view, Content::SCALAR, lightSlotName(slot));
+void checkLightImage(PelLightSlot slot, const ImageView& view, const char* what) {
+    checkContent(view, Content::SCALAR, what);
     // Taps address the map with 32 bits.
     if (slot != PEL_LIGHT_WIDE_SHADOW && view.byteEnd() - view.byteOffset > UINT32_MAX)
-        fail(PEL_ERROR_UNSUPPORTED, "the ", lightSlotName(slot), " image spans ",
-             view.byteEnd() - view.byteOffset, " bytes; 4 GiB is the most");
+        fail(PEL_ERROR_UNSUPPORTED, "the ", what, " image spans ", view.byteEnd() - view.byteOffset,
+             " bytes; 4 GiB is the most");
 }
 
 void checkNormalMap(const std::vector<ImageView>& levels) {

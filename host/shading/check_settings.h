@@ -8,7 +8,7 @@ namespace pel {
 // NAME.FIELD[i] of a structure.
 void checkFinite(const char* structure, const char* field, const float* values, size_t count);
 void checkImage(PelImageSlot slot, const ImageView& view);
-void checkLightImage(PelLightSlot slot, const ImageView& view);
+void checkLightImage(PelLightSlot slot, const ImageView& view, const char* what);
 void checkNormalMap(const std::vector<ImageView>& levels);
 void checkMaterial(const PelMaterial& material);
 void checkScatterControls(const char* structure, uint32_t taps, float albedoBefore,

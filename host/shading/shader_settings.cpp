@@ -24,7 +24,7 @@ void Shader::setImage(PelImageSlot slot, const PelImageDesc* image) {
         invalidArgument("image slot ", int(slot), " is none of PelImageSlot");
     ImageView view;
     if (image) {
-        view = makeImageView(*image, *device_, slotName(slot));
+        view = makeImageView(image, *device_, slotName(slot));
         checkImage(slot, view);
     }
     state_.images[slot] = view;
@@ -79,8 +79,7 @@ void Shader::setNormalMap(uint32_t id, const PelImageDesc* levels, uint32_t coun
     const char* next = reinterpret_cast<const char*>(levels);
     for (uint32_t i = 0; i < count; ++i) {
         const auto* level = reinterpret_cast<const PelImageDesc*>(next);
-        views.push_back(makeImageView(readStruct(level, pelImageDescDefaults(), "PelImageDesc"), *device_,
-                                      text("normal map ", i).c_str()));
+        views.push_back(makeImageView(level, *device_, text("normal map ", i).c_str()));
         next += level->structSize;
     }
     checkNormalMap(views);
@@ -92,7 +91,7 @@ void Shader::setScatteredTexture(uint32_t id, const PelImageDesc* texture) {
     ShaderMaterial& material = materialFor(id, "scattered texture");
     ImageView view;
     if (texture) {
-        view = makeImageView(*texture, *device_, "scattered texture");
+        view = makeImageView(texture, *device_, "scattered texture");
         checkScatteredTexture(view);
     }
     material.scatteredTexture = view;
@@ -135,7 +134,7 @@ void Shader::setIrisTexture(uint32_t id, const PelImageDesc* texture) {
         invalidArgument("material ", id, " is no eye: pelShaderSetEye comes before its iris texture");
     ImageView view;
     if (texture) {
-        view = makeImageView(*texture, *device_, "iris texture");
+        view = makeImageView(texture, *device_, "iris texture");
         checkIrisTexture(view);
     }
     material.eye->iris = view;
@@ -166,8 +165,9 @@ void Shader::setLightImage(uint32_t light, PelLightSlot slot, const PelImageDesc
         invalidArgument("light image slot ", int(slot), " is none of PelLightSlot");
     ImageView view;
     if (image) {
-        view = makeImageView(*image, *device_, lightSlotName(slot));
-        checkLightImage(slot, view);
+        const std::string name = text(lightSlotName(slot), " (light ", light, ")");
+        view = makeImageView(image, *device_, name.c_str());
+        checkLightImage(slot, view, name.c_str());
     }
     state_.lights[light].images[slot] = view;
     committed_ = false;
@@ -182,7 +182,7 @@ void Shader::setAmbient(const PelAmbient& ambient) {
 void Shader::setAmbientCube(const PelImageDesc* faces) {
     ImageView view;
     if (faces) {
-        view = makeImageView(*faces, *device_, "ambient cube");
+        view = makeImageView(faces, *device_, "ambient cube");
         checkCube(view, "ambient cube");
     }
     state_.ambientCube = view;
@@ -192,7 +192,7 @@ void Shader::setAmbientCube(const PelImageDesc* faces) {
 void Shader::setReflectionCube(const PelImageDesc* faces) {
     ImageView view;
     if (faces) {
-        view = makeImageView(*faces, *device_, "reflection cube");
+        view = makeImageView(faces, *device_, "reflection cube");
         checkCube(view, "reflection cube");
     }
     state_.reflectionCube = view;

@@ -181,8 +181,8 @@ TEST(Handles, ManyAtATime) {
     for (size_t i = 0; i < all.size(); i += 97) {
         double distance = 0.5, value[3], other[3];
         check(pelProfileEvaluate(all[i].get(), &distance, 1, value, nullptr));
-        check(pelProfileEvaluate(Profile::gaussians({{0.5f + float(i), {1, 1, 1}}}).get(), &distance, 1,
-                                 other, nullptr));
+        const Profile same = Profile::gaussians({{0.5f + float(i), {1, 1, 1}}});
+        check(pelProfileEvaluate(same.get(), &distance, 1, other, nullptr));
         EXPECT_EQ(value[0], other[0]) << i;
     }
 }

@@ -2,6 +2,6 @@
 #include <pellucid/pellucid.hpp>
 
 int main() {
-    const pellucid::Device device("");
+    const pellucid::Device device;
     std::printf("%s\n", device.info().name);
 }

@@ -265,7 +265,8 @@ TEST_P(ShadePacked, ShadesWhatItDecodesTo) {
     for (const Packed& one : packed) {
         std::vector<uint8_t> bytes = one.pack(f.slots[one.slot]);
         const size_t pixel = bytes.size() / f.pixels();
-        PelImageDesc desc = imageDesc(Buffer(), one.format, f.width, f.height);
+        const Buffer none;
+        PelImageDesc desc = imageDesc(none, one.format, f.width, f.height);
         if (padded) {
             std::vector<uint8_t> wide(bytes.size() * 2, 0xa5);
             for (size_t i = 0; i < f.pixels(); ++i)

@@ -34,7 +34,7 @@ T structOf(const std::string& bytes) {
 
 // A further reference to a device of the other native module.
 struct SharedDevice : Device {
-    explicit SharedDevice(PelDevice device) {
+    explicit SharedDevice(PelDevice device) : Device(nullptr) {
         pelDeviceRetain(device);
         h_ = device;
     }

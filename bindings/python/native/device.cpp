@@ -21,7 +21,7 @@ void onError(void*, PelError code, const char* message) {
 template <class Create>
 std::unique_ptr<Device> created(Create create) {
     opensDevices();
-    pellucid::Device device;
+    pellucid::Device device(nullptr);
     call([&] {
         try {
             device = create();

@@ -175,7 +175,7 @@ class Image:
     format : Format or str, optional
         How the components are read. From the array without it: float32 and float16 with 1 to 4 components; uint8 with 1
         or 4 as fractions of 255; uint16 with 1 as a fraction; int16 with 2 as an octahedral unit vector; one-component
-        unsigned integers in the material slot as ids.
+        unsigned integers in the material slot as ids, and bool as 0 and 1.
     byte_offset, pixel_stride, row_stride, plane_stride : int
         Bytes, for a Buffer; strides of 0 are tightly packed.
 
@@ -202,6 +202,8 @@ class Image:
             buffer, byte_offset, shape, strides, dtype = cl
         else:
             array = as_array(data, _slot)
+            if _ids and array.dtype == np.bool_:  # a mask: material 1 where it is true
+                array = array.view(np.uint8)
             shape, strides, dtype = array.shape, array.strides, array.dtype
         _check_byte_order(dtype, _slot)
         if len(shape) not in (2, 3):
@@ -235,6 +237,9 @@ class Image:
                              "numpy.ascontiguousarray(array)")
         if ids and components == 1 and dtype.name in _ID_FORMATS:
             return _ID_FORMATS[dtype.name]
+        if ids and dtype.kind in "iub":
+            raise ValueError(f"{slot} has {components} components of {dtype}; ids are one of uint8, uint16 or uint32 "
+                             "(array.astype(numpy.uint8) makes a copy that is)")
         found = _FORMATS.get((dtype.name, components))
         if found is None:
             raise ValueError(f"{slot} has {components} components of {dtype}, which no format stores; float32 or float16 "

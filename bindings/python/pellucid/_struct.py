@@ -60,6 +60,13 @@ class Struct:
         super().__setattr__(name, value)
 
     @classmethod
+    def _bytes_of(cls, value: Any) -> NDArray[Any]:
+        """The C structure of `value`, which must be one of these."""
+        if not isinstance(value, cls):
+            raise TypeError(f"{value!r} is a {type(value).__name__}; a pellucid.{cls.__name__} is needed")
+        return value._data
+
+    @classmethod
     def field_names(cls) -> tuple[str, ...]:
         """The fields in the order of the C structure."""
         return tuple(n for n in cls._dtype.names or () if n != "struct_size")
@@ -190,11 +197,9 @@ class ProfileField(_Field):
         return self if owner is None else owner._profile
 
     def __set__(self, owner: Struct, value: Any) -> None:
-        from .profile import Profile
+        from .profile import as_profile
 
-        profile = Profile.named(value) if isinstance(value, str) else value
-        if profile is not None and not isinstance(profile, Profile):
-            raise self._fail(owner, value, "a Profile or the name of one of the library")
+        profile = as_profile(value, f"{type(owner).__name__}.{self.name}")
         owner._profile = profile
         owner._data[self.name] = 0 if profile is None else profile._handle.address()
 

@@ -46,7 +46,7 @@ class Lut(OfThisProcess):
         return self
 
     @classmethod
-    def curvature(cls, device: Device, desc: Optional[CurvatureLutDesc] = None, *, profile: Optional[Profile] = None,
+    def curvature(cls, device: Device, desc: Optional[CurvatureLutDesc] = None, *, profile: Profile | str | None = None,
                   wait: bool = True, waits: Iterable[Event] = (), **fields: Any) -> Lut:
         """Integrates a curvature table: texel (x, y) is D(N.L, r) per channel, row 0 the smallest curvature.
 
@@ -54,7 +54,7 @@ class Lut(OfThisProcess):
         ----------
         desc : CurvatureLutDesc, optional
             The defaults without it; `fields` are fields of it by themselves (width=256, form="sphere", ...).
-        profile : Profile, optional
+        profile : Profile or name of one of the library, optional
             Skin without it.
         wait : bool
             False: return once it is submitted; `ready` says when it is done.
@@ -62,7 +62,7 @@ class Lut(OfThisProcess):
         return cls._integrated(device, _native.Lut.curvature, CurvatureLutDesc, desc, fields, profile, wait, waits)
 
     @classmethod
-    def shadow(cls, device: Device, desc: Optional[ShadowLutDesc] = None, *, profile: Optional[Profile] = None,
+    def shadow(cls, device: Device, desc: Optional[ShadowLutDesc] = None, *, profile: Profile | str | None = None,
                wait: bool = True, waits: Iterable[Event] = (), **fields: Any) -> Lut:
         """Integrates a shadow table: texel (x, y) is the light transmitted per channel, row 0 the widest penumbra.
 
@@ -77,7 +77,7 @@ class Lut(OfThisProcess):
         return cls._integrated(device, _native.Lut.specular, SpecularLutDesc, desc, fields, None, wait, waits)
 
     @classmethod
-    def eye(cls, device: Device, desc: Optional[EyeLutDesc] = None, *, profile: Optional[Profile] = None,
+    def eye(cls, device: Device, desc: Optional[EyeLutDesc] = None, *, profile: Profile | str | None = None,
             wait: bool = True, waits: Iterable[Event] = (), **fields: Any) -> Lut:
         """Integrates the caustic of a cornea: irradiance on the iris, slice below slice from light along the gaze on.
 
@@ -87,7 +87,7 @@ class Lut(OfThisProcess):
 
     @classmethod
     def _integrated(cls, device: Device, create: Any, kind: Any, desc: Any, fields: dict[str, Any],
-                    profile: Optional[Profile], wait: bool, waits: Iterable[Event]) -> Lut:
+                    profile: Profile | str | None, wait: bool, waits: Iterable[Event]) -> Lut:
         settings = kind() if desc is None else desc.copy()
         for name, value in fields.items():
             setattr(settings, name, value)

@@ -133,3 +133,11 @@ class Profile(OfThisProcess):
         data = io.BytesIO()
         figure.savefig(data, format="png", dpi=90)
         return data.getvalue()
+
+
+def as_profile(value: Any, what: str = "profile") -> Optional[Profile]:
+    """A profile, one of the library by its name, or None."""
+    profile = Profile.named(value) if isinstance(value, str) else value
+    if profile is not None and not isinstance(profile, Profile):
+        raise ValueError(f"{what} is {value!r}; it must be a Profile or the name of one of the library")
+    return profile

@@ -11,11 +11,11 @@ from . import _native
 from ._arrays import submit, vertex_view
 from ._types import IrradianceAt
 from .device import Device, Event, _handles
-from .profile import Profile
+from .profile import Profile, as_profile
 
 
 def surface_integral(device: Device, positions: Any, triangles: Any, irradiance: Any, points: Any,
-                     out: Optional[NDArray[np.float32]] = None, *, profile: Optional[Profile] = None, diffusion_radius: float = 0.0,
+                     out: Optional[NDArray[np.float32]] = None, *, profile: Profile | str | None = None, diffusion_radius: float = 0.0,
                      millimetres_per_unit: float = 1.0, cut: Sequence[float] = (0.0, 0.0, 0.0),
                      tolerance: float = 1e-3) -> NDArray[np.float32]:
     """Light that leaves a surface after diffusing under it: sum over the mesh of R(distance) irradiance; see pelSurfaceIntegral.
@@ -30,7 +30,7 @@ def surface_integral(device: Device, positions: Any, triangles: Any, irradiance:
         Where; on the triangles.
     out : (k, 3) float32, optional
         A new array without it.
-    profile : Profile, optional
+    profile : Profile or name of one of the library, optional
         Skin without it.
     diffusion_radius : float
         In the profile's unit; 0: its own.
@@ -49,7 +49,7 @@ def surface_integral(device: Device, positions: Any, triangles: Any, irradiance:
 
 
 def submit_surface_integral(device: Device, positions: Any, triangles: Any, irradiance: Any, points: Any, out: Any, *,
-                            profile: Optional[Profile] = None, diffusion_radius: float = 0.0,
+                            profile: Profile | str | None = None, diffusion_radius: float = 0.0,
                             millimetres_per_unit: float = 1.0, cut: Sequence[float] = (0.0, 0.0, 0.0),
                             tolerance: float = 1e-3, waits: Iterable[Event] = ()) -> Event:
     """The same after `waits`, without waiting: leave points and out alone until the event is done."""
@@ -69,7 +69,8 @@ def submit_surface_integral(device: Device, positions: Any, triangles: Any, irra
     t = np.ascontiguousarray(t, np.uint32)
     views = [vertex_view(device, points, 3, "points"), vertex_view(device, out, 3, "out", output=True)]
     x, s = (v.native for v in views)
-    handle = None if profile is None else profile._handle
+    known = as_profile(profile)
+    handle = None if known is None else known._handle
     return Event(submit(device, views, _handles(waits), lambda w: _native.surface_integral(
         device._handle, p.ctypes.data, len(p), t.ctypes.data, t.size, e.ctypes.data, int(at), handle, diffusion_radius,
         millimetres_per_unit, list(cut), tolerance, x, s, w)))

@@ -12,7 +12,7 @@ from ._arrays import Image, submit
 from ._struct import OfThisProcess, to_enum
 from ._types import ImageSlot, ScatterControls, ScatterParams, ScatterStats
 from .device import Device, Event, _filled, _handles
-from .profile import Profile
+from .profile import Profile, as_profile
 
 
 class Scatter(OfThisProcess):
@@ -26,9 +26,10 @@ class Scatter(OfThisProcess):
         self._handle = _native.Scatter.create(device._handle)
         self._images: dict[ImageSlot, Image] = {}
 
-    def set_material(self, id: int, profile: Optional[Profile], scale: float = 1.0) -> None:
-        """Pixels of `id`, 1 to 255, scatter by `profile`, whose lengths count `scale` units of positions each; None: not at all."""
-        self._handle.set_material(id, None if profile is None else profile._handle, scale)
+    def set_material(self, id: int, profile: Profile | str | None, scale: float = 1.0) -> None:
+        """Pixels of `id`, 1 to 255, scatter by `profile` (or the material of the library of that name), whose lengths count `scale` units of positions each; None: not at all."""
+        known = as_profile(profile)
+        self._handle.set_material(id, None if known is None else known._handle, scale)
 
     def set_controls(self, id: int, controls: Optional[ScatterControls] = None, **fields: Any) -> None:
         """How pixels of `id`, whose material is set, scatter: the controls, or the defaults with some `fields` of them changed."""

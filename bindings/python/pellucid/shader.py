@@ -69,7 +69,7 @@ class Shader(OfThisProcess):
     def set_material(self, id: int, material: Optional[Material], curvature_lut: Optional[Lut] = None,
                      shadow_lut: Optional[Lut] = None) -> Shader:
         """Sets material `id`, 1 to 255; None removes it. Without a table: no direct scattering, a plain shadow."""
-        self._handle.set_material(id, None if material is None else material._data,
+        self._handle.set_material(id, None if material is None else Material._bytes_of(material),
                                   None if curvature_lut is None else curvature_lut._handle,
                                   None if shadow_lut is None else shadow_lut._handle)
         return self
@@ -131,7 +131,7 @@ class Shader(OfThisProcess):
         caustics : Lut, optional
             Lut.eye; without it the table is made for this eye.
         """
-        self._handle.set_eye(id, None if eye is None else eye._data, None if caustics is None else caustics._handle)
+        self._handle.set_eye(id, None if eye is None else Eye._bytes_of(eye), None if caustics is None else caustics._handle)
         return self
 
     def set_iris_texture(self, id: int, texture: Any) -> Shader:
@@ -149,16 +149,17 @@ class Shader(OfThisProcess):
                    lambda native: self._handle.set_iris_texture(id, native))
         return self
 
-    def set_lights(self, lights: Sequence[Light]) -> Shader:
-        """Replaces all lights, 0 to 64; images of lights beyond the count are cleared."""
-        self._handle.set_lights([light._data for light in lights])
+    def set_lights(self, lights: Light | Sequence[Light]) -> Shader:
+        """Replaces all lights, 0 to 64, or sets a single one; images of lights beyond the count are cleared."""
+        lights = [lights] if isinstance(lights, Light) else list(lights)
+        self._handle.set_lights([Light._bytes_of(light) for light in lights])
         for key in [k for k in self._images if isinstance(k, tuple) and isinstance(k[0], int) and k[0] >= len(lights)]:
             del self._images[key]
         return self
 
     def set_ambient(self, ambient: Ambient) -> Shader:
         """Sets the light from everywhere."""
-        self._handle.set_ambient(ambient._data)
+        self._handle.set_ambient(Ambient._bytes_of(ambient))
         return self
 
     def set_ambient_cube(self, faces: Any) -> Shader:
@@ -184,12 +185,14 @@ class Shader(OfThisProcess):
 
     def set_camera(self, camera: Camera) -> Shader:
         """Sets the viewpoint, which specular and depth images need."""
-        self._handle.set_camera(camera._data)
+        self._handle.set_camera(Camera._bytes_of(camera))
         return self
 
     def set_options(self, options: Optional[ShaderOptions] = None, **fields: Any) -> Shader:
         """Sets the options, or the defaults with some `fields` of them changed."""
-        settings = ShaderOptions() if options is None else options.copy()
+        settings = ShaderOptions()
+        if options is not None:
+            settings._data[...] = ShaderOptions._bytes_of(options)
         for name, value in fields.items():
             setattr(settings, name, value)
         self._handle.set_options(settings._data)

@@ -3,6 +3,9 @@
 #pragma once
 #include <pellucid/pellucid.h>
 
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -40,7 +43,9 @@ class Handle {
     ~Handle() {
         if (h_) Release(h_);
     }
-    H get() const { return h_; }
+    // Not of a temporary: `desc.profile = Profile::named("jade").get()` would outlive the profile.
+    H get() const& { return h_; }
+    H get() const&& = delete;
     explicit operator bool() const { return h_ != nullptr; }
 
   protected:
@@ -64,11 +69,12 @@ class Event : public Handle<PelEvent, pelEventRetain, pelEventRelease> {
 
 class Device : public Handle<PelDevice, pelDeviceRetain, pelDeviceRelease> {
   public:
-    Device() = default;
-    // "": the standard device; see pelDeviceCreate.
-    explicit Device(const std::string& selector) { check(pelDeviceCreate(selector.c_str(), out())); }
+    // The standard device, or the one that `selector` names; see pelDeviceCreate.
+    explicit Device(const std::string& selector = "") { check(pelDeviceCreate(selector.c_str(), out())); }
+    // None, to be assigned later.
+    explicit Device(std::nullptr_t) {}
     static Device fromCl(void* context, void* deviceId, void* queue) {
-        Device device;
+        Device device(nullptr);
         check(pelDeviceCreateFromCl(context, deviceId, queue, device.out()));
         return device;
     }
@@ -139,6 +145,43 @@ class Buffer : public Handle<PelBuffer, pelBufferRetain, pelBufferRelease> {
     void unmap() const { check(pelBufferUnmap(h_)); }
 };
 
+// A C structure and an object that it refers to, kept alive with it. Functions make one where they are given a temporary: the
+// structure by itself would refer to an object that is gone, and does not come out of this one by assignment.
+template <class Struct, class Kept>
+class Owning {
+  public:
+    Owning(Kept kept, const Struct& made) : kept_(std::move(kept)), made_(made) {}
+    Struct* operator->() & { return &made_; }
+    const Struct* operator->() const& { return &made_; }
+    // Valid for as long as this object.
+    const Struct& operator*() const& { return made_; }
+    const Struct& operator*() const&& = delete;
+
+  private:
+    Kept kept_;
+    Struct made_;
+};
+
+// What functions here take: either of the two, by reference or by pointer; nullptr where the call allows NULL.
+template <class Struct, class Kept>
+class StructRef {
+  public:
+    StructRef(const Struct& made) : made_(&made) {}
+    StructRef(const Struct* made) : made_(made) {}
+    StructRef(const Owning<Struct, Kept>& made) : made_(&*made) {}
+    StructRef(const Owning<Struct, Kept>* made) : made_(made ? &**made : nullptr) {}
+    StructRef(std::nullptr_t) {}
+    const Struct* get() const { return made_; }
+
+  private:
+    const Struct* made_ = nullptr;
+};
+
+using Image = Owning<PelImageDesc, Buffer>;
+using Vertices = Owning<PelVertexView, Buffer>;
+using ImageRef = StructRef<PelImageDesc, Buffer>;
+using VerticesRef = StructRef<PelVertexView, Buffer>;
+
 inline PelImageDesc imageDesc(const Buffer& buffer, PelFormat format, uint32_t width, uint32_t height,
                               uint64_t byteOffset = 0) {
     PelImageDesc desc = pelImageDescDefaults();
@@ -150,9 +193,21 @@ inline PelImageDesc imageDesc(const Buffer& buffer, PelFormat format, uint32_t w
     return desc;
 }
 
+// Of a temporary: keeps the buffer.
+inline Image imageDesc(Buffer&& buffer, PelFormat format, uint32_t width, uint32_t height,
+                       uint64_t byteOffset = 0) {
+    const PelImageDesc desc = imageDesc(static_cast<const Buffer&>(buffer), format, width, height, byteOffset);
+    return Image(std::move(buffer), desc);
+}
+
 inline PelVertexView vertexView(const Buffer& buffer, uint32_t count, uint64_t byteOffset = 0,
                                 uint32_t byteStride = 0) {
     return PelVertexView{buffer.get(), byteOffset, byteStride, count};
+}
+
+inline Vertices vertexView(Buffer&& buffer, uint32_t count, uint64_t byteOffset = 0, uint32_t byteStride = 0) {
+    const PelVertexView view = vertexView(static_cast<const Buffer&>(buffer), count, byteOffset, byteStride);
+    return Vertices(std::move(buffer), view);
 }
 
 class MeshTopology : public Handle<PelMeshTopology, pelMeshTopologyRetain, pelMeshTopologyRelease> {
@@ -175,23 +230,22 @@ class MeshTopology : public Handle<PelMeshTopology, pelMeshTopologyRetain, pelMe
         check(pelMeshTopologySave(h_, bytes.data(), &size));
         return bytes;
     }
-    void normals(const PelVertexView& positions, const PelVertexView& result,
-                 const PelSubmit* submit = nullptr) const {
-        check(pelMeshNormals(h_, &positions, &result, submit));
+    void normals(const VerticesRef& positions, const VerticesRef& result, const PelSubmit* submit = nullptr) const {
+        check(pelMeshNormals(h_, positions.get(), result.get(), submit));
     }
     // With normals made from the positions.
-    void curvature(const PelCurvatureParams& params, const PelVertexView& positions, const PelVertexView& result,
+    void curvature(const PelCurvatureParams& params, const VerticesRef& positions, const VerticesRef& result,
                    PelMeshReport* report = nullptr, const PelSubmit* submit = nullptr) const {
-        check(pelMeshCurvature(h_, &params, &positions, nullptr, &result, report, submit));
+        check(pelMeshCurvature(h_, &params, positions.get(), nullptr, result.get(), report, submit));
     }
-    void curvature(const PelCurvatureParams& params, const PelVertexView& positions,
-                   const PelVertexView& normals, const PelVertexView& result, PelMeshReport* report = nullptr,
+    void curvature(const PelCurvatureParams& params, const VerticesRef& positions, const VerticesRef& normals,
+                   const VerticesRef& result, PelMeshReport* report = nullptr,
                    const PelSubmit* submit = nullptr) const {
-        check(pelMeshCurvature(h_, &params, &positions, &normals, &result, report, submit));
+        check(pelMeshCurvature(h_, &params, positions.get(), normals.get(), result.get(), report, submit));
     }
-    float uvScale(const PelVertexView& positions, const PelVertexView& uvs) const {
+    float uvScale(const VerticesRef& positions, const VerticesRef& uvs) const {
         float scale = 0;
-        check(pelMeshUvScale(h_, &positions, &uvs, &scale));
+        check(pelMeshUvScale(h_, positions.get(), uvs.get(), &scale));
         return scale;
     }
 };
@@ -212,16 +266,16 @@ class LiveMesh : public Handle<PelLiveMesh, pelLiveMeshRetain, pelLiveMeshReleas
         check(pelLiveMeshCreate(topology.get(), &params, out()));
     }
     // All vertices. normals NULL: they are made.
-    void update(const PelVertexView& positions, const PelVertexView* normals, const PelVertexView& curvature,
+    void update(const VerticesRef& positions, const VerticesRef& normals, const VerticesRef& curvature,
                 const PelSubmit* submit = nullptr) const {
-        check(pelLiveMeshUpdate(h_, &positions, normals, &curvature, nullptr, 0, submit));
+        check(pelLiveMeshUpdate(h_, positions.get(), normals.get(), curvature.get(), nullptr, 0, submit));
     }
     // Only `changed`, which may be empty.
-    void update(const PelVertexView& positions, const PelVertexView* normals, const PelVertexView& curvature,
+    void update(const VerticesRef& positions, const VerticesRef& normals, const VerticesRef& curvature,
                 const std::vector<PelVertexRange>& changed, const PelSubmit* submit = nullptr) const {
         static constexpr PelVertexRange none{};
-        check(pelLiveMeshUpdate(h_, &positions, normals, &curvature, changed.empty() ? &none : changed.data(),
-                                uint32_t(changed.size()), submit));
+        check(pelLiveMeshUpdate(h_, positions.get(), normals.get(), curvature.get(),
+                                changed.empty() ? &none : changed.data(), uint32_t(changed.size()), submit));
     }
     PelLiveMeshStats stats() const {
         PelLiveMeshStats stats = pelLiveMeshStatsDefaults();
@@ -232,10 +286,10 @@ class LiveMesh : public Handle<PelLiveMesh, pelLiveMeshRetain, pelLiveMeshReleas
 
 // Any of positions, depth and ids may be NULL, but not both of the first two.
 inline void screenCurvature(const Device& device, const PelScreenCurvatureParams& params,
-                            const PelImageDesc& normals, const PelImageDesc* positions,
-                            const PelImageDesc* depth, const PelImageDesc* ids, const PelImageDesc& curvature,
-                            const PelSubmit* submit = nullptr) {
-    check(pelScreenCurvature(device.get(), &params, &normals, positions, depth, ids, &curvature, submit));
+                            const ImageRef& normals, const ImageRef& positions, const ImageRef& depth,
+                            const ImageRef& ids, const ImageRef& curvature, const PelSubmit* submit = nullptr) {
+    check(pelScreenCurvature(device.get(), &params, normals.get(), positions.get(), depth.get(), ids.get(),
+                             curvature.get(), submit));
 }
 
 // RGB per point: pelSurfaceIntegral.
@@ -329,13 +383,14 @@ class Scatter : public Handle<PelScatter, pelScatterRetain, pelScatterRelease> {
         check(pelScatterSetControls(h_, id, &controls));
     }
     // PEL_SLOT_SCATTER_WEIGHT, _IRRADIANCE_BACK or _ALBEDO, for all executions from now on.
-    void set(PelImageSlot slot, const PelImageDesc& image) { check(pelScatterSetImage(h_, slot, &image)); }
+    void set(PelImageSlot slot, const ImageRef& image) { check(pelScatterSetImage(h_, slot, image.get())); }
     void clear(PelImageSlot slot) { check(pelScatterSetImage(h_, slot, nullptr)); }
     // Any of positions, depth and ids may be NULL, but not both of the first two.
-    void execute(const PelScatterParams& params, const PelImageDesc& irradiance,
-                 const PelImageDesc* positions, const PelImageDesc* depth, const PelImageDesc* ids,
-                 const PelImageDesc& scattered, const PelSubmit* submit = nullptr) {
-        check(pelScatterExecute(h_, &params, &irradiance, positions, depth, ids, &scattered, submit));
+    void execute(const PelScatterParams& params, const ImageRef& irradiance, const ImageRef& positions,
+                 const ImageRef& depth, const ImageRef& ids, const ImageRef& scattered,
+                 const PelSubmit* submit = nullptr) {
+        check(pelScatterExecute(h_, &params, irradiance.get(), positions.get(), depth.get(), ids.get(),
+                                scattered.get(), submit));
     }
     PelScatterStats stats() const {
         PelScatterStats stats = pelScatterStatsDefaults();
@@ -351,16 +406,15 @@ class TextureScatter : public Handle<PelTextureScatter, pelTextureScatterRetain,
     TextureScatter(const Device& device, const PelTextureScatterDesc& desc) {
         check(pelTextureScatterCreate(device.get(), &desc, out()));
     }
-    void setPositions(const PelVertexView& positions, const PelSubmit* submit = nullptr) {
-        check(pelTextureScatterSetPositions(h_, &positions, submit));
+    void setPositions(const VerticesRef& positions, const PelSubmit* submit = nullptr) {
+        check(pelTextureScatterSetPositions(h_, positions.get(), submit));
     }
-    void draw(const PelVertexView& values, bool unit, const PelImageDesc& image,
-              const PelSubmit* submit = nullptr) {
-        check(pelTextureScatterDraw(h_, &values, unit, &image, submit));
+    void draw(const VerticesRef& values, bool unit, const ImageRef& image, const PelSubmit* submit = nullptr) {
+        check(pelTextureScatterDraw(h_, values.get(), unit, image.get(), submit));
     }
-    void execute(const PelTextureScatterParams& params, const PelImageDesc& irradiance,
-                 const PelImageDesc* albedo, const PelImageDesc& scattered, const PelSubmit* submit = nullptr) {
-        check(pelTextureScatterExecute(h_, &params, &irradiance, albedo, &scattered, submit));
+    void execute(const PelTextureScatterParams& params, const ImageRef& irradiance, const ImageRef& albedo,
+                 const ImageRef& scattered, const PelSubmit* submit = nullptr) {
+        check(pelTextureScatterExecute(h_, &params, irradiance.get(), albedo.get(), scattered.get(), submit));
     }
     PelTextureScatterStats stats() const {
         PelTextureScatterStats stats = pelTextureScatterStatsDefaults();
@@ -368,6 +422,42 @@ class TextureScatter : public Handle<PelTextureScatter, pelTextureScatterRetain,
         return stats;
     }
 };
+
+using Float3 = std::array<float, 3>;
+
+// A material of a profile, whose tables, widths and transmission follow from it.
+inline PelMaterial material(const Profile& profile, const Float3& albedo) {
+    PelMaterial made = pelMaterialDefaults();
+    made.profile = profile.get();
+    for (size_t c = 0; c < 3; ++c) made.albedo[c] = albedo[c];
+    return made;
+}
+using Material = Owning<PelMaterial, Profile>;
+using MaterialRef = StructRef<PelMaterial, Profile>;
+inline Material material(Profile&& profile, const Float3& albedo) {
+    const PelMaterial made = material(static_cast<const Profile&>(profile), albedo);
+    return Material(std::move(profile), made);
+}
+
+// Lights without a shadow. `color`: PelLight.color. `toLight` may have any length.
+inline PelLight directionalLight(const Float3& toLight, const Float3& color) {
+    PelLight light = pelLightDefaults();
+    light.type = PEL_LIGHT_DIRECTIONAL;
+    const float length = std::sqrt(toLight[0] * toLight[0] + toLight[1] * toLight[1] + toLight[2] * toLight[2]);
+    for (size_t i = 0; i < 3; ++i) light.toLight[i] = toLight[i] / length, light.color[i] = color[i];
+    return light;
+}
+inline PelLight pointLight(const Float3& position, const Float3& color) {
+    PelLight light = pelLightDefaults();
+    light.type = PEL_LIGHT_POINT;
+    for (size_t i = 0; i < 3; ++i) light.position[i] = position[i], light.color[i] = color[i];
+    return light;
+}
+inline PelCamera cameraAt(const Float3& position) {
+    PelCamera camera = pelCameraDefaults();
+    for (size_t i = 0; i < 3; ++i) camera.position[i] = position[i];
+    return camera;
+}
 
 class Lut : public Handle<PelLut, pelLutRetain, pelLutRelease> {
   public:
@@ -415,21 +505,25 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
     using Handle::Handle;
     explicit Shader(const Device& device) { check(pelShaderCreate(device.get(), out())); }
     Shader& set(const PelShaderOptions& options) { return done(pelShaderSetOptions(h_, &options)); }
-    Shader& set(PelImageSlot slot, const PelImageDesc& image) {
-        return done(pelShaderSetImage(h_, slot, &image));
+    Shader& set(PelImageSlot slot, const ImageRef& image) {
+        return done(pelShaderSetImage(h_, slot, image.get()));
     }
     Shader& clear(PelImageSlot slot) { return done(pelShaderSetImage(h_, slot, nullptr)); }
-    Shader& setMaterial(uint32_t id, const PelMaterial& material, const Lut& curvature = {},
+    Shader& setMaterial(uint32_t id, const MaterialRef& material, const Lut& curvature = {},
                         const Lut& shadow = {}) {
-        return done(pelShaderSetMaterial(h_, id, &material, curvature.get(), shadow.get()));
+        return done(pelShaderSetMaterial(h_, id, material.get(), curvature.get(), shadow.get()));
     }
     // Each level half the size of the one before; none: no normal map.
     Shader& setNormalMap(uint32_t id, const std::vector<PelImageDesc>& levels) {
         return done(pelShaderSetNormalMap(h_, id, levels.data(), uint32_t(levels.size())));
     }
+    // A map of one level.
+    Shader& setNormalMap(uint32_t id, const Image& level) {
+        return done(pelShaderSetNormalMap(h_, id, &*level, 1));
+    }
     // What PEL_SCATTERING_TEXTURE samples.
-    Shader& setScatteredTexture(uint32_t id, const PelImageDesc& texture) {
-        return done(pelShaderSetScatteredTexture(h_, id, &texture));
+    Shader& setScatteredTexture(uint32_t id, const ImageRef& texture) {
+        return done(pelShaderSetScatteredTexture(h_, id, texture.get()));
     }
     Shader& clearScatteredTexture(uint32_t id) { return done(pelShaderSetScatteredTexture(h_, id, nullptr)); }
     // Makes a material that is set an eye. Without a table it is made.
@@ -437,22 +531,23 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
         return done(pelShaderSetEye(h_, id, &eye, caustics.get()));
     }
     Shader& clearEye(uint32_t id) { return done(pelShaderSetEye(h_, id, nullptr, nullptr)); }
-    Shader& setIrisTexture(uint32_t id, const PelImageDesc& texture) {
-        return done(pelShaderSetIrisTexture(h_, id, &texture));
+    Shader& setIrisTexture(uint32_t id, const ImageRef& texture) {
+        return done(pelShaderSetIrisTexture(h_, id, texture.get()));
     }
     Shader& clearIrisTexture(uint32_t id) { return done(pelShaderSetIrisTexture(h_, id, nullptr)); }
-    Shader& setReflectionCube(const PelImageDesc& faces) {
-        return done(pelShaderSetReflectionCube(h_, &faces));
+    Shader& setReflectionCube(const ImageRef& faces) {
+        return done(pelShaderSetReflectionCube(h_, faces.get()));
     }
     Shader& clearReflectionCube() { return done(pelShaderSetReflectionCube(h_, nullptr)); }
     Shader& set(const std::vector<PelLight>& lights) {
         return done(pelShaderSetLights(h_, lights.data(), uint32_t(lights.size())));
     }
-    Shader& set(uint32_t light, PelLightSlot slot, const PelImageDesc& image) {
-        return done(pelShaderSetLightImage(h_, light, slot, &image));
+    Shader& set(const PelLight& light) { return done(pelShaderSetLights(h_, &light, 1)); }  // the only one
+    Shader& set(uint32_t light, PelLightSlot slot, const ImageRef& image) {
+        return done(pelShaderSetLightImage(h_, light, slot, image.get()));
     }
     Shader& set(const PelAmbient& ambient) { return done(pelShaderSetAmbient(h_, &ambient)); }
-    Shader& setAmbientCube(const PelImageDesc& faces) { return done(pelShaderSetAmbientCube(h_, &faces)); }
+    Shader& setAmbientCube(const ImageRef& faces) { return done(pelShaderSetAmbientCube(h_, faces.get())); }
     Shader& clearAmbientCube() { return done(pelShaderSetAmbientCube(h_, nullptr)); }
     Shader& set(const PelCamera& camera) { return done(pelShaderSetCamera(h_, &camera)); }
     Shader& commit() { return done(pelShaderCommit(h_)); }
