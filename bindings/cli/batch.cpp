@@ -11,7 +11,9 @@
 #include <mutex>
 
 #include "command.h"
+#include "io/atomic_file.h"
 #include "io/file_error.h"
+#include "io/lut/batch_index.h"
 #include "io/lut/batch_run.h"
 
 namespace pellucid::cli {
@@ -145,7 +147,15 @@ void runBatch(const Arguments& arguments) {
         fatal = std::current_exception();
     }
     display.show(run.counts().done, true);
-    const nlohmann::ordered_json report = reportOf(manifest, run, options.devices, seconds() - start, failures);
+    const std::string index = io::batchIndexName(arguments.manifest);
+    try {
+        io::writeWholeFile((std::filesystem::path(arguments.folder) / index).string(),
+                           io::batchIndex(manifest, arguments.manifest, run.there()));
+    } catch (const io::FileError&) {
+        if (!fatal) throw;
+    }
+    nlohmann::ordered_json report = reportOf(manifest, run, options.devices, seconds() - start, failures);
+    report["index"] = index;
     if (arguments.json)
         printJson(report);
     else
@@ -169,7 +179,7 @@ void addBatch(CLI::App& app) {
     auto a = std::make_shared<Arguments>();
     batch->add_option("manifest", a->manifest, "TOML: [[lut]] and [[grid]] (docs/guide/batch.md)")->required();
     batch->add_option("-o,--output", a->folder, "folder for the files; made if need be")->required();
-    batch->add_option("--device", a->devices, "device; several share the work");
+    batch->add_option("--device", a->devices, "device; several share the work")->allow_extra_args(false);
     batch->add_option("-j,--jobs", a->jobs, "tables in flight (default: four per core and device)")
         ->check(CLI::Range(1, 256));
     batch->add_flag("--json", a->json, "one JSON object on stdout");

@@ -178,10 +178,14 @@ void addBench(CLI::App& app) {
         app.add_subcommand("bench", "Measure every operation: time, share of the device's limits, error");
     auto a = std::make_shared<Arguments>();
     command->add_option("-o,--output", a->output, "folder for bench.json and bench.html");
-    command->add_option("--device", a->devices,
-                        "number, name or type; may be given several times (default: all but simulators)");
-    command->add_option("--only", a->only,
-                        "part of an operation's name; may be given several times (default: all)");
+    command
+        ->add_option("--device", a->devices,
+                     "number, name or type; may be given several times (default: all but simulators)")
+        ->allow_extra_args(false);
+    command
+        ->add_option("--only", a->only,
+                     "part of an operation's name; may be given several times (default: all)")
+        ->allow_extra_args(false);
     command->add_flag("--quick", a->quick, "small sizes and few repetitions: some seconds");
     command
         ->add_option("--limit", a->limitSeconds,
@@ -190,7 +194,7 @@ void addBench(CLI::App& app) {
                      "with --quick 60)")
         ->check(CLI::PositiveNumber);
     command->add_flag("--events", a->events)->group("");
-    command->add_option("--without", a->without)->group("");
+    command->add_option("--without", a->without)->allow_extra_args(false)->group("");
     command->add_flag("--json", a->json, "print one JSON object on standard output");
     command->add_flag("--first-use", a->firstUse,
                       "time from nothing to the first table and frame, in this process alone");

@@ -195,11 +195,13 @@ void addShade(CLI::App& app) {
     addToneOptions(*command, a->tone);
     command->add_option("--show", a->show, "what the picture shows, side by side (default: final)")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->check(CLI::IsMember(showableParts()));
     command
         ->add_option("--outputs", a->parts,
                      "parts of the picture to write beside it, as OUT_diffuse.exr and so on")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->check(CLI::IsMember({"diffuse", "deep_scatter", "specular", "thickness", "all"}));
     command->add_flag("--stats", a->stats, "count tiles and pixels per feature");
     command

@@ -68,6 +68,9 @@ class TomlReader {
     void tablesApart(std::string_view key, const std::function<void(TomlReader&)>& function,
                      const std::function<void(const FileError&)>& failed);
 
+    // The rule of every format here: `version` may be left out and is 1 then; a later one than this program knows is an error.
+    void version();
+
     void finish() const;  // throws FileError for the first key that nobody asked for
     int line() const { return static_cast<int>(table_.source().begin.line); }
     int lineOf(std::string_view key) const;

@@ -59,6 +59,9 @@ class CommandTest : public FolderTest {
         FolderTest::TearDown();
     }
 
+    // A folder whose files are not counted.
+    const std::string& scratch() const { return scratch_; }
+
   private:
     static std::string quoted(const std::string& text) {
         std::string out = "'";

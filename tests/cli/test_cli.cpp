@@ -382,3 +382,43 @@ TEST_F(Cli, ViewStartsThePython) {
     expectRefused({"view"}, 2, "cannot be started");
     unsetenv("PELLUCID_PYTHON");
 }
+
+// Every subcommand that has --device, by `describe`, asks for that device: none ignores it, and none is forgotten here.
+TEST_F(Cli, EveryDeviceOptionIsHeard) {
+    const std::string mesh = icosahedron(), manifest = write("m.toml", "[[lut]]\nsize = 8\n"),
+                      out = path("out");
+    const std::map<std::string, std::vector<std::string>> rest = {
+        {"devices", {}},
+        {"curvature", {mesh, "-o", out + ".npy"}},
+        {"lut curvature", {"-o", out + ".exr"}},
+        {"lut shadow", {"-o", out + ".exr"}},
+        {"lut specular", {"-o", out + ".exr"}},
+        {"lut eye", {"-o", out + ".exr"}},
+        {"prefill", {}},
+        {"shade", {"--outputs", "diffuse", mesh, "--scene", mesh, "-o", out + ".exr"}},
+        {"reference", {mesh, "--scene", mesh, "-o", out + ".npy"}},
+        {"import", {path("none.glb"), "-o", out}},
+        {"batch", {manifest, "-o", scratch() + "/tables"}},
+        {"demo", {"-o", scratch() + "/demo"}},
+        {"bench", {"-o", scratch() + "/bench"}}};
+    std::set<std::string> heard;
+    const std::function<void(const nlohmann::json&, const std::string&)> walk = [&](const nlohmann::json& app,
+                                                                                    const std::string& name) {
+        for (const nlohmann::json& sub : app.at("subcommands"))
+            walk(sub, name + (name.empty() ? "" : " ") + sub.at("name").get<std::string>());
+        for (const nlohmann::json& option : app.at("options")) {
+            const auto names = option.at("names").get<std::vector<std::string>>();
+            if (std::find(names.begin(), names.end(), "--device") == names.end()) continue;
+            ASSERT_TRUE(rest.contains(name)) << name << " has --device: add it here";
+            std::vector<std::string> line;
+            std::istringstream words(name);
+            for (std::string word; words >> word;) line.push_back(word);
+            line.insert(line.end(), {"--device", "no such device"});
+            line.insert(line.end(), rest.at(name).begin(), rest.at(name).end());
+            expectRefused(line, 4, "no such device");
+            heard.insert(name);
+        }
+    };
+    walk(run({"describe"}).json(), "");
+    EXPECT_GE(heard.size(), 8u);
+}

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "cli_run.h"
+#include "io/choice_keys.h"
 #include "io/content_hash.h"
 #include "io/image/image_file.h"
 #include "io/lut/batch_entry.h"
@@ -19,9 +20,11 @@ class BatchCommand : public CommandTest {
         std::ofstream(path("m.toml")) << text;
         return path("m.toml");
     }
+    // Without the index.
     std::vector<fs::path> files() const {
         std::vector<fs::path> all;
-        for (const auto& entry : fs::directory_iterator(path("out"))) all.push_back(entry.path());
+        for (const auto& entry : fs::directory_iterator(path("out")))
+            if (entry.path().extension() != ".json") all.push_back(entry.path());
         std::sort(all.begin(), all.end());
         return all;
     }
@@ -93,6 +96,73 @@ TEST_F(BatchCommand, ReportsWrongEntriesAndGoesOn) {
     EXPECT_EQ(result.json()["failed"], 3);
     for (const char* text : {"m.toml:5", "m.toml:8", "granite", "m.toml:12", "colour"})
         EXPECT_NE(result.err.find(text), std::string::npos) << text << "\n" << result.err;
+}
+
+TEST_F(BatchCommand, NamesFilesAndWritesAnIndexOfThem) {
+    const std::string text =
+        "version = 1\n[[grid]]\nname = \"{profile}-{form}-{size}\"\nprofile = [\"skin\", \"marble\"]\nform = "
+        "[\"arc\", \"sphere\"]\n"
+        "size = [8, 9]\n[[lut]]\nkind = \"specular\"\nname = \"shine\"\nsize = 10\n[[lut]]\nkind = "
+        "\"shadow\"\nsize = 8\n"
+        "encoding = \"float\"\nwidth_min = 7.5\n";
+    const auto first = run({"batch", manifest(text), "-o", path("out"), "--json"});
+    ASSERT_EQ(first.exitCode, 0) << first.err;
+    EXPECT_EQ(first.json()["index"], "m.index.json");
+    const std::string bytes = read(path("out/m.index.json"));
+    const nlohmann::json index = nlohmann::json::parse(bytes);
+    EXPECT_EQ(index["version"], 1);
+    EXPECT_EQ(index["manifest"], "m.toml");
+    EXPECT_EQ(index["missing"], 0);
+    ASSERT_EQ(index["tables"].size(), 10u);
+    EXPECT_EQ(files().size(), 10u);
+    for (const nlohmann::json& table : index["tables"]) {
+        const std::string file = path("out/" + table["file"].get<std::string>());
+        ASSERT_TRUE(fs::exists(file)) << file;
+        const pellucid::Lut lut = pellucid::io::readLut(pellucid::Device(), file);
+        const PelLutInfo info = lut.info();
+        EXPECT_EQ(pellucid::io::lutKinds[info.kind], table["kind"].get<std::string>());
+        if (info.kind != PEL_LUT_CURVATURE) continue;
+        EXPECT_EQ(table["name"].get<std::string>() + ".exr", table["file"]);
+        EXPECT_EQ(table["name"], table["profile"].get<std::string>() + "-" + table["form"].get<std::string>() +
+                                     "-" + std::to_string(info.curvature.width));
+        EXPECT_EQ(table["width"], info.curvature.width);
+        EXPECT_EQ(table["radius_max"], info.curvature.radiusMax);
+    }
+    EXPECT_EQ(index["tables"][0]["file"], "shine.exr");  // [[lut]] before [[grid]]
+    EXPECT_EQ(index["tables"][1]["width_min"], 7.5);
+    EXPECT_FALSE(index["tables"][1].contains("name"));
+    EXPECT_NEAR(index["tables"][1]["diffusion_radius"].get<double>(), 2.7, 0.1);  // the profile's own
+    // Again the same; with a table that cannot be made, it is counted and not listed.
+    EXPECT_EQ(run({"batch", path("m.toml"), "-o", path("out"), "--json"}).json()["kept"], 10);
+    EXPECT_EQ(read(path("out/m.index.json")), bytes);
+    run({"batch", manifest(text + "[[lut]]\nprofile = \"granite\"\n"), "-o", path("out")});
+    const nlohmann::json after = nlohmann::json::parse(read(path("out/m.index.json")));
+    EXPECT_EQ(after["missing"], 1);
+    EXPECT_EQ(after["tables"], index["tables"]);
+    // A name whose request changes is made anew.
+    EXPECT_EQ(
+        run({"batch", manifest("[[lut]]\nname = \"shine\"\nsize = 8\n"), "-o", path("out"), "--json"}).json()["redone"],
+        1);
+}
+
+TEST_F(BatchCommand, RefusesNamesThatAreNone) {
+    const auto said = [&](const std::string& text) {
+        const Result result = run({"batch", manifest(text), "-o", path("out")});
+        EXPECT_EQ(result.exitCode, 3) << text;
+        return result.err;
+    };
+    EXPECT_TRUE(contains(said("[[grid]]\nname = \"a\"\nsize = [8, 9]\n"),
+                         "m.toml:2: 'name' in [[grid]] gives two tables"));
+    EXPECT_TRUE(contains(said("[[lut]]\nname = \"a\"\nsize = 8\n[[lut]]\nname = \"a\"\nsize = 9\n"),
+                         "the one of line 1 has it"));
+    EXPECT_TRUE(contains(said("[[lut]]\nname = \"{colour}\"\n"), "'{colour}'; one of {axis}, "));
+    for (const char* name : {"../a", "a/b", ".a", "-a", "a b", "{size", "", "\\u00e4"})
+        EXPECT_TRUE(
+            contains(said("[[lut]]\nsize = 8\nname = \"" + std::string(name) + "\"\n"), "m.toml:3: 'name'"))
+            << name;
+    EXPECT_TRUE(contains(said("version = 2\n[[lut]]\nsize = 8\n"), "of a later pellucid"));
+    EXPECT_TRUE(contains(said("version = 1.5\n[[lut]]\nsize = 8\n"), "'version'"));
+    EXPECT_EQ(files().size(), 1u);  // the first of each pair
 }
 
 TEST_F(BatchCommand, RefusesWhatIsNoManifest) {
@@ -205,8 +275,8 @@ TEST_F(BatchCommand, AFullDiskIsAClearError) {
     if (std::system("unshare -rm true 2>/dev/null") != 0)
         GTEST_SKIP() << "no right to mount a small file system of one's own";
     const std::string full = "unshare -rm sh -c 'mount -t tmpfs -o size=64k none \"" + path("out") +
-                             "\" && { \"$0\" \"$@\"; echo $? >\"" + path("code") + "\"; ls -A \"" +
-                             path("out") + "\" >\"" + path("left") + "\"; }'";
+                             "\" && { \"$0\" \"$@\"; echo $? >\"" + path("code") +
+                             "\"; ls -A -I \"*.json\" \"" + path("out") + "\" >\"" + path("left") + "\"; }'";
     const auto result = run({"batch", m, "-o", path("out"), "--json"}, full);
     EXPECT_EQ(read(path("code")), "3\n") << result.err;
     EXPECT_TRUE(contains(result.err, "cannot be written: No space left on device"));

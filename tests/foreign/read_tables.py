@@ -62,7 +62,7 @@ class Tables(unittest.TestCase):
         folder = Path(self.folder.name)
         (folder / "m.toml").write_text('[[lut]]\nsize = 13\naxis = "root"\n')
         subprocess.run([COMMAND, "batch", folder / "m.toml", "-o", folder / "out"], check=True, stdout=subprocess.DEVNULL)
-        (path,) = (folder / "out").iterdir()
+        (path,) = (folder / "out").glob("*.exr")
         expected = np.load(self.table("square.npy", "half", "13x13"))
         with openexr.File(str(path), separate_channels=True) as file:
             self.assertEqual(len(file.header()["pellucid:checksum"]), 16)

@@ -5,6 +5,7 @@
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/lut/batch_entry.h"
+#include "io/lut/batch_index.h"
 #include "io/lut/lut_exr.h"
 
 namespace pel::python {
@@ -69,7 +70,13 @@ void bindBatch(py::module_& module) {
         .def("duplicates", [](const BatchManifest& m) { return m.duplicates; })
         .def("text", [](const BatchManifest& m) { return m.text; })
         .def("profiles", [](const BatchManifest& m) { return m.profiles; })
-        .def("make", &made);
+        .def("make", &made)
+        .def("index_name",
+             [](const BatchManifest&, const std::string& path) { return pellucid::io::batchIndexName(path); })
+        .def("index", [](const BatchManifest& m, const std::string& path, const std::vector<bool>& there) {
+            WithoutGil free;
+            return pellucid::io::batchIndex(m, path, there);
+        });
     // Complete or not at all, as the command writes its files.
     module.def("write_file", [](const std::string& path, const py::bytes& file) {
         const std::string_view bytes = file;

@@ -40,7 +40,7 @@ def manifest(tmp_path):
 
 
 def files_of(folder):
-    return {p.name: p.read_bytes() for p in folder.iterdir()}
+    return {p.name: p.read_bytes() for p in folder.iterdir() if p.suffix != ".json"}
 
 
 def expected_files(manifest, device):
@@ -280,7 +280,9 @@ def test_bad_entries_are_reported_and_the_others_made(tmp_path):
     summary = json.loads(result.stdout)
     assert (summary["made"], summary["failed"], summary["workers_dismissed"]) == (2, 2, 0)
     assert "m.toml:5: " in result.stderr and "m.toml:7: given up after 3 attempts" in result.stderr
-    assert len(list((tmp_path / "out").iterdir())) == 2
+    assert len(list((tmp_path / "out").glob("*.exr"))) == 2
+    index = json.loads((tmp_path / "out/m.index.json").read_text())
+    assert len(index["tables"]) == 2 and index["missing"] == 2
 
 
 @pytest.mark.parametrize("arguments, code, message", [

@@ -1,10 +1,10 @@
 #include "io/lut/batch_manifest.h"
 
+#include <charconv>
 #include <filesystem>
 #include <iomanip>
 #include <map>
 #include <optional>
-#include <set>
 #include <sstream>
 
 #include "io/content_hash.h"
@@ -24,6 +24,7 @@ constexpr std::string_view encodingNames[] = {"float", "half"};  // PelLutEncodi
 
 // What a [[lut]] or [[grid]] table contains; a grid has several values in some lists.
 struct Request {
+    std::string name;  // of the file; in a grid with {key} in it, such as "{profile}-{size}"
     PelLutKind kind = PEL_LUT_CURVATURE;
     std::vector<std::string> profiles{"skin"}, forms{"arc"}, axes{"linear"}, encodings{"half"};
     std::vector<float> radii{0};       // diffusion radii, mm; 0: the profile's own
@@ -48,6 +49,9 @@ Request readRequest(TomlReader& reader) {
     reader.choice("kind", r.kind, lutKinds);
     if (r.kind == PEL_LUT_EYE)
         reader.fail("kind", "is 'eye', of which a batch makes none; `pellucid lut eye` does");
+    reader.text("name", r.name);
+    if (r.name.empty() && reader.has("name"))
+        reader.fail("name", "is empty; leave it out for a name by content");
     reader.list("profile", r.profiles);
     reader.list("form", r.forms);
     reader.list("axis", r.axes);
@@ -174,7 +178,7 @@ class Expansion {
 
     void addOne(const TomlReader& reader, const Request& r, const std::string& encoding, uint32_t side,
                 const std::string& profileName, const std::string& form, const std::string& axis, float radius) {
-        BatchEntry entry{pelLutInfoDefaults(), {}, {}, {}, {}, reader.line()};
+        BatchEntry entry{pelLutInfoDefaults(), {}, {}, {}, {}, {}, reader.line()};
         entry.info.kind = r.kind;
         entry.encoding = PelLutEncoding(indexOf(reader, "encoding", encoding, encodingNames));
         Key key;
@@ -203,18 +207,74 @@ class Expansion {
             entry.info.specular.width = entry.info.specular.height = side;
         }
         entry.key = key.out.str();
-        entry.file = std::string(lutKinds[r.kind]) + "-" + hexDigits(contentHash(entry.key)) + ".exr";
-        if (files_.insert(entry.file).second)
+        if (r.name.empty()) {
+            entry.file = std::string(lutKinds[r.kind]) + "-" + hexDigits(contentHash(entry.key)) + ".exr";
+        } else {
+            entry.name = namedBy(reader, r,
+                                 {{"kind", std::string(lutKinds[r.kind])},
+                                  {"profile", std::filesystem::path(profileName).stem().string()},
+                                  {"form", form},
+                                  {"axis", axis},
+                                  {"size", std::to_string(side)},
+                                  {"encoding", encoding},
+                                  {"diffusion_radius", radius > 0 ? shortest(radius) : "own"}});
+            entry.file = entry.name + ".exr";
+        }
+        const auto [other, fresh] = files_.try_emplace(entry.file, manifest_.entries.size());
+        if (fresh) {
             manifest_.entries.push_back(std::move(entry));
-        else
-            ++manifest_.duplicates;
+            return;
+        }
+        const BatchEntry& first = manifest_.entries[other->second];
+        if (first.key != entry.key)
+            reader.fail("name", "gives two tables the file " + entry.file +
+                                    (first.line == entry.line
+                                         ? "; put what differs into it, such as {size}"
+                                         : "; the one of line " + std::to_string(first.line) + " has it"));
+        ++manifest_.duplicates;
+    }
+
+    static std::string shortest(float value) {
+        char digits[32];
+        return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+    }
+
+    // r.name with each {key} replaced by its value.
+    static std::string namedBy(const TomlReader& reader, const Request& r,
+                               const std::map<std::string, std::string>& values) {
+        std::string name;
+        for (size_t at = 0; at < r.name.size();) {
+            const size_t open = std::min(r.name.find('{', at), r.name.size());
+            name.append(r.name, at, open - at);
+            if (open == r.name.size()) break;
+            const size_t close = r.name.find('}', open);
+            const auto value = close == std::string::npos
+                                   ? values.end()
+                                   : values.find(r.name.substr(open + 1, close - open - 1));
+            if (value == values.end()) {
+                std::string known;
+                for (const auto& [key, unused] : values) known += (known.empty() ? "{" : ", {") + key + "}";
+                reader.fail("name", "holds '" + r.name.substr(open, close - open + 1) + "'; one of " + known +
+                                        " would be right");
+            }
+            name += value->second;
+            at = close + 1;
+        }
+        constexpr std::string_view allowed =
+            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.+";
+        const size_t wrong = name.find_first_not_of(allowed);
+        if (wrong != std::string::npos || name.empty() || name[0] == '.' || name[0] == '-' || name.size() > 200)
+            reader.fail("name", "is '" + name +
+                                    "'; up to 200 letters of A to Z, digits and - _ . +, not "
+                                    "beginning with . or -, are possible");
+        return name;
     }
 
     BatchManifest& manifest_;
     std::optional<std::filesystem::path> folder_;
     std::map<std::string, Known> known_;
-    std::set<std::string> files_;
-    double asked_ = 0;  // tables, including repeated ones
+    std::map<std::string, size_t> files_;  // to the entry
+    double asked_ = 0;                     // tables, including repeated ones
     size_t profileBytes_ = 0;
 };
 
@@ -223,6 +283,7 @@ BatchManifest expanded(const std::string& path, BatchManifest manifest,
     const toml::table root = parseToml(path, manifest.text);
     Expansion expansion(manifest, std::move(folder));
     TomlReader reader(path, root, "the manifest");
+    reader.version();
     for (const char* name : {"lut", "grid"})
         reader.tablesApart(
             name, [&](TomlReader& entry) { expansion.add(entry); },

@@ -14,7 +14,8 @@ struct BatchEntry {
     Profile profile;          // empty for specular tables
     PelLutEncoding encoding;  // float or half
     std::string key;          // everything that determines the texels, as text
-    std::string file;         // name: kind and hash of the key; equal requests have equal names
+    std::string name;         // that the manifest gives it; empty: none
+    std::string file;         // name.exr, or kind and hash of the key: equal requests have equal names
     int line;                 // of the manifest
 };
 

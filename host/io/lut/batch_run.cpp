@@ -32,7 +32,10 @@ size_t jobsForHandles() {
 }  // namespace
 
 BatchRun::BatchRun(const BatchManifest& manifest, BatchOptions options)
-    : manifest_(manifest), options_(std::move(options)), madeBy_(options_.devices.size()) {
+    : manifest_(manifest),
+      options_(std::move(options)),
+      madeBy_(options_.devices.size()),
+      there_(manifest.entries.size()) {
     removeAbandonedFiles(options_.folder);
     const size_t cores = std::max(1u, std::thread::hardware_concurrency());
     size_t jobs = options_.jobs ? options_.jobs : 4 * cores * options_.devices.size();
@@ -69,11 +72,16 @@ std::vector<size_t> BatchRun::madeByDevice() const {
     return {madeBy_.begin(), madeBy_.end()};
 }
 
+std::vector<bool> BatchRun::there() const {
+    return {there_.begin(), there_.end()};
+}
+
 void BatchRun::work(size_t device) {
     for (size_t i; !stopped_ && (i = next_++) < manifest_.entries.size();) {
         const BatchEntry& entry = manifest_.entries[i];
         try {
             handle(entry, device);
+            there_[i] = true;
         } catch (const Error& e) {  // an error of this entry; others may be fine
             std::lock_guard lock(mutex_);
             if (options_.failed) options_.failed(entry, e.what());

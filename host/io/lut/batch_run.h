@@ -42,6 +42,8 @@ class BatchRun {
 
     BatchCounts counts() const;
     std::vector<size_t> madeByDevice() const;
+    // Per entry of the manifest: whether its file is there, whole, and what was asked for.
+    std::vector<bool> there() const;
 
   private:
     void work(size_t device);
@@ -52,6 +54,7 @@ class BatchRun {
     const BatchOptions options_;
     std::atomic<size_t> next_{0}, made_{0}, kept_{0}, failed_{0}, redone_{0}, active_{0};
     std::vector<std::atomic<size_t>> madeBy_;
+    std::vector<std::atomic<bool>> there_;
     std::atomic<bool> stopped_{false};
     std::mutex mutex_;
     std::exception_ptr fatal_;           // guarded, as are the calls of options_.failed

@@ -102,6 +102,7 @@ ProfileFile parseProfile(const std::string& file, const std::string& text) {
     const toml::table root = parseToml(file, text);
     TomlReader reader(file, root, "the profile");
     ProfileFile result;
+    reader.version();
     for (const char* key : {"name", "kind", "source"})
         if (!reader.has(key)) reader.fail(key, "is missing; every profile has a name, a kind and a source");
     reader.text("name", result.name);

@@ -12,8 +12,6 @@
 namespace pellucid::io {
 namespace {
 
-constexpr uint32_t sceneVersion = 1;
-
 void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind) {
     SceneLut lut;
     lut.line = reader.line();
@@ -143,9 +141,7 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
     SceneFile scene;
     scene.source = path;
     TomlReader reader(path, root, "the scene");
-    uint32_t version = 0;
-    reader.integer("version", version, {sceneVersion, sceneVersion});
-    if (version == 0) reader.fail("version", "is missing; this program writes and reads version 1");
+    reader.version();
     reader.integer("blur_normals", scene.blurNormals, {0, 1});
     reader.integer("rotate_taps", scene.rotateTaps, {0, 1});
     reader.integer("frame_index", scene.frameIndex, range::notNegative);

@@ -12,6 +12,7 @@ import contextlib
 import hashlib
 import pickle
 import queue
+import sys
 import threading
 import time
 from collections.abc import Sequence
@@ -66,6 +67,7 @@ class Dispatcher:
         self._timeout, self._jobs, self._patience, self._read_back = timeout, jobs, patience, read_back
         self._ask, self._expected = ask, asked
         self._open = set(range(len(manifest)))  # entries that nobody has finished
+        self._there = [False] * len(manifest)
         self._attempts: dict[int, int] = {}
         self._present: set[str] = set()
         self._barred: set[str] = set()
@@ -117,7 +119,17 @@ class Dispatcher:
             self.summary.total_ms = 1e3 * (time.monotonic() - start)
             self.summary.per_second = self.summary.made / max(time.monotonic() - start, 1e-9)
             self._display.show(self.summary.entries - len(self._open), last=True)
+            self._write_index()
         return self.summary
+
+    def _write_index(self) -> None:
+        """Also of a batch that did not come to its end, unless its output is what failed."""
+        other = sys.exc_info()[1]  # what is on its way to the caller
+        try:
+            self._store.write(self._manifest.index_name, self._manifest.index(self._there))
+        except StoreError as e:
+            if other is None:
+                raise BatchError(str(e)) from e
 
     # --- workers come and go ---
 
@@ -269,6 +281,7 @@ class Dispatcher:
 
     def _close(self, address: str, index: int, what: str) -> None:
         self._open.discard(index)
+        self._there[index] = True
         if what == work.KEPT:
             self.summary.kept += 1
         else:

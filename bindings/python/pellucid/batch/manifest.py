@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .. import _flight, _native
@@ -19,7 +20,7 @@ class Entry:
     Attributes
     ----------
     file : str
-        Its name: kind and hash of the key.
+        Its name: the one that the manifest gives it, or kind and hash of the key.
     key : str
         All that determines its texels.
     line : int
@@ -72,6 +73,17 @@ class Manifest:
     def holds(self, index: int, file: bytes) -> bool:
         """Whether these bytes are entry `index`: whole, unchanged, and made for this request."""
         return _native.verify_file(file, self.entries[index].key)
+
+    @property
+    def index_name(self) -> str:
+        """Of the index beside the tables."""
+        return str(self._handle.index_name(self.path))
+
+    def index(self, there: Sequence[bool]) -> bytes:
+        """The index, JSON: `there` says per entry whether its file is there (docs/guide/batch.md)."""
+        if len(there) != len(self):
+            raise ValueError(f"there has {len(there)} values; one for each of the {len(self)} entries is needed")
+        return str(self._handle.index(self.path, list(there))).encode()
 
     # A manifest travels as texts, so that workers need no file of it.
     def __getstate__(self) -> tuple[str, str, dict[str, str]]:
