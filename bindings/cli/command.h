@@ -89,6 +89,7 @@ void addProfile(CLI::App& app);
 void addBatch(CLI::App& app);
 void addShade(CLI::App& app);
 void addReference(CLI::App& app);
+void addImport(CLI::App& app);
 void addCompare(CLI::App& app);
 void addPrefill(CLI::App& app);
 void addDemo(CLI::App& app);

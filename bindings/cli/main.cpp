@@ -68,6 +68,7 @@ int main(int argc, char** argv) {
     addBatch(app);
     addShade(app);
     addReference(app);
+    addImport(app);
     addCompare(app);
     addPrefill(app);
     addDemo(app);

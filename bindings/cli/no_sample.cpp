@@ -1,12 +1,18 @@
 // What stands in the place of commands and pictures that need the sample renderer, in a build without it.
 #include "command.h"
 #include "curvature_picture.h"
+#include "import_view.h"
 
 namespace pellucid::cli {
 
 void addReference(CLI::App&) {}
 void addDemo(CLI::App&) {}
 void addBench(CLI::App&) {}
+
+bool canDraw() {
+    return false;
+}
+void drawImport(Run&, const std::string&, const ImportView&, io::SceneFile&) {}
 
 void writeCurvaturePicture(const std::string&, const io::MeshData&, const std::vector<float>&, float, float,
                            char, const std::string&) {

@@ -1,0 +1,47 @@
+// The container of a glTF: its JSON, its buffers, and accessors read out of them with every bound checked.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "io/gltf/gltf_file.h"
+#include "io/gltf/gltf_value.h"
+
+namespace pellucid::io {
+
+class GltfDocument {
+  public:
+    GltfDocument(const std::string& path, const std::string& bytes, const GltfResource& resource);
+
+    GltfValue root() const { return GltfValue(path_, json_, ""); }
+    const std::string& path() const { return path_; }
+
+    // Elements of `components` numbers each, normalised integers as fractions. `where` is the value that names the accessor.
+    std::vector<float> floats(const GltfValue& owner, const char* key, size_t components) const;
+    std::vector<uint32_t> indices(const GltfValue& owner, const char* key) const;
+
+    GltfImage image(size_t index) const;
+
+  private:
+    struct Span {
+        const char* data = nullptr;
+        uint64_t size = 0, stride = 0;
+    };
+    struct Layout;
+
+    std::string resource(const GltfValue& value) const;  // what a "uri" names
+    const std::string& buffer(const GltfValue& view) const;
+    Span view(const GltfValue& owner, const char* key) const;
+    Layout layout(const GltfValue& accessor, uint64_t mostBytes) const;
+    template <class Store>
+    void read(const GltfValue& accessor, const Layout& layout, Store&& store) const;
+    template <class Store>
+    void readSparse(const GltfValue& accessor, const Layout& layout, Store&& store) const;
+
+    std::string path_;
+    const GltfResource& resource_;
+    nlohmann::json json_;
+    std::string binary_;                // the chunk of a .glb
+    std::vector<std::string> buffers_;  // of the document
+};
+
+}  // namespace pellucid::io
