@@ -211,6 +211,9 @@ TEST(Gltf, MaterialsThatScatter) {
         lookOf(material(R"({"pbrMetallicRoughness":{"metallicFactor":0}})"), "m", 1, "").material.material.scattering,
         PEL_SCATTERING_NONE);
     EXPECT_EQ(lookOf(material("{}"), "m", 1, "skin").material.profile, "skin");
+    GltfMaterial scene;
+    scene.name = "scene";
+    EXPECT_EQ(plainNames({scene}), (std::vector<std::string>{"scene_2"}));  // scene.toml is another file
     EXPECT_EQ(plainNames({leaf, leaf}), (std::vector<std::string>{"material_0", "material_0_2"}));
 }
 

@@ -214,7 +214,8 @@ TEST_F(SceneFileTest, WrongTypesAndValuesNameLineKeyAndWhatIsRight) {
 }
 
 TEST_F(SceneFileTest, WhatIsMissingIsNamed) {
-    EXPECT_TRUE(contains(errorOf("version = 1", "version = 2"), "of a later pellucid; this one reads version 1"));
+    EXPECT_TRUE(
+        contains(errorOf("version = 1", "version = 2"), "of a later pellucid; this one reads version 1"));
     EXPECT_TRUE(contains(errorOf("version = 1", "version = 0"), "'version' in the scene is 0"));
     EXPECT_TRUE(contains(errorOf("version = 1", "version = \"1\""), "'version' in the scene is a string"));
     EXPECT_TRUE(contains(errorOf("to_light = [0.6, 0.3, 0.742]", ""), "a directional light needs it"));

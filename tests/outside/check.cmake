@@ -30,6 +30,7 @@ if(NOT result EQUAL 0)
 endif()
 execute_process(COMMAND pkg-config --variable=kernels pellucid OUTPUT_VARIABLE kernels OUTPUT_STRIP_TRAILING_WHITESPACE)
 execute_process(COMMAND pkg-config --variable=rpath pellucid OUTPUT_VARIABLE rpath OUTPUT_STRIP_TRAILING_WHITESPACE)
+string(REPLACE " " "\\ " rpath "${rpath}")  # as a shell would need it
 separate_arguments(flags UNIX_COMMAND "${flags} ${rpath} ${C_FLAGS}")
 list(APPEND flags "-DKERNELS=\"${kernels}\"")
 run(cc -std=c99 -Wall -Wextra -pedantic -Werror ${SOURCE}/main.c -o ${WORK}/outside_pkg_config ${flags})

@@ -143,7 +143,7 @@ SceneLight sceneLight(const GltfLight& l, double scale, double brightness) {
 
 std::vector<std::string> plainNames(const std::vector<GltfMaterial>& materials) {
     std::vector<std::string> names;
-    std::set<std::string> taken;
+    std::set<std::string> taken{"scene"};  // scene.toml stands beside the profiles
     for (const GltfMaterial& m : materials) {
         std::string name;
         for (const char c : m.name.substr(0, 50))
