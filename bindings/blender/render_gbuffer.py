@@ -16,7 +16,7 @@ import traceback
 import bpy
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
-from gbuffer import eyes, geometry, lights, passes, scene_file, surface  # noqa: E402
+from gbuffer import eyes, geometry, lights, passes, principled, quiet, scene_file, surface  # noqa: E402
 from gbuffer.fault import Fault  # noqa: E402
 
 
@@ -68,6 +68,10 @@ def arguments():
     parser.add_argument("--pellucid", default=pellucid_command(), metavar="COMMAND",
                         help="the pellucid command, which measures curvature (default: $PELLUCID_COMMAND, else pellucid, else the "
                              "one that was built or installed with this script)")
+    parser.add_argument("--preset", metavar="NAME",
+                        help="of materials that name none: auto (what their shader says: no Subsurface, no scattering), plain, skin, or a "
+                             "material of the library (default: auto; skin for a mesh alone)")
+    parser.add_argument("--verbose", action="store_true", help="let Blender print what it does")
     parser.add_argument("--no-curvature", action="store_true", help="no curvature, so no direct scattering")
     options = parser.parse_args(words)
     if not options.mesh and not bpy.data.filepath:
@@ -81,6 +85,8 @@ def arguments():
 
 def main():
     options = arguments()
+    quiet.VERBOSE = options.verbose
+    fallback = options.preset or (principled.AUTO if bpy.data.filepath else principled.SKIN)
     try:
         os.makedirs(options.output, exist_ok=True)
     except OSError as error:
@@ -115,7 +121,8 @@ def main():
     for lamp in lamps:
         lights.render_shadow_map(scene, lamp, bounds, options, taken)
     sky = lights.ambient(source, options.output)
-    scene_file.write(os.path.join(options.output, "scene.toml"), unit, camera, lamps, sky, materials, found, not options.no_curvature)
+    scene_file.write(os.path.join(options.output, "scene.toml"), unit, camera, lamps, sky, materials, found, not options.no_curvature,
+                     fallback)
     print(f"pellucid: {options.output}/gbuffer.exr, {options.output}/scene.toml", flush=True)
 
 

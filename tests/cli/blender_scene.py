@@ -26,6 +26,7 @@ def material(name, colour, index):
     made.pass_index = index
     for key in ("pellucid_curvature_lut", "pellucid_shadow_lut"):
         made[key] = ""  # plain Lambert, to be compared with Blender's
+    made["pellucid_preset"] = "skin"
     made["pellucid_specular"] = 0.0
     made["pellucid_deep_scatter_color"] = [0.0, 0.0, 0.0]
     return made

@@ -3,6 +3,7 @@
 import re
 
 from .fault import warn
+from .principled import AUTO, EYE, PRESET
 
 PREFIX = "pellucid_eye_"  # custom properties of a Blender material that set a key of [[eye]]
 NAMED = re.compile(r"eye(ball)?s?([ ._-].*|\d*)$", re.IGNORECASE)
@@ -11,7 +12,10 @@ LENGTHS = {"cornea_radius": 7.8, "limbus_radius": 6.0, "limbus_width": 1.0, "cha
 
 
 def is_eye(material):
-    """By the custom property pellucid_eye, 0 or 1; without it by name: Eye, eye_left, Eyeball.001."""
+    """By the preset, else by the custom property pellucid_eye, 0 or 1; without both by name: Eye, eye_left, Eyeball.001."""
+    preset = material.get(PRESET) or AUTO
+    if preset != AUTO:
+        return preset == EYE
     if "pellucid_eye" in material:
         return bool(material["pellucid_eye"])
     return bool(NAMED.match(material.name))

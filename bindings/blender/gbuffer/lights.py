@@ -8,6 +8,7 @@ from mathutils import Matrix, Vector
 
 from .fault import warn
 from .passes import look
+from .quiet import quiet
 
 
 class Lamp:
@@ -143,7 +144,8 @@ def write_depth(scene, path, kind, factor, offset):
     settings = scene.render.image_settings
     settings.file_format, settings.color_mode, settings.color_depth, settings.exr_codec = "OPEN_EXR", "BW", "32", "ZIP"
     scene.render.filepath = path
-    bpy.ops.render.render(write_still=True, scene=scene.name)
+    with quiet():
+        bpy.ops.render.render(write_still=True, scene=scene.name)
     scene.use_nodes = False
 
 
@@ -168,7 +170,8 @@ def ambient(source, folder):
     settings = scene.render.image_settings
     settings.file_format, settings.color_depth = "OPEN_EXR", "32"
     scene.render.filepath = os.path.join(folder, ".sky.exr")
-    bpy.ops.render.render(write_still=True, scene=scene.name)
+    with quiet():
+        bpy.ops.render.render(write_still=True, scene=scene.name)
     image = bpy.data.images.load(scene.render.filepath)
     pixels = list(image.pixels)
     os.remove(scene.render.filepath)

@@ -7,6 +7,7 @@ from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Matrix, Vector
 
 from .fault import warn
+from .quiet import quiet
 from .surface import AOVS
 
 
@@ -93,4 +94,5 @@ def render_gbuffer(scene, camera, path, half):
     settings.color_depth = "16" if half else "32"
     settings.exr_codec = "ZIP"
     scene.render.filepath = path
-    bpy.ops.render.render(write_still=True, scene=scene.name)
+    with quiet():
+        bpy.ops.render.render(write_still=True, scene=scene.name)

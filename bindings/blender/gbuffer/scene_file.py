@@ -1,9 +1,15 @@
 """The scene file of `pellucid shade` (docs/guide/scene-file.md)."""
 
+import os
+
+from . import principled
+from .fault import warn
+
 # Lengths of the defaults, in millimetres.
 SKIN = {"diffusion_radius": 2.7, "shadow_filter_width": 8.0, "deep_scatter_radius": 6.0, "deep_scatter_normal_offset": 0.2}
 OTHERS = {"deep_scatter_color": (0.7, 0.16, 0.05), "specular": 0.35}
 EYES = {"scattering": "none", "thickness_taps": 0}  # the sclera; its gloss is that of the film of tears
+PLAIN = {"scattering": "none", "thickness_taps": 0}
 PREFIX = "pellucid_"  # custom properties of a Blender material that set a key of [[material]]
 
 
@@ -28,12 +34,42 @@ def comment(name):
     return "# " + "".join(c if c.isprintable() else " " for c in name)
 
 
-def write(path, unit, camera, lamps, sky, materials, eyes, curvature):
-    """unit: millimetres per Blender unit. materials: (id, Blender material). eyes: (Blender material, keys)."""
+def keys_of(surface, preset, unit, folder, extents, curvature):
+    """Of [[material]], by what was chosen for it."""
+    if preset == principled.EYE:
+        keys = dict(EYES)
+    elif preset == principled.PLAIN:
+        keys = {**PLAIN, **surface.keys}
+    elif preset == principled.SKIN:
+        keys = {key: length / unit for key, length in SKIN.items()}
+        keys.update(OTHERS)
+        keys["shadow_lut"] = "skin"
+        if curvature:
+            keys["curvature_lut"] = "skin"
+    else:
+        name = preset
+        if preset == "own":
+            name = principled.file_name(surface.name)
+            with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+                file.write(principled.profile_text(surface, unit))
+        keys = {"profile": name, "scattering": "auto", "deep_scatter_normal_offset": SKIN["deep_scatter_normal_offset"] / unit, **surface.keys}
+    if extents and preset not in (principled.EYE, principled.PLAIN):
+        keys["thickness_filter_radius"] = 3 / unit / max(extents)  # 3 mm
+    return keys
+
+
+def write(path, unit, camera, lamps, sky, materials, eyes, curvature, fallback):
+    """unit: millimetres per Blender unit. materials: (id, Blender material, Surface). eyes: (Blender material, keys). fallback: the preset of materials that have none."""
+    of_eyes = {material.name: keys for material, keys in eyes}
+    chosen = {id_: surface.chosen(of_eyes, fallback) for id_, _, surface in materials}
+    if not any(preset not in (principled.PLAIN, principled.EYE) for preset in chosen.values()):
+        warn("nothing scatters: no material has Subsurface above 0; give it one, or the custom property pellucid_preset = \"skin\", or pass --preset skin")
+    surfaces = [surface for _, _, surface in materials]
     lines = [
         "# Written by bindings/blender/render_gbuffer.py. Axes: Blender's world, Z up. Lengths: Blender units,",
         f"# of {unit:g} mm each.",
         "version = 1",
+        f"unit_mm = {number(unit)}",
         "blur_normals = 1",
         "",
         "[channels]",
@@ -45,6 +81,10 @@ def write(path, unit, camera, lamps, sky, materials, eyes, curvature):
     ]
     if curvature:
         lines += ['curvature = "Curvature.X"']
+    if any(s.roughness for s in surfaces):
+        lines += ['roughness = "Roughness.X"']
+    if any(s.weight or (s.scattering and s.scattering.weight < 1) for s in surfaces):
+        lines += ['scatter_weight = "ScatterWeight.X"']
     lines += ["", "[camera]", "position = " + value(tuple(camera.matrix_world.translation))]
     if sky:
         lines += ["", "[ambient]", "sh = [", *("    " + value(row) + "," for row in sky), "]"]
@@ -67,25 +107,19 @@ def write(path, unit, camera, lamps, sky, materials, eyes, curvature):
             else:
                 lines += ['projection = "perspective"', "depth_a = " + number(lamp.depth_a), "depth_b = " + number(lamp.depth_b)]
     extents = [lamp.extent for lamp in lamps if lamp.map_file and lamp.kind == "SUN"]
-    of_eyes = {material.name: keys for material, keys in eyes}
-    for id_, material in materials:
+    for id_, material, surface in materials:
         if material.name in of_eyes:
             lines += ["", "[[eye]]", f"material = {id_}", *(f"{key} = {value(v)}" for key, v in of_eyes[material.name].items())]
-        keys = {key: length / unit for key, length in SKIN.items()}
-        keys.update(EYES if material.name in of_eyes else OTHERS)
-        if extents:
-            keys["thickness_filter_radius"] = 3 / unit / max(extents)  # 3 mm
-        keys["shadow_lut"] = "skin"
-        if curvature:
-            keys["curvature_lut"] = "skin"
+        keys = keys_of(surface, chosen[id_], unit, os.path.dirname(path), extents, curvature)
         for name in material.keys():
-            if name.startswith(PREFIX) and not name.startswith("pellucid_eye"):
+            if name.startswith(PREFIX) and not name.startswith("pellucid_eye") and name != principled.PRESET:
                 own = material[name]
                 keys[name[len(PREFIX) :]] = own if isinstance(own, (int, float, str)) else tuple(own)
         lines += ["", "[[material]]  " + comment(material.name), f"id = {id_}"]
         lines += [f"{key} = {value(v)}" for key, v in keys.items() if v != ""]
-    if curvature:
-        lines += ["", "[[curvature_lut]]  # in millimetres, as it stands", 'name = "skin"']
-    lines += ["", "[[shadow_lut]]", 'name = "skin"']
+    if principled.SKIN in chosen.values():
+        if curvature:
+            lines += ["", "[[curvature_lut]]  # in millimetres, as it stands", 'name = "skin"']
+        lines += ["", "[[shadow_lut]]", 'name = "skin"']
     with open(path, "w", encoding="utf-8") as file:
         file.write("\n".join(lines) + "\n")

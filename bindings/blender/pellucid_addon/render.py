@@ -1,0 +1,186 @@
+"""The button: a copy of the file is rendered by another Blender to a G-buffer, which `pellucid shade` makes a picture of.
+
+Nothing of the open file changes: no material, no setting, no path.
+"""
+
+import os
+import shutil
+import subprocess
+import tempfile
+
+import bpy
+
+from . import properties
+
+IMAGE, LOG = "Pellucid", "Pellucid log"
+SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "script", "render_gbuffer.py")
+
+
+class Failure(Exception):
+    """A message for the user."""
+
+
+def steps(scene, folder):
+    """(what is done, command) one after another. The copy of the file is in the folder."""
+    settings, render = scene.pellucid, scene.render
+    factor, share = int(settings.samples), render.resolution_percentage / 100
+    size = [max(1, int(n * share)) * factor for n in (render.resolution_x, render.resolution_y)]
+    addon = bpy.context.preferences.addons.get(__package__)
+    device = ["--device", addon.preferences.device] if addon and addon.preferences and addon.preferences.device else []
+    unit = ["--unit", str(settings.unit)] if settings.unit > 0 else []
+    yield "G-buffer", [bpy.app.binary_path, "--factory-startup", "-b", os.path.join(folder, "scene.blend"), "--python", SCRIPT, "--", "-o", folder,
+                       "--size", f"{size[0]}x{size[1]}", "--frame", str(scene.frame_current), "--shadow-size", str(settings.shadow_size),
+                       "--pellucid", properties.command(), *unit]
+    yield "shading", [properties.command(), "shade", os.path.join(folder, "gbuffer.exr"), "--scene", os.path.join(folder, "scene.toml"),
+                      "-o", os.path.join(folder, "picture.exr"), "--picture", os.path.join(folder, "picture.png"), "--exposure", str(settings.exposure), *device]
+
+
+def said(log):
+    """The last words of a failed step that tell why."""
+    lines = [line for line in log.splitlines() if line.strip()]
+    told = [line for line in lines if line.startswith(("render_gbuffer.py:", "pellucid:")) and "warning" not in line]
+    return (told or lines or ["it said nothing"])[-1]
+
+
+def save_log(text):
+    block = bpy.data.texts.get(LOG) or bpy.data.texts.new(LOG)
+    block.clear()
+    block.write(text)
+
+
+def show(folder, factor, path):
+    """The picture as an image of the file, packed, and in an image editor if one is open."""
+    made = os.path.join(folder, "picture.png")
+    image = bpy.data.images.load(made)
+    if factor > 1:
+        image.scale(max(1, image.size[0] // factor), max(1, image.size[1] // factor))
+    if path:
+        image.filepath_raw, image.file_format = path, "PNG"
+        image.save()
+    image.pack()
+    old = bpy.data.images.get(IMAGE)
+    if old:
+        old.user_remap(image)
+        bpy.data.images.remove(old)
+    image.name = IMAGE
+    for window in bpy.context.window_manager.windows if bpy.context.window_manager else ():
+        for area in window.screen.areas:
+            if area.type == "IMAGE_EDITOR":
+                area.spaces.active.image = image
+                area.tag_redraw()
+    return image
+
+
+class PELLUCID_OT_render(bpy.types.Operator):
+    """Render the scene with scattering into the image "Pellucid" """
+
+    bl_idname = "pellucid.render"
+    bl_label = "Render with Pellucid"
+
+    filepath: bpy.props.StringProperty(name="PNG", description="Where the picture goes beside the image; empty: nowhere", subtype="FILE_PATH", options={"SKIP_SAVE"})
+    keep: bpy.props.StringProperty(name="Folder", description="Where G-buffer, shadow maps and scene.toml are kept; empty: nowhere", subtype="DIR_PATH", options={"SKIP_SAVE"})
+
+    def begin(self, context):
+        scene = context.scene
+        self.factor = int(scene.pellucid.samples)
+        self.folder = tempfile.mkdtemp(prefix="pellucid-")
+        self.log = ""
+        bpy.ops.wm.save_as_mainfile(filepath=os.path.join(self.folder, "scene.blend"), copy=True, compress=False)
+        self.steps = steps(scene, self.folder)
+        self.process = None
+
+    def start(self, scene):
+        """The next step; False after the last."""
+        step = next(self.steps, None)
+        if step is None:
+            return False
+        self.what, command = step
+        scene.pellucid.status = self.what + "..."
+        self.output = open(os.path.join(self.folder, "log.txt"), "w+", encoding="utf-8", errors="replace")
+        try:
+            self.process = subprocess.Popen(command, stdout=self.output, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
+        except OSError as error:
+            raise Failure(f"cannot run '{command[0]}' ({error.strerror}): set the command in the add-on's preferences; pip install pellucid brings it") from None
+        return True
+
+    def done(self):
+        """Whether the step that runs has ended. Raises if it failed."""
+        if self.process.poll() is None:
+            return False
+        self.output.seek(0)
+        text = self.output.read()
+        self.output.close()
+        self.log += f"== {self.what}\n{text}\n"
+        if self.process.returncode:
+            raise Failure(f"{self.what}: {said(text)}")
+        return True
+
+    def end(self, scene, failure=None):
+        """Puts the result in its place, and removes the folder."""
+        result = {"FINISHED"}
+        try:
+            if failure is None:
+                show(self.folder, self.factor, bpy.path.abspath(self.filepath) if self.filepath else "")
+                if self.keep:
+                    shutil.copytree(self.folder, bpy.path.abspath(self.keep), dirs_exist_ok=True, ignore=shutil.ignore_patterns("scene.blend", "log.txt"))
+        except (OSError, RuntimeError) as error:
+            failure = Failure(str(error))
+        save_log(self.log)
+        for line in self.log.splitlines():
+            if line.startswith("render_gbuffer.py: warning:"):
+                self.report({"WARNING"}, line[len("render_gbuffer.py: warning: "):])
+        if failure is not None:
+            self.report({"ERROR"}, f"{failure} (all of it is in the text '{LOG}')")
+            result = {"CANCELLED"}
+        scene.pellucid.status = ""
+        shutil.rmtree(self.folder, ignore_errors=True)
+        return result
+
+    def execute(self, context):
+        """To the end, as scripts want it."""
+        self.begin(context)
+        try:
+            while self.start(context.scene):
+                self.process.wait()
+                self.done()
+        except Failure as failure:
+            return self.end(context.scene, failure)
+        return self.end(context.scene)
+
+    def invoke(self, context, event):
+        """With the user interface alive; Escape cancels."""
+        self.begin(context)
+        try:
+            self.start(context.scene)
+        except Failure as failure:
+            return self.end(context.scene, failure)
+        self.timer = context.window_manager.event_timer_add(0.2, window=context.window)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context, event):
+        failure = None
+        if event.type == "ESC":
+            self.process.terminate()
+            self.process.wait()
+            failure = Failure("cancelled")
+        elif event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        else:
+            try:
+                if not self.done() or self.start(context.scene):
+                    for area in context.screen.areas if context.screen else ():
+                        area.tag_redraw()
+                    return {"RUNNING_MODAL"}
+            except Failure as fault:
+                failure = fault
+        context.window_manager.event_timer_remove(self.timer)
+        return self.end(context.scene, failure)
+
+
+def register():
+    bpy.utils.register_class(PELLUCID_OT_render)
+
+
+def unregister():
+    bpy.utils.unregister_class(PELLUCID_OT_render)
