@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "io/file_error.h"
 #include "sample/gbuffer.h"
@@ -59,7 +60,7 @@ sample::Camera cameraOf(const ImportView& v, const sample::Scene& scene, double 
     camera.eye = vec(c.position, v.scale);
     camera.target = camera.eye + vec(c.forward);
     camera.up = vec(c.up);
-    camera.verticalFov = c.verticalFov * 180 / M_PI;
+    camera.verticalFov = c.verticalFov * 180 / std::numbers::pi;
     double near = INFINITY, far = 0;
     for (int i = 0; i < 8; ++i) {
         const double depth = dot(scene.bounds().corner(i) - camera.eye, camera.forward());
@@ -117,7 +118,7 @@ void addShadowMap(const std::string& folder, const sample::Scene& scene, size_t 
     } else if (p.type == PEL_LIGHT_SPOT) {
         const sample::SpotLight spot{{p.position[0], p.position[1], p.position[2]},
                                      {p.spotDirection[0], p.spotDirection[1], p.spotDirection[2]},
-                                     std::min(std::acos(double(p.spotCosOuter)) * 180 / M_PI, 80.0)};
+                                     std::min(std::acos(double(p.spotCosOuter)) * 180 / std::numbers::pi, 80.0)};
         map = sample::renderShadowMap(scene, spot, shadowMapSize);
         p.shadowProjection = PEL_SHADOW_PERSPECTIVE;
         p.shadowDepthA = float(map.depthA), p.shadowDepthB = float(map.depthB);

@@ -1,6 +1,7 @@
 #include "io/gltf/gltf_materials.h"
 
 #include <algorithm>
+#include <numbers>
 
 namespace pellucid::io {
 namespace {
@@ -104,11 +105,11 @@ GltfLight readGltfLight(const GltfValue& light) {
     l.range = light.number("range", 0, 0, 1e12);
     if (light.has("spot")) {
         const GltfValue spot = light["spot"];
-        l.innerCone = spot.number("innerConeAngle", 0, 0, M_PI / 2);
-        l.outerCone = spot.number("outerConeAngle", M_PI / 4, 0, M_PI / 2);
+        l.innerCone = spot.number("innerConeAngle", 0, 0, std::numbers::pi / 2);
+        l.outerCone = spot.number("outerConeAngle", std::numbers::pi / 4, 0, std::numbers::pi / 2);
         if (l.innerCone > l.outerCone) spot.fail("has an inner cone wider than its outer one");
     } else {
-        l.outerCone = M_PI / 4;
+        l.outerCone = std::numbers::pi / 4;
     }
     return l;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 namespace pellucid::io {
@@ -130,7 +131,7 @@ SceneLight sceneLight(const GltfLight& l, double scale, double brightness) {
     // Lux, and candela: lux at one metre. PelLight wants irradiance / pi, of lamps at a millimetre.
     const double at = l.kind == GltfLight::Kind::Directional ? 1 : 1e6;
     for (size_t c = 0; c < 3; ++c) {
-        p.color[c] = float(std::min(l.color[c] * l.intensity * at * brightness / M_PI, 1e30));
+        p.color[c] = float(std::min(l.color[c] * l.intensity * at * brightness / std::numbers::pi, 1e30));
         p.position[c] = float(l.position[c] * scale);
         p.toLight[c] = float(-l.forward[c]);
         p.spotDirection[c] = float(l.forward[c]);
