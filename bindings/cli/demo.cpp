@@ -139,8 +139,9 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
     }
     const std::string& folder = a.output;
     const auto path = [&](const std::string& suffix) { return folder + "/" + view.name + suffix; };
-    io::writeExr(path("_gbuffer.exr"), view.gbuffer);
-    for (const auto& [file, map] : view.shadowMaps) io::writeExr(folder + "/" + file, map);
+    io::writeExr(path("_gbuffer.exr"), view.gbuffer, io::ExrCompression::Rle);
+    for (const auto& [file, map] : view.shadowMaps)
+        io::writeExr(folder + "/" + file, map, io::ExrCompression::Rle);
     io::writeScene(path(".toml"), view.scene);
     io::writeRadiance(path(".exr"), view.gbuffer.width, view.gbuffer.height, shaded.complete);
     shaded.view = std::move(view);

@@ -1,4 +1,4 @@
-// OpenEXR files out: one part of scan lines, ZIP compression, encoded in memory, so that disk errors can only happen in one place.
+// OpenEXR files out: one part of scan lines, encoded in memory, so that disk errors can only happen in one place.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFloatVectorAttribute.h>
@@ -72,14 +72,14 @@ void setAttribute(Imf::Header& header, const std::string& name, const Attribute&
 
 }  // namespace
 
-void writeExr(const std::string& path, const Image& image) {
+void writeExr(const std::string& path, const Image& image, ExrCompression compression) {
     requireExtension(path, {"exr"});
     if (image.channels.empty() || image.pixelCount() == 0)
         throw std::invalid_argument("writeExr: the image is empty");
     MemoryOutput memory(path);
     try {
         Imf::Header header(image.width, image.height);
-        header.compression() = Imf::ZIP_COMPRESSION;
+        header.compression() = compression == ExrCompression::Rle ? Imf::RLE_COMPRESSION : Imf::ZIP_COMPRESSION;
         for (const auto& [name, value] : image.attributes) setAttribute(header, name, value);
         Imf::FrameBuffer frame;
         std::vector<std::vector<half>> halves;

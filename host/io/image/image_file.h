@@ -64,9 +64,10 @@ Image decodeImage(const std::string& path, std::string bytes,
 // no pixels. Names are those of Image::channel(); one that fits no channel, or several, is no error here.
 Image readChannels(const std::string& path, const std::vector<std::string>& names);
 
-// Writes a single-part scan-line EXR with ZIP compression, each channel in its own type; float32 values keep
-// their bits.
-void writeExr(const std::string& path, const Image& image);
+// Writes a single-part scan-line EXR, each channel in its own type; float32 values keep their bits. ZIP compression makes files
+// small; RLE, which is quick to read, a third larger where much is background, and hardly small elsewhere.
+enum class ExrCompression { Zip, Rle };
+void writeExr(const std::string& path, const Image& image, ExrCompression compression = ExrCompression::Zip);
 
 // Whether writeImage8 writes files of this extension; the second throws FileError where it does not, and returns the extension.
 bool isPicture(const std::string& path);
