@@ -12,7 +12,7 @@ namespace pel {
 namespace {
 
 // Intervals of the mesh. Corners of tabulated profiles need a finer one than Gaussians do.
-constexpr int sweptNodes = 128, sphereNodes = 95;
+constexpr int sweptNodes = 128, sphereNodes = 79;
 // Of the sums of R, whose corners lie within cells; P is smoother, and dearer.
 constexpr int radialCells = 4096;
 // Rows of shadow tables have nodes up to so many for each texel.

@@ -133,10 +133,10 @@ typedef struct TabulatedShadowLutParams {
 
 // Rows with ramps of a smaller half width, in diffusion radii, have nodes: PEL_RAMP_PARTS to a half width.
 #define PEL_WIDE_RAMP 0.25f
-#define PEL_RAMP_PARTS 16
+#define PEL_RAMP_PARTS 12
 #define PEL_RAMP_TOGETHER 4  // nodes that are made at once
-#define PEL_RAMP_SHARP 4     // nodes beyond a half width that are made by quadrature still
-#define PEL_RAMP_CELLS 8     // cells of the list of tails in a part of the quadrature
+#define PEL_RAMP_SHARP 3     // nodes beyond a half width that are made by quadrature still
+#define PEL_RAMP_CELLS 12    // cells of the list of tails in a part of the quadrature
 #define PEL_RAMP_SAMPLES(nodes) ((nodes) + 1 + 2 * PEL_RAMP_PARTS + PEL_RAMP_TOGETHER)
 #define PEL_RAMP_RECORD(nodes) (2 * ((nodes) + 1))
 
