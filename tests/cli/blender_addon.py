@@ -1,8 +1,8 @@
 """Installs the add-on's zip in the Blender that runs this, builds a scene with skin, an eye, teeth and wax, and presses the button.
 
-    blender --factory-startup -b --python blender_addon.py -- ADDON.zip OUTPUT_FOLDER
+    blender --factory-startup -b --python blender_addon.py -- ADDON.zip OUTPUT_FOLDER [WIDTH]
 
-What test_cli_blender_addon.cpp looks at is in the folder: the picture, the scene file, and report.json.
+What test_cli_blender_addon.cpp looks at is in the folder: the picture, the scene file, and report.json. docs/figures/blender_addon.png is such a picture, 960 wide.
 """
 
 import json
@@ -13,7 +13,7 @@ import sys
 import bpy
 from mathutils import Vector
 
-zip_file, out = sys.argv[sys.argv.index("--") + 1 :]
+zip_file, out, *width = sys.argv[sys.argv.index("--") + 1 :]
 bpy.ops.preferences.addon_install(filepath=zip_file)
 bpy.ops.preferences.addon_enable(module="pellucid")
 
@@ -21,7 +21,8 @@ for thing in list(bpy.data.objects):
     bpy.data.objects.remove(thing)
 scene = bpy.context.scene
 scene.unit_settings.scale_length = 0.01  # a Blender unit is a centimetre
-scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 320, 160, 100
+scene.render.resolution_x = int(width[0]) if width else 320
+scene.render.resolution_y, scene.render.resolution_percentage = scene.render.resolution_x // 2, 100
 
 
 def material(name, colour, **inputs):

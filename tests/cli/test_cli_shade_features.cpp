@@ -16,8 +16,8 @@ TEST_F(Shade, TablesOfMaterialsAndProfileFiles) {
     io::writeExr(path("c.exr"), curved);
     scene_.channels[PEL_SLOT_CURVATURE] = {"C.X"};
     scene_.materials[0].curvatureLut = "t";
-    ASSERT_EQ(run({"lut", "curvature", "--profile", path("own.toml"), "--form", "arc", "--size", "64x16", "-o",
-                   path("t.exr")})
+    ASSERT_EQ(run({"lut", "curvature", "--profile", path("own.toml"), "--form", "arc", "--size", "64x16",
+                   "-o", path("t.exr")})
                   .exitCode,
               0);
     const auto shaded = [&](const std::string& profile, const std::string& file) {
