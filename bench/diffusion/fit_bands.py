@@ -3,17 +3,21 @@
 
     python3 bench/diffusion/fit_bands.py
 
-Bands of linear ramps are where the fit begins; a term keeps it near them. What is fitted is the whole sum on a plane, for Burley's profile and Gaussians of 0.5 to 12 pixels, on shadow edges,
-disks and noise: the difference from an exact convolution, over what scattering changes. NumPy and SciPy are needed.
+What is fitted is the whole sum on planes, seen from the front and at an angle (pixels two and three times as long as wide), for Burley's profile and Gaussians of a third of a pixel to 8 pixels. Pictures are
+shadow edges, disks, noise, and smooth light whose second difference is the same everywhere: of these the sum must get the second moment of the profile right. Errors are differences from an exact
+convolution, over what scattering changes. Weights are 0 or more, so that no light becomes negative. NumPy and SciPy are needed; it takes two minutes.
 """
 
 import numpy as np
 from scipy.ndimage import gaussian_filter
+from scipy.optimize import least_squares
 from scipy.signal import fftconvolve
 
-SIDE, LEVELS, NEAR_RAMPS = 512, 7, 0.1
+SIDE, LEVELS = 512, 7
 RINGS = (1, 2, 4, 5)  # squared distances of blocks in a band
-INSIDE = slice(112, -112, 3)
+OFFSETS = {s: [(j, i) for j in range(-2, 3) for i in range(-2, 3) if i * i + j * j == s] for s in RINGS}
+INSIDE = slice(112, -112, 6)
+MASS = 5  # how much a plane's mass counts that is not 1: less would be taken for surface that is hidden
 
 
 def burley(b):
@@ -45,18 +49,17 @@ def finer(c):
     return out
 
 
-def ring(e, squared):
-    n, p = e.shape[0], np.pad(e, 2, mode="edge")
-    pairs = [(j, i) for j in range(-2, 3) for i in range(-2, 3) if i * i + j * j == squared]
-    return sum(p[2 + j : 2 + j + n, 2 + i : 2 + i + n] for j, i in pairs)
-
-
-def sums(e, density):
+def sums(e, density, long):
     """What each ring brings with a weight of 1: of pixels, and of blocks of all levels together."""
     result = {}
     for level in range(LEVELS):
+        n, p = e.shape[0], np.pad(e, 2, mode="edge")
         for squared in RINGS:
-            brought = ring(e, squared) * density(2.0**level * np.sqrt(squared)) * 4.0**level
+            brought = sum(
+                density(2.0**level * np.hypot(i * long, j)) * p[2 + j : 2 + j + n, 2 + i : 2 + i + n]
+                for j, i in OFFSETS[squared]
+            )
+            brought = brought * (4.0**level * long)
             for _ in range(level):
                 brought = finer(brought)
             key = (min(level, 1), squared)
@@ -65,14 +68,14 @@ def sums(e, density):
     return [result[0, s] for s in RINGS] + [result[1, s] for s in RINGS]
 
 
-def exact_kernel(density, share):
+def exact_kernel(density, long):
     x, y = np.meshgrid(*2 * [np.arange(1 - SIDE // 2, SIDE // 2)])
-    kernel = density(np.hypot(x, y))
-    middle, part = SIDE // 2 - 1, (np.arange(16) + 0.5) / 16 - 0.5
+    kernel = density(np.hypot(x * long, y)) * long
+    middle, part = SIDE // 2 - 1, (np.arange(32) + 0.5) / 32 - 0.5
     for j in range(-6, 7):
         for i in range(-6, 7):
-            kernel[middle + j, middle + i] = density(np.hypot(*np.meshgrid(part + i, part + j))).mean()
-    kernel[middle, middle] = share(np.sqrt(1 / np.pi))
+            u, v = np.meshgrid(part + i, part + j)
+            kernel[middle + j, middle + i] = density(np.hypot(u * long, v)).mean() * long
     return kernel / kernel.sum()
 
 
@@ -87,30 +90,64 @@ def pictures():
     for s in (0, 1, 2, 4):
         smooth = gaussian_filter(noise, s)
         yield (smooth - smooth.mean()) / smooth.std() * 0.2 + 0.5
+    yield (x - 255.5) ** 2 / 1e4
+    yield (y - 255.5) ** 2 / 1e4
+    yield np.maximum(x + 0.3 * y - 320, 0) / 100
+
+
+def share_of_blocks(share, long, blocks):
+    """Of an ellipse, from its radii at every eighth of a turn (shareOfCentre)."""
+    minor, major = blocks / np.pi, blocks / np.pi * long * long
+    oblique = 2 * minor * major / (minor + major)
+    return 0.25 * (share(np.sqrt(minor)) + share(np.sqrt(major))) + 0.5 * share(np.sqrt(oblique))
+
+
+class Case:
+    """One profile on one plane."""
+
+    def __init__(self, profile, long):
+        density, self.share = profile
+        self.long = long
+        kernel = exact_kernel(density, long)
+        middle = (SIDE // 2, SIDE // 2)
+        self.masses = np.array([b[middle] for b in sums(np.ones((SIDE, SIDE)), density, long)])
+        self.pictures = []
+        for e in pictures():
+            scattered = fftconvolve(e, kernel, mode="same")[INSIDE, INSIDE].ravel()
+            own = e[INSIDE, INSIDE].ravel()
+            brought = np.stack([b[INSIDE, INSIDE].ravel() for b in sums(e, density, long)], 1)
+            change = np.sqrt(np.mean((own - scattered) ** 2))
+            self.pictures.append((own, scattered, brought, 1 / change / np.sqrt(len(own))))
+
+    def errors(self, pixels, blocks, inside, own_area):
+        minor, major = own_area / np.pi, own_area / np.pi * self.long**2
+        own = self.share(np.sqrt(2 * minor * major / (minor + major)))
+        centre = share_of_blocks(self.share, self.long, 4 * inside)
+        mass = centre + blocks @ self.masses[4:]
+        for e, scattered, brought, scale in self.pictures:
+            near = brought[:, :4] @ pixels / (pixels @ self.masses[:4])
+            found = (own * e + (centre - own) * near + brought[:, 4:] @ blocks) / mass
+            yield (found - scattered) * scale / (2 if self.long > 2 else 1)
+        yield [MASS / self.long * (mass - 1)]
 
 
 def main():
-    def ramp(r):
-        return np.clip((3 - r) / 1.5, 0, 1)
+    profiles = [burley(b) for b in (0.35, 0.5, 1, 2, 4)] + [gaussian(s) for s in (1, 2, 4, 8)]
+    cases = [Case(p, long) for p in profiles for long in (1, 2)]
+    cases += [Case(p, 3) for p in (burley(0.5), burley(1), gaussian(4))]
 
-    roots = np.sqrt(RINGS)
-    begin = np.concatenate([ramp(roots), ramp(roots) - ramp(2 * roots)])
-    rows, values = [], []
-    for density, share in [burley(b) for b in (0.5, 1, 2, 4, 8)] + [gaussian(s) for s in (1, 2, 4, 8, 12)]:
-        kernel, own = exact_kernel(density, share), share(np.sqrt(1 / np.pi))
-        for e in [*pictures(), np.ones((SIDE, SIDE))]:
-            scattered = e if e.min() == 1 else fftconvolve(e, kernel, mode="same")
-            change = np.sqrt(np.mean((e - scattered)[INSIDE, INSIDE] ** 2)) or 0.02
-            brought = np.stack([b[INSIDE, INSIDE].ravel() for b in sums(e, density)], 1)
-            scale = 1 / change / np.sqrt(len(brought))
-            rows.append(brought * scale)
-            values.append((scattered - own * e)[INSIDE, INSIDE].ravel() * scale)
-    count = len(rows)
-    a, b = np.concatenate(rows), np.concatenate(values)
-    normal = a.T @ a / count + NEAR_RAMPS * np.eye(len(begin))
-    fitted = np.linalg.solve(normal, a.T @ b / count + NEAR_RAMPS * begin)
-    for what, weights in (("pixels", fitted[: len(RINGS)]), ("blocks", fitted[len(RINGS) :])):
+    def parts(v):  # only the pixels' ratios matter
+        return np.concatenate([[1], v[:3]]), v[3:7], v[7], v[8]
+
+    def errors(v):
+        return np.concatenate([e for case in cases for e in case.errors(*parts(v))])
+
+    begin = np.array([0.6, 0.5, 0.5, 0.01, 0.3, 1, 0.6, 8, 1])
+    fit = least_squares(errors, begin, bounds=([0] * 7 + [2, 0.3], [4] * 7 + [12, 2]), max_nfev=80)
+    pixels, blocks, inside, own_area = parts(fit.x)
+    for what, weights in (("pixels", pixels), ("blocks", blocks)):
         print(what, " ".join(f"{np.sqrt(s):.2f}: {w:.2f}" for s, w in zip(RINGS, weights)))
+    print(f"inside {inside:.2f}  own area {own_area:.2f}")
 
 
 if __name__ == "__main__":

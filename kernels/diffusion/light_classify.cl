@@ -7,7 +7,7 @@
 #include "lib/diffusion/windowed.clh"
 
 #define PART_LEVEL 2
-#define LEFT_ALONE 0.5f  // of the tolerance
+#define LEFT_ALONE 0.4f  // of the tolerance
 
 static inline float3 farLight(__global const PelLightMap* maps, uint mapCount, __global const float* lights,
                               __global const float* nodes, const PelProfileTable table, Place* place,
@@ -38,16 +38,17 @@ static inline float longestStep(__global const float* block, uint stride, uint l
 }
 
 #if PEL_HIDDEN
-static inline bool lightReaches(__global const PelDiffusionFrame* frame, __global const float* block,
-                                uint stride, __global const PelProfileTable* tables,
-                                __global const float* nodes, __global const PelLightMap* maps, uint mapCount,
-                                __global const float* lights, uint* texels) {
+// How much the light may change a tile.
+static inline float changeByLight(__global const PelDiffusionFrame* frame, __global const float* block,
+                                  uint stride, __global const PelProfileTable* tables,
+                                  __global const float* nodes, __global const PelLightMap* maps,
+                                  uint mapCount, __global const float* lights, uint* texels) {
     Place place;
     const int number = placeOf(frame, block, stride, &place);
-    if (number < 0) return false;
+    if (number < 0) return 0.0f;
     place.slack = 0.71f * PEL_DIFFUSION_TILE * longestStep(block, stride, PEL_TILE_LEVEL);
     const float3 light = farLight(maps, mapCount, lights, nodes, tables[number], &place, texels);
-    return fmax(light.x, fmax(light.y, light.z)) > (frame->everyTile ? 0.0f : LEFT_ALONE * frame->tolerance);
+    return fmax(light.x, fmax(light.y, light.z));
 }
 #else
 static inline bool lightMatters(__global const PelDiffusionFrame* frame, __global const float* block,
@@ -81,9 +82,13 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
 #if PEL_HIDDEN
     __global const PelPyramidLevel* level = &frame->level[PEL_TILE_LEVEL];
     const uint word = tiles[tile];
-    const bool reached = lightReaches(frame, pyramid + pyramidRow(level, (int)tileY) + tileX, level->stride,
-                                      tables, nodes, maps, mapCount, lights, &texels);
-    if (reached) tiles[tile] = (word ? word & 255u : 2u) | frame->levels << 8 | PEL_TILE_HIDDEN;
+    const float change = changeByLight(frame, pyramid + pyramidRow(level, (int)tileY) + tileX, level->stride,
+                                       tables, nodes, maps, mapCount, lights, &texels),
+                least = frame->everyTile ? 0.0f : LEFT_ALONE * frame->tolerance;
+    const bool reached = change > least;
+    if (reached)
+        tiles[tile] = (word & PEL_TILE_NEAR) | frame->levels << 8 | PEL_TILE_HIDDEN |
+                      max(word >> 24 << 24, wordOfWeight(weightOfTile(change, least)));
 #else
     const uint side = PEL_DIFFUSION_TILE >> PART_LEVEL;
     uint reached = 0;

@@ -6,7 +6,6 @@
 #include "lib/diffusion/levels.clh"
 #include "lib/diffusion/windowed.clh"
 
-#define LEAST_MISSING 0.01f  // of the mass, that may be filled
 #define MOST_IN_CENTRE \
     0.5f  // where more of it lies within the blocks that level 1 does not look at, what is missing is not known
 
@@ -55,7 +54,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
             if (!(block[PEL_PLANE_AREA * stride] > 0.0f)) continue;
             float3 light = (float3)(0.0f), mass = (float3)(0.0f);
             const uint id = as_uint(block[PEL_PLANE_ID * stride]);
-            if (reached && missingOf(sums + sumRow(frame, 1, (int)y) + x, stride) > LEAST_MISSING) {
+            if (reached && missingOf(sums + sumRow(frame, 1, (int)y) + x, stride) > PEL_LEAST_MISSING) {
                 Place place;
                 place.id = id;
                 place.slack = 0.0f;

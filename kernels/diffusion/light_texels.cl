@@ -9,12 +9,38 @@
 
 #define LONGEST_SLOPE \
     10.0f  // surface of a texel, over its area across the light: beyond, the depths say little
+#define NEAREST_HIDDEN 4.0f  // texels' lengths to a neighbour that is seen
+#define ALIKE 2.0f           // one step over the other
 
-static inline Vec3w shorterStep(Vec3w p, Vec3w before, Vec3w after) {
+// The step to the next texel: the mean of those on both sides where they are alike, as the shorter one alone is too short on surface
+// that bends; else the shorter, for the longer one may lead off the surface.
+static inline Vec3w stepOf(Vec3w p, Vec3w before, Vec3w after) {
     const Vec3w back = sub3(p, before), on = sub3(after, p);
     const floatw backLength = dot3(back, back), onLength = dot3(on, on);
-    return select3(on, back, finitew(backLength) & ((backLength < onLength) | notw(finitew(onLength))));
+    const maskw isBack = finitew(backLength) & ((backLength < onLength) | notw(finitew(onLength)));
+    const Vec3w shorter = select3(on, back, isBack), mean = scale3(add3(back, on), (floatw)(0.5f));
+    const maskw alike = fmax(backLength, onLength) < ALIKE * ALIKE * fmin(backLength, onLength);
+    return select3(shorter, mean, alike);
 }
+
+#if PEL_HIDDEN
+// Whether a texel is one that the camera sees.
+static inline maskw isSeen(__global const uchar* seen, __global const PelPyramidLevel* level, int column,
+                           int row, maskw on) {
+    if (row < 0 || row >= (int)level->height) return (maskw)(0);
+    __global const uchar* at = seen + (size_t)row * level->width;
+#define SEEN_(k, s) (on s && column + k >= 0 && column + k < (int)level->width ? (uint)at[column + k] : 0u)
+    const uintw id = PEL_UINT_LANES(SEEN_);
+#undef SEEN_
+    return id != (uintw)(0);
+}
+
+// Whether the neighbour `q` is seen, and so near that `p` is a part of the same surface.
+static inline maskw isBeside(Vec3w p, Vec3w q, floatw most, maskw seen) {
+    const Vec3w d = sub3(q, p);
+    return seen & (dot3(d, d) < most * most);
+}
+#endif
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_texels(
     __global const PelLightMap* maps, uint index, __global uchar* texels, __global const uchar* seen,
@@ -68,7 +94,18 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
                     next = pointOfTexel(map, columns + 1.0f, rows, texelDepths(map, first, (int)x + 1, (int)y)),
                     over = pointOfTexel(map, columns, rows - 1.0f, texelDepths(map, first, (int)x, (int)y - 1)),
                     below = pointOfTexel(map, columns, rows + 1.0f, texelDepths(map, first, (int)x, (int)y + 1));
-        const Vec3w area = cross3(shorterStep(p, before, next), shorterStep(p, over, below));
+#if PEL_HIDDEN
+        // Between two patches, and where light grazes, texels of surface that is seen are left over.
+        const floatw near = NEAREST_HIDDEN * map->texel * matrixRow(map->toMap, 3, p);
+        __global const uchar* all = seen + map->seen;
+        const int i = (int)x, j = (int)y;
+        there &= notw(isBeside(p, before, near, isSeen(all, level, i - 1, j, there)) |
+                      isBeside(p, next, near, isSeen(all, level, i + 1, j, there)) |
+                      isBeside(p, over, near, isSeen(all, level, i, j - 1, there)) |
+                      isBeside(p, below, near, isSeen(all, level, i, j + 1, there)));
+        flux = selectw((floatw)(0.0f), flux, there);
+#endif
+        const Vec3w area = cross3(stepOf(p, before, next), stepOf(p, over, below));
         floatw extent = sqrt(dot3(area, area));
         extent = fmin(selectw(across, extent, finitew(extent)), LONGEST_SLOPE * across);
         const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));

@@ -56,23 +56,30 @@ static inline Row loadRow(__global const float* at, uint stride) {
     return row;
 }
 
-//before + after - 2 here|. If a neighbour is missing or belongs to another object, the light is continued from the other side.
-static inline floatw bendOf(floatw here, floatw before, maskw hasBefore, floatw after, maskw hasAfter) {
-    return selectw((floatw)(0.0f), fabs(before + after - 2.0f * here), hasBefore & hasAfter);
+// |before + after - 2 here|. At a limb, where one of them is missing, what is left is the difference from the other: nothing shows that light goes
+// on in a straight line there. At the picture's edge (`edge`) it is taken to.
+static inline floatw bendOf(floatw here, floatw before, maskw hasBefore, floatw after, maskw hasAfter,
+                            maskw edge) {
+    const floatw bend = fabs(selectw(here, before, hasBefore) + selectw(here, after, hasAfter) - 2.0f * here);
+    return selectw(bend, (floatw)(0.0f), edge & notw(hasBefore & hasAfter));
 }
 
-static inline floatw bendOfRows(const Row* up, const Row* row, const Row* down) {
+// `first`: the column of row[1] in the picture.
+static inline floatw bendOfRows(const Row* up, const Row* row, const Row* down, intw first, uint width,
+                                bool edgeRow) {
     floatw bend = 0.0f;
     for (int k = 1; k <= 2; ++k) {
         const maskw there = row->area[k] > 0.0f;
+        const intw column = first + (k - 1);
+        const maskw edge = (column == 0) | (column == (int)width - 1), edgeDown = (maskw)(edgeRow ? -1 : 0);
 #define THERE(r, i) (((r)->area[i] > 0.0f) & ((r)->id[i] == row->id[k]))
         const maskw left = THERE(row, k - 1), right = THERE(row, k + 1), above = THERE(up, k),
                     below = THERE(down, k);
 #undef THERE
         for (int c = 0; c < 3; ++c) {
             const floatw here = row->e[c][k];
-            const floatw sum = bendOf(here, row->e[c][k - 1], left, row->e[c][k + 1], right) +
-                               bendOf(here, up->e[c][k], above, down->e[c][k], below);
+            const floatw sum = bendOf(here, row->e[c][k - 1], left, row->e[c][k + 1], right, edge) +
+                               bendOf(here, up->e[c][k], above, down->e[c][k], below, edgeDown);
             bend = fmax(bend, selectw((floatw)(0.0f), sum, there));
         }
     }
@@ -134,7 +141,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void r
     block.e = scale3(block.e, share);
     const Row before = loadRow(upper - rowValues, stride), first = loadRow(upper, stride),
               second = loadRow(upper + rowValues, stride), after = loadRow(upper + 2 * rowValues, stride);
-    const floatw bend = fmax(bendOfRows(&before, &first, &second), bendOfRows(&first, &second, &after));
+    const intw column = (lanesw() + (int)x) * 2;
+    const floatw bend =
+        fmax(bendOfRows(&before, &first, &second, column, fine->width, y == 0),
+             bendOfRows(&first, &second, &after, column, fine->width, 2 * y + 2 >= fine->height));
     storew(block.area, at + PEL_PLANE_AREA * out, pyramid);
     storew(as_floatw(largest.id), at + PEL_PLANE_ID * out, pyramid);
     storew(block.p.x, at + PEL_PLANE_X * out, pyramid);

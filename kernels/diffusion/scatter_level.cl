@@ -1,8 +1,8 @@
 // What light flows in to the blocks of one level of the screen's pyramid, from it and from all coarser ones (docs/mathematics.md, section 10,
 // "Sums by levels").
 //
-// Blocks near tiles that classify_scatter has found take the sums of the next coarser level, interpolated, and add the band of their own; at level 1
-// only those of tiles whose first level it is. Others are left as they are. Input: the pyramid, the words of classify_scatter, the sums of
+// Blocks near tiles that classify_scatter has found take the sums of the next coarser level, interpolated, and add the band of their own. Others
+// are left as they are. Input: the pyramid, the words of classify_scatter, the sums of
 // the coarser level. Output: the level's. One work-item: PEL_WIDTH blocks of a row.
 #include "lib/diffusion/levels.clh"
 
@@ -19,16 +19,6 @@ static inline bool levelMatters(__global const PelDiffusionFrame* frame, __globa
         for (int i = left; i <= right; ++i)
             if ((tiles[j * tilesX + i] >> 8 & 255u) > level) return true;
     return false;
-}
-
-// The lanes of tiles that begin with level 1 or 0.
-static inline maskw beginHere(__global const PelDiffusionFrame* frame, __global const uint* tiles, uint x,
-                              uint y) {
-    const uint side = PEL_DIFFUSION_TILE / 2, last = frame->tilesX - 1;
-    __global const uint* row = tiles + min(y / side, frame->tilesY - 1) * frame->tilesX;
-#define BEGINS(i, s) (((row[min((x + i) / side, last)] & 255u) - 1u) <= 1u ? -1 : 0)
-    return (maskw)(PEL_LIST_LANES_(BEGINS));
-#undef BEGINS
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_level(
@@ -52,8 +42,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
         result = coarser.sums;
         result.light = movedLight(&result, &slope, coarser.place, &here);
     }
-    const maskw adds = level == 1 ? on & beginHere(frame, tiles, x, y) : on;
-    const intw table = selectw((intw)(0), tablesOf(frame, here.id), adds);
+    const intw table = selectw((intw)(0), tablesOf(frame, here.id), on);
     for (uint t = 1; t <= frame->tables; ++t) {
         const maskw mine = table == (intw)((int)t);
         if (!anyw(mine)) continue;
@@ -70,6 +59,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
     storePlanes3(result.light, to + PEL_SUM_LIGHT * stride, stride);
     storePlanes3(result.mass, to + PEL_SUM_MASS * stride, stride);
     storePlanes3(result.centre, to + PEL_SUM_CENTRE * stride, stride);
-    const uint taps = PEL_BAND * countw(adds);
+    const uint taps = PEL_BAND_OF_BLOCKS * countw(on);
     if (taps) atomic_add(&counters[PEL_COUNT_TAPS], taps);
 }

@@ -11,7 +11,7 @@
 #define PART 4             // pixels along a side
 #define WINDOW 1.5f        // width, in steps from pixel to pixel or in texels
 #define LEAST_COSINE 0.2f  // to the light: texels on steeper surface count as if they were as long as on this
-#define NEARLY_PLANE 0.015f  // of the whole mass
+#define NEARLY_PLANE 0.012f  // of the whole mass
 
 typedef struct Pixel {
     float3 p, e;

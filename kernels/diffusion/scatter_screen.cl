@@ -11,25 +11,38 @@
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 
-// The light of the pixels in one channel. `missing`: mass; `hidden`: light and mass that the camera does not see.
-static inline floatw lightOf(floatw light, floatw mass, floatw centre, floatw e, floatw missing,
+// The light of the pixels in one channel. `known`: mass from level 1 on; `hidden`: light and mass that the camera does not see.
+static inline floatw lightOf(floatw light, floatw mass, floatw centre, floatw e, floatw known,
                              floatw hiddenLight, floatw hiddenMass) {
     const floatw found = mass + centre, any = selectw((floatw)(1.0f), found, found > 0.0f);
     const floatw shown = selectw(e, (light + centre * e) / any, found > 0.0f);
 #if PEL_HIDDEN
     // It fills only what mass is missing. Mass of which nothing is known is as what is shown.
-    const floatw filled = fmin(hiddenMass, missing);
+    const floatw missing = max0w(1.0f - known),
+                 fills = clamp(2.0f * missing - 2.0f * PEL_LEAST_MISSING, (floatw)(0.0f), missing);
+    const floatw filled = fmin(hiddenMass, fills);
     return max0w(shown * (1.0f - filled) + hiddenLight * (filled / fmax(hiddenMass, (floatw)(FLT_MIN))));
 #else
     return max0w(shown);  // a negative value is an error of the sums
 #endif
 }
 
+// The centre of level 1 taken apart: the pixel's own share of it, and the rest, whose light is the mean of the near pixels. They are too
+// few to add up to a mass. Without a centre (a strand that is in no block) they are all that is known.
+static inline void addNear(floatw* light, floatw* mass, floatw* centre, floatw nearLight, floatw nearMass,
+                           floatw own, maskw on) {
+    on &= nearMass > 0.0f;
+    const floatw rest = selectw(nearMass, max0w(*centre - own), *centre > 0.0f);
+    *light += selectw((floatw)(0.0f), nearLight * (rest / nearMass), on);
+    *mass += selectw((floatw)(0.0f), rest, on);
+    *centre = selectw(*centre, fmin(own, selectw(own, *centre, *centre > 0.0f)), on);
+}
+
 // PEL_WIDTH pixels from (x, y) on, all of one tile.
 static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __global const float* pyramid,
                                   __global const PelProfileTable* tables, __global const float* nodes,
                                   __global const float* sums, __global const float* hidden, uint x, uint y,
-                                  bool near, const Blocks* here, maskw active) {
+                                  bool near, float weight, const Blocks* here, maskw active) {
     const uint stride = frame->level[0].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[0], (int)y) + x;
     const Vec3w e = loadPlanes3(at + PEL_PLANE_RED * stride, stride);
@@ -43,20 +56,23 @@ static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __glo
         for (uint t = 1; t <= frame->tables; ++t) {
             const maskw mine = table == (intw)((int)t);
             if (!anyw(mine)) continue;
-            Sums more = all.sums;
+            Sums more = noSums();
             addBand(at, stride, nodes, tables[t - 1], 0, here, &slope, mine, &more);
-            all.sums.light = select3(all.sums.light, more.light, mine);
-            all.sums.mass = select3(all.sums.mass, more.mass, mine);
-            all.sums.centre = select3(all.sums.centre, shareOfArea(nodes, tables[t - 1], here->area), mine);
+            const Vec3w own = shareOfPixelItself(nodes, tables[t - 1], here->area, here->size);
+            addNear(&all.sums.light.x, &all.sums.mass.x, &all.sums.centre.x, more.light.x, more.mass.x, own.x,
+                    mine);
+            addNear(&all.sums.light.y, &all.sums.mass.y, &all.sums.centre.y, more.light.y, more.mass.y, own.y,
+                    mine);
+            addNear(&all.sums.light.z, &all.sums.mass.z, &all.sums.centre.z, more.light.z, more.mass.z, own.z,
+                    mine);
         }
     }
     const Sums* s = &all.sums;
-    return vec3(lightOf(s->light.x, s->mass.x, s->centre.x, e.x, max0w(1.0f - known.x), all.hiddenLight.x,
-                        all.hiddenMass.x),
-                lightOf(s->light.y, s->mass.y, s->centre.y, e.y, max0w(1.0f - known.y), all.hiddenLight.y,
-                        all.hiddenMass.y),
-                lightOf(s->light.z, s->mass.z, s->centre.z, e.z, max0w(1.0f - known.z), all.hiddenLight.z,
-                        all.hiddenMass.z));
+    const Vec3w found =
+        vec3(lightOf(s->light.x, s->mass.x, s->centre.x, e.x, known.x, all.hiddenLight.x, all.hiddenMass.x),
+             lightOf(s->light.y, s->mass.y, s->centre.y, e.y, known.y, all.hiddenLight.y, all.hiddenMass.y),
+             lightOf(s->light.z, s->mass.z, s->centre.z, e.z, known.z, all.hiddenLight.z, all.hiddenMass.z));
+    return add3(e, scale3(sub3(found, e), (floatw)(weight)));
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_screen(
@@ -69,7 +85,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
         const uint word = tiles[tile];
         if (!word && frame->inPlace) continue;
-        const bool near = (word & 255) == 1;
+        const bool near = word & PEL_TILE_NEAR;
         const uint items = PEL_DIFFUSION_TILE / PEL_WIDTH * PEL_DIFFUSION_TILE;
         for (uint item = get_local_id(0); item < items; item += PEL_DIFFUSION_GROUP) {
             const uint x = tile % frame->tilesX * PEL_DIFFUSION_TILE +
@@ -89,8 +105,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
                 loadBlocks(pyramid + pyramidRow(&frame->level[0], (int)y) + x, frame->level[0].stride);
             const maskw active = (column < (int)frame->width) & (here.area > 0.0f);
             if (!anyw(active)) continue;
-            const Vec3w s = scatterPixels(frame, pyramid, tables, nodes, sums,
-                                          word & PEL_TILE_HIDDEN ? hidden : NULL, x, y, near, &here, active);
+            const Vec3w s =
+                scatterPixels(frame, pyramid, tables, nodes, sums, word & PEL_TILE_HIDDEN ? hidden : NULL, x,
+                              y, near, weightOfWord(word), &here, active);
             storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, x, y), s, active);
             const uint covered = countw(active);
             pixels += covered;

@@ -31,7 +31,8 @@
 #define PEL_HIDDEN_PLANES \
     6  // three of light, three of mass: what the camera does not see, for blocks of level 1
 
-// Words of tiles: 1 + the first level that is summed, levels << 8. 0: irradiance is right as it is.
+// Words of tiles: these bits, levels << 8, weight of what is scattered << 24. 0: irradiance is right as it is.
+#define PEL_TILE_NEAR 1u            // single pixels are summed too, not only blocks
 #define PEL_TILE_HIDDEN (1u << 16)  // light that the camera does not see may come in
 #define PEL_DIFFUSION_TILE 16       // pixels along a side: blocks of level 4
 #define PEL_TILE_LEVEL 4
