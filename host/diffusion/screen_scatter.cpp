@@ -75,6 +75,11 @@ static uint64_t sumFloats(const PelPyramidLevel (&levels)[PEL_PYRAMID_LEVELS], u
            2 * PEL_PYRAMID_GUARD;
 }
 
+// Of those of levels before `level`.
+static size_t sumFloatsBelow(const PelPyramidLevel (&levels)[PEL_PYRAMID_LEVELS], uint32_t level) {
+    return size_t(levels[level].offset - levels[1].offset) / PEL_PYRAMID_PLANES * PEL_SUM_PLANES;
+}
+
 uint64_t ScreenScatter::bytesFor(uint32_t width, uint32_t height) {
     PelPyramidLevel levels[PEL_PYRAMID_LEVELS];
     const uint64_t floats = layOutLevels(width, height, levels);
@@ -201,8 +206,10 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
     // With the lights' texels alone the screen's sum only copies.
     const bool alone = !light_.empty() && lights_.alone;
     if (alone) device_->fill(tiles_.get(), 0, tileBytes_, 0);
-    // Blocks that no tile asks for are interpolated from as well: what another picture left there must not show.
-    if (!alone) device_->fill(sums_.get(), 0, sumBytes_, 0);
+    // Blocks that no tile asks for are interpolated from as well: what another picture left there must not show. All tiles that scatter ask
+    // for PEL_LEAST_LEVELS.
+    const size_t asked = sumFloatsBelow(frame_.level, PEL_LEAST_LEVELS) * sizeof(float);
+    if (!alone) device_->fill(sums_.get(), asked, sumBytes_ - asked, 0);
     for (uint32_t k = frame_.levels - 1; k > 0 && !alone; --k) {
         cl::Launch level(programs[LEVEL], "scatter_level");
         level.arg(constants_.memory()).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_);

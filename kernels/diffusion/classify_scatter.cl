@@ -87,7 +87,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void c
         if (!(error > LEFT_ALONE * frame->tolerance) && !frame->everyTile) continue;
         near |= frame->everyTile || errorOfPixels > fmin(0.25f * frame->tolerance, 0.5f * error);
         greatest = fmax(greatest, error);
-        levels = max(levels, max(end, 2u));
+        levels = max(levels, max(end, PEL_LEAST_LEVELS));
     }
     if (!levels) return;
     const float weight = frame->everyTile ? 1.0f : weightOfTile(greatest, LEFT_ALONE * frame->tolerance);

@@ -33,6 +33,7 @@
 
 // Words of tiles: these bits, levels << 8, weight of what is scattered << 24. 0: irradiance is right as it is.
 #define PEL_TILE_NEAR 1u            // single pixels are summed too, not only blocks
+#define PEL_LEAST_LEVELS 3u         // of tiles that scatter
 #define PEL_TILE_HIDDEN (1u << 16)  // light that the camera does not see may come in
 #define PEL_DIFFUSION_TILE 16       // pixels along a side: blocks of level 4
 #define PEL_TILE_LEVEL 4

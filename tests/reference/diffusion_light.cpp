@@ -15,7 +15,7 @@ constexpr double noNumber = std::numeric_limits<double>::quiet_NaN();
 // Constants of the definition.
 constexpr double window = 1.5;         // steps or texels
 constexpr double leastCosine = 0.2;    // of texels' length on the surface
-constexpr double nearlyPlane = 0.015;  // of the mass; none of it from twice that on
+constexpr double nearlyPlane = 0.012;  // of the mass; none of it from twice that on
 constexpr double longestSlope = 10;    // of a texel's surface, over its area across the light
 
 Vec3 rowOf(const Matrix4& m, int r) {
@@ -104,6 +104,13 @@ Vec3 shorter(Vec3 p, Vec3 a, Vec3 b) {
     return length(toA) <= length(toB) ? toA : toB;
 }
 
+// The way from texel to texel: the mean of those on both sides where one is less than twice the other.
+Vec3 stepOf(Vec3 p, Vec3 before, Vec3 after) {
+    const double back = length(before - p), on = length(after - p);
+    const bool alike = std::max(back, on) < 2 * std::min(back, on);  // false where one is no number
+    return alike && std::isfinite(back + on) ? (after - before) / 2 : shorter(p, before, after);
+}
+
 // Of the pixels that belong to the same object.
 struct Steps {
     Vec3 right, down;
@@ -182,8 +189,8 @@ std::vector<LitTexel> litTexels(const MappedLight& light) {
                 const double texel = beam(map, light, p) / (double(map.width) * map.height);
                 const Vec3 from = light.position - p;
                 const double across = light.directional ? texel : texel * dot(from, from);
-                const Vec3 right = shorter(p, place(x - 1, y, x - 1, y), place(x + 1, y, x + 1, y)),
-                           down = shorter(p, place(x, y - 1, x, y - 1), place(x, y + 1, x, y + 1));
+                const Vec3 right = stepOf(p, place(x - 1, y, x - 1, y), place(x + 1, y, x + 1, y)),
+                           down = stepOf(p, place(x, y - 1, x, y - 1), place(x, y + 1, x, y + 1));
                 const double area = length(cross(right, down));
                 all.push_back({p, strength(light, p) * texel,
                                std::min(std::isfinite(area) ? area : across, longestSlope * across)});
