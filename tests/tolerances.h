@@ -392,8 +392,8 @@ inline constexpr Tolerance scatterUnits{
     "RMS, a tenth of the maximum: a ring of blocks with 0.4 % of the light may count or not"};
 
 inline constexpr Tolerance keptOfHead{
-    "keptOfHead", 0.22,
-    "of the pixels of a front-lit head, at least: 0.25 of skin and 0.28 of a narrow profile measured. Of its "
+    "keptOfHead", 0.19,
+    "of the pixels of a front-lit head, at least: 0.21 of skin and 0.26 of a narrow profile measured. Of its "
     "tiles 0.33 and 0.47 could be left alone, of its pixels 0.61 and 0.74"};
 inline constexpr Tolerance costOfTenth{"costOfTenth", 0.125,
                                        "of the whole: tiles and blocks that are covered in part count whole"};

@@ -27,15 +27,18 @@ static inline floatw lightOf(floatw light, floatw mass, floatw centre, floatw e,
 #endif
 }
 
+// Near pixels stand for no more than so many times their own mass: far less than all of it lies on other surface.
+#define MOST_PER_MASS 3.0f
+
 // The centre of level 1 taken apart: the pixel's own share of it, and the rest, whose light is the mean of the near pixels. They are too
 // few to add up to a mass. Without a centre (a strand that is in no block) they are all that is known.
 static inline void addNear(floatw* light, floatw* mass, floatw* centre, floatw nearLight, floatw nearMass,
                            floatw own, maskw on) {
     on &= nearMass > 0.0f;
-    const floatw rest = selectw(nearMass, max0w(*centre - own), *centre > 0.0f);
+    const floatw rest = selectw(nearMass, fmin(max0w(*centre - own), MOST_PER_MASS * nearMass), *centre > 0.0f);
     *light += selectw((floatw)(0.0f), nearLight * (rest / nearMass), on);
     *mass += selectw((floatw)(0.0f), rest, on);
-    *centre = selectw(*centre, fmin(own, selectw(own, *centre, *centre > 0.0f)), on);
+    *centre = selectw(*centre, selectw(own, *centre - rest, *centre > 0.0f), on);
 }
 
 // PEL_WIDTH pixels from (x, y) on, all of one tile.
