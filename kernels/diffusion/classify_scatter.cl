@@ -16,7 +16,7 @@
 
 // Measured on a head and on balls, so that 99 % of the pixels keep to the tolerance.
 #define ERROR_PER_BEND 0.15f
-#define LEFT_ALONE 0.4f     // of the tolerance: what a tile may lack without taps
+#define LEFT_ALONE 0.5f     // of the tolerance: what a tile may lack without taps
 #define LEAST_LIGHT 0.002f  // that a level must contribute
 
 // The greatest second difference between blocks of level k in and round a tile.

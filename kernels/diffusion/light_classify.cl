@@ -7,7 +7,7 @@
 #include "lib/diffusion/windowed.clh"
 
 #define PART_LEVEL 2
-#define LEFT_ALONE 0.4f  // of the tolerance
+#define LEFT_ALONE 0.5f  // of the tolerance
 
 static inline float3 farLight(__global const PelLightMap* maps, uint mapCount, __global const float* lights,
                               __global const float* nodes, const PelProfileTable table, Place* place,

@@ -9,10 +9,8 @@
 
 #define LONGEST_SLOPE \
     10.0f  // surface of a texel, over its area across the light: beyond, the depths say little
-// In texels' lengths, of the way to a neighbour that is seen.
-#define GRAZING 2.0f
-#define NEAREST_HIDDEN 6.0f
-#define ALIKE 2.0f  // one step over the other
+#define NEAREST_HIDDEN 4.0f  // texels' lengths to a neighbour that is seen
+#define ALIKE 2.0f           // one step over the other
 
 // The step to the next texel: the mean of those on both sides where they are alike, as the shorter one alone is too short on surface
 // that bends; else the shorter, for the longer one may lead off the surface.
@@ -37,11 +35,10 @@ static inline maskw isSeen(__global const uchar* seen, __global const PelPyramid
     return id != (uintw)(0);
 }
 
-// Whether the neighbour `q` is seen, light grazes on the way to it, and yet it is so near that `p` is a part of the same surface.
-static inline maskw isBeside(Vec3w p, Vec3w q, floatw texel, maskw seen) {
+// Whether the neighbour `q` is seen, and so near that `p` is a part of the same surface.
+static inline maskw isBeside(Vec3w p, Vec3w q, floatw most, maskw seen) {
     const Vec3w d = sub3(q, p);
-    const floatw texels2 = dot3(d, d) / (texel * texel);
-    return seen & (texels2 > GRAZING * GRAZING) & (texels2 < NEAREST_HIDDEN * NEAREST_HIDDEN);
+    return seen & (dot3(d, d) < most * most);
 }
 #endif
 
@@ -98,14 +95,14 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
                     over = pointOfTexel(map, columns, rows - 1.0f, texelDepths(map, first, (int)x, (int)y - 1)),
                     below = pointOfTexel(map, columns, rows + 1.0f, texelDepths(map, first, (int)x, (int)y + 1));
 #if PEL_HIDDEN
-        // Where light grazes, a texel is long, and may be seen beside its middle alone.
-        const floatw texel = map->texel * matrixRow(map->toMap, 3, p);
+        // Between two patches, and where light grazes, texels of surface that is seen are left over. They come and go while the light moves.
+        const floatw near = NEAREST_HIDDEN * map->texel * matrixRow(map->toMap, 3, p);
         __global const uchar* all = seen + map->seen;
         const int i = (int)x, j = (int)y;
-        there &= notw(isBeside(p, before, texel, isSeen(all, level, i - 1, j, there)) |
-                      isBeside(p, next, texel, isSeen(all, level, i + 1, j, there)) |
-                      isBeside(p, over, texel, isSeen(all, level, i, j - 1, there)) |
-                      isBeside(p, below, texel, isSeen(all, level, i, j + 1, there)));
+        there &= notw(isBeside(p, before, near, isSeen(all, level, i - 1, j, there)) |
+                      isBeside(p, next, near, isSeen(all, level, i + 1, j, there)) |
+                      isBeside(p, over, near, isSeen(all, level, i, j - 1, there)) |
+                      isBeside(p, below, near, isSeen(all, level, i, j + 1, there)));
         flux = selectw((floatw)(0.0f), flux, there);
 #endif
         const Vec3w area = cross3(stepOf(p, before, next), stepOf(p, over, below));
