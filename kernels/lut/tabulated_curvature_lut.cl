@@ -67,8 +67,10 @@ typedef struct Integrals {
 } Integrals;
 
 // Cubic between the distances of the list, which holds values and slopes. Distances beyond the end count as at it.
-inline Integrals integralsTo(__global const float* sums, const TabulatedCurvatureLutParams params,
-                             rowsw distance) {
+// Inlined: a call would pass everything in memory.
+__attribute__((always_inline)) inline Integrals integralsTo(__global const float* sums,
+                                                            const TabulatedCurvatureLutParams params,
+                                                            rowsw distance) {
     const float end = params.end, cells = (float)params.cells;
     Integrals found;
     found.distance = distance = fmin(distance, (rowsw)(end));
