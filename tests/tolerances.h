@@ -412,6 +412,8 @@ inline constexpr Tolerance scatterLeftOut{
     "1.45 measured"};
 inline constexpr Tolerance scatterSeam{"scatterSeam", 1.6,
                                        "the same, over the borders of tiles that took different ways"};
+inline constexpr Tolerance scatterFade{
+    "scatterFade", 0.1, "of targetError: how much more a tile steps that begins to count; 0.03 measured"};
 inline constexpr Tolerance scatterStep{"scatterStep", 1e-3,
                                        "of white: how far the grid of pixels shows while it moves"};
 

@@ -154,6 +154,36 @@ void expectSteady(const Steps& s, const std::string& where) {
 
 }  // namespace
 
+// Tiles that begin to count while the light moves, or cease to.
+TEST(ScatterSteady, TilesFadeIn) {
+    const Device device("");
+    const Profile skin = Profile::skin();
+    const Stage stage(device, ball(10, sized(96, 8)), 1);
+    const double target = pelScatterParamsDefaults().targetError;
+    std::vector<float> chosenBefore, allBefore;
+    size_t most = 0, least = size_t(-1);  // pixels that were left as they are
+    double odd = 0;
+    for (int f = 0; f < sized(20, 2); ++f) {
+        SceneRequest request;
+        request.size = sized(256, 24), request.mapSize = 16, request.lightAzimuth = 140 + 0.2 * f;
+        LitScene s = stage.look(request, skin);
+        std::vector<float> chosen = scatteredOf(s, skin, false), all = scatteredOf(s, skin, true);
+        size_t kept = 0;
+        for (size_t i = 0; i < s.covered.size(); ++i)
+            kept += s.covered[i] && std::equal(&chosen[3 * i], &chosen[3 * i] + 3, &s.irradiance[3 * i]);
+        most = std::max(most, kept), least = std::min(least, kept);
+        for (size_t k = 0; f && k < all.size(); ++k)
+            odd = std::max(odd,
+                           std::abs((double(chosen[k]) - chosenBefore[k]) - (double(all[k]) - allBefore[k])));
+        chosenBefore = std::move(chosen), allBefore = std::move(all);
+    }
+    std::printf("steps by up to %.5f more; %zu to %zu pixels kept\n", odd, least, most);
+    EXPECT_LE(odd, tolerance::scatterFade * target);
+    if (!testsAreSmall()) {
+        EXPECT_LT(least, most);
+    }
+}
+
 // Against what light does there.
 TEST(ScatterSteady, BallDoesNotPop) {
     const Device device("");
