@@ -474,5 +474,7 @@ inline constexpr Tolerance eyePictureRms{"eyePictureRms", 2e-3,
                                          "RMS of an eye's pixels, white is 1: refraction, gloss"};
 inline constexpr Tolerance eyeCausticRms{"eyeCausticRms", 1e-2,
                                          "the same, with caustics from a table of 64 x 64 x 32"};
+inline constexpr Tolerance eyeMinified{
+    "eyeMinified", 0.05, "RMS of an iris against one that is evenly grey: neighbouring levels differ by this"};
 
 }  // namespace tolerance

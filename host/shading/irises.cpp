@@ -15,6 +15,10 @@ namespace {
 
 constexpr size_t group = 16;
 
+size_t texelsOf(cl_uint side) {
+    return size_t(irisRowTexels(side)) * irisRows(side);
+}
+
 class Irises final : public Pass {
   public:
     static bool needed(const ShaderPlan& plan) { return plan.features & PEL_FEATURE_EYE; }
@@ -22,7 +26,7 @@ class Irises final : public Pass {
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
         size_t texels = 0;
         for (const auto& [id, material] : plan.state.materials)
-            if (material.eye) texels += paddedTexels(irisTexels(*material.eye));
+            if (material.eye) texels += texelsOf(irisTexels(*material.eye));
         if (texels > UINT32_MAX)
             fail(PEL_ERROR_UNSUPPORTED, "the irises of all eyes hold ", texels, " texels; 2^32 is the most");
         if (texels * sizeof(cl_float4) != bytes_) {
@@ -59,12 +63,19 @@ class Irises final : public Pass {
             if (!material.eye) continue;
             const ImageView& image = material.eye->iris;
             const cl_uint side = irisTexels(*material.eye);
-            cl::Launch launch(program(eye++), "iris_texels");
+            cl::Launch launch(program(eye), "iris_texels");
             launch.arg(memoryOf(image)).arg(cl_ulong(image.byteOffset)).arg(cl_ulong(image.rowStride));
             launch.arg(cl_ulong(image.planeStride)).arg(cl_uint(image.pixelStride)).arg(side);
             launch.arg(cl_uint(material.eye->params.irisSeed)).arg(first).arg(texels_);
             work.launch(launch, {{side + size_t(1), side + size_t(1), 1}, {group, 1, 1}});
-            first += paddedTexels(side);
+            for (cl_uint level = 1; level < irisLevels(side); ++level) {
+                cl::Launch halve(program(eye), "iris_level");
+                halve.arg(side).arg(level).arg(first).arg(texels_);
+                const size_t texels = (side >> level) + size_t(1);
+                work.launch(halve, {{texels, texels, 1}, {group, 1, 1}});
+            }
+            ++eye;
+            first += cl_uint(texelsOf(side));
         }
     }
 

@@ -23,12 +23,9 @@ struct ShaderEye {
     ImageView iris;  // texture; none: fibres are drawn
 };
 
-// Texels along a side of its iris in the form that shading samples, and how many there are with a copied column and row.
+// Texels along a side of its iris in the form that shading samples.
 inline uint32_t irisTexels(const ShaderEye& eye) {
     return eye.iris ? eye.iris.width : PEL_FIBRE_TEXELS;
-}
-inline uint32_t paddedTexels(uint32_t side) {
-    return (side + 1) * (side + 1);
 }
 
 struct ShaderMaterial {

@@ -218,7 +218,8 @@ std::vector<PelShadeEye> ShadingConstants::describeEyes(const ShaderState& state
             if (to.irisColor[c] < 0) to.irisColor[c] = from.iris ? 1 : brown[c];
         to.textureSize = irisTexels(from);
         to.textureOffset = texels;
-        texels += paddedTexels(to.textureSize);
+        to.textureLevels = irisLevels(to.textureSize);
+        texels += irisRowTexels(to.textureSize) * irisRows(to.textureSize);
         const PelEyeLutDesc& lut = from.caustics->info().eye;
         to.causticOffset = offsetOf(from.caustics.get());
         to.causticWidth = lut.width;

@@ -31,8 +31,10 @@ static inline Landing carry(const PelEyeShape s, floatw x, floatw y, float sine,
     const maskw blocked = (facing <= 0.0f) | ((ahead < 0.0f) & (ahead * ahead > above));
     landing.slope = selectw(facing / n.z, (floatw)(0.0f), blocked);
     const floatw c = max0w(facing);
-    landing.share = corneaTransmittance(c, s.corneaIndex, s.aqueousIndex);
-    Vec3w d = refracted(vec3((floatw)(-sine), (floatw)(0.0f), (floatw)(-cosine)), n, c, 1.0f / s.aqueousIndex);
+    const floatw behind = cosineBehind(c, 1.0f / s.aqueousIndex);
+    landing.share = corneaTransmittance(c, behind, s.corneaIndex, s.aqueousIndex);
+    Vec3w d = refracted(vec3((floatw)(-sine), (floatw)(0.0f), (floatw)(-cosine)), n, c, behind,
+                        1.0f / s.aqueousIndex);
     floatw length = toIris(s, p, d);
     // Light that runs so level that it meets the cornea again, from inside. Both ends lie on the conic.
     const floatw a = fma(d.x, d.x, fma(d.y, d.y, s.conic1 * d.z * d.z));
@@ -46,8 +48,9 @@ static inline Landing carry(const PelEyeShape s, floatw x, floatw y, float sine,
         const floatw inside = dot3(d, m);
         const floatw between = cosineBehind(inside, s.aqueousIndex / s.corneaIndex);
         const floatw outside = cosineBehind(between, s.corneaIndex);
-        const floatw kept = 1.0f - (1.0f - reflectance(inside, between, s.aqueousIndex / s.corneaIndex)) *
-                                       (1.0f - reflectance(between, outside, s.corneaIndex));
+        const Interface inner = lightAt(inside, between, s.aqueousIndex / s.corneaIndex),
+                        outer = lightAt(between, outside, s.corneaIndex);
+        const floatw kept = 1.0f - inner.transmitted * outer.transmitted / (inner.whole * outer.whole);
         p = select3(p, on, again);
         d = select3(d, sub3(d, scale3(m, 2.0f * inside)), again);
         landing.share = selectw(landing.share, landing.share * kept, again);

@@ -1,7 +1,8 @@
 // The albedo of an iris in the form that shading samples: float4 texels with a copied column and row (shared/lut.h), from the
-// host's square image or drawn as fibres.
+// host's square image or drawn as fibres, and smaller levels for eyes far away. The fourth component is the share of a texel inside the
+// rim: what is outside does not darken smaller levels.
 //
-// One work-item: one texel of the padded square. Variants: PEL_FORMAT_IRIS, the image's format or 0: drawn by `seed`.
+// One work-item: one texel of the padded square, or of a level. Variants: PEL_FORMAT_IRIS, the image's format or 0: drawn by `seed`.
 // PEL_WIDTH is 1.
 #include "lib/image/image.clh"
 #include "shared/eye.h"
@@ -55,7 +56,34 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void iris_texels
 #else
     const float side = 2.0f / (float)size;
     const float value = drawn(((float)x + 0.5f) * side - 1.0f, ((float)y + 0.5f) * side - 1.0f, seed);
-    const float4 texel = (float4)(value, value, value, 0.0f);
+    float4 texel = (float4)(value, value, value, 0.0f);
 #endif
-    texels[first + (size_t)j * (size + 1) + i] = texel;
+    const float middle = 0.5f * (float)size;
+    texel.w = hypot((float)x + 0.5f - middle, (float)y + 0.5f - middle) < middle + 0.7f ? 1.0f : 0.0f;
+    texels[first + (size_t)j * irisRowTexels(size) + i] = texel;
+}
+
+// A level from the one before it: means over the area of each texel.
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void iris_level(uint size, uint level, uint first,
+                                                                                __global float4* texels) {
+    const uint i = get_global_id(0), j = get_global_id(1);
+    const uint side = size >> level, finer = size >> (level - 1);
+    if (i > side) return;
+    const uint row = irisRowTexels(size);
+    __global const float4* from = texels + first + irisLevelStart(size, level - 1);
+    const float scale = (float)finer / (float)side;
+    const float x0 = (float)min(i, side - 1) * scale, y0 = (float)min(j, side - 1) * scale;
+    const float x1 = fmin(x0 + scale, (float)finer), y1 = fmin(y0 + scale, (float)finer);
+    float4 all = (float4)(0.0f), within = (float4)(0.0f);
+    for (uint y = (uint)y0; (float)y < y1; ++y)
+        for (uint x = (uint)x0; (float)x < x1; ++x) {
+            const float4 texel = from[(size_t)y * row + x];
+            const float share = (fmin(x1, (float)(x + 1)) - fmax(x0, (float)x)) *
+                                (fmin(y1, (float)(y + 1)) - fmax(y0, (float)y));
+            all += share * (float4)(texel.xyz, 1.0f);
+            if (texel.w > 0.0f) within += share * texel.w * (float4)(texel.xyz, 1.0f);
+        }
+    const float4 sum = within.w > 0.0f ? within : all;
+    texels[first + irisLevelStart(size, level) + (size_t)j * row + i] =
+        (float4)(sum.xyz / sum.w, within.w / all.w);
 }

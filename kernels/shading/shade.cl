@@ -82,7 +82,7 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
     EyeLight inEye;
     maskw outside = active;  // where the material itself is seen
     if (isEye) {
-        inEye = beginEye(scene, eye, p, active & p->valid, counts);
+        inEye = beginEye(scene, eye, p, x, y, active & p->valid, counts);
         outside &= inEye.view.cornea < 1.0f;
     }
     const bool lit = !SKIPPING || !scattered || PEL_FORMAT_OUT_THICKNESS ||

@@ -36,7 +36,8 @@ typedef struct PelShadeEye {
     float pupilPerWidth;
     float textureBase;  // place in the texture: textureBase + textureScale r; 0 centre, 1 rim
     float textureScale;
-    PelUint32 textureSize;    // texels along a side
+    PelUint32 textureSize;  // texels along a side
+    PelUint32 textureLevels;
     PelUint32 textureOffset;  // texels, in the buffer of all irises
     float irisColor[3];
     float tearRoughness;
@@ -64,8 +65,27 @@ typedef struct PelEyeLutGrid {
 
 #define PEL_FIBRE_TEXELS 256  // along a side of an iris that is drawn
 
+// An iris' texels: the square itself, and below it, side by side, smaller and smaller ones, each with a copied column and row. Level l has
+// size >> l texels a side; all levels have rows of the same length.
+#define PEL_IRIS_LEVELS 12
+static inline PelUint32 irisLevels(PelUint32 size) {
+    PelUint32 levels = 1;
+    while (levels < PEL_IRIS_LEVELS && (size >> levels) >= 2) ++levels;
+    return levels;
+}
+static inline PelUint32 irisRowTexels(PelUint32 size) {
+    return size + PEL_IRIS_LEVELS;
+}
+// Of a level's first texel.
+static inline PelUint32 irisLevelStart(PelUint32 size, PelUint32 level) {
+    return level ? (size + 1) * irisRowTexels(size) + size - (size >> (level - 1)) + level - 1 : 0;
+}
+static inline PelUint32 irisRows(PelUint32 size) {
+    return size + 1 + (size >> 1) + 1;
+}
+
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelEyeShape) == 48 && sizeof(PelEyeLutGrid) == 32);
-static_assert(sizeof(PelShadeEye) == 48 + 4 * (13 + 9 + 3 + 3 + 5 + PEL_AMBIENT_NODES));
+static_assert(sizeof(PelShadeEye) == 48 + 4 * (13 + 9 + 4 + 3 + 5 + PEL_AMBIENT_NODES));
 #endif
 #endif

@@ -23,7 +23,8 @@ PictureError errorOf(const EyeScene& scene, const char* what) {
 
 TEST(EyePicture, RefractsAsTheTracer) {
     EyeScene scene;
-    scene.makeTexture(256);
+    // The tracer looks at points: texels as wide as pixels.
+    scene.makeTexture(32);
     scene.ambient.constant[0] = scene.ambient.constant[1] = scene.ambient.constant[2] = 1;
     EXPECT_LT(errorOf(scene, "refraction").rms, tolerance::eyePictureRms);
     scene.eye.irisConcavity = 0.7f;
@@ -33,6 +34,32 @@ TEST(EyePicture, RefractsAsTheTracer) {
     EXPECT_LT(errorOf(scene, "concave iris, hyperboloid").rms, tolerance::eyePictureRms);
     scene.eye.corneaIndex = scene.eye.aqueousIndex = 1;
     EXPECT_LT(errorOf(scene, "index 1").rms, tolerance::eyePictureRms);
+}
+
+// From afar a pixel shows the mean of many texels. A texture whose detail has no place in the picture must not flicker in it.
+TEST(EyePicture, SmallEyesShowTheMeanOfTheirTexture) {
+    EyeScene fine;
+    fine.ambient.constant[0] = fine.ambient.constant[1] = fine.ambient.constant[2] = 1;
+    fine.textureSize = 512;
+    for (int j = 0; j < 512; ++j)
+        for (int i = 0; i < 512; ++i) fine.texture.insert(fine.texture.end(), 3, float((i / 3 + j / 3) % 2));
+    fine.eye.pupilRadius = 0;
+    fine.eye.texturePupil = 0;
+    EyeScene grey = fine;
+    grey.texture.assign(grey.texture.size(), 0.5f);
+    for (const int size : {12, 20, 40}) {
+        fine.size = grey.size = size;
+        const EyePicture seen(fine), known(grey);
+        const std::vector<float> is = seen.shade(), should = known.shade();
+        double sum = 0, iris = 0;
+        for (size_t k = 0; k < seen.pixels.size(); ++k) {
+            if (seen.pixels[k].hit.share < 1) continue;
+            sum += (is[3 * k] - should[3 * k]) * (is[3 * k] - should[3 * k]);
+            iris += should[3 * k] * should[3 * k];
+        }
+        ASSERT_GT(iris, 0);
+        EXPECT_LT(std::sqrt(sum / iris), tolerance::eyeMinified) << size << " pixels";
+    }
 }
 
 TEST(EyePicture, GlossAsTheTracer) {

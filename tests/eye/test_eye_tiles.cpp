@@ -186,6 +186,18 @@ TEST(EyeTiles, BadInputGivesFiniteValues) {
                  *f *= 1e-4f;
              s.setEye(2, eye);
          }},
+        {"a cornea as wide as it can be, an iris that nearly fills it",
+         [](Shader& s) {
+             PelEye eye = pelEyeDefaults();
+             eye.pupilRadius = std::nextafter(eye.limbusRadius, 0.0f);
+             eye.irisRadius = eye.limbusRadius;
+             s.setEye(2, eye);
+         }},
+        {"two eyes in one place",
+         [](Shader& s) {
+             s.setEye(1, pelEyeDefaults());
+             s.setEye(2, pelEyeDefaults());
+         }},
         {"no pupil, no border",
          [](Shader& s) {
              PelEye eye = pelEyeDefaults();
@@ -201,5 +213,102 @@ TEST(EyeTiles, BadInputGivesFiniteValues) {
             bad.second(s);
         }));
         EXPECT_EQ(frame.stats.pixelsInvalid, 0u);
+    }
+}
+
+// Pixels of an eye whose texture or surroundings are NaN or Inf show PelShaderOptions.invalidColor, wetness counts as the nearest of 0 and 1 (NaN
+// as 0), and no other pixels change.
+TEST(EyeTiles, NanInImagesOfEyesStaysInItsPixels) {
+    EyeFrame frame;
+    const float bad[] = {std::nanf(""), INFINITY, -INFINITY};
+    const auto withEye = [](Shader& s) { s.setEye(2, pelEyeDefaults()); };
+    constexpr size_t pixels = size_t(EyeFrame::width) * EyeFrame::height;
+    // At least one pixel and at most `limit` change.
+    const auto sameBeyond = [&](const std::vector<float>& is, const std::vector<float>& should, size_t limit) {
+        expectFinite(is);
+        size_t changed = 0;
+        for (size_t k = 0; k < pixels; ++k) changed += is[3 * k] != should[3 * k];
+        EXPECT_GE(changed, 1u);
+        EXPECT_LE(changed, limit);
+        EXPECT_LE(frame.stats.pixelsInvalid, changed);
+    };
+    std::vector<float> wet(pixels);
+    const Buffer even(frame.device, wet);
+    const auto wetFrame = [&](const Buffer& wetness) {
+        return frame.shade([&](Shader& s) {
+            withEye(s);
+            s.set(PEL_SLOT_WETNESS, imageDesc(wetness, PEL_FORMAT_R32F, EyeFrame::width, EyeFrame::height));
+        });
+    };
+    const std::vector<float> dry = wetFrame(even);
+    for (int i = 0; i < 3; ++i) wet[128 * EyeFrame::width + 400 + 9 * i] = bad[i];
+    wet[100] = bad[0];  // on the wall, which has no tears
+    sameBeyond(wetFrame(Buffer(frame.device, wet)), dry, 3);
+
+    const auto textured = [&](const std::vector<float>& texels) {
+        const Buffer texture(frame.device, texels);
+        return frame.shade([&](Shader& s) {
+            withEye(s);
+            PelAmbient ambient = pelAmbientDefaults();
+            ambient.constant[0] = ambient.constant[1] = ambient.constant[2] = 0.5f;
+            s.set(ambient);
+            s.setIrisTexture(2, imageDesc(texture, PEL_FORMAT_RGB32F, 64, 64));
+        });
+    };
+    std::vector<float> texels(64 * 64 * 3, 0.3f);
+    const std::vector<float> clean = textured(texels);
+    for (int i = 0; i < 3; ++i) texels[size_t(3 * (20 * 64 + 16 * i + 8))] = bad[i];
+    sameBeyond(textured(texels), clean, 200);
+
+    const auto reflecting = [&](const std::vector<float>& cube) {
+        const Buffer faces(frame.device, cube);
+        return frame.shade([&](Shader& s) {
+            withEye(s);
+            s.setReflectionCube(imageDesc(faces, PEL_FORMAT_RGB32F, 4, 24));
+        });
+    };
+    std::vector<float> cube(4 * 24 * 3, 0.7f);
+    const std::vector<float> mirrored = reflecting(cube);
+    cube[3 * 30] = bad[0], cube[3 * 70] = bad[1];
+    sameBeyond(reflecting(cube), mirrored, pixels / 4);
+}
+
+// Light of the lids does not reach the eye, nor the other way: by every method that gathers on the screen. Within the sclera it does scatter.
+TEST(EyeTiles, NothingBleedsBetweenEyeAndLid) {
+    EyeFrame frame;
+    constexpr size_t pixels = size_t(EyeFrame::width) * EyeFrame::height;
+    const Profile profile = Profile::skin();
+    const auto shade = [&](PelScattering method, float onWall, float onEye) {
+        std::vector<float> light(3 * pixels);
+        for (size_t k = 0; k < pixels; ++k)
+            for (size_t c = 0; c < 3; ++c)
+                light[3 * k + c] = EyeFrame::isEye(k) ? (k % EyeFrame::width / 4 % 2 ? onEye : 0) : onWall;
+        const Buffer irradiance(frame.device, light);
+        return frame.shade([&](Shader& s) {
+            PelMaterial m = pelMaterialDefaults();
+            m.profile = profile.get();
+            m.scattering = method;
+            s.setMaterial(1, m).setMaterial(2, m).setEye(2, pelEyeDefaults());
+            s.set(PEL_SLOT_IRRADIANCE,
+                  imageDesc(irradiance, PEL_FORMAT_RGB32F, EyeFrame::width, EyeFrame::height));
+        });
+    };
+    for (const PelScattering method : {PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN, PEL_SCATTERING_AUTO}) {
+        SCOPED_TRACE(method);
+        const std::vector<float> dark = shade(method, 0, 1), bright = shade(method, 9, 1),
+                                 off = shade(method, 9, 0);
+        const std::vector<float> sharp = shade(PEL_SCATTERING_NONE, 0, 1);
+        size_t scattered = 0;
+        float bled = 0, wall = 0;  // largest change
+        for (size_t i = 0; i < dark.size(); ++i) {
+            const bool eye = EyeFrame::isEye(i / 3);
+            if (eye) bled = std::max(bled, std::abs(dark[i] - bright[i]));
+            scattered += eye && std::abs(dark[i] - sharp[i]) > 0.02f;
+            if (!eye) wall = std::max(wall, std::abs(bright[i] - off[i]));
+        }
+        // Sums over neighbours round by what others there are.
+        EXPECT_LE(bled, 1e-5f);
+        EXPECT_LE(wall, 9e-5f);
+        EXPECT_GT(scattered, 5000u);
     }
 }
