@@ -90,7 +90,7 @@ std::vector<DemoViewRequest> requests(const Arguments& a) {
     key.framing.azimuth = 25;
     key.lights = {{"Key", 80, 25, {0.98f, 0.90f, 0.81f}},
                   {"Fill", -5, 5, {0.05f, 0.06f, 0.07f}, false},
-                  {"Rim", -140, 25, {0.50f, 0.55f, 0.65f}}};
+                  {"Rim", -125, 15, {0.22f, 0.25f, 0.30f}}};
     key.skyScale = 0.16f;
     back = key;
     back.name = "backlit";
@@ -113,6 +113,7 @@ std::vector<float> shadeAs(Run& run, Stages& stages, io::LutStore& luts, const D
 // One view: G-buffer, shadings, reference, files.
 ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample::Scene& scene,
                      const DemoHead& head, const DemoViewRequest& request, const Arguments& a) {
+    Stages::begin(request.name + ": G-buffer and shadow maps (sample host)");
     DemoView view = renderDemoView(scene, head, request);
     const uint64_t pixels = view.gbuffer.pixelCount();
     const uint64_t gbufferBytes = pixels * view.gbuffer.channels.size() * sizeof(float);

@@ -72,6 +72,27 @@ sample::Camera framed(const sample::Scene& mesh, const DemoHead& head, const sam
     return camera;
 }
 
+// Where tears gather: 1 where an eye meets a lid, 0 from `reach` on.
+std::vector<float> wetLine(const sample::GBuffer& g) {
+    constexpr double reach = 0.9;  // mm
+    constexpr int window = 8;      // pixels
+    std::vector<float> wet(g.material.size());
+    const auto at = [&](int x, int y) {
+        return sample::Vec3{g.position.at(0, x, y), g.position.at(1, x, y), g.position.at(2, x, y)};
+    };
+    const auto id = [&](int x, int y) { return g.material[size_t(y) * size_t(g.width) + size_t(x)]; };
+    for (int y = 0; y < g.height; ++y)
+        for (int x = 0; x < g.width; ++x) {
+            if (id(x, y) != demo::DEMO_EYES && id(x, y) != demo::DEMO_RIGHT_EYE) continue;
+            double nearest = reach;
+            for (int v = std::max(y - window, 0); v <= std::min(y + window, g.height - 1); ++v)
+                for (int u = std::max(x - window, 0); u <= std::min(x + window, g.width - 1); ++u)
+                    if (id(u, v) == demo::DEMO_SKIN) nearest = std::min(nearest, length(at(u, v) - at(x, y)));
+            wet[size_t(y) * size_t(g.width) + size_t(x)] = float(1 - nearest / reach);
+        }
+    return wet;
+}
+
 // Shadow map and wide shadow of one lamp.
 void addShadow(DemoView& view, const sample::Scene& mesh, const sample::GBuffer& g, const DemoLight& lamp,
                const sample::DirectionalLight& direction, float filterWidth, io::SceneLight& light) {
@@ -101,8 +122,8 @@ std::vector<io::SceneMaterial> materialsOf(const DemoHead& head) {
     if (materials.size() > 1) {
         // Their gloss is that of the film of tears.
         materials[demo::DEMO_EYES - 1].material = materials[demo::DEMO_RIGHT_EYE - 1].material = glossy(0, 1);
-        materials[demo::DEMO_TEETH - 1].material = glossy(0.5f, 0.15f);
-        materials[demo::DEMO_TONGUE - 1].material = glossy(0.4f, 0.2f);
+        materials[demo::DEMO_TEETH - 1].material = materials[demo::DEMO_TONGUE - 1].material =
+            glossy(0.05f, 0.2f);
         materials[demo::DEMO_CUT - 1].material = glossy(0, 1);
     }
     return materials;
@@ -135,7 +156,12 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     for (sample::EyeLook& eye : look.eyes)
         eye.irisRadius = eye.pupilRadius = 1e-3;  // the models have their own
     view.scene.eyes = head.eyeModels;
-    if (!head.looks.empty()) look.detail.blotchAmount = 0.02;  // the tints are enough
+    if (!head.looks.empty()) {  // a young face: fine pores, hardly a fold; the tints are enough
+        look.detail.blotchAmount = 0.02;
+        look.detail.poreWavelength = 0.6;
+        look.detail.poreSlope = 0.1;
+        look.detail.foldSlope = 0.012;
+    }
     sample::GBuffer g;
     view.gbufferMilliseconds = timed([&] { g = sample::renderGBuffer(mesh, camera, width, height, look); });
     view.gbuffer.width = width;
@@ -148,6 +174,10 @@ DemoView renderDemoView(const sample::Scene& mesh, const DemoHead& head, const D
     addChannels(view, "Albedo", "RGB", g.albedo.data.data(), PEL_SLOT_ALBEDO);
     const std::vector<float> ids(g.material.begin(), g.material.end());
     addChannels(view, "Material", "I", ids.data(), PEL_SLOT_MATERIAL);
+    if (!head.eyeModels.empty()) {
+        const std::vector<float> wet = wetLine(g);
+        addChannels(view, "Wetness", "V", wet.data(), PEL_SLOT_WETNESS);
+    }
 
     for (const DemoLight& lamp : request.lights) {
         const sample::DirectionalLight direction{sample::headDirection(head.pose, lamp.azimuth, lamp.elevation)};

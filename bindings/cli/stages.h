@@ -18,12 +18,15 @@ class Stages {
     // kind `unit`, and `bytes` read and written.
     template <class Work>
     void measure(const std::string& name, uint64_t count, const char* unit, uint64_t bytes, Work&& work) {
+        begin(name);
         const double device = run_.deviceMilliseconds();
         const auto start = std::chrono::steady_clock::now();
         work();
         const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
         add(name, wall.count(), run_.deviceMilliseconds() - device, count, unit, bytes);
     }
+    // Says on a terminal what is being done, until its line comes.
+    static void begin(const std::string& name);
     // The same for work whose kernels may have to be compiled: it is done twice, the second time is the stage's, and what the first
     // took longer belongs to the time of preparation.
     template <class Work>

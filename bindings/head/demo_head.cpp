@@ -56,7 +56,29 @@ std::vector<sample::Tint> tintsOf(const io::PartedMesh& head, const Bounds (&eye
             {{x, left.y - 0.25 * e, skin.centre().z - 0.1 * e}, Vec3{0.35, 0.75, 0.6} * e, {1.02, 0.80, 0.78}, 1});
     }
     add(0, 0.5 * (left.y + lipLine) - 0.02 * e, {0.3, 0.3, 0.5}, {1.02, 0.86, 0.86}, 1);
+    // Brows: an arc over each eye, darkest in the middle, of spots that overlap.
+    constexpr int spots = 9;
+    for (const double side : {-1.0, 1.0})
+        for (int i = 0; i < spots; ++i) {
+            const double s = double(i) / (spots - 1), along = -0.30 + 0.66 * s;
+            const double x = side * (0.5 * e + along * e), y = left.y + (0.30 + 0.10 * std::sin(2.4 * s)) * e;
+            const double strength = 0.6 + 0.14 * s;
+            add(x, y, {0.09, 0.075 - 0.025 * s, 0.3}, {strength, 0.93 * strength, 0.9 * strength}, 0.9);
+        }
     return tints;
+}
+
+// The lips of the heads are open by a hair, and teeth reach into them: moved back and in, they stay in the mouth's shade.
+void closeMouth(io::PartedMesh& head) {
+    constexpr float back = 4;  // mm
+    std::vector<bool> moved(head.mesh.vertexCount());
+    for (size_t c = 0; c < head.mesh.triangles.size(); ++c) {
+        const std::string& name = head.parts[head.partOf[c / 3]];
+        const uint32_t v = head.mesh.triangles[c];
+        if (moved[v] || !(name.starts_with("teeth") || name.starts_with("tongue"))) continue;
+        moved[v] = true;
+        head.mesh.positions[3 * v + 2] -= back;
+    }
 }
 
 // An adult's eye, as large as the ball.
@@ -83,6 +105,7 @@ bool hasHeadParts(const std::string& path) {
 
 DemoHead loadDemoHead(const std::string& path, int levels) {
     io::PartedMesh head = io::loadParts(path, levels);
+    closeMouth(head);
     // A straight cut in place of the ragged end of the data.
     const Bounds whole = boundsOfPart(head, "skin");
     const float cut = float(whole.low.y + 0.13 * (whole.high.y - whole.low.y));
@@ -101,8 +124,9 @@ DemoHead loadDemoHead(const std::string& path, int levels) {
     out.looks.resize(6);
     out.looks[DEMO_SKIN - 1].albedo = {0.76f, 0.54f, 0.44f};
     out.looks[DEMO_EYES - 1].kind = out.looks[DEMO_RIGHT_EYE - 1].kind = sample::Look::Kind::Eye;
-    out.looks[DEMO_TEETH - 1] = {sample::Look::Kind::Plain, {0.75f, 0.70f, 0.58f}};
-    out.looks[DEMO_TONGUE - 1] = {sample::Look::Kind::Plain, {0.55f, 0.22f, 0.20f}};
+    // Behind closed lips hardly any light comes: a fifth of teeth's and tongue's own albedo.
+    out.looks[DEMO_TEETH - 1] = {sample::Look::Kind::Plain, {0.15f, 0.14f, 0.12f}};
+    out.looks[DEMO_TONGUE - 1] = {sample::Look::Kind::Plain, {0.11f, 0.045f, 0.04f}};
     out.looks[DEMO_CUT - 1] = {sample::Look::Kind::Plain, {0.02f, 0.02f, 0.02f}};
 
     const Bounds skin = boundsOfPart(head, "skin");
