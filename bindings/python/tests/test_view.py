@@ -1,8 +1,10 @@
 """The viewer without its page: OpenGL against geometry, pictures, what is exported."""
 import json
 import os
+import shutil
 import subprocess
 import types
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ pytest.importorskip("moderngl", reason="moderngl is not installed")
 files = pytest.importorskip("pellucid.files", reason="this build reads no files")
 from pellucid import Device  # noqa: E402
 from pellucid.view.camera import Orbit, direction  # noqa: E402
-from pellucid.view.export import export  # noqa: E402
+from pellucid.view.export import cpp_float, export, snippet  # noqa: E402
 from pellucid.view.look import EYES, MODES, PRESETS, SKIN, Look  # noqa: E402
 from pellucid.view.scene_session import SceneSession  # noqa: E402
 from pellucid.view.server import Pace, Viewer  # noqa: E402
@@ -113,6 +115,24 @@ def test_a_change_of_material_builds_no_program(session):
     assert session.device.stats().programs_built == built
 
 
+def test_no_slider_builds_a_program_once_the_picture_is_at_rest(session):
+    reset(session)
+    session.frame(160, 90)
+    session.prepare(160, 90)
+    built = session.device.stats().programs_built
+    for name, value in {"albedo": (0.5, 1.0, 1.0), "deep_scatter": (1.0, 0.2, 0.1), "transmission": 0.0, "ambient": 0.0, "specular": 0.0,
+                        "roughness": 0.9, "f0": 0.0, "pores": 0.0, "pupil": 1.0, "radius_scale": 5.0}.items():
+        reset(session)
+        setattr(session.look, name, value)
+        for small in (True, False):
+            session.frame(80 if small else 160, 45 if small else 90, small)
+        assert session.device.stats().programs_built == built, name
+    reset(session)
+    session.look.ambient, session.look.transmission, session.look.deep_scatter, session.look.albedo = 0.0, 0.0, (1.0, 1.0, 1.0), (0.5, 1.0, 1.0)
+    session.frame(160, 90)
+    assert session.device.stats().programs_built == built
+
+
 def test_the_wipe_shows_both_settings(session):
     reset(session)
     left = session.frame(160, 90).pixels
@@ -137,6 +157,26 @@ def test_what_is_exported_renders_to_the_same_bits(session, tmp_path, profile):
     one, two = (files.read_image(tmp_path / "look" / name) for name in ("picture.exr", "again.exr"))
     assert all(np.array_equal(one[c], two[c]) for c in "RGB") and one["R"].max() > 0.2
     assert Look.from_dict(json.loads((tmp_path / "look/look.json").read_text())) == session.look
+
+
+@pytest.mark.parametrize("values", [{}, {"profile": "custom", "method": "screen"}, {"method": "none", "transmission": 0.0, "ggx": True},
+                                    {"deep_scatter": (0.5, 0.1, 0.0), "radius_scale": 2.0}])
+def test_the_exported_cpp_compiles(session, tmp_path, values):
+    compiler = shutil.which("c++") or shutil.which("g++") or shutil.which("clang++")
+    include = Path(__file__).parents[3] / "host/include"
+    if compiler is None or not include.exists():
+        pytest.skip("no C++ compiler here")
+    reset(session)
+    for name, value in values.items():
+        setattr(session.look, name, value)
+    source = tmp_path / "look.cpp"
+    source.write_text(snippet(session, session.look))
+    done = subprocess.run([compiler, "-std=c++17", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I", str(include), str(source)],
+                          capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    # Every number of the look is in it.
+    for number in (session.look.roughness, session.look.f0, session.look.roughness2, session.look.lobe_mix, session.look.ambient):
+        assert cpp_float(number) in source.read_text()
 
 
 def test_a_scene_file_is_shown_as_it_was_exported(session, tmp_path):

@@ -37,7 +37,7 @@ def scene_text(session: Session, look: Look, width: int, height: int) -> str:
                                   *([("uv", "Uv", "XY")] if look.method == "texture" else [])):
         names = [f"{name}.{c}" for c in components]
         text += _lines(**{key: names if len(names) > 1 else names[0]}).replace("'", '"')
-    text += "\n[camera]\n" + _lines(position=np.float32(eye)) + "\n[ambient]\n" + _lines(constant=np.float32([look.ambient] * 3))
+    text += "\n[camera]\n" + _lines(position=np.float32(eye)) + "\n[ambient]\n" + _lines(constant=np.float32([session.ambient(look)] * 3))
     for i, (light, map) in enumerate(session.lights(look)):
         text += "\n[[light]]\n" + _lines(type="directional", to_light=light.to_light, color=light.color)
         if map is not None:
@@ -66,28 +66,40 @@ def profile_text(look: Look) -> str:
     return _lines(name="custom", kind="burley", unit="mm", source="made in the viewer", distance=[float(np.float32(d)) for d in look.distance])
 
 
+def cpp_float(value: float) -> str:
+    """A literal with the bits of the value as a float."""
+    text = f"{float(np.float32(value)):.9g}"
+    return text + ("f" if "." in text or "e" in text else ".0f")
+
+
 def snippet(session: Session, look: Look) -> str:
     """C++ that sets the same material and lights; images are the host's."""
     skin = session.materials(look)[SKIN]
     lines = ['#include <pellucid/pellucid.hpp>', "", "void setLook(pellucid::Shader& shader) {"]
     if skin.profile is not None:
         made = ("pellucid::Profile::named(" + json.dumps(look.profile) + ")" if look.profile != "custom" else
-                "pellucid::Profile::burleyDistance({" + ", ".join(f"{d:.6g}f" for d in look.distance) + "}, \"custom\")")
+                "pellucid::Profile::burleyDistance({" + ", ".join(f"{cpp_float(d)}" for d in look.distance) + "}, \"custom\")")
         lines.append(f"    const pellucid::Profile profile = {made};  // mm")
     lines += ["    PelMaterial skin = pelMaterialDefaults();", f"    skin.scattering = PEL_SCATTERING_{skin.scattering.name};"]
     if skin.profile is not None:
-        lines += ["    skin.profile = profile.get();", f"    skin.diffusionRadius = {skin.diffusion_radius:.6g}f;  // 0: the profile's own",
-                  f"    skin.transmission = {skin.transmission:.6g}f;"]
-    lines += [f"    skin.specular = {skin.specular:.6g}f;", f"    skin.roughness = {skin.roughness:.6g}f;", f"    skin.f0 = {skin.f0:.6g}f;",
-              f"    skin.specularModel = PEL_SPECULAR_{skin.specular_model.name};", "    shader.setMaterial(1, skin);", "",
+        lines += ["    skin.profile = profile.get();", f"    skin.diffusionRadius = {cpp_float(skin.diffusion_radius)};  // 0: the profile's own",
+                  f"    skin.transmission = {cpp_float(skin.transmission)};"]
+    lines += [f"    skin.specular = {cpp_float(skin.specular)};", f"    skin.roughness = {cpp_float(skin.roughness)};", f"    skin.f0 = {cpp_float(skin.f0)};",
+              f"    skin.specularModel = PEL_SPECULAR_{skin.specular_model.name};", f"    skin.roughness2 = {cpp_float(skin.roughness2)};",
+              f"    skin.lobeMix = {cpp_float(skin.lobe_mix)};"]
+    if any(skin.deep_scatter_color):
+        lines += ["    // FaceWorks' term, in place of transmission",
+                  *(f"    skin.deepScatterColor[{c}] = {cpp_float(v)};" for c, v in enumerate(skin.deep_scatter_color))]
+    lines += ["    shader.setMaterial(1, skin);", "", "    PelAmbient ambient = pelAmbientDefaults();",
+              f"    for (float& c : ambient.constant) c = {cpp_float(session.ambient(look))};", "    shader.set(ambient);", "",
               "    std::vector<PelLight> lights;"]
     for light, _ in session.lights(look):
-        to, color = (", ".join(f"{v:.6g}f" for v in values) for values in (light.to_light, light.color))
+        to, color = (", ".join(f"{cpp_float(v)}" for v in values) for values in (light.to_light, light.color))
         lines += ["    {", "        PelLight light = pelLightDefaults();",
                   f"        for (int c = 0; c < 3; ++c) light.toLight[c] = std::array{{{to}}}[c], light.color[c] = std::array{{{color}}}[c];",
                   "        lights.push_back(light);", "    }"]
     lines += ["    shader.set(lights);", "    PelShaderOptions options = pelShaderOptionsDefaults();",
-              f"    options.targetError = {look.target_error:.6g}f;", f"    options.millimetresPerUnit = {session.mm:.6g}f;",
+              f"    options.targetError = {cpp_float(look.target_error)};", f"    options.millimetresPerUnit = {cpp_float(session.mm)};",
               "    shader.set(options);", "}", ""]
     return "\n".join(["#include <array>", "#include <vector>", *lines])
 

@@ -52,7 +52,7 @@ class Lamp:
 
 def _lamps() -> list[Lamp]:
     return [Lamp("Key", 55.0, 30.0, (1.0, 0.95, 0.88), 1.0), Lamp("Fill", -50.0, 10.0, (0.8, 0.9, 1.0), 0.15, shadow=False),
-            Lamp("Rim", 160.0, 15.0, (1.0, 0.97, 0.92), 0.5)]
+            Lamp("Rim", 160.0, 15.0, (1.0, 0.97, 0.92), 0.2)]
 
 
 @dataclass
@@ -110,5 +110,6 @@ PRESETS: dict[str, dict[str, Any]] = {
     "Marble": {"profile": "marble", "albedo": (1.05, 1.4, 1.6), "specular": 0.3, "roughness": 0.15, "pores": 0.0},
     "Jade": {"profile": "jade", "albedo": (0.35, 1.2, 0.75), "specular": 0.6, "roughness": 0.12, "pores": 0.0},
     "Wax": {"profile": "paraffin", "albedo": (1.15, 1.35, 1.1), "specular": 0.25, "roughness": 0.35, "pores": 0.0},
+    "Leaf": {"profile": "custom", "distance": (0.25, 0.5, 0.12), "albedo": (0.3, 1.1, 0.25), "specular": 0.3, "roughness": 0.35, "pores": 0.1, "transmission": 1.0},
     "Plain (Lambert)": {"method": "none", "transmission": 0.0},
 }

@@ -78,14 +78,16 @@ class Pass:
                 self.shader.set_light_image(i, "shadow_map", None if map is None else map.depth)
 
         self._tell("lights", [(light._data.tobytes(), id(map)) for light, map in lights], set_lights)
-        self._tell("ambient", look.ambient, lambda: self.shader.set_ambient(Ambient(constant=[look.ambient] * 3)))
+        ambient = session.ambient(look)
+        self._tell("ambient", ambient, lambda: self.shader.set_ambient(Ambient(constant=[ambient] * 3)))
         eye, _ = session.camera(width / height)
         self._tell("camera", eye.tobytes(), lambda: self.shader.set_camera(Camera(position=eye)))
         self._tell("options", (look.target_error, session.count, session.mm), lambda: self.shader.set_options(
             target_error=look.target_error, millimetres_per_unit=session.mm, count_pixels=int(session.count)))
         self._scattered_texture(session, g, look, small)
         if not self._told.get("committed"):
-            structure = (outputs, albedo, len(eyes), look.method, look.ggx, len(lights), [m.specular > 0 for m in materials.values()])
+            structure = (outputs, albedo, len(eyes), look.method, look.ggx, len(lights), [m.specular > 0 for m in materials.values()],
+                         any(look.deep_scatter), look.transmission > 0)
             if structure != self._structure:  # only then may kernels have to be compiled: with progress
                 warm_up_programs(self.device, shaders=[self.shader])
                 self._structure = structure
@@ -108,12 +110,11 @@ class Pass:
         self._tell("images", memory, images)
         tints = albedo and tuple(look.albedo) != (1.0, 1.0, 1.0)
         if tints:  # host work: only where a tint is set
-            values = tinted(g, look)
-            if self.outputs.get("albedo") is None or self.outputs["albedo"].shape != values.shape:
-                self.outputs["albedo"] = values
+            if self.outputs.get("albedo") is None or self.outputs["albedo"].shape != g.albedo.shape:
+                # As far apart as the renderer's own: kernels belong to a layout.
+                self.outputs["albedo"] = np.zeros((height, width, g.albedo.strides[1] // 4), np.float32)[..., :3]
                 self._told.pop("albedo", None)
-            else:
-                self.outputs["albedo"][...] = values
+            self.outputs["albedo"][...] = tinted(g, look)
         self._tell("albedo", (memory, albedo, tints), lambda: self.shader.set_image(
             "albedo", None if not albedo else self.outputs["albedo"] if tints else g.albedo))
 

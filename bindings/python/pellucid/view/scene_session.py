@@ -94,6 +94,9 @@ class SceneSession:
         after = self.device.stats().programs_built
         return Frame(pixels, times, made.stats.to_dict(), made.warnings, after, after - built)
 
+    def prepare(self, width: int, height: int) -> None:
+        """Nothing: a scene's sliders need no other kernels."""
+
     def save(self, path: Any) -> None:
         """Writes the scene as it is shown."""
         self.scene.save(path)

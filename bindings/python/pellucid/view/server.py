@@ -205,6 +205,8 @@ class Viewer:
                         await asyncio.wait_for(news.wait(), 5)
                     except asyncio.TimeoutError:
                         taken = sent
+                if made is not None and not small and sample >= self.session.samples and not event.is_set():
+                    await self.on_thread(lambda: self.session.prepare(width, height))
                 if small and not event.is_set():
                     asyncio.get_running_loop().call_later(SETTLED, event.set)
 

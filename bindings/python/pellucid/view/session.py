@@ -41,7 +41,7 @@ class ShadowMap:
 
 # (specular, roughness) of what is not skin, as in the demo.
 # Eyes: that of their film of tears.
-_GLOSS = {EYES: (0.0, 1.0), RIGHT_EYE: (0.0, 1.0), TEETH: (0.5, 0.15), TONGUE: (0.4, 0.2), CUT: (0.0, 1.0)}
+_GLOSS = {EYES: (0.0, 1.0), RIGHT_EYE: (0.0, 1.0), TEETH: (0.05, 0.2), TONGUE: (0.05, 0.2), CUT: (0.0, 1.0)}
 SAMPLES = 8  # pictures that are averaged for smooth edges
 
 
@@ -87,6 +87,7 @@ class Session:
         self._sum: Optional[tuple[int, NDArray[np.float32]]] = None  # of pictures shifted by parts of a pixel
         self.reference_made: Optional[tuple[Any, NDArray[np.float32]]] = None
         self._shift = (0.0, 0.0)
+        self._prepared: Any = None
 
     # ---- What is shown -----------------------------------------------------------------------------------------------
 
@@ -208,6 +209,11 @@ class Session:
             found.append((light, map))
         return found
 
+    @staticmethod
+    def ambient(look: Look) -> float:
+        """Irradiance / pi from everywhere; at 0 so little that nobody sees it: a frame without any needs other kernels."""
+        return max(look.ambient, 1e-6)
+
     def texture(self, look: Look, small: bool = False) -> Texture:
         """The look's light, scattered in the mesh's texture."""
         if small not in self._textures:
@@ -257,6 +263,19 @@ class Session:
         times = {"OpenGL": 1e3 * (drawn - started), "Pellucid": 1e3 * (shaded - drawn), "on the device": stats.device_milliseconds}
         after = self.device.stats().programs_built
         return Frame(pixels, times, stats.to_dict(), p.shader.warnings() + list(self.mesh.warnings), after, after - built)
+
+    def prepare(self, width: int, height: int) -> None:
+        """Builds the kernels that a slider of material will want when it leaves 0 or comes to it, so that none has to wait for them."""
+        base = self.look
+        structure = (base.mode, base.method, base.ggx, [(lamp.on, lamp.shadow) for lamp in base.lamps])
+        if structure == self._prepared or base.mode in ("reference", "error", "tiles"):
+            return
+        for change in ({"deep_scatter": (1.0, 1.0, 1.0)}, {"deep_scatter": (0.0, 0.0, 0.0), "transmission": 0.0}):
+            other = base.copy()
+            for name, value in change.items():
+                setattr(other, name, value)
+            picture(self, "main", other, width, height, False)
+        self._prepared = structure
 
     def _beside(self, left: NDArray[np.uint8], right: NDArray[np.uint8]) -> NDArray[np.uint8]:
         width = left.shape[1]
