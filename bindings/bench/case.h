@@ -41,6 +41,7 @@ std::vector<Factory> deviceCases(const Device& device, Size size);   // copy ban
 std::vector<Factory> meshCases(const Device& device, Size size);     // curvature, normals, UV scale
 std::vector<Factory> tableCases(const Device& device, Size size);    // look-up tables
 std::vector<Factory> shadingCases(const Device& device, Size size);  // the pass over a G-buffer
+std::vector<Factory> eyeCases(const Device& device, Size size);      // a cornea's table, a frame with an eye
 
 constexpr const char* copyName = "copy";  // the case whose bytes per second are the device's bandwidth
 constexpr const char* arithmeticName = "arithmetic";  // and whose operations per second are its peak

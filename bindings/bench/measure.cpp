@@ -97,7 +97,7 @@ Json measureCases(const Request& request) {
     };
     const Device device(request.device);
     std::vector<Factory> factories;
-    for (const auto& from : {deviceCases, meshCases, tableCases, shadingCases})
+    for (const auto& from : {deviceCases, meshCases, tableCases, shadingCases, eyeCases})
         for (Factory& f : from(device, Size{request.quick})) factories.push_back(std::move(f));
     // Every round runs each case once, in an order of its own: machines drift, and all cases drift with them.
     const int rounds = request.quick ? 5 : 15;

@@ -1,0 +1,198 @@
+// Eyes: the table of a cornea's caustics against the flux that enters it, and a frame that shows an eye against the tracer of
+// tests/reference, with the same table.
+#include <random>
+
+#include "case.h"
+#include "reference/eye.h"
+
+namespace pellucid::bench {
+namespace {
+
+using reference::Vec3;
+
+constexpr double toLight[3] = {0.6, 0, 0.8}, camera[3] = {0, 0, 400}, share = 0.05;
+constexpr float irisColor = 0.4f, scleraAlbedo = 0.7f;
+
+reference::Eye adult() {
+    const PelEye e = pelEyeDefaults();
+    reference::Eye eye;
+    eye.sclera = e.scleraRadius, eye.cornea = e.corneaRadius, eye.conic = e.corneaConic;
+    eye.limbus = e.limbusRadius, eye.limbusWidth = e.limbusWidth, eye.limbusDarkening = e.limbusDarkening;
+    eye.chamber = e.chamberDepth, eye.nCornea = e.corneaIndex, eye.nAqueous = e.aqueousIndex;
+    eye.concavity = e.irisConcavity, eye.iris = e.irisRadius > 0 ? e.irisRadius : e.limbusRadius;
+    eye.pupil = e.pupilRadius, eye.texturePupil = e.texturePupil, eye.tearRoughness = e.tearRoughness;
+    eye.nTear = e.tearIndex;
+    return eye;
+}
+
+// The light's angle to the gaze beyond which none enters: where the rim's own horizon, or the sclera's, hides it.
+double largestAngle(const reference::Eye& eye) {
+    double largest = 0;
+    for (int i = 1; i <= 256; ++i) {
+        const double r = eye.limbus * i / 256, z = eye.corneaZ(r);
+        const Vec3 n = eye.corneaNormal(r, 0);
+        const double past = std::atan2(r, z) + std::acos(std::min(1.0, eye.sclera / std::hypot(r, z)));
+        largest = std::max(largest, std::acos(0.0) + std::min(std::atan2(n.x, n.z), past));
+    }
+    return largest;
+}
+
+// Share of a texel within the iris' rim.
+double covered(const PelEyeLutDesc& desc, uint32_t i, uint32_t j) {
+    int on = 0;
+    for (int k = 0; k < 64; ++k)
+        on += std::hypot((i + (k % 8 + 0.5) / 8) / desc.width * 2 - 1, (j + (k / 8 + 0.5) / 8) / desc.height) < 1;
+    return on / 64.0;
+}
+
+Case tableCase(const Device& device, Size size) {
+    PelEyeLutDesc desc = pelEyeLutDescDefaults();
+    if (size.quick) desc.width = desc.height = 32, desc.depth = 16;
+    const auto lut = std::make_shared<Lut>();
+    Case c;
+    c.what = std::to_string(desc.width) + "x" + std::to_string(desc.height) + "x" + std::to_string(desc.depth);
+    c.items = double(desc.width) * desc.height * desc.depth;
+    c.unit = "texels";
+    c.bytes = 16 * c.items;
+    c.run = [=] { *lut = Lut(device, desc); };
+    c.error = [=] {
+        const reference::Eye eye = adult();
+        const std::vector<float> texels = lut->read<float>(PEL_LUT_FLOAT);
+        const size_t slice = size_t(desc.width) * desc.height;
+        ErrorSum sum;
+        for (uint32_t z = 0; z < desc.depth * 3 / 4; z += desc.depth / 8) {
+            double flux = 0;
+            for (size_t k = 0; k < slice; ++k)
+                flux += texels[3 * (z * slice + k)] *
+                        covered(desc, uint32_t(k) % desc.width, uint32_t(k) / desc.width);
+            flux *= 4 * eye.iris / desc.width * eye.iris / desc.height;  // both halves
+            sum.add(flux / fluxOnIris(eye, largestAngle(eye) * z / (desc.depth - 1), 400) - 1);
+        }
+        return sum.result();
+    };
+    c.truth = "flux that enters the cornea and ends on the iris, in double precision; relative";
+    return c;
+}
+
+// Skin everywhere, but a square of 5 % of the pixels that shows the front of a ball: an eye.
+struct EyeFrame {
+    uint32_t width, height;
+    std::vector<float> position;
+    std::vector<uint8_t> id;
+    Shader shader;
+    Buffer target;
+    Lut caustics;
+    PelEyeLutDesc desc{};
+
+    EyeFrame(const Device& device, Size size)
+        : width(size.quick ? 480 : 1920), height(size.quick ? 270 : 1080), shader(device) {
+        const size_t n = size_t(width) * height;
+        const double side = std::sqrt(share * double(n));
+        std::vector<float> normal;
+        for (uint32_t y = 0; y < height; ++y)
+            for (uint32_t x = 0; x < width; ++x) {
+                const double u = (x - 0.5 * width) / side * 2, v = (0.5 * height - y) / side * 2;
+                const bool inside = std::abs(u) < 1 && std::abs(v) < 1;
+                const double px = 8.4 * u, py = 8.4 * v, pz = std::sqrt(std::max(144 - px * px - py * py, 1.0));
+                for (const double c : {px, py, inside ? pz : -10.0}) position.push_back(float(c));
+                const double length = std::hypot(px, py, pz);
+                for (const double c : {px, py, pz}) normal.push_back(float(c / length));
+                id.push_back(inside ? 2 : 1);
+            }
+        target = Buffer(device, n * 12);
+        const PelEye eye = [] {
+            PelEye e = pelEyeDefaults();
+            for (float& c : e.irisColor) c = irisColor;
+            return e;
+        }();
+        desc = pelEyeLutDescOf(&eye);
+        caustics = Lut(device, desc);
+        PelMaterial skin = pelMaterialDefaults();
+        skin.scattering = PEL_SCATTERING_NONE;
+        PelMaterial sclera = skin;
+        skin.specular = 1;
+        for (float& c : sclera.albedo) c = scleraAlbedo;
+        PelCamera from = pelCameraDefaults();
+        PelLight light = pelLightDefaults();
+        for (int i = 0; i < 3; ++i) from.position[i] = float(camera[i]), light.toLight[i] = float(toLight[i]);
+        const Buffer texture(device, std::vector<float>(4 * 4 * 3, 1.0f));
+        shader.set(from).setMaterial(1, skin).setMaterial(2, sclera).setEye(2, eye, caustics);
+        shader.setIrisTexture(2, imageDesc(texture, PEL_FORMAT_RGB32F, 4, 4));
+        shader.set(std::vector{light});
+        const auto set = [&](PelImageSlot slot, const Buffer& image, PelFormat format) {
+            shader.set(slot, imageDesc(image, format, width, height));
+        };
+        set(PEL_SLOT_RADIANCE, target, PEL_FORMAT_RGB32F);
+        set(PEL_SLOT_POSITION, Buffer(device, position), PEL_FORMAT_RGB32F);
+        set(PEL_SLOT_NORMAL_SHADING, Buffer(device, normal), PEL_FORMAT_RGB32F);
+        set(PEL_SLOT_MATERIAL, Buffer(device, id), PEL_FORMAT_R8_UINT);
+        shader.commit();
+    }
+
+    // Irradiance on the iris by the table, between texels and slices as section 13 says.
+    double onIris(const std::vector<float>& texels, const reference::Eye& eye, double x, double y) const {
+        const auto between = [](double at, double last, uint32_t& first) {
+            at = std::clamp(at, 0.0, last);
+            first = uint32_t(std::min(at, std::max(last - 1, 0.0)));
+            return at - first;
+        };
+        uint32_t i, j, k;
+        const double fx = between((x / eye.iris + 1) / 2 * desc.width - 0.5, desc.width - 1.0, i),
+                     fy = between(std::abs(y) / eye.iris * desc.height - 0.5, desc.height - 1.0, j),
+                     fz = between(std::acos(toLight[2]) / largestAngle(eye) * (desc.depth - 1),
+                                  desc.depth - 1.0, k);
+        double sum = 0;
+        for (uint32_t corner = 0; corner < 8; ++corner) {
+            const uint32_t a = corner & 1, b = corner >> 1 & 1, c = corner >> 2;
+            const size_t texel = (size_t(k + c) * desc.height + j + b) * desc.width + i + a;
+            sum += (a ? fx : 1 - fx) * (b ? fy : 1 - fy) * (c ? fz : 1 - fz) * texels[3 * texel];
+        }
+        return sum;
+    }
+
+    Error error(int samples) const {
+        const reference::Eye eye = adult();
+        const std::vector<float> out = target.readAll<float>(), texels = caustics.read<float>(PEL_LUT_FLOAT);
+        const Vec3 l{toLight[0], toLight[1], toLight[2]}, from{camera[0], camera[1], camera[2]};
+        std::mt19937 random(1);
+        ErrorSum sum;
+        for (int s = 0; s < samples;) {
+            const size_t i = random() % id.size();
+            if (id[i] != 2) continue;
+            ++s;
+            const Vec3 p{position[3 * i], position[3 * i + 1], position[3 * i + 2]};
+            const Vec3 v = reference::normalized(from - p), ball = reference::normalized(p);
+            const reference::EyeHit h = traceEye(eye, from, -1.0 * v);
+            const Vec3 n = h.share > 0 ? reference::normalized((1 - h.share) * ball +
+                                                               h.share * eye.corneaNormal(h.point.x, h.point.y))
+                                       : ball;
+            double expected = (1 - h.share) * scleraAlbedo * std::max(0.0, dot(ball, l)) +
+                              tearGloss(n, l, v, eye.tearRoughness, eye.nTear);
+            if (h.share > 0)
+                expected += h.share * irisVisible(eye, h) * h.transmittance / (eye.nAqueous * eye.nAqueous) *
+                            irisColor * onIris(texels, eye, h.px, h.py);
+            sum.add(out[3 * i] - expected);
+        }
+        return sum.result();
+    }
+};
+
+}  // namespace
+
+std::vector<Factory> eyeCases(const Device& device, Size size) {
+    const auto frame = [=] {
+        const auto made = std::make_shared<EyeFrame>(device, size);
+        Case c;
+        c.what = std::to_string(made->width) + "x" + std::to_string(made->height) + ", 5 % an eye";
+        c.items = double(made->width) * made->height;
+        c.unit = "pixels";
+        c.run = [=] { made->shader.execute(); };
+        const int samples = size.quick ? 200 : 1000;
+        c.error = [=] { return made->error(samples); };
+        c.truth = "the tracer in double precision with the same table, at drawn pixels of the eye; absolute";
+        return c;
+    };
+    return {{"table-eye", "tables", [=] { return tableCase(device, size); }}, {"shade-eye", "shading", frame}};
+}
+
+}  // namespace pellucid::bench
