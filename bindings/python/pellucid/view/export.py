@@ -78,7 +78,7 @@ def snippet(session: Session, look: Look) -> str:
     lines = ['#include <pellucid/pellucid.hpp>', "", "void setLook(pellucid::Shader& shader) {"]
     if skin.profile is not None:
         made = ("pellucid::Profile::named(" + json.dumps(look.profile) + ")" if look.profile != "custom" else
-                "pellucid::Profile::burleyDistance({" + ", ".join(f"{cpp_float(d)}" for d in look.distance) + "}, \"custom\")")
+                "pellucid::Profile::burleyDistance({" + ", ".join(f"{cpp_float(d)}" for d in look.distance) + "})")
         lines.append(f"    const pellucid::Profile profile = {made};  // mm")
     lines += ["    PelMaterial skin = pelMaterialDefaults();", f"    skin.scattering = PEL_SCATTERING_{skin.scattering.name};"]
     if skin.profile is not None:
