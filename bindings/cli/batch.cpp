@@ -1,7 +1,5 @@
 // pellucid batch: makes the look-up tables of a manifest that are not there yet. A file is named by what was
 // asked for, holds a check sum, and appears complete or not at all.
-#include <unistd.h>
-
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -15,6 +13,7 @@
 #include "io/file_error.h"
 #include "io/lut/batch_index.h"
 #include "io/lut/batch_run.h"
+#include "system/process.h"
 
 namespace pellucid::cli {
 namespace {
@@ -70,7 +69,7 @@ class Display {
 
   private:
     const size_t all_;
-    const bool terminal_ = isatty(2);
+    const bool terminal_ = pel::system::errorsAreSeen();
     const double start_ = seconds();
     double spoken_ = start_;
     std::deque<std::pair<double, size_t>> past_{{start_, 0}};

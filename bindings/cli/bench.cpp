@@ -1,7 +1,5 @@
 // pellucid bench: every operation on every device, its time and its error; bench compare: two reports against
 // each other.
-#include <unistd.h>
-
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -15,6 +13,7 @@
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/input_file.h"
+#include "system/process.h"
 
 namespace pellucid::cli {
 namespace {
@@ -99,7 +98,7 @@ void measure(const Arguments& a) {
     double deviceMilliseconds = 0;
     for (const std::string& selector : chosen) {
         bench::Request request = requestOf(a, selector);
-        request.command = std::filesystem::read_symlink("/proc/self/exe").string();
+        request.command = pel::system::programFile();
         request.progress = [&](const std::string& text) {
             std::fprintf(stderr, "device %s: %s\n", selector.c_str(), text.c_str());
         };

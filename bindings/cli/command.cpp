@@ -1,12 +1,12 @@
 #include "command.h"
 
-#include <unistd.h>
-
 #include <atomic>
 #include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
+
+#include "system/process.h"
 
 namespace pellucid::cli {
 namespace {
@@ -39,7 +39,7 @@ Run::~Run() {
 int Run::onProgress(void* user, double fraction, const char* what) {
     Run& run = *static_cast<Run*>(user);
     const std::chrono::duration<double> since = std::chrono::steady_clock::now() - run.start_;
-    if (isatty(2) && since.count() > 1) {
+    if (pel::system::errorsAreSeen() && since.count() > 1) {
         std::fprintf(stderr, "\r%3.0f %% %-60.60s", fraction * 100, what);
         run.progressShown_ = fraction < 1;
         if (fraction >= 1) std::fputs("\n", stderr);

@@ -11,6 +11,7 @@
 #include "io/file_error.h"
 #include "mesh_curvature.h"
 #include "stages.h"
+#include "system/process.h"
 
 namespace pellucid::cli {
 namespace {
@@ -20,7 +21,7 @@ std::string standardHead() {
     const char* named = std::getenv("PELLUCID_DEMO_MESH");
     if (named && *named) return named;
     std::error_code error;
-    const std::filesystem::path bin = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+    const std::filesystem::path bin = std::filesystem::path(pel::system::programFile()).parent_path();
     for (const char* folder : {"../share/pellucid/heads", "../../../data/heads"}) {  // installed; build/PRESET/bin
         const std::filesystem::path head = bin / folder / "head_female.obj";
         if (std::filesystem::exists(head, error)) return head.lexically_normal().string();

@@ -1,7 +1,4 @@
 // The `pellucid` command. Exit codes: 0 done, 2 wrong use, 3 bad input file, 4 no device or device failure.
-#include <fcntl.h>
-
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -9,6 +6,7 @@
 #include "command.h"
 #include "io/file_error.h"
 #include "io/spelling.h"
+#include "system/process.h"
 
 using namespace pellucid;
 using namespace pellucid::cli;
@@ -44,19 +42,10 @@ int finish(int code) {
                    : fail(exitBadInput, "standard output cannot be written: the report is not complete");
 }
 
-// Opens file descriptors 0 to 2 if they are closed. Otherwise the first file opened would receive everything
-// that is printed. Writing to one that was closed still fails.
-void holdStandardStreams() {
-    for (int fd = 0; fd < 3; ++fd)
-        if (::fcntl(fd, F_GETFD) < 0 && ::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY) != fd)
-            std::exit(exitWrongUse);
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-    holdStandardStreams();
-    std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes becomes an error like a full disk
+    if (!pel::system::prepareStreams()) return exitWrongUse;
     CLI::App app("Subsurface scattering for deferred renderers on OpenCL", "pellucid");
     app.require_subcommand(1);
     app.set_version_flag("--version", std::to_string(PEL_VERSION_MAJOR) + "." + std::to_string(PEL_VERSION_MINOR) +

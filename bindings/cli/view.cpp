@@ -1,11 +1,8 @@
 // pellucid view and pellucid gallery: of the Python package, which this hands everything over to.
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
 
 #include "command.h"
+#include "system/process.h"
 
 namespace pellucid::cli {
 namespace {
@@ -25,11 +22,8 @@ void start(const char* module, const std::vector<std::string>& arguments) {
     const std::string python = named && *named ? named : "python3";
     std::vector<std::string> words{python, "-c", starter, module};
     words.insert(words.end(), arguments.begin(), arguments.end());
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    execvp(python.c_str(), argv.data());
-    throw UsageError(python + " cannot be started: " + std::strerror(errno) +
+    const std::string why = pel::system::becomeProgram(words);
+    throw UsageError(python + " cannot be started: " + why +
                      "; PELLUCID_PYTHON names the Python that has the package");
 }
 

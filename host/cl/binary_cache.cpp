@@ -1,13 +1,11 @@
 #include "cl/binary_cache.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <vector>
 
 #include "cl/platform.h"
+#include "system/process.h"
 
 namespace pel::cl {
 namespace {
@@ -33,20 +31,11 @@ uint64_t limitBytes() {
     return uint64_t(value) << 20;
 }
 
-// A CPU's name does not tell which instructions it has: virtual machines hide some of them.
-std::string instructionSet() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);)
-        if (line.starts_with("flags") || line.starts_with("Features")) return line;
-    return {};
-}
-
 // Settings of drivers that change what they compile. Settings that say where it is kept are left out.
 std::string settings() {
     static constexpr const char* prefixes[] = {"CL_CONFIG_", "POCL_", "RUSTICL_", "LP_", "GALLIVM_", "IGC_"};
     std::vector<std::string> found;
-    for (char** entry = environ; entry && *entry; ++entry) {
-        const std::string text = *entry;
+    for (const std::string& text : system::environment()) {
         const std::string name = text.substr(0, text.find('='));
         const bool theirs = std::any_of(std::begin(prefixes), std::end(prefixes),
                                         [&](const char* prefix) { return name.starts_with(prefix); });
@@ -64,7 +53,7 @@ std::string describeBuilder(cl_device_id device) {
     for (const cl_device_info what :
          {CL_DEVICE_NAME, CL_DEVICE_VENDOR, CL_DEVICE_VERSION, CL_DRIVER_VERSION, CL_DEVICE_EXTENSIONS})
         all.addPart(infoString(device, what));
-    all.addPart(platformName(device)).addPart(instructionSet()).addPart(settings());
+    all.addPart(platformName(device)).addPart(system::instructionSet()).addPart(settings());
     return all.text();
 }
 

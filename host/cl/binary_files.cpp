@@ -1,19 +1,16 @@
 #include "cl/binary_files.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
 
 #include "cl/error.h"
+#include "cl/private_file.h"
 #include "cl/private_folder.h"
+#include "system/process.h"
 
 namespace pel::cl {
 namespace fs = std::filesystem;
@@ -37,40 +34,6 @@ Header headerOf(const Digest& name, const std::string& binary) {
     header.checkSum[0] = sum.high(), header.checkSum[1] = sum.low();
     return header;
 }
-
-class File {
-  public:
-    File(const fs::path& path, int flags) : fd_(::open(path.c_str(), flags | O_CLOEXEC, 0600)) {}
-    ~File() {
-        if (fd_ >= 0) ::close(fd_);
-    }
-    File(const File&) = delete;
-    int fd() const { return fd_; }
-    explicit operator bool() const { return fd_ >= 0; }
-
-    bool read(void* to, size_t bytes) const {
-        return whole(bytes,
-                     [&](size_t done) { return ::read(fd_, static_cast<char*>(to) + done, bytes - done); });
-    }
-    bool write(const void* from, size_t bytes) const {
-        return whole(bytes, [&](size_t done) {
-            return ::write(fd_, static_cast<const char*>(from) + done, bytes - done);
-        });
-    }
-
-  private:
-    template <class Some>
-    static bool whole(size_t bytes, const Some& some) {
-        for (size_t done = 0; done < bytes;) {
-            const ssize_t now = some(done);
-            if (now < 0 && errno == EINTR) continue;
-            if (now <= 0) return false;
-            done += size_t(now);
-        }
-        return true;
-    }
-    int fd_;
-};
 
 constexpr size_t nameLength = 36;  // 32 digits and ".bin"
 
@@ -96,17 +59,12 @@ fs::path binaryFolder() {
 
 std::optional<std::string> BinaryFiles::load(const Digest& name) const {
     if (!whyNotPrivate(folder_).empty()) return {};
-    const File file(pathOf(name), O_RDONLY | O_NONBLOCK);  // opening a pipe of that name would block
-    struct stat status {};
     Header header;
-    if (!file || ::fstat(file.fd(), &status) != 0 || !S_ISREG(status.st_mode) ||
-        !file.read(&header, sizeof header))
-        return {};
-    if (status.st_uid != ::geteuid() && status.st_uid != 0) return {};
-    if (uint64_t(status.st_size) != sizeof header + header.bytes || header.bytes > limit_) return {};
-    std::string binary(header.bytes, '\0');
-    if (!file.read(binary.data(), binary.size()) || header != headerOf(name, binary)) return {};
-    ::futimens(file.fd(), nullptr);  // the least recently used go first
+    const std::optional<std::string> file = readPrivateFile(pathOf(name), sizeof header + limit_);
+    if (!file || file->size() < sizeof header) return {};
+    std::memcpy(&header, file->data(), sizeof header);
+    std::string binary = file->substr(sizeof header);
+    if (header.bytes != binary.size() || header != headerOf(name, binary)) return {};
     return binary;
 }
 
@@ -116,19 +74,16 @@ bool BinaryFiles::store(const Digest& name, const std::string& binary) const {
     // Written under a temporary name and renamed when complete: other processes write and read the same
     // programs.
     static std::atomic<unsigned> counter{0};
-    const fs::path path = pathOf(name), temporary = folder_ / text(".", path.filename().string(), ".",
-                                                                   ::getpid(), "-", counter++, ".tmp");
-    {
-        const File file(temporary, O_WRONLY | O_CREAT | O_EXCL);
-        const Header header = headerOf(name, binary);
-        if (!file) return false;
-        if (!file.write(&header, sizeof header) || !file.write(binary.data(), binary.size())) {
-            ::unlink(temporary.c_str());
-            return false;
-        }
-    }
-    if (std::rename(temporary.c_str(), path.c_str()) != 0) {
-        ::unlink(temporary.c_str());
+    const fs::path path = pathOf(name),
+                   temporary = folder_ / text(".", path.filename().string(), ".", system::processId(), "-",
+                                              counter++, ".tmp");
+    const Header header = headerOf(name, binary);
+    if (!writePrivateFile(temporary, {reinterpret_cast<const char*>(&header), sizeof header}, binary))
+        return false;
+    std::error_code error;
+    fs::rename(temporary, path, error);
+    if (error) {
+        fs::remove(temporary, error);
         return false;
     }
     trim();

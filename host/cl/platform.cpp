@@ -1,17 +1,16 @@
 #include "cl/platform.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
 #include <optional>
 
+#include "cl/opencl_loader.h"
 #include "cl/pocl_cache.h"
+#include "cl/private_folder.h"
 #include "cl/process.h"
 
 namespace pel::cl {
@@ -30,10 +29,10 @@ std::string poclFolderTrouble() {
     if (!folder || !*folder) return {};
     std::error_code error;
     fs::create_directories(folder, error);
-    if (!error && ::access(folder, W_OK | X_OK) != 0) error.assign(errno, std::generic_category());
-    if (!error) return {};
+    const std::string why = error ? error.message() : whyNotWritable(folder);
+    if (why.empty()) return {};
     return text("; PoCL, where it is installed, says so too when POCL_CACHE_DIR, ", folder,
-                ", cannot be written to (", error.message(), "): name another folder, or none");
+                ", cannot be written to (", why, "): name another folder, or none");
 }
 
 template <class T>
@@ -178,6 +177,7 @@ uint32_t selectDevice(const char* selector) {
     }
     const std::vector<cl_device_id> ids = allDevices();
     if (ids.empty()) {
+        if (const std::string why = whyNoLoader(); !why.empty()) fail(PEL_ERROR_NO_DEVICE, why);
         const std::string trouble = poclFolderTrouble();
         if (!trouble.empty()) fail(PEL_ERROR_NO_DEVICE, "no OpenCL device was found", trouble);
         fail(PEL_ERROR_NO_DEVICE, missingPackage);

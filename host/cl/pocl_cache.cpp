@@ -1,13 +1,12 @@
 #include "cl/pocl_cache.h"
 
-#include <unistd.h>
-
 #include <cstdlib>
 #include <utility>
 
 #include "cl/error.h"
 #include "cl/private_folder.h"
 #include "cl/process.h"
+#include "system/process.h"
 
 namespace pel::cl {
 namespace fs = std::filesystem;
@@ -37,14 +36,15 @@ fs::path temporaryFolder(std::string& why) {
     const char* base = std::getenv("TMPDIR");
     for (const fs::path& parent : {fs::path(base ? base : ""), fs::path("/tmp"), fs::path("/dev/shm")}) {
         if (!parent.is_absolute()) continue;
-        std::string name = parent / "pellucid-pocl-XXXXXX";
-        if (!::mkdtemp(name.data())) {  // nobody else can enter it
+        const std::string name = system::makeTemporaryFolder(parent.string(), "pellucid-pocl-");
+        if (name.empty()) {
             why += text("; ", parent.string(), " takes no new folder");
             continue;
         }
         if (const std::string reason = whyNot(name); !reason.empty()) {
             why += "; " + reason;
-            ::rmdir(name.c_str());
+            std::error_code ignored;
+            fs::remove(name, ignored);
             continue;
         }
         folderInUse() = name;
@@ -83,14 +83,14 @@ void choosePoclCache() {
             fail(PEL_ERROR_DEVICE, "PoCL needs a folder for compiled kernels, and there is none: ", why,
                  ". Set POCL_CACHE_DIR to one");
         folderInUse() = folder;
-        ::setenv("POCL_CACHE_DIR", folder.c_str(), 1);
+        system::setVariable("POCL_CACHE_DIR", folder.string().c_str());
         setByUs = true;
     }
     chosen = true;
 }
 
 void poclCacheIsChosen() {
-    if (std::exchange(setByUs, false)) ::unsetenv("POCL_CACHE_DIR");
+    if (std::exchange(setByUs, false)) system::setVariable("POCL_CACHE_DIR", nullptr);
 }
 
 void checkPoclCache() {

@@ -1,7 +1,4 @@
 // Incomplete files of PoCL's cache: a disk was full, or a machine lost power.
-#include <elf.h>
-#include <sys/stat.h>
-
 #include <chrono>
 #include <cstring>
 #include <fstream>
@@ -12,14 +9,28 @@ namespace pel::cl {
 namespace fs = std::filesystem;
 namespace {
 
+// The head of a 64-bit ELF file (System V ABI, "ELF Header"), which not every system has in a header.
+struct ElfHeader {
+    unsigned char identity[16];  // begins with a magic number; [4] is 2 in 64-bit files
+    uint16_t kinds[2];
+    uint32_t version;
+    uint64_t entry, programs, sections;  // offsets, of the tables from the file's begin
+    uint32_t flags;
+    uint16_t size, programSize, programCount, sectionSize, sectionCount, names;
+};
+static_assert(sizeof(ElfHeader) == 64);
+
 // Whether a shared library has its section headers, which come last.
 bool wholeElf(std::ifstream& file, uint64_t size) {
-    Elf64_Ehdr header;
-    if (!file.read(reinterpret_cast<char*>(&header), sizeof header) ||
-        std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0)
+    ElfHeader header;
+    if (!file.read(reinterpret_cast<char*>(&header), sizeof header) || std::memcmp(header.identity,
+                                                                                   "\x7f"
+                                                                                   "ELF",
+                                                                                   4) != 0)
         return false;
-    if (header.e_ident[EI_CLASS] != ELFCLASS64) return true;  // another kind of file
-    return header.e_shoff <= size && uint64_t(header.e_shnum) * header.e_shentsize <= size - header.e_shoff;
+    if (header.identity[4] != 2) return true;  // another kind of file
+    return header.sections <= size &&
+           uint64_t(header.sectionCount) * header.sectionSize <= size - header.sections;
 }
 
 // LLVM bitcode (llvm.org/docs/BitCodeFormat.html): a magic number, then blocks up to the end of the file. A

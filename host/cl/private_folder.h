@@ -19,6 +19,9 @@ bool makePrivateFolder(const std::filesystem::path& folder);
 // rename files of other users there (as in /tmp).
 std::string whyNotPrivate(const std::filesystem::path& folder);
 
+// The system's reason why this process cannot make files in the folder; "" if it can.
+std::string whyNotWritable(const std::filesystem::path& folder);
+
 // Bytes that can still be written there; 0 if none.
 uint64_t roomIn(const std::filesystem::path& folder);
 

@@ -1,6 +1,4 @@
 // With PELLUCID_CHECK_LEFT set, a process that ends with handles that nobody released says so, and ends with 1.
-#include <unistd.h>
-
 #include <cstdio>
 #include <cstdlib>
 
@@ -17,7 +15,7 @@ namespace {
     std::fprintf(stderr, "\npellucid: %llu handles were never released; %llu objects are left\n",
                  static_cast<unsigned long long>(handles), static_cast<unsigned long long>(objects));
     std::fflush(nullptr);
-    ::_exit(1);
+    std::_Exit(1);
 }
 
 }  // namespace

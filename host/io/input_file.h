@@ -19,6 +19,9 @@ std::string tooLarge(double bytes, uint64_t limit);
 // some thirty times as much.
 inline constexpr uint64_t textLimit = uint64_t{16} << 20;
 
+// Throws FileError: a file of so many bytes is more than `limit`.
+[[noreturn]] void refuseTooLarge(const std::string& path, uint64_t bytes, uint64_t limit);
+
 // The whole file. Throws FileError if it is missing, unreadable, not a regular file (a folder, a pipe, a
 // device), or larger than `limit` bytes. The size is checked before anything is read.
 std::string readWholeFile(const std::string& path, uint64_t limit = inputLimit());

@@ -18,7 +18,7 @@ std::string typeName(const toml::node& node) {
     return text.str();
 }
 
-std::string quoted(std::string_view text) {
+std::string inQuotes(std::string_view text) {
     std::string out(1, '\'');
     out += text;
     out += '\'';
@@ -48,7 +48,7 @@ int TomlReader::lineOf(std::string_view key) const {
 }
 
 void TomlReader::fail(std::string_view key, const std::string& message) const {
-    throw FileError(file_, quoted(key) + " in " + where_ + " " + message, lineOf(key));
+    throw FileError(file_, inQuotes(key) + " in " + where_ + " " + message, lineOf(key));
 }
 
 const toml::node* TomlReader::find(std::string_view key) {
@@ -171,9 +171,9 @@ void TomlReader::choiceIndex(std::string_view key, uint32_t& index, std::span<co
             index = static_cast<uint32_t>(i);
             return;
         }
-        list.append(i ? ", " : "").append(quoted(names[i]));
+        list.append(i ? ", " : "").append(inQuotes(names[i]));
     }
-    fail(key, "is " + quoted(given) + "; one of " + list + " would be right");
+    fail(key, "is " + inQuotes(given) + "; one of " + list + " would be right");
 }
 
 const toml::table* TomlReader::subTable(std::string_view key) {
@@ -251,7 +251,7 @@ void TomlReader::finish() const {
         std::string list;
         for (const std::string& k : known_) list += (list.empty() ? "" : ", ") + k;
         fail(given, nearest.empty() ? "is not known; known: " + list
-                                    : "is not known; did you mean " + quoted(nearest) + "? Known: " + list);
+                                    : "is not known; did you mean " + inQuotes(nearest) + "? Known: " + list);
     }
 }
 

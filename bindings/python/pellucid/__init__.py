@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from . import _native
+from . import _driver, _native
 from ._arrays import Image, Vertices
 from ._errors import PellucidError
 from ._types import *  # noqa: F401,F403
@@ -24,6 +24,8 @@ from .scatter import Scatter
 from .scene import Scene, Shaded, load_scene, shade
 from .shader import Shader, warm_up_programs
 from .texture_scatter import TextureScatter
+
+_driver.offer()
 
 
 def __getattr__(name: str) -> Any:

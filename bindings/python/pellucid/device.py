@@ -1,7 +1,6 @@
 """Devices, events and buffers."""
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import sys
 from collections.abc import Callable, Generator, Iterable, Iterator
@@ -172,6 +171,8 @@ class Event(OfThisProcess):
 
     def __await__(self) -> Generator[Any, None, None]:
         """`await event` waits on a thread of the event loop's, which runs on meanwhile."""
+        import asyncio  # which takes longer to load than most of this package
+
         return asyncio.get_running_loop().run_in_executor(None, self.wait).__await__()
 
     @property

@@ -85,8 +85,12 @@ const Attribute* Image::attribute(const std::string& name) const {
 }
 
 namespace {
+#ifdef PELLUCID_PNG_ONLY
+const std::initializer_list<std::string_view> pictureExtensions{"png"};
+#else
 const std::initializer_list<std::string_view> pictureExtensions{"png", "jpg", "jpeg", "bmp", "tga"};
-}
+#endif
+}  // namespace
 
 bool isPicture(const std::string& path) {
     return std::ranges::find(pictureExtensions, extensionOf(path)) != pictureExtensions.end();

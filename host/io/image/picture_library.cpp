@@ -1,13 +1,20 @@
 #include "io/image/picture_library.h"
 
-#include <dlfcn.h>
 #include <pellucid/pellucid.h>
 
 #include <cstring>
 
 #include "io/file_error.h"
+#include "system/library.h"
 
 namespace pellucid::io {
+#ifdef PELLUCID_PNG_ONLY
+
+const PictureLibrary& pictureLibrary(const std::string&) {
+    return pngPictures;
+}
+
+#else
 namespace {
 
 struct Loaded {
@@ -15,26 +22,21 @@ struct Loaded {
     std::string why;
 };
 
-// Beside libpellucid, wherever that was found: in a build, in an installed tree that may have been moved, in the Python package.
-std::string besideLibrary() {
-    Dl_info where{};
-    if (!::dladdr(reinterpret_cast<const void*>(&pelVersion), &where) || !where.dli_fname) return "";
-    const std::string file = where.dli_fname;
-    const size_t slash = file.rfind('/');
-    return slash == std::string::npos ? "" : file.substr(0, slash + 1) + PELLUCID_PICTURES;
-}
-
 Loaded load() {
     Loaded loaded;
+    // Beside libpellucid or in its own folder there, wherever that was found: in a build, in an installed tree that may have been moved, in the Python package.
     // By name alone, the program's own search path decides.
-    for (const std::string& file : {besideLibrary(), std::string(PELLUCID_PICTURES)}) {
-        if (file.empty()) continue;
-        void* module = ::dlopen(file.c_str(), RTLD_LAZY | RTLD_LOCAL);
+    const std::string beside = pel::system::folderOf(reinterpret_cast<const void*>(&pelVersion));
+    for (const std::string& folder : {beside, beside + "pellucid/", std::string()}) {
+        const std::string file = folder + PELLUCID_PICTURES;
+        std::string why;
+        void* const module = pel::system::openLibrary(file, why);
         if (!module) {
-            loaded.why += (loaded.why.empty() ? "" : "; ") + std::string(::dlerror());
+            loaded.why += (loaded.why.empty() ? "" : "; ") + why;
             continue;
         }
-        const auto* library = static_cast<const PictureLibrary*>(::dlsym(module, "pellucidPictures"));
+        const auto* library =
+            static_cast<const PictureLibrary*>(pel::system::symbolIn(module, "pellucidPictures"));
         if (library && std::strcmp(library->version, PELLUCID_VERSION) == 0) return {library, ""};
         loaded.why = file + " belongs to another version of pellucid";
         return loaded;
@@ -52,4 +54,5 @@ const PictureLibrary& pictureLibrary(const std::string& path) {
     return *loaded.library;
 }
 
+#endif
 }  // namespace pellucid::io

@@ -27,7 +27,10 @@ struct PictureLibrary {
     int (*textWidth)(const std::string& text, int size);  // pixels
 };
 
-// Loads the module the first time. Throws FileError, which names `path`, if it cannot be loaded.
+// PNG files alone, by libpng; other files are a FileError.
+extern const PictureLibrary pngPictures;
+
+// Loads the module the first time; in builds without OpenImageIO it is pngPictures. Throws FileError, which names `path`, if it cannot be loaded.
 const PictureLibrary& pictureLibrary(const std::string& path);
 
 }  // namespace pellucid::io

@@ -1,7 +1,5 @@
 #include "io/lut/batch_run.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -11,6 +9,7 @@
 #include "io/input_file.h"
 #include "io/lut/batch_entry.h"
 #include "io/lut/lut_exr.h"
+#include "system/process.h"
 
 namespace pellucid::io {
 namespace {
@@ -18,15 +17,9 @@ namespace {
 // How many entries can be in flight with the file handles that are left. Each needs handles for its folder,
 // its file and its lock, and the driver needs some for its programs.
 size_t jobsForHandles() {
-    constexpr rlim_t perJob = 3, others = 32;
-    rlimit limit{};
-    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return SIZE_MAX;
-    rlim_t taken = 0;
-    std::error_code error;
-    for (std::filesystem::directory_iterator at("/proc/self/fd", error), end; !error && at != end;
-         at.increment(error))
-        ++taken;
-    return limit.rlim_cur > taken + others ? size_t((limit.rlim_cur - taken - others) / perJob) : 0;
+    constexpr size_t perJob = 3, others = 32;
+    const size_t left = pel::system::filesLeft();
+    return left > others ? (left - others) / perJob : 0;
 }
 
 }  // namespace

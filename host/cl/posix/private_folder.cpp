@@ -5,7 +5,9 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 
 #include "cl/error.h"
 
@@ -69,6 +71,10 @@ std::string whyNotPrivate(const fs::path& folder) {
         }
     }
     return {};
+}
+
+std::string whyNotWritable(const fs::path& folder) {
+    return ::access(folder.c_str(), W_OK | X_OK) == 0 ? "" : std::strerror(errno);
 }
 
 uint64_t roomIn(const fs::path& folder) {

@@ -1,0 +1,68 @@
+"""OpenCL is found at run time: by the system's loader, by a driver itself, or not at all."""
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from pellucid import _driver
+
+COMPUTE = """
+import numpy as np, pellucid as pel
+print(pel.Device().info.platform)
+print(np.asarray(pel.Lut.curvature(pel.Device(), width=4, height=4).read()).tobytes().hex())
+"""
+
+
+def python(code, **variables):
+    return subprocess.run([sys.executable, "-c", code], env={**os.environ, **variables}, capture_output=True, text=True, timeout=120)
+
+
+def driver_of(platform):
+    """The library of an installed driver, by its file in the folder of drivers."""
+    for file in Path("/etc/OpenCL/vendors").glob("*.icd"):
+        if platform in file.name:
+            return file.read_text().strip()
+    pytest.skip(f"{platform} is not installed")
+
+
+def test_without_a_library_the_package_loads_and_says_what_to_install():
+    told = python("import pellucid; print(pellucid.devices()); pellucid.Device()", PELLUCID_OPENCL="/nowhere/libOpenCL.so.1")
+    assert told.stdout.strip() == "[]"
+    for word in ("/nowhere/libOpenCL.so.1", "apt-get install ocl-icd-libopencl1", "pellucid[cpu]", "PELLUCID_OPENCL"):
+        assert word in told.stderr
+
+
+def test_a_library_that_is_none_of_opencl_is_told():
+    told = python("import pellucid; pellucid.Device()", PELLUCID_OPENCL="libm.so.6")
+    assert "libm.so.6 is no library of OpenCL" in told.stderr
+
+
+def test_the_next_one_of_the_list_is_taken():
+    assert python(COMPUTE, PELLUCID_OPENCL="/nowhere.so:libm.so.6::libOpenCL.so.1").returncode == 0
+
+
+def test_a_driver_without_a_loader_computes_the_same_bits():
+    by_loader = python(COMPUTE, PELLUCID_DEVICE="Portable")
+    by_itself = python(COMPUTE, PELLUCID_OPENCL=driver_of("pocl"), PELLUCID_DEVICE="Portable")
+    assert by_itself.returncode == 0, by_itself.stderr
+    assert by_itself.stdout == by_loader.stdout and "Portable Computing Language" in by_itself.stdout
+
+
+def test_the_driver_of_the_extra_comes_last(monkeypatch, tmp_path):
+    monkeypatch.delenv("PELLUCID_OPENCL", raising=False)
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    (tmp_path / "lib").mkdir()
+    before = dict(os.environ)
+    _driver.offer()
+    here = os.environ.get("PELLUCID_OPENCL", "")  # another environment may have it
+    assert str(tmp_path) not in here
+    monkeypatch.delenv("PELLUCID_OPENCL", raising=False)
+    driver = tmp_path / "lib/libintelocl.so"
+    driver.touch()
+    _driver.offer()
+    assert os.environ["PELLUCID_OPENCL"].split(":") == ["libOpenCL.so.1", "libOpenCL.so", str(driver)]
+    monkeypatch.setenv("PELLUCID_OPENCL", "mine.so")
+    _driver.offer()
+    assert os.environ["PELLUCID_OPENCL"] == "mine.so" and set(os.environ) - set(before) <= {"PELLUCID_OPENCL"}

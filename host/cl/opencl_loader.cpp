@@ -1,0 +1,187 @@
+// In the place of libOpenCL: the functions of OpenCL that Pellucid calls. Only clGetPlatformIDs needs a library, the system's loader or a
+// driver itself. Every object of a driver begins with a pointer to the driver's table of functions (cl_khr_icd), and all other calls go
+// through it, as loaders do. So objects that a host made by another loader work, too.
+#include "cl/opencl_loader.h"
+
+#define CL_USE_DEPRECATED_OPENCL_1_0_APIS  // the tables list them
+#define CL_USE_DEPRECATED_OPENCL_1_1_APIS
+#include <CL/cl.h>
+#include <CL/cl_icd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "system/library.h"
+
+namespace pel::cl {
+namespace {
+
+#ifdef _WIN32
+constexpr char separator = ';';
+constexpr const char* usual = "OpenCL.dll";
+constexpr const char* advice = "install the driver of your GPU's or CPU's vendor, which brings it";
+#else
+constexpr char separator = ':';
+constexpr const char* usual = "libOpenCL.so.1:libOpenCL.so";
+constexpr const char* advice =
+    "install it (Debian and Ubuntu: apt-get install ocl-icd-libopencl1, Fedora: dnf install ocl-icd) and a "
+    "driver, for example PoCL "
+    "for the CPU (pocl-opencl-icd, pocl); in Python, pip install 'pellucid[cpu]' brings both";
+#endif
+
+using GetPlatforms = cl_int(CL_API_CALL*)(cl_uint, cl_platform_id*, cl_uint*);
+
+struct Library {
+    void* handle = nullptr;
+    GetPlatforms getPlatforms = nullptr;
+    std::string why;  // none was found
+};
+
+std::vector<std::string> namesOf(const std::string& list) {
+    std::vector<std::string> names;
+    for (size_t from = 0, to; from < list.size(); from = to + 1) {
+        to = std::min(list.find(separator, from), list.size());
+        if (to > from) names.push_back(list.substr(from, to - from));
+    }
+    return names;
+}
+
+GetPlatforms entryOf(void* library) {
+    if (void* const entry = system::symbolIn(library, "clGetPlatformIDs"))
+        return reinterpret_cast<GetPlatforms>(entry);
+    // A driver without a loader's functions.
+    using Extension = void*(CL_API_CALL*)(const char*);
+    const auto extension =
+        reinterpret_cast<Extension>(system::symbolIn(library, "clGetExtensionFunctionAddress"));
+    return extension ? reinterpret_cast<GetPlatforms>(extension("clIcdGetPlatformIDsKHR")) : nullptr;
+}
+
+// The first library with a platform, else the first one.
+Library find() {
+    const char* const named = std::getenv("PELLUCID_OPENCL");
+    const std::string list = named && *named ? named : usual;
+    Library found;
+    for (const std::string& name : namesOf(list)) {
+        std::string why;
+        void* const library = system::openLibrary(name, why);
+        const GetPlatforms entry = library ? entryOf(library) : nullptr;
+        if (!entry) {
+            found.why += (found.why.empty() ? "" : "; ") + (library ? name + " is no library of OpenCL" : why);
+            continue;
+        }
+        cl_uint count = 0;
+        const bool some = entry(0, nullptr, &count) == CL_SUCCESS && count > 0;
+        if (some || !found.getPlatforms) {
+            found.handle = library;
+            found.getPlatforms = entry;
+        }
+        if (some) break;
+    }
+    if (found.getPlatforms)
+        found.why.clear();
+    else
+        found.why = "OpenCL's library cannot be loaded (" + found.why + "): " + advice +
+                    (named && *named ? "; PELLUCID_OPENCL names the libraries to try" : "");
+    return found;
+}
+
+const Library& library() {
+    static const Library& found = *new Library(find());  // never destroyed: devices are used while the process ends
+    return found;
+}
+
+#ifdef _WIN32
+// By name: objects of Wine's OpenCL.dll are those of the Linux driver, whose functions are called in another way.
+template <class Function>
+Function* named(const char* name) {
+    return reinterpret_cast<Function*>(system::symbolIn(library().handle, name));
+}
+#else
+// The table of functions of an object's driver.
+template <class Object>
+const cl_icd_dispatch& of(Object object) {
+    return **reinterpret_cast<const cl_icd_dispatch* const*>(object);
+}
+#endif
+
+}  // namespace
+
+std::string whyNoLoader() {
+    return library().why;
+}
+
+}  // namespace pel::cl
+
+#ifdef _WIN32
+#define PEL_FUNCTION(object, name) pel::cl::named<decltype(::name)>(#name)
+#else
+#define PEL_FUNCTION(object, name) pel::cl::of(object).name
+#endif
+
+extern "C" {
+
+cl_int CL_API_CALL clGetPlatformIDs(cl_uint count, cl_platform_id* platforms, cl_uint* all) {
+    const auto entry = pel::cl::library().getPlatforms;
+    return entry ? entry(count, platforms, all) : CL_PLATFORM_NOT_FOUND_KHR;
+}
+
+cl_context CL_API_CALL clCreateContext(const cl_context_properties* a, cl_uint b, const cl_device_id* c,
+                                       void(CL_CALLBACK* d)(const char*, const void*, size_t, void*), void* e,
+                                       cl_int* f) {
+    return PEL_FUNCTION(c[0], clCreateContext)(a, b, c, d, e, f);
+}
+
+cl_int CL_API_CALL clWaitForEvents(cl_uint a, const cl_event* b) {
+    return PEL_FUNCTION(b[0], clWaitForEvents)(a, b);
+}
+
+// The compiler compares the parameters with those of CL/cl.h. The first one is the object.
+// clang-format off
+#define PEL_CALL(Result, name, parameters, arguments) \
+    Result CL_API_CALL name parameters { return PEL_FUNCTION(a, name) arguments; }
+PEL_CALL(cl_int, clGetPlatformInfo, (cl_platform_id a, cl_platform_info b, size_t c, void* d, size_t* e), (a, b, c, d, e))
+PEL_CALL(cl_int, clGetDeviceIDs, (cl_platform_id a, cl_device_type b, cl_uint c, cl_device_id* d, cl_uint* e), (a, b, c, d, e))
+PEL_CALL(cl_int, clGetDeviceInfo, (cl_device_id a, cl_device_info b, size_t c, void* d, size_t* e), (a, b, c, d, e))
+PEL_CALL(cl_int, clRetainContext, (cl_context a), (a))
+PEL_CALL(cl_int, clReleaseContext, (cl_context a), (a))
+PEL_CALL(cl_int, clRetainCommandQueue, (cl_command_queue a), (a))
+PEL_CALL(cl_int, clReleaseCommandQueue, (cl_command_queue a), (a))
+PEL_CALL(cl_int, clGetCommandQueueInfo, (cl_command_queue a, cl_command_queue_info b, size_t c, void* d, size_t* e), (a, b, c, d, e))
+PEL_CALL(cl_mem, clCreateBuffer, (cl_context a, cl_mem_flags b, size_t c, void* d, cl_int* e), (a, b, c, d, e))
+PEL_CALL(cl_int, clRetainMemObject, (cl_mem a), (a))
+PEL_CALL(cl_int, clReleaseMemObject, (cl_mem a), (a))
+PEL_CALL(cl_int, clGetMemObjectInfo, (cl_mem a, cl_mem_info b, size_t c, void* d, size_t* e), (a, b, c, d, e))
+PEL_CALL(cl_int, clSetMemObjectDestructorCallback, (cl_mem a, void (CL_CALLBACK* b)(cl_mem memobj, void* user_data), void* c), (a, b, c))
+PEL_CALL(cl_program, clCreateProgramWithSource, (cl_context a, cl_uint b, const char** c, const size_t* d, cl_int* e), (a, b, c, d, e))
+PEL_CALL(cl_program, clCreateProgramWithBinary, (cl_context a, cl_uint b, const cl_device_id* c, const size_t* d, const unsigned char** e, cl_int* f, cl_int* g), (a, b, c, d, e, f, g))
+PEL_CALL(cl_int, clRetainProgram, (cl_program a), (a))
+PEL_CALL(cl_int, clReleaseProgram, (cl_program a), (a))
+PEL_CALL(cl_int, clBuildProgram, (cl_program a, cl_uint b, const cl_device_id* c, const char* d, void (CL_CALLBACK* e)(cl_program program, void* user_data), void* f), (a, b, c, d, e, f))
+PEL_CALL(cl_int, clGetProgramInfo, (cl_program a, cl_program_info b, size_t c, void* d, size_t* e), (a, b, c, d, e))
+PEL_CALL(cl_int, clGetProgramBuildInfo, (cl_program a, cl_device_id b, cl_program_build_info c, size_t d, void* e, size_t* f), (a, b, c, d, e, f))
+PEL_CALL(cl_kernel, clCreateKernel, (cl_program a, const char* b, cl_int* c), (a, b, c))
+PEL_CALL(cl_int, clRetainKernel, (cl_kernel a), (a))
+PEL_CALL(cl_int, clReleaseKernel, (cl_kernel a), (a))
+PEL_CALL(cl_int, clSetKernelArg, (cl_kernel a, cl_uint b, size_t c, const void* d), (a, b, c, d))
+PEL_CALL(cl_int, clGetEventInfo, (cl_event a, cl_event_info b, size_t c, void* d, size_t* e), (a, b, c, d, e))
+PEL_CALL(cl_int, clRetainEvent, (cl_event a), (a))
+PEL_CALL(cl_int, clReleaseEvent, (cl_event a), (a))
+PEL_CALL(cl_int, clGetEventProfilingInfo, (cl_event a, cl_profiling_info b, size_t c, void* d, size_t* e), (a, b, c, d, e))
+PEL_CALL(cl_int, clFlush, (cl_command_queue a), (a))
+PEL_CALL(cl_int, clFinish, (cl_command_queue a), (a))
+PEL_CALL(cl_int, clEnqueueReadBuffer, (cl_command_queue a, cl_mem b, cl_bool c, size_t d, size_t e, void* f, cl_uint g, const cl_event* h, cl_event* i), (a, b, c, d, e, f, g, h, i))
+PEL_CALL(cl_int, clEnqueueWriteBuffer, (cl_command_queue a, cl_mem b, cl_bool c, size_t d, size_t e, const void* f, cl_uint g, const cl_event* h, cl_event* i), (a, b, c, d, e, f, g, h, i))
+PEL_CALL(cl_int, clEnqueueFillBuffer, (cl_command_queue a, cl_mem b, const void* c, size_t d, size_t e, size_t f, cl_uint g, const cl_event* h, cl_event* i), (a, b, c, d, e, f, g, h, i))
+PEL_CALL(cl_int, clEnqueueCopyBuffer, (cl_command_queue a, cl_mem b, cl_mem c, size_t d, size_t e, size_t f, cl_uint g, const cl_event* h, cl_event* i), (a, b, c, d, e, f, g, h, i))
+PEL_CALL(void*, clEnqueueMapBuffer, (cl_command_queue a, cl_mem b, cl_bool c, cl_map_flags d, size_t e, size_t f, cl_uint g, const cl_event* h, cl_event* i, cl_int* j), (a, b, c, d, e, f, g, h, i, j))
+PEL_CALL(cl_int, clEnqueueUnmapMemObject, (cl_command_queue a, cl_mem b, void* c, cl_uint d, const cl_event* e, cl_event* f), (a, b, c, d, e, f))
+PEL_CALL(cl_int, clEnqueueNDRangeKernel, (cl_command_queue a, cl_kernel b, cl_uint c, const size_t* d, const size_t* e, const size_t* f, cl_uint g, const cl_event* h, cl_event* i), (a, b, c, d, e, f, g, h, i))
+PEL_CALL(cl_int, clEnqueueMarkerWithWaitList, (cl_command_queue a, cl_uint b, const cl_event* c, cl_event* d), (a, b, c, d))
+PEL_CALL(cl_int, clEnqueueBarrierWithWaitList, (cl_command_queue a, cl_uint b, const cl_event* c, cl_event* d), (a, b, c, d))
+PEL_CALL(cl_command_queue, clCreateCommandQueue, (cl_context a, cl_device_id b, cl_command_queue_properties c, cl_int* d), (a, b, c, d))
+#undef PEL_CALL
+// clang-format on
+
+}  // extern "C"

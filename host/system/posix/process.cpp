@@ -1,0 +1,82 @@
+#include "system/process.h"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+extern char** environ;
+
+namespace pel::system {
+namespace fs = std::filesystem;
+
+unsigned long processId() {
+    return static_cast<unsigned long>(::getpid());
+}
+
+std::vector<std::string> environment() {
+    std::vector<std::string> all;
+    for (char** entry = environ; entry && *entry; ++entry) all.emplace_back(*entry);
+    return all;
+}
+
+void setVariable(const char* name, const char* value) {
+    value ? ::setenv(name, value, 1) : ::unsetenv(name);
+}
+
+// A CPU's name does not tell which instructions it has: virtual machines hide some of them.
+std::string instructionSet() {
+    std::ifstream file("/proc/cpuinfo");
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with("flags") || line.starts_with("Features")) return line;
+    return {};
+}
+
+std::string makeTemporaryFolder(const std::string& parent, const std::string& prefix) {
+    std::string name = (fs::path(parent) / (prefix + "XXXXXX")).string();
+    return ::mkdtemp(name.data()) ? name : "";  // nobody else can enter it
+}
+
+std::string programFile() {
+    std::error_code error;
+    return fs::read_symlink("/proc/self/exe", error).string();
+}
+
+bool errorsAreSeen() {
+    return ::isatty(2);
+}
+
+bool prepareStreams() {
+    std::signal(SIGXFSZ, SIG_IGN);
+    for (int fd = 0; fd < 3; ++fd)  // writing to one that was closed still fails
+        if (::fcntl(fd, F_GETFD) < 0 && ::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY) != fd)
+            return false;
+    return true;
+}
+
+std::string becomeProgram(const std::vector<std::string>& words) {
+    std::vector<char*> argv;
+    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    ::execvp(argv[0], argv.data());
+    return std::strerror(errno);
+}
+
+size_t filesLeft() {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return SIZE_MAX;
+    rlim_t taken = 0;
+    std::error_code error;
+    for (fs::directory_iterator at("/proc/self/fd", error), end; !error && at != end; at.increment(error))
+        ++taken;
+    return limit.rlim_cur > taken ? size_t(limit.rlim_cur - taken) : 0;
+}
+
+}  // namespace pel::system
