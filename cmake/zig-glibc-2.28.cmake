@@ -1,0 +1,22 @@
+# Compiles for glibc 2.28, the oldest that manylinux_2_28 wheels promise, on any newer system: by Zig's C++ compiler (PyPI: ziglang), which
+# brings headers and stubs of every glibc, and a C++ library to link with. PELLUCID_ZIG is the folder of the programs that
+# packaging/wheel/zig_tools makes.
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR x86_64)
+set(CMAKE_TRY_COMPILE_PLATFORM_VARIABLES PELLUCID_ZIG)
+if(NOT PELLUCID_ZIG)
+  set(PELLUCID_ZIG $ENV{PELLUCID_ZIG})
+endif()
+foreach(pair C:cc CXX:c++)
+  string(REPLACE ":" ";" pair ${pair})
+  list(GET pair 0 language)
+  list(GET pair 1 program)
+  set(CMAKE_${language}_COMPILER ${PELLUCID_ZIG}/${program})
+endforeach()
+set(CMAKE_AR ${PELLUCID_ZIG}/ar)
+set(CMAKE_RANLIB ${PELLUCID_ZIG}/ranlib)
+set(CMAKE_STRIP strip)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
