@@ -1,18 +1,19 @@
 #include "stages.h"
 
-#include <unistd.h>
-
 #include <cstdio>
+
+#include "system/process.h"
 
 namespace pellucid::cli {
 
 void Stages::begin(const std::string& name) {
-    if (isatty(2)) std::fprintf(stderr, "\r\033[K%s ...", name.c_str()), std::fflush(stderr);
+    if (pel::system::errorsAreSeen())
+        std::fprintf(stderr, "\r\033[K%s ...", name.c_str()), std::fflush(stderr);
 }
 
 void Stages::add(const std::string& name, double wallMilliseconds, double deviceMilliseconds, uint64_t count,
                  const char* unit, uint64_t bytes) {
-    if (isatty(2)) std::fputs("\r\033[K", stderr);
+    if (pel::system::errorsAreSeen()) std::fputs("\r\033[K", stderr);
     if (stages_.empty())
         std::fprintf(stderr, "%-38s %9s %10s %8s %8s  %s\n", "stage", "wall ms", "device ms", "MB", "M/s",
                      "of");
