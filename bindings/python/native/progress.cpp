@@ -46,7 +46,7 @@ Device::Device(pellucid::Device device) : handle(std::move(device)) {
 Device::~Device() {
     pelDeviceSetProgress(handle.get(), nullptr, nullptr);
     WithoutGil free;  // as Owner does; `progress` goes after this, with the GIL
-    handle = {};
+    handle = pellucid::Device(nullptr);
 }
 
 }  // namespace pel::python
