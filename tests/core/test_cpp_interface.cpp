@@ -15,12 +15,14 @@ using shade_test::Ready;
 namespace {
 
 // A structure that refers to a temporary's handle must not come out of it.
-static_assert(std::is_same_v<decltype(imageDesc(std::declval<Buffer>(), PEL_FORMAT_R32F, 1, 1)), Image>);
+static_assert(std::is_same_v<decltype(imageDesc(std::declval<Buffer>(), PEL_FORMAT_R32F, 1, 1)), OwnedImage>);
 static_assert(std::is_same_v<decltype(imageDesc(std::declval<Buffer&>(), PEL_FORMAT_R32F, 1, 1)), PelImageDesc>);
-static_assert(std::is_same_v<decltype(vertexView(std::declval<Buffer>(), 1)), Vertices>);
-static_assert(std::is_same_v<decltype(material(std::declval<Profile>(), {})), Material>);
-static_assert(!std::is_constructible_v<PelImageDesc, Image> && !std::is_assignable_v<PelImageDesc&, Image>);
-static_assert(!std::is_assignable_v<PelVertexView&, Vertices> && !std::is_assignable_v<PelMaterial&, Material>);
+static_assert(std::is_same_v<decltype(vertexView(std::declval<Buffer>(), 1)), OwnedVertices>);
+static_assert(std::is_same_v<decltype(material(std::declval<Profile>(), {})), OwnedMaterial>);
+static_assert(!std::is_constructible_v<PelImageDesc, OwnedImage> &&
+              !std::is_assignable_v<PelImageDesc&, OwnedImage>);
+static_assert(!std::is_assignable_v<PelVertexView&, OwnedVertices> &&
+              !std::is_assignable_v<PelMaterial&, OwnedMaterial>);
 template <class T>
 concept LendsHandle = requires(T t) {
     std::forward<T>(t).get();
@@ -31,18 +33,18 @@ template <class T>
 concept LendsStruct = requires(T t) {
     *std::forward<T>(t);
 };
-static_assert(LendsStruct<const Image&> && !LendsStruct<Image>);
+static_assert(LendsStruct<const OwnedImage&> && !LendsStruct<OwnedImage>);
 
 TEST(CppInterface, AnImageOfATemporaryKeepsItsBuffer) {
     const Device device;
     std::vector<float> memory(16, 0.5f);
-    Image image = imageDesc(Buffer::fromHost(device, memory.data(), 64), PEL_FORMAT_R32F, 4, 4);
-    const Vertices vertices = vertexView(Buffer(device, memory), 5);
+    OwnedImage image = imageDesc(Buffer::fromHost(device, memory.data(), 64), PEL_FORMAT_R32F, 4, 4);
+    const OwnedVertices vertices = vertexView(Buffer(device, memory), 5);
     size_t bytes = 0;
     ASSERT_EQ(pelBufferGetSize(image->buffer, &bytes), PEL_SUCCESS) << pelGetErrorMessage();
     EXPECT_EQ(bytes, 64u);
     EXPECT_EQ(pelBufferGetSize(vertices->buffer, &bytes), PEL_SUCCESS) << pelGetErrorMessage();
-    const Image copy = image;
+    const OwnedImage copy = image;
     image = imageDesc(Buffer(device, 4), PEL_FORMAT_R32F, 1, 1);
     EXPECT_EQ(pelBufferGetSize(copy->buffer, &bytes), PEL_SUCCESS) << pelGetErrorMessage();
     image->width = 2;

@@ -177,8 +177,9 @@ class StructRef {
     const Struct* made_ = nullptr;
 };
 
-using Image = Owning<PelImageDesc, Buffer>;
-using Vertices = Owning<PelVertexView, Buffer>;
+// Named so that hosts may have an Image of their own.
+using OwnedImage = Owning<PelImageDesc, Buffer>;
+using OwnedVertices = Owning<PelVertexView, Buffer>;
 using ImageRef = StructRef<PelImageDesc, Buffer>;
 using VerticesRef = StructRef<PelVertexView, Buffer>;
 
@@ -194,10 +195,10 @@ inline PelImageDesc imageDesc(const Buffer& buffer, PelFormat format, uint32_t w
 }
 
 // Of a temporary: keeps the buffer.
-inline Image imageDesc(Buffer&& buffer, PelFormat format, uint32_t width, uint32_t height,
-                       uint64_t byteOffset = 0) {
+inline OwnedImage imageDesc(Buffer&& buffer, PelFormat format, uint32_t width, uint32_t height,
+                            uint64_t byteOffset = 0) {
     const PelImageDesc desc = imageDesc(static_cast<const Buffer&>(buffer), format, width, height, byteOffset);
-    return Image(std::move(buffer), desc);
+    return OwnedImage(std::move(buffer), desc);
 }
 
 inline PelVertexView vertexView(const Buffer& buffer, uint32_t count, uint64_t byteOffset = 0,
@@ -205,9 +206,10 @@ inline PelVertexView vertexView(const Buffer& buffer, uint32_t count, uint64_t b
     return PelVertexView{buffer.get(), byteOffset, byteStride, count};
 }
 
-inline Vertices vertexView(Buffer&& buffer, uint32_t count, uint64_t byteOffset = 0, uint32_t byteStride = 0) {
+inline OwnedVertices vertexView(Buffer&& buffer, uint32_t count, uint64_t byteOffset = 0,
+                                uint32_t byteStride = 0) {
     const PelVertexView view = vertexView(static_cast<const Buffer&>(buffer), count, byteOffset, byteStride);
-    return Vertices(std::move(buffer), view);
+    return OwnedVertices(std::move(buffer), view);
 }
 
 class MeshTopology : public Handle<PelMeshTopology, pelMeshTopologyRetain, pelMeshTopologyRelease> {
@@ -432,11 +434,11 @@ inline PelMaterial material(const Profile& profile, const Float3& albedo) {
     for (size_t c = 0; c < 3; ++c) made.albedo[c] = albedo[c];
     return made;
 }
-using Material = Owning<PelMaterial, Profile>;
+using OwnedMaterial = Owning<PelMaterial, Profile>;
 using MaterialRef = StructRef<PelMaterial, Profile>;
-inline Material material(Profile&& profile, const Float3& albedo) {
+inline OwnedMaterial material(Profile&& profile, const Float3& albedo) {
     const PelMaterial made = material(static_cast<const Profile&>(profile), albedo);
-    return Material(std::move(profile), made);
+    return OwnedMaterial(std::move(profile), made);
 }
 
 // Lights without a shadow. `color`: PelLight.color. `toLight` may have any length.
@@ -518,7 +520,7 @@ class Shader : public Handle<PelShader, pelShaderRetain, pelShaderRelease> {
         return done(pelShaderSetNormalMap(h_, id, levels.data(), uint32_t(levels.size())));
     }
     // A map of one level.
-    Shader& setNormalMap(uint32_t id, const Image& level) {
+    Shader& setNormalMap(uint32_t id, const OwnedImage& level) {
         return done(pelShaderSetNormalMap(h_, id, &*level, 1));
     }
     // What PEL_SCATTERING_TEXTURE samples.
