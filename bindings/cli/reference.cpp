@@ -78,15 +78,11 @@ Points pointsOf(Run& run, const sample::Scene& scene, const std::vector<float>& 
                 std::vector<size_t> pixels) {
     Points points;
     points.pixels = std::move(pixels);
-    points.places.resize(points.pixels.size());
-    std::vector<double> off(points.pixels.size());
-#pragma omp parallel for schedule(dynamic, 1024)
-    for (int64_t i = 0; i < int64_t(points.pixels.size()); ++i) {
-        const float* p = &positions[3 * points.pixels[i]];
-        const sample::Hit hit = scene.nearest({p[0], p[1], p[2]});
-        off[i] = hit.distance;
-        points.places[i] = {hit.triangle, {hit.weights[0], hit.weights[1], hit.weights[2]}};
-    }
+    std::vector<float> from;
+    for (const size_t pixel : points.pixels)
+        from.insert(from.end(), &positions[3 * pixel], &positions[3 * pixel] + 3);
+    std::vector<double> off;
+    points.places = sample::nearestPoints(scene, from, off);
     for (const auto& place : points.places)
         for (const sample::Vec3 p = at(scene.mesh(), place); double x : {p.x, p.y, p.z})
             points.positions.push_back(float(x));

@@ -206,6 +206,19 @@ class Refiner {
 
 }  // namespace
 
+std::vector<SurfacePoint> nearestPoints(const Scene& scene, std::span<const float> positions,
+                                        std::vector<double>& distances) {
+    std::vector<SurfacePoint> places(positions.size() / 3);
+    distances.resize(places.size());
+#pragma omp parallel for schedule(dynamic, 1024)
+    for (size_t i = 0; i < places.size(); ++i) {
+        const Hit hit = scene.nearest({positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]});
+        distances[i] = hit.distance;
+        places[i] = {hit.triangle, {hit.weights[0], hit.weights[1], hit.weights[2]}};
+    }
+    return places;
+}
+
 std::vector<float> irradianceAt(const Scene& scene, const Lighting& lighting,
                                 std::span<const SurfacePoint> points) {
     const Vec3 extent = scene.bounds().high - scene.bounds().low;

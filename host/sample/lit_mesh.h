@@ -34,6 +34,10 @@ struct SurfacePoint {
     std::array<double, 3> weights;
 };
 
+// The place on the mesh that is nearest to each of `positions` (xyz), and how far away it is.
+std::vector<SurfacePoint> nearestPoints(const Scene& scene, std::span<const float> positions,
+                                        std::vector<double>& distances);
+
 // RGB per point. The cosine is that of the interpolated normals. Shadow rays begin at a point lifted to the
 // surface that these normals mean, so that facets throw no shadows on each other [Hanika 2021, "Hacking the
 // shadow terminator"].
