@@ -60,7 +60,7 @@ class Tables(unittest.TestCase):
     def test_batch(self):
         openexr = reader("OpenEXR")
         folder = Path(self.folder.name)
-        (folder / "m.toml").write_text('[[lut]]\nsize = 13\naxis = "root"\n')
+        (folder / "m.toml").write_text('[[lut]]\nsize = 13\nform = "sphere"\naxis = "root"\n')
         subprocess.run([COMMAND, "batch", folder / "m.toml", "-o", folder / "out"], check=True, stdout=subprocess.DEVNULL)
         (path,) = (folder / "out").glob("*.exr")
         expected = np.load(self.table("square.npy", "half", "13x13"))
