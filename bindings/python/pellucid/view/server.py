@@ -14,6 +14,7 @@ from urllib.parse import parse_qs
 
 from PIL import Image
 
+from .._errors import PellucidError
 from ..device import Device
 from .session import Frame
 
@@ -61,13 +62,14 @@ class Viewer:
 
     def __init__(self, open_device: Callable[[], Device], make: Callable[[Device], Any]) -> None:
         self._open = open_device
+        self.changes = 0
+        self._preparing: Optional[int] = None  # kernels, after that many changes: the next one ends it
         self._thread = ThreadPoolExecutor(1, "pellucid-view")  # OpenGL contexts belong to a thread
         self.session: Any = self._thread.submit(lambda: make(self._device())).result()  # a Session or a SceneSession
         self.error = ""
         self.last: Optional[Frame] = None
         self.busy = ""  # what takes long just now
         self.stamp = 0.0  # of the browser's clock: the last motion that was applied
-        self.changes = 0
         self._pace = Pace()
         self._changed: set[asyncio.Event] = set()
         self._moved = 0.0
@@ -77,7 +79,7 @@ class Viewer:
 
         def progress(fraction: float, what: str) -> bool:
             self.busy = what if fraction < 1 and what.startswith("building") else ""
-            return True
+            return self._preparing is None or self._preparing == self.changes
 
         device.set_progress(progress)
         return device
@@ -149,6 +151,16 @@ class Viewer:
         self.stamp = float(message.get("at", self.stamp))
         self.changed(moving=kind != "size")
 
+    async def _prepare(self, width: int, height: int) -> None:
+        """Builds kernels while nobody wants a picture; the one that is being built is waited for, the rest comes at the next rest."""
+        self._preparing = self.changes
+        try:
+            await self.on_thread(lambda: self.session.prepare(width, height))
+        except PellucidError:
+            pass  # ended by a change; another error is told when a slider wants these kernels
+        finally:
+            self._preparing, self.busy = None, ""
+
     async def stream(self, socket: Any) -> None:
         """Sends pictures to one page until it goes; at most one that the page has not taken yet, so that both work at the same time."""
         event, size, news = asyncio.Event(), [960, 540], asyncio.Event()
@@ -206,7 +218,7 @@ class Viewer:
                     except asyncio.TimeoutError:
                         taken = sent
                 if made is not None and not small and sample >= self.session.samples and not event.is_set():
-                    await self.on_thread(lambda: self.session.prepare(width, height))
+                    await self._prepare(width, height)
                 if small and not event.is_set():
                     asyncio.get_running_loop().call_later(SETTLED, event.set)
 
