@@ -132,12 +132,14 @@ TEST(LightOracle, SeveralLightsAreTheSumOverAllTheirTexels) {
     }
 }
 
-// One light in two halves is one light.
+// One light in two halves is one light, also behind one that is switched off.
 TEST(LightOracle, TwoHalvesOfALightAreTheWhole) {
     const uint32_t side = sized(48u, 16u);
     const std::vector<LitBall> whole = lightsFrom({{0.7, 0.2, -0.5}}, sized(128u, 48u));
     std::vector<LitBall> halves(2, whole[0]);
     for (LitBall& half : halves) std::fill_n(half.light.color, 3, 0.5f);
+    halves.insert(halves.begin(), whole[0]);
+    std::fill_n(halves[0].light.color, 3, 0.0f);
     const Picture p = pictureOf(whole, side);
     for (PelScattering method : {PEL_SCATTERING_LIGHT, PEL_SCATTERING_AUTO}) {
         const Lit one = shaded(p, whole, Profile::skin(), {method, 0.4f, 0}),
