@@ -17,6 +17,7 @@
 
 #include "eye/eye_lut_error.h"
 #include "eye/eye_picture.h"
+#include "reference/eye_square.h"
 #include "shared/eye.h"
 
 using namespace pellucid;
@@ -192,20 +193,9 @@ struct CostFrame {
     Buffer position, normal, id, curvature, out;
     explicit CostFrame(const Device& device) {
         const size_t n = size_t(width) * height;
-        std::vector<float> p, m;
-        std::vector<uint8_t> ids;
-        const double side = std::sqrt(0.05 * double(n));
-        for (uint32_t y = 0; y < height; ++y)
-            for (uint32_t x = 0; x < width; ++x) {
-                const double u = (x - 0.5 * width) / side * 2, v = (0.5 * height - y) / side * 2;
-                const bool inside = std::abs(u) < 1 && std::abs(v) < 1;
-                const double px = 8.4 * u, py = 8.4 * v, pz = std::sqrt(std::max(144 - px * px - py * py, 1.0));
-                for (const double c : {px, py, inside ? pz : -10.0}) p.push_back(float(c));
-                const double length = std::hypot(px, py, pz);
-                for (const double c : {px, py, pz}) m.push_back(float(c / length));
-                ids.push_back(inside ? 2 : 1);
-            }
-        position = Buffer(device, p), normal = Buffer(device, m), id = Buffer(device, ids);
+        const reference::EyeSquare square(width, height, 0.05);
+        position = Buffer(device, square.position), normal = Buffer(device, square.normal);
+        id = Buffer(device, square.id);
         curvature = Buffer(device, std::vector<float>(n, 1.0f / 12));
         out = Buffer(device, std::vector<float>(3 * n));
     }

@@ -4,6 +4,7 @@
 
 #include "case.h"
 #include "reference/eye.h"
+#include "reference/eye_square.h"
 
 namespace pellucid::bench {
 namespace {
@@ -23,18 +24,6 @@ reference::Eye adult() {
     eye.pupil = e.pupilRadius, eye.texturePupil = e.texturePupil, eye.tearRoughness = e.tearRoughness;
     eye.nTear = e.tearIndex;
     return eye;
-}
-
-// The light's angle to the gaze beyond which none enters: where the rim's own horizon, or the sclera's, hides it.
-double largestAngle(const reference::Eye& eye) {
-    double largest = 0;
-    for (int i = 1; i <= 256; ++i) {
-        const double r = eye.limbus * i / 256, z = eye.corneaZ(r);
-        const Vec3 n = eye.corneaNormal(r, 0);
-        const double past = std::atan2(r, z) + std::acos(std::min(1.0, eye.sclera / std::hypot(r, z)));
-        largest = std::max(largest, std::acos(0.0) + std::min(std::atan2(n.x, n.z), past));
-    }
-    return largest;
 }
 
 // Share of a texel within the iris' rim.
@@ -86,20 +75,9 @@ struct EyeFrame {
 
     EyeFrame(const Device& device, Size size)
         : width(size.quick ? 480 : 1920), height(size.quick ? 270 : 1080), shader(device) {
-        const size_t n = size_t(width) * height;
-        const double side = std::sqrt(share * double(n));
-        std::vector<float> normal;
-        for (uint32_t y = 0; y < height; ++y)
-            for (uint32_t x = 0; x < width; ++x) {
-                const double u = (x - 0.5 * width) / side * 2, v = (0.5 * height - y) / side * 2;
-                const bool inside = std::abs(u) < 1 && std::abs(v) < 1;
-                const double px = 8.4 * u, py = 8.4 * v, pz = std::sqrt(std::max(144 - px * px - py * py, 1.0));
-                for (const double c : {px, py, inside ? pz : -10.0}) position.push_back(float(c));
-                const double length = std::hypot(px, py, pz);
-                for (const double c : {px, py, pz}) normal.push_back(float(c / length));
-                id.push_back(inside ? 2 : 1);
-            }
-        target = Buffer(device, n * 12);
+        const reference::EyeSquare square(width, height, share);
+        position = square.position, id = square.id;
+        target = Buffer(device, size_t(width) * height * 12);
         const PelEye eye = [] {
             PelEye e = pelEyeDefaults();
             for (float& c : e.irisColor) c = irisColor;
@@ -124,7 +102,7 @@ struct EyeFrame {
         };
         set(PEL_SLOT_RADIANCE, target, PEL_FORMAT_RGB32F);
         set(PEL_SLOT_POSITION, Buffer(device, position), PEL_FORMAT_RGB32F);
-        set(PEL_SLOT_NORMAL_SHADING, Buffer(device, normal), PEL_FORMAT_RGB32F);
+        set(PEL_SLOT_NORMAL_SHADING, Buffer(device, square.normal), PEL_FORMAT_RGB32F);
         set(PEL_SLOT_MATERIAL, Buffer(device, id), PEL_FORMAT_R8_UINT);
         shader.commit();
     }

@@ -36,7 +36,7 @@ void Renumbering::run() noexcept {
         number(first);
         for (; next < known_; ++next) {
             move(next);
-            // Readers read ahead: a block is told when there is enough behind it.
+            // RingBuilder reads a few corners past a slot's own. So a block is ready only when enough corners follow it.
             if (next - told < block || next % block != 0) continue;
             const uint32_t whole = next - block;
             if (written_ - moved.begins[whole] < RingBuilder::readAhead) continue;

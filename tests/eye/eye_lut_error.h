@@ -22,20 +22,6 @@ inline reference::Eye referenceOf(const PelEye& e) {
     return eye;
 }
 
-// The light's angle of a slice: the last is where no light enters any longer, measured on the table's own definition.
-inline double largestAngle(const reference::Eye& eye) {
-    double largest = 0;
-    for (int i = 1; i <= 256; ++i) {
-        const double r = eye.limbus * i / 256, z = eye.corneaZ(r);
-        const reference::Vec3 n = eye.corneaNormal(r, 0);
-        largest = std::max(
-            largest, std::acos(0.0) +
-                         std::min(std::atan2(n.x, n.z),
-                                  std::atan2(r, z) + std::acos(std::min(1.0, eye.sclera / std::hypot(r, z)))));
-    }
-    return largest;
-}
-
 struct LutError {
     double sum2 = 0, sum = 0, texels = 0;
     double flux = 0, trueFlux = 0;  // over texels whose light the photons counted
@@ -47,7 +33,7 @@ struct LutError {
 // Adds slice z of the table, RGB texels.
 inline void addSlice(const PelEyeLutDesc& desc, const reference::Eye& eye, const std::vector<float>& texels,
                      uint32_t z, uint64_t photons, LutError* error) {
-    const double angle = largestAngle(eye) * z / (desc.depth - 1);
+    const double angle = reference::largestAngle(eye) * z / (desc.depth - 1);
     const reference::Caustic truth =
         tracePhotons(eye, angle, int(desc.width), int(desc.height), photons, 17 + z);
     const double area = 2 * eye.iris / desc.width * eye.iris / desc.height;

@@ -96,7 +96,7 @@ double texelLength(const LightDepths& map, const MappedLight& light, Vec3 p) {
     return longest * (dot(forward, p) + m[3][3]);
 }
 
-// The shorter of the ways to two places; what of it is no number does not count.
+// The shorter of the steps to two places. A step that is NaN or Inf is left out.
 Vec3 shorter(Vec3 p, Vec3 a, Vec3 b) {
     const Vec3 toA = a - p, toB = b - p;
     if (!std::isfinite(length(toA))) return toB;
@@ -107,7 +107,7 @@ Vec3 shorter(Vec3 p, Vec3 a, Vec3 b) {
 // The way from texel to texel: the mean of those on both sides where one is less than twice the other.
 Vec3 stepOf(Vec3 p, Vec3 before, Vec3 after) {
     const double back = length(before - p), on = length(after - p);
-    const bool alike = std::max(back, on) < 2 * std::min(back, on);  // false where one is no number
+    const bool alike = std::max(back, on) < 2 * std::min(back, on);  // false if one is NaN
     return alike && std::isfinite(back + on) ? (after - before) / 2 : shorter(p, before, after);
 }
 

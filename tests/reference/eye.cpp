@@ -83,6 +83,17 @@ double Eye::irisHeight(double r) const {
     return irisZ() - concavity * (1 - r * r / (iris * iris));
 }
 
+double largestAngle(const Eye& eye) {
+    double largest = 0;
+    for (int i = 1; i <= 256; ++i) {
+        const double r = eye.limbus * i / 256, z = eye.corneaZ(r);
+        const Vec3 n = eye.corneaNormal(r, 0);
+        const double past = std::atan2(r, z) + std::acos(std::min(1.0, eye.sclera / std::hypot(r, z)));
+        largest = std::max(largest, std::acos(0.0) + std::min(std::atan2(n.x, n.z), past));
+    }
+    return largest;
+}
+
 double fresnel(double cosine, double from, double to) {
     const double sine = std::sqrt(max0(1 - cosine * cosine)) * from / to;
     if (sine >= 1) return 1;

@@ -22,6 +22,8 @@ struct Eye {
     double irisHeight(double r) const;
 };
 
+// The light's angle to the gaze beyond which none enters: where the rim's own horizon, or the sclera's, hides it.
+double largestAngle(const Eye& eye);
 // Share of light that an interface from index `from` to index `to` reflects; 1 beyond the critical angle. Fresnel's equations,
 // the mean of both polarisations.
 double fresnel(double cosine, double from, double to);

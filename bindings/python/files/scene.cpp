@@ -79,15 +79,7 @@ class Scene {
     }
     py::bytes ambient() const { return bytesOf(scene_.ambient); }
     py::bytes camera() const { return bytesOf(scene_.camera); }
-    py::bytes options() const {
-        PelShaderOptions o = pelShaderOptionsDefaults();
-        o.blurNormals = scene_.blurNormals;
-        o.rotateTaps = scene_.rotateTaps;
-        o.frameIndex = scene_.frameIndex;
-        o.targetError = scene_.targetError;
-        o.millimetresPerUnit = scene_.unitMm;
-        return bytesOf(o);
-    }
+    py::bytes options() const { return bytesOf(io::withOptionsOf(scene_, pelShaderOptionsDefaults())); }
 
     void readGBuffer(const std::string& path) {
         const py::gil_scoped_release free;

@@ -37,9 +37,13 @@ size_t GltfValue::size() const {
     return json_->size();
 }
 
-double GltfValue::number(double low, double high) const {
+double GltfValue::anyNumber() const {
     if (!json_->is_number()) fail("is no number");
-    const double value = json_->get<double>();
+    return json_->get<double>();
+}
+
+double GltfValue::number(double low, double high) const {
+    const double value = anyNumber();
     if (value >= low && value <= high) return value;
     std::ostringstream text;
     text.imbue(std::locale::classic());
@@ -48,9 +52,7 @@ double GltfValue::number(double low, double high) const {
 }
 
 uint64_t GltfValue::whole(uint64_t most) const {
-    // Writers exist that write whole numbers with a point.
-    if (!json_->is_number()) fail("is no number");
-    const double value = json_->get<double>();
+    const double value = anyNumber();  // some programs write whole numbers with a point
     if (!(value >= 0 && value <= double(most)) || value != std::floor(value))
         fail("is " + json_->dump() + "; a whole number from 0 to " + std::to_string(most) + " would be right");
     return uint64_t(value);

@@ -42,6 +42,8 @@ class GltfValue {
     size_t reference(const char* key, const char* array, size_t available) const;
 
   private:
+    double anyNumber() const;
+
     const std::string* file_;
     const nlohmann::json* json_;
     std::string where_;

@@ -129,14 +129,17 @@ SceneFrame::SceneFrame(const Device& device, const Image& gbuffer, const SceneFi
     shadowMaps_ = nullptr;
 }
 
+PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options) {
+    options.blurNormals |= scene.blurNormals;
+    options.rotateTaps |= scene.rotateTaps;
+    options.targetError = scene.targetError;
+    if (scene.frameIndex) options.frameIndex = scene.frameIndex;
+    options.millimetresPerUnit = scene.unitMm;
+    return options;
+}
+
 void SceneFrame::update(const SceneFile& scene, LutStore& luts, const PelShaderOptions& options) {
-    PelShaderOptions all = options;
-    all.blurNormals |= scene.blurNormals;
-    all.rotateTaps |= scene.rotateTaps;
-    all.targetError = scene.targetError;
-    if (scene.frameIndex) all.frameIndex = scene.frameIndex;
-    all.millimetresPerUnit = scene.unitMm;
-    shader_.set(all);
+    shader_.set(withOptionsOf(scene, options));
     // Pixels whose material goes are not written any more.
     if (!materials_.empty()) {
         clear(radiance_);

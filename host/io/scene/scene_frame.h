@@ -29,6 +29,9 @@ class LutStore {
 // Shadow maps by file, already in memory.
 using ShadowMaps = std::map<std::string, Image>;
 
+// `options` with what the scene says of them.
+PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options);
+
 class SceneFrame {
   public:
     // Uploads what the scene names, sets it and commits; kernels are built first, with progress. `outputs`: slots beside radiance that are

@@ -157,7 +157,7 @@ class Viewer:
         try:
             await self.on_thread(lambda: self.session.prepare(width, height))
         except PellucidError:
-            pass  # ended by a change; another error is told when a slider wants these kernels
+            pass  # a change cancelled it; any other error shows when a slider needs these kernels
         finally:
             self._preparing, self.busy = None, ""
 
