@@ -1,0 +1,133 @@
+// `pellucid lut`: files of tables, presets, pictures.
+#include <pellucid/pellucid.hpp>
+
+#include "cli_run.h"
+#include "io/image/image_file.h"
+#include "io/lut/lut_file.h"
+#include "npy.h"
+#include "tolerances.h"
+
+using namespace pellucid;
+
+using CliLut = CommandTest;
+
+TEST_F(CliLut, LutFilesHoldTheLibrarysTexels) {
+    const Device device("");
+    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    desc.width = 24;
+    desc.height = 10;
+    desc.radiusMin = 2;
+    desc.radiusMax = 50;
+    const Lut expected(device, desc);
+    const std::vector<std::string> common = {"lut",   "curvature",    "--preset", "faceworks",    "--size",
+                                             "24x10", "--radius-min", "2",        "--radius-max", "50",
+                                             "-o"};
+    const auto make = [&](const std::string& name, const std::string& encoding) {
+        std::vector<std::string> arguments = common;
+        arguments.push_back(path(name));
+        if (!encoding.empty()) arguments.insert(arguments.end(), {"--encoding", encoding});
+        arguments.push_back("--json");
+        const Result result = run(arguments);
+        ASSERT_EQ(result.exitCode, 0) << result.err;
+        expectReport(result.json());
+        EXPECT_EQ(result.json().at("texels"), 240);
+        EXPECT_GT(result.json().at("device_ms").get<double>(), 0.0);
+    };
+    make("f.npy", "");
+    const auto array = npy::read<float>(path("f.npy"));
+    EXPECT_EQ(array.shape, (std::vector<size_t>{10, 24, 3}));
+    EXPECT_EQ(array.data, expected.read<float>(PEL_LUT_FLOAT));
+    make("f.exr", "float");
+    const Lut again = io::readLut(device, path("f.exr"));
+    EXPECT_EQ(again.read<float>(PEL_LUT_FLOAT), array.data);
+    EXPECT_EQ(again.info().curvature.radiusMax, 50.0f);
+    make("b.npy", "faceworks8");
+    const auto bytes = npy::read<uint8_t>(path("b.npy"));
+    EXPECT_EQ(bytes.shape, (std::vector<size_t>{10, 24, 4}));
+    EXPECT_EQ(bytes.data, expected.read<uint8_t>(PEL_LUT_FACEWORKS8));
+    for (const char* name : {"b.png", "b.bmp"}) {
+        make(name, "faceworks8");
+        const io::Image image = io::readImage(path(name));
+        ASSERT_EQ(image.channels.size(), 4u);
+        for (size_t i = 0; i < bytes.data.size(); ++i) {
+            ASSERT_EQ(std::lround(255 * image.channels[i % 4].pixels[i / 4]), bytes.data[i]) << name << ' ' << i;
+        }
+    }
+    EXPECT_EQ(run({"lut", "curvature", "--preset", "faceworks", "--size", "24x10", "--radius-min", "0.5",
+                   "--encoding", "faceworks8", "-o", path("c.png"), "--json"})
+                  .json()
+                  .at("clipped_texels"),
+              [&] {
+                  desc = pelCurvatureLutDescDefaults();
+                  desc.width = 24;
+                  desc.height = 10;
+                  desc.radiusMin = 0.5;
+                  return Lut(device, desc).clippedTexels();
+              }());
+    make("h.exr", "half");
+    EXPECT_EQ(io::readImage(path("h.exr")).channels[0].type, io::ChannelType::Half);
+}
+
+// Without more, the tables that a material makes of its profile; by a preset those of FaceWorks; and what is asked for by itself counts.
+TEST_F(CliLut, TablesAreAMaterialsUnlessAPresetSaysOtherwise) {
+    const Device device("");
+    const auto info = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "lut");
+        arguments.insert(arguments.end(), {"-o", path("p.exr")});
+        const Result result = run(arguments);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return io::readLut(device, path("p.exr")).info();
+    };
+    PelLutInfo i = info({"curvature"});
+    EXPECT_EQ(i.curvature.form, PEL_FORM_SPHERE);
+    EXPECT_EQ(i.curvature.axis, PEL_AXIS_ROOT);
+    EXPECT_EQ(i.curvature.width, 64u);
+    i = info({"curvature", "--preset", "faceworks", "--size", "32x8"});
+    EXPECT_EQ(i.curvature.form, PEL_FORM_ARC);
+    EXPECT_EQ(i.curvature.axis, PEL_AXIS_LINEAR);
+    EXPECT_EQ(i.curvature.height, 8u);
+    EXPECT_EQ(info({"curvature", "--preset", "faceworks", "--size", "32x8", "--axis", "root"}).curvature.axis,
+              PEL_AXIS_ROOT);
+    i = info({"shadow"});
+    EXPECT_EQ(i.shadow.closedEnds, 1u);
+    EXPECT_EQ(i.shadow.axis, PEL_AXIS_ROOT);
+    EXPECT_EQ(i.shadow.height, 64u);
+    EXPECT_EQ(info({"shadow", "--open-ends"}).shadow.closedEnds, 0u);
+    i = info({"shadow", "--preset", "faceworks"});
+    EXPECT_EQ(i.shadow.closedEnds, 0u);
+    EXPECT_EQ(i.shadow.axis, PEL_AXIS_LINEAR);
+    EXPECT_EQ(i.shadow.width, 512u);
+    expectRefused({"lut", "shadow", "--preset", "unity", "-o", path("p.exr")}, 2, "faceworks");
+}
+
+// A .png that no encoding was asked for is there to be looked at, and the report says so.
+TEST_F(CliLut, ATableAsAPictureHasTheTablesValues) {
+    const Result result = run({"lut", "shadow", "--size", "16x8", "-o", path("look.png"), "--json"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_TRUE(contains(result.json().at("encoding"), "picture"));
+    ASSERT_EQ(run({"lut", "shadow", "--size", "16x8", "-o", path("t.exr"), "--json"}).json().at("encoding"),
+              "float");
+    const io::Image picture = io::readImage(path("look.png")), table = io::readImage(path("t.exr"));
+    ASSERT_EQ(picture.channels.size(), 3u);
+    for (const char* c : {"R", "G", "B"})
+        for (size_t i = 0; i < 16 * 8; ++i) {
+            const double x = std::clamp(double(table.channel(c).pixels[i]), 0.0, 1.0);
+            const double srgb = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+            EXPECT_NEAR(255 * picture.channel(c).pixels[i], 255 * srgb, 0.51) << c << i;
+        }
+}
+
+TEST_F(CliLut, ShadowLutAndItsFlags) {
+    ASSERT_EQ(run({"lut", "shadow", "-o", path("s.exr"), "--size", "16x8", "--width-min", "4", "--width-max",
+                   "40", "--sharpening", "5", "--diffusion-radius", "1.5"})
+                  .exitCode,
+              0);
+    const PelLutInfo info = io::readLut(Device(""), path("s.exr")).info();
+    EXPECT_EQ(info.kind, PEL_LUT_SHADOW);
+    EXPECT_EQ(info.shadow.width, 16u);
+    EXPECT_EQ(info.shadow.height, 8u);
+    EXPECT_EQ(info.shadow.widthMin, 4.0f);
+    EXPECT_EQ(info.shadow.widthMax, 40.0f);
+    EXPECT_EQ(info.shadow.sharpening, 5.0f);
+    EXPECT_EQ(info.shadow.diffusionRadius, 1.5f);
+}
