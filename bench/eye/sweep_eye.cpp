@@ -1,7 +1,7 @@
 // What eyes cost, and what the time buys, as a table in Markdown:
 //   table: 64 x 64 x 32 by this library and by random paths (sampled_caustics.cl), in turns; RMS of the table's mean,
 //          against photons in double precision
-//   frame: 1920 x 1080 of which an eye fills 5 %, against the same pixels as skin, in turns
+//   frame: 1920 x 1080 of which an eye fills 5 % or next to nothing, against the same pixels as skin, in turns
 //   picture: of an eye, with tables of several sizes: the time to make the table, and RMS against the tracer
 // Medians. `bench/plot eyes` draws the table.
 //   sweep_eye [all|frame|picture|table] [photons, 1e8]
@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -187,13 +188,13 @@ void tables(uint64_t photons) {
                  error.fluxError(), error.bounced / error.trueFlux);
 }
 
-// Skin everywhere, and a square of 5 % of the pixels, which shows the front of a ball: skin or an eye.
+// Skin everywhere, and a square of a share of the pixels, which shows the front of a ball: skin or an eye.
 struct CostFrame {
     static constexpr uint32_t width = 1920, height = 1080;
     Buffer position, normal, id, curvature, out;
-    explicit CostFrame(const Device& device) {
+    CostFrame(const Device& device, double share) {
         const size_t n = size_t(width) * height;
-        const reference::EyeSquare square(width, height, 0.05);
+        const reference::EyeSquare square(width, height, share);
         position = Buffer(device, square.position), normal = Buffer(device, square.normal);
         id = Buffer(device, square.id);
         curvature = Buffer(device, std::vector<float>(n, 1.0f / 12));
@@ -227,28 +228,45 @@ struct CostFrame {
     }
 };
 
+// A median, and how far the true one may be from it with 95 % (by the ranks of a sorted sample).
+struct Estimate {
+    double value, error;
+    explicit Estimate(std::vector<double> v) : value(median(v)) {
+        std::sort(v.begin(), v.end());
+        const auto ranks = size_t(std::sqrt(double(v.size())));
+        error = 0.5 * (v[v.size() / 2 + ranks] - v[v.size() / 2 - ranks]);
+    }
+};
+
 void shading() {
     const Device device("");
-    const CostFrame frame(device);
     const std::pair<PelScattering, const char*> methods[] = {{PEL_SCATTERING_NONE, "none"},
                                                              {PEL_SCATTERING_PREINTEGRATED, "preintegrated"}};
-    for (const auto& [method, name] : methods) {
-        const Shader skin = frame.shader(device, false, method), eye = frame.shader(device, true, method);
-        Shader both[2] = {skin, eye};
-        std::vector<double> times[2], more;
-        for (int i = 0; i < 41; ++i) {
-            for (int k = 0; k < 2; ++k) {
-                both[k].execute();
-                times[k].push_back(both[k].stats().deviceMilliseconds);
+    // A few pixels show what does not depend on the size of an eye.
+    for (const double percent : {5.0, 0.05}) {
+        const CostFrame frame(device, percent / 100);
+        for (const auto& [method, name] : methods) {
+            Shader both[2] = {frame.shader(device, false, method), frame.shader(device, true, method)};
+            std::vector<double> times[2], more;
+            for (int i = 0; i < 201; ++i) {
+                for (Shader& shader : both) {
+                    shader.execute();
+                    times[&shader - both].push_back(shader.stats().deviceMilliseconds);
+                }
+                more.push_back(times[1].back() - times[0].back());
             }
-            more.push_back(times[1].back() - times[0].back());
+            char begin[64];
+            std::snprintf(begin, sizeof begin, "frame, %s, eye on %g %%: ", name, percent);
+            row(std::string(begin) + "as skin", median(times[0]));
+            row(std::string(begin) + "as an eye", median(times[1]));
+            const Estimate added(more);
+            row(std::string(begin) + "what it adds", added.value);
+            row(std::string(begin) + "error of that (95 %)", added.error);
+            const PelShaderStats stats = both[1].stats();
+            std::fprintf(stderr, "%llu of %llu tiles have an eye\n",
+                         static_cast<unsigned long long>(stats.tilesEye),
+                         static_cast<unsigned long long>(stats.tilesShaded));
         }
-        const PelShaderStats stats = eye.stats();
-        row(std::string("frame, ") + name + ": skin", median(times[0]));
-        row(std::string("frame, ") + name + ": 5 % of it an eye", median(times[1]));
-        row(std::string("frame, ") + name + ": what the eye adds", median(more));
-        std::fprintf(stderr, "%llu of %llu tiles have an eye\n", static_cast<unsigned long long>(stats.tilesEye),
-                     static_cast<unsigned long long>(stats.tilesShaded));
     }
 }
 

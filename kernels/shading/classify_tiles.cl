@@ -20,6 +20,27 @@ static inline uint commonVariants(__global const PelShadeMaterial* materials, ui
     return able;
 }
 
+// The id of a tile that has one alone, as nearly all have, by its bytes as they are: without a branch for each vector. ~0 for other tiles.
+static inline uint onlyId(__global const PelShadeFrame* frame, __global uchar* material, uint x, uint y) {
+#if PEL_WIDTH > 1
+    if (PEL_FORMAT_MATERIAL != PEL_FMT_R8_UINT || x + PEL_TILE_WIDTH > frame->width ||
+        y + PEL_TILE_HEIGHT > frame->height)
+        return ~0u;
+    __global const PelShadeImage* image = &frame->images[PEL_IMAGE_MATERIAL];
+    __global const uchar* first = imageSpan(material, image, x, y).first;
+    const uchar id = *first;
+    uchar16 differs = (uchar16)(0);
+    for (uint j = 0; j < PEL_TILE_HEIGHT; ++j, first += image->rowStride) {
+        for (uint i = 0; i < PEL_TILE_WIDTH; i += 64) PEL_PREFETCH(first + 4 * PEL_TILE_WIDTH + i);
+        for (uint i = 0; i < PEL_TILE_WIDTH; i += 16) differs |= vload16(0, first + i) ^ (uchar16)(id);
+    }
+    const ulong2 words = as_ulong2(differs);
+    return words.x | words.y ? ~0u : (uint)id;
+#else
+    return ~0u;
+#endif
+}
+
 // 0: no pixel of a material; otherwise 1 + the last variant that has all features that its materials need
 // (later ones are cheaper).
 static inline uint classOfTile(__global const PelShadeFrame* frame, __global const PelShadeMaterial* materials,
@@ -27,6 +48,11 @@ static inline uint classOfTile(__global const PelShadeFrame* frame, __global con
     const uint x0 = tile % frame->tilesX * PEL_TILE_WIDTH, y0 = tile / frame->tilesX * PEL_TILE_HEIGHT;
     const uint x1 = min(x0 + PEL_TILE_WIDTH, frame->width), y1 = min(y0 + PEL_TILE_HEIGHT, frame->height);
     uint found = PEL_FEATURES & PEL_BIT_NO_SKIPPING, able = (1u << variants) - 1u, known = ~0u;
+    if (!found && able != 1u) {
+        const uint id = onlyId(frame, material, x0, y0);
+        if (id != ~0u)
+            return anyw(hasMaterial(frame, (uintw)(id))) ? 32u - clz(able & materials[id].variants) : 0u;
+    }
     for (uint y = y0; y < y1; ++y)
         for (uint x = x0; x < x1; x += PEL_WIDTH) {
             if (found && able == 1u) return 1u;

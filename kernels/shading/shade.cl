@@ -82,7 +82,7 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
     EyeLight inEye;
     maskw outside = active;  // where the material itself is seen
     if (isEye) {
-        inEye = beginEye(scene, eye, p, x, y, active & p->valid, counts);
+        inEye = beginEye(scene, eye, p, active & p->valid, counts);
         outside &= inEye.view.cornea < 1.0f;
     }
     const bool lit = !SKIPPING || !scattered || PEL_FORMAT_OUT_THICKNESS ||
@@ -102,7 +102,7 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
                 whole = HAS(PEL_BIT_IRRADIANCE) ? add3(radiance, before) : radiance;
     if (!isEye) return whole;
     const floatw sclera = 1.0f - inEye.view.cornea;
-    const Vec3w iris = irisRadiance(scene, eye, &inEye);
+    const Vec3w iris = irisRadiance(scene, eye, p, x, y, active & p->valid, &inEye);
     *specularPart = add3(scale3(specular, sclera), inEye.reflected);
     if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = add3(scale3(parts->diffuse, sclera), iris);
     if (PEL_FORMAT_OUT_DEEP_SCATTER) parts->deepScatter = scale3(parts->deepScatter, sclera);
@@ -164,7 +164,7 @@ static inline void shadePixels(const Scene* scene, uint x, uint y, uintw id, mas
 
 __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade(SCENE_ARGUMENTS uint part,
                                                                                  uint parts, uint which) {
-    const Scene scene = SCENE_VALUE;
+    Scene scene = SCENE_VALUE;
     Counts counts = {{0}};
     const bool listed = PEL_FORMAT_MATERIAL && which != PEL_EVERY_TILE;
     const uint tiles = listed ? list[which] : frame->tiles;
@@ -176,6 +176,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
     for (uint i = (uint)((ulong)tiles * group / groups); i < end; ++i) {
         const uint tile = listed ? list[listStart + i] : frame->firstTile + i;
         const uint tileX = tile % frame->tilesX * PEL_TILE_WIDTH, tileY = tile / frame->tilesX * PEL_TILE_HEIGHT;
+        const uint next = listed && i + 1 < end ? list[listStart + i + 1] : tile + 1;
+        scene.aheadColumns = (int)(next % frame->tilesX * PEL_TILE_WIDTH - tileX);
+        scene.aheadRows = (int)(next / frame->tilesX * PEL_TILE_HEIGHT - tileY);
         for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS;
              pixel += PEL_SHADE_GROUP * PEL_WIDTH) {
             const uint x = tileX + pixel % PEL_TILE_WIDTH, y = tileY + pixel / PEL_TILE_WIDTH;
