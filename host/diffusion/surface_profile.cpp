@@ -115,7 +115,6 @@ SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
         const double s = at(low + i), step = s * 1e-3;
         const Rgb before = radial(shape, knots, s - step), here = radial(shape, knots, s),
                   behind = radial(shape, knots, s + step);
-        Rgb slope{};
         for (int c = 0; c < 3; ++c) {
             if (cut[c] > 0 && s > cut[c]) continue;
             const double norm = whole / all[c], first = norm * (behind[c] - before[c]) / (2 * step),

@@ -16,7 +16,6 @@ struct ProfileFit {
 // profile do; 1 <= count <= 12. Gaussians are added one by one where they help most. After each, variances
 // and weights are optimised together (Levenberg, Marquardt). At last each is removed and added where it helps
 // most, as long as that is another place. A profile that is a sum of `count` Gaussians is returned exactly.
-// somewhere else. A profile that is a sum of `count` Gaussians comes back as it is.
 ProfileFit fitGaussians(const Profile& profile, int count);
 
 // Per channel: root of int (P - fit)^2 ds / int P^2 ds, over the line spread P of `profile`.
