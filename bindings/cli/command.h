@@ -91,7 +91,7 @@ void addShade(CLI::App& app);
 void addReference(CLI::App& app);
 void addImport(CLI::App& app);
 void addCompare(CLI::App& app);
-void addPrefill(CLI::App& app);
+void addWarmUp(CLI::App& app);
 void addDemo(CLI::App& app);
 void addBench(CLI::App& app);
 void addView(CLI::App& app);  // and gallery

@@ -33,6 +33,7 @@ nlohmann::ordered_json described(const CLI::App& app) {
     nlohmann::ordered_json json;
     json["name"] = app.get_name();
     json["help"] = app.get_description();
+    if (!app.get_aliases().empty()) json["aliases"] = app.get_aliases();
     json["options"] = nlohmann::json::array();
     for (const CLI::Option* option : app.get_options())
         if (!option->get_group().empty())

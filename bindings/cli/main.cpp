@@ -25,7 +25,7 @@ void checkSubcommand(const CLI::App& app, int argc, char** argv, const std::stri
     std::string names;
     std::vector<std::string> all;
     for (const CLI::App* known : app.get_subcommands({})) {
-        if (known->get_name() == argv[1])
+        if (known->check_name(argv[1]))
             return checkSubcommand(*known, argc - 1, argv + 1, path + argv[1] + " ");
         names += (names.empty() ? "" : ", ") + known->get_name();
         all.push_back(known->get_name());
@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
     addReference(app);
     addImport(app);
     addCompare(app);
-    addPrefill(app);
+    addWarmUp(app);
     addDemo(app);
     addBench(app);
     addView(app);
@@ -75,6 +75,9 @@ int main(int argc, char** argv) {
     } catch (const CLI::ExtrasError&) {
         return fail(exitWrongUse, unknownOptions(app).c_str());
     } catch (const CLI::ParseError& e) {
+        // A mistyped option may be why a required one is missing.
+        for (const std::string& word : app.remaining(true))
+            if (word.starts_with("-")) return fail(exitWrongUse, unknownOptions(app).c_str());
         app.exit(e);
         return exitWrongUse;
     } catch (const UsageError& e) {

@@ -49,6 +49,8 @@ TEST_F(Cli, WrongUseIsRefused) {
     expectRefused({"lut", "curvature", "-o", path("l.npy"), "--sise", "8x8"}, 2,
                   "pellucid lut curvature has no '--sise'; did you mean --size?");
     expectRefused({"shde"}, 2, "no subcommand 'shde'; did you mean shade?");
+    expectRefused({"shade", "--exposre", "2"}, 2,
+                  "pellucid shade has no '--exposre'; did you mean --exposure?");
     for (const char* size : {"8", "8x", "0x8", "-1x8", "8x8x8", "eight"}) {
         expectRefused({"lut", "curvature", "-o", path("l.npy"), std::string("--size=") + size}, 2, "--size");
     }
@@ -112,7 +114,7 @@ TEST_F(Cli, EveryDeviceOptionIsHeard) {
         {"lut shadow", {"-o", out + ".exr"}},
         {"lut specular", {"-o", out + ".exr"}},
         {"lut eye", {"-o", out + ".exr"}},
-        {"prefill", {}},
+        {"warm-up", {}},
         {"shade", {"--outputs", "diffuse", mesh, "--scene", mesh, "-o", out + ".exr"}},
         {"reference", {mesh, "--scene", mesh, "-o", out + ".npy"}},
         {"import", {path("none.glb"), "-o", out}},

@@ -16,8 +16,8 @@ namespace {
 class ProgramsOnDisk : public CommandTest {
   protected:
     // Builds the programs of tables and says what became of them.
-    nlohmann::json prefill(const std::string& environment) const {
-        const Result result = run({"prefill", "--luts", "--threads", "1", "--json"}, environment);
+    nlohmann::json warmUp(const std::string& environment) const {
+        const Result result = run({"warm-up", "--luts", "--threads", "1", "--json"}, environment);
         EXPECT_EQ(result.exitCode, 0) << result.err;
         return result.exitCode ? nlohmann::json() : result.json();
     }
@@ -41,13 +41,13 @@ class ProgramsOnDisk : public CommandTest {
 
 TEST_F(ProgramsOnDisk, ASecondProcessCompilesNothingAndComputesTheSameBits) {
     const std::string truth = table("PELLUCID_CACHE=off", "off.npy");
-    const nlohmann::json first = prefill(on());
+    const nlohmann::json first = warmUp(on());
     const int programs = first.at("programs");
     ASSERT_GT(programs, 3);
     EXPECT_EQ(first.at("loaded"), 0);
     EXPECT_EQ(first.at("stored"), programs);
     EXPECT_EQ(int(files().size()), programs);
-    const nlohmann::json second = prefill(on());
+    const nlohmann::json second = warmUp(on());
     EXPECT_EQ(second.at("programs"), programs);
     EXPECT_EQ(second.at("loaded"), programs);
     EXPECT_EQ(second.at("stored"), 0);
@@ -56,7 +56,7 @@ TEST_F(ProgramsOnDisk, ASecondProcessCompilesNothingAndComputesTheSameBits) {
 
     // Another width is another program.
     const bool eight = pellucid::Device("").info().mathWidth == 8;
-    const nlohmann::json other = prefill(on(eight ? "PELLUCID_MATH_WIDTH=16" : "PELLUCID_MATH_WIDTH=8"));
+    const nlohmann::json other = warmUp(on(eight ? "PELLUCID_MATH_WIDTH=16" : "PELLUCID_MATH_WIDTH=8"));
     EXPECT_EQ(other.at("loaded"), 0);
     EXPECT_EQ(other.at("stored"), programs);
 
@@ -69,15 +69,15 @@ TEST_F(ProgramsOnDisk, ASecondProcessCompilesNothingAndComputesTheSameBits) {
         if (i % 3 == 2) text = "not a program";
         std::ofstream(all[i], std::ios::binary) << text;
     }
-    const nlohmann::json mended = prefill(on());
+    const nlohmann::json mended = warmUp(on());
     EXPECT_EQ(mended.at("loaded"), 0);
     EXPECT_EQ(mended.at("stored"), programs);
-    EXPECT_EQ(prefill(on()).at("loaded"), programs);
+    EXPECT_EQ(warmUp(on()).at("loaded"), programs);
     EXPECT_EQ(table(on(), "mended.npy"), truth);
 }
 
 TEST_F(ProgramsOnDisk, ABinaryThatTheDriverRefusesIsCompiledAgain) {
-    const nlohmann::json first = prefill(on());
+    const nlohmann::json first = warmUp(on());
     // Whole files, with a check sum that is right, of something that is no program.
     for (const fs::path& file : files()) {
         std::string text = read(file.string());
@@ -88,7 +88,7 @@ TEST_F(ProgramsOnDisk, ABinaryThatTheDriverRefusesIsCompiledAgain) {
         text.resize(48);
         std::ofstream(file, std::ios::binary) << text << nonsense;
     }
-    const nlohmann::json again = prefill(on());
+    const nlohmann::json again = warmUp(on());
     EXPECT_EQ(again.at("loaded"), 0);
     EXPECT_EQ(again.at("stored"), first.at("programs"));
 }
@@ -96,7 +96,7 @@ TEST_F(ProgramsOnDisk, ABinaryThatTheDriverRefusesIsCompiledAgain) {
 TEST_F(ProgramsOnDisk, AFolderThatCannotBeWrittenIsNoError) {
     // A file where the folder should be: root may write wherever there is a folder.
     write("cache", "a file");
-    const nlohmann::json blocked = prefill(on());
+    const nlohmann::json blocked = warmUp(on());
     EXPECT_GT(blocked.at("programs"), 3);
     EXPECT_EQ(blocked.at("loaded"), 0);
     EXPECT_EQ(blocked.at("stored"), 0);
@@ -104,7 +104,7 @@ TEST_F(ProgramsOnDisk, AFolderThatCannotBeWrittenIsNoError) {
     if (::geteuid() == 0) return;
     fs::create_directories(path("cache"));
     fs::permissions(path("cache"), fs::perms::owner_read | fs::perms::owner_exec);
-    EXPECT_EQ(prefill(on()).at("stored"), 0);
+    EXPECT_EQ(warmUp(on()).at("stored"), 0);
     fs::permissions(path("cache"), fs::perms::owner_all);
 }
 
@@ -125,15 +125,15 @@ TEST_F(ProgramsOnDisk, TwoProcessesAtOnceAndTheSwitch) {
     for (const auto& s : said) EXPECT_EQ(s.at("loaded").get<int>() + s.at("stored").get<int>(), programs);
     EXPECT_EQ(int(files().size()), programs);
     for (const fs::path& file : files()) EXPECT_EQ(file.extension(), ".bin");
-    EXPECT_EQ(prefill(on()).at("loaded"), programs);
+    EXPECT_EQ(warmUp(on()).at("loaded"), programs);
 
     for (const char* off : {"PELLUCID_CACHE=off", "PELLUCID_CACHE_DIR=", "PELLUCID_CACHE_DIR=off"}) {
-        const nlohmann::json none = prefill(on(off));
+        const nlohmann::json none = warmUp(on(off));
         EXPECT_EQ(none.at("loaded").get<int>() + none.at("stored").get<int>(), 0) << off;
     }
-    expectRefused({"prefill", "--luts"}, 2, "PELLUCID_CACHE is \"perhaps\"; it can be on, off or auto",
+    expectRefused({"warm-up", "--luts"}, 2, "PELLUCID_CACHE is \"perhaps\"; it can be on, off or auto",
                   "PELLUCID_CACHE=perhaps");
-    expectRefused({"prefill", "--luts"}, 2, "PELLUCID_CACHE_MB is \"much\"", on("PELLUCID_CACHE_MB=much"));
+    expectRefused({"warm-up", "--luts"}, 2, "PELLUCID_CACHE_MB is \"much\"", on("PELLUCID_CACHE_MB=much"));
     // No room: built, not kept.
-    EXPECT_EQ(prefill(on("PELLUCID_CACHE_MB=0")).at("loaded"), 0);
+    EXPECT_EQ(warmUp(on("PELLUCID_CACHE_MB=0")).at("loaded"), 0);
 }

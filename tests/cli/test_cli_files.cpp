@@ -135,7 +135,7 @@ TEST_F(Files, PipesAndDevicesAreNoFiles) {
         expectRefused({"profile", "show", path(name + ".toml")}, 3, what);
         expectRefused({"batch", path(name + ".toml"), "-o", path("o")}, 3, what);
         expectRefused({"shade", path("g.exr"), "--scene", path(name + ".toml"), "-o", path("o.exr")}, 3, what);
-        expectRefused({"prefill", path(name + ".toml")}, 3, what);
+        expectRefused({"warm-up", path(name + ".toml")}, 3, what);
         expectRefused({"bench", "compare", path(name + ".json"), path(name + ".json")}, 3, what);
     }
     expectRefused({"lut", "shadow", "-o", path("pipe.npy")}, 2,
@@ -173,7 +173,7 @@ TEST_F(Files, KeysWithoutEndAndBracketsWithoutEnd) {
         for (const auto& command : {std::vector<std::string>{"profile", "show", file},
                                     {"batch", file, "-o", path("t")},
                                     {"shade", path("g.exr"), "--scene", file, "-o", path("o.exr")},
-                                    {"prefill", file},
+                                    {"warm-up", file},
                                     {"lut", "shadow", "--profile", file, "-o", path("o.npy")}}) {
             const Result result = run(command);
             EXPECT_EQ(result.exitCode, 3) << command[0] << result.err.substr(0, 200);

@@ -1,4 +1,4 @@
-// `pellucid shade` and `pellucid prefill`: G-buffer and scene file in, pictures out; what is wrong with either.
+// `pellucid shade` and `pellucid warm-up`: G-buffer and scene file in, pictures out; what is wrong with either.
 #include "cli_shade.h"
 #include "tolerances.h"
 
@@ -238,7 +238,7 @@ TEST_F(Shade, ProgramsAreBuiltAheadForTheDriversCache) {
             count += entry.path().extension() == ".so";
         return count;
     };
-    const Result built = run({"prefill", path("s.toml"), "--json"}, cache);
+    const Result built = run({"warm-up", path("s.toml"), "--json"}, cache);
     ASSERT_EQ(built.exitCode, 0) << built.err;
     expectReport(built.json());
     EXPECT_GE(built.json().at("programs").get<int>(), 1);
@@ -248,5 +248,5 @@ TEST_F(Shade, ProgramsAreBuiltAheadForTheDriversCache) {
     if (contains(built.json().at("device").get<std::string>(), "pthread")) {
         EXPECT_GT(before, 0u) << "PoCL keeps kernels there";
     }
-    expectRefused({"prefill", path("none.toml")}, 3, "none.toml");
+    expectRefused({"warm-up", path("none.toml")}, 3, "none.toml");
 }

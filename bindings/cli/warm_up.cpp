@@ -1,4 +1,4 @@
-// pellucid prefill (warm-up): builds programs before they are needed. The driver's cache on disk keeps them.
+// pellucid warm-up: builds programs before they are needed. The driver's cache on disk keeps them.
 #include <set>
 
 #include "command.h"
@@ -26,7 +26,7 @@ io::Image blank(const std::set<std::string>& channels, int height = 2) {
 }
 
 // Shades such a frame. Files beside the scene are read, except shadow maps.
-void prefillScene(const Device& device, const std::string& path) {
+void warmUpScene(const Device& device, const std::string& path) {
     const io::SceneFile scene = io::readScene(path);
     std::set<std::string> channels;
     for (size_t slot = 0; slot < scene.channels.size(); ++slot)
@@ -67,7 +67,7 @@ void run(const Arguments& a) {
     for (const std::string& scene : a.scenes) {
         run.note("building what " + scene + " needs");
         try {
-            prefillScene(run.device(), scene);
+            warmUpScene(run.device(), scene);
         } catch (const Error& e) {
             if (e.code() == PEL_ERROR_INVALID_ARGUMENT) throw InputError(scene + ": " + e.what());
             throw;
@@ -83,9 +83,10 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void addPrefill(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "prefill", "Warm-up: build OpenCL programs before their first use, for the driver's cache");
+void addWarmUp(CLI::App& app) {
+    CLI::App* command =
+        app.add_subcommand("warm-up", "Build OpenCL programs before their first use, for the driver's cache");
+    command->alias("prefill");  // its first name
     auto a = std::make_shared<Arguments>();
     command->add_option("scene", a->scenes, "scene files (TOML) that `pellucid shade` will be given");
     command->add_flag("--luts", a->luts, "look-up tables of sums of Gaussians");
