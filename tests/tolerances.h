@@ -455,6 +455,10 @@ inline constexpr Tolerance texturePlane{"texturePlane", 4.5e-3,
                                         "the narrowest Gaussians are below a texel there"};
 inline constexpr Tolerance textureSphere{"textureSphere", 1.3e-3, "texels along u and v stand for distances"};
 
+// --- memory ---
+inline constexpr Tolerance heldMemory{"heldMemory", 0.05,
+                                      "tables of profiles and lists of a few hundred bytes are not counted"};
+
 // --- tables as BC6H ---
 inline constexpr Tolerance bc6hMax{
     "bc6hMax", 0.016, "64x64: one byte per texel cannot follow three channels that part at the terminator"};

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <memory_resource>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ enum Type { contexts, queues, memory, programs, kernels, events, types };
 constexpr const char* names[types] = {"contexts", "queues",  "memory objects",
                                       "programs", "kernels", "events"};
 std::atomic<int64_t> live[types];
+std::atomic<int64_t> memoryBytes;
 std::atomic<uint64_t> buffersMade, bytesCopied, transfers, launches;
 std::atomic<bool> warned;  // the compiler, about a kernel
 
@@ -74,6 +76,34 @@ cl_int copied(cl_int code, const cl_event* event, size_t bytes) {
     return withEvent(code, event);
 }
 
+// References of the library to buffers: drivers have references of their own for a while.
+struct Held {
+    size_t bytes;
+    int64_t references;
+};
+// Outlives every static object. Not on the heap between the library's own blocks: those could not be returned to the system.
+std::pmr::map<cl_mem, Held>& heldBuffers() {
+    static std::byte first[1 << 20];
+    static auto* room = new std::pmr::monotonic_buffer_resource(first, sizeof first);
+    static auto* nodes = new std::pmr::unsynchronized_pool_resource(room);
+    static auto* held = new std::pmr::map<cl_mem, Held>(nodes);
+    return *held;
+}
+std::recursive_mutex heldMutex;  // drivers may call back from a release
+
+// The lock spans the call: another thread may be given the same address as soon as it is free.
+template <class Call>
+cl_int countedMemory(cl_mem h, int by, Call&& call) {
+    const std::lock_guard lock(heldMutex);
+    const cl_int code = call(h);
+    const auto found = heldBuffers().find(h);
+    if (code == CL_SUCCESS && found != heldBuffers().end() && (found->second.references += by) == 0) {
+        memoryBytes -= int64_t(found->second.bytes);
+        heldBuffers().erase(found);
+    }
+    return counted(memory, by, code);
+}
+
 // Users see a compiler's warnings on their terminal.
 void lookForWarnings(cl_program program, cl_device_id device) {
     const auto info = next<decltype(clGetProgramBuildInfo)>("clGetProgramBuildInfo");
@@ -113,8 +143,8 @@ void check() {
 namespace spy {
 
 Counts counts() {
-    return {live[contexts], live[queues], live[memory], live[programs], live[kernels],
-            live[events],   buffersMade,  bytesCopied,  transfers,      launches};
+    return {live[contexts], live[queues], live[memory], live[programs], live[kernels], live[events],
+            memoryBytes,    buffersMade,  bytesCopied,  transfers,      launches};
 }
 
 uint64_t launchesOf(const char* kernel) {
@@ -145,7 +175,12 @@ extern "C" {
     }
 COUNT_REFERENCES(contexts, Context, cl_context)
 COUNT_REFERENCES(queues, CommandQueue, cl_command_queue)
-COUNT_REFERENCES(memory, MemObject, cl_mem)
+cl_int clRetainMemObject(cl_mem h) {
+    return countedMemory(h, 1, REAL(clRetainMemObject));
+}
+cl_int clReleaseMemObject(cl_mem h) {
+    return countedMemory(h, -1, REAL(clReleaseMemObject));
+}
 COUNT_REFERENCES(programs, Program, cl_program)
 COUNT_REFERENCES(kernels, Kernel, cl_kernel)
 COUNT_REFERENCES(events, Event, cl_event)
@@ -161,7 +196,11 @@ cl_command_queue clCreateCommandQueue(cl_context context, cl_device_id device,
 }
 cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t bytes, void* host, cl_int* code) {
     cl_mem buffer = REAL(clCreateBuffer)(context, flags, bytes, host, code);
-    if (buffer) ++buffersMade;
+    if (buffer) {
+        const std::lock_guard lock(heldMutex);
+        heldBuffers()[buffer] = {bytes, 1};
+        ++buffersMade, memoryBytes += int64_t(bytes);
+    }
     if (buffer && (flags & CL_MEM_COPY_HOST_PTR)) ++transfers, bytesCopied += bytes;
     return made(memory, buffer);
 }

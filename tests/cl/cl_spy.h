@@ -9,6 +9,7 @@ namespace spy {
 struct [[gnu::visibility("default")]] Counts {
     // References that the library holds now.
     int64_t contexts, queues, memory, programs, kernels, events;
+    int64_t memoryBytes;  // of buffers that live now; parts of buffers and the host's own memory are not counted
     // Since the program began.
     uint64_t buffersMade;  // clCreateBuffer that succeeded
     uint64_t bytesCopied;  // by CL_MEM_COPY_HOST_PTR and the enqueued reads, writes and copies between buffers

@@ -1,0 +1,109 @@
+// What objects say of the memory that they hold is what OpenCL was asked for: it goes when they go.
+#include <gtest/gtest.h>
+
+#include "cl/cl_spy.h"
+#include "diffusion/lit_ball.h"
+#include "mesh/mesh_fixture.h"
+#include "mesh/reference_meshes.h"
+#include "tolerances.h"
+
+using namespace lit_ball;
+using pellucid::LiveMesh;
+using pellucid::MeshTopology;
+using pellucid::Shader;
+
+namespace {
+
+// Bytes that `release` gives back.
+uint64_t freed(const std::function<void()>& release) {
+    const int64_t before = spy::counts().memoryBytes;
+    release();
+    return uint64_t(before - spy::counts().memoryBytes);
+}
+
+// What is said may leave out small lists.
+void expectSaid(uint64_t said, uint64_t held, const std::string& of) {
+    EXPECT_LE(said, held) << of;
+    EXPECT_GE(double(said), (1 - tolerance::heldMemory) * double(held)) << of;
+}
+
+}  // namespace
+
+TEST(HeldMemory, OfAShaderByMethod) {
+    constexpr uint32_t side = 160;
+    const LitBall lamp = makeBall(Form::parallel, normalized(Vec3{0.8, 0.3, 0.5}), 128);
+    const Picture p = pictureOf(lamp, side);
+    std::vector<float> normals = p.positions;
+    for (float& n : normals) n /= float(radius);
+    const Buffer positions(device(), p.positions), shading(device(), normals),
+        irradiance(device(), p.irradiance), ids(device(), p.ids), map(device(), lamp.maps[0]),
+        out(device(), std::vector<float>(3 * p.pixels()));
+    uint64_t saidOfTables = 0, tables = 0;
+    for (int scattering = PEL_SCATTERING_PREINTEGRATED; scattering <= PEL_SCATTERING_AUTO; ++scattering) {
+        if (scattering == PEL_SCATTERING_TEXTURE) continue;
+        Shader shader(device());
+        const auto image = [&](PelImageSlot slot, const Buffer& pixels, PelFormat format) {
+            shader.set(slot, pellucid::imageDesc(pixels, format, side, side));
+        };
+        image(PEL_SLOT_POSITION, positions, PEL_FORMAT_RGB32F);
+        image(PEL_SLOT_NORMAL_SHADING, shading, PEL_FORMAT_RGB32F);
+        image(PEL_SLOT_IRRADIANCE, irradiance, PEL_FORMAT_RGB32F);
+        image(PEL_SLOT_MATERIAL, ids, PEL_FORMAT_R8_UINT);
+        image(PEL_SLOT_RADIANCE, out, PEL_FORMAT_RGB32F);
+        const Profile skin = Profile::skin();
+        shader.setMaterial(1, whiteMaterial(skin, PelScattering(scattering)));
+        shader.set(std::vector{lamp.light});
+        shader.set(0, PEL_LIGHT_SHADOW_MAP, pellucid::imageDesc(map, PEL_FORMAT_R32F, lamp.width, lamp.height));
+        shader.commit().execute();
+        const uint64_t said = shader.stats().scratchBytes, held = freed([&] { shader = Shader(); });
+        EXPECT_LE(said, held);
+        // What the tables of the profile take by themselves, which other shaders may share, is not said.
+        if (scattering == PEL_SCATTERING_PREINTEGRATED) saidOfTables = said, tables = held;
+        expectSaid(said - saidOfTables, held - tables, "method " + std::to_string(scattering));
+    }
+    EXPECT_GE(saidOfTables, tables / 2.05) << "tables, and their copy side by side";
+}
+
+TEST(HeldMemory, OfScatteringAloneByMethod) {
+    constexpr uint32_t side = 160;
+    const Picture p = plane(side, side, 0.2, [](double x, double) {
+        const double e = x < 16 ? 1 : 0.1;
+        return Vec3{e, e, e};
+    });
+    const Buffer positions(device(), p.positions), irradiance(device(), p.irradiance), ids(device(), p.ids),
+        out(device(), p.irradiance);
+    const auto image = [&](const Buffer& pixels, PelFormat format) {
+        return pellucid::imageDesc(pixels, format, side, side);
+    };
+    for (const PelScattering scattering : {PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN}) {
+        Scatter scatter(device());
+        scatter.setMaterial(1, Profile::skin());
+        PelScatterControls controls = pelScatterControlsDefaults();
+        controls.scattering = scattering;
+        scatter.setControls(1, controls);
+        scatter.execute(p.params, image(irradiance, PEL_FORMAT_RGB32F), image(positions, PEL_FORMAT_RGB32F),
+                        nullptr, image(ids, PEL_FORMAT_R8_UINT), image(out, PEL_FORMAT_RGB32F));
+        const uint64_t said = scatter.stats().scratchBytes;
+        expectSaid(said, freed([&] { scatter = Scatter(); }), "method " + std::to_string(scattering));
+    }
+}
+
+TEST(HeldMemory, OfALiveMesh) {
+    using namespace fixture;
+    const Mesh mesh =
+        pairOf(tessellate(reference::torusSurface(3, 1), 128, 64, reference::Tessellation::irregular).mesh).mesh;
+    const uint32_t n = mesh.vertices();
+    const MeshTopology topology(fixture::device(), topologyDesc(mesh));
+    const Buffer positions(fixture::device(), mesh.positions), result(fixture::device(), n * sizeof(float));
+    for (const PelCurvatureEstimator estimator :
+         {PEL_CURVATURE_QUADRIC, PEL_CURVATURE_TENSOR, PEL_CURVATURE_EDGE}) {
+        PelCurvatureParams params = pelCurvatureParamsDefaults();
+        params.estimator = estimator;
+        LiveMesh live(topology, params);
+        const std::vector<PelVertexRange> some{{7, 100}};
+        live.update(pellucid::vertexView(positions, n), nullptr, pellucid::vertexView(result, n));
+        live.update(pellucid::vertexView(positions, n), nullptr, pellucid::vertexView(result, n), some);
+        const uint64_t said = live.stats().deviceBytes;
+        EXPECT_EQ(said, freed([&] { live = LiveMesh(); })) << estimator;
+    }
+}
