@@ -115,6 +115,21 @@ TEST(LightOracle, EveryFormOfMapIsTheSumOverItsTexels) {
         }
 }
 
+// Lights along the axes have maps whose matrices are full of zeros.
+TEST(LightOracle, LightsAlongAnAxis) {
+    const uint32_t side = sized(20u, 10u), mapSide = sized(64u, 48u);
+    const Case c = cases()[1];
+    for (Form form : {Form::parallel, Form::perspective, Form::cube})
+        for (Vec3 toLight : {Vec3{1, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, 0, 1}}) {
+            const LitBall ball = makeBall(form, toLight, form == Form::cube ? 2 * mapSide : mapSide);
+            const Picture p = pictureOf(ball, side);
+            const auto truth = reference::scatterFromLights(p.exact(), {exactLight(ball)}, *c.exact);
+            const Lit lit = shaded(p, std::vector{ball}, c.profile, {PEL_SCATTERING_LIGHT, 0, 0});
+            const Difference d = difference(p, lit.light, [&](size_t i, int k) { return truth[i][k]; });
+            EXPECT_LT(d.rms, c.most) << "form " << int(form) << ", " << toLight.x << ' ' << toLight.z;
+        }
+}
+
 // A parallel light, a spot with its map and a cube at a time, each of its own colour.
 TEST(LightOracle, SeveralLightsAreTheSumOverAllTheirTexels) {
     const uint32_t side = sized(24u, 10u), mapSide = sized(128u, 48u);
