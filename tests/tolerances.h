@@ -414,6 +414,9 @@ inline constexpr Tolerance scatterSeam{"scatterSeam", 1.6,
                                        "the same, over the borders of tiles that took different ways"};
 inline constexpr Tolerance scatterFade{
     "scatterFade", 0.1, "of targetError: how much more a tile steps that begins to count; 0.03 measured"};
+inline constexpr Tolerance scatterBluer{
+    "scatterBluer", 0.01,
+    "of white, in a dark gap: 0.006 in one pixel that few blocks round it are the same surface as"};
 inline constexpr Tolerance scatterStep{"scatterStep", 1e-3,
                                        "of white: how far the grid of pixels shows while it moves"};
 
