@@ -148,6 +148,7 @@ DemoHead loadDemoHead(const std::string& path, int levels) {
     if (!eyes[0].empty() && !eyes[1].empty() && !mouth.empty()) out.tints = tintsOf(head, eyes, mouth, skin);
     out.frame = skin;
     out.mesh = std::move(head.mesh);
+    out.cornerUvs = std::move(head.cornerUvs);
     return out;
 }
 

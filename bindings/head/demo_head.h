@@ -22,6 +22,7 @@ enum DemoMaterial : uint32_t {
 
 struct DemoHead {
     io::MeshData mesh;                    // mm
+    std::vector<float> cornerUvs;         // u, v per corner of the triangles, which io::splitAtSeams takes
     std::vector<uint32_t> materials;      // DemoMaterial per triangle; empty: all skin
     std::vector<sample::Look> looks;      // of the ids 1, 2, ...
     std::vector<sample::Tint> tints;      // lips, cheeks, ears

@@ -90,6 +90,44 @@ TEST_F(MeshParts, SubdivisionIsCatmullClarks) {
     for (size_t t = 0; t < mesh.mesh.triangleCount(); ++t) EXPECT_GT(area(mesh.mesh, t), 0);
 }
 
+// A quad and a pentagon beside it, with a seam between them: coordinates are linear in each face's corners, and the seam stays.
+TEST_F(MeshParts, TextureCoordinatesAreLinearAndSeamsStay) {
+    const std::string text =
+        "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 4 0 0\nv 5 1 0\nv 4 2 0\n"
+        "vt 0 0\nvt 0.5 0\nvt 0.5 0.5\nvt 0 0.5\nvt 0.6 0\nvt 0.8 0\nvt 1 0.25\nvt 0.8 0.5\nvt 0.6 0.5\n"
+        "f 1/1 2/2 3/3 4/4\nf 2/5 5/6 6/7 7/8 3/9\n";
+    for (const int levels : {0, 1, 3}) {
+        PartedMesh parted = loadParts(write("two.obj", text), levels);
+        ASSERT_EQ(parted.cornerUvs.size(), 2 * parted.mesh.triangles.size());
+        MeshData& mesh = parted.mesh;
+        const size_t before = mesh.vertexCount();
+        splitAtSeams(mesh, parted.cornerUvs);
+        ASSERT_EQ(mesh.uvs.size(), 2 * mesh.vertexCount());
+        EXPECT_EQ(mesh.vertexCount(), before + (size_t(1) << levels) + 1) << "vertices of the seam";
+        // Signed areas in the texture: of each face as in the file, none turned.
+        double areas[2] = {0, 0};
+        for (size_t t = 0; t < mesh.triangleCount(); ++t) {
+            const float* uv[3];
+            for (int i = 0; i < 3; ++i) uv[i] = &mesh.uvs[2 * mesh.triangles[3 * t + i]];
+            const double twice = double(uv[1][0] - uv[0][0]) * (uv[2][1] - uv[0][1]) -
+                                 double(uv[2][0] - uv[0][0]) * (uv[1][1] - uv[0][1]);
+            EXPECT_GT(twice, 0);
+            areas[uv[0][0] + uv[1][0] + uv[2][0] > 1.65f] += 0.5 * twice;
+        }
+        EXPECT_NEAR(areas[0], 0.25, 1e-6);
+        EXPECT_NEAR(areas[1], 0.15, 1e-6);
+    }
+    // A cut interpolates: at y = 1 of the quad's left edge v is 0.25.
+    PartedMesh half = loadParts(write("two.obj", text), 0);
+    cutAndClose(half, "", {0, 1, 0}, 1, "cap");
+    ASSERT_EQ(half.cornerUvs.size(), 2 * half.mesh.triangles.size());
+    for (size_t c = 0; c < half.mesh.triangles.size(); ++c) {
+        const float* p = &half.mesh.positions[3 * half.mesh.triangles[c]];
+        EXPECT_NEAR(half.cornerUvs[2 * c + 1], 0.25 * p[1], 1e-6) << p[0];
+    }
+    EXPECT_TRUE(loadParts(write("bare.obj", cubes()), 1).cornerUvs.empty());
+}
+
 TEST_F(MeshParts, ACutIsStraightAndClosed) {
     PartedMesh mesh = loadParts(write("cubes.obj", cubes()), 3);
     const double before = volume(mesh.mesh);
@@ -143,6 +181,7 @@ TEST(Heads, HaveTheirParts) {
         for (const char* part : {"skin", "eye_left", "eye_right", "teeth_upper", "teeth_lower", "tongue"})
             EXPECT_GE(head.part(part), 0) << name << " " << part;
         EXPECT_GT(head.mesh.triangleCount(), 30000u);
+        EXPECT_EQ(head.cornerUvs.size(), 2 * head.mesh.triangles.size());
         for (const float n : head.mesh.normals) ASSERT_TRUE(std::isfinite(n));
     }
 }

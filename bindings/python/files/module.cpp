@@ -68,6 +68,7 @@ py::object loadHead(const std::string& path, int levels) {
         const py::gil_scoped_release free;
         if (!demo::hasHeadParts(path)) return py::none();
         head = demo::loadDemoHead(path, levels);
+        if (!head.cornerUvs.empty()) io::splitAtSeams(head.mesh, head.cornerUvs);
         ids.assign(head.mesh.vertexCount(), demo::DEMO_SKIN);  // parts share no vertices
         for (size_t c = 0; c < head.mesh.triangles.size(); ++c)
             ids[head.mesh.triangles[c]] = head.materials[c / 3];

@@ -51,8 +51,8 @@ def standard_head(which: str = "female") -> Path:
 def load_mesh(path: Any, subdivide: Optional[int] = None, up: str = "auto") -> Mesh:
     """Reads an OFF, OBJ, PLY or STL file.
 
-    Where texture coordinates of an OBJ file have a seam, its vertices are there once for each side, unless `subdivide` asks for levels: the mesh
-    then has no texture coordinates.
+    Where texture coordinates of an OBJ file have a seam, its vertices are there once for each side. A mesh that Loop's scheme subdivides has no
+    texture coordinates then; the heads of the package keep theirs.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ files = pytest.importorskip("pellucid.files", reason="this build reads no files"
 from pellucid import Device  # noqa: E402
 from pellucid.view.camera import Orbit, direction  # noqa: E402
 from pellucid.view.export import cpp_float, export, snippet  # noqa: E402
-from pellucid.view.look import EYES, MODES, PRESETS, SKIN, Look  # noqa: E402
+from pellucid.view.look import EYES, MODES, PRESETS, SKIN, Lamp, Look  # noqa: E402
 from pellucid.view.scene_session import SceneSession  # noqa: E402
 from pellucid.view.server import Pace, Viewer  # noqa: E402
 from pellucid.view.session import Session  # noqa: E402
@@ -275,12 +275,31 @@ def test_tiles_are_those_that_the_shader_counts(session):
         assert abs(int(by[name]) - int(tapped)) <= 0.15 * tapped + 2, (method, tapped, by)
 
 
+def _write_triangle(path):
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    return path
+
+
 def test_the_method_in_the_texture(session, tmp_path):
     reset(session)
-    session.look.method = "texture"
-    with pytest.raises(ValueError, match="no texture coordinates"):
-        session.frame(160, 90)
+    # The head: where scattering shows, at edges of shadows, the texture's is that of the other methods.
+    session.look.lamps, session.look.ambient, session.look.pores = [Lamp("Key", 75.0, 15.0)], 0.02, 0.0
+    session.orbit.azimuth = 25
+    by = {}
+    for method in ("none", "texture", "separable"):
+        session.look.method = method
+        by[method] = session.radiance(None, 640, 360)
+    session.look.method = "none"
+    skin = session.gbuffer(640, 360).material == 1
+    changes = [(by[method] - by["none"])[skin, 0] for method in ("texture", "separable")]
+    assert np.abs(changes[1]).max() > 0.1
+    assert np.corrcoef(changes)[0, 1] > 0.6
     reset(session)
+    bare = Session(session.device)
+    bare.load(_write_triangle(tmp_path / "bare.obj"))
+    bare.look.method = "texture"
+    with pytest.raises(ValueError, match="no texture coordinates"):
+        bare.frame(160, 90)
     # A sheet that bends, with coordinates, half in the shadow of a flap.
     n = 40
     u, v = np.meshgrid(np.arange(n + 1) / n, np.arange(n + 1) / n)

@@ -35,6 +35,13 @@ class Cutter {
         return entry->second;
     }
 
+    // The texture coordinates there, the same in both triangles of an edge where theirs are.
+    std::array<float, 2> uvAt(uint32_t a, uint32_t b, std::array<float, 2> uvA, std::array<float, 2> uvB) const {
+        if (a > b) std::swap(a, b), std::swap(uvA, uvB);
+        const double t = above(a) / (above(a) - above(b));
+        return {float(uvA[0] + t * (uvB[0] - uvA[0])), float(uvA[1] + t * (uvB[1] - uvA[1]))};
+    }
+
   private:
     MeshData& mesh_;
     std::array<double, 3> normal_;
@@ -71,6 +78,7 @@ void closeRim(PartedMesh& mesh, const std::vector<std::array<uint32_t, 2>>& rim,
         const uint32_t corners[3] = {own(edge[1]), own(edge[0]), centre};
         data.triangles.insert(data.triangles.end(), corners, corners + 3);
         mesh.partOf.push_back(part);
+        if (!mesh.cornerUvs.empty()) mesh.cornerUvs.insert(mesh.cornerUvs.end(), 6, 0.0f);
     }
 }
 
@@ -98,34 +106,51 @@ void cutAndClose(PartedMesh& mesh, const std::string& part, const float (&normal
     Cutter cutter(data, normal, offset);
     const int wanted = mesh.part(part);
     std::vector<uint32_t> triangles, partOf;
+    std::vector<float> uvs;
     std::vector<std::array<uint32_t, 2>> rim;  // edges of the cut, in the direction of the kept triangles
-    const auto add = [&](uint32_t a, uint32_t b, uint32_t c, uint32_t of) {
-        triangles.insert(triangles.end(), {a, b, c});
+    const bool mapped = !mesh.cornerUvs.empty();
+    struct Corner {
+        uint32_t v;
+        std::array<float, 2> uv;
+    };
+    const auto add = [&](const Corner& a, const Corner& b, const Corner& c, uint32_t of) {
+        triangles.insert(triangles.end(), {a.v, b.v, c.v});
+        for (const Corner* corner : {&a, &b, &c})
+            if (mapped) uvs.insert(uvs.end(), corner->uv.begin(), corner->uv.end());
         partOf.push_back(of);
+    };
+    const auto crossing = [&](const Corner& a, const Corner& b) {
+        return Corner{cutter.crossing(a.v, b.v), cutter.uvAt(a.v, b.v, a.uv, b.uv)};
     };
     const std::vector<uint32_t> before = std::move(data.triangles);
     for (size_t t = 0; t < mesh.partOf.size(); ++t) {
-        std::array<uint32_t, 3> v{before[3 * t], before[3 * t + 1], before[3 * t + 2]};
+        std::array<Corner, 3> v{};
+        for (size_t k = 0; k < 3; ++k) {
+            v[k].v = before[3 * t + k];
+            if (mapped) v[k].uv = {mesh.cornerUvs[6 * t + 2 * k], mesh.cornerUvs[6 * t + 2 * k + 1]};
+        }
         const uint32_t of = mesh.partOf[t];
-        const auto kept = std::count_if(v.begin(), v.end(), [&](uint32_t i) { return cutter.above(i) >= 0; });
+        const auto isKept = [&](const Corner& c) { return cutter.above(c.v) >= 0; };
+        const auto kept = std::count_if(v.begin(), v.end(), isKept);
         if (kept == 0) continue;
         if (kept == 3) {
             add(v[0], v[1], v[2], of);
             continue;
         }
         // The corner that is alone on its side comes first.
-        while ((cutter.above(v[0]) >= 0) != (kept == 1) || (cutter.above(v[1]) >= 0) == (kept == 1))
+        while (isKept(v[0]) != (kept == 1) || isKept(v[1]) == (kept == 1))
             std::rotate(v.begin(), v.begin() + 1, v.end());
-        const uint32_t p = cutter.crossing(v[0], v[1]), q = cutter.crossing(v[0], v[2]);
+        const Corner p = crossing(v[0], v[1]), q = crossing(v[0], v[2]);
         if (kept == 1) {
             add(v[0], p, q, of);
-            if (int(of) == wanted) rim.push_back({p, q});
+            if (int(of) == wanted) rim.push_back({p.v, q.v});
         } else {
             add(p, v[1], v[2], of);
             add(p, v[2], q, of);
-            if (int(of) == wanted) rim.push_back({q, p});
+            if (int(of) == wanted) rim.push_back({q.v, p.v});
         }
     }
+    mesh.cornerUvs = std::move(uvs);
     data.triangles = std::move(triangles);
     mesh.partOf = std::move(partOf);
     std::map<uint32_t, int> ends;

@@ -44,15 +44,16 @@ void checkCorners(const std::string& path, const RawMesh& raw) {
 
 // Corner UVs become vertex UVs; a vertex whose corners differ is copied, or (no splitting) the UVs are left
 // out.
-void assignCornerUvs(MeshData& mesh, RawMesh& raw, bool split) {
+void assignCornerUvs(MeshData& mesh, std::vector<uint32_t>& corners, std::span<const float> cornerUvs,
+                     bool split) {
     const size_t fileVertices = mesh.vertexCount();
-    std::vector<uint32_t> corners(raw.corners.begin(), raw.corners.end());
+    std::vector<uint32_t> own = corners;
     std::vector<float> uvs(2 * fileVertices, 0.0f);
     std::vector<bool> seen(fileVertices, false);
     std::map<std::pair<uint32_t, std::pair<float, float>>, uint32_t> copies;
-    for (size_t c = 0; c < corners.size(); ++c) {
-        const uint32_t v = corners[c];
-        const float* uv = &raw.cornerUvs[2 * c];
+    for (size_t c = 0; c < own.size(); ++c) {
+        const uint32_t v = own[c];
+        const float* uv = &cornerUvs[2 * c];
         if (!seen[v]) {
             seen[v] = true;
             std::copy_n(uv, 2, &uvs[2 * v]);
@@ -64,7 +65,7 @@ void assignCornerUvs(MeshData& mesh, RawMesh& raw, bool split) {
             }
             const auto next = static_cast<uint32_t>(uvs.size() / 2);
             const auto [entry, isNew] = copies.try_emplace({v, {uv[0], uv[1]}}, next);
-            corners[c] = entry->second;
+            own[c] = entry->second;
             if (isNew) {
                 mesh.splitFrom.push_back(v);
                 uvs.insert(uvs.end(), {uv[0], uv[1]});
@@ -77,7 +78,7 @@ void assignCornerUvs(MeshData& mesh, RawMesh& raw, bool split) {
             for (size_t a = 0; a < 3; ++a) array->push_back((*array)[3 * v + a]);
         }
     }
-    raw.corners.assign(corners.begin(), corners.end());
+    corners = std::move(own);
     mesh.uvs = std::move(uvs);
 }
 
@@ -140,6 +141,10 @@ void checkOrder(MeshData& mesh, bool orient) {
 
 }  // namespace
 
+void splitAtSeams(MeshData& mesh, std::span<const float> cornerUvs) {
+    assignCornerUvs(mesh, mesh.triangles, cornerUvs, true);
+}
+
 MeshData loadMesh(const std::string& path, const MeshLoadOptions& options) {
     return decodeMesh(path, readWholeFile(path), options);
 }
@@ -162,7 +167,9 @@ MeshData decodeMesh(const std::string& path, const std::string& text, const Mesh
     if (raw.leftOut)
         mesh.warnings.push_back(counted(raw.leftOut, "face", "faces") + " with coinciding corners left out");
     if (!raw.cornerUvs.empty()) {
-        assignCornerUvs(mesh, raw, options.splitUvSeams);
+        std::vector<uint32_t> corners(raw.corners.begin(), raw.corners.end());
+        assignCornerUvs(mesh, corners, raw.cornerUvs, options.splitUvSeams);
+        raw.corners.assign(corners.begin(), corners.end());
     } else {
         mesh.uvs = std::move(raw.uvs);
     }

@@ -39,6 +39,10 @@ MeshData loadMesh(const std::string& path, const MeshLoadOptions& options = {});
 // The same from the bytes of a file; `path` is for messages and names the format.
 MeshData decodeMesh(const std::string& path, const std::string& text, const MeshLoadOptions& options = {});
 
+// Gives each vertex texture coordinates, from u, v of each corner of `triangles`: one whose corners differ is copied, as by
+// MeshLoadOptions.splitUvSeams.
+void splitAtSeams(MeshData& mesh, std::span<const float> cornerUvs);
+
 // Unit normals: face normals weighted with the corner's angle, summed over all vertices at the same position,
 // so that seams do not show; where they face opposite ways they cancel out. Vertices of no triangle get (0, 0, 1).
 void computeNormals(MeshData& mesh);

@@ -68,6 +68,7 @@ GALLERY: dict[str, list[Entry]] = {
         Entry("method-separable", "Separable: two filters across the screen.", _at(25, _set(method="separable", lamps=SIDE, ambient=0.02), 0.5)),
         Entry("method-screen", "Screen: the whole profile over the picture.", _at(25, _set(method="screen", lamps=SIDE, ambient=0.02), 0.5)),
         Entry("method-light", "Light: the sum over the light's own map.", _at(25, _set(method="light", lamps=SIDE, ambient=0.02), 0.5)),
+        Entry("method-texture", "Texture: the head's texture, lit and scattered.", _at(25, _set(method="texture", lamps=SIDE, ambient=0.02), 0.5)),
         Entry("method-auto", "Auto, the default.", _at(25, _set(method="auto", lamps=SIDE, ambient=0.02), 0.5)),
     ],
     "Lights": [

@@ -99,8 +99,7 @@ class Session:
         """The same with a mesh in memory."""
         if len(mesh.triangles) == 0:
             raise ValueError(f"{mesh.source or 'the mesh'} has no triangles")
-        weld = {} if mesh.ids is not None else {"weld": "exact", "positions": mesh.positions}
-        topology = MeshTopology(self.device, mesh.triangles, len(mesh.positions), **weld)
+        topology = MeshTopology(self.device, mesh.triangles, len(mesh.positions), weld="exact", positions=mesh.positions)
         curvature = topology.curvature(mesh.positions, mesh.normals, smoothing_passes=2)
         self.renderer.set_mesh(mesh, curvature, self.mm)
         self.mesh = mesh
