@@ -459,6 +459,11 @@ inline constexpr Tolerance textureEdge{"textureEdge", 1e-2,
 inline constexpr Tolerance texturePlane{"texturePlane", 4.5e-3,
                                         "the narrowest Gaussians are below a texel there"};
 inline constexpr Tolerance textureSphere{"textureSphere", 1.3e-3, "texels along u and v stand for distances"};
+inline constexpr Tolerance sharpEdge{
+    "sharpEdge", 0.18,
+    "RMS of light within two texels of an edge: 0.172; texels tell its place to a fifth of one"};
+inline constexpr Tolerance sharpShadow{
+    "sharpShadow", 2e-3, "depths are floats over 300 texels' lengths; differences of them count three times"};
 
 // --- memory ---
 inline constexpr Tolerance heldMemory{"heldMemory", 0.05,

@@ -154,4 +154,34 @@ double wideShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, V
     return total > 0 ? sum / total : 1;
 }
 
+double sharpShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal) {
+    const Vec3 from = position - view.origin;
+    const double along = dot(from, view.forward),
+                 across = view.decoding.perspective ? view.extent * along : view.extent;
+    if (!(along > 0) && view.decoding.perspective) return 1;
+    const double size = across / map.width;  // of a texel, length
+    const double a = view.decoding.a, b = view.decoding.b;
+    const double z = view.decoding.perspective ? (1 / along - b) / a : along / view.decoding.range;
+    const double zPerLength = view.decoding.perspective ? -1 / (a * along * along) : 1 / view.decoding.range;
+    const double x = (dot(from, view.right) / across + 0.5) * map.width - 0.5,
+                 y = (dot(from, view.down) / across + 0.5) * map.height - 0.5;
+    const Vec3 toLight = view.decoding.perspective ? from / -along : -1 * view.forward;
+    const double tilt = 1 / std::max(dot(normal, toLight), 0.05), tolerance = 0.5 * size * tilt;
+    const auto weight = [](double offset) { return std::pow(max0(1 - std::pow(offset / 2.5, 2)), 3); };
+    double sum = 0, total = 0;
+    for (int j = int(std::floor(y)) - 3; j <= y + 3; ++j)
+        for (int i = int(std::floor(x)) - 3; i <= x + 3; ++i) {
+            const double w = weight(i - x) * weight(j - y);
+            const bool inside = i >= 0 && j >= 0 && i < map.width && j < map.height;
+            const double depth = inside ? map.depth[size_t(j) * map.width + i] : NAN;
+            // How far the texel lies behind the tangent plane, length along the light: of perspective depths to first order.
+            const double plane =
+                (dot(normal, view.right) * (i - x) + dot(normal, view.down) * (j - y)) * size * tilt;
+            const double behind = (depth - z) / zPerLength - plane;
+            sum += w * (std::isfinite(depth) ? saturate(2 + behind / tolerance) : 1.0);
+            total += w;
+        }
+    return saturate(3 * (sum / total - 0.5) + 0.5);
+}
+
 }  // namespace reference

@@ -59,4 +59,8 @@ std::vector<FilterSample> filterSamples(const ShadowMap& map, const ShadowView& 
 double wideShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal,
                   const WideFilterParams& params);
 
+// --- the sharp shadow (section 6) ---
+
+double sharpShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, Vec3 normal);
+
 }  // namespace reference

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "pass_scene.h"
+#include "tolerances.h"
 
 using namespace shade_test;
 
@@ -166,6 +167,68 @@ TEST(SharpShadow, EdgesAreWhereTheyBelongAndOccludersMayBeNear) {
                 << "how far the edge is off its place: cosine " << c << " height " << texels;
         }
     }
+}
+
+// An edge lies where it belongs to a part of a texel, however it is turned against the texels.
+TEST(SharpShadow, EdgesOfAnyTurnAreWithinAPartOfATexel) {
+    double square = 0;
+    size_t count = 0;
+    for (int k = 0; k < 24; ++k) {
+        const double turn = 0.13 + 0.27 * k, shift = 0.37 * k, height = 40 * extent / mapSize;
+        const Cast sheet = [&](Vec3 o, Vec3 d) {
+            const double t = (height - o[2]) / d[2];
+            const Vec3 at = o + t * d;
+            return std::cos(turn) * at[0] + std::sin(turn) * at[1] < 0.11 * shift ? t : ground(o, d);
+        };
+        Scene s = sceneOf({0, 0, 1}, false, false, sheet);
+        Random random(7);
+        for (int i = 0; i < 400; ++i) {  // within two texels of the edge
+            const double along = random.uniform(-8, 8), beyond = random.uniform(-2, 2) * s.texel;
+            const double x = 0.11 * shift + beyond;
+            s.points.push_back({std::cos(turn) * x - std::sin(turn) * along,
+                                std::sin(turn) * x + std::cos(turn) * along, 0});
+            s.normals.push_back({0, 0, 1});
+        }
+        const std::vector<float> e = lit(s);
+        for (size_t i = 0; i < e.size(); ++i) {
+            const double beyond =
+                std::cos(turn) * s.points[i][0] + std::sin(turn) * s.points[i][1] - 0.11 * shift;
+            square += std::pow(e[i] - (beyond > 0), 2);
+            ++count;
+        }
+    }
+    const double rms = std::sqrt(square / double(count));
+    std::printf("edges: RMS error of light within two texels %.4f\n", rms);
+    EXPECT_LT(rms, tolerance::sharpEdge);
+}
+
+// The pass is its definition, on a map of discs and noise, where shadows, edges and texels at the tolerance are all there.
+TEST(SharpShadow, IsItsDefinition) {
+    for (bool perspective : {false, true})
+        for (bool reversed : {false, true}) {
+            Scene s;
+            s.light = mapLight(4, perspective, reversed, lightAt(0.7, 1), {0, 0, 0}, extent, 64);
+            s.texel = extent / 64;
+            Random random(11);
+            for (int i = 0; i < 3000; ++i) {
+                float n[3];
+                random.unit(n);
+                s.points.push_back({random.uniform(-40, 40), random.uniform(-40, 40), random.uniform(-25, 25)});
+                s.normals.push_back(reference::normalized(Vec3{0.5 * n[0], 0.5 * n[1], 1 + 0.5 * n[2]}));
+            }
+            const std::vector<float> e = lit(s);
+            double worst = 0;
+            size_t partly = 0;
+            for (size_t i = 0; i < e.size(); ++i) {
+                const double truth =
+                    reference::sharpShadow(s.light.map, s.light.view, s.points[i], s.normals[i]);
+                partly += truth > 0.01 && truth < 0.99;
+                worst = std::max(worst, std::abs(e[i] - truth * std::max(cosine(s, i), 0.0)));
+            }
+            std::printf("sharp shadow against its definition: %.2e, %zu partly lit\n", worst, partly);
+            EXPECT_GT(partly, e.size() / 25);
+            EXPECT_LT(worst, tolerance::sharpShadow);
+        }
 }
 
 // Shading normals of a smooth surface lie off the facets that the map shows.
