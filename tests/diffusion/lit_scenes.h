@@ -185,6 +185,18 @@ inline LitScene make(const Device& device, const Body& body, const SceneRequest&
     return s;
 }
 
+// The same scene with positions in another unit, which is `unit` mm long. What light does there is the same.
+inline LitScene inUnit(LitScene s, double unit) {
+    const double by = unit / s.unit;
+    s.unit = unit;
+    for (float& v : s.positions) v = float(v / by);
+    for (float& v : s.gbuffer.curvature.data) v = float(v * by);
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) s.map.worldToUvz.m[size_t(4 * row + column)] *= by;
+    s.map.depthRange /= by;
+    return s;
+}
+
 // A way to shade a scene: RGB per pixel, for an albedo of 1. `seconds`, if not NULL, is what it takes beyond
 // plain lighting.
 using Method = std::function<std::vector<float>(const Device&, const LitScene&, const Profile&,
@@ -214,8 +226,8 @@ inline std::vector<float> shade(const Device& device, const LitScene& s, const P
     if (profileScale != 1) material.diffusionRadius = radius;
     pellucid::Lut curvatureLut, shadowLut;
     if (tableSize) {
-        PelCurvatureLutDesc curvatureDesc = pelCurvatureLutDescDefaults();
-        PelShadowLutDesc shadowDesc = pelShadowLutDescDefaults();
+        PelCurvatureLutDesc curvatureDesc = pelCurvatureLutDescFaceWorks();
+        PelShadowLutDesc shadowDesc = pelShadowLutDescFaceWorks();
         curvatureDesc.profile = shadowDesc.profile = profile.get();
         curvatureDesc.width = curvatureDesc.height = shadowDesc.width = shadowDesc.height = tableSize;
         curvatureDesc.form = request.faceworks ? PEL_FORM_ARC : PEL_FORM_SPHERE;
