@@ -10,18 +10,28 @@
 namespace pel {
 namespace {
 
-// Length of the longer side of a texel of a parallel map; 0 for others, whose texels grow with distance.
-double texelLength(const PelLight& l, const ImageView& map) {
-    if (l.shadowProjection != PEL_SHADOW_PARALLEL || !map) return 0;
-    double longest = 0;
+// Lengths of a parallel map; 0 for others, whose texels grow with distance.
+struct MapLengths {
+    double span = 0;   // of the longer side
+    double texel = 0;  // of a texel's longer side
+};
+
+MapLengths lengthsOf(const PelLight& l, const ImageView& map) {
+    MapLengths lengths;
+    if (l.shadowProjection != PEL_SHADOW_PARALLEL || !map) return lengths;
     for (int row = 0; row < 2; ++row) {
         const float* m = l.worldToShadow + 4 * row;
         const double perLength =
             std::hypot(double(m[0]), double(m[1]), double(m[2])) / std::abs(double(l.worldToShadow[15]));
-        if (perLength > 0) longest = std::max(longest, 1 / (perLength * (row ? map.height : map.width)));
+        if (!(perLength > 0)) continue;
+        lengths.span = std::max(lengths.span, 1 / perLength);
+        lengths.texel = std::max(lengths.texel, 1 / (perLength * (row ? map.height : map.width)));
     }
-    return longest;
+    return lengths;
 }
+
+// What is lit and of skin is no smaller than a fingertip: a map that spans less than two reaches of the light holds no such body.
+constexpr double leastReaches = 2;
 
 bool isBlackColor(const float (&c)[3]) {
     return c[0] == 0 && c[1] == 0 && c[2] == 0;
@@ -72,18 +82,25 @@ std::string warningsOf(const ShaderState&, const ShaderState& state, uint32_t fe
                  "and ambient light give is summed over the screen, as by screen; a shadow map for every "
                  "light and no "
                  "ambient light would be right");
-        if (!(features & PEL_FEATURE_TRANSMISSION) || thickness || !material.profile || m.transmission == 0)
-            continue;
-        const double reach = material.profile->reach() / state.options.millimetresPerUnit;
+        if (!material.profile) continue;
+        const bool byMap = (features & PEL_FEATURE_TRANSMISSION) && !thickness && m.transmission != 0;
+        const bool summed = m.scattering == PEL_SCATTERING_SCREEN || m.scattering == PEL_SCATTERING_LIGHT;
+        // Another radius than the profile's own stretches its reach too.
+        const double reach = material.profile->reach() * m.diffusionRadius / material.profile->radius();
         for (size_t i = 0; i < state.lights.size(); ++i) {
-            const double texel =
-                texelLength(state.lights[i].params, state.lights[i].images[PEL_LIGHT_SHADOW_MAP]);
-            if (texel > reach)
-                warn("a texel of the shadow map of light ", i, " is ", texel, " long, and light reaches ",
+            const MapLengths map =
+                lengthsOf(state.lights[i].params, state.lights[i].images[PEL_LIGHT_SHADOW_MAP]);
+            if (map.texel > reach && (byMap || summed))
+                warn("a texel of the shadow map of light ", i, " is ", map.texel, " long, and light reaches ",
                      reach, " far in material ", id,
                      ": what comes through thin parts is guessed; a finer map is needed, or "
                      "millimetresPerUnit is not ",
                      state.options.millimetresPerUnit);
+            if (map.span > 0 && map.span < leastReaches * reach)
+                warn("the shadow map of light ", i, " spans ", map.span, ", and light reaches ", reach,
+                     " far in material ", id,
+                     ": nothing of that size scatters so; PelShaderOptions.millimetresPerUnit (",
+                     state.options.millimetresPerUnit, ") says how many millimetres a unit has");
         }
     }
     return all;

@@ -131,7 +131,7 @@ TEST(ShadeProfile, WithoutAProfileNothingChanges) {
 // A table of another profile than skin, read by a material that says nothing of a radius, is not stretched.
 TEST(ShadeProfile, ARadiusOfZeroIsTheTablesOwn) {
     const Profile marble = Profile::named("marble");
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = desc.height = 32;
     desc.profile = marble.get();
     const Lut lut(Device(""), desc);
@@ -145,6 +145,15 @@ TEST(ShadeProfile, ARadiusOfZeroIsTheTablesOwn) {
     b.shader.setMaterial(1, spoken, other).commit();
     EXPECT_EQ(a.shader.material(1).diffusionRadius, marble.info().radius);
     EXPECT_EQ(a.radiance(), b.radiance());
+    // Profiles are in mm, whatever the scene's unit is; a radius that the table is given is in the scene's.
+    Inputs cm;
+    cm.options.millimetresPerUnit = 10;
+    Shading c(silent, cm);
+    c.shader.setMaterial(1, silent, Lut(c.device, desc)).commit();
+    EXPECT_FLOAT_EQ(c.shader.material(1).diffusionRadius, marble.info().radius / 10);
+    desc.diffusionRadius = 0.3f;
+    c.shader.setMaterial(1, silent, Lut(c.device, desc)).commit();
+    EXPECT_FLOAT_EQ(c.shader.material(1).diffusionRadius, 0.3f);
 }
 
 // Section 11: the slab's transmission takes the place of the table's dark side where it is the larger, and is
@@ -290,6 +299,29 @@ TEST(ShadeProfile, TexelsLongerThanTheReachAreSaid) {
         shading.shader.set(std::vector<PelLight>{light}).set(0, PEL_LIGHT_SHADOW_MAP, map).commit();
         EXPECT_EQ(shading.shader.warnings().find("texel") != std::string::npos, extent > 100)
             << shading.shader.warnings();
+    }
+}
+
+// A map that is smaller than light reaches holds no body of that profile: the unit is wrong.
+TEST(ShadeProfile, MapsThatAreTooSmallForTheProfileAreSaid) {
+    const Profile skin = Profile::skin();
+    Inputs in;
+    for (const auto& [unit, likely] : {std::pair{1.0f, true}, {3.0f, true}, {0.01f, false}}) {
+        in.options.millimetresPerUnit = unit;
+        Shading shading(materialOf(skin), in);
+        shading.buffers.emplace_back(shading.device, std::vector<float>(512 * 512, 0.5f));
+        const PelImageDesc map = imageDesc(shading.buffers.back(), PEL_FORMAT_R32F, 512, 512);
+        PelLight light = pelLightDefaults();
+        light.worldToShadow[0] = light.worldToShadow[5] = 1 / 300.0f;  // 300 units a side
+        light.worldToShadow[3] = light.worldToShadow[7] = 0.5f;
+        light.worldToShadow[10] = -1 / 300.0f;
+        light.shadowDepthRange = 300;
+        shading.buffers.emplace_back(shading.device, shading.scene.position);
+        shading.shader.set(PEL_SLOT_POSITION,
+                           imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
+        shading.shader.set(std::vector<PelLight>{light}).set(0, PEL_LIGHT_SHADOW_MAP, map).commit();
+        EXPECT_EQ(shading.shader.warnings().find("millimetresPerUnit") == std::string::npos, likely)
+            << unit << ": " << shading.shader.warnings();
     }
 }
 
