@@ -12,8 +12,6 @@ constexpr uint32_t width = 480, height = 160, lamps = 16;
 Lut table(const Device& device, const Profile& profile, PelMaterial& material) {
     PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
     desc.profile = profile.get();
-    desc.diffusionRadius = 0;  // the profile's own
-    desc.form = PEL_FORM_SPHERE;
     const PelProfileInfo info = profile.info();
     material.diffusionRadius = info.radius;
     for (int c = 0; c < 3; ++c) material.normalBlend[c] = info.normalBlend[c];

@@ -92,8 +92,8 @@ void writeFrame() {
     write("ambient", &scene.ambient, 1);
     write("camera", &scene.camera, 1);
     const Device device("");
-    write("curvature", Lut(device, pelCurvatureLutDescDefaults()).read<float>(PEL_LUT_FLOAT));
-    write("shadow", Lut(device, pelShadowLutDescDefaults()).read<float>(PEL_LUT_FLOAT));
+    write("curvature", Lut(device, pelCurvatureLutDescFaceWorks()).read<float>(PEL_LUT_FLOAT));
+    write("shadow", Lut(device, pelShadowLutDescFaceWorks()).read<float>(PEL_LUT_FLOAT));
 }
 
 }  // namespace

@@ -100,8 +100,8 @@ void vertices(benchmark::State& state) {
 void tables(benchmark::State& state) {
     for (auto _ : state)
         for (int64_t i = 0; i < state.range(0); ++i) {
-            PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
-            PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+            PelCurvatureLutDesc curvature = pelCurvatureLutDescFaceWorks();
+            PelShadowLutDesc shadow = pelShadowLutDescFaceWorks();
             curvature.width = curvature.height = shadow.width = shadow.height = 64;
             curvature.diffusionRadius = shadow.diffusionRadius = 2 + 0.001f * float(i);
             const Lut one(device(), curvature), two(device(), shadow);

@@ -89,7 +89,7 @@ void lookUpError(benchmark::State& state) {
     const int side = int(state.range(0));
     const auto axis = PelLutAxis(state.range(1));
     const auto encoding = PelLutEncoding(state.range(2));
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = desc.height = uint32_t(side);
     desc.axis = axis;
     desc.radiusMin = float(radiusMin);
@@ -132,7 +132,7 @@ void lookUpError(benchmark::State& state) {
 // holds, and, `beyond`, up to r = 1 mm and 100 mm where it is clamped.
 void runtimeRadius(benchmark::State& state) {
     constexpr int side = 64;
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = desc.height = side;
     desc.axis = PEL_AXIS_ROOT;
     const double ratio = double(state.range(1)) / 100;

@@ -47,13 +47,13 @@ void integrate(benchmark::State& state, const Desc& desc) {
 }
 
 PelCurvatureLutDesc curvatureDesc(const benchmark::State& state) {
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = desc.height = uint32_t(state.range(0));
     return desc;
 }
 
 PelShadowLutDesc shadowDesc(const benchmark::State& state) {
-    PelShadowLutDesc desc = pelShadowLutDescDefaults();
+    PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
     desc.width = desc.height = uint32_t(state.range(0));
     return desc;
 }

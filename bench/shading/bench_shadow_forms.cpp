@@ -43,7 +43,7 @@ struct View {
     Device device{""};
     io::SceneFile scene;
     io::Image gbuffer;
-    Lut curvatureLut{device, pelCurvatureLutDescDefaults()}, shadowLut{device, pelShadowLutDescDefaults()};
+    Lut curvatureLut{device, pelCurvatureLutDescFaceWorks()}, shadowLut{device, pelShadowLutDescFaceWorks()};
     std::vector<Form> forms;
     uint32_t width = 0, height = 0;
 };

@@ -102,8 +102,8 @@ Shader prepare(const std::vector<uint8_t>& ids, bool skin, bool plain, PelTileLi
     PelShaderOptions options = pelShaderOptionsDefaults();
     options.tileLists = lists;
     shader.set(options);
-    static const Lut curvature(device(), pelCurvatureLutDescDefaults()),
-        shadow(device(), pelShadowLutDescDefaults());
+    static const Lut curvature(device(), pelCurvatureLutDescFaceWorks()),
+        shadow(device(), pelShadowLutDescFaceWorks());
     PelMaterial material = pelMaterialDefaults();
     material.specular = 0.8f;
     if (plain) shader.setMaterial(2, material);

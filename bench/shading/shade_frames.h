@@ -170,8 +170,8 @@ inline void fillSettings(Scene& s) {
 }
 
 inline void makeTables(Scene& s, const Device& device) {
-    s.curvatureLut = Lut(device, pelCurvatureLutDescDefaults());
-    s.shadowLut = Lut(device, pelShadowLutDescDefaults());
+    s.curvatureLut = Lut(device, pelCurvatureLutDescFaceWorks());
+    s.shadowLut = Lut(device, pelShadowLutDescFaceWorks());
     s.curvature = {s.curvatureLut.read<float>(PEL_LUT_FLOAT), 512, 512};
     s.shadow = {s.shadowLut.read<float>(PEL_LUT_FLOAT), 512, 512};
     s.out.resize(s.frame.position.size());

@@ -91,14 +91,14 @@ Operation tables(const char* name, const char* range, Source (*source)(const Poi
                          const Source s = source(p);
                          const double radius = s.truth->radius();
                          if (p[3] > 0.8) {
-                             PelShadowLutDesc desc = pelShadowLutDescDefaults();
+                             PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
                              desc.width = 15, desc.height = 5, desc.diffusionRadius = float(radius);
                              desc.widthMin = float(radius * logBetween(p[4], 0.5, 10));
                              desc.widthMax = float(desc.widthMin * logBetween(p[5], 1.1, 20));
                              desc.sharpening = float(logBetween(p[6], 1, 100));
                              return std::make_unique<OfSource<ShadowTable>>(desc, s);
                          }
-                         PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+                         PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
                          desc.form = PelCurvatureForm(p[3] * 4.999), desc.axis = PEL_AXIS_ROOT;
                          desc.width = 15, desc.height = 5, desc.diffusionRadius = float(radius);
                          desc.radiusMin = float(radius * logBetween(p[4], 0.05, 10));

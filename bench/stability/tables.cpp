@@ -17,7 +17,7 @@ void radii(PelCurvatureLutDesc& desc, const Point& p) {
 Operation curvatureTable(const char* name, PelCurvatureForm form, size_t points) {
     return operation({name, curvatureRange, Unit::absolute, tolerance::lutTexelGaussians, 3, points},
                      [form](const Point& p) {
-                         PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+                         PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
                          desc.form = form, desc.width = 15, desc.height = 6;
                          radii(desc, p);
                          return std::make_unique<CurvatureTable>(desc, reference::skinProfile(), true);
@@ -28,7 +28,7 @@ Operation rootAxis() {
     return operation({"curvature table, root axis", std::string(curvatureRange) + "; all forms",
                       Unit::absolute, tolerance::lutTexelGaussians, 4, 250},
                      [](const Point& p) {
-                         PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+                         PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
                          desc.form = PelCurvatureForm(p[3] * 3.999), desc.axis = PEL_AXIS_ROOT;
                          desc.width = 15, desc.height = 5;
                          radii(desc, p);
@@ -41,7 +41,7 @@ Operation shadowTable() {
         {"shadow table", "widths 0.1 to 10,000 mm; diffusion radius 0.1 to 100 mm; sharpening 1 to 100",
          Unit::absolute, tolerance::lutTexelGaussians, 4, 400},
         [](const Point& p) {
-            PelShadowLutDesc desc = pelShadowLutDescDefaults();
+            PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
             desc.width = 31, desc.height = 6;
             desc.widthMin = float(logBetween(p[0], 0.1, 1000));
             desc.widthMax = float(desc.widthMin * logBetween(p[1], 1.1, 10));

@@ -173,7 +173,7 @@ Json firstUse(const std::string& selector) {
     const double start = milliseconds();
     const Device device(selector);
     const double opened = milliseconds();
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = desc.height = 64;
     const Lut lut(device, desc);
     const double table = milliseconds();

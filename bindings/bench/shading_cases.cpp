@@ -50,8 +50,8 @@ struct Frame {
         curvatureBuffer = Buffer(device, curvature), albedoBuffer = Buffer(device, albedo),
         wideBuffer = Buffer(device, wide);
         map = Buffer(device, std::vector<float>(1024 * 1024, mapDepth));
-        const PelCurvatureLutDesc c = pelCurvatureLutDescDefaults();
-        const PelShadowLutDesc s = pelShadowLutDescDefaults();
+        const PelCurvatureLutDesc c = pelCurvatureLutDescFaceWorks();
+        const PelShadowLutDesc s = pelShadowLutDescFaceWorks();
         curvatureLut = Lut(device, c), shadowLut = Lut(device, s);
         curvatureTruth = {table(curvatureLut), c.radiusMin, c.radiusMax, 2.7, 0};
         shadowTruth = {table(shadowLut), s.widthMin, s.widthMax, 2.7, s.sharpening};

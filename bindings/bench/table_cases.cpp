@@ -44,7 +44,7 @@ std::vector<Factory> tableCases(const Device& device, Size size) {
     const int samples = size.quick ? 60 : 300;
     const auto curvature = [=](PelCurvatureForm form, reference::Form truth, bool burley) {
         return [=] {
-            PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+            PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
             desc.width = desc.height = side;
             desc.form = form;
             const auto profile = std::make_shared<Profile>();
@@ -73,7 +73,7 @@ std::vector<Factory> tableCases(const Device& device, Size size) {
         };
     };
     const auto shadow = [=] {
-        PelShadowLutDesc desc = pelShadowLutDescDefaults();
+        PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
         desc.width = desc.height = side;
         return tableCase(
             device, desc,

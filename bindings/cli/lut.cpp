@@ -1,6 +1,7 @@
 // pellucid lut curvature|shadow|specular|eye: integrates a look-up table and writes it.
 #include "io/choice_keys.h"
 #include "io/lut/lut_file.h"
+#include "io/lut/lut_preset.h"
 #include "io/lut/profile_file.h"
 
 #include <cstdio>
@@ -16,8 +17,7 @@ namespace {
 
 struct Arguments {
     Run::Options run;
-    std::string output, size = "512x512", encoding, irisProfile, form, axis, profile = "skin",
-                        preset = "material";
+    std::string output, size, encoding, irisProfile, form, axis, profile = "skin", preset = "material";
     bool openEnds = false;
     PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
     PelShadowLutDesc shadow = pelShadowLutDescDefaults();
@@ -36,16 +36,14 @@ Profile takeProfile(const Arguments& arguments, Desc& desc) {
     return profile;
 }
 
-constexpr std::string_view presets[] = {"material", "faceworks"};
-
-// What a preset says where nothing else is asked for: "material", the tables that a material makes of its profile; "faceworks", those of
-// FaceWorks.
-void applyPreset(Arguments& a, const CLI::App& command) {
-    const bool faceworks = a.preset == "faceworks";
-    if (!command.count("--size")) a.size = faceworks ? "512x512" : "64x64";
-    if (a.form.empty()) a.form = faceworks ? "arc" : "sphere";
-    if (a.axis.empty()) a.axis = faceworks ? "linear" : "root";
-    a.shadow.closedEnds = !faceworks && !a.openEnds;
+// The description of a preset with what the command line gives in the place of its own.
+template <class Desc>
+void applyPreset(Arguments& a, Desc& given, Desc preset, const CLI::App& command,
+                 const std::vector<std::pair<const char*, float Desc::*>>& lengths) {
+    for (const auto& [option, field] : lengths)
+        if (command.count(option)) preset.*field = given.*field;
+    if (!a.axis.empty()) preset.axis = chosen<PelLutAxis>(io::lutAxes, a.axis);
+    given = preset;
 }
 
 // A picture of the table to look at: its values as linear light, from 0 to 1.
@@ -70,12 +68,30 @@ uint32_t rowsOf(const Desc& desc) {
     return desc.height;
 }
 
+// What the table is, with all that followed from its profile.
+void describe(const PelLutInfo& info, nlohmann::ordered_json& report) {
+    if (info.kind == PEL_LUT_CURVATURE) {
+        report["form"] = io::curvatureForms[info.curvature.form];
+        report["axis"] = io::lutAxes[info.curvature.axis];
+        report["diffusion_radius"] = info.curvature.diffusionRadius;
+        report["radius_min"] = info.curvature.radiusMin;
+        report["radius_max"] = info.curvature.radiusMax;
+    } else if (info.kind == PEL_LUT_SHADOW) {
+        report["axis"] = io::lutAxes[info.shadow.axis];
+        report["closed_ends"] = info.shadow.closedEnds != 0;
+        report["diffusion_radius"] = info.shadow.diffusionRadius;
+        report["width_min"] = info.shadow.widthMin;
+        report["width_max"] = info.shadow.widthMax;
+    }
+}
+
 template <class Desc>
 void integrate(Arguments& arguments, Desc& desc) {
-    if constexpr (std::is_same_v<Desc, PelEyeLutDesc>)
-        parseEyeSize(arguments.size, desc);
-    else
+    if constexpr (std::is_same_v<Desc, PelEyeLutDesc>) {
+        if (!arguments.size.empty()) parseEyeSize(arguments.size, desc);
+    } else if (!arguments.size.empty()) {
         parseSize(arguments.size, desc.width, desc.height);
+    }
     const bool bc6h = arguments.encoding == "bc6h";
     const bool picture = arguments.encoding.empty() && io::isPicture(arguments.output);
     std::optional<PelLutEncoding> encoding;
@@ -110,12 +126,20 @@ void integrate(Arguments& arguments, Desc& desc) {
     run.report["width"] = desc.width;
     run.report["height"] = desc.height;
     run.report["texels"] = uint64_t(desc.width) * rowsOf(desc);
+    describe(lut.info(), run.report);
     if (encoding == PEL_LUT_FACEWORKS8 && lut.info().kind == PEL_LUT_CURVATURE)
         run.report["clipped_texels"] = lut.clippedTexels();
     run.finish();
 }
 
-void addCommon(CLI::App& command, Arguments& a, const char* size = "texels, WxH (default: 512x512)") {
+// "WxH" of the presets.
+template <class Desc>
+std::string sizeHelp(const Desc& material, const Desc& faceworks) {
+    const auto size = [](const Desc& d) { return std::to_string(d.width) + "x" + std::to_string(d.height); };
+    return "texels, WxH (default: " + size(material) + "; " + size(faceworks) + " with --preset faceworks)";
+}
+
+void addCommon(CLI::App& command, Arguments& a, const std::string& size) {
     command.add_option("-o,--output", a.output, "file to write: .exr, .png, .bmp, .tga, .npy, .dds or .ktx2")
         ->required();
     command.add_option("--size", a.size, size);
@@ -135,11 +159,15 @@ CLI::Option* addProfileOptions(CLI::App& command, Arguments& a, float& diffusion
                               "sigma of the widest Gaussian, mm (default: the profile's own)");
 }
 
+io::LutPreset presetOf(const Arguments& a) {
+    return chosen<io::LutPreset>(io::lutPresets, a.preset);
+}
+
 void addPreset(CLI::App& command, Arguments& a) {
     command
         .add_option("--preset", a.preset,
                     "material: as a material makes it of its profile; faceworks: as FaceWorks does")
-        ->check(isOneOf(presets))
+        ->check(isOneOf(io::lutPresets))
         ->capture_default_str();
     command
         .add_option("--axis", a.axis,
@@ -147,8 +175,6 @@ void addPreset(CLI::App& command, Arguments& a) {
                     "linear with --preset faceworks)")
         ->check(isOneOf(io::lutAxes));
 }
-
-constexpr const char* tableSize = "texels, WxH (default: 64x64; 512x512 with --preset faceworks)";
 
 }  // namespace
 
@@ -159,47 +185,61 @@ void addLut(CLI::App& app) {
 
     CLI::App* curvature =
         lut->add_subcommand("curvature", "Light scattered round a curved surface, over N.L and curvature");
-    addCommon(*curvature, *a, tableSize);
+    addCommon(*curvature, *a, sizeHelp(pelCurvatureLutDescDefaults(), pelCurvatureLutDescFaceWorks()));
     addPreset(*curvature, *a);
     CLI::Option* curvatureRadius = addProfileOptions(*curvature, *a, a->curvature.diffusionRadius);
-    curvature->add_option("--radius-min", a->curvature.radiusMin, "smallest radius of curvature, mm")
-        ->capture_default_str();
-    curvature->add_option("--radius-max", a->curvature.radiusMax, "largest radius of curvature, mm")
-        ->capture_default_str();
+    curvature->add_option(
+        "--radius-min", a->curvature.radiusMin,
+        "smallest radius of curvature, mm (default: a quarter of the diffusion radius; 1 with "
+        "--preset faceworks)");
+    curvature->add_option("--radius-max", a->curvature.radiusMax,
+                          "largest radius of curvature, mm (default: 1000 diffusion radii; 100 with --preset "
+                          "faceworks)");
     curvature
         ->add_option("--form", a->form,
                      "geometry that light is integrated over (default: sphere; arc with --preset faceworks)")
         ->check(isOneOf(io::curvatureForms));
     curvature->callback([a, curvature, curvatureRadius] {
         a->radius = curvatureRadius;
-        applyPreset(*a, *curvature);
+        applyPreset(*a, a->curvature, io::presetCurvature(presetOf(*a)), *curvature,
+                    {{"--radius-min", &PelCurvatureLutDesc::radiusMin},
+                     {"--radius-max", &PelCurvatureLutDesc::radiusMax},
+                     {"--diffusion-radius", &PelCurvatureLutDesc::diffusionRadius}});
+        if (!a->form.empty()) a->curvature.form = chosen<PelCurvatureForm>(io::curvatureForms, a->form);
         const Profile profile = takeProfile(*a, a->curvature);
-        a->curvature.form = chosen<PelCurvatureForm>(io::curvatureForms, a->form);
-        a->curvature.axis = chosen<PelLutAxis>(io::lutAxes, a->axis);
         integrate(*a, a->curvature);
     });
 
     CLI::App* shadow =
         lut->add_subcommand("shadow", "Light scattered across a shadow edge, over shadow value and 1/width");
-    addCommon(*shadow, *a, tableSize);
+    addCommon(*shadow, *a, sizeHelp(pelShadowLutDescDefaults(), pelShadowLutDescFaceWorks()));
     addPreset(*shadow, *a);
     CLI::Option* shadowRadius = addProfileOptions(*shadow, *a, a->shadow.diffusionRadius);
-    shadow->add_option("--width-min", a->shadow.widthMin, "narrowest penumbra, mm")->capture_default_str();
-    shadow->add_option("--width-max", a->shadow.widthMax, "widest penumbra, mm")->capture_default_str();
+    shadow->add_option(
+        "--width-min", a->shadow.widthMin,
+        "narrowest penumbra, mm (default: the filter that follows from the profile; 8 with --preset "
+        "faceworks)");
+    shadow->add_option(
+        "--width-max", a->shadow.widthMax,
+        "widest penumbra, mm (default: 1000 times the narrowest; 100 with --preset faceworks)");
     shadow->add_option("--sharpening", a->shadow.sharpening, "how much narrower the shadow gets, from 1")
         ->capture_default_str();
     shadow->add_flag("--open-ends", a->openEnds,
                      "rows are not rescaled to run from 0 to 1 (--preset faceworks does not either)");
     shadow->callback([a, shadow, shadowRadius] {
         a->radius = shadowRadius;
-        applyPreset(*a, *shadow);
+        applyPreset(*a, a->shadow, io::presetShadow(presetOf(*a)), *shadow,
+                    {{"--width-min", &PelShadowLutDesc::widthMin},
+                     {"--width-max", &PelShadowLutDesc::widthMax},
+                     {"--sharpening", &PelShadowLutDesc::sharpening},
+                     {"--diffusion-radius", &PelShadowLutDesc::diffusionRadius}});
+        if (a->openEnds) a->shadow.closedEnds = 0;
         const Profile profile = takeProfile(*a, a->shadow);
-        a->shadow.axis = chosen<PelLutAxis>(io::lutAxes, a->axis);
         integrate(*a, a->shadow);
     });
 
     CLI::App* specular = lut->add_subcommand("specular", "Beckmann's distribution over n.h and roughness");
-    addCommon(*specular, *a);
+    addCommon(*specular, *a, "texels, WxH (default: 512x512)");
     specular->callback([a] { integrate(*a, a->specular); });
 
     CLI::App* eye = lut->add_subcommand(
@@ -216,7 +256,6 @@ void addLut(CLI::App& app) {
     eye->add_option("--cornea-index", a->eye.corneaIndex, "refractive index")->capture_default_str();
     eye->add_option("--aqueous-index", a->eye.aqueousIndex, "refractive index")->capture_default_str();
     eye->callback([a, eye] {
-        if (!eye->count("--size")) a->size = "64x64x32";
         Profile profile;
         if (!a->irisProfile.empty()) profile = io::findProfile(a->irisProfile).profile;
         a->eye.profile = profile.get();

@@ -7,13 +7,14 @@ using namespace pel;
 
 namespace {
 
-// What every call that makes a table from a description does. `make` is the operation of lut/luts.h.
+// What every call that makes a table from a description does. `olderHeaders`: what fields are that an older header does not have; these
+// began as FaceWorks'. `make` is the operation of lut/luts.h.
 template <class Desc>
-PelError createLut(PelDevice device, const Desc* desc, const Desc& defaults, const char* name, PelLut* lut,
-                   const PelSubmit* submit, Ref<Lut> (*make)(Ref<Device>, const Desc&)) {
+PelError createLut(PelDevice device, const Desc* desc, const Desc& olderHeaders, const char* name,
+                   PelLut* lut, const PelSubmit* submit, Ref<Lut> (*make)(Ref<Device>, const Desc&)) {
     return entry([&] {
         const Ref<Device> d = fromHandle<Device>(device);
-        const Desc request = readStruct(desc, defaults, name);
+        const Desc request = readStruct(desc, olderHeaders, name);
         PelLut& result = output(lut, "lut");
         Submission submission(*d, submit);
         Ref<Lut> made = make(d, request);
@@ -27,14 +28,14 @@ PelError createLut(PelDevice device, const Desc* desc, const Desc& defaults, con
 PelError pelCurvatureLutCreate(PelDevice device, const PelCurvatureLutDesc* desc, PelLut* lut,
                                const PelSubmit* submit) {
     return createLut(
-        device, desc, pelCurvatureLutDescDefaults(), "PelCurvatureLutDesc", lut, submit,
+        device, desc, pelCurvatureLutDescFaceWorks(), "PelCurvatureLutDesc", lut, submit,
         +[](Ref<Device> d, const PelCurvatureLutDesc& request) {
             return integrateCurvatureLut(std::move(d), request);  // with its usual number of nodes
         });
 }
 
 PelError pelShadowLutCreate(PelDevice device, const PelShadowLutDesc* desc, PelLut* lut, const PelSubmit* submit) {
-    return createLut(device, desc, pelShadowLutDescDefaults(), "PelShadowLutDesc", lut, submit,
+    return createLut(device, desc, pelShadowLutDescFaceWorks(), "PelShadowLutDesc", lut, submit,
                      integrateShadowLut);
 }
 

@@ -68,16 +68,17 @@ float TomlReader::toFloat(std::string_view key, const toml::node& node, Range ra
     return value;
 }
 
-void TomlReader::version() {
-    constexpr int64_t known = 1;
+int64_t TomlReader::version(int64_t known) {
     const toml::node* node = find("version");
-    if (!node) return;
-    if (!node->is_integer()) fail("version", "is " + typeName(*node) + "; 1 would be right");
+    if (!node) return 1;
+    const std::string versions = known == 1 ? "1" : "1 to " + std::to_string(known);
+    if (!node->is_integer()) fail("version", "is " + typeName(*node) + "; " + versions + " would be right");
     const int64_t given = node->as_integer()->get();
-    if (given < 1) fail("version", "is " + std::to_string(given) + "; 1 would be right");
+    if (given < 1) fail("version", "is " + std::to_string(given) + "; " + versions + " would be right");
     if (given > known)
-        fail("version", "is " + std::to_string(given) + ", of a later pellucid; this one reads version " +
-                            std::to_string(known));
+        fail("version",
+             "is " + std::to_string(given) + ", of a later pellucid; this one reads version " + versions);
+    return given;
 }
 
 void TomlReader::number(std::string_view key, float& value, Range range) {

@@ -69,7 +69,7 @@ class TomlReader {
                      const std::function<void(const FileError&)>& failed);
 
     // The rule of every format here: `version` may be left out and is 1 then; a later one than this program knows is an error.
-    void version();
+    int64_t version(int64_t known = 1);
 
     void finish() const;  // throws FileError for the first key that nobody asked for
     int line() const { return static_cast<int>(table_.source().begin.line); }

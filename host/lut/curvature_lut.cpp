@@ -41,8 +41,8 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
     Ref<Lut> lut = make<Lut>(device, info);
 
     const double radius = lut->diffusionRadius();
-    const double curvatureMin = rowLimit(desc.radiusMax, radius),
-                 curvatureMax = rowLimit(desc.radiusMin, radius);
+    const double curvatureMin = rowLimit(lut->info().curvature.radiusMax, radius),
+                 curvatureMax = rowLimit(lut->info().curvature.radiusMin, radius);
     const Profile& profile = *lut->profile();
     if (profile.terms().empty()) {
         integrateTabulatedCurvature(*lut, curvatureMin, curvatureMax);

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "core/handle_table.h"
+#include "lut/lut_check.h"
 #include "lut/lut_terms.h"
 
 namespace pel {
@@ -17,14 +18,16 @@ PelProfile profileHandle(const PelLutInfo& info) {
                                           : nullptr;
 }
 
-// Fills in the defaults of a description: the profile, its name and the diffusion radius.
+// Fills in the defaults of a description: the profile, its name, the diffusion radius and lengths that follow from these.
 PelLutInfo resolved(PelLutInfo info, const Profile& profile) {
     if (profileHandle(info)) {
         std::memset(info.profile, 0, sizeof info.profile);
         std::strncpy(info.profile, profile.name().c_str(), sizeof info.profile - 1);
     }
-    for (float* radius : {&info.curvature.diffusionRadius, &info.shadow.diffusionRadius})
-        if (*radius == 0) *radius = float(profile.radius());
+    const PelProfileInfo lengths = profile.info();
+    info.curvature = pelCurvatureLutDescFilled(info.curvature, &lengths);
+    info.shadow = pelShadowLutDescFilled(info.shadow, &lengths);
+    checkOrder(info);
     if (info.eye.irisRadius == 0) info.eye.irisRadius = info.eye.limbusRadius;
     return info;
 }
@@ -77,6 +80,8 @@ Lut::Lut(Ref<Device> device, const PelLutInfo& info)
       device_(std::move(device)),
       profile_(profileOf(info)),
       info_(resolved(info, *profile_)),
+      ownRadius_((info.kind == PEL_LUT_SHADOW ? info.shadow.diffusionRadius : info.curvature.diffusionRadius) ==
+                 0),
       layout_(layoutOf(info_)),
       texels_(device_->allocate(size_t(layout_.rowTexels) * (layout_.height + 1) * sizeof(cl_float4))) {}
 

@@ -25,12 +25,15 @@ class Lut final : public Object {
     uint32_t width() const { return layout_.width; }
     uint32_t height() const { return layout_.height; }
     float diffusionRadius() const { return layout_.radius; }
+    // Whether that is the profile's own, in the profile's unit, since the description left it out.
+    bool hasOwnRadius() const { return ownRadius_; }
 
   private:
     ~Lut() override = default;
     Ref<Device> device_;
     Ref<Profile> profile_;
     PelLutInfo info_;
+    bool ownRadius_;
     LutLayout layout_;
     cl::Memory texels_;
 };

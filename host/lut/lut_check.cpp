@@ -13,6 +13,15 @@ void checkOrder(float min, float max, const char* minField, const char* maxField
 
 }  // namespace
 
+void checkOrder(const PelLutInfo& info) {
+    if (info.kind == PEL_LUT_CURVATURE)
+        checkOrder(info.curvature.radiusMin, info.curvature.radiusMax, "PelCurvatureLutDesc.radiusMin",
+                   "PelCurvatureLutDesc.radiusMax");
+    if (info.kind == PEL_LUT_SHADOW)
+        checkOrder(info.shadow.widthMin, info.shadow.widthMax, "PelShadowLutDesc.widthMin",
+                   "PelShadowLutDesc.widthMax");
+}
+
 void checkCurvatureDesc(const PelCurvatureLutDesc& fields) {
     const PelCurvatureLutDesc& desc = fields;
     const char* structure = "PelCurvatureLutDesc";
@@ -24,8 +33,6 @@ void checkCurvatureDesc(const PelCurvatureLutDesc& fields) {
     if (desc.axis != PEL_AXIS_LINEAR && desc.axis != PEL_AXIS_ROOT)
         invalidArgument("PelCurvatureLutDesc.axis is ", int(desc.axis),
                         "; PEL_AXIS_LINEAR (0) or PEL_AXIS_ROOT (1) is needed");
-    checkOrder(desc.radiusMin, desc.radiusMax, "PelCurvatureLutDesc.radiusMin",
-               "PelCurvatureLutDesc.radiusMax");
 }
 
 void checkShadowDesc(const PelShadowLutDesc& fields) {
@@ -35,7 +42,6 @@ void checkShadowDesc(const PelShadowLutDesc& fields) {
     if (desc.axis != PEL_AXIS_LINEAR && desc.axis != PEL_AXIS_ROOT)
         invalidArgument("PelShadowLutDesc.axis is ", int(desc.axis),
                         "; PEL_AXIS_LINEAR (0) or PEL_AXIS_ROOT (1) is needed");
-    checkOrder(desc.widthMin, desc.widthMax, "PelShadowLutDesc.widthMin", "PelShadowLutDesc.widthMax");
 }
 
 void checkSpecularDesc(const PelSpecularLutDesc& fields) {

@@ -10,5 +10,7 @@ void checkShadowDesc(const PelShadowLutDesc& desc);
 void checkSpecularDesc(const PelSpecularLutDesc& desc);
 void checkEyeDesc(const PelEyeLutDesc& desc);
 void checkInfo(const PelLutInfo& info);
+// That the ends of its range are in order, once lengths that were left out are known.
+void checkOrder(const PelLutInfo& info);
 
 }  // namespace pel

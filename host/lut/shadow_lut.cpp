@@ -18,8 +18,8 @@ Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
 
     const Profile& profile = *lut->profile();
     const double radius = lut->diffusionRadius();
-    const double reciprocalMin = rowLimit(desc.widthMax, radius),
-                 reciprocalMax = rowLimit(desc.widthMin, radius);
+    const double reciprocalMin = rowLimit(lut->info().shadow.widthMax, radius),
+                 reciprocalMax = rowLimit(lut->info().shadow.widthMin, radius);
     if (profile.terms().empty()) {
         integrateTabulatedShadow(*lut, reciprocalMin, reciprocalMax);
         return lut;

@@ -9,9 +9,9 @@
 namespace pel {
 namespace {
 
-// The wide filter, and how far before a surface an occluder counts, in standard deviations of the widest line
-// spread: docs/guide/shading.md, "Materials", has what others give. Softness and slope are no lengths.
-constexpr double filterWidths = 1.3, biasWidths = 0.1;
+// How far before a surface an occluder counts, in standard deviations of the widest line spread: docs/guide/shading.md, "Materials", has
+// what others give. Softness and slope are no lengths.
+constexpr double biasWidths = 0.1;
 constexpr float softness = 0.1f, coneSlope = 0.8f;
 // Without a profile, mm.
 constexpr double plainFilterWidth = 8, plainBias = 0.5;
@@ -20,20 +20,19 @@ constexpr double reflectionGain = 1.38;  // of a ball, per mean free path times 
 constexpr float noBlend[3] = {1, 0.3f, 0};
 constexpr uint32_t transmissionTexels = 256;
 
-double widest(const Profile& profile) {
-    const Rgb width = profile.shape().width();
-    return std::max({width[0], width[1], width[2]});
+double widest(const PelProfileInfo& profile) {
+    return std::max({profile.width[0], profile.width[1], profile.width[2]});
+}
+
+// In the scene's unit. A table whose description leaves it out has its profile's, in mm.
+float radiusOf(const Lut& lut, double unit) {
+    return lut.hasOwnRadius() ? float(lut.diffusionRadius() / unit) : lut.diffusionRadius();
 }
 
 Ref<Lut> curvatureTable(const Ref<Device>& device, Profile& profile) {
     PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
     const LentHandle<PelProfile, Profile> lent{Ref<Profile>(&profile)};
     desc.profile = lent.get();
-    desc.form = PEL_FORM_SPHERE;
-    desc.axis = PEL_AXIS_ROOT;
-    desc.width = desc.height = 64;
-    desc.radiusMin = float(0.25 * profile.radius());
-    desc.radiusMax = float(1000 * profile.radius());
     return integrateCurvatureLut(device, desc);
 }
 
@@ -41,12 +40,7 @@ Ref<Lut> shadowTable(const Ref<Device>& device, Profile& profile, float filterWi
     PelShadowLutDesc desc = pelShadowLutDescDefaults();
     const LentHandle<PelProfile, Profile> lent{Ref<Profile>(&profile)};
     desc.profile = lent.get();
-    desc.axis = PEL_AXIS_ROOT;
-    desc.closedEnds = 1;
-    desc.width = 256;
-    desc.height = 64;
     desc.widthMin = filterWidth;
-    desc.widthMax = 1000 * filterWidth;
     return integrateShadowLut(device, desc);
 }
 
@@ -92,12 +86,13 @@ void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const 
     PelMaterial m = material.given;
     const double unit = options.millimetresPerUnit;
     Profile* profile = material.profile.get();
+    const PelProfileInfo info = profile ? profile->info() : pelProfileInfoDefaults();
     material.curvatureLut = material.givenCurvatureLut;
     material.shadowLut = material.givenShadowLut;
     material.transmission = {};
     if (m.shadowFilterWidth == 0)
-        m.shadowFilterWidth = float((profile ? filterWidths * widest(*profile) : plainFilterWidth) / unit);
-    material.shadowBias = float((profile ? biasWidths * widest(*profile) : plainBias) / unit);
+        m.shadowFilterWidth = float((profile ? double(pelShadowFilterWidthOf(&info)) : plainFilterWidth) / unit);
+    material.shadowBias = float((profile ? biasWidths * widest(info) : plainBias) / unit);
     material.shadowSoftness = profile ? softness : plainSoftness;
     material.shadowConeSlope = profile ? coneSlope : plainConeSlope;
     if (profile) {
@@ -108,10 +103,9 @@ void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const 
     }
     if (m.diffusionRadius == 0)
         m.diffusionRadius = profile                 ? float(profile->radius() / unit)
-                            : material.curvatureLut ? material.curvatureLut->diffusionRadius()
-                            : material.shadowLut    ? material.shadowLut->diffusionRadius()
+                            : material.curvatureLut ? radiusOf(*material.curvatureLut, unit)
+                            : material.shadowLut    ? radiusOf(*material.shadowLut, unit)
                                                     : float(Profile::skin()->radius() / unit);
-    const PelProfileInfo info = profile ? profile->info() : pelProfileInfoDefaults();
     for (int c = 0; c < 3; ++c)
         if (m.normalBlend[c] < 0) m.normalBlend[c] = profile ? info.normalBlend[c] : noBlend[c];
     if (!profile) m.transmission = 0;

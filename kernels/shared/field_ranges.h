@@ -59,19 +59,19 @@
     X(targetError, 0, 1, PEL_NONE) \
     X(millimetresPerUnit, PEL_TINY, PEL_HUGE, PEL_NONE)
 
-#define PEL_EACH_CURVATURE_LUT_RANGE(X)             \
-    X(width, 1, 16384, PEL_NONE)                    \
-    X(height, 1, 16384, PEL_NONE)                   \
-    X(diffusionRadius, PEL_ABOVE_0, PEL_FINITE, 0)  \
-    X(radiusMin, PEL_ABOVE_0, PEL_FINITE, PEL_NONE) \
-    X(radiusMax, PEL_ABOVE_0, PEL_FINITE, PEL_NONE)
+#define PEL_EACH_CURVATURE_LUT_RANGE(X)            \
+    X(width, 1, 16384, PEL_NONE)                   \
+    X(height, 1, 16384, PEL_NONE)                  \
+    X(diffusionRadius, PEL_ABOVE_0, PEL_FINITE, 0) \
+    X(radiusMin, PEL_ABOVE_0, PEL_FINITE, 0)       \
+    X(radiusMax, PEL_ABOVE_0, PEL_FINITE, 0)
 
 #define PEL_EACH_SHADOW_LUT_RANGE(X)               \
     X(width, 1, 16384, PEL_NONE)                   \
     X(height, 1, 16384, PEL_NONE)                  \
     X(diffusionRadius, PEL_ABOVE_0, PEL_FINITE, 0) \
-    X(widthMin, PEL_ABOVE_0, PEL_FINITE, PEL_NONE) \
-    X(widthMax, PEL_ABOVE_0, PEL_FINITE, PEL_NONE) \
+    X(widthMin, PEL_ABOVE_0, PEL_FINITE, 0)        \
+    X(widthMax, PEL_ABOVE_0, PEL_FINITE, 0)        \
     X(sharpening, 1, PEL_FINITE, PEL_NONE)         \
     X(closedEnds, 0, 1, PEL_NONE)
 

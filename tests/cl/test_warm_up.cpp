@@ -120,13 +120,13 @@ TEST(WarmUp, TablesAndCurvatureFindEverythingBuilt) {
     builds = 0;
     for (const PelCurvatureForm form :
          {PEL_FORM_ARC, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_SPHERE, PEL_FORM_PENNER_RING}) {
-        PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+        PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
         desc.form = form;
         desc.width = 40, desc.height = 24;
         pellucid::Lut(own, desc).read<uint8_t>(PEL_LUT_FACEWORKS8);
     }
     const float distances[2] = {0, 4}, values[6] = {1, 0.7f, 0.5f, 0, 0, 0};
-    PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+    PelShadowLutDesc shadow = pelShadowLutDescFaceWorks();
     PelProfile table = nullptr;
     pellucid::check(pelProfileCreateTable(distances, values, 2, &table));
     shadow.width = 40;

@@ -145,6 +145,49 @@ TEST_F(BatchCommand, NamesFilesAndWritesAnIndexOfThem) {
         1);
 }
 
+// A manifest of version 1 means FaceWorks' tables where it says nothing, one of version 2 those that a material makes of its profile.
+TEST_F(BatchCommand, TablesBeginAsTheVersionOrThePresetSays) {
+    const auto made = [&](const std::string& text) {
+        const Result result = run({"batch", manifest(text), "-o", path("out"), "--json"});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return nlohmann::json::parse(read(path("out/m.index.json")))["tables"];
+    };
+    const std::string two = "[[lut]]\nname = \"c\"\n%[[lut]]\nkind = \"shadow\"\nname = \"s\"\n%";
+    const auto with = [&](const std::string& head, const std::string& keys) {
+        std::string text = head + two;
+        for (size_t at; (at = text.find('%')) != std::string::npos;) text.replace(at, 1, keys);
+        return made(text);
+    };
+    for (const auto& tables : {with("", ""), with("version = 2\n", "preset = \"faceworks\"\n")}) {
+        EXPECT_EQ(tables[0]["form"], "arc");
+        EXPECT_EQ(tables[0]["axis"], "linear");
+        EXPECT_EQ(tables[0]["width"], 512);
+        EXPECT_EQ(tables[0]["radius_max"], 100);
+        EXPECT_EQ(tables[1]["axis"], "linear");
+        EXPECT_EQ(tables[1]["closed_ends"], 0);
+        EXPECT_EQ(tables[1]["width_min"], 8);
+    }
+    for (const auto& tables : {with("version = 2\n", ""), with("", "preset = \"material\"\n")}) {
+        EXPECT_EQ(tables[0]["form"], "sphere");
+        EXPECT_EQ(tables[0]["axis"], "root");
+        EXPECT_EQ(tables[0]["width"], 64);
+        EXPECT_NEAR(tables[0]["radius_min"].get<double>(), 0.25 * tables[0]["diffusion_radius"].get<double>(),
+                    1e-6);
+        EXPECT_EQ(tables[1]["axis"], "root");
+        EXPECT_EQ(tables[1]["closed_ends"], 1);
+        EXPECT_EQ(tables[1]["width"], 128);
+        const pellucid::Lut lut = pellucid::io::readLut(pellucid::Device(), path("out/s.exr"));
+        EXPECT_EQ(lut.info().shadow.widthMin, tables[1]["width_min"].get<float>());
+    }
+    // The axis of shadow tables counts, unless an older manifest has one that did not.
+    const std::string shadow = "[[lut]]\nkind = \"shadow\"\nname = \"s\"\naxis = \"linear\"\nsize = 8\n";
+    EXPECT_EQ(made("version = 2\n" + shadow)[0]["axis"], "linear");
+    EXPECT_EQ(made("[[lut]]\nkind = \"shadow\"\nname = \"s\"\naxis = \"root\"\nsize = 8\n")[0]["axis"],
+              "linear");
+    EXPECT_EQ(made("version = 2\n[[lut]]\nkind = \"shadow\"\nname = \"s\"\nclosed_ends = 0\nsize = 8\n")[0]["closed_ends"],
+              0);
+}
+
 TEST_F(BatchCommand, RefusesNamesThatAreNone) {
     const auto said = [&](const std::string& text) {
         const Result result = run({"batch", manifest(text), "-o", path("out")});
@@ -160,7 +203,7 @@ TEST_F(BatchCommand, RefusesNamesThatAreNone) {
         EXPECT_TRUE(
             contains(said("[[lut]]\nsize = 8\nname = \"" + std::string(name) + "\"\n"), "m.toml:3: 'name'"))
             << name;
-    EXPECT_TRUE(contains(said("version = 2\n[[lut]]\nsize = 8\n"), "of a later pellucid"));
+    EXPECT_TRUE(contains(said("version = 3\n[[lut]]\nsize = 8\n"), "of a later pellucid"));
     EXPECT_TRUE(contains(said("version = 1.5\n[[lut]]\nsize = 8\n"), "'version'"));
     EXPECT_EQ(files().size(), 1u);  // the first of each pair
 }

@@ -137,7 +137,7 @@ TEST_F(BlenderReference, ScatteringComesCloserToThePathTracedSphere) {
     check(pelProfileCreateBurley(meanFreePath, albedo, PEL_BURLEY_DIFFUSE_TRANSMISSION, &handle));
     const Profile profile(handle);
     const Device device("");
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.profile = profile.get();
     desc.form = PEL_FORM_SPHERE;
     desc.diffusionRadius = 0;

@@ -13,7 +13,7 @@ using CliLut = CommandTest;
 
 TEST_F(CliLut, LutFilesHoldTheLibrarysTexels) {
     const Device device("");
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = 24;
     desc.height = 10;
     desc.radiusMin = 2;
@@ -58,7 +58,7 @@ TEST_F(CliLut, LutFilesHoldTheLibrarysTexels) {
                   .json()
                   .at("clipped_texels"),
               [&] {
-                  desc = pelCurvatureLutDescDefaults();
+                  desc = pelCurvatureLutDescFaceWorks();
                   desc.width = 24;
                   desc.height = 10;
                   desc.radiusMin = 0.5;
@@ -91,12 +91,22 @@ TEST_F(CliLut, TablesAreAMaterialsUnlessAPresetSaysOtherwise) {
     i = info({"shadow"});
     EXPECT_EQ(i.shadow.closedEnds, 1u);
     EXPECT_EQ(i.shadow.axis, PEL_AXIS_ROOT);
-    EXPECT_EQ(i.shadow.height, 64u);
+    EXPECT_EQ(i.shadow.width, 128u);
+    EXPECT_EQ(i.shadow.height, 32u);
+    EXPECT_NEAR(i.shadow.widthMax, 1000 * i.shadow.widthMin, 1e-3 * i.shadow.widthMax);
     EXPECT_EQ(info({"shadow", "--open-ends"}).shadow.closedEnds, 0u);
     i = info({"shadow", "--preset", "faceworks"});
     EXPECT_EQ(i.shadow.closedEnds, 0u);
     EXPECT_EQ(i.shadow.axis, PEL_AXIS_LINEAR);
     EXPECT_EQ(i.shadow.width, 512u);
+    EXPECT_EQ(i.shadow.widthMin, 8);
+    // What followed from the profile is shown.
+    const nlohmann::json shown =
+        run({"lut", "shadow", "--profile", "marble", "-o", path("p.exr"), "--json"}).json();
+    const PelProfileInfo marble = Profile::named("marble").info();
+    EXPECT_NEAR(shown["width_min"].get<float>(), 1.3f * *std::max_element(marble.width, marble.width + 3), 1e-3);
+    EXPECT_EQ(shown["closed_ends"], true);
+    EXPECT_EQ(run({"lut", "curvature", "-o", path("p.exr"), "--json"}).json()["form"], "sphere");
     expectRefused({"lut", "shadow", "--preset", "unity", "-o", path("p.exr")}, 2, "faceworks");
 }
 

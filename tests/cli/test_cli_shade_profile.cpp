@@ -75,8 +75,9 @@ TEST_F(ShadeProfile, ThePresetIsWhatItsTablesAre) {
     const auto preset = shaded("preset.toml");
     scene_.materials[0].preset = io::ScenePreset::none;
     scene_.luts.resize(2);
+    scene_.luts[0].info = io::presetInfo(io::LutPreset::faceworks, PEL_LUT_CURVATURE);
+    scene_.luts[1].info = io::presetInfo(io::LutPreset::faceworks, PEL_LUT_SHADOW);
     scene_.luts[0].name = scene_.luts[1].name = "t";
-    scene_.luts[1].info.kind = PEL_LUT_SHADOW;
     scene_.materials[0].curvatureLut = scene_.materials[0].shadowLut = "t";
     io::writeScene(path("tables.toml"), scene_);
     EXPECT_EQ(shaded("tables.toml"), preset);
@@ -90,6 +91,34 @@ TEST_F(ShadeProfile, ADistanceIsNoDeviceDepth) {
     io::writeScene(path("s.toml"), scene_);
     shaded("s.toml");
     EXPECT_NE(warnings_.find("depth channel reaches 250"), std::string::npos) << warnings_;
+}
+
+// Distances below 1, as a scene in metres has them, would be places that are much too near or too far apart; so would the right depth of a
+// scene whose unit is wrong.
+TEST_F(ShadeProfile, DepthThatGivesNoLikelySizeIsSaid) {
+    scene_.materials[0].profile = "skin";
+    scene_.channels[PEL_SLOT_DEPTH] = {"D.Z"};
+    // A camera at the origin that looks along z, with 90 degrees of view: near plane at 0.1 m, far plane at 100 m.
+    const float near = 0.1f, far = 100;
+    std::fill(scene_.camera.inverseViewProjection, scene_.camera.inverseViewProjection + 16, 0.0f);
+    float* m = scene_.camera.inverseViewProjection;
+    m[0] = m[5] = 1;                                         // x, y of a point at distance 1
+    m[11] = 1;                                               // z
+    m[14] = -(far - near) / (far * near), m[15] = 1 / near;  // 1 / distance
+    const auto with = [&](float value, float unit) {
+        io::Image gbuffer = gbuffer_;
+        gbuffer.addInterleaved(std::vector<std::string>{"D.Z"}, std::vector<float>(gbuffer.pixelCount(), value));
+        io::writeExr(path("g.exr"), gbuffer);
+        scene_.unitMm = unit;
+        io::writeScene(path("s.toml"), scene_);
+        shaded("s.toml");
+        return warnings_;
+    };
+    const float distance = 0.15f, device = far / (far - near) * (1 - near / distance);
+    EXPECT_EQ(with(device, 1000).find("unit_mm"), std::string::npos) << warnings_;
+    EXPECT_NE(with(device, 1).find("unit_mm"), std::string::npos);
+    EXPECT_NE(with(0.99999f, 1000).find("a distance along the view"), std::string::npos) << warnings_;
+    EXPECT_NE(with(-250, 1).find("depth channel reaches -250"), std::string::npos) << warnings_;
 }
 
 // Every control of scattering that a scene file can name.

@@ -53,7 +53,7 @@ Kind kind(const char* name, void (*retain)(H), void (*release)(H), std::function
 }
 
 inline pellucid::Lut smallTable(PelProfile profile = nullptr) {
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = desc.height = 4;
     desc.profile = profile;
     return pellucid::Lut(device(), desc);

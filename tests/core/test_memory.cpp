@@ -199,9 +199,9 @@ TEST(Memory, DriversThatRefuse) {
         mesh.numVertices = 4, mesh.numIndices = 6, mesh.indices = indices;
         PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
         specular.width = specular.height = 4;
-        PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
+        PelCurvatureLutDesc curvature = pelCurvatureLutDescFaceWorks();
         curvature.width = curvature.height = 4;
-        PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+        PelShadowLutDesc shadow = pelShadowLutDescFaceWorks();
         shadow.width = shadow.height = 4;
         PelCurvatureParams params = pelCurvatureParamsDefaults();
         params.smoothingRadius = 0.5f;

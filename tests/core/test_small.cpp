@@ -81,7 +81,7 @@ TEST(Small, NormalsAndUvScale) {
 
 TEST(Small, CurvatureTables) {
     for (const auto& [form, other] : fixture::forms) {
-        PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+        PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
         desc.width = 5, desc.height = 3, desc.form = form;
         const Lut lut(device(), desc);
         const std::vector<float> texels = lut.read<float>(PEL_LUT_FLOAT);
@@ -98,7 +98,7 @@ TEST(Small, CurvatureTables) {
 }
 
 TEST(Small, ShadowAndSpecularTables) {
-    PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+    PelShadowLutDesc shadow = pelShadowLutDescFaceWorks();
     shadow.width = 5, shadow.height = 3;
     const std::vector<float> texels = Lut(device(), shadow).read<float>(PEL_LUT_FLOAT);
     const reference::ShadowLutSpec spec{5, 3, shadow.widthMin, shadow.widthMax, 2.7, shadow.sharpening};
@@ -203,8 +203,8 @@ TEST(Small, TablesOfOtherProfiles) {
     const float path[3] = {1, 0.5f, 0.3f}, albedo[3] = {0.8f, 0.6f, 0.5f};
     const std::vector<float> distances{0.5f, 1, 2}, values{1, 1, 1, 0.5f, 0.4f, 0.3f, 0, 0, 0};
     for (const Profile& profile : {Profile::burley(path, albedo), Profile::table(distances, values)}) {
-        PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
-        PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+        PelCurvatureLutDesc curvature = pelCurvatureLutDescFaceWorks();
+        PelShadowLutDesc shadow = pelShadowLutDescFaceWorks();
         curvature.width = shadow.width = 5, curvature.height = shadow.height = 3;
         curvature.profile = shadow.profile = profile.get();
         curvature.diffusionRadius = shadow.diffusionRadius = 0;

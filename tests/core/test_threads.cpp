@@ -51,7 +51,7 @@ TEST(Threads, OneTopologyAndOneLiveMesh) {
 TEST(Threads, OneProfileAndOneTable) {
     const Profile profile = Profile::gaussians({{0.5f, {1, 1, 1}}});
     const std::set<std::string> names{"gaussians", "cheek", "a name much longer than cheek"};
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = desc.height = 16;
     desc.profile = profile.get();
     const Lut table(fixture::device(), desc);

@@ -108,8 +108,8 @@ void addImages(std::vector<Reader>& all, const Folder& folder) {
 }
 
 Reader table(const Folder& folder, const Device& device) {
-    PelCurvatureLutDesc c = pelCurvatureLutDescDefaults();
-    PelShadowLutDesc s = pelShadowLutDescDefaults();
+    PelCurvatureLutDesc c = pelCurvatureLutDescFaceWorks();
+    PelShadowLutDesc s = pelShadowLutDescFaceWorks();
     c.width = c.height = s.width = s.height = 8;
     const Lut curvature(device, c);
     const std::vector<uint16_t> halves = curvature.read<uint16_t>(PEL_LUT_HALF);

@@ -81,7 +81,7 @@ const std::vector<Writer>& writers() {
                      }});
         w.push_back({"o.toml", [](const std::string& p) { writeScene(p, manyLights()); }});
         const auto lut = std::make_shared<Lut>(Device(""), [] {
-            PelShadowLutDesc desc = pelShadowLutDescDefaults();
+            PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
             desc.width = desc.height = side;
             return desc;
         }());

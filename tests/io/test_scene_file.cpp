@@ -213,11 +213,55 @@ TEST_F(SceneFileTest, WrongTypesAndValuesNameLineKeyAndWhatIsRight) {
     EXPECT_TRUE(contains(errorOf("[[material]]", "[material]"), "[[material]]"));
 }
 
+// Scenes of version 1 begin with FaceWorks' tables, later ones with those that a material makes; a preset says which whatever the version.
+TEST_F(SceneFileTest, TablesBeginAsTheVersionOrThePresetSays) {
+    const auto tables = [&](const std::string& head, const std::string& keys) {
+        return readScene(
+            write("s.toml", head + "[channels]\nnormal_shading = [\"x\", \"y\", \"z\"]\n[[curvature_lut]]\n" +
+                                "name = \"a\"\n" + keys + "[[shadow_lut]]\nname = \"a\"\n" + keys));
+    };
+    const auto faceworks = [](const SceneFile& scene) {
+        const PelCurvatureLutDesc c = scene.lut("a", PEL_LUT_CURVATURE)->info.curvature;
+        const PelShadowLutDesc s = scene.lut("a", PEL_LUT_SHADOW)->info.shadow;
+        EXPECT_EQ(c.width, 512u);
+        EXPECT_EQ(c.radiusMin, 1);
+        EXPECT_EQ(c.axis, PEL_AXIS_LINEAR);
+        EXPECT_EQ(s.closedEnds, 0u);
+        EXPECT_EQ(s.widthMin, 8);
+        EXPECT_EQ(s.axis, PEL_AXIS_LINEAR);
+        return c.form == PEL_FORM_ARC;
+    };
+    const auto material = [](const SceneFile& scene) {
+        const PelCurvatureLutDesc c = scene.lut("a", PEL_LUT_CURVATURE)->info.curvature;
+        const PelShadowLutDesc s = scene.lut("a", PEL_LUT_SHADOW)->info.shadow;
+        EXPECT_EQ(c.width, 64u);
+        EXPECT_EQ(c.radiusMin, 0);
+        EXPECT_EQ(c.axis, PEL_AXIS_ROOT);
+        EXPECT_EQ(s.closedEnds, 1u);
+        EXPECT_EQ(s.widthMin, 0);
+        EXPECT_EQ(s.axis, PEL_AXIS_ROOT);
+        return c.form == PEL_FORM_SPHERE;
+    };
+    EXPECT_TRUE(faceworks(tables("", "")));
+    EXPECT_TRUE(faceworks(tables("version = 1\n", "")));
+    EXPECT_TRUE(material(tables("version = 2\n", "")));
+    EXPECT_TRUE(faceworks(tables("version = 2\n", "preset = \"faceworks\"\n")));
+    EXPECT_TRUE(material(tables("version = 1\n", "preset = \"material\"\n")));
+    // A scene that was written reads back as it was, whatever its version.
+    SceneFile scene = tables("", "");
+    writeScene(path("w.toml"), scene);
+    EXPECT_TRUE(faceworks(readScene(path("w.toml"))));
+}
+
 TEST_F(SceneFileTest, WhatIsMissingIsNamed) {
-    EXPECT_TRUE(
-        contains(errorOf("version = 1", "version = 2"), "of a later pellucid; this one reads version 1"));
-    EXPECT_TRUE(contains(errorOf("version = 1", "version = 0"), "'version' in the scene is 0"));
-    EXPECT_TRUE(contains(errorOf("version = 1", "version = \"1\""), "'version' in the scene is a string"));
+    EXPECT_TRUE(contains(errorOf("version = 2", "version = 3"),
+                         "of a later pellucid; this one reads version 1 to 2"));
+    EXPECT_TRUE(contains(errorOf("version = 2", "version = 0"), "'version' in the scene is 0"));
+    EXPECT_TRUE(contains(errorOf("version = 2", "version = \"1\""), "'version' in the scene is a string"));
+    EXPECT_TRUE(contains(errorOf("file = \"shadow_lut.exr\"", "preset = \"unity\""),
+                         "'unity'; one of 'material', 'faceworks'"));
+    EXPECT_TRUE(contains(errorOf("file = \"shadow_lut.exr\"", "file = \"a.exr\"\npreset = \"material\""),
+                         "'preset' in [[shadow_lut]] cannot stand beside 'file'"));
     EXPECT_TRUE(contains(errorOf("to_light = [0.6, 0.3, 0.742]", ""), "a directional light needs it"));
     EXPECT_TRUE(contains(errorOf("\"directional\"", "\"point\""), "'position' in [[light]] is missing"));
     EXPECT_TRUE(

@@ -16,7 +16,7 @@ class TextureFile : public FolderTest {
         return value;
     }
     static Lut table() {
-        PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+        PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
         desc.width = 5;
         desc.height = 3;
         return Lut(Device(""), desc);

@@ -26,7 +26,7 @@ inline constexpr std::pair<PelCurvatureForm, reference::Form> forms[] = {
 // Of the profile as it is, on the axis of roots; `least`, `most`: radii of curvature in units of the profile's.
 inline PelCurvatureLutDesc curvatureTable(const pellucid::Profile& profile, PelCurvatureForm form,
                                           uint32_t width, uint32_t height, double least, double most) {
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = width;
     desc.height = height;
     desc.form = form;
@@ -41,7 +41,7 @@ inline PelCurvatureLutDesc curvatureTable(const pellucid::Profile& profile, PelC
 // `least`, `most`: widths of the penumbra in units of the profile's radius.
 inline PelShadowLutDesc shadowTable(const pellucid::Profile& profile, uint32_t width, uint32_t height,
                                     double least, double most, float sharpening) {
-    PelShadowLutDesc desc = pelShadowLutDescDefaults();
+    PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
     desc.width = width;
     desc.height = height;
     desc.profile = profile.get();

@@ -40,7 +40,7 @@ float fromHalf(uint16_t bits) {
 TEST(LutApi, RefusesWhatMakesNoSense) {
     const Device device("");
     auto curvature = [&](auto change, const char* field) {
-        PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+        PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
         change(desc);
         expectRefused(device, desc, field);
     };
@@ -55,20 +55,20 @@ TEST(LutApi, RefusesWhatMakesNoSense) {
     curvature([](auto& d) { d.radiusMax = notANumber; }, "radiusMax");
     curvature([](auto& d) { d.radiusMin = 2 * d.radiusMax; }, "radiusMin");
     auto shadow = [&](auto change, const char* field) {
-        PelShadowLutDesc desc = pelShadowLutDescDefaults();
+        PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
         change(desc);
         expectRefused(device, desc, field);
     };
     shadow([](auto& d) { d.width = 16385; }, "width");
     shadow([](auto& d) { d.height = 0; }, "height");
     shadow([](auto& d) { d.diffusionRadius = -2; }, "diffusionRadius");
-    shadow([](auto& d) { d.widthMin = 0; }, "widthMin");
+    shadow([](auto& d) { d.widthMin = -1; }, "widthMin");
     shadow([](auto& d) { d.widthMax = infinity; }, "widthMax");
     shadow([](auto& d) { d.widthMin = 200; }, "widthMin");
     shadow([](auto& d) { d.sharpening = 0.5f; }, "sharpening");
     shadow([](auto& d) { d.sharpening = notANumber; }, "sharpening");
 
-    const PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    const PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     PelLut lut = nullptr;
     EXPECT_EQ(pelCurvatureLutCreate(nullptr, &desc, &lut, nullptr), PEL_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(pelCurvatureLutCreate(device.get(), nullptr, &lut, nullptr), PEL_ERROR_INVALID_ARGUMENT);
@@ -76,9 +76,62 @@ TEST(LutApi, RefusesWhatMakesNoSense) {
     EXPECT_EQ(lut, nullptr);
 }
 
+// What is left out follows from the profile, as in the tables that a material makes.
+TEST(LutApi, LengthsThatAreLeftOutAreTheProfiles) {
+    const Device device("");
+    for (const char* name : {"skin", "marble"}) {
+        const Profile profile = Profile::named(name);
+        const PelProfileInfo lengths = profile.info();
+        PelCurvatureLutDesc c = pelCurvatureLutDescDefaults();
+        PelShadowLutDesc s = pelShadowLutDescDefaults();
+        EXPECT_EQ(c.diffusionRadius + c.radiusMin + c.radiusMax + s.diffusionRadius + s.widthMin + s.widthMax, 0);
+        c.profile = s.profile = profile.get();
+        for (float stretch : {1.0f, 0.1f}) {
+            if (stretch != 1) c.diffusionRadius = s.diffusionRadius = stretch * lengths.radius;
+            const PelCurvatureLutDesc madeC = Lut(device, c).info().curvature;
+            const PelShadowLutDesc madeS = Lut(device, s).info().shadow;
+            const float scale = stretch * lengths.radius;
+            EXPECT_EQ(madeC.form, PEL_FORM_SPHERE);
+            EXPECT_FLOAT_EQ(madeC.diffusionRadius, scale);
+            EXPECT_FLOAT_EQ(madeC.radiusMin, 0.25f * scale);
+            EXPECT_FLOAT_EQ(madeC.radiusMax, 1000 * scale);
+            EXPECT_FLOAT_EQ(madeS.widthMin, 1.3f * stretch * *std::max_element(lengths.width, lengths.width + 3));
+            EXPECT_FLOAT_EQ(madeS.widthMax, 1000 * madeS.widthMin);
+            EXPECT_EQ(madeS.closedEnds, 1u);
+        }
+    }
+    // Any radius there may be.
+    for (float radius : {1e-38f, 1e-6f, 1e6f, 1e38f}) {
+        PelCurvatureLutDesc c = pelCurvatureLutDescDefaults();
+        PelShadowLutDesc s = pelShadowLutDescDefaults();
+        c.width = c.height = s.width = s.height = 8;
+        c.diffusionRadius = s.diffusionRadius = radius;
+        for (const Lut& lut : {Lut(device, c), Lut(device, s)})
+            for (float v : lut.read<float>(PEL_LUT_FLOAT))
+                ASSERT_TRUE(v >= 0 && v <= 1) << radius << ": " << v;
+    }
+    // A range that ends before it begins, once the rest is known, is named.
+    PelCurvatureLutDesc reversed = pelCurvatureLutDescDefaults();
+    reversed.radiusMin = 1e5f;
+    expectRefused(device, reversed, "radiusMax");
+    PelShadowLutDesc narrow = pelShadowLutDescDefaults();
+    narrow.widthMax = 0.1f;
+    expectRefused(device, narrow, "widthMin");
+}
+
+// A program whose header had neither closed ends nor axes of shadow tables means those that it knew.
+TEST(LutApi, WhatAnOlderHeaderLacksIsAsItWas) {
+    PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
+    desc.structSize = offsetof(PelShadowLutDesc, closedEnds);
+    desc.closedEnds = 1, desc.axis = PEL_AXIS_ROOT;  // beyond its end
+    const PelShadowLutDesc made = Lut(Device(""), desc).info().shadow;
+    EXPECT_EQ(made.closedEnds, 0u);
+    EXPECT_EQ(made.axis, PEL_AXIS_LINEAR);
+}
+
 TEST(LutApi, InfoSizesAndRanges) {
     const Device device("");
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = 20;
     desc.height = 10;
     desc.radiusMax = 40;
@@ -103,7 +156,7 @@ TEST(LutApi, InfoSizesAndRanges) {
 }
 
 TEST(LutApi, HalfIsTheNearestHalf) {
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = 64;
     desc.height = 32;
     const Lut lut(Device(""), desc);
@@ -120,7 +173,7 @@ TEST(LutApi, HalfIsTheNearestHalf) {
 
 TEST(LutApi, TexelsFromOutsideComeBackBitForBit) {
     const Device device("");
-    PelShadowLutDesc desc = pelShadowLutDescDefaults();
+    PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
     desc.width = 31;
     desc.height = 7;
     const Lut lut(device, desc);
@@ -148,7 +201,7 @@ TEST(LutApi, TexelsFromOutsideComeBackBitForBit) {
 
 TEST(LutApi, SubmittedWorkFinishesWithItsEvent) {
     const Device device("");
-    const PelCurvatureLutDesc desc = sizedTable(pelCurvatureLutDescDefaults());
+    const PelCurvatureLutDesc desc = sizedTable(pelCurvatureLutDescFaceWorks());
     const auto expected = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
     PelEvent made = nullptr, read = nullptr;
     const PelSubmit make{nullptr, 0, &made};

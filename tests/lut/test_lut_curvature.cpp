@@ -11,7 +11,7 @@ namespace {
 
 PelCurvatureLutDesc describe(uint32_t width, uint32_t height, float radiusMin, float radiusMax,
                              float diffusionRadius) {
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+    PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
     desc.width = width;
     desc.height = height;
     desc.radiusMin = radiusMin;
@@ -50,7 +50,7 @@ void compareTexels(const Device& device, const PelCurvatureLutDesc& usual, int s
 }  // namespace
 
 TEST(CurvatureLut, TexelsEqualTheIntegral) {
-    compareTexels(Device(""), pelCurvatureLutDescDefaults(), 600);
+    compareTexels(Device(""), pelCurvatureLutDescFaceWorks(), 600);
 }
 
 TEST(CurvatureLut, OtherSizesAndUnits) {
@@ -91,7 +91,7 @@ TEST(CurvatureLut, LimitsOfRadius) {
 
 TEST(CurvatureLut, RisesWithTheLightAndHasNoKinks) {
     const Device device("");
-    auto desc = pelCurvatureLutDescDefaults();
+    auto desc = pelCurvatureLutDescFaceWorks();
     desc.height = sized(desc.height, 2u);
     const auto texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
     double roughest = 0;
@@ -133,7 +133,7 @@ TEST(CurvatureLut, EncodingsRoundTruth) {
         all += reference::faceworksCurvatureClips({texels[i], texels[i + 1], texels[i + 2]}, u);
     }
     EXPECT_EQ(lut.clippedTexels(), all);
-    EXPECT_EQ(Lut(Device(""), sizedTable(pelShadowLutDescDefaults())).clippedTexels(), 0u);
+    EXPECT_EQ(Lut(Device(""), sizedTable(pelShadowLutDescFaceWorks())).clippedTexels(), 0u);
     EXPECT_EQ(pelLutCountClipped(lut.get(), nullptr), PEL_ERROR_INVALID_ARGUMENT);
     EXPECT_EQ(lut.read<uint16_t>(PEL_LUT_HALF).size(), texels.size());
 }
@@ -141,7 +141,7 @@ TEST(CurvatureLut, EncodingsRoundTruth) {
 TEST(CurvatureLut, EqualsTheExactTableOfFaceWorksProfile) {
     REQUIRE_ORACLE_DIRECTORY(directory);
     const auto truth = npy::read<float>(directory / "truth_lut_curv_A_arc10_f32.npy");
-    const Lut lut(Device(""), pelCurvatureLutDescDefaults());
+    const Lut lut(Device(""), pelCurvatureLutDescFaceWorks());
     const auto texels = lut.read<float>(PEL_LUT_FLOAT);
     ASSERT_EQ(texels.size(), truth.data.size());
     double worst = 0;

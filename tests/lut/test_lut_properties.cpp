@@ -249,7 +249,7 @@ TEST(LutProperties, WeightsAndVariancesAtTheEdgesOfFloat) {
     constexpr float most = std::numeric_limits<float>::max(), tiny = std::numeric_limits<float>::denorm_min();
     const auto texels = [&](const Profile& profile, PelCurvatureForm form, float least, float largest,
                             float radius) {
-        PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+        PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
         desc.width = 33;
         desc.height = 4;
         desc.form = form;

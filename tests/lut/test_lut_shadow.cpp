@@ -17,7 +17,7 @@ struct Case {
 };
 
 PelShadowLutDesc describe(const Case& c) {
-    PelShadowLutDesc desc = pelShadowLutDescDefaults();
+    PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
     desc.width = c.width;
     desc.height = c.height;
     desc.widthMin = c.widthMin;
@@ -56,7 +56,7 @@ void compareTexels(const Device& device, const PelShadowLutDesc& usual, int samp
 }  // namespace
 
 TEST(ShadowLut, TexelsEqualTheIntegral) {
-    compareTexels(Device(""), pelShadowLutDescDefaults(), 1000);
+    compareTexels(Device(""), pelShadowLutDescFaceWorks(), 1000);
 }
 
 TEST(ShadowLut, OtherSizesAndUnits) {
@@ -127,7 +127,7 @@ TEST(ShadowLut, ClosedEndsRunFromNoneToAll) {
 // Light is never negative, not even by rounding, and never more than the profile has.
 TEST(ShadowLut, NoTexelIsBelowZero) {
     const Device device("");
-    std::vector<PelShadowLutDesc> descs{sizedTable(pelShadowLutDescDefaults())};
+    std::vector<PelShadowLutDesc> descs{sizedTable(pelShadowLutDescFaceWorks())};
     for (float sharpening : {1.0f, 10.0f, 1000.0f})
         for (auto [widthMin, widthMax] : {std::pair{0.1f, 8.0f}, {1.0f, 30.0f}, {8.0f, 30000.0f}})
             descs.push_back(describe({256, 32, widthMin, widthMax, 2.7f, sharpening}));
@@ -157,7 +157,7 @@ TEST(ShadowLut, EncodingRoundsTruth) {
 TEST(ShadowLut, EqualsTheExactTableOfFaceWorksProfile) {
     REQUIRE_ORACLE_DIRECTORY(directory);
     const auto truth = npy::read<float>(directory / "truth_lut_shadow_A_withfade_f32.npy");
-    const Lut lut(Device(""), pelShadowLutDescDefaults());
+    const Lut lut(Device(""), pelShadowLutDescFaceWorks());
     const auto texels = lut.read<float>(PEL_LUT_FLOAT);
     ASSERT_EQ(texels.size(), truth.data.size());
     double worst = 0;

@@ -171,7 +171,7 @@ TEST(LutTables, LimitsAreFiniteAndBounded) {
         const Profile profile = table.ours();
         for (const auto& [form, name] : forms)
             for (float radius : {1e-30f, 1.0f, 1e30f}) {
-                PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+                PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
                 desc.width = 17;
                 desc.height = 1;
                 desc.form = form;
@@ -184,7 +184,7 @@ TEST(LutTables, LimitsAreFiniteAndBounded) {
                     EXPECT_LE(texel, 1 + tolerance::lutTexelOther);
                 }
             }
-        PelShadowLutDesc desc = pelShadowLutDescDefaults();
+        PelShadowLutDesc desc = pelShadowLutDescFaceWorks();
         desc.width = 17;
         desc.height = 5;
         desc.profile = profile.get();

@@ -33,8 +33,8 @@ inline reference::Table readTable(const pellucid::Lut& lut, uint32_t width, uint
 }
 
 inline Tables makeTables(const pellucid::Device& device, uint32_t width = 96, uint32_t height = 64) {
-    PelCurvatureLutDesc c = pelCurvatureLutDescDefaults();
-    PelShadowLutDesc s = pelShadowLutDescDefaults();
+    PelCurvatureLutDesc c = pelCurvatureLutDescFaceWorks();
+    PelShadowLutDesc s = pelShadowLutDescFaceWorks();
     c.diffusionRadius = s.diffusionRadius = 2.7f;  // skin's own, which the oracle wants to know
     c.width = s.width = width;
     c.height = s.height = height;

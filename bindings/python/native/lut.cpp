@@ -33,8 +33,16 @@ py::tuple encodedBc6h(uint32_t width, uint32_t height, uintptr_t halves) {
 }
 }  // namespace
 
+// The bytes of FaceWorks' description.
+py::bytes faceworks(const std::string& name) {
+    if (name == "PelCurvatureLutDesc") return bytesOf(pelCurvatureLutDescFaceWorks());
+    if (name == "PelShadowLutDesc") return bytesOf(pelShadowLutDescFaceWorks());
+    throw py::value_error(name + " has no preset of FaceWorks");
+}
+
 void bindLut(py::module_& module) {
     using pellucid::Lut;
+    module.def("faceworks_defaults", &faceworks);
     module.def("encode_bc6h", &encodedBc6h);
     py::class_<Lut, Owner<Lut>>(module, "Lut")
         .def_static("curvature", created<PelCurvatureLutDesc, pelCurvatureLutCreate>)

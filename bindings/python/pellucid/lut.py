@@ -47,7 +47,7 @@ class Lut(OfThisProcess):
 
     @classmethod
     def curvature(cls, device: Device, desc: Optional[CurvatureLutDesc] = None, *, profile: Profile | str | None = None,
-                  wait: bool = True, waits: Iterable[Event] = (), **fields: Any) -> Lut:
+                  preset: Optional[str] = None, wait: bool = True, waits: Iterable[Event] = (), **fields: Any) -> Lut:
         """Integrates a curvature table: texel (x, y) is D(N.L, r) per channel, row 0 the smallest curvature.
 
         Parameters
@@ -56,19 +56,21 @@ class Lut(OfThisProcess):
             The defaults without it; `fields` are fields of it by themselves (width=256, form="sphere", ...).
         profile : Profile or name of one of the library, optional
             Skin without it.
+        preset : "material" or "faceworks", optional
+            What a table without `desc` begins with: as a material makes it of its profile, or as FaceWorks does.
         wait : bool
             False: return once it is submitted; `ready` says when it is done.
         """
-        return cls._integrated(device, _native.Lut.curvature, CurvatureLutDesc, desc, fields, profile, wait, waits)
+        return cls._integrated(device, _native.Lut.curvature, CurvatureLutDesc, desc, fields, profile, wait, waits, preset)
 
     @classmethod
     def shadow(cls, device: Device, desc: Optional[ShadowLutDesc] = None, *, profile: Profile | str | None = None,
-               wait: bool = True, waits: Iterable[Event] = (), **fields: Any) -> Lut:
+               preset: Optional[str] = None, wait: bool = True, waits: Iterable[Event] = (), **fields: Any) -> Lut:
         """Integrates a shadow table: texel (x, y) is the light transmitted per channel, row 0 the widest penumbra.
 
         The parameters are as for `curvature`, with ShadowLutDesc.
         """
-        return cls._integrated(device, _native.Lut.shadow, ShadowLutDesc, desc, fields, profile, wait, waits)
+        return cls._integrated(device, _native.Lut.shadow, ShadowLutDesc, desc, fields, profile, wait, waits, preset)
 
     @classmethod
     def specular(cls, device: Device, desc: Optional[SpecularLutDesc] = None, *, wait: bool = True,
@@ -87,8 +89,14 @@ class Lut(OfThisProcess):
 
     @classmethod
     def _integrated(cls, device: Device, create: Any, kind: Any, desc: Any, fields: dict[str, Any],
-                    profile: Profile | str | None, wait: bool, waits: Iterable[Event]) -> Lut:
+                    profile: Profile | str | None, wait: bool, waits: Iterable[Event], preset: Optional[str] = None) -> Lut:
+        if preset not in (None, "material", "faceworks"):
+            raise ValueError(f"preset is {preset!r}; it must be one of material, faceworks")
+        if preset is not None and desc is not None:
+            raise ValueError("preset and desc exclude one another: a preset is where a description begins")
         settings = kind() if desc is None else desc.copy()
+        if preset == "faceworks":
+            settings._data = np.frombuffer(bytearray(_native.faceworks_defaults(kind._c_name)), kind._dtype)
         for name, value in fields.items():
             setattr(settings, name, value)
         if profile is not None:

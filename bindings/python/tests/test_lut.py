@@ -26,7 +26,7 @@ def integrate(lengths, values):
 
 
 def test_curvature_texels_are_the_integral(device, tolerance):
-    texels = pel.Lut.curvature(device, width=64, height=16).read()
+    texels = pel.Lut.curvature(device, width=64, height=16, preset="faceworks").read()
     assert texels.shape == (16, 64, 3) and texels.dtype == np.float32
     for x, y in [(0, 0), (31, 15), (35, 8), (20, 15), (63, 3)]:
         u = -1 + (x + 0.5) * 2 / 64
@@ -46,7 +46,7 @@ def test_curvature_texels_are_the_integral(device, tolerance):
 
 
 def test_encodings(device):
-    lut = pel.Lut.curvature(device, width=32, height=8, radius_min=0.5)
+    lut = pel.Lut.curvature(device, width=32, height=8, radius_min=0.5, preset="faceworks")
     full = lut.read("float")
     assert np.array_equal(lut.read("half"), full.astype(np.float16))
     coded = lut.read(pel.LutEncoding.FACEWORKS8)
@@ -78,7 +78,7 @@ def test_bc6h_is_as_near_as_it_says(device, tolerance):
 def test_measured_profiles(device):
     # A thin disk scatters evenly within its radius: P(s) = 2 sqrt(1 - s^2) / pi for radius 1.
     disk = pel.Profile.table([0.5, 1], [[1, 1, 1]] * 2)
-    lut = pel.Lut.curvature(device, width=65, height=1, radius_min=2, radius_max=2, diffusion_radius=0, axis="root",
+    lut = pel.Lut.curvature(device, width=65, height=1, radius_min=2, radius_max=2, form="arc",
                             profile=disk)
     s = np.sin(np.linspace(-np.pi / 2, np.pi / 2, 20001))
     weight = 2 / np.pi * (1 - s**2) * np.pi / 20000
@@ -87,14 +87,47 @@ def test_measured_profiles(device):
         theta = np.arccos(side * abs(side))
         assert abs(lut.read()[0, x, 0] - (np.maximum(np.cos(theta - s / 2), 0) * weight).sum()) < 1e-5
     assert lut.info.profile == "table"
-    shadow = pel.Lut.shadow(device, width=64, height=4, diffusion_radius=0, profile=disk).read()
+    shadow = pel.Lut.shadow(device, width=64, height=4, profile=disk, preset="faceworks").read()
     assert (np.diff(shadow, axis=1) >= -1e-6).all() and abs(shadow[:, ::-1] + shadow - 1).max() < 1e-5
 
 
 def test_shadow_is_monotone_and_ends_dark_and_lit(device):
     texels = pel.Lut.shadow(device, width=64, height=8).read()
     assert (np.diff(texels, axis=1) >= -1e-6).all()
-    assert texels[:, 0].max() < 0.5 < texels[:, -1].min()
+    assert (texels[:, 0] == 0).all() and (texels[:, -1] == 1).all()
+    texels = pel.Lut.shadow(device, width=64, height=8, preset="faceworks").read()
+    assert (np.diff(texels, axis=1) >= -1e-6).all()
+    assert 0 < texels[:, 0].max() < 0.5 < texels[:, -1].min() < 1
+
+
+def test_defaults_follow_from_the_profile(device):
+    for name in ("skin", "marble"):
+        profile = pel.Profile.named(name).info
+        curvature = pel.Lut.curvature(device, profile=name).info.curvature
+        assert (curvature.width, curvature.height) == (64, 64)
+        assert curvature.form is pel.CurvatureForm.SPHERE and curvature.axis is pel.LutAxis.ROOT
+        assert curvature.diffusion_radius == profile.radius
+        assert curvature.radius_min == pytest.approx(0.25 * profile.radius)
+        assert curvature.radius_max == pytest.approx(1000 * profile.radius)
+        shadow = pel.Lut.shadow(device, profile=name).info.shadow
+        assert (shadow.width, shadow.height, shadow.closed_ends) == (128, 32, 1) and shadow.axis is pel.LutAxis.ROOT
+        assert shadow.width_min == pytest.approx(1.3 * max(profile.width))
+        assert shadow.width_max == pytest.approx(1000 * shadow.width_min)
+    stretched = pel.Lut.shadow(device, diffusion_radius=27).info.shadow  # skin in tenths of a millimetre
+    assert stretched.width_min == pytest.approx(10 * pel.Lut.shadow(device).info.shadow.width_min, rel=1e-3)
+
+
+def test_faceworks_is_a_preset(device):
+    info = pel.Lut.curvature(device, preset="faceworks").info.curvature
+    assert (info.width, info.height, info.radius_min, info.radius_max) == (512, 512, 1, 100)
+    assert info.form is pel.CurvatureForm.ARC and info.axis is pel.LutAxis.LINEAR
+    info = pel.Lut.shadow(device, preset="faceworks").info.shadow
+    assert (info.width, info.height, info.width_min, info.width_max, info.closed_ends) == (512, 512, 8, 100, 0)
+    assert info.axis is pel.LutAxis.LINEAR
+    with pytest.raises(ValueError, match="it must be one of material, faceworks"):
+        pel.Lut.curvature(device, preset="unreal")
+    with pytest.raises(ValueError, match="exclude"):
+        pel.Lut.curvature(device, pel.CurvatureLutDesc(), preset="faceworks")
 
 
 def test_submitted_tables_are_the_same(device):
@@ -131,7 +164,7 @@ def test_specular_is_beckmann(device, tolerance):
 
 def test_profiles_reach_the_table(device):
     narrow = pel.Profile.gaussians([(0.01, 1)], name="narrow")
-    lut = pel.Lut.curvature(device, width=64, height=8, profile=narrow, diffusion_radius=0)
+    lut = pel.Lut.curvature(device, width=64, height=8, profile=narrow, preset="faceworks")
     assert lut.info.profile == "narrow"
     u = -1 + (np.arange(64) + 0.5) * 2 / 64
     # sigma is 0.1: at radius 1 it smears the terminator by about 0.1 and no more.

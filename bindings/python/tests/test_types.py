@@ -27,7 +27,7 @@ def test_all_plain_structures_are_there():
 def test_defaults_come_from_the_library():
     assert pel.Material().roughness == np.float32(0.3)
     assert pel.Material().profile is None
-    assert pel.CurvatureLutDesc().width == 512
+    assert pel.CurvatureLutDesc().width == 64
     assert pel.Light().spot_direction.tolist() == [0, 0, -1]
 
 

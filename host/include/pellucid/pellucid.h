@@ -572,30 +572,32 @@ typedef enum PelLutAxis {
                             for flat surfaces, so that look-ups in 64x64 texels are as good as in 1024x1024 linear ones */
 } PelLutAxis;
 
+/* pelCurvatureLutDescDefaults() is the table that a material makes of its profile, pelCurvatureLutDescFaceWorks() that of FaceWorks. */
 typedef struct PelCurvatureLutDesc {
     uint32_t structSize;
-    uint32_t width;  /* texels along N.L from -1 to 1; 1 to 16384; typical 512 */
-    uint32_t height; /* texels along curvature from 1/radiusMax to 1/radiusMin; typical 512 */
-    PelCurvatureForm form;
+    uint32_t width;        /* texels along N.L from -1 to 1; 1 to 16384; default 64 */
+    uint32_t height;       /* texels along curvature from 1/radiusMax to 1/radiusMin; default 64 */
+    PelCurvatureForm form; /* default PEL_FORM_SPHERE */
     float diffusionRadius; /* length; stretches the profile, whose own radius is in PelProfileInfo; default 0: its own */
-    float radiusMin; /* length, smallest radius of curvature; typical 1 mm */
-    float radiusMax; /* length; typical 100 mm */
-    PelLutAxis axis;
+    float radiusMin; /* length, smallest radius of curvature; default 0: a quarter of the diffusion radius */
+    float radiusMax; /* length; default 0: 1000 diffusion radii */
+    PelLutAxis axis; /* default PEL_AXIS_ROOT */
     PelProfile profile; /* NULL: skin. The table keeps it alive */
 } PelCurvatureLutDesc;
 
+/* pelShadowLutDescDefaults() is the table that a material makes of its profile, pelShadowLutDescFaceWorks() that of FaceWorks. */
 typedef struct PelShadowLutDesc {
     uint32_t structSize;
-    uint32_t width;        /* texels along the wide-filtered shadow from 0 to 1; 1 to 16384; typical 512 */
-    uint32_t height;       /* texels along 1/penumbra width, from widest to narrowest; typical 512 */
+    uint32_t width;        /* texels along the wide-filtered shadow from 0 to 1; 1 to 16384; default 128 */
+    uint32_t height;       /* texels along 1/penumbra width, from widest to narrowest; default 32 */
     float diffusionRadius; /* length; default 0: the profile's own radius */
-    float widthMin;        /* length, narrowest penumbra; typical 8 mm */
-    float widthMax;        /* length; typical 100 mm */
-    float sharpening;      /* >= 1: how much narrower the shadow gets than the wide filter; typical 10 */
-    PelProfile profile;    /* NULL: skin. The table keeps it alive */
-    uint32_t closedEnds; /* 1: each row is rescaled, so that w = 0 gives 0 and w = 1 gives 1: lit skin then keeps the light that
-                              scatters further than the filter reaches; 0: not rescaled [FaceWorks] */
-    PelLutAxis axis; /* PEL_AXIS_LINEAR: w and 1/width linear [FaceWorks]; PEL_AXIS_ROOT: the position across the edge,
+    float widthMin; /* length, narrowest penumbra; default 0: the width of a material's shadow filter, pelShadowFilterWidthOf() */
+    float widthMax;      /* length; default 0: 1000 times widthMin */
+    float sharpening;    /* >= 1: how much narrower the shadow gets than the wide filter; default 10 */
+    PelProfile profile;  /* NULL: skin. The table keeps it alive */
+    uint32_t closedEnds; /* 1, the default: each row is rescaled, so that w = 0 gives 0 and w = 1 gives 1: lit skin then keeps the light
+                              that scatters further than the filter reaches; 0: not rescaled [FaceWorks] */
+    PelLutAxis axis; /* PEL_AXIS_LINEAR: w and 1/width linear [FaceWorks]; PEL_AXIS_ROOT, the default: the position across the edge,
                               (sqrt(w) - sqrt(1 - w)) / 2 + 1/2, and the root of 1/width linear, from end to end */
 } PelShadowLutDesc;
 
@@ -645,6 +647,7 @@ PEL_API PelError pelEyeLutCreate(PelDevice device, const PelEyeLutDesc* desc, Pe
 PEL_API void pelLutRetain(PelLut lut);
 PEL_API void pelLutRelease(PelLut lut);
 
+/* Its defaults describe FaceWorks' tables: texels that a host brings are mostly those. */
 typedef struct PelLutInfo {
     uint32_t structSize;
     PelLutKind kind;

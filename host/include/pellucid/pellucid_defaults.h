@@ -32,21 +32,69 @@ static inline PelScreenCurvatureParams pelScreenCurvatureParamsDefaults(void) {
     s.inverseViewProjection[10] = s.inverseViewProjection[15] = 1.0f;
     return s;
 }
+/* As a material makes them of its profile. What is 0 follows from the profile. */
 static inline PelCurvatureLutDesc pelCurvatureLutDescDefaults(void) {
+    PEL_ZEROED_(PelCurvatureLutDesc, s);
+    s.width = 64;
+    s.height = 64;
+    s.form = PEL_FORM_SPHERE;
+    s.axis = PEL_AXIS_ROOT;
+    return s;
+}
+static inline PelShadowLutDesc pelShadowLutDescDefaults(void) {
+    PEL_ZEROED_(PelShadowLutDesc, s);
+    s.width = 128;
+    s.height = 32;
+    s.sharpening = 10.0f;
+    s.closedEnds = 1;
+    s.axis = PEL_AXIS_ROOT;
+    return s;
+}
+/* As FaceWorks 1.0 makes them, for skin in millimetres: form arc, open ends, linear axes. */
+static inline PelCurvatureLutDesc pelCurvatureLutDescFaceWorks(void) {
     PEL_ZEROED_(PelCurvatureLutDesc, s);
     s.width = 512;
     s.height = 512;
+    s.form = PEL_FORM_ARC;
+    s.axis = PEL_AXIS_LINEAR;
     s.radiusMin = 1.0f;
     s.radiusMax = 100.0f;
     return s;
 }
-static inline PelShadowLutDesc pelShadowLutDescDefaults(void) {
+static inline PelShadowLutDesc pelShadowLutDescFaceWorks(void) {
     PEL_ZEROED_(PelShadowLutDesc, s);
     s.width = 512;
     s.height = 512;
     s.widthMin = 8.0f;
     s.widthMax = 100.0f;
     s.sharpening = 10.0f;
+    s.axis = PEL_AXIS_LINEAR;
+    return s;
+}
+/* Width of the shadow filter that follows from a profile, mm: docs/guide/shading.md, "Materials". */
+static inline float pelShadowFilterWidthOf(const PelProfileInfo* profile) {
+    float widest = profile->width[0];
+    if (profile->width[1] > widest) widest = profile->width[1];
+    if (profile->width[2] > widest) widest = profile->width[2];
+    return 1.3f * widest;
+}
+static inline float pelLengthOr_(float length, double otherwise) {
+    if (length != 0) return length;
+    if (otherwise > 3.402823466e38) otherwise = 3.402823466e38;
+    return otherwise < 1.401298464e-45 ? 1.401298464e-45f : (float)otherwise;
+}
+/* A description with the lengths of that profile in the place of those that are 0. Radii of curvature from that of an ear's helix to
+ * flat surface; penumbrae from light that falls straight in to light at a cosine of a thousandth. Look-ups beyond are clamped. */
+static inline PelCurvatureLutDesc pelCurvatureLutDescFilled(PelCurvatureLutDesc s, const PelProfileInfo* profile) {
+    s.diffusionRadius = pelLengthOr_(s.diffusionRadius, profile->radius);
+    s.radiusMin = pelLengthOr_(s.radiusMin, 0.25 * s.diffusionRadius);
+    s.radiusMax = pelLengthOr_(s.radiusMax, 1000.0 * s.diffusionRadius);
+    return s;
+}
+static inline PelShadowLutDesc pelShadowLutDescFilled(PelShadowLutDesc s, const PelProfileInfo* profile) {
+    s.diffusionRadius = pelLengthOr_(s.diffusionRadius, profile->radius);
+    s.widthMin = pelLengthOr_(s.widthMin, (double)pelShadowFilterWidthOf(profile) * s.diffusionRadius / profile->radius);
+    s.widthMax = pelLengthOr_(s.widthMax, 1000.0 * s.widthMin);
     return s;
 }
 static inline PelSpecularLutDesc pelSpecularLutDescDefaults(void) {
@@ -122,8 +170,8 @@ static inline PelScatterStats pelScatterStatsDefaults(void) { PEL_ZEROED_(PelSca
 static inline PelProfileInfo pelProfileInfoDefaults(void) { PEL_ZEROED_(PelProfileInfo, s); return s; }
 static inline PelLutInfo pelLutInfoDefaults(void) {
     PEL_ZEROED_(PelLutInfo, s);
-    s.curvature = pelCurvatureLutDescDefaults();
-    s.shadow = pelShadowLutDescDefaults();
+    s.curvature = pelCurvatureLutDescFaceWorks();
+    s.shadow = pelShadowLutDescFaceWorks();
     s.specular = pelSpecularLutDescDefaults();
     s.eye = pelEyeLutDescDefaults();
     memcpy(s.profile, "skin", 5);

@@ -62,7 +62,13 @@ std::string manifestKey(std::string_view attribute) {
 }
 
 void describe(std::string& out, const BatchEntry& entry) {
-    const PelLutInfo& info = entry.info;
+    PelLutInfo info = entry.info;
+    PelProfileInfo profile = pelProfileInfoDefaults();
+    if (info.kind != PEL_LUT_SPECULAR) {
+        profile = entry.profile.info();
+        info.curvature = pelCurvatureLutDescFilled(info.curvature, &profile);
+        info.shadow = pelShadowLutDescFilled(info.shadow, &profile);
+    }
     JsonObject table(out);
     table.text("file", entry.file);
     if (!entry.name.empty()) table.text("name", entry.name);
@@ -73,16 +79,17 @@ void describe(std::string& out, const BatchEntry& entry) {
     table.number("height", height);
     table.text("encoding", lutEncodings[entry.encoding]);
     if (info.kind == PEL_LUT_SPECULAR) return;
-    const PelProfileInfo profile = entry.profile.info();
     table.text("profile", profile.name);
     if (info.kind == PEL_LUT_CURVATURE) {
         table.text("form", curvatureForms[info.curvature.form]);
         table.text("axis", lutAxes[info.curvature.axis]);
     }
-    visitLutNumbers(info, [&](std::string_view attribute, float value) {
-        const std::string key = manifestKey(attribute);
-        table.number(key, key == "diffusion_radius" && value == 0 ? profile.radius : value);
-    });
+    if (info.kind == PEL_LUT_SHADOW) {
+        table.text("axis", lutAxes[info.shadow.axis]);
+        table.number("closed_ends", info.shadow.closedEnds);
+    }
+    visitLutNumbers(
+        info, [&](std::string_view attribute, float value) { table.number(manifestKey(attribute), value); });
 }
 
 }  // namespace

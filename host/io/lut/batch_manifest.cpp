@@ -11,6 +11,7 @@
 #include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/lut/lut_describe.h"
+#include "io/lut/lut_preset.h"
 #include "io/lut/profile_file.h"
 #include "io/toml_reader.h"
 
@@ -22,15 +23,22 @@ constexpr size_t mostEntries = 1'000'000, mostProfileBytes = size_t{64} << 20;
 
 constexpr std::string_view encodingNames[] = {"float", "half"};  // PelLutEncoding
 
+struct Size {
+    uint32_t width, height;  // texels
+    std::string text() const {
+        return width == height ? std::to_string(width) : std::to_string(width) + "x" + std::to_string(height);
+    }
+};
+
 // What a [[lut]] or [[grid]] table contains; a grid has several values in some lists.
 struct Request {
     std::string name;  // of the file; in a grid with {key} in it, such as "{profile}-{size}"
     PelLutKind kind = PEL_LUT_CURVATURE;
-    std::vector<std::string> profiles{"skin"}, forms{"arc"}, axes{"linear"}, encodings{"half"};
-    std::vector<float> radii{0};       // diffusion radii, mm; 0: the profile's own
-    std::vector<uint32_t> sizes{512};  // texels a side
-    PelCurvatureLutDesc curvature = pelCurvatureLutDescDefaults();
-    PelShadowLutDesc shadow = pelShadowLutDescDefaults();
+    std::vector<std::string> profiles{"skin"}, forms, axes, encodings{"half"};
+    std::vector<float> radii{0};  // diffusion radii, mm; 0: the profile's own
+    std::vector<Size> sizes;
+    PelCurvatureLutDesc curvature;
+    PelShadowLutDesc shadow;
 };
 
 template <size_t N>
@@ -44,9 +52,17 @@ uint32_t indexOf(const TomlReader& reader, const char* key, const std::string& v
     reader.fail(key, "holds '" + value + "'; one of " + known + " would be right");
 }
 
-Request readRequest(TomlReader& reader) {
+Request readRequest(TomlReader& reader, LutPreset preset) {
     Request r;
     reader.choice("kind", r.kind, lutKinds);
+    // A shadow table of version 1 was linear whatever its axis.
+    const bool ownAxis = r.kind == PEL_LUT_SHADOW && preset == LutPreset::faceworks && !reader.has("preset");
+    reader.choice("preset", preset, lutPresets);
+    r.curvature = presetCurvature(preset);
+    r.shadow = presetShadow(preset);
+    const bool isShadow = r.kind == PEL_LUT_SHADOW;
+    r.forms = {std::string(curvatureForms[r.curvature.form])};
+    r.axes = {std::string(lutAxes[isShadow ? r.shadow.axis : r.curvature.axis])};
     if (r.kind == PEL_LUT_EYE)
         reader.fail("kind", "is 'eye', of which a batch makes none; `pellucid lut eye` does");
     reader.text("name", r.name);
@@ -54,25 +70,34 @@ Request readRequest(TomlReader& reader) {
         reader.fail("name", "is empty; leave it out for a name by content");
     reader.list("profile", r.profiles);
     reader.list("form", r.forms);
-    reader.list("axis", r.axes);
+    if (isShadow) r.forms = {""};
+    std::vector<std::string> axes = r.axes;
+    reader.list("axis", axes);
+    if (!ownAxis) r.axes = axes;
     reader.list("encoding", r.encodings);
     reader.list("diffusion_radius", r.radii, range::positive);
-    std::vector<float> sides(r.sizes.begin(), r.sizes.end());
+    std::vector<float> sides;
     reader.list("size", sides, range::atLeastOne);
-    r.sizes.clear();
     for (float side : sides) {
         if (side > 16384 || side != float(uint32_t(side)))
             reader.fail("size", "holds a side that is not a whole number from 1 to 16384");
-        r.sizes.push_back(uint32_t(side));
+        r.sizes.push_back({uint32_t(side), uint32_t(side)});
     }
-    reader.number("radius_min", r.curvature.radiusMin, range::positive);
-    reader.number("radius_max", r.curvature.radiusMax, range::positive);
-    reader.number("width_min", r.shadow.widthMin, range::positive);
-    reader.number("width_max", r.shadow.widthMax, range::positive);
+    const PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
+    if (!reader.has("size"))
+        r.sizes = {isShadow                      ? Size{r.shadow.width, r.shadow.height}
+                   : r.kind == PEL_LUT_CURVATURE ? Size{r.curvature.width, r.curvature.height}
+                                                 : Size{specular.width, specular.height}};
+    reader.number("radius_min", r.curvature.radiusMin, range::curvatureLut::radiusMin);
+    reader.number("radius_max", r.curvature.radiusMax, range::curvatureLut::radiusMax);
+    reader.number("width_min", r.shadow.widthMin, range::shadowLut::widthMin);
+    reader.number("width_max", r.shadow.widthMax, range::shadowLut::widthMax);
     reader.number("sharpening", r.shadow.sharpening, range::atLeastOne);
-    if (r.curvature.radiusMin > r.curvature.radiusMax)
+    reader.integer("closed_ends", r.shadow.closedEnds, range::shadowLut::closedEnds);
+    const auto reversed = [](float least, float most) { return most != 0 && least > most; };
+    if (reversed(r.curvature.radiusMin, r.curvature.radiusMax))
         reader.fail("radius_min", "is greater than radius_max");
-    if (r.shadow.widthMin > r.shadow.widthMax) reader.fail("width_min", "is greater than width_max");
+    if (reversed(r.shadow.widthMin, r.shadow.widthMax)) reader.fail("width_min", "is greater than width_max");
     return r;
 }
 
@@ -96,26 +121,21 @@ class Expansion {
     Expansion(BatchManifest& manifest, std::optional<std::filesystem::path> folder)
         : manifest_(manifest), folder_(std::move(folder)) {}
 
-    void add(TomlReader& reader) {
-        const Request r = readRequest(reader);
+    void add(TomlReader& reader, LutPreset preset) {
+        const Request r = readRequest(reader, preset);
         reader.finish();  // an unknown key makes the entry an error before any table is taken from it
         refuseTooMany(reader, r);
         for (const std::string& encoding : r.encodings)
-            for (uint32_t side : r.sizes) {
+            for (const Size& size : r.sizes) {
                 if (r.kind == PEL_LUT_SPECULAR) {
-                    addOne(reader, r, encoding, side, "", "", "", 0);
+                    addOne(reader, r, encoding, size, "", "", "", 0);
                     continue;
                 }
                 for (const std::string& profile : r.profiles)
-                    for (float radius : r.radii) {
-                        if (r.kind == PEL_LUT_SHADOW) {
-                            addOne(reader, r, encoding, side, profile, "", "", radius);
-                            continue;
-                        }
+                    for (float radius : r.radii)
                         for (const std::string& form : r.forms)
                             for (const std::string& axis : r.axes)
-                                addOne(reader, r, encoding, side, profile, form, axis, radius);
-                    }
+                                addOne(reader, r, encoding, size, profile, form, axis, radius);
             }
     }
 
@@ -131,7 +151,7 @@ class Expansion {
     void refuseTooMany(const TomlReader& reader, const Request& r) {
         double asked = double(r.encodings.size()) * double(r.sizes.size());
         if (r.kind != PEL_LUT_SPECULAR) asked *= double(r.profiles.size()) * double(r.radii.size());
-        if (r.kind == PEL_LUT_CURVATURE) asked *= double(r.forms.size()) * double(r.axes.size());
+        if (r.kind != PEL_LUT_SPECULAR) asked *= double(r.forms.size()) * double(r.axes.size());
         asked_ += asked;
         if (asked_ <= double(mostEntries)) return;
         asked_ -= asked;
@@ -176,13 +196,13 @@ class Expansion {
         return parseProfile(name, at->second).profile;
     }
 
-    void addOne(const TomlReader& reader, const Request& r, const std::string& encoding, uint32_t side,
+    void addOne(const TomlReader& reader, const Request& r, const std::string& encoding, const Size& size,
                 const std::string& profileName, const std::string& form, const std::string& axis, float radius) {
         BatchEntry entry{pelLutInfoDefaults(), {}, {}, {}, {}, {}, reader.line()};
         entry.info.kind = r.kind;
         entry.encoding = PelLutEncoding(indexOf(reader, "encoding", encoding, encodingNames));
         Key key;
-        key("kind", lutKinds[r.kind])("version", pelVersion())("encoding", encoding)("size", side);
+        key("kind", lutKinds[r.kind])("version", pelVersion())("encoding", encoding)("size", size.text());
         if (r.kind != PEL_LUT_SPECULAR) {
             const Known& known = profile(reader, profileName);
             entry.profile = known.profile;
@@ -191,7 +211,7 @@ class Expansion {
         }
         if (r.kind == PEL_LUT_CURVATURE) {
             PelCurvatureLutDesc& desc = entry.info.curvature = r.curvature;
-            desc.width = desc.height = side;
+            desc.width = size.width, desc.height = size.height;
             desc.form = PelCurvatureForm(indexOf(reader, "form", form, curvatureForms));
             desc.axis = PelLutAxis(indexOf(reader, "axis", axis, lutAxes));
             desc.diffusionRadius = radius;
@@ -199,12 +219,16 @@ class Expansion {
             key("form", form)("axis", axis)("radius_min", desc.radiusMin)("radius_max", desc.radiusMax);
         } else if (r.kind == PEL_LUT_SHADOW) {
             PelShadowLutDesc& desc = entry.info.shadow = r.shadow;
-            desc.width = desc.height = side;
+            desc.width = size.width, desc.height = size.height;
+            desc.axis = PelLutAxis(indexOf(reader, "axis", axis, lutAxes));
             desc.diffusionRadius = radius;
             desc.profile = entry.profile.get();
             key("width_min", desc.widthMin)("width_max", desc.widthMax)("sharpening", desc.sharpening);
+            // Only where they are not as in version 1, whose files keep their names.
+            if (desc.axis != PEL_AXIS_LINEAR) key("axis", axis);
+            if (desc.closedEnds) key("closed_ends", 1);
         } else {
-            entry.info.specular.width = entry.info.specular.height = side;
+            entry.info.specular.width = size.width, entry.info.specular.height = size.height;
         }
         entry.key = key.out.str();
         if (r.name.empty()) {
@@ -215,7 +239,7 @@ class Expansion {
                                   {"profile", std::filesystem::path(profileName).stem().string()},
                                   {"form", form},
                                   {"axis", axis},
-                                  {"size", std::to_string(side)},
+                                  {"size", size.text()},
                                   {"encoding", encoding},
                                   {"diffusion_radius", radius > 0 ? shortest(radius) : "own"}});
             entry.file = entry.name + ".exr";
@@ -283,10 +307,10 @@ BatchManifest expanded(const std::string& path, BatchManifest manifest,
     const toml::table root = parseToml(path, manifest.text);
     Expansion expansion(manifest, std::move(folder));
     TomlReader reader(path, root, "the manifest");
-    reader.version();
+    const LutPreset preset = presetOfVersion(reader.version(lutPresetVersions));
     for (const char* name : {"lut", "grid"})
         reader.tablesApart(
-            name, [&](TomlReader& entry) { expansion.add(entry); },
+            name, [&](TomlReader& entry) { expansion.add(entry, preset); },
             [&](const FileError& e) {
                 manifest.errors.push_back({e.line(), e.what()});
             });

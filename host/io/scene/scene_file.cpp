@@ -12,10 +12,11 @@
 namespace pellucid::io {
 namespace {
 
-void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind) {
+void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind, LutPreset preset) {
     SceneLut lut;
     lut.line = reader.line();
-    lut.info.kind = kind;
+    reader.choice("preset", preset, lutPresets);
+    lut.info = presetInfo(preset, kind);
     if (kind == PEL_LUT_CURVATURE) {
         curvatureLutKeys(reader, lut);
     } else {
@@ -23,16 +24,18 @@ void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind) {
     }
     if (lut.name.empty()) reader.fail("name", "is missing; materials need it to refer to this table");
     if (scene.lut(lut.name, kind)) reader.fail("name", "is used twice; give each table a name of its own");
-    if (!lut.file.empty() && reader.has("profile"))
-        reader.fail("profile", "cannot stand beside 'file', which was made with its own; leave one out");
+    for (const char* key : {"profile", "preset"})
+        if (!lut.file.empty() && reader.has(key))
+            reader.fail(key, "cannot stand beside 'file', which was made with its own; leave one out");
     if (!lut.file.empty())
         for (const char* key : {"form", "axis", "width", "height", "diffusion_radius", "radius_min",
                                 "radius_max", "width_min", "width_max", "sharpening", "closed_ends"})
             if (reader.has(key)) lut.expected.push_back(key);
+    const auto ordered = [](float least, float most) { return least == 0 || most == 0 || least < most; };
     if (lut.file.empty() && kind == PEL_LUT_CURVATURE &&
-        lut.info.curvature.radiusMin >= lut.info.curvature.radiusMax)
+        !ordered(lut.info.curvature.radiusMin, lut.info.curvature.radiusMax))
         reader.fail("radius_min", "is not below radius_max");
-    if (lut.file.empty() && kind == PEL_LUT_SHADOW && lut.info.shadow.widthMin >= lut.info.shadow.widthMax)
+    if (lut.file.empty() && kind == PEL_LUT_SHADOW && !ordered(lut.info.shadow.widthMin, lut.info.shadow.widthMax))
         reader.fail("width_min", "is not below width_max");
     scene.luts.push_back(std::move(lut));
 }
@@ -141,7 +144,7 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
     SceneFile scene;
     scene.source = path;
     TomlReader reader(path, root, "the scene");
-    reader.version();
+    const LutPreset preset = presetOfVersion(reader.version(lutPresetVersions));
     reader.integer("blur_normals", scene.blurNormals, {0, 1});
     reader.integer("rotate_taps", scene.rotateTaps, {0, 1});
     reader.integer("frame_index", scene.frameIndex, range::notNegative);
@@ -150,8 +153,8 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
     reader.table("camera", true, [&](TomlReader& r) { cameraKeys(r, scene.camera); });
     reader.table("ambient", true, [&](TomlReader& r) { ambientKeys(r, scene); });
     reader.table("outputs", true, [&](TomlReader& r) { outputFileKeys(r, scene); });
-    reader.tables("curvature_lut", [&](TomlReader& r) { readLut(r, scene, PEL_LUT_CURVATURE); });
-    reader.tables("shadow_lut", [&](TomlReader& r) { readLut(r, scene, PEL_LUT_SHADOW); });
+    reader.tables("curvature_lut", [&](TomlReader& r) { readLut(r, scene, PEL_LUT_CURVATURE, preset); });
+    reader.tables("shadow_lut", [&](TomlReader& r) { readLut(r, scene, PEL_LUT_SHADOW, preset); });
     reader.tables("material", [&](TomlReader& r) {
         SceneMaterial material;
         material.line = r.line();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "io/lut/lut_preset.h"
 #include "pellucid/pellucid.h"
 
 namespace pellucid::io {
@@ -14,12 +15,12 @@ namespace pellucid::io {
 // A look-up table by name: read from a file, or integrated from its description. The profile handle in the
 // description is not used.
 struct SceneLut {
-    std::string name;                        // materials refer to it
-    PelLutInfo info = pelLutInfoDefaults();  // kind; and what to integrate if `file` is empty
-    std::string file;                        // a float or half EXR written by `pellucid lut`
-    std::vector<std::string> expected;       // keys beside `file`: what the file must say too
-    std::string profile;                     // a material's name or a profile file; "": skin
-    int line = 0;                            // of the scene file; 0: made by a program
+    std::string name;                                   // materials refer to it
+    PelLutInfo info = presetInfo(LutPreset::material);  // kind; and what to integrate if `file` is empty
+    std::string file;                                   // a float or half EXR written by `pellucid lut`
+    std::vector<std::string> expected;                  // keys beside `file`: what the file must say too
+    std::string profile;                                // a material's name or a profile file; "": skin
+    int line = 0;                                       // of the scene file; 0: made by a program
 };
 
 // How tables are made for a material that names none.

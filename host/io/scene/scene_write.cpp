@@ -82,7 +82,7 @@ class TomlWriter {
 
 void writeScene(const std::string& path, const SceneFile& scene) {
     std::string out =
-        "# A scene of `pellucid shade`. Lengths are in the unit of the G-buffer's positions.\nversion = 1\n";
+        "# A scene of `pellucid shade`. Lengths are in the unit of the G-buffer's positions.\nversion = 2\n";
     if (scene.blurNormals) TomlWriter(out).integer("blur_normals", scene.blurNormals, {0, 1});
     if (scene.rotateTaps) TomlWriter(out).integer("rotate_taps", scene.rotateTaps, {0, 1});
     if (scene.frameIndex) TomlWriter(out).integer("frame_index", scene.frameIndex, range::notNegative);
