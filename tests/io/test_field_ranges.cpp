@@ -111,6 +111,6 @@ TEST(FieldRanges, EachRangeIsSaidInWords) {
     EXPECT_EQ(describe(pel::range::material::normalBlend), "-1, or from 0 to 1");
     EXPECT_EQ(describe(pel::range::material::roughness), "0 or more, and at most 1e+18");
     EXPECT_EQ(describe(pel::range::material::diffusionRadius), "0, or 1e-06 or more, and at most 1e+18");
-    EXPECT_EQ(describe(pel::range::curvatureLut::radiusMin), "more than 0");
+    EXPECT_EQ(describe(pel::range::curvatureLut::radiusMin), "0, or more than 0");
     EXPECT_EQ(describe(pel::range::any), "a finite number");
 }
