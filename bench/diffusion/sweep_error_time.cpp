@@ -1,7 +1,7 @@
 // Run time against error of whole methods: every way to scatter, over its settings, on one scene, against the surface integral.
 //
 //   sweep_error_time make SCENE SCALE FILE [PIXELS] [HEAD.obj]   renders a scene and makes its references
-//   sweep_error_time measure FILE [REPEATS] [PICTURES]           prints a line of JSON per measurement
+//   sweep_error_time measure FILE [REPEATS] [PICTURES] [METHOD]  prints a line of JSON per measurement, of all methods or of one
 //
 // SCENE is side, ear or sphere; SCALE multiplies the profile's radius; a picture has PIXELS a side, 512. Into the folder PICTURES, if
 // given, go pictures of one setting of each method, raw floats. Times are of all kernels that a frame has beyond those of plain lighting
@@ -190,7 +190,7 @@ void write(const std::string& folder, const std::string& name, const std::vector
     if (!out.flush()) throw std::runtime_error("cannot write into " + folder);
 }
 
-int measure(const std::string& file, int repeats, const std::string& pictures) {
+int measure(const std::string& file, int repeats, const std::string& pictures, const std::string& only) {
     const Device device("");
     const Profile profile = usualProfile();
     const Stored stored = load(file);
@@ -205,6 +205,7 @@ int measure(const std::string& file, int repeats, const std::string& pictures) {
     write(pictures, "Lambert", s.irradiance);
     write(pictures, "surface integral", s.truth);
     for (Setting& setting : settings()) {
+        if (!only.empty() && setting.method != only) continue;
         setting.request.repeats = repeats;
         double seconds = 0;
         const std::vector<float> picture = shade(device, s, profile, stored.scale, &seconds, setting.request);
@@ -225,12 +226,12 @@ int main(int argc, char** argv) {
             return makeScene(a[1], std::atof(a[2].c_str()), a[3], std::atoi(text(4, "512").c_str()),
                              text(5, PELLUCID_SOURCE_DIR "/data/heads/head_female.obj"));
         if (a.size() >= 2 && a[0] == "measure" && std::atoi(text(2, "7").c_str()) > 0)
-            return measure(a[1], std::atoi(text(2, "7").c_str()), text(3, ""));
+            return measure(a[1], std::atoi(text(2, "7").c_str()), text(3, ""), text(4, ""));
     } catch (const std::exception& e) {
         std::cerr << "sweep_error_time: " << e.what() << "\n";
         return 1;
     }
     std::cerr << "sweep_error_time make side|ear|sphere SCALE FILE [PIXELS] [HEAD.obj]\n"
-                 "sweep_error_time measure FILE [REPEATS] [PICTURES]\n";
+                 "sweep_error_time measure FILE [REPEATS] [PICTURES] [METHOD]\n";
     return 2;
 }

@@ -105,7 +105,7 @@ void LightSpace::prepare(const std::vector<ShaderLight>& lights, const float ori
         }
         hiddenBytes_ = hiddenBytes;
     }
-    const size_t bytes = hidden_ ? sizeof(cl_uint) : tileCount * sizeof(cl_uint);
+    const size_t bytes = tileCount * sizeof(cl_uint);
     if (bytes != partBytes_) parts_ = device_->allocate(bytes), partBytes_ = bytes;
     if (!counters_) counters_ = device_->allocate(PEL_LIGHT_COUNTERS * sizeof(cl_uint));
 }
@@ -184,7 +184,7 @@ void LightSpace::enqueueHidden(const ScatterImages& images, const ScreenMemory& 
         .arg(screen.nodes)
         .arg(screen.tiles)
         .arg(screen.sums);
-    hidden.arg(mapMemory_).arg(cl_uint(maps_.size())).arg(pyramid_).arg(hiddenMemory_).arg(counters_);
+    hidden.arg(parts_).arg(mapMemory_).arg(cl_uint(maps_.size())).arg(pyramid_).arg(hiddenMemory_).arg(counters_);
     const size_t groups = std::min<size_t>(screen.tileCount, 64 * size_t(device_->info().computeUnits));
     events.push_back(
         device_->launch(hidden, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}}));

@@ -77,6 +77,7 @@ class ScatterPass final : public Pass {
         if (alone) counts.tilesTapped = light.tiles, counts.pixelsTapped = light.pixels;
         addScatterCounts(counts, alone ? PEL_SCATTERING_LIGHT : PEL_SCATTERING_SCREEN, stats);
         if constexpr (!alone) {
+            stats.tilesByScattering[PEL_SCATTERING_LIGHT] += light.tiles;
             // Whether auto's materials kept them is known where no other material scatters so.
             if (std::ranges::any_of(plan.state.materials, [&](const auto& m) {
                     return scatters(plan.state, m.second, alone) &&

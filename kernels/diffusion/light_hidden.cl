@@ -1,18 +1,19 @@
 // What the texels of shadow maps that the camera does not see bring to blocks of 2 x 2 pixels, where the screen lacks mass
 // (docs/mathematics.md, section 10, "Light space").
 //
-// Input: the screen's pyramid, its tiles' words, the sums of level 1, the lights' pyramids. Output: light and mass per block of covered tiles, 0 where
+// Input: the screen's pyramid, its tiles' words, the sums of level 1, what light_classify found, the lights' pyramids. Output: light and mass per block of covered tiles, 0 where
 // they matter to nothing. One work-group takes tiles, one work-item blocks of them. Variants: PEL_HIDDEN is 1.
 #include "lib/diffusion/levels.clh"
 #include "lib/diffusion/windowed.clh"
 
+#define WINDOW 1.5f
 #define MOST_IN_CENTRE \
     0.5f  // where more of it lies within the blocks that level 1 does not look at, what is missing is not known
 
 // Light, and the greatest mass of a light's texels.
 static inline void addHidden(__global const PelLightMap* maps, uint mapCount, __global const float* lights,
                              __global const float* nodes, const PelProfileTable table, Place* place,
-                             float3* light, float3* mass, uint* texels) {
+                             float3* light, float3* mass, float3* far, uint* texels) {
     for (uint k = 0; k < mapCount;) {
         Windowed sums;
         clearWindowed(&sums);
@@ -20,7 +21,9 @@ static inline void addHidden(__global const PelLightMap* maps, uint mapCount, __
         const float3 color = vload3(0, maps[k].color);
         for (; k < mapCount && maps[k].light == number; ++k)
             *texels += addMap(&sums, maps + k, lights, nodes, table, place);
-        *light += color * sumOfLanes3(sums.farLight);
+        const float3 all = sumOfLanes3(sums.farLight);
+        *light += color * all;
+        *far += color * (all - sumOfLanes3(sums.nearLight));
         *mass = fmax(*mass, sumOfLanes3(sums.farMass));
     }
 }
@@ -34,11 +37,21 @@ static inline float missingOf(__global const float* sums, uint stride) {
     return most;
 }
 
+// Whether light that comes in, `most` at the most, counts: for missing mass, or as most of the light in some channel.
+static inline bool lightCounts(__global const float* sums, __global const float* block, uint stride, float most) {
+    if (missingOf(sums, stride) > PEL_LEAST_MISSING) return true;
+    float least = FLT_MAX;
+    for (uint c = 0; c < 3; ++c)
+        least = fmin(least, fma(sums[(PEL_SUM_CENTRE + c) * stride], block[(PEL_PLANE_RED + c) * stride],
+                                sums[(PEL_SUM_LIGHT + c) * stride]));
+    return most > PEL_HIDDEN_FROM * (most + least);
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_hidden(
     __global const PelDiffusionFrame* frame, __global const float* pyramid,
     __global const PelProfileTable* tables, __global const float* nodes, __global const uint* tiles,
-    __global const float* sums, __global const PelLightMap* maps, uint mapCount, __global const float* lights,
-    __global float* hidden, __global uint* counters) {
+    __global const float* sums, __global const uint* change, __global const PelLightMap* maps, uint mapCount,
+    __global const float* lights, __global float* hidden, __global uint* counters) {
     const uint count = frame->tilesX * frame->tilesY, side = PEL_DIFFUSION_TILE / 2;
     __global const PelPyramidLevel* level = &frame->level[1];
     const uint stride = level->stride;
@@ -52,21 +65,25 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
             if (x >= level->width || y >= level->height) continue;
             __global const float* block = pyramid + pyramidRow(level, (int)y) + x;
             if (!(block[PEL_PLANE_AREA * stride] > 0.0f)) continue;
-            float3 light = (float3)(0.0f), mass = (float3)(0.0f);
+            float3 light = (float3)(0.0f), mass = (float3)(0.0f), far = (float3)(0.0f);
             const uint id = as_uint(block[PEL_PLANE_ID * stride]);
-            if (reached && missingOf(sums + sumRow(frame, 1, (int)y) + x, stride) > PEL_LEAST_MISSING) {
+            if (reached &&
+                lightCounts(sums + sumRow(frame, 1, (int)y) + x, block, stride, as_float(change[tile]))) {
                 Place place;
                 place.id = id;
                 place.slack = 0.0f;
+                const float step = sqrt(fmax(block[PEL_PLANE_SIZE * stride], FLT_MIN));
+                place.rho = WINDOW * fmax(block[PEL_PLANE_AREA * stride] / (4.0f * step), step);
                 place.p = (float3)(block[PEL_PLANE_X * stride], block[PEL_PLANE_Y * stride],
                                    block[PEL_PLANE_Z * stride]);
                 addHidden(maps, mapCount, lights, nodes, tables[frame->tableOf[id] - 1], &place, &light,
-                          &mass, &texels);
+                          &mass, &far, &texels);
                 ++pixels;
             }
             __global float* to = hidden + hiddenRow(frame, (int)y) + x;
             to[0] = light.x, to[stride] = light.y, to[2 * stride] = light.z;
             to[3 * stride] = mass.x, to[4 * stride] = mass.y, to[5 * stride] = mass.z;
+            to[6 * stride] = far.x, to[7 * stride] = far.y, to[8 * stride] = far.z;
         }
     }
     if (pixels) atomic_add(&counters[PEL_COUNT_LIGHT_PIXELS], pixels);

@@ -13,7 +13,7 @@
 
 // The light of the pixels in one channel. `known`: mass from level 1 on; `hidden`: light and mass that the camera does not see.
 static inline floatw lightOf(floatw light, floatw mass, floatw centre, floatw e, floatw known,
-                             floatw hiddenLight, floatw hiddenMass) {
+                             floatw hiddenLight, floatw hiddenMass, floatw hiddenFar) {
     const floatw found = mass + centre, any = selectw((floatw)(1.0f), found, found > 0.0f);
     const floatw shown = selectw(e, (light + centre * e) / any, found > 0.0f);
 #if PEL_HIDDEN
@@ -21,7 +21,11 @@ static inline floatw lightOf(floatw light, floatw mass, floatw centre, floatw e,
     const floatw missing = max0w(1.0f - known),
                  fills = clamp(2.0f * missing - 2.0f * PEL_LEAST_MISSING, (floatw)(0.0f), missing);
     const floatw filled = fmin(hiddenMass, fills);
-    return max0w(shown * (1.0f - filled) + hiddenLight * (filled / fmax(hiddenMass, (floatw)(FLT_MIN))));
+    // Where it is most of the light, all of it counts: no light of what is shown can have been counted in its place.
+    const floatw most =
+        satw(PEL_HIDDEN_SLOPE * (hiddenLight / fmax(hiddenLight + shown, (floatw)(FLT_MIN)) - PEL_HIDDEN_FROM));
+    const floatw part = filled / fmax(hiddenMass, (floatw)(FLT_MIN));
+    return max0w(shown * (1.0f - filled) + hiddenLight * part + hiddenFar * (most * (1.0f - part)));
 #else
     return max0w(shown);  // a negative value is an error of the sums
 #endif
@@ -71,10 +75,12 @@ static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __glo
         }
     }
     const Sums* s = &all.sums;
-    const Vec3w found =
-        vec3(lightOf(s->light.x, s->mass.x, s->centre.x, e.x, known.x, all.hiddenLight.x, all.hiddenMass.x),
-             lightOf(s->light.y, s->mass.y, s->centre.y, e.y, known.y, all.hiddenLight.y, all.hiddenMass.y),
-             lightOf(s->light.z, s->mass.z, s->centre.z, e.z, known.z, all.hiddenLight.z, all.hiddenMass.z));
+    const Vec3w found = vec3(lightOf(s->light.x, s->mass.x, s->centre.x, e.x, known.x, all.hiddenLight.x,
+                                     all.hiddenMass.x, all.hiddenFar.x),
+                             lightOf(s->light.y, s->mass.y, s->centre.y, e.y, known.y, all.hiddenLight.y,
+                                     all.hiddenMass.y, all.hiddenFar.y),
+                             lightOf(s->light.z, s->mass.z, s->centre.z, e.z, known.z, all.hiddenLight.z,
+                                     all.hiddenMass.z, all.hiddenFar.z));
     return add3(e, scale3(sub3(found, e), (floatw)(weight)));
 }
 

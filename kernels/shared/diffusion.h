@@ -29,7 +29,7 @@
 #define PEL_SUM_PLANES 9
 
 #define PEL_HIDDEN_PLANES \
-    6  // three of light, three of mass: what the camera does not see, for blocks of level 1
+    9  // three of light, three of mass, three of light from far away: what the camera does not see, for blocks of level 1
 
 // Words of tiles: these bits, levels << 8, weight of what is scattered << 24. 0: irradiance is right as it is.
 #define PEL_TILE_NEAR 1u            // single pixels are summed too, not only blocks
