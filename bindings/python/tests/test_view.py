@@ -14,6 +14,7 @@ files = pytest.importorskip("pellucid.files", reason="this build reads no files"
 from pellucid import Device  # noqa: E402
 from pellucid.view.camera import Orbit, direction  # noqa: E402
 from pellucid.view.export import cpp_float, export, snippet  # noqa: E402
+from pellucid.view.iris import iris_image  # noqa: E402
 from pellucid.view.look import EYES, MODES, PRESETS, SKIN, Lamp, Look  # noqa: E402
 from pellucid.view.scene_session import SceneSession  # noqa: E402
 from pellucid.view.server import Pace, Viewer  # noqa: E402
@@ -87,7 +88,9 @@ def test_every_setting_changes_the_picture(session):
     reset(session)
     before = session.radiance(None, 160, 90)
     changes = {"profile": "jade", "radius_scale": 3.0, "method": "none", "albedo": (0.5, 1, 1), "specular": 0.9, "roughness": 0.6,
-               "f0": 0.1, "ggx": True, "pores": 0.4, "ambient": 0.5, "pupil": 3.5}
+               "f0": 0.1, "ggx": True, "pores": 0.4, "ambient": 0.5, "pupil": 3.5, "iris_color": (0.1, 0.2, 0.5), "iris_seed": 7,
+               "iris_concavity": 0.6, "iris_profile": "skin", "limbus_width": 2.0, "limbus_darkening": 0.1, "cornea_radius": 9.0,
+               "chamber_depth": 4.0, "tear_roughness": 0.2, "gaze": (20.0, 10.0)}
     for name, value in changes.items():
         reset(session)
         setattr(session.look, name, value)
@@ -101,6 +104,9 @@ def test_every_setting_changes_the_picture(session):
     custom = session.radiance(None, 160, 90)
     session.look.distance = (0.1, 0.1, 0.1)
     assert not np.array_equal(session.radiance(None, 160, 90), custom)
+    reset(session)
+    session.look.chamber_depth, session.look.cornea_radius = 0.5, 7.0  # no such eye: the iris goes as deep as it must
+    assert np.isfinite(session.radiance(None, 160, 90)).all()
     reset(session)
     assert np.array_equal(session.radiance(None, 160, 90), before)  # same input, same bits
 
@@ -121,7 +127,9 @@ def test_no_slider_builds_a_program_once_the_picture_is_at_rest(session):
     session.prepare(160, 90)
     built = session.device.stats().programs_built
     for name, value in {"albedo": (0.5, 1.0, 1.0), "deep_scatter": (1.0, 0.2, 0.1), "transmission": 0.0, "ambient": 0.0, "specular": 0.0,
-                        "roughness": 0.9, "f0": 0.0, "pores": 0.0, "pupil": 1.0, "radius_scale": 5.0}.items():
+                        "roughness": 0.9, "f0": 0.0, "pores": 0.0, "pupil": 1.0, "radius_scale": 5.0,
+                        "iris_color": (0.1, 0.2, 0.5), "iris_seed": 7, "iris_concavity": 0.6, "iris_profile": "skin", "limbus_width": 2.0,
+                        "cornea_radius": 9.0, "chamber_depth": 4.0, "tear_roughness": 0.2, "gaze": (20.0, 10.0)}.items():
         reset(session)
         setattr(session.look, name, value)
         for small in (True, False):
@@ -150,17 +158,50 @@ def test_what_is_exported_renders_to_the_same_bits(session, tmp_path, profile):
         pytest.skip("the pellucid command is not built")
     reset(session)
     session.look.profile, session.look.albedo, session.look.radius_scale = profile, (0.9, 1.0, 1.05), 1.5
+    session.look.gaze, session.look.iris_seed, session.look.limbus_width = (12.0, -5.0), 3, 1.5
+    if profile == "custom":
+        across = np.linspace(0, 255, 64, dtype=np.uint8)
+        files.write_image(tmp_path / "iris.png", np.stack(np.broadcast_arrays(across[:, None], across, np.uint8(40)), 2))
+        session.look.iris_texture, session.look.iris_color, session.look.iris_profile = str(tmp_path / "iris.png"), (1.0, 1.0, 1.0), "skin"
     written = {p.name for p in export(session, tmp_path / "look", 192, 108)}
     assert {"scene.toml", "gbuffer.exr", "picture.exr", "picture.png", "look.json", "look.cpp", "shadow_0.exr"} <= written
     subprocess.run([command, "shade", "gbuffer.exr", "--scene", "scene.toml", "-o", "again.exr"], cwd=tmp_path / "look", check=True,
                    stdout=subprocess.DEVNULL)
     one, two = (files.read_image(tmp_path / "look" / name) for name in ("picture.exr", "again.exr"))
     assert all(np.array_equal(one[c], two[c]) for c in "RGB") and one["R"].max() > 0.2
-    assert Look.from_dict(json.loads((tmp_path / "look/look.json").read_text())) == session.look
+    known = session.look.copy()
+    if profile == "custom":
+        assert "iris.exr" in written
+        known.iris_texture = "iris.exr"
+    assert Look.from_dict(json.loads((tmp_path / "look/look.json").read_text())) == known
+
+
+def test_an_iris_is_a_square_of_a_picture(session, tmp_path):
+    reset(session)
+    session.look.iris_texture = str(tmp_path / "none.png")
+    with pytest.raises(files.FileError, match="none.png"):
+        session.frame(160, 90)
+    wide = np.zeros((8, 16, 3), np.uint8)
+    wide[:, 4:12], wide[:, :4] = 128, 255
+    files.write_image(tmp_path / "wide.png", wide)
+    image = iris_image(tmp_path / "wide.png")
+    assert image.shape == (8, 8, 3) and np.allclose(image, 0.2158605, atol=1e-6)  # sRGB's 128
+    files.write_image(tmp_path / "light.exr", np.full((4, 4, 3), 0.3, np.float32))
+    assert np.allclose(iris_image(tmp_path / "light.exr"), 0.3)
+    files.write_image(tmp_path / "grey.exr", np.zeros((4, 4, 1), np.float32))
+    with pytest.raises(ValueError, match="R, G and B"):
+        iris_image(tmp_path / "grey.exr")
+    before = session.look.copy()
+    session.look.iris_texture = ""
+    plain = session.radiance(None, 160, 90)
+    session.look = before
+    session.look.iris_texture, session.look.iris_color = str(tmp_path / "wide.png"), (1.0, 1.0, 1.0)
+    assert not np.array_equal(session.radiance(None, 160, 90), plain)
+    reset(session)
 
 
 @pytest.mark.parametrize("values", [{}, {"profile": "custom", "method": "screen"}, {"method": "none", "transmission": 0.0, "ggx": True},
-                                    {"deep_scatter": (0.5, 0.1, 0.0), "radius_scale": 2.0}])
+                                    {"deep_scatter": (0.5, 0.1, 0.0), "radius_scale": 2.0}, {"iris_profile": "skin", "iris_seed": 4}])
 def test_the_exported_cpp_compiles(session, tmp_path, values):
     compiler = shutil.which("c++") or shutil.which("g++") or shutil.which("clang++")
     include = Path(__file__).parents[3] / "host/include"

@@ -233,12 +233,12 @@ def changes_by(page, name):
 
 
 def test_every_slider_changes_the_picture(page, tmp_path):
-    for heading in ("Material", "Lights", "Profile", "Compare"):
+    for heading in ("Material", "Eyes", "Lights", "Profile", "Compare"):
         unfold(page, heading)
     kernels = page.execute_script("return window.pelKernels")
     # These need a light behind and tables, or lobes of two roughnesses, which the second look has, or a second setting to compare with.
     later = [n for n in sliders(page) if n.startswith("slider-deep_scatter") or n in ("slider-wipe", "slider-transmission", "slider-lobe_mix")]
-    assert len(later) == 6 and len(sliders(page)) > 25
+    assert len(later) == 6 and len(sliders(page)) > 33
     idle = [n for n in sliders(page) if n not in later and not changes_by(page, n)]
     assert not idle
     # Those that the page builds while it rests may be counted now; test_view.py sees that sliders build none after that.

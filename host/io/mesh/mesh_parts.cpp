@@ -93,7 +93,7 @@ std::vector<FaceCorners> subdividedCorners(const PolyMesh& mesh, const std::vect
     for (auto f : mesh.faces()) {
         std::vector<int> quad;
         for (auto v : f.vertices()) quad.push_back(v.idx());
-        std::ranges::rotate(quad, std::ranges::find_if(quad, [&](int v) { return v < before; }));
+        std::rotate(quad.begin(), std::ranges::find_if(quad, [&](int v) { return v < before; }), quad.end());
         quads.push_back({quad[0], quad[1], quad[2], quad[3]});
         round[quad[2]].push_back(quad[0]);
     }

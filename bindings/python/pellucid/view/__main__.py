@@ -5,6 +5,7 @@ import argparse
 import ipaddress
 import secrets
 import sys
+from pathlib import Path
 from typing import Any
 
 
@@ -47,6 +48,9 @@ def main() -> int:
         if a.look:
             with open(a.look, encoding="utf-8") as file:
                 session.look = Look.from_dict(json.load(file))
+            beside = Path(a.look).parent / session.look.iris_texture
+            if session.look.iris_texture and beside.is_file():  # as the viewer exports it
+                session.look.iris_texture = str(beside)
         session.load(a.mesh or files.standard_head(), a.subdivide, a.up)
         return session
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,10 @@ from ..files import write_image
 from .look import SKIN, Look
 from .passes import tinted
 from .session import Session
+
+
+EYE_KEYS = ("center", "gaze", "up", "sclera_radius", "cornea_radius", "limbus_radius", "limbus_width", "limbus_darkening", "chamber_depth",
+            "pupil_radius", "iris_concavity", "iris_color", "iris_seed", "tear_roughness")
 
 
 def _toml(value: Any) -> str:
@@ -56,8 +61,11 @@ def scene_text(session: Session, look: Look, width: int, height: int) -> str:
         text += _lines(thickness_taps=m.thickness_taps, specular=m.specular, roughness=m.roughness, f0=m.f0,
                        specular_model=m.specular_model.name.lower(), roughness2=m.roughness2, lobe_mix=m.lobe_mix)
     for id, eye in session.eyes(look).items():
-        text += "\n[[eye]]\n" + _lines(material=id, **{key: getattr(eye, key) for key in (
-            "center", "gaze", "up", "sclera_radius", "cornea_radius", "limbus_radius", "limbus_width", "chamber_depth", "pupil_radius")})
+        text += "\n[[eye]]\n" + _lines(material=id, **{key: getattr(eye, key) for key in EYE_KEYS})
+        if look.iris_texture:
+            text += _lines(iris_texture="iris.exr")
+        if look.iris_profile:
+            text += _lines(iris_profile=look.iris_profile)
     return text
 
 
@@ -90,7 +98,22 @@ def snippet(session: Session, look: Look) -> str:
     if any(skin.deep_scatter_color):
         lines += ["    // FaceWorks' term, in place of transmission",
                   *(f"    skin.deepScatterColor[{c}] = {cpp_float(v)};" for c, v in enumerate(skin.deep_scatter_color))]
-    lines += ["    shader.setMaterial(1, skin);", "", "    PelAmbient ambient = pelAmbientDefaults();",
+    lines += ["    shader.setMaterial(1, skin);", ""]
+    for id, eye in session.eyes(look).items():
+        sclera = session.materials(look)[id]
+        lines += ["    {", "        PelMaterial sclera = pelMaterialDefaults();", "        sclera.scattering = PEL_SCATTERING_NONE;",
+                  f"        sclera.specular = {cpp_float(sclera.specular)};", f"        sclera.shadowFilterWidth = {cpp_float(sclera.shadow_filter_width)};",
+                  f"        shader.setMaterial({id}, sclera);", "        PelEye eye = pelEyeDefaults();"]
+        for key in EYE_KEYS:
+            value, name = getattr(eye, key), re.sub("_(.)", lambda m: m[1].upper(), key)
+            if np.ndim(value):
+                lines.append("        " + " ".join(f"eye.{name}[{c}] = {cpp_float(v)};" for c, v in enumerate(value)))
+            else:
+                lines.append(f"        eye.{name} = {value if key == 'iris_seed' else cpp_float(value)};")
+        if look.iris_profile:
+            lines += [f"        const pellucid::Profile iris = pellucid::Profile::named({json.dumps(look.iris_profile)});", "        eye.irisProfile = iris.get();"]
+        lines += [f"        shader.setEye({id}, eye);", "    }"]
+    lines += ["", "    PelAmbient ambient = pelAmbientDefaults();",
               f"    for (float& c : ambient.constant) c = {cpp_float(session.ambient(look))};", "    shader.set(ambient);", "",
               "    std::vector<PelLight> lights;"]
     for light, _ in session.lights(look):
@@ -126,6 +149,10 @@ def export(session: Session, folder: Any, width: int = 1280, height: int = 720) 
         for i, (_, map) in enumerate(session.lights(look)):
             if map is not None:
                 write_image(out / f"shadow_{i}.exr", map.depth, channels=["Z"])
+        iris = session.iris(look)
+        if iris is not None:
+            write_image(out / "iris.exr", iris)
+            look.iris_texture = "iris.exr"
         write_image(out / "picture.exr", radiance)
         write_image(out / "picture.png", radiance, exposure=look.exposure, shoulder=look.shoulder, curve=look.curve)
         texts = {"scene.toml": scene_text(session, look, width, height), "look.json": json.dumps(look.to_dict(), indent=2) + "\n",

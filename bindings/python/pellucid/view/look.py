@@ -74,7 +74,19 @@ class Look:
     roughness2: float = 0.15
     lobe_mix: float = 0.15
     pores: float = 0.06              # slope of the relief that the renderer adds
-    pupil: float = 2.0               # mm, radius, of an eye of an adult's size
+    # Of eyes; mm of an eye of an adult's size.
+    pupil: float = 2.0               # radius
+    iris_color: tuple[float, float, float] = (0.22, 0.12, 0.06)  # linear: colours fibres, or multiplies the texture, by which it is 1
+    iris_seed: int = 0               # pattern of the fibres
+    iris_texture: str = ""           # file of a square image; "": fibres are drawn
+    iris_concavity: float = 0.0
+    iris_profile: str = ""           # of the library, by which light scatters in the iris; "": not at all
+    limbus_width: float = 1.0
+    limbus_darkening: float = 0.6
+    cornea_radius: float = 7.8
+    chamber_depth: float = 3.05      # no less than the cornea needs
+    tear_roughness: float = 0.03
+    gaze: tuple[float, float] = (0.0, 0.0)  # degrees to its left and up
     ambient: float = 0.12            # irradiance / pi from everywhere
     lamps: list[Lamp] = field(default_factory=_lamps)
     shadow_size: int = 1024          # texels a side
@@ -96,7 +108,7 @@ class Look:
         for key in values:
             if key not in known:
                 raise ValueError(f"a look has no {key!r}; it has {', '.join(sorted(known))}")
-        look = cls(**{k: tuple(v) if k in ("albedo", "deep_scatter", "distance") else v for k, v in values.items() if k != "lamps"})
+        look = cls(**{k: tuple(v) if k in ("albedo", "deep_scatter", "distance", "iris_color", "gaze") else v for k, v in values.items() if k != "lamps"})
         if "lamps" in values:
             look.lamps = [Lamp(**{k: tuple(v) if k == "color" else v for k, v in lamp.items()}) for lamp in values["lamps"]]
         return look

@@ -15,7 +15,7 @@ from .. import files
 from .client import PICTURE, SCRIPT
 from .export import export
 from .look import Look
-from .panels import ComparePanel, LightsPanel, MaterialPanel, PicturePanel, ProfilePanel
+from .panels import ComparePanel, EyesPanel, LightsPanel, MaterialPanel, PicturePanel, ProfilePanel
 from .scene_page import SceneExportPanel, SceneLightsPanel, SceneMaterialsPanel, ScenePanel
 from .scene_session import SceneSession
 from .server import Viewer
@@ -156,7 +156,7 @@ class Page:
         if isinstance(viewer.session, SceneSession):
             self.panels = [ScenePanel(self), SceneMaterialsPanel(self), SceneLightsPanel(self), self.work, SceneExportPanel(self)]
         else:
-            self.panels = [PicturePanel(self), MaterialPanel(self), LightsPanel(self), ProfilePanel(self), ComparePanel(self), self.work,
+            self.panels = [PicturePanel(self), MaterialPanel(self), EyesPanel(self), LightsPanel(self), ProfilePanel(self), ComparePanel(self), self.work,
                            MeshPanel(self), ExportPanel(self)]
         self.build()
         ui.timer(0.5, self.work.tell)

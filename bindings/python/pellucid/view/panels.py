@@ -2,9 +2,10 @@
 from __future__ import annotations
 
 import numpy as np
-from nicegui import ui
+from nicegui import events, ui
 
 from ..profile import Profile
+from .iris import iris_image
 from .look import METHODS, MODES, PRESETS, Look
 from .widgets import Panel
 
@@ -44,11 +45,51 @@ class MaterialPanel(Panel):
         self.slider("Second roughness", self.look, "roughness2", 0.05, 1, 0.01)
         self.slider("Its share", self.look, "lobe_mix", 0, 1, 0.01)
         self.slider("Pores", self.look, "pores", 0, 0.5, 0.01)
-        self.slider("Pupil of eyes, mm", self.look, "pupil", 0.5, 4, 0.1)
         for c, name in enumerate(("Albedo red, times", "green", "blue")):
             self.channel(name, "albedo", c, 0.0, 2.0, 0.01)
         for c, name in enumerate(("Deep scatter red", "green", "blue")):
             self.channel(name, "deep_scatter", c, 0.0, 3.0, 0.05)
+
+
+class EyesPanel(Panel):
+    name = "Eyes"
+
+    def build(self) -> None:
+        if not self.viewer.session.mesh.eyes:
+            ui.label("This mesh has no eyes that the viewer knows; the heads of the package have.").classes("text-xs")
+        self.slider("Pupil, mm", self.look, "pupil", 0.5, 4, 0.1)
+        self.color("Iris", self.look, "iris_color", "iris-color")
+        self.slider("Pattern of fibres", self.look, "iris_seed", 0, 20, 1)
+        self.slider("Concave iris, mm", self.look, "iris_concavity", 0, 1, 0.05)
+        self.select("Scattering in the iris", {"": "None", **{n: n for n in Profile.library_names()}}, "iris_profile")
+        self.slider("Limbus, mm wide", self.look, "limbus_width", 0.1, 3, 0.05)
+        self.slider("Its darkness", self.look, "limbus_darkening", 0, 1, 0.01)
+        self.slider("Cornea's radius, mm", self.look, "cornea_radius", 7, 10, 0.05)
+        self.slider("Depth of chamber, mm", self.look, "chamber_depth", 2.7, 4.5, 0.05)
+        self.slider("Roughness of tears", self.look, "tear_roughness", 0.005, 0.3, 0.005)
+        self.channel("Gaze, to its left", "gaze", 0, -40, 40, 1)
+        self.channel("Gaze, up", "gaze", 1, -30, 30, 1)
+
+        async def dropped(e: events.UploadEventArguments) -> None:
+            path = self.viewer.keep(e.file.name, await e.file.read())
+            try:
+                await self.viewer.on_thread(lambda: iris_image(path))
+            except Exception as error:  # the iris before it stays
+                ui.notify(f"{e.file.name}: {error}", type="negative", multi_line=True, close_button=True, timeout=0)
+                return
+            self.look.iris_texture, self.look.iris_color = str(path), (1.0, 1.0, 1.0)
+            self.page.build()
+            self.viewer.changed()
+
+        def fibres() -> None:
+            self.look.iris_texture, self.look.iris_color = "", Look().iris_color
+            self.page.build()
+            self.viewer.changed()
+
+        ui.upload(label="Drop a picture of an iris here", auto_upload=True, on_upload=dropped, max_file_size=1 << 28).props(
+            "dense flat data-pel=iris-upload").classes("w-full")
+        if self.look.iris_texture:
+            ui.button("Fibres in its place", on_click=fibres).props("dense flat data-pel=iris-fibres").classes("w-full")
 
 
 class LightsPanel(Panel):

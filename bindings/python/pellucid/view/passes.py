@@ -60,16 +60,19 @@ class Pass:
                 m.albedo, m.specular = (1.0, 1.0, 1.0), 0.0
 
         eyes = {id: eye for id, eye in session.eyes(look).items() if albedo and id in materials}
+        iris = session.iris(look) if eyes else None
 
         def set_materials() -> None:
             for id in MATERIALS:
                 self.shader.set_material(id, materials.get(id))
                 if id in materials:
                     self.shader.set_eye(id, eyes.get(id))
+                if id in eyes:
+                    self.shader.set_iris_texture(id, iris)
             self._told.pop("texture", None)  # which went with its material
 
         told = {k: (m._data.tobytes(), id(m._profile)) for k, m in materials.items()}
-        self._tell("materials", (told, {k: e._data.tobytes() for k, e in eyes.items()}), set_materials)
+        self._tell("materials", (told, {k: (e._data.tobytes(), look.iris_profile) for k, e in eyes.items()}, id(iris)), set_materials)
         lights = session.lights(look, small)
 
         def set_lights() -> None:

@@ -6,9 +6,11 @@ import hmac
 import io
 import json
 import math
+import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
 from http.cookies import SimpleCookie
+from pathlib import Path
 from typing import Any, Callable, Optional, TypeVar
 from urllib.parse import parse_qs
 
@@ -66,6 +68,7 @@ class Viewer:
         self._preparing: Optional[int] = None  # kernels, after that many changes: the next one ends it
         self._thread = ThreadPoolExecutor(1, "pellucid-view")  # OpenGL contexts belong to a thread
         self.session: Any = self._thread.submit(lambda: make(self._device())).result()  # a Session or a SceneSession
+        self._folder, self._kept = tempfile.TemporaryDirectory(), 0
         self.error = ""
         self.last: Optional[Frame] = None
         self.busy = ""  # what takes long just now
@@ -83,6 +86,13 @@ class Viewer:
 
         device.set_progress(progress)
         return device
+
+    def keep(self, name: str, data: bytes) -> Path:
+        """Writes a file that the page was given, to be there as long as the viewer."""
+        self._kept += 1
+        path = Path(self._folder.name) / f"{self._kept}{Path(name).suffix.lower()}"
+        path.write_bytes(data)
+        return path
 
     async def on_thread(self, work: Callable[[], T]) -> T:
         return await asyncio.get_running_loop().run_in_executor(self._thread, work)

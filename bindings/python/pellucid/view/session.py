@@ -15,6 +15,7 @@ from ..mesh import MeshTopology
 from ..profile import Profile
 from .camera import Orbit, direction
 from .look import CUT, EYES, RIGHT_EYE, SKIN, TEETH, TONGUE, Lamp, Look
+from .iris import iris_image
 from .passes import Pass
 from .pictures import LINEAR, picture, srgb_bytes
 from .renderer import GBuffer, Renderer
@@ -45,13 +46,21 @@ _GLOSS = {EYES: (0.0, 1.0), RIGHT_EYE: (0.0, 1.0), TEETH: (0.05, 0.2), TONGUE: (
 SAMPLES = 8  # pictures that are averaged for smooth edges
 
 
-def eyes_of(mesh: files.Mesh, pupil: float = 2.0, mm: float = 1.0) -> dict[int, Eye]:
-    """The eyes of a head of the package by material id: an adult's, as large as its balls. `pupil`: radius in mm; `mm`: millimetres per unit."""
+def eyes_of(mesh: files.Mesh, look: Optional[Look] = None, mm: float = 1.0) -> dict[int, Eye]:
+    """The eyes of a head of the package by material id: an adult's, as large as its balls, with what the look says of them. `mm`: millimetres per unit."""
+    look = Look() if look is None else look
     found = {}
     for id, ball in zip((EYES, RIGHT_EYE), mesh.eyes):
-        eye = Eye(center=ball["centre"], gaze=ball["gaze"], up=mesh.up, pupil_radius=pupil)
+        eye = Eye(center=ball["centre"], gaze=direction(mesh.up, ball["gaze"], *look.gaze), up=mesh.up, pupil_radius=look.pupil,
+                  limbus_width=look.limbus_width, limbus_darkening=look.limbus_darkening, cornea_radius=look.cornea_radius,
+                  chamber_depth=look.chamber_depth, iris_concavity=look.iris_concavity, iris_color=look.iris_color,
+                  iris_seed=look.iris_seed, tear_roughness=look.tear_roughness)
+        # The iris lies below the cornea's rim, however steep that is.
+        r2, cornea = eye.limbus_radius**2, eye.cornea_radius
+        rim = r2 / (cornea + np.sqrt(max(cornea**2 - (1 + eye.cornea_conic) * r2, 0)))
+        eye.chamber_depth = max(eye.chamber_depth, rim + 0.05)
         scale = ball["radius"] * mm / eye.sclera_radius
-        for length in ("sclera_radius", "cornea_radius", "limbus_radius", "limbus_width", "chamber_depth", "pupil_radius"):
+        for length in ("sclera_radius", "cornea_radius", "limbus_radius", "limbus_width", "chamber_depth", "pupil_radius", "iris_concavity"):
             setattr(eye, length, scale * getattr(eye, length))
         found[id] = eye
     return found
@@ -83,6 +92,7 @@ class Session:
         self._maps: dict[Any, ShadowMap] = {}
         self._profiles: dict[str, Profile] = {}
         self._gbuffers: dict[tuple[int, int], tuple[Any, GBuffer]] = {}  # by size: the state they were drawn in
+        self._irises: dict[str, NDArray[np.float32]] = {}  # by file
         self._textures: dict[bool, Texture] = {}  # by whether something moves
         self._sum: Optional[tuple[int, NDArray[np.float32]]] = None  # of pictures shifted by parts of a pixel
         self.reference_made: Optional[tuple[Any, NDArray[np.float32]]] = None
@@ -192,8 +202,20 @@ class Session:
         return {id: m for id, m in made.items() if id in present}
 
     def eyes(self, look: Look) -> dict[int, Eye]:
-        """The eyes of the mesh, an adult's as large as its balls, by material id."""
-        return eyes_of(self.mesh, look.pupil, self.mm)
+        """The eyes of the mesh, by material id."""
+        eyes = eyes_of(self.mesh, look, self.mm)
+        for eye in eyes.values():
+            eye.iris_profile = Profile.named(look.iris_profile) if look.iris_profile else None
+        return eyes
+
+    def iris(self, look: Look) -> Optional[NDArray[np.float32]]:
+        """The texture of the irises, (n, n, 3), linear; None: fibres are drawn. Raises what files.read_image raises, and ValueError."""
+        if not look.iris_texture:
+            return None
+        if look.iris_texture not in self._irises:
+            self._irises.clear()
+            self._irises[look.iris_texture] = iris_image(look.iris_texture)
+        return self._irises[look.iris_texture]
 
     def lights(self, look: Look, small: bool = False) -> list[tuple[Light, Optional[ShadowMap]]]:
         found: list[tuple[Light, Optional[ShadowMap]]] = []

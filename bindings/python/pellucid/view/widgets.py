@@ -53,7 +53,7 @@ class Panel:
 
             def change(e: events.ValueChangeEventArguments) -> None:
                 if e.value is not None and getattr(owner, attribute) != e.value:
-                    setattr(owner, attribute, float(e.value))
+                    setattr(owner, attribute, type(getattr(owner, attribute))(e.value))
                     self.viewer.changed(moving=True)
 
             ui.slider(min=low, max=high, step=step, value=getattr(owner, attribute), on_change=change).props(f"dense data-pel=slider-{marker or attribute}")
