@@ -13,7 +13,6 @@ from .look import SKIN, Look
 from .passes import tinted
 from .session import Session
 
-
 EYE_KEYS = ("center", "gaze", "up", "sclera_radius", "cornea_radius", "limbus_radius", "limbus_width", "limbus_darkening", "chamber_depth",
             "pupil_radius", "iris_concavity", "iris_color", "iris_seed", "tear_roughness")
 

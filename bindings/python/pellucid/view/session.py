@@ -14,8 +14,8 @@ from ..device import Device
 from ..mesh import MeshTopology
 from ..profile import Profile
 from .camera import Orbit, direction
-from .look import CUT, EYES, RIGHT_EYE, SKIN, TEETH, TONGUE, Lamp, Look
 from .iris import iris_image
+from .look import CUT, EYES, RIGHT_EYE, SKIN, TEETH, TONGUE, Lamp, Look
 from .passes import Pass
 from .pictures import LINEAR, picture, srgb_bytes
 from .renderer import GBuffer, Renderer
