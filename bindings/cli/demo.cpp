@@ -111,6 +111,23 @@ std::vector<float> shadeAs(Run& run, Stages& stages, io::LutStore& luts, const D
     return frame->radiance();
 }
 
+// The pictures of a view rendered at twice the size.
+std::vector<io::Picture> finePictures(Run& run, io::LutStore& luts, const sample::Scene& scene,
+                                      const DemoHead& head, DemoViewRequest request) {
+    constexpr uint64_t most = uint64_t(4096) * 2304;  // pixels; a G-buffer of them takes 1 GB
+    request.width *= 2, request.height *= 2;
+    if (uint64_t(request.width) * request.height > most) return {};
+    Stages::begin(request.name + ": pictures with smooth edges");
+    const DemoView view = renderDemoView(scene, head, request);
+    std::vector<io::Picture> pictures;
+    for (const io::SceneFile& shown : {withoutScattering(view.scene), byTables(view.scene), view.scene}) {
+        io::SceneFrame frame(run.device(), view.gbuffer, shown, luts, view.shadowMaps);
+        frame.shade();
+        pictures.push_back(developed(view, frame.radiance()));
+    }
+    return pictures;
+}
+
 // One view: G-buffer, shadings, reference, files.
 ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample::Scene& scene,
                      const DemoHead& head, const DemoViewRequest& request, const Arguments& a) {
@@ -131,6 +148,8 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
     shaded.lambert = shadeAs(run, stages, luts, view, "Lambert", withoutScattering(view.scene));
     shaded.tables = shadeAs(run, stages, luts, view, "by tables", byTables(view.scene));
     shaded.complete = shadeAs(run, stages, luts, view, "auto", view.scene);
+    stages.measure(view.name + ": pictures at twice the size", 4 * pixels, "pixels", 0,
+                   [&] { shaded.fine = finePictures(run, luts, scene, head, request); });
     if (a.reference) {
         io::SceneFrame smooth(run.device(), view.gbuffer, smoothAndDull(view.scene), luts, view.shadowMaps);
         smooth.shade();

@@ -8,12 +8,7 @@
 #include "mesh_curvature.h"
 
 namespace pellucid::cli {
-namespace {
 
-constexpr int sheetShrink = referenceStride;  // the sheet shows pictures at half size, so that they fit a screen
-constexpr int lutSize = 200;                  // pixels a side on the sheet
-
-// Before a dark backdrop that is lighter in the middle.
 io::Picture developed(const DemoView& view, std::vector<float> radiance) {
     const int width = view.gbuffer.width, height = view.gbuffer.height;
     const std::vector<float>& material = view.gbuffer.channel("Material.I").pixels;
@@ -27,6 +22,11 @@ io::Picture developed(const DemoView& view, std::vector<float> radiance) {
         }
     return {width, height, io::toSrgb8(radiance)};
 }
+
+namespace {
+
+constexpr int sheetShrink = referenceStride;  // the sheet shows pictures at half size, so that they fit a screen
+constexpr int lutSize = 200;                  // pixels a side on the sheet
 
 // The table as a picture, nearest texel, with values as linear radiance.
 io::Picture lutPicture(const Lut& lut) {
@@ -151,6 +151,16 @@ io::Picture curvatureMap(const DemoView& view) {
     return io::withColorBar(map, 0, high, "1/mm");
 }
 
+Crop timesTwo(const Crop& c) {
+    return {2 * c.left, 2 * c.top, 2 * c.right, 2 * c.bottom};
+}
+
+// The complete picture, its edges smooth where there is a finer one.
+io::Picture smooth(const ShadedView& view, const Crop& part) {
+    if (view.fine.empty()) return cropped(developed(view.view, view.complete), part);
+    return io::shrunk(cropped(view.fine[2], timesTwo(part)), 2);
+}
+
 }  // namespace
 
 std::string writeParts(const std::string& folder, const DemoView& view, const io::SceneFrame& frame) {
@@ -193,7 +203,7 @@ std::vector<std::string> writePictures(const std::string& folder, const std::vec
             tiles.push_back({name + ": " + title,
                              io::shrunk(cropped(developed(view.view, radiance), part), sheetShrink)});
         };
-        write(name + ".png", cropped(developed(view.view, view.complete), part));
+        write(name + ".png", smooth(view, part));
         add("Lambert", view.lambert);
         add("by tables", view.tables);
         add("auto", view.complete);
@@ -207,13 +217,14 @@ std::vector<std::string> writePictures(const std::string& folder, const std::vec
     }
     const ShadedView& lit = views.back();
     const Crop glow = brightestChange(lit);
-    const auto close = [&](const char* title, const std::vector<float>& radiance) {
-        tiles.push_back(
-            {std::string("from behind: ") + title, magnified(cropped(developed(lit.view, radiance), glow))});
+    const auto close = [&](const char* title, const std::vector<float>& radiance, size_t fine) {
+        tiles.push_back({std::string("from behind: ") + title,
+                         lit.fine.empty() ? magnified(cropped(developed(lit.view, radiance), glow))
+                                          : cropped(lit.fine[fine], timesTwo(glow))});
     };
-    close("Lambert", lit.lambert);
-    close("by tables", lit.tables);
-    close("auto", lit.complete);
+    close("Lambert", lit.lambert, 0);
+    close("by tables", lit.tables, 1);
+    close("auto", lit.complete, 2);
     tiles.push_back({"curvature", curvatureMap(views.front().view)});
     if (columns == 4) fill();
     tiles.push_back({"curvature LUT: N.L across", lutPicture(curvatureLut)});

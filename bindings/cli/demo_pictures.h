@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "demo_reference.h"
+#include "io/image/picture.h"
 
 namespace pellucid::cli {
 
@@ -17,7 +18,12 @@ struct ShadedView {
     DemoView view;
     std::vector<float> lambert, tables, complete;  // RGB per pixel
     std::optional<DemoReference> reference;
+    // Twice as large on each side, before the backdrop: lambert, tables, complete. Empty for views that are large already.
+    std::vector<io::Picture> fine;
 };
+
+// Before a dark backdrop that is lighter in the middle.
+io::Picture developed(const DemoView& view, std::vector<float> radiance);
 
 // Writes, into `folder`, a PNG per view (the complete one) and demo.png, the contact sheet: a row per view with its differences, where
 // light comes through most, curvature, both tables, and `materials`. Returns the file names.
