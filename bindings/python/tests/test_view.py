@@ -392,6 +392,13 @@ def test_pictures_are_as_small_as_the_time_asks():
     for i in range(60):
         steady.shown(0.045 * i, True)
     assert steady.scale == 0.5
+    # Larger pictures that turn out too slow are not tried again at once.
+    torn, seen, now = Pace(), [], 0.0
+    for _ in range(50):
+        now += 0.03 if torn.scale <= 0.5 else 0.09
+        torn.shown(now, True)
+        seen.append(torn.scale)
+    assert max(seen) > 0.5 and seen[-1] == 0.5 and sum(a != b for a, b in zip(seen, seen[1:])) == 2
 
 
 def test_the_mouse_takes_the_object_along():

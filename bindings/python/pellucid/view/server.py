@@ -23,7 +23,7 @@ from .session import Frame
 T = TypeVar("T")
 COOKIE = "pellucid_view"
 SETTLED = 0.2  # seconds without a motion, after which the picture is drawn in full
-PERIOD = 1 / 20  # seconds that a picture may take, from one to the next, while something moves
+PERIOD = 1 / 17  # seconds that a picture may take, from one to the next, while something moves
 
 
 class Pace:
@@ -35,6 +35,7 @@ class Pace:
         self._step = 2
         self._last: Optional[float] = None
         self._periods: list[float] = []
+        self._rest = 0  # pictures for which larger ones are not tried: they were too slow
 
     @property
     def scale(self) -> float:
@@ -51,12 +52,16 @@ class Pace:
         self._last = now
         if len(self._periods) < 5:
             return
+        self._rest = max(self._rest - len(self._periods), 0)
         period = sorted(self._periods)[len(self._periods) // 2]
         self._periods.clear()
-        if period > 1.2 * PERIOD:
+        if period > 1.1 * PERIOD:
             self._step = min(self._step + 1, len(self.SCALES) - 1)
-        elif self._step > 0 and period * self.SCALES[self._step - 1]**2 / self.scale**2 < PERIOD:  # as if all time went into pixels
-            self._step -= 1
+            self._rest = 60
+        elif self._step > 0 and not self._rest:
+            pixels = self.SCALES[self._step - 1]**2 / self.scale**2
+            if period * (0.5 + 0.5 * pixels) < PERIOD:  # about half of the time goes into pixels
+                self._step -= 1
 
 
 class Viewer:
