@@ -1,14 +1,12 @@
 // pellucid import: a glTF scene as a mesh, a scene file and, where the build has the sample renderer, a G-buffer.
 #include <charconv>
-#include <cmath>
 #include <filesystem>
-#include <map>
+#include <stdexcept>
 
 #include "import_view.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/input_file.h"
-#include "io/lut/profile_file.h"
 #include "mesh_curvature.h"
 
 namespace pellucid::cli {
@@ -22,63 +20,6 @@ struct Arguments {
     uint32_t smoothing = 2;
 };
 
-std::string number(float value) {
-    char digits[32];
-    return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
-
-// OBJ with a part per material; texture coordinates the other way up than glTF's.
-void writeObj(const std::string& folder, const io::MeshData& mesh, const std::vector<uint32_t>& materialOf,
-              const std::vector<std::string>& names, const std::vector<io::GltfLook>& looks) {
-    std::string obj = "mtllib mesh.mtl\n", mtl;
-    const auto line = [&](const char* word, const float* values, size_t count) {
-        obj += word;
-        for (size_t i = 0; i < count; ++i) (obj += ' ') += number(values[i]);
-        obj += '\n';
-    };
-    for (size_t v = 0; v < mesh.vertexCount(); ++v) line("v", &mesh.positions[3 * v], 3);
-    for (size_t v = 0; v < mesh.uvs.size() / 2; ++v) {
-        const float uv[2] = {mesh.uvs[2 * v], 1 - mesh.uvs[2 * v + 1]};
-        line("vt", uv, 2);
-    }
-    for (size_t v = 0; v < mesh.vertexCount(); ++v) line("vn", &mesh.normals[3 * v], 3);
-    for (uint32_t m = 0; m < names.size(); ++m) {
-        obj += "g " + names[m] + "\nusemtl " + names[m] + "\n";
-        for (size_t t = 0; t < mesh.triangleCount(); ++t) {
-            if (materialOf[t] != m) continue;
-            obj += 'f';
-            for (size_t k = 0; k < 3; ++k) {
-                const std::string at = std::to_string(mesh.triangles[3 * t + k] + 1);
-                obj += " " + at + "/" + (mesh.uvs.empty() ? "" : at) + "/" + at;
-            }
-            obj += '\n';
-        }
-        mtl += "newmtl " + names[m] + "\nKd";
-        for (const double c : looks[m].albedo) mtl += " " + number(float(c));
-        mtl += "\n";
-    }
-    io::writeWholeFile(folder + "/mesh.obj", obj);
-    io::writeWholeFile(folder + "/mesh.mtl", mtl);
-}
-
-// MATERIAL=PROFILE words, or a PROFILE for all.
-std::map<std::string, std::string> profilesOf(const Arguments& a, const std::vector<io::GltfMaterial>& materials) {
-    std::map<std::string, std::string> chosen;
-    std::string known;
-    for (const io::GltfMaterial& m : materials) known += (known.empty() ? "" : ", ") + m.name;
-    for (const std::string& word : a.profiles) {
-        const size_t at = word.rfind('=');
-        const std::string profile = at == std::string::npos ? word : word.substr(at + 1);
-        io::findProfile(profile);  // or an error that lists them
-        bool found = at == std::string::npos;
-        for (const io::GltfMaterial& m : materials)
-            if (at == std::string::npos || m.name == word.substr(0, at))
-                chosen[m.name] = profile, found = true;
-        if (!found) throw UsageError("--profile " + word + ": there is no such material; there are " + known);
-    }
-    return chosen;
-}
-
 int cameraOf(const Arguments& a, size_t count) {
     if (a.camera == "none" || (a.camera == "first" && count == 0)) return -1;
     if (a.camera == "first") return 0;
@@ -91,12 +32,17 @@ int cameraOf(const Arguments& a, size_t count) {
     return int(index);
 }
 
-// A lamp and a little sky for scenes that have no light.
-void addLamp(io::SceneFile& scene) {
-    io::SceneLight lamp;
-    lamp.light = directionalLight({0.5f, 0.6f, 0.62f}, {1, 1, 1});
-    scene.lights.push_back(lamp);
-    for (float& c : scene.ambient.constant) c = 0.08f;
+void reportMaterials(Run& run, const Arguments& a, const io::ImportedGltf& imported) {
+    run.report["materials"] = nlohmann::json::array();
+    for (size_t i = 0; i < imported.looks.size(); ++i) {
+        const io::GltfLook& look = imported.looks[i];
+        const std::string &name = imported.gltf.materials[i].name, &profile = look.material.profile;
+        run.report["materials"].push_back(
+            {{"id", i + 1}, {"name", name}, {"taken_for", look.how}, {"profile", profile}});
+        if (!a.run.json)
+            std::printf("material %zu: %s, %s%s\n", i + 1, name.c_str(), look.how.c_str(),
+                        profile.empty() ? "" : (" " + profile).c_str());
+    }
 }
 
 void run(const Arguments& a) {
@@ -106,12 +52,15 @@ void run(const Arguments& a) {
         throw UsageError(e.what());
     }
     Run run(a.run);
-    io::GltfScene gltf = io::readGltf(a.file);
-    io::MeshData& mesh = gltf.mesh;
-    if (gltf.materials.size() > 255)
-        throw InputError(a.file + ": has " + std::to_string(gltf.materials.size()) +
-                         " materials; 255 are possible");
-    const auto profiles = profilesOf(a, gltf.materials);
+    io::ImportedGltf imported = [&] {
+        try {
+            return io::importGltf(a.file, {a.profiles, a.unitMm, a.lights});
+        } catch (const std::invalid_argument& e) {
+            throw UsageError(std::string("--") + e.what());
+        }
+    }();
+    const io::GltfScene& gltf = imported.gltf;
+    const io::MeshData& mesh = gltf.mesh;
     const int camera = cameraOf(a, gltf.cameras.size());
     uint32_t width = 1024, height = 1024;
     if (!a.size.empty())
@@ -125,60 +74,22 @@ void run(const Arguments& a) {
         throw UsageError("-o " + a.output + ": " + e.what());
     }
     for (const std::string& warning : mesh.warnings) run.warn(warning);
-    for (float& p : mesh.positions) p = float(p * a.unitMm);
-    const std::vector<std::string> names = io::plainNames(gltf.materials);
-
-    io::SceneFile scene;
-    std::vector<io::GltfLook> looks;
-    run.report["materials"] = nlohmann::json::array();
-    for (size_t i = 0; i < names.size(); ++i) {
-        const auto given = profiles.find(gltf.materials[i].name);
-        std::string profile = given == profiles.end() ? "" : given->second;
-        if (io::extensionOf(profile) == "toml") profile = std::filesystem::absolute(profile).string();
-        looks.push_back(io::lookOf(gltf.materials[i], names[i], uint32_t(i + 1), profile));
-        const io::GltfLook& look = looks.back();
-        scene.materials.push_back(look.material);
-        run.report["materials"].push_back({{"id", i + 1},
-                                           {"name", gltf.materials[i].name},
-                                           {"taken_for", look.how},
-                                           {"profile", look.material.profile}});
-        if (!a.run.json)
-            std::printf("material %zu: %s, %s%s\n", i + 1, gltf.materials[i].name.c_str(), look.how.c_str(),
-                        look.material.profile.empty() ? "" : (" " + look.material.profile).c_str());
-    }
-    if (gltf.lights.size() > 64)
-        run.warn("the scene has " + std::to_string(gltf.lights.size()) + " lights; the first 64 are taken");
-    for (size_t i = 0; i < std::min<size_t>(gltf.lights.size(), 64); ++i)
-        scene.lights.push_back(io::sceneLight(gltf.lights[i], a.unitMm, a.lights));
-    if (scene.lights.empty()) {
-        addLamp(scene);
-        run.note("no lights in " + a.file + ": a lamp and a little sky were added");
-    }
+    reportMaterials(run, a, imported);
+    if (imported.lampAdded) run.note("no lights in " + a.file + ": a lamp and a little sky were added");
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     params.smoothingPasses = a.smoothing;
     const MeshCurvature curvature = meshCurvature(run, mesh, params, {PEL_WELD_EXACT, 0});
     reportMesh(run, curvature.report);
     if (canDraw()) {
-        ImportView view{mesh,     {},    curvature.values, gltf.materials, looks, gltf.images, gltf.cameras,
-                        a.unitMm, width, height,           camera};
-        for (const uint32_t m : gltf.materialOf) view.ids.push_back(m + 1);
-        drawImport(run, a.output, view, scene);
+        drawImport(run, a.output, imported, {curvature.values, width, height, camera});
         run.report["gbuffer"] = "gbuffer.exr";
     } else {
-        scene.channels[PEL_SLOT_NORMAL_SHADING] = {"Normal.X", "Normal.Y", "Normal.Z"};
-        scene.channels[PEL_SLOT_POSITION] = {"Position.X", "Position.Y", "Position.Z"};
-        scene.channels[PEL_SLOT_CURVATURE] = {"Curvature.V"};
-        scene.channels[PEL_SLOT_MATERIAL] = {"Material.I"};
         run.note(
             "this build has no renderer: draw a G-buffer of mesh.obj with the channels that scene.toml "
             "names");
     }
-    for (size_t i = 0; i < looks.size(); ++i)
-        if (!looks[i].profileText.empty())
-            io::writeWholeFile(a.output + "/" + names[i] + ".toml", looks[i].profileText);
-    writeObj(a.output, mesh, gltf.materialOf, names, looks);
-    io::writeScene(a.output + "/scene.toml", scene);
-    run.report["lights"] = scene.lights.size();
+    io::writeImported(a.output, imported);
+    run.report["lights"] = imported.scene.lights.size();
     run.report["cameras"] = gltf.cameras.size();
     run.report["output"] = a.output;
     run.finish();

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "io/file_error.h"
+#include "io/image/image_file.h"
 #include "sample/gbuffer.h"
 #include "sample/shadow_map.h"
 
@@ -13,8 +14,8 @@ namespace {
 
 constexpr int shadowMapSize = 1024;
 
-sample::Vec3 vec(const io::Triple& t, double scale = 1) {
-    return {t[0] * scale, t[1] * scale, t[2] * scale};
+sample::Vec3 vec(const io::Triple& t) {
+    return {t[0], t[1], t[2]};
 }
 
 // Texels in linear light.
@@ -53,11 +54,11 @@ Texture textureOf(const io::GltfImage& image) {
     return t;
 }
 
-sample::Camera cameraOf(const ImportView& v, const sample::Scene& scene, double aspect) {
-    if (v.camera < 0) return sample::frameHead(scene.bounds(), sample::poseWithUp('y'), {20, 8}, aspect);
-    const io::GltfCamera& c = v.cameras[size_t(v.camera)];
+sample::Camera cameraOf(const io::GltfCamera* given, const sample::Scene& scene, double aspect) {
+    if (!given) return sample::frameHead(scene.bounds(), sample::poseWithUp('y'), {20, 8}, aspect);
+    const io::GltfCamera& c = *given;
     sample::Camera camera;
-    camera.eye = vec(c.position, v.scale);
+    camera.eye = vec(c.position);
     camera.target = camera.eye + vec(c.forward);
     camera.up = vec(c.up);
     camera.verticalFov = c.verticalFov * 180 / std::numbers::pi;
@@ -74,6 +75,7 @@ sample::Camera cameraOf(const ImportView& v, const sample::Scene& scene, double 
 void addChannels(io::Image& image, io::SceneFile& scene, PelImageSlot slot, const std::string& name,
                  const std::string& components, const std::vector<float>& planes) {
     const size_t pixels = image.pixelCount();
+    scene.channels[slot].clear();
     for (size_t c = 0; c < components.size(); ++c) {
         scene.channels[slot].push_back(name + "." + components[c]);
         const auto from = planes.begin() + std::ptrdiff_t(c * pixels);
@@ -83,7 +85,7 @@ void addChannels(io::Image& image, io::SceneFile& scene, PelImageSlot slot, cons
 }
 
 // Multiplies the albedo of pixels whose material has a texture.
-void applyTextures(Run& run, const ImportView& v, sample::GBuffer& g) {
+void applyTextures(Run& run, const io::GltfScene& v, sample::GBuffer& g) {
     if (g.uv.data.empty()) return;
     std::vector<Texture> textures(v.images.size());
     for (size_t i = 0; i < v.images.size(); ++i) {
@@ -141,18 +143,23 @@ bool canDraw() {
     return true;
 }
 
-void drawImport(Run& run, const std::string& folder, const ImportView& v, io::SceneFile& scene) {
-    const sample::Scene mesh(
-        sample::MeshView{v.mesh.positions, v.mesh.normals, v.mesh.uvs, v.curvature, v.mesh.triangles, v.ids});
+void drawImport(Run& run, const std::string& folder, io::ImportedGltf& imported, const ImportView& v) {
+    const io::GltfScene& gltf = imported.gltf;
+    io::SceneFile& scene = imported.scene;
+    std::vector<uint32_t> ids;  // per triangle
+    for (const uint32_t m : gltf.materialOf) ids.push_back(m + 1);
+    const sample::Scene mesh(sample::MeshView{gltf.mesh.positions, gltf.mesh.normals, gltf.mesh.uvs,
+                                              v.curvature, gltf.mesh.triangles, ids});
     sample::GBufferOptions options;
     options.detail.enabled = false;
-    for (const io::GltfLook& look : v.looks)
+    for (const io::GltfLook& look : imported.looks)
         options.looks.push_back({sample::Look::Kind::Plain,
                                  {float(look.albedo[0]), float(look.albedo[1]), float(look.albedo[2])}});
     const double aspect = double(v.width) / v.height;
-    const sample::Camera camera = cameraOf(v, mesh, aspect);
+    const sample::Camera camera =
+        cameraOf(v.camera < 0 ? nullptr : &gltf.cameras[size_t(v.camera)], mesh, aspect);
     sample::GBuffer g = sample::renderGBuffer(mesh, camera, int(v.width), int(v.height), options);
-    applyTextures(run, v, g);
+    applyTextures(run, gltf, g);
     io::Image image;
     image.width = int(v.width), image.height = int(v.height);
     addChannels(image, scene, PEL_SLOT_POSITION, "Position", "XYZ", g.position.data);

@@ -12,7 +12,7 @@ void addBench(CLI::App&) {}
 bool canDraw() {
     return false;
 }
-void drawImport(Run&, const std::string&, const ImportView&, io::SceneFile&) {}
+void drawImport(Run&, const std::string&, io::ImportedGltf&, const ImportView&) {}
 
 void writeCurvaturePicture(const std::string&, const io::MeshData&, const std::vector<float>&, float, float,
                            char, const std::string&) {

@@ -1,11 +1,11 @@
 // The extension module pellucid._files: meshes, images and scenes from files, and the heads of the demo.
-#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <cstring>
 
+#include "arrays.h"
+#include "gltf.h"
 #include "head/demo_head.h"
 #include "io/file_error.h"
 #include "io/image/image_file.h"
@@ -19,13 +19,7 @@ namespace py = pybind11;
 namespace {
 
 using namespace pellucid;
-
-template <class T>
-py::array_t<T> array(const std::vector<T>& values, std::vector<py::ssize_t> shape) {
-    py::array_t<T> result(std::move(shape));
-    if (!values.empty()) std::memcpy(result.mutable_data(), values.data(), values.size() * sizeof(T));
-    return result;
-}
+using python::array;
 
 template <class T>
 py::array_t<T> rows(const std::vector<T>& values, py::ssize_t columns) {
@@ -166,4 +160,5 @@ PYBIND11_MODULE(_files, module) {
     module.def("write_bytes", &writeBytes);
     module.def("tone_mapped", &toneMapped);
     python::bindScene(module);
+    python::bindGltf(module);
 }

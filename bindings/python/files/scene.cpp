@@ -1,7 +1,6 @@
 // Scenes for Python: what `pellucid shade` reads and shades, as an object whose structures Python changes.
 #include "scene.h"
 
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <optional>
 #include <sstream>
 
+#include "arrays.h"
 #include "io/scene/scene_frame.h"
 #include "io/scene/scene_keys.h"
 
@@ -18,11 +18,6 @@ namespace pellucid::python {
 namespace {
 
 using Pixels = py::array_t<float, py::array::c_style | py::array::forcecast>;
-
-template <class T>
-py::bytes bytesOf(const T& value) {
-    return {reinterpret_cast<const char*>(&value), sizeof value};
-}
 
 template <class T>
 T structOf(const std::string& bytes) {

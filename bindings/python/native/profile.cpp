@@ -46,6 +46,12 @@ void bindProfile(py::module_& module) {
                         return named(
                             "", [&](PelProfile* out) { return pelProfileCreateNamed(material.c_str(), out); });
                     })
+        .def_static("of_address",  // of the module that reads files
+                    [](uintptr_t address) {
+                        const auto handle = reinterpret_cast<PelProfile>(address);
+                        pelProfileRetain(handle);
+                        return Profile(handle);
+                    })
         .def_static("library_names",
                     [] {
                         std::vector<std::string> names;

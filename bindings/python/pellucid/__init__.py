@@ -30,10 +30,14 @@ _driver.offer()
 
 def __getattr__(name: str) -> Any:
     # Of a module that not every build has.
-    if name in ("load_mesh", "read_image", "tonemap", "write_image"):
+    if name in ("load_mesh", "load_profile", "read_image", "tonemap", "write_image"):
         from . import files
 
         return getattr(files, name)
+    if name == "load_gltf":
+        from .gltf import load_gltf
+
+        return load_gltf
     raise AttributeError(f"module 'pellucid' has no attribute {name!r}")
 
 

@@ -12,6 +12,9 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _native
+from .profile import Profile
+
 try:
     from . import _files
 except ImportError as error:
@@ -79,6 +82,21 @@ def load_mesh(path: Any, subdivide: Optional[int] = None, up: str = "auto") -> M
     return Mesh(d["positions"], d["normals"], d["triangles"], d["uvs"], source=name, warnings=d["warnings"],
                 up=(0.0, 1.0, 0.0) if y else (0.0, 0.0, 1.0), front=(0.0, 0.0, 1.0) if y else (0.0, -1.0, 0.0),
                 low=tuple(map(float, used.min(0))), high=tuple(map(float, used.max(0))))
+
+
+def _profile(of_files: Any) -> Profile:
+    return Profile._made(_native.Profile.of_address(of_files.address()))
+
+
+def load_profile(path: Any) -> Profile:
+    """Reads a profile file (TOML), as docs/guide/profiles.md describes it; lengths become mm. Also a name of the library.
+
+    Raises
+    ------
+    FileError
+        A file that is missing or wrong; the message names the line.
+    """
+    return _profile(_files.load_profile(str(path)))
 
 
 def read_image(path: Any) -> dict[str, NDArray[np.float32]]:

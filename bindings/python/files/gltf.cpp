@@ -1,0 +1,109 @@
+// glTF scenes for Python: what `pellucid import` makes of a file, as arrays and structures. And profiles from files.
+#include "gltf.h"
+
+#include <pybind11/stl.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "arrays.h"
+#include "io/file_error.h"
+#include "io/gltf/gltf_import.h"
+#include "io/input_file.h"
+#include "io/lut/profile_file.h"
+
+namespace pellucid::python {
+namespace {
+
+// Primitives of different materials share no vertices.
+std::vector<uint32_t> idsOfVertices(const io::GltfScene& gltf) {
+    std::vector<uint32_t> ids(gltf.mesh.vertexCount(), 0);
+    for (size_t i = 0; i < gltf.mesh.triangles.size(); ++i)
+        ids[gltf.mesh.triangles[i]] = gltf.materialOf[i / 3] + 1;
+    return ids;
+}
+
+class Gltf {
+  public:
+    Gltf(const std::string& path, const std::vector<std::string>& profiles, double unitMm, double lights) {
+        const py::gil_scoped_release free;
+        io::requireExtension(path, {"glb", "gltf"});
+        made_ = io::importGltf(path, {profiles, unitMm, lights});
+    }
+
+    py::dict mesh() const {
+        const io::MeshData& mesh = made_.gltf.mesh;
+        const auto vertices = py::ssize_t(mesh.vertexCount());
+        py::dict d;
+        d["positions"] = array(mesh.positions, {vertices, 3});
+        d["normals"] = array(mesh.normals, {vertices, 3});
+        d["triangles"] = array(mesh.triangles, {py::ssize_t(mesh.triangleCount()), 3});
+        d["uvs"] = mesh.uvs.empty() ? py::object(py::none()) : array(mesh.uvs, {vertices, 2});
+        d["ids"] = array(idsOfVertices(made_.gltf), {vertices});
+        d["warnings"] = mesh.warnings;
+        return d;
+    }
+    // (name, what it was taken for, structure, profile as a scene file names it, profile or None, picture or None)
+    py::list materials() const {
+        py::list found;
+        for (size_t i = 0; i < made_.looks.size(); ++i) {
+            const io::GltfLook& look = made_.looks[i];
+            const io::GltfMaterial& material = made_.gltf.materials[i];
+            const std::string& named = look.material.profile;
+            std::optional<Profile> profile;
+            if (!look.profileText.empty())
+                profile = io::parseProfile(named, look.profileText).profile;
+            else if (!named.empty())
+                profile = io::findProfile(named).profile;
+            py::object picture = py::none();
+            if (material.baseColorImage >= 0 && !made_.gltf.images[size_t(material.baseColorImage)].bytes.empty())
+                picture = py::bytes(made_.gltf.images[size_t(material.baseColorImage)].bytes);
+            found.append(py::make_tuple(material.name, look.how, bytesOf(look.material.material), named,
+                                        profile, picture));
+        }
+        return found;
+    }
+    py::list lights() const {
+        py::list found;
+        for (const io::SceneLight& light : made_.scene.lights) found.append(bytesOf(light.light));
+        return found;
+    }
+    py::bytes ambient() const { return bytesOf(made_.scene.ambient); }
+    py::list cameras() const {
+        py::list found;
+        for (const io::GltfCamera& c : made_.gltf.cameras)
+            found.append(py::make_tuple(py::tuple(py::cast(c.position)), py::tuple(py::cast(c.forward)),
+                                        py::tuple(py::cast(c.up)), c.verticalFov, c.aspect));
+        return found;
+    }
+    void save(const std::string& folder) const {
+        const py::gil_scoped_release free;
+        std::error_code error;
+        std::filesystem::create_directories(folder, error);
+        if (error) throw io::FileError(folder, "cannot be made: " + error.message());
+        io::writeImported(folder, made_);
+    }
+
+  private:
+    io::ImportedGltf made_;
+};
+
+}  // namespace
+
+void bindGltf(py::module_& module) {
+    py::class_<Profile>(module, "Profile", py::module_local()).def("address", [](const Profile& p) {
+        return reinterpret_cast<uintptr_t>(p.get());
+    });
+    module.def("load_profile",
+               [](const std::string& nameOrPath) { return io::findProfile(nameOrPath).profile; });
+    py::class_<Gltf>(module, "Gltf")
+        .def(py::init<const std::string&, const std::vector<std::string>&, double, double>())
+        .def("mesh", &Gltf::mesh)
+        .def("materials", &Gltf::materials)
+        .def("lights", &Gltf::lights)
+        .def("ambient", &Gltf::ambient)
+        .def("cameras", &Gltf::cameras)
+        .def("save", &Gltf::save);
+}
+
+}  // namespace pellucid::python
