@@ -3,6 +3,8 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <new>
+#include <stdexcept>
 
 #include "arrays.h"
 #include "gltf.h"
@@ -148,10 +150,29 @@ Bytes toneMapped(const Pixels& rgb, float exposure, float shoulder, const std::s
     return array(bytes, {rgb.shape(), rgb.shape() + rgb.ndim()});
 }
 
+// Where each module has a C++ library of its own, as in wheels, pybind11's translator knows the exceptions of the module alone that was
+// loaded first: this one's need another. Those that are registered later are asked first.
+void translateExceptions(std::exception_ptr pending) {
+    try {
+        if (pending) std::rethrow_exception(pending);
+    } catch (py::error_already_set& e) {
+        e.restore();
+    } catch (const py::builtin_exception& e) {
+        e.set_error();
+    } catch (const std::bad_alloc&) {
+        PyErr_NoMemory();
+    } catch (const std::invalid_argument& e) {
+        PyErr_SetString(PyExc_ValueError, e.what());
+    } catch (const std::exception& e) {
+        PyErr_SetString(PyExc_RuntimeError, e.what());
+    }
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_files, module) {
     module.doc() = "Meshes, images and scenes from files, for the Python files of this package alone.";
+    py::register_exception_translator(&translateExceptions);
     py::register_exception<io::FileError>(module, "FileError", PyExc_OSError);
     module.def("load_mesh", &loadMesh);
     module.def("load_head", &loadHead);
