@@ -18,7 +18,7 @@ from .look import Lamp, Look
 from .session import Session
 
 SIDE = [Lamp("Key", 75.0, 15.0)]
-BACK = [Lamp("Key", 150.0, 10.0, intensity=3.0)]
+BACK = [Lamp("Key", 165.0, 10.0, intensity=4.0)]
 FRONT = [Lamp("Key", 20.0, 30.0)]
 
 
@@ -39,9 +39,13 @@ def _set(**values: object) -> Callable[[Session], None]:
     return change
 
 
-def _at(azimuth: float, change: Callable[[Session], None], zoom: float = 1.0, mm: float = 1.0) -> Callable[[Session], None]:
+def _at(azimuth: float, change: Callable[[Session], None], zoom: float = 1.0, mm: float = 1.0,
+        to: tuple[float, float] = (0.0, 0.0)) -> Callable[[Session], None]:
+    """`to`: where the camera points, to the right and up, in heights of the mesh."""
     def both(session: Session) -> None:
         session.orbit.azimuth = azimuth
+        tall = session.mesh.high[1] - session.mesh.low[1]
+        session.orbit.pan = (to[0] * tall, to[1] * tall)
         session.orbit.distance *= zoom
         session.mm = mm
         change(session)
@@ -74,7 +78,7 @@ GALLERY: dict[str, list[Entry]] = {
     "Lights": [
         Entry("light-front", "From the front: hardly anything to scatter, and hardly any work.", _set(lamps=FRONT)),
         Entry("light-side", "From the side: the terminator turns red.", _set(lamps=SIDE)),
-        Entry("light-back", "From behind: ears let light through.", _at(35, _set(lamps=BACK, ambient=0.03), 0.6)),
+        Entry("light-back", "From behind: ears let light through.", _at(30, _set(lamps=BACK, ambient=0.03), 0.35, to=(0.26, -0.05))),
     ],
     "Mistakes": [
         Entry("wrong-unit", "The mesh is in mm, and unit_mm said 10: light reaches a tenth as far as it should, and the picture is nearly "
@@ -98,7 +102,7 @@ def make(out: Path, pictures_only: bool, sections: Iterable[str], size: int = 48
         for entry in GALLERY[section]:
             print(f"{section}: {entry.name}", file=sys.stderr, flush=True)
             session.look, session.mm = Look(), 1.0
-            session.orbit.azimuth, session.orbit.elevation = 20.0, 2.0
+            session.orbit.azimuth, session.orbit.elevation, session.orbit.pan = 20.0, 2.0, (0.0, 0.0)
             session.orbit.frame(session.mesh.low, session.mesh.high, 1.0)
             entry.change(session)
             with tempfile.TemporaryDirectory() as scratch:
