@@ -455,7 +455,7 @@ inline constexpr Tolerance lightBallOfLight[3] = {
     {"lightBallOfLightRed", 15, "scattering `light`; 13 measured"},
     {"lightBallOfLightGreen", 8, "7 measured"},
     {"lightBallOfLightBlue", 3, "2.7 measured"}};
-inline constexpr Tolerance rulerMapBlue{"rulerMapBlue", 30, "irradiance alone, from texels of 0.33 mm: 29"};
+inline constexpr Tolerance rulerMapBlue{"rulerMapBlue", 23, "irradiance alone, from texels of 0.33 mm: 22"};
 inline constexpr Tolerance scatterTapsRms{
     "scatterTapsRms", 2e-3,
     "taps that round to another pixel, where the profile's table ends a node further out"};
@@ -469,6 +469,7 @@ inline constexpr Tolerance textureSphere{"textureSphere", 1.3e-3, "texels along 
 inline constexpr Tolerance sharpEdge{
     "sharpEdge", 0.18,
     "RMS of light within two texels of an edge: 0.172; texels tell its place to a fifth of one"};
+inline constexpr Tolerance sharpRoundEdge{"sharpRoundEdge", 0.15, "the same of a ball's outline"};
 inline constexpr Tolerance sharpShadow{
     "sharpShadow", 2e-3, "depths are floats over 300 texels' lengths; differences of them count three times"};
 

@@ -109,8 +109,7 @@ static inline floatw sharpInMap(__global const PelWideShadow* light, __global co
     const Receiver r = receiverInMap(light, p, n);
     maskw held = *left & comparable(&r, p, n);
     if ((PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) && light->cascades)
-        held &= mapHolds(vec3(r.u, r.v, r.z), (PEL_SHARP_REACH + 0.5f) * r.texelU / r.extentU,
-                         (PEL_SHARP_REACH + 0.5f) * r.texelV / r.extentV);
+        held &= mapHolds(vec3(r.u, r.v, r.z), 1.5f * r.texelU / r.extentU, 1.5f * r.texelV / r.extentV);
     if (!anyw(held)) return shown;
     *left &= notw(held);
     const floatw tilt = 1.0f / fmax(r.cosine, (floatw)(PEL_SHARP_FLATTEST));

@@ -105,5 +105,10 @@ TEST(LightRulers, EarFromBehind) {
         print(scattering == PEL_SCATTERING_AUTO ? "auto and map" : "light", e);
         if (testsAreSmall()) continue;
         for (int c = 0; c < 3; ++c) EXPECT_LT(e[c], tolerance::lightEar[c]);
+        if (scattering != PEL_SCATTERING_AUTO) continue;
+        way.traced = false;
+        const Errors byMap = rms(lit::shade(device, s, profile(), 1, nullptr, way));
+        print("auto, irradiance of the map", byMap);
+        for (int c = 0; c < 3; ++c) EXPECT_LT(byMap[c], 1.25 * e[c] + 2);
     }
 }

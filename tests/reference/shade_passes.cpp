@@ -1,5 +1,7 @@
 #include "reference/shade_passes.h"
 
+#include <limits>
+
 #include <algorithm>
 #include <cmath>
 
@@ -167,20 +169,49 @@ double sharpShadow(const ShadowMap& map, const ShadowView& view, Vec3 position, 
                  y = (dot(from, view.down) / across + 0.5) * map.height - 0.5;
     const Vec3 toLight = view.decoding.perspective ? from / -along : -1 * view.forward;
     const double tilt = 1 / std::max(dot(normal, toLight), 0.05), tolerance = 0.5 * size * tilt;
-    const auto weight = [](double offset) { return std::pow(max0(1 - std::pow(offset / 2.5, 2)), 3); };
-    double sum = 0, total = 0;
-    for (int j = int(std::floor(y)) - 3; j <= y + 3; ++j)
-        for (int i = int(std::floor(x)) - 3; i <= x + 3; ++i) {
-            const double w = weight(i - x) * weight(j - y);
-            const bool inside = i >= 0 && j >= 0 && i < map.width && j < map.height;
-            const double depth = inside ? map.depth[size_t(j) * map.width + i] : NAN;
-            // How far the texel lies behind the tangent plane, length along the light: of perspective depths to first order.
-            const double plane =
-                (dot(normal, view.right) * (i - x) + dot(normal, view.down) * (j - y)) * size * tilt;
-            const double behind = (depth - z) / zPerLength - plane;
-            sum += w * (std::isfinite(depth) ? saturate(2 + behind / tolerance) : 1.0);
+    // Length along the light, to first order; NaN outside.
+    const auto depth = [&](int i, int j) {
+        const bool inside = i >= 0 && j >= 0 && i < map.width && j < map.height;
+        return inside ? map.depth[size_t(j) * map.width + i] / zPerLength : NAN;
+    };
+    const auto share = [&](int i, int j) {
+        const double plane =
+            z / zPerLength + (dot(normal, view.right) * (i - x) + dot(normal, view.down) * (j - y)) * size * tilt;
+        const double behind = depth(i, j) - plane;
+        return std::isfinite(behind) ? saturate(2 + behind / tolerance) : 1.0;
+    };
+    const auto dark = [&](int i, int j) { return share(i, j) < 0.5; };
+    // From the middle of a dark texel towards the lit one at (i + di, j + dj).
+    const auto fraction = [&](int i, int j, int di, int dj) {
+        if (!dark(i - di, j - dj) || !dark(i - 2 * di, j - 2 * dj)) return 0.5;
+        const double outer = depth(i, j) - depth(i - di, j - dj),
+                     inner = depth(i - di, j - dj) - depth(i - 2 * di, j - 2 * dj);
+        if (!(inner > 0 && outer > 1.1 * inner && outer < 6 * inner)) return 0.5;
+        const double ratio = outer / inner;
+        return 0.25 + 0.5 * saturate((0.0661 / (ratio - 1) + 0.1207) / (ratio - 1) - 0.1184);
+    };
+    const auto weight = [](double offset) { return std::pow(max0(1 - std::pow(offset / 1.5, 2)), 2); };
+    double sum = 0, total = 0, least = 1, most = 0;
+    const int middleX = int(std::floor(x + 0.5)), middleY = int(std::floor(y + 0.5));
+    for (int j = middleY - 1; j <= middleY + 1; ++j)
+        for (int i = middleX - 1; i <= middleX + 1; ++i) {
+            double inverse = 0;
+            for (int axis = 0; axis < 2; ++axis) {
+                double nearest = std::numeric_limits<double>::infinity();
+                for (int side : {-1, 1}) {
+                    const int di = axis ? 0 : side, dj = axis ? side : 0;
+                    if (dark(i, j) == dark(i + di, j + dj)) continue;
+                    nearest = std::min(nearest, dark(i, j) ? fraction(i, j, di, dj)
+                                                           : 1 - fraction(i + di, j + dj, -di, -dj));
+                }
+                inverse += 1 / (nearest * nearest);
+            }
+            const double beside = std::min(1 / std::sqrt(inverse), 0.5), w = weight(i - x) * weight(j - y);
+            sum += w * (0.5 + beside * (2 * share(i, j) - 1));
             total += w;
+            least = std::min(least, share(i, j)), most = std::max(most, share(i, j));
         }
+    if (least == 1 || most == 0) return least;
     return saturate(3 * (sum / total - 0.5) + 0.5);
 }
 
