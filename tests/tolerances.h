@@ -239,6 +239,12 @@ inline constexpr Tolerance wideShadow{
     "the kernel's polynomial for the weights is 5e-5 off; float sums over a thousand texels"};
 inline constexpr Tolerance wideShadowEdge{
     "wideShadowEdge", 0.01, "texels of 1/80 of the filter: where the edge falls between two of them"};
+inline constexpr Tolerance betweenShadowRms{
+    "betweenShadowRms", 1.5e-3,
+    "RMS of interpolated wide shadows: each is at most 5e-3 from the mean of its neighbours"};
+inline constexpr Tolerance betweenShadowShare{
+    "betweenShadowShare", 2e-3,
+    "share of pixels more than a hundredth off: where shadows are narrower than two pixels"};
 inline constexpr Tolerance contentShadow{
     "contentShadow", 2e-3,
     "variance is a difference of float squares: 1e-7 of z^2 is 0.1 mm in a map 300 mm deep"};

@@ -60,7 +60,7 @@ enum class Storage { float32, packed };
 enum class Given { all, noBlurredNormal, noWideShadow };  // what the host does not give, the library makes
 
 Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage = Storage::float32,
-                 Given given = Given::all, uint32_t filterTexels = 48) {
+                 Given given = Given::all, uint32_t filterTexels = 48, uint32_t everyPixel = 0) {
     const auto w = uint32_t(s.frame.width), h = uint32_t(s.frame.height);
     const bool packed = storage == Storage::packed;
     Prepared p{Shader(device()), Buffer(device(), size_t(w) * h * 12)};
@@ -110,10 +110,12 @@ Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage =
             p.shader.set(i, PEL_LIGHT_SHADOW_MAP, imageDesc(map, PEL_FORMAT_R32F, size, size));
     }
     if (given == Given::noBlurredNormal) {
-        PelShaderOptions options = pelShaderOptionsDefaults();
-        options.blurNormals = 1;
-        p.shader.set(options).clear(PEL_SLOT_NORMAL_BLURRED);
+        p.shader.clear(PEL_SLOT_NORMAL_BLURRED);
     }
+    PelShaderOptions options = pelShaderOptionsDefaults();
+    options.blurNormals = given == Given::noBlurredNormal;
+    options.everyPixel = everyPixel;
+    p.shader.set(options);
     if (given == Given::noWideShadow)
         check(pelShaderSetLightImage(p.shader.get(), 0, PEL_LIGHT_WIDE_SHADOW, nullptr));
     p.shader.commit().execute();
@@ -144,19 +146,28 @@ void library(benchmark::State& state, View view, int taps, int coverage, uint32_
 
 // The wide shadow filtered from the shadow map by at most so many texels across, and how far radiance is from that by all texels: root
 // mean square over pixels of skin.
-void wideShadow(benchmark::State& state, View view, uint32_t filterTexels) {
+void wideShadow(benchmark::State& state, View view, uint32_t filterTexels, uint32_t everyPixel) {
     const Scene& s = scene(view, 32);
-    const Prepared p = prepare(s, 1, Terms::scattering, Storage::float32, Given::noWideShadow, filterTexels);
+    const Prepared p =
+        prepare(s, 1, Terms::scattering, Storage::float32, Given::noWideShadow, filterTexels, everyPixel);
     for (auto _ : state) p.shader.execute();
     constexpr uint32_t allTexels = 256;
-    const auto exact =
-        prepare(s, 1, Terms::scattering, Storage::float32, Given::noWideShadow, allTexels).target.readAll<float>();
+    const auto exact = prepare(s, 1, Terms::scattering, Storage::float32, Given::noWideShadow, allTexels, 1)
+                           .target.readAll<float>();
     const auto shown = p.target.readAll<float>();
     double sum = 0, count = 0;
     for (size_t i = 0; i < shown.size(); ++i)
         if (s.frame.id[i / 3] == 1) sum += std::pow(double(shown[i]) - exact[i], 2), count += 1;
     state.counters["radiance_rms"] = std::sqrt(sum / count);
     perPixel(state, s.frame);
+    PelShaderOptions options = pelShaderOptionsDefaults();
+    options.everyPixel = everyPixel;
+    options.countPixels = 1;
+    Shader counting = p.shader;
+    counting.set(options).commit().execute();
+    const PelShaderStats stats = counting.stats();
+    state.counters["filtered"] = double(stats.pixelsWideShadow) / double(stats.pixelsShaded);
+    state.counters["read"] = double(stats.pixelsShadowTexels) / double(stats.pixelsShaded);
 }
 
 // Ambient light from a cube map of `size` texels along an edge in place of harmonics.
@@ -244,8 +255,10 @@ int main(int argc, char** argv) {
             add("library/" + name + "_lit_packed", shadeLibrary, view, 32, 100, 1u, Terms::lit, Storage::packed);
             add("library/" + name + "_blur", shadeLibrary, view, 32, 100, 1u, Terms::scattering,
                 Storage::float32, Given::noBlurredNormal);
-            for (const uint32_t texels : {256, 48, 24, 16, 12, 8})
-                add("wideShadow/" + name + "/texels:" + std::to_string(texels), wideShadow, view, texels);
+            for (const uint32_t every : {1, 0})
+                for (const uint32_t texels : {256, 48, 24, 16, 12, 8})
+                    add("wideShadow/" + name + "/texels:" + std::to_string(texels) + (every ? "/every_pixel" : ""),
+                        wideShadow, view, texels, every);
             add("openMp/" + name, openMp, view, 32, Effort::Straight);
             add("openMp/" + name + "_skipping", openMp, view, 32, Effort::Skipping);
             add("port/" + name, port, view, 32);

@@ -54,7 +54,7 @@ struct Prepared {
     std::vector<Buffer> buffers;
 };
 
-Prepared prepare(const View& v, const Form& form, bool outputs) {
+Prepared prepare(const View& v, const Form& form, bool outputs, bool everyPixel = true) {
     const size_t pixels = size_t(v.width) * v.height;
     Prepared p{Shader(v.device), Buffer(v.device, pixels * 12), Buffer(v.device, pixels * 4), {}};
     p.shader.set(PEL_SLOT_RADIANCE, imageDesc(p.radiance, PEL_FORMAT_RGB32F, v.width, v.height));
@@ -75,7 +75,9 @@ Prepared prepare(const View& v, const Form& form, bool outputs) {
         p.buffers.emplace_back(v.device, map.texels);
         p.shader.set(0, map.slot, imageDesc(p.buffers.back(), formats[map.components], map.width, map.height));
     }
-    p.shader.commit().execute();
+    PelShaderOptions options = pelShaderOptionsDefaults();
+    options.everyPixel = everyPixel;
+    p.shader.set(options).commit().execute();
     return p;
 }
 
@@ -184,23 +186,28 @@ std::optional<View> readView() {
     return v;
 }
 
-// Differences from the form of reference, over pixels of skin.
-void measure(benchmark::State& state, const View& v, const Form& form) {
-    const Prepared p = prepare(v, form, false), seen = prepare(v, form, true),
+// Differences from the form of reference at every pixel, over pixels of skin; `between`: of radiance from the same form at every pixel.
+void measure(benchmark::State& state, const View& v, const Form& form, bool everyPixel) {
+    const Prepared p = prepare(v, form, false, everyPixel), seen = prepare(v, form, true, everyPixel),
                    truth = prepare(v, v.forms[size_t(form.reference)], true);
     for (auto _ : state) p.shader.execute();
     const auto a = seen.radiance.readAll<float>(), b = truth.radiance.readAll<float>();
     const auto ta = seen.thickness.readAll<float>(), tb = truth.thickness.readAll<float>();
     const auto id = v.gbuffer.interleaved(v.scene.channels[PEL_SLOT_MATERIAL]);
-    double mean = 0, worst = 0, square = 0;
+    const auto every = prepare(v, form, false).radiance.readAll<float>();
+    double mean = 0, worst = 0, square = 0, between = 0;
     size_t count = 0, thin = 0;
     for (size_t i = 0; i < id.size(); ++i) {
         if (id[i] != 1) continue;
         double d = 0;
-        for (size_t c = 0; c < 3; ++c) d = std::max(d, std::fabs(double(a[3 * i + c]) - b[3 * i + c]));
+        for (size_t c = 0; c < 3; ++c) {
+            d = std::max(d, std::fabs(double(a[3 * i + c]) - b[3 * i + c]));
+            between += std::pow(double(a[3 * i + c]) - every[3 * i + c], 2);
+        }
         mean += d, worst = std::max(worst, d), ++count;
         if (tb[i] < 20) square += std::pow(double(ta[i]) - tb[i], 2), ++thin;
     }
+    state.counters["between_rms"] = std::sqrt(between / double(3 * count));
     state.counters["radiance_mean"] = mean / double(count);
     state.counters["radiance_max"] = worst;
     state.counters["thickness_rms_mm"] = std::sqrt(square / double(std::max<size_t>(thin, 1)));
@@ -244,11 +251,13 @@ int main(int argc, char** argv) {
     }
     if (!picture.empty()) writePicture(*view, picture);
     for (const Form& form : view->forms)
-        benchmark::RegisterBenchmark(("forms/" + form.name).c_str(),
-                                     [&](benchmark::State& state) { measure(state, *view, form); })
-            ->Unit(benchmark::kMillisecond)
-            ->MeasureProcessCPUTime()
-            ->UseRealTime();
+        for (const bool everyPixel : {true, false})
+            benchmark::RegisterBenchmark(
+                ("forms/" + form.name + (everyPixel ? "/every pixel" : "")).c_str(),
+                [&, everyPixel](benchmark::State& state) { measure(state, *view, form, everyPixel); })
+                ->Unit(benchmark::kMillisecond)
+                ->MeasureProcessCPUTime()
+                ->UseRealTime();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
     benchmark::RunSpecifiedBenchmarks();

@@ -18,8 +18,8 @@ struct FilteredLight {
 // A shadow map with bounds of its blocks.
 struct BoundedMap {
     uint32_t filtered, cascade;  // of ShaderPlan.filteredLights, and which of its maps
-    uint32_t blocks;
-    uint32_t offset;  // of its bounds, floats
+    uint32_t pairs;              // of blocks side by side
+    uint32_t offset;             // of its bounds, floats
 };
 
 struct ShaderPlan {
@@ -45,6 +45,10 @@ struct ShaderPlan {
     std::vector<BoundedMap> boundedMaps;
     cl::Memory bounds;
 
+    // Whether passes may compute every second pixel and interpolate the others. Not in frames narrower than a few vectors.
+    bool interpolates() const {
+        return !state.options.everyPixel && state.images[PEL_SLOT_RADIANCE].width >= 64;
+    }
     // Rows of pixels that images of passes hold.
     uint32_t scratchRows() const;
     // Rows of tiles for which tile lists have room.

@@ -11,10 +11,9 @@
 namespace pel {
 namespace {
 
-// Of the size of PEL_BOUNDS_BLOCK.
-uint32_t blocksOf(const ImageView& map) {
-    const auto blocks = [](uint32_t texels) { return (texels + PEL_BOUNDS_BLOCK - 1) / PEL_BOUNDS_BLOCK; };
-    return blocks(map.width) * blocks(map.height);
+// How many of the size of PEL_BOUNDS_BLOCK.
+uint32_t blocks(uint32_t texels) {
+    return (texels + PEL_BOUNDS_BLOCK - 1) / PEL_BOUNDS_BLOCK;
 }
 
 class ShadowBounds final : public Pass {
@@ -32,9 +31,10 @@ class ShadowBounds final : public Pass {
             const ShaderLight& light = plan.state.lights[plan.filteredLights[k].index];
             if (!isBounded(plan, light)) continue;
             for (uint32_t i = 0; i < cascadesOf(light); ++i) {
-                const uint32_t blocks = blocksOf(*shadowCascade(light, i).map);
-                plan.boundedMaps.push_back({uint32_t(k), i, blocks, uint32_t(floats)});
-                floats += 4 * uint64_t(blocks);
+                const ImageView& map = *shadowCascade(light, i).map;
+                const uint32_t columns = blocks(map.width), rows = blocks(map.height);
+                plan.boundedMaps.push_back({uint32_t(k), i, (columns + 1) / 2 * rows, uint32_t(floats)});
+                floats += 4 * uint64_t(columns) * rows;
             }
         }
         if (floats > UINT32_MAX)  // kernels count them with 32 bits
@@ -52,7 +52,7 @@ class ShadowBounds final : public Pass {
         return {wideShadowKey(device, plan)};
     }
 
-    void enqueue(PassWork& work) override {
+    void enqueueAround(PassWork& work) override {
         for (const BoundedMap& map : work.plan.boundedMaps) {
             const FilteredLight& filtered = work.plan.filteredLights[map.filtered];
             const ShaderLight& light = work.plan.state.lights[filtered.index];
@@ -62,7 +62,7 @@ class ShadowBounds final : public Pass {
                 .arg(filtered.constants)
                 .arg(cl_uint(map.cascade));
             launch.arg(memoryOf(*shadowCascade(light, map.cascade).map)).arg(bounds_->memory());
-            work.launch(launch, {{map.blocks, 1, 1}, {boundsGroup, 1, 1}});
+            work.launch(launch, {{map.pairs, 1, 1}, {boundsGroup, 1, 1}});
         }
     }
 

@@ -47,7 +47,7 @@ class WideShadow final : public Pass {
     static bool needed(const ShaderPlan& plan) { return plan.features & PEL_FEATURE_FILTER_SHADOW; }
 
     PassScratch scratch(const ShaderPlan& plan) const override {
-        return {plan.filteredLights.size() * sizeof(float), 0, 0};
+        return {plan.filteredLights.size() * sizeof(float), 0, plan.interpolates() ? PEL_BETWEEN_ROWS : 0u};
     }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
@@ -98,7 +98,15 @@ class WideShadow final : public Pass {
         }
     }
 
+    void enqueueAround(PassWork& work) override {
+        if (work.plan.interpolates()) filter(work, PEL_PIXELS_SECOND);
+    }
     void enqueue(PassWork& work) override {
+        filter(work, work.plan.interpolates() ? PEL_PIXELS_BETWEEN : PEL_PIXELS_ALL);
+    }
+
+  private:
+    void filter(PassWork& work, cl_uint pixels) const {
         const ShaderPlan& plan = work.plan;
         for (const FilteredLight& filtered : plan.filteredLights) {
             const ShaderLight& light = plan.state.lights[filtered.index];
@@ -111,12 +119,11 @@ class WideShadow final : public Pass {
             launch.arg(filtered.constants).arg(cl_uint(filtered.index));
             for (uint32_t i = 0; i < PEL_CASCADES; ++i)
                 launch.arg(i < cascadesOf(light) ? memoryOf(*shadowCascade(light, i).map) : cl::Memory());
-            launch.arg(plan.bounds).arg(images_->memory());
+            launch.arg(plan.bounds).arg(images_->memory()).arg(pixels);
             work.launch(launch, tileRange(work.device, work.tiles()));
         }
     }
 
-  private:
     Ref<Buffer> images_;  // of one light after another
     std::vector<CachedUpload> constants_;
 };

@@ -6,8 +6,10 @@
 // light's reach get 1. Of a light with cascades the finest map that holds a pixel's filter is read; of a
 // cube, all faces under it (lib/shading/cube_filter.clh). One work-group: a run of tiles; one work-item:
 // PEL_WIDTH pixels, whose filters it runs one after another, PEL_WIDTH texels at a time. Variants:
+// pixels: PEL_PIXELS_..., all of them, or first every second one and then those between (lib/shading/between.clh).
 // PEL_NORMAL_SLOT: the slot of the geometric normals; PEL_SHADOW_CONTENT: the content of texels; PEL_BOUNDS:
 // bounds of the maps' blocks exist, and filters that they decide read no texel.
+#include "lib/shading/between.clh"
 #include "lib/shading/cube_filter.clh"
 #include "lib/shading/light.clh"
 #include "lib/shading/shadow_bounds.clh"
@@ -145,31 +147,64 @@ static inline FilterShape filterShape(__global const PelWideShadow* light,
 #undef FIELD
 }
 
+// The pixels of `active` whose material takes sharp shadows, which are not interpolated.
+static inline maskw takesSharp(__global const PelShadeMaterial* materials, uintw id, maskw active) {
+#define PEL_WIDE_(k, s) (active s ? materials[id s].shadowFilterWidth : 1.0f)
+    const floatw width = PEL_LANES(PEL_WIDE_);
+#undef PEL_WIDE_
+    return width == 0.0f;
+}
+
+// Positions and geometric normals of PEL_WIDTH pixels from (x, y) on, every one or every second of the row.
+static inline void loadSurface(__global const PelShadeFrame* frame, __global uchar* normal,
+                               __global uchar* position, __global uchar* depth, uint x, uint y, uint apart,
+                               Vec3w* p, Vec3w* n) {
+    *p = loadPosition(frame, position, depth, x, y);
+    *n = loadNormal(PEL_FORMAT_NORMAL, imageSpan(normal, &frame->images[PEL_NORMAL_SLOT], x, y));
+    if (PEL_WIDTH == 1 || apart == 1) return;
+    const uint end = x + PEL_WIDTH - 1;
+    *p = everySecond3(*p, loadPosition(frame, position, depth, end, y));
+    *n = everySecond3(
+        *n, loadNormal(PEL_FORMAT_NORMAL, imageSpan(normal, &frame->images[PEL_NORMAL_SLOT], end, y)));
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_shadow(
     __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials,
     __global const PelShadeLight* lights, __global const uint* list, __global uint* counters,
     __global uchar* material, __global uchar* normal, __global uchar* position, __global uchar* depth,
     __global const PelWideShadow* wideShadow, uint lightIndex, __global uchar* map0, __global uchar* map1,
-    __global uchar* map2, __global uchar* map3, __global const float* bounds, __global uchar* out) {
+    __global uchar* map2, __global uchar* map3, __global const float* bounds, __global uchar* out, uint pixels) {
     const TileRun run = tileRun(frame, list);
     const WideContent content = {wideShadow->perExponent, wideShadow->minDeviation * wideShadow->minDeviation,
                                  wideShadow->bleeding};
     const uint maps = (PEL_FEATURES & PEL_BIT_SHADOW_CASCADES) ? max(wideShadow->cascades, 1u) : 1;
+    const BetweenImages images = {frame, material, position, depth};
+    const uint apart = pixels == PEL_PIXELS_SECOND ? 2 : 1, end = apart == 2 ? PEL_TILE_WIDTH : PEL_TILE_PIXELS;
     uint filtered = 0, texels = 0;  // pixels whose shadow was filtered, and whose filter read the map
     for (uint i = run.begin; i < run.end; ++i) {
         const uint2 origin = tileOrigin(frame, list, i);
-        for (uint pixel = get_local_id(0) * PEL_WIDTH; pixel < PEL_TILE_PIXELS;
-             pixel += PEL_PASS_GROUP * PEL_WIDTH) {
+        for (uint pixel = get_local_id(0) * PEL_WIDTH * apart; pixel < end;
+             pixel += PEL_PASS_GROUP * PEL_WIDTH * apart) {
             const uint x = origin.x + pixel % PEL_TILE_WIDTH, y = origin.y + pixel / PEL_TILE_WIDTH;
             if (x >= frame->width || y >= frame->height) continue;
-            const uint first = vectorStart(x, frame->width);
-            const intw column = lanesw() + (int)first;
-            const uintw id = loadIds(frame, material, first, y);
-            const maskw active = (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id);
+            const uint first = apart == 2 ? everySecondStart(x, frame->width) : vectorStart(x, frame->width);
+            const intw column = lanesw() * (int)apart + (int)first;
+            uintw id = loadIds(frame, material, first, y);
+            if (PEL_WIDTH > 1 && apart == 2)
+                id = (uintw)PEL_EVERY_SECOND(id, loadIds(frame, material, first + PEL_WIDTH - 1, y));
+            maskw active = (column >= (int)x) & (column < (int)frame->width) & hasMaterial(frame, id);
             if (!anyw(active)) continue;
-            const Vec3w p = loadPosition(frame, position, depth, first, y);
-            Vec3w n =
-                loadNormal(PEL_FORMAT_NORMAL, imageSpan(normal, &frame->images[PEL_NORMAL_SLOT], first, y));
+            Vec3w p, n;
+            loadSurface(frame, normal, position, depth, first, y, apart, &p, &n);
+            const Span target = imageSpan(out, &wideShadow->out, first, y);
+            floatw between = 1.0f;
+            maskw known = 0;
+            if (pixels == PEL_PIXELS_BETWEEN) {
+                // Computed pixels keep their value.
+                active &= ((column & 1) != 0) | (int)(y & 1 ? -1 : 0);
+                known = valueBetween(&images, (__global const float*)target.first, id, p, first, y,
+                                     active & notw(takesSharp(materials, id, active)), &between);
+            }
 #if PEL_THIN
             // Of a sheet that is lit from its other side that side's plane is the same.
 #define PEL_SHEET_(k, s) (active s && materials[id s].through[0] > 0.0f ? 1.0f : 0.0f)
@@ -179,12 +214,13 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
             n = scale3(n, selectw((floatw)(1.0f), (floatw)(-1.0f), sheet & (facing < 0.0f)));
 #endif
             FilterShape shape = filterShape(wideShadow, materials, id, active);
-            maskw left = active;
-            if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING))
+            maskw left = active & notw(known);
+            // Others interpolate between these, so they are the same with skipping and without it.
+            if (!(PEL_FEATURES & PEL_BIT_NO_SKIPPING) || apart == 2)
                 left &= sampleLight(&lights[lightIndex], p).strength > 0.0f;
             maskw sharp = left & (shape.width == 0.0f);
             float shown[PEL_WIDTH];
-            storew((floatw)(1.0f), 0, shown);
+            storew(selectw((floatw)(1.0f), between, known), 0, shown);
             if (!(wideShadow->maxTexels > 0.0f)) left = sharp;  // only sharp shadows are made of this light
             if ((PEL_FEATURES & PEL_BIT_SHADOW_CUBE) && wideShadow->projection >= PEL_MAP_CUBE) {
                 CubeFilters f;
@@ -240,9 +276,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                     }
                 }
             }
-            const Span target = imageSpan(out, &wideShadow->out, first, y);
 #define PEL_STORE_(k, s) \
-    if (active s) *(__global float*)(target.first + (k)*target.stride) = shown[k];
+    if (active s) *(__global float*)(target.first + (k)*apart * target.stride) = shown[k];
             PEL_EACH_LANE(PEL_STORE_)
 #undef PEL_STORE_
         }

@@ -14,6 +14,12 @@
 
 #define PEL_BOUNDS_BLOCK 8  // texels along a side of the blocks whose least and greatest depth are known
 
+// Which pixels a pass computes (lib/shading/between.clh).
+#define PEL_PIXELS_ALL 0
+#define PEL_PIXELS_SECOND 1   // of every second column and row, from the first on
+#define PEL_PIXELS_BETWEEN 2  // the others, by interpolation where that will do
+#define PEL_BETWEEN_ROWS 2    // of tiles whose values are read before and after a row of tiles
+
 // One light's wide shadow, made from its shadow map or from one of its cascades. For a cube, worldToShadow
 // maps to the cube's space; right, down, forward, extent, centre and zPerLength are not used.
 typedef struct PelWideShadow {

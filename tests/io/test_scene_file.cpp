@@ -96,6 +96,7 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     scene.lights[0].shadowMapChannel = "odd \"name\" \\ here";
     scene.blurNormals = 1;
     scene.rotateTaps = 1;
+    scene.everyPixel = 1;
     scene.frameIndex = 12;
     scene.channels[PEL_SLOT_SCATTER_WEIGHT] = {"Mask.V"};
     scene.channels[PEL_SLOT_IRRADIANCE_BACK] = {"B.R", "B.G", "B.B"};
@@ -143,6 +144,7 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     EXPECT_EQ(again.channels, scene.channels);
     EXPECT_EQ(again.blurNormals, 1u);
     EXPECT_EQ(again.rotateTaps, 1u);
+    EXPECT_EQ(again.everyPixel, 1u);
     EXPECT_EQ(again.ambientCube, scene.ambientCube);
     EXPECT_EQ(again.outputs, scene.outputs);
     EXPECT_EQ(again.materials[0].normalMap, scene.materials[0].normalMap);

@@ -59,6 +59,13 @@ inline PelLight plainLight() {
     return l;
 }
 
+// Leaves nothing to interpolation, of which an oracle knows nothing.
+inline PelShaderOptions exactOptions() {
+    PelShaderOptions o = pelShaderOptionsDefaults();
+    o.everyPixel = 1;
+    return o;
+}
+
 struct Light {
     PelLight params = plainLight();
     Image wide;  // empty: none
@@ -74,7 +81,7 @@ struct Frame {
     PelAmbient ambient = pelAmbientDefaults();
     reference::CubeMap cube;  // ambient light; size 0: none
     PelCamera camera = pelCameraDefaults();
-    PelShaderOptions options = pelShaderOptionsDefaults();
+    PelShaderOptions options = exactOptions();
     bool curvatureLut = true, shadowLut = true;
     size_t pixels() const { return size_t(width) * height; }
 };

@@ -184,6 +184,7 @@ class Scene {
         const auto o = structOf<PelShaderOptions>(options);
         scene.blurNormals = o.blurNormals;
         scene.rotateTaps = o.rotateTaps;
+        scene.everyPixel = o.everyPixel;
         scene.frameIndex = o.frameIndex;
         scene.targetError = o.targetError;
         scene.unitMm = o.millimetresPerUnit;

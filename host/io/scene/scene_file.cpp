@@ -147,6 +147,7 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
     const LutPreset preset = presetOfVersion(reader.version(lutPresetVersions));
     reader.integer("blur_normals", scene.blurNormals, {0, 1});
     reader.integer("rotate_taps", scene.rotateTaps, {0, 1});
+    reader.integer("every_pixel", scene.everyPixel, {0, 1});
     reader.integer("frame_index", scene.frameIndex, range::notNegative);
     reader.number("target_error", scene.targetError, range::options::targetError);
     reader.number("unit_mm", scene.unitMm, range::options::millimetresPerUnit);

@@ -70,6 +70,7 @@ struct SceneFile {
     std::array<std::vector<std::string>, PEL_SLOT_COUNT> channels;  // of the G-buffer per image slot; empty: slot not set
     uint32_t blurNormals = 0;                                       // PelShaderOptions.blurNormals
     uint32_t rotateTaps = 0;                                        // PelShaderOptions.rotateTaps
+    uint32_t everyPixel = 0;                                        // PelShaderOptions.everyPixel
     uint32_t frameIndex = 0;                                        // PelShaderOptions.frameIndex
     float targetError = pelShaderOptionsDefaults().targetError;  // PelShaderOptions.targetError
     float unitMm = 1;                                            // PelShaderOptions.millimetresPerUnit

@@ -132,6 +132,7 @@ SceneFrame::SceneFrame(const Device& device, const Image& gbuffer, const SceneFi
 PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options) {
     options.blurNormals |= scene.blurNormals;
     options.rotateTaps |= scene.rotateTaps;
+    options.everyPixel |= scene.everyPixel;
     options.targetError = scene.targetError;
     if (scene.frameIndex) options.frameIndex = scene.frameIndex;
     options.millimetresPerUnit = scene.unitMm;

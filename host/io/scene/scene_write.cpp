@@ -85,6 +85,7 @@ void writeScene(const std::string& path, const SceneFile& scene) {
         "# A scene of `pellucid shade`. Lengths are in the unit of the G-buffer's positions.\nversion = 2\n";
     if (scene.blurNormals) TomlWriter(out).integer("blur_normals", scene.blurNormals, {0, 1});
     if (scene.rotateTaps) TomlWriter(out).integer("rotate_taps", scene.rotateTaps, {0, 1});
+    if (scene.everyPixel) TomlWriter(out).integer("every_pixel", scene.everyPixel, {0, 1});
     if (scene.frameIndex) TomlWriter(out).integer("frame_index", scene.frameIndex, range::notNegative);
     if (scene.targetError != pelShaderOptionsDefaults().targetError)
         TomlWriter(out).number("target_error", scene.targetError, range::options::targetError);
