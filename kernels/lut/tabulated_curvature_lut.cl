@@ -74,9 +74,10 @@ __attribute__((always_inline)) inline Integrals integralsTo(__global const float
     const float end = params.end, cells = (float)params.cells;
     Integrals found;
     found.distance = distance = fmin(distance, (rowsw)(end));
-    const rowsw cell = trunc(fmin(sqrt(distance / end) * cells, (rowsw)(cells - 1.0f)));
-    const rowsw unit = end / (cells * cells), h = unit * (2.0f * cell + 1.0f);
-    const rowsw t = clamp((distance - unit * cell * cell) / h, (rowsw)(0.0f), (rowsw)(1.0f)), u = 1.0f - t;
+    const rowsw cell = trunc(fmin(sqrt(distance * (1.0f / end)) * cells, (rowsw)(cells - 1.0f)));
+    const rowsw unit = end / (cells * cells), h = unit * (2.0f * cell + 1.0f), perLength = 1.0f / h;
+    const rowsw t = clamp((distance - unit * cell * cell) * perLength, (rowsw)(0.0f), (rowsw)(1.0f)),
+                u = 1.0f - t;
     const rowsw value0 = u * u * (1.0f + 2.0f * t), value1 = t * t * (3.0f - 2.0f * t);
     const rowsw slope0 = u * u * t * h, slope1 = t * t * u * h;
 #define CELL(k, s) vload4(0, sums + ((int)cell.s * PEL_SUM_VALUES + VALUE) * 4)
@@ -99,7 +100,7 @@ __attribute__((always_inline)) inline Integrals integralsTo(__global const float
     const rowsw moment1 = OF_ROWS(CELL);
 #undef VALUE
 #undef CELL
-    found.density = (6.0f * t * u / h) * (mass1 - mass0) + density0 * u * (1.0f - 3.0f * t) +
+    found.density = (6.0f * t * u * perLength) * (mass1 - mass0) + density0 * u * (1.0f - 3.0f * t) +
                     density1 * t * (1.0f - 3.0f * u);
     found.mass = mass0 * value0 + density0 * slope0 + mass1 * value1 - density1 * slope1;
     found.moment = moment0 * value0 + mass0 * slope0 + moment1 * value1 - mass1 * slope1;

@@ -48,20 +48,22 @@ inline Far rampOnSide(__global const float4* tails, const float zeta, const floa
     if (!(from < to) && !(from < end && sign * zeta + b > 0.0f)) return sum;
     const int first = tailCell(fmin(from, end), end), last = tailCell(fmax(to, 0.0f), end);
     // Cells in y, so that they cover the ramp without gaps even if it is narrow.
-    float y = clamp(-sign * zeta / b, -1.0f, 1.0f);
-    const float yEnd = clamp((end - sign * zeta) / b, -1.0f, 1.0f);
+    const float perB = 1.0f / b;
+    float y = clamp(-sign * zeta * perB, -1.0f, 1.0f);
+    const float yEnd = clamp((end - sign * zeta) * perB, -1.0f, 1.0f);
     for (int i = first; i <= last; i += PEL_RAMP_CELLS) {
         const int behind = i + PEL_RAMP_CELLS;
         const float next =
-            behind > last ? yEnd : clamp((tailDistance(behind, end) - sign * zeta) / b, -1.0f, 1.0f);
+            behind > last ? yEnd : clamp((tailDistance(behind, end) - sign * zeta) * perB, -1.0f, 1.0f);
         const float half_ = 0.5f * (next - y), middle = 0.5f * (next + y);
         for (int q = 0; q < 4; ++q) {
             const float at = fma(half_, gaussAt[q], middle),
                         weight = 0.75f * (1.0f - at * at) * half_ * gaussWeight[q];
             const float x = clamp(fma(b, at, sign * zeta), 0.0f, end);
             const int cell = tailCell(x, end);
-            sum.U += weight * tailInCell(tails, PEL_TAIL_MASS, x, cell, end);
-            sum.slope += weight * spreadInCell(tails, x, cell, end);
+            const TailPlace place = tailPlace(x, cell, end);
+            sum.U += weight * tailInCell(tails, PEL_TAIL_MASS, cell, place);
+            sum.slope += weight * spreadInCell(tails, cell, place);
         }
         y = next;
     }
@@ -79,8 +81,8 @@ inline Far farByQuadrature(__global const float4* tails, const float zeta, const
 // Of one row: its ramp, and where its nodes lie.
 typedef struct ShadowRow {
     float q, b;
-    float spacing;  // of nodes
-    int nodes;      // intervals between them; 0: none
+    float spacing, perSpacing;  // of nodes, and 1 / that
+    int nodes;                  // intervals between them; 0: none
 } ShadowRow;
 
 inline ShadowRow shadowRow(const TabulatedShadowLutParams params, const uint y) {
@@ -88,7 +90,7 @@ inline ShadowRow shadowRow(const TabulatedShadowLutParams params, const uint y) 
     const float value = fma((float)y + 0.5f, params.reciprocalStep, params.reciprocalMin);
     row.q = params.axis == PEL_LUT_AXIS_ROOT ? value * value : value;
     row.b = 0.5f / (params.sharpening * row.q);
-    row.spacing = row.b / (float)PEL_RAMP_PARTS;
+    row.spacing = row.b / (float)PEL_RAMP_PARTS, row.perSpacing = 1.0f / row.spacing;
     row.nodes = row.b < PEL_WIDE_RAMP ? (int)params.nodes : 0;
     return row;
 }
@@ -98,7 +100,7 @@ inline float4 farSide(__global const float4* tails, __global const float4* nodes
                       const float zeta, const float4 mass, const float end) {
     if (zeta - row.b >= end) return (float4)(0.0f);
     if (row.nodes > 0) {
-        const float at = zeta / row.spacing;
+        const float at = zeta * row.perSpacing;
         const int i = min((int)at, row.nodes - 1);
         const float t = fmin(at - (float)i, 1.0f), u = 1.0f - t, step = 1.0f / (float)PEL_RAMP_PARTS;
         __global const float4* node = nodes + 2 * (size_t)i;
@@ -132,8 +134,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_s
         float4 tail = 0.0f, spread = 0.0f;
         if (s < params.end) {
             const int cell = tailCell(s, params.end);
-            tail = tailInCell(tails, PEL_TAIL_MASS, s, cell, params.end);
-            spread = spreadInCell(tails, s, cell, params.end);
+            const TailPlace place = tailPlace(s, cell, params.end);
+            tail = tailInCell(tails, PEL_TAIL_MASS, cell, place);
+            spread = spreadInCell(tails, cell, place);
         }
         values[held] = x < 0.0f ? mass - tail : tail;
         slopes[held] = -row.spacing * spread;
@@ -177,12 +180,12 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_s
     const uint y = get_global_id(1);
     const ShadowRow row = shadowRow(params, min(y, params.height - 1));
     nodes += (size_t)min(y, params.height - 1) * PEL_RAMP_RECORD(row.nodes);
-    const float q = row.q;
+    const float perQ = 1.0f / row.q;
     const float4 mass = 2.0f * tails[PEL_TAIL_MASS];
     // The light that is left where the filter ends.
     float4 end = 0.0f;
     if (params.closedEnds && begin < params.width)
-        end = clamp(farSide(tails, nodes, row, 0.5f / q, mass, params.end), 0.0f, 0.5f * mass);
+        end = clamp(farSide(tails, nodes, row, 0.5f * perQ, mass, params.end), 0.0f, 0.5f * mass);
     const float4 between = mass - 2.0f * end;
     __global float4* line = texels + (size_t)y * (params.width + 1);
     for (uint x = begin; x < min(begin + PEL_COLUMNS, params.width); ++x) {
@@ -192,7 +195,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_s
         if (params.axis == PEL_LUT_AXIS_ROOT)
             z = (column - 0.5f * (float)params.width) / (float)(max(params.width, 2u) - 1);
         z = fmin(z, 0.5f);
-        float4 U = clamp(farSide(tails, nodes, row, z / q, mass, params.end), 0.0f, mass);
+        float4 U = clamp(farSide(tails, nodes, row, z * perQ, mass, params.end), 0.0f, mass);
         float4 lit = mass - U;
         if (params.closedEnds) {
             U = clamp(select((float4)(0.5f - z), (U - end) / between, between > 1e-3f * mass), 0.0f, 1.0f);
