@@ -34,6 +34,7 @@ package(library libpellucid0 libs "subsurface scattering for deferred renderers"
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd")
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=")
 set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/debian/library/triggers)
 package(development libpellucid-dev libdevel "subsurface scattering for deferred renderers (headers)" "libpellucid0 ${same}"
         "${about}This has the headers for C and C++, the kernels' functions for kernels\nof one's own, and files for CMake and pkg-config.")
 package(command pellucid graphics "subsurface scattering for deferred renderers (command)" "libpellucid0 ${same}"
