@@ -171,6 +171,7 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
 
 void run(Arguments a) {
     if (a.mesh.empty()) a.mesh = standardHead();
+    const std::vector<DemoViewRequest> wanted = requests(a);  // a wrong size is told before any work
     try {
         std::filesystem::create_directories(a.output);
         io::checkWritable(a.output + "/demo.png");
@@ -207,7 +208,7 @@ void run(Arguments a) {
     const sample::Scene scene(sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, curvature.values,
                                                mesh.triangles, head.materials});
     std::vector<ShadedView> views;
-    for (const DemoViewRequest& request : requests(a))
+    for (const DemoViewRequest& request : wanted)
         views.push_back(shadeView(run, stages, luts, scene, head, request, a));
     std::vector<ShadedPicture> materials;
     for (const auto& m : demoMaterials) {
