@@ -60,7 +60,7 @@ def test_encodings(device):
 
 
 def test_bc6h_is_as_near_as_it_says(device, tolerance):
-    lut = pel.Lut.curvature(device, width=62, height=31, axis="root")
+    lut = pel.Lut.curvature(device, width=62, height=31, axis="root", preset="faceworks")
     blocks, error_max, error_rms = lut.read_bc6h()
     assert blocks.shape == (8, 16, 16) and blocks.dtype == np.uint8 and blocks.flags.writeable
     halves = lut.read("half").astype(float)
@@ -94,7 +94,7 @@ def test_measured_profiles(device):
 def test_shadow_is_monotone_and_ends_dark_and_lit(device):
     texels = pel.Lut.shadow(device, width=64, height=8).read()
     assert (np.diff(texels, axis=1) >= -1e-6).all()
-    assert (texels[:, 0] == 0).all() and (texels[:, -1] == 1).all()
+    assert np.abs(texels[:, 0]).max() < 1e-6 and np.abs(texels[:, -1] - 1).max() < 1e-6
     texels = pel.Lut.shadow(device, width=64, height=8, preset="faceworks").read()
     assert (np.diff(texels, axis=1) >= -1e-6).all()
     assert 0 < texels[:, 0].max() < 0.5 < texels[:, -1].min() < 1
