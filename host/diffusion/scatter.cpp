@@ -100,23 +100,19 @@ Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImage
         const auto found = controls_.find(id);
         const PelScatterControls c = found == controls_.end() ? pelScatterControlsDefaults() : found->second;
         plan.sources.set(id);
-        const bool lines = c.scattering == PEL_SCATTERING_SEPARABLE, taps = lines || c.scatterTaps > 0;
+        const bool lines = c.scattering == PEL_SCATTERING_SEPARABLE;
+        // Sums over blocks know neither borders nor radii per pixel.
+        const bool perPixel = c.borderColor[0] > 0 || c.borderColor[1] > 0 || c.borderColor[2] > 0 ||
+                              (plan.weight && plan.weight.info().components > 1);
+        const uint32_t wanted = c.scatterTaps || lines || !perPixel ? c.scatterTaps : diskTapsForBlocks;
+        const bool taps = lines || wanted > 0;
         if (taps)
             (lines ? plan.lines : plan.disk)[id] = {material.profile,
                                                     material.scale,
-                                                    scatterTapsOf(c.scattering, c.scatterTaps),
+                                                    scatterTapsOf(c.scattering, wanted),
                                                     {c.borderColor[0], c.borderColor[1], c.borderColor[2]}};
         else
             plan.screen[id] = material;
-        if (!taps && (c.borderColor[0] > 0 || c.borderColor[1] > 0 || c.borderColor[2] > 0))
-            fail(PEL_ERROR_UNSUPPORTED, "material ", id,
-                 " has a borderColor and no taps; separable, and screen with scatterTaps of 8 to 256, let "
-                 "light "
-                 "flow over borders");
-        if (!taps && plan.weight && plan.weight.info().components > 1)
-            fail(PEL_ERROR_UNSUPPORTED,
-                 "the scatter weight image has a second component, the radius, and material ", id,
-                 " has no taps; separable, and screen with scatterTaps of 8 to 256, take it");
         if (c.thinThickness > 0 && !back)
             invalidArgument("material ", id, " has a thinThickness of ", c.thinThickness,
                             ", and there is no back irradiance image, whose light would come through");

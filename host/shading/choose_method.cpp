@@ -10,9 +10,6 @@ namespace {
 // Of scratch: a pixel, with irradiance and the shadow of a light; a texel of a light's map.
 constexpr uint64_t bytesOnScreen = 96, bytesPerTexel = 33;
 
-// Of the disk that auto takes where the sums over blocks cannot do what is asked for.
-constexpr uint32_t diskTaps = 64;
-
 bool isAuto(const ShaderMaterial& material) {
     return material.given.scattering == PEL_SCATTERING_AUTO;
 }
@@ -63,9 +60,9 @@ std::string chooseMethods(ShaderState& state, uint32_t methods) {
             material.params.scattering = PEL_SCATTERING_SCREEN;
             scatters = true;
             const std::string why = perPixel(state, material.params);
-            material.params.scatterTaps = why.empty() ? 0 : diskTaps;
+            material.params.scatterTaps = why.empty() ? 0 : diskTapsForBlocks;
             if (!why.empty())
-                say("material ", id, " scatters by ", diskTaps, " taps on a disk, for ", why,
+                say("material ", id, " scatters by ", diskTapsForBlocks, " taps on a disk, for ", why,
                     ": without, it would scatter over the whole profile, and with what the lights' shadow "
                     "maps "
                     "show "

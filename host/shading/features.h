@@ -4,6 +4,9 @@
 
 namespace pel {
 
+// Of the disk in place of the whole profile, where a material asks for what sums over blocks cannot do.
+constexpr uint32_t diskTapsForBlocks = 64;
+
 // PelFeature bits of what is bound and not zero. Throws if something needed is missing or does not match.
 uint32_t deriveFeatures(const ShaderState& state);
 // The features that a material asks for by itself, if their other inputs exist.

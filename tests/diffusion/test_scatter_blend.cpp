@@ -180,6 +180,38 @@ TEST(ScatterBlend, AloneAddsAndMultiplies) {
     }
 }
 
+// Alone too: what blocks cannot do is done by a disk.
+TEST(ScatterBlend, AloneTakesADiskWhereItHasTo) {
+    Picture p = stripes();
+    for (size_t i = 0; i < p.pixels(); ++i) p.ids[i] = uint8_t(1 + (i % 96 > 48));
+    std::vector<float> radii;
+    for (size_t i = 0; i < p.pixels(); ++i) radii.insert(radii.end(), {1, float(i % 96) / 96});
+    const Buffer e(device(), p.irradiance), x(device(), p.positions), ids(device(), p.ids),
+        r(device(), radii), out(device(), p.irradiance);
+    const auto image = [&](const Buffer& buffer, PelFormat format) {
+        return pellucid::imageDesc(buffer, format, p.width, p.height);
+    };
+    const auto scattered = [&](uint32_t taps, bool border, bool withRadii) {
+        Scatter scatter(device());
+        for (uint32_t id : {1u, 2u}) {
+            PelScatterControls c = pelScatterControlsDefaults();
+            c.scatterTaps = taps;
+            if (border) std::fill_n(c.borderColor, 3, 0.7f);
+            scatter.setMaterial(id, Profile::skin());
+            scatter.setControls(id, c);
+        }
+        if (withRadii) scatter.set(PEL_SLOT_SCATTER_WEIGHT, image(r, PEL_FORMAT_RG32F));
+        const PelImageDesc positions = image(x, PEL_FORMAT_RGB32F), id = image(ids, PEL_FORMAT_R8_UINT);
+        scatter.execute(p.params, image(e, PEL_FORMAT_RGB32F), &positions, nullptr, &id,
+                        image(out, PEL_FORMAT_RGB32F));
+        return out.readAll<float>();
+    };
+    for (const auto& [border, withRadii] : {std::pair{true, false}, {false, true}, {true, true}}) {
+        EXPECT_EQ(scattered(0, border, withRadii), scattered(64, border, withRadii));
+        EXPECT_NE(scattered(0, border, withRadii), scattered(0, false, false));
+    }
+}
+
 // What blocks of pixels cannot do auto does by a disk of taps, and says so.
 TEST(ScatterBlend, AutoTakesADiskWhereItHasTo) {
     const auto shade = [](PelScattering method, uint32_t taps, bool border, bool radii, PelShaderStats* stats,
