@@ -418,6 +418,8 @@ inline constexpr Tolerance scatterLeftOut{
     "scatterLeftOut", 1.6,
     "of targetError, the worst pixel of several bodies: second differences measure, they do not bound; "
     "1.45 measured"};
+inline constexpr Tolerance tapsOfLargeError{
+    "tapsOfLargeError", 0.85, "of those at the default, with ten times its error: 0.70 to 0.77 measured"};
 inline constexpr Tolerance scatterSeam{"scatterSeam", 1.6,
                                        "the same, over the borders of tiles that took different ways"};
 inline constexpr Tolerance scatterFade{

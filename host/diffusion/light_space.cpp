@@ -24,7 +24,7 @@ uint32_t pointsOf(uint32_t level) {
 // Returns the floats of all of them, and how many texels there are.
 uint64_t LightSpace::layOutLevels(std::vector<LightMap>& maps, bool hidden, uint64_t& seen) {
     uint64_t floats = 0;
-    seen = 0;
+    seen = PEL_PYRAMID_GUARD;  // vectors read before and after what is set
     for (LightMap& map : maps) {
         PelLightMap& m = map.constants;
         uint32_t width = m.level[0].width, height = m.level[0].height;
@@ -44,6 +44,7 @@ uint64_t LightSpace::layOutLevels(std::vector<LightMap>& maps, bool hidden, uint
             width = (width + 1) / 2, height = (height + 1) / 2;
         }
     }
+    seen += PEL_PYRAMID_GUARD;
     return floats + 2 * PEL_PYRAMID_GUARD;
 }
 

@@ -23,16 +23,25 @@ static inline Vec3w stepOf(Vec3w p, Vec3w before, Vec3w after) {
     return select3(shorter, mean, alike);
 }
 
+// What a byte of each texel says (light_seen.cl); there are bytes before and after those of all maps.
+static inline uintw idsOfTexels(__global const uchar* seen) {
+#if PEL_WIDTH == 1
+    return *seen;
+#elif PEL_WIDTH == 8
+    return convert_uint8(vload8(0, seen));
+#else
+    return convert_uint16(vload16(0, seen));
+#endif
+}
+
 #if PEL_HIDDEN
 // Whether a texel is one that the camera sees.
 static inline maskw isSeen(__global const uchar* seen, __global const PelPyramidLevel* level, int column,
-                           int row, maskw on) {
+                           int row) {
     if (row < 0 || row >= (int)level->height) return (maskw)(0);
-    __global const uchar* at = seen + (size_t)row * level->width;
-#define SEEN_(k, s) (on s && column + k >= 0 && column + k < (int)level->width ? (uint)at[column + k] : 0u)
-    const uintw id = PEL_UINT_LANES(SEEN_);
-#undef SEEN_
-    return id != (uintw)(0);
+    const intw columns = lanesw() + column;
+    return (idsOfTexels(seen + (size_t)row * level->width + column) != (uintw)(0)) & (columns >= 0) &
+           (columns < (int)level->width);
 }
 
 // Whether the neighbour `q` is seen, and so near that `p` is a part of the same surface.
@@ -57,10 +66,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     const intw column = lanesw() + (int)x;
     maskw there = surfaceAt(map, depth) & (column < (int)level->width);
     __global const uchar* row = seen + map->seen + (size_t)y * level->width;
-#define SEEN(k, s) (there s ? (uint)row[x + k] : 0u)
     uintw id = (uintw)(0);
-    if (anyw(there)) id = PEL_UINT_LANES(SEEN);
-#undef SEEN
+    if (anyw(there)) id = idsOfTexels(row + x);
     there &= PEL_HIDDEN ? id == (uintw)(0) : id != (uintw)(PEL_SEEN_OTHER);
     floatw flux = 0.0f;
     if (anyw(there)) {
@@ -99,10 +106,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
         const floatw near = NEAREST_HIDDEN * map->texel * matrixRow(map->toMap, 3, p);
         __global const uchar* all = seen + map->seen;
         const int i = (int)x, j = (int)y;
-        there &= notw(isBeside(p, before, near, isSeen(all, level, i - 1, j, there)) |
-                      isBeside(p, next, near, isSeen(all, level, i + 1, j, there)) |
-                      isBeside(p, over, near, isSeen(all, level, i, j - 1, there)) |
-                      isBeside(p, below, near, isSeen(all, level, i, j + 1, there)));
+        there &= notw(isBeside(p, before, near, isSeen(all, level, i - 1, j)) |
+                      isBeside(p, next, near, isSeen(all, level, i + 1, j)) |
+                      isBeside(p, over, near, isSeen(all, level, i, j - 1)) |
+                      isBeside(p, below, near, isSeen(all, level, i, j + 1)));
         flux = selectw((floatw)(0.0f), flux, there);
 #endif
         const Vec3w area = cross3(stepOf(p, before, next), stepOf(p, over, below));

@@ -31,11 +31,15 @@ std::vector<Body> bodies() {
 constexpr double lightsFrom[] = {0, 70, 150};  // azimuth, degrees: in front, at the side, behind
 
 // Scattered irradiance of a picture without its shadow map.
-std::vector<float> scatteredOf(const LitScene& s, const Profile& profile, bool everywhere) {
+std::vector<float> scatteredOf(const LitScene& s, const Profile& profile, bool everywhere,
+                               double target = pelScatterParamsDefaults().targetError, uint64_t* taps = nullptr) {
     scatter_scene::Picture p(uint32_t(s.width), uint32_t(s.height));
     p.positions = s.positions, p.irradiance = s.irradiance, p.ids = s.covered;
     p.params.everywhere = everywhere;
-    return scatter_scene::run(p, profile).scattered;
+    p.params.targetError = float(target);
+    const scatter_scene::Result result = scatter_scene::run(p, profile);
+    if (taps) *taps = result.stats.taps;
+    return result.scattered;
 }
 
 // What is left out of a picture, per value.
@@ -80,6 +84,33 @@ TEST(ScatterSteady, LeavesOutNoMoreThanTheTargetErrorAnywhere) {
                 EXPECT_LE(left.acrossTiles, tolerance::scatterSeam * target)
                     << body.name << ", " << size << " pixels, light from " << azimuth;
             }
+    }
+}
+
+// A larger error that is allowed saves taps, and is kept to.
+TEST(ScatterSteady, ALargerTargetErrorTakesFewerTaps) {
+    const Device device("");
+    const Profile skin = Profile::skin();
+    for (const Body& body : bodies()) {
+        SceneRequest request;
+        request.size = sized(256, 24), request.mapSize = 16, request.lightAzimuth = 70;
+        const LitScene s = Stage(device, body, 1).look(request, skin);
+        uint64_t before = 0, first = 0;
+        const std::vector<float> all = scatteredOf(s, skin, true, 0.002, &before);
+        for (double target : {0.002, 0.005, 0.01, 0.02}) {
+            uint64_t taps = 0;
+            const LeftOut left = leftOut(s, all, scatteredOf(s, skin, false, target, &taps));
+            std::printf("%-8s %.3f: %5.1f %% of the taps, %.2f of the error\n", body.name.c_str(), target,
+                        100 * double(taps) / double(first ? first : before), left.most / target);
+            if (!first) first = before = taps;
+            EXPECT_LE(left.most, tolerance::scatterLeftOut * target) << body.name << ", " << target;
+            EXPECT_LE(left.acrossTiles, tolerance::scatterSeam * target) << body.name << ", " << target;
+            EXPECT_LE(taps, before) << body.name << ", " << target;
+            before = taps;
+        }
+        if (!testsAreSmall()) {
+            EXPECT_LT(double(before), tolerance::tapsOfLargeError * double(first)) << body.name;
+        }
     }
 }
 
