@@ -163,7 +163,10 @@ TEST_F(Shade, BadFilesAreRefused) {
     scene_.luts[0].file = "t.exr";
     io::writeScene(path("lut.toml"), scene_);
     expectRefused(command("lut.toml"), 3, "kind is shadow; curvature is asked for");
-    ASSERT_EQ(run({"lut", "curvature", "-o", path("t.exr"), "--size", "8x8", "--axis", "root"}).exitCode, 0);
+    ASSERT_EQ(run({"lut", "curvature", "-o", path("t.exr"), "--size", "8x8", "--axis", "root", "--radius-min",
+                   "1", "--radius-max", "100"})
+                  .exitCode,
+              0);
     EXPECT_EQ(run(command("lut.toml")).exitCode, 0);
     const std::string asking = read(path("lut.toml"));
     const auto expecting = [&](const std::string& keys) {
@@ -173,6 +176,8 @@ TEST_F(Shade, BadFilesAreRefused) {
         return command("asking.toml");
     };
     EXPECT_EQ(run(expecting("axis = \"root\"\nwidth = 8\nradius_max = 100")).exitCode, 0);
+    EXPECT_EQ(run(expecting("diffusion_radius = 0\nradius_min = 0")).exitCode, 0)
+        << "the profile's own, whatever it is";
     expectRefused(expecting("axis = \"linear\""), 3, "axis is root; linear is asked for");
     expectRefused(expecting("form = \"arc\""), 3, "form is sphere; arc is asked for");
     expectRefused(expecting("radius_min = 0.5"), 3, "radius_min is 1; 0.5 is asked for");

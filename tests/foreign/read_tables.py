@@ -30,8 +30,8 @@ class Tables(unittest.TestCase):
     def table(self, name, encoding, size=f"{WIDTH}x{HEIGHT}"):
         path = Path(self.folder.name) / f"{size}-{name}"
         if not path.exists():
-            subprocess.run([COMMAND, "lut", "curvature", "-o", path, "--size", size, "--axis", "root", "--encoding",
-                            encoding], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run([COMMAND, "lut", "curvature", "-o", path, "--size", size, "--axis", "root", "--radius-min", "1",
+                            "--radius-max", "100", "--encoding", encoding], check=True, stdout=subprocess.DEVNULL)
         return str(path)
 
     def npy(self, encoding):
@@ -60,7 +60,7 @@ class Tables(unittest.TestCase):
     def test_batch(self):
         openexr = reader("OpenEXR")
         folder = Path(self.folder.name)
-        (folder / "m.toml").write_text('[[lut]]\nsize = 13\nform = "sphere"\naxis = "root"\n')
+        (folder / "m.toml").write_text('version = 2\n[[lut]]\nsize = 13\nradius_min = 1\nradius_max = 100\n')
         subprocess.run([COMMAND, "batch", folder / "m.toml", "-o", folder / "out"], check=True, stdout=subprocess.DEVNULL)
         (path,) = (folder / "out").glob("*.exr")
         expected = np.load(self.table("square.npy", "half", "13x13"))

@@ -161,17 +161,20 @@ void checkLutInfo(const std::string& path, const PelLutInfo& found, const PelLut
         const auto same = [&](const char* name, const auto& is, const auto& asked) {
             if (key == name && is != asked) refuse(name, is, asked);
         };
+        const auto sameLength = [&](const char* name, float is, float asked) {
+            if (asked != 0) same(name, is, asked);  // 0: whatever the profile has
+        };
         same("width", width, askedWidth);
         same("height", height, askedHeight);
-        same("diffusion_radius", curvature ? c.diffusionRadius : s.diffusionRadius,
-             curvature ? askedC.diffusionRadius : askedS.diffusionRadius);
+        sameLength("diffusion_radius", curvature ? c.diffusionRadius : s.diffusionRadius,
+                   curvature ? askedC.diffusionRadius : askedS.diffusionRadius);
         same("form", curvatureForms[c.form], curvatureForms[askedC.form]);
         same("axis", lutAxes[curvature ? c.axis : s.axis], lutAxes[curvature ? askedC.axis : askedS.axis]);
         same("closed_ends", s.closedEnds, askedS.closedEnds);
-        same("radius_min", c.radiusMin, askedC.radiusMin);
-        same("radius_max", c.radiusMax, askedC.radiusMax);
-        same("width_min", s.widthMin, askedS.widthMin);
-        same("width_max", s.widthMax, askedS.widthMax);
+        sameLength("radius_min", c.radiusMin, askedC.radiusMin);
+        sameLength("radius_max", c.radiusMax, askedC.radiusMax);
+        sameLength("width_min", s.widthMin, askedS.widthMin);
+        sameLength("width_max", s.widthMax, askedS.widthMax);
         same("sharpening", s.sharpening, askedS.sharpening);
     }
 }
