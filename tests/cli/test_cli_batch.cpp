@@ -1,4 +1,4 @@
-// pellucid batch, profile and the forms of lut through the command line.
+// `pellucid batch`: manifests, files, the index, kills and full disks.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -347,33 +347,6 @@ TEST_F(BatchCommand, ProgressIsABarOnATerminalAndLinesElsewhere) {
     const std::string shown = read(path("terminal"));
     for (const char* part : {"\r", "[#", "/4000, ", "/s", " s left", "4000 tables: 4000 made"})
         EXPECT_TRUE(contains(shown, part));
-}
-
-TEST_F(BatchCommand, ProfilesAreListedShownDrawnAndFitted) {
-    EXPECT_GE(run({"profile", "list", "--json"}).json()["profiles"].size(), 9u);
-    EXPECT_EQ(run({"profile", "show", "marble", "--json"}).json()["kind"], "dipole");
-    EXPECT_EQ(run({"profile", "plot", "jade", "-o", path("jade.png")}).exitCode, 0);
-    EXPECT_GT(fs::file_size(path("jade.png")), 1000u);
-    ASSERT_EQ(run({"profile", "fit", "marble", "--gaussians", "3", "-o", path("fit.toml")}).exitCode, 0);
-    EXPECT_EQ(run({"profile", "show", path("fit.toml"), "--json"}).json()["gaussians"], 3);
-    expectRefused({"profile", "show", "granite"}, 3, "granite");
-    expectRefused({"profile", "plot", "jade", "-o", path("jade.gif")}, 3, ".png");
-    expectRefused({"profile", "fit", "marble", "--gaussians", "0"}, 2, "--gaussians");
-}
-
-TEST_F(BatchCommand, LutFilesCarryWhatTheyAre) {
-    ASSERT_EQ(run({"lut", "curvature", "-o", path("a.exr"), "--size", "8x6", "--form", "sphere", "--axis",
-                   "root", "--profile", "ketchup"})
-                  .exitCode,
-              0);
-    const PelLutInfo info = pellucid::io::readLut(pellucid::Device(""), path("a.exr")).info();
-    EXPECT_EQ(info.curvature.form, PEL_FORM_SPHERE);
-    EXPECT_EQ(info.curvature.axis, PEL_AXIS_ROOT);
-    EXPECT_STREQ(info.profile, "ketchup");
-    ASSERT_EQ(run({"lut", "specular", "-o", path("s.exr"), "--size", "8x6"}).exitCode, 0);
-    EXPECT_EQ(pellucid::io::readLut(pellucid::Device(""), path("s.exr")).info().kind, PEL_LUT_SPECULAR);
-    ASSERT_EQ(run({"lut", "shadow", "-o", path("s.tga"), "--size", "8x6"}).exitCode, 0);
-    expectRefused({"lut", "curvature", "-o", path("b.exr"), "--profile", "granite"}, 3, "granite");
 }
 
 // The bytes of a batch's files are encoded in memory; OpenImageIO reads them.

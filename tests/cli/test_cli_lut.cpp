@@ -1,4 +1,4 @@
-// `pellucid lut`: files of tables, presets, pictures.
+// `pellucid lut`: files of tables, presets, pictures; `pellucid profile`.
 #include <pellucid/pellucid.hpp>
 
 #include "cli_run.h"
@@ -140,4 +140,31 @@ TEST_F(CliLut, ShadowLutAndItsFlags) {
     EXPECT_EQ(info.shadow.widthMax, 40.0f);
     EXPECT_EQ(info.shadow.sharpening, 5.0f);
     EXPECT_EQ(info.shadow.diffusionRadius, 1.5f);
+}
+
+TEST_F(CliLut, ProfilesAreListedShownDrawnAndFitted) {
+    EXPECT_GE(run({"profile", "list", "--json"}).json()["profiles"].size(), 9u);
+    EXPECT_EQ(run({"profile", "show", "marble", "--json"}).json()["kind"], "dipole");
+    EXPECT_EQ(run({"profile", "plot", "jade", "-o", path("jade.png")}).exitCode, 0);
+    EXPECT_GT(std::filesystem::file_size(path("jade.png")), 1000u);
+    ASSERT_EQ(run({"profile", "fit", "marble", "--gaussians", "3", "-o", path("fit.toml")}).exitCode, 0);
+    EXPECT_EQ(run({"profile", "show", path("fit.toml"), "--json"}).json()["gaussians"], 3);
+    expectRefused({"profile", "show", "granite"}, 3, "granite");
+    expectRefused({"profile", "plot", "jade", "-o", path("jade.gif")}, 3, ".png");
+    expectRefused({"profile", "fit", "marble", "--gaussians", "0"}, 2, "--gaussians");
+}
+
+TEST_F(CliLut, LutFilesCarryWhatTheyAre) {
+    ASSERT_EQ(run({"lut", "curvature", "-o", path("a.exr"), "--size", "8x6", "--form", "sphere", "--axis",
+                   "root", "--profile", "ketchup"})
+                  .exitCode,
+              0);
+    const PelLutInfo info = io::readLut(Device(""), path("a.exr")).info();
+    EXPECT_EQ(info.curvature.form, PEL_FORM_SPHERE);
+    EXPECT_EQ(info.curvature.axis, PEL_AXIS_ROOT);
+    EXPECT_STREQ(info.profile, "ketchup");
+    ASSERT_EQ(run({"lut", "specular", "-o", path("s.exr"), "--size", "8x6"}).exitCode, 0);
+    EXPECT_EQ(io::readLut(Device(""), path("s.exr")).info().kind, PEL_LUT_SPECULAR);
+    ASSERT_EQ(run({"lut", "shadow", "-o", path("s.tga"), "--size", "8x6"}).exitCode, 0);
+    expectRefused({"lut", "curvature", "-o", path("b.exr"), "--profile", "granite"}, 3, "granite");
 }

@@ -25,6 +25,20 @@ def moving_device():
     return device
 
 
+@pytest.fixture(scope="module")
+def session():
+    """A session of the viewer with the package's head; modules that use it import moderngl first."""
+    from pellucid import files
+    from pellucid.view.session import Session
+
+    try:
+        made = Session()
+    except RuntimeError as error:
+        pytest.skip(f"no OpenGL: {error}")
+    made.load(files.standard_head(), subdivide=1)
+    return made
+
+
 @pytest.fixture(scope="session")
 def tolerance():
     """tests/tolerances.h as a dictionary."""

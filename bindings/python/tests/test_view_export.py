@@ -1,0 +1,98 @@
+"""What the viewer exports, and scene files in the viewer."""
+import json
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("moderngl", reason="moderngl is not installed")
+files = pytest.importorskip("pellucid.files", reason="this build reads no files")
+from view_session import reset  # noqa: E402
+
+from pellucid.view.export import cpp_float, export, snippet  # noqa: E402
+from pellucid.view.look import Look  # noqa: E402
+from pellucid.view.scene_session import SceneSession  # noqa: E402
+
+
+@pytest.mark.parametrize("profile", ["skin", "custom"])
+def test_what_is_exported_renders_to_the_same_bits(session, tmp_path, profile):
+    command = os.environ.get("PELLUCID_COMMAND")
+    if not command:
+        pytest.skip("the pellucid command is not built")
+    reset(session)
+    session.look.profile, session.look.albedo, session.look.radius_scale = profile, (0.9, 1.0, 1.05), 1.5
+    session.look.gaze, session.look.iris_seed, session.look.limbus_width = (12.0, -5.0), 3, 1.5
+    if profile == "custom":
+        across = np.linspace(0, 255, 64, dtype=np.uint8)
+        files.write_image(tmp_path / "iris.png", np.stack(np.broadcast_arrays(across[:, None], across, np.uint8(40)), 2))
+        session.look.iris_texture, session.look.iris_color, session.look.iris_profile = str(tmp_path / "iris.png"), (1.0, 1.0, 1.0), "skin"
+    written = {p.name for p in export(session, tmp_path / "look", 192, 108)}
+    assert {"scene.toml", "gbuffer.exr", "picture.exr", "picture.png", "look.json", "look.cpp", "shadow_0.exr"} <= written
+    subprocess.run([command, "shade", "gbuffer.exr", "--scene", "scene.toml", "-o", "again.exr"], cwd=tmp_path / "look", check=True,
+                   stdout=subprocess.DEVNULL)
+    one, two = (files.read_image(tmp_path / "look" / name) for name in ("picture.exr", "again.exr"))
+    assert all(np.array_equal(one[c], two[c]) for c in "RGB") and one["R"].max() > 0.2
+    known = session.look.copy()
+    if profile == "custom":
+        assert "iris.exr" in written
+        known.iris_texture = "iris.exr"
+    assert Look.from_dict(json.loads((tmp_path / "look/look.json").read_text())) == known
+
+
+@pytest.mark.parametrize("values", [{}, {"profile": "custom", "method": "screen"}, {"method": "none", "transmission": 0.0, "ggx": True},
+                                    {"deep_scatter": (0.5, 0.1, 0.0), "radius_scale": 2.0}, {"iris_profile": "skin", "iris_seed": 4}])
+def test_the_exported_cpp_compiles(session, tmp_path, values):
+    compiler = shutil.which("c++") or shutil.which("g++") or shutil.which("clang++")
+    include = Path(__file__).parents[3] / "host/include"
+    if compiler is None or not include.exists():
+        pytest.skip("no C++ compiler here")
+    reset(session)
+    for name, value in values.items():
+        setattr(session.look, name, value)
+    source = tmp_path / "look.cpp"
+    source.write_text(snippet(session, session.look))
+    done = subprocess.run([compiler, "-std=c++17", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I", str(include), str(source)],
+                          capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    # Every number of the look is in it.
+    for number in (session.look.roughness, session.look.f0, session.look.roughness2, session.look.lobe_mix, session.look.ambient):
+        assert cpp_float(number) in source.read_text()
+
+
+def test_a_scene_file_is_shown_as_it_was_exported(session, tmp_path):
+    reset(session)
+    session.look.exposure, session.look.shoulder = 1.3, 0.7
+    folder = tmp_path / "look"
+    export(session, folder, 192, 108)
+    shown = SceneSession(folder / "scene.toml", device=session.device)
+    shown.look.exposure, shown.look.shoulder = 1.3, 0.7
+    picture = files.read_image(folder / "picture.png")
+    known = np.rint(255 * np.stack([picture[c] for c in "RGB"], -1)).astype(np.uint8)
+    whole = shown.frame().pixels
+    assert np.array_equal(whole, known)
+    assert shown.frame(small=True).pixels.shape == (54, 96, 3)
+    seen = {"final": whole.tobytes()}
+    for mode in ("lambert", "difference", "diffuse", "specular"):
+        shown.look.mode = mode
+        seen[mode] = shown.frame().pixels.tobytes()
+    assert len(set(seen.values())) == len(seen)
+    shown.look.mode = "final"
+    assert shown.frame().pixels.tobytes() == seen["final"]  # nothing sticks
+    built = shown.device.stats().programs_built
+    for change in (lambda: setattr(shown.scene.materials[1], "roughness", 0.7), lambda: shown.scene.profiles.update({1: "marble"}),
+                   lambda: shown.look.lights.__setitem__(0, 0.5), lambda: setattr(shown.look, "ambient", 2.0)):
+        before = shown.frame().pixels
+        change()
+        assert not np.array_equal(shown.frame().pixels, before)
+    assert shown.device.stats().programs_built == built
+    now = shown.frame().pixels
+    shown.save(folder / "changed.toml")
+    again = SceneSession(folder / "changed.toml", folder / "gbuffer.exr", session.device)
+    again.look.exposure, again.look.shoulder = 1.3, 0.7
+    assert np.array_equal(again.frame().pixels, now)
+    (folder / "gbuffer.exr").unlink()
+    with pytest.raises(ValueError, match="no G-buffer beside it"):
+        SceneSession(folder / "scene.toml", device=session.device)
