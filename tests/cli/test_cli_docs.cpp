@@ -21,8 +21,10 @@ class CliDocs : public CommandTest {
         std::istringstream help(run(arguments).out);
         for (std::string line; std::getline(help, line);) {
             if (!line.starts_with("  ") || line.starts_with("   ")) continue;
-            std::istringstream column(line.substr(2, line.find(' ', 2) - 2));
-            for (std::string name; std::getline(column, name, ',');) known.insert(name);
+            // "-o,--output TEXT REQUIRED  ...", "warm-up, prefill  ..."
+            std::istringstream column(line.substr(2, line.find("  ", 2) - 2));
+            for (std::string names, name; std::getline(column, names, ',');)
+                if (std::istringstream(names) >> name) known.insert(name);
         }
         return known;
     }
@@ -54,7 +56,7 @@ TEST_F(CliDocs, CommandsAndOptionsExist) {
                 std::vector<std::vector<std::string>> deeper;
                 std::istringstream choices(word);
                 for (std::string choice; std::getline(choices, choice, '|');)
-                    if (std::regex_match(choice, std::regex("[a-z]+")) && meant.size() == 1 &&
+                    if (std::regex_match(choice, std::regex("[a-z][a-z-]*")) && meant.size() == 1 &&
                         names(meant[0]).contains(choice)) {
                         deeper.push_back(meant[0]);
                         deeper.back().push_back(choice);

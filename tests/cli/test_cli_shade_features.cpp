@@ -17,7 +17,7 @@ TEST_F(Shade, TablesOfMaterialsAndProfileFiles) {
     scene_.channels[PEL_SLOT_CURVATURE] = {"C.X"};
     scene_.materials[0].curvatureLut = "t";
     ASSERT_EQ(run({"lut", "curvature", "--profile", path("own.toml"), "--form", "arc", "--size", "64x16",
-                   "-o", path("t.exr")})
+                   "--radius-min", "1", "--radius-max", "100", "-o", path("t.exr")})
                   .exitCode,
               0);
     const auto shaded = [&](const std::string& profile, const std::string& file) {

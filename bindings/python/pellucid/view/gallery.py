@@ -18,7 +18,7 @@ from .look import Lamp, Look
 from .session import Session
 
 SIDE = [Lamp("Key", 75.0, 15.0)]
-BACK = [Lamp("Key", 165.0, 10.0, intensity=4.0)]
+BACK = [Lamp("Key", 150.0, 15.0, intensity=2.5)]
 FRONT = [Lamp("Key", 20.0, 30.0)]
 
 
@@ -78,7 +78,7 @@ GALLERY: dict[str, list[Entry]] = {
     "Lights": [
         Entry("light-front", "From the front: hardly anything to scatter, and hardly any work.", _set(lamps=FRONT)),
         Entry("light-side", "From the side: the terminator turns red.", _set(lamps=SIDE)),
-        Entry("light-back", "From behind: ears let light through.", _at(30, _set(lamps=BACK, ambient=0.03), 0.35, to=(0.26, -0.05))),
+        Entry("light-back", "From behind: ears let light through.", _at(10, _set(lamps=BACK, ambient=0.1, pores=0.0, specular=0.1), 0.4, to=(0.22, -0.03))),
     ],
     "Mistakes": [
         Entry("wrong-unit", "The mesh is in mm, and unit_mm said 10: light reaches a tenth as far as it should, and the picture is nearly "
