@@ -16,10 +16,9 @@ TEST_F(Shade, TablesOfMaterialsAndProfileFiles) {
     io::writeExr(path("c.exr"), curved);
     scene_.channels[PEL_SLOT_CURVATURE] = {"C.X"};
     scene_.materials[0].curvatureLut = "t";
-    ASSERT_EQ(run({"lut", "curvature", "--profile", path("own.toml"), "--form", "arc", "--size", "64x16",
-                   "--radius-min", "1", "--radius-max", "100", "-o", path("t.exr")})
-                  .exitCode,
-              0);
+    ASSERT_EQ(
+        run({"lut", "curvature", "--profile", path("own.toml"), "--size", "64x16", "-o", path("t.exr")}).exitCode,
+        0);
     const auto shaded = [&](const std::string& profile, const std::string& file) {
         io::SceneLut lut;
         lut.name = "t";
