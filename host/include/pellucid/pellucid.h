@@ -1012,9 +1012,9 @@ typedef struct PelShaderOptions {
     float millimetresPerUnit; /* of positions, > 0: profiles are in mm, every other length in the scene's unit; 1 */
     uint32_t frameIndex; /* gives scattering taps with random places other places in each frame, for hosts that
                                  average frames. The same number gives the same bits; 0 */
-    uint32_t everyPixel; /* 1: blurred normals and wide shadows that the shader makes are computed at every pixel. 0: at every
-                                 second one along both axes, and between them interpolated where material, surface and values
-                                 go on smoothly (docs/guide/shading.md, "Between pixels"); 0 */
+    uint32_t everyPixel; /* 1: wide shadows that the shader filters are computed at every pixel. 0, the default: at every second one
+                            along both axes, and between them interpolated where material, surface and values go on smoothly
+                            (docs/guide/shading.md, "Between pixels") */
 } PelShaderOptions;
 
 PEL_API PelError pelShaderCreate(PelDevice device, PelShader* shader);
