@@ -222,37 +222,34 @@ TEST_F(SceneFileTest, TablesBeginAsTheVersionOrThePresetSays) {
             write("s.toml", head + "[channels]\nnormal_shading = [\"x\", \"y\", \"z\"]\n[[curvature_lut]]\n" +
                                 "name = \"a\"\n" + keys + "[[shadow_lut]]\nname = \"a\"\n" + keys));
     };
-    const auto faceworks = [](const SceneFile& scene) {
+    struct Begin {
+        PelCurvatureForm form;
+        PelLutAxis axis;
+        uint32_t width, closedEnds;
+        float radiusMin, widthMin;
+    };
+    constexpr Begin faceworks{PEL_FORM_ARC, PEL_AXIS_LINEAR, 512, 0, 1, 8},
+        material{PEL_FORM_SPHERE, PEL_AXIS_ROOT, 64, 1, 0, 0};
+    const auto expect = [](const Begin& begin, const SceneFile& scene) {
         const PelCurvatureLutDesc c = scene.lut("a", PEL_LUT_CURVATURE)->info.curvature;
         const PelShadowLutDesc s = scene.lut("a", PEL_LUT_SHADOW)->info.shadow;
-        EXPECT_EQ(c.width, 512u);
-        EXPECT_EQ(c.radiusMin, 1);
-        EXPECT_EQ(c.axis, PEL_AXIS_LINEAR);
-        EXPECT_EQ(s.closedEnds, 0u);
-        EXPECT_EQ(s.widthMin, 8);
-        EXPECT_EQ(s.axis, PEL_AXIS_LINEAR);
-        return c.form == PEL_FORM_ARC;
+        EXPECT_EQ(c.form, begin.form);
+        EXPECT_EQ(c.width, begin.width);
+        EXPECT_EQ(c.radiusMin, begin.radiusMin);
+        EXPECT_EQ(c.axis, begin.axis);
+        EXPECT_EQ(s.closedEnds, begin.closedEnds);
+        EXPECT_EQ(s.widthMin, begin.widthMin);
+        EXPECT_EQ(s.axis, begin.axis);
     };
-    const auto material = [](const SceneFile& scene) {
-        const PelCurvatureLutDesc c = scene.lut("a", PEL_LUT_CURVATURE)->info.curvature;
-        const PelShadowLutDesc s = scene.lut("a", PEL_LUT_SHADOW)->info.shadow;
-        EXPECT_EQ(c.width, 64u);
-        EXPECT_EQ(c.radiusMin, 0);
-        EXPECT_EQ(c.axis, PEL_AXIS_ROOT);
-        EXPECT_EQ(s.closedEnds, 1u);
-        EXPECT_EQ(s.widthMin, 0);
-        EXPECT_EQ(s.axis, PEL_AXIS_ROOT);
-        return c.form == PEL_FORM_SPHERE;
-    };
-    EXPECT_TRUE(faceworks(tables("", "")));
-    EXPECT_TRUE(faceworks(tables("version = 1\n", "")));
-    EXPECT_TRUE(material(tables("version = 2\n", "")));
-    EXPECT_TRUE(faceworks(tables("version = 2\n", "preset = \"faceworks\"\n")));
-    EXPECT_TRUE(material(tables("version = 1\n", "preset = \"material\"\n")));
+    expect(faceworks, tables("", ""));
+    expect(faceworks, tables("version = 1\n", ""));
+    expect(material, tables("version = 2\n", ""));
+    expect(faceworks, tables("version = 2\n", "preset = \"faceworks\"\n"));
+    expect(material, tables("version = 1\n", "preset = \"material\"\n"));
     // A scene that was written reads back as it was, whatever its version.
     SceneFile scene = tables("", "");
     writeScene(path("w.toml"), scene);
-    EXPECT_TRUE(faceworks(readScene(path("w.toml"))));
+    expect(faceworks, readScene(path("w.toml")));
 }
 
 TEST_F(SceneFileTest, WhatIsMissingIsNamed) {
