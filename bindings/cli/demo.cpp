@@ -171,7 +171,7 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
 
 void run(Arguments a) {
     if (a.mesh.empty()) a.mesh = standardHead();
-    const std::vector<DemoViewRequest> wanted = requests(a);  // a wrong size is told before any work
+    const std::vector<DemoViewRequest> wanted = requests(a);  // refuses a wrong size before any work
     try {
         std::filesystem::create_directories(a.output);
         io::checkWritable(a.output + "/demo.png");

@@ -26,7 +26,7 @@ void eachPixel(const Image& gbuffer, const SceneFile& scene, PelImageSlot slot, 
         if (ids.empty() || ids[i] > 0) use(&values[i * components], i);
 }
 
-// Bounds of points, those that are no numbers left out.
+// Bounds of points. A point with NaN or Inf is left out.
 struct Extent {
     double low[3], high[3];
     bool any = false;
