@@ -180,7 +180,7 @@ void addBatch(CLI::App& app) {
     batch->add_option("-o,--output", a->folder, "folder for the files; made if need be")->required();
     batch->add_option("--device", a->devices, "device; several share the work")->allow_extra_args(false);
     batch->add_option("-j,--jobs", a->jobs, "tables in flight (default: four per core and device)")
-        ->check(CLI::Range(1, 256));
+        ->check(inRange(1, 256));
     batch->add_flag("--json", a->json, "one JSON object on stdout");
     batch->callback([a] { runBatch(*a); });
 }

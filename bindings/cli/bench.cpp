@@ -191,7 +191,7 @@ void addBench(CLI::App& app) {
                      "seconds that an operation may take to be prepared, and again to be measured, before it "
                      "is given up (120; "
                      "with --quick 60)")
-        ->check(CLI::PositiveNumber);
+        ->check(isPositive());
     command->add_flag("--events", a->events)->group("");
     command->add_option("--without", a->without)->allow_extra_args(false)->group("");
     command->add_flag("--json", a->json, "print one JSON object on standard output");

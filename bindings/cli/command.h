@@ -1,13 +1,13 @@
 // What every subcommand of `pellucid` shares: the device, the report, progress, exit codes.
 #pragma once
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <pellucid/pellucid.hpp>
-#include <span>
 #include <stdexcept>
 #include <string>
+
+#include "values.h"
 
 namespace pellucid::cli {
 
@@ -69,17 +69,6 @@ void addRunOptions(CLI::App& command, Run::Options& options);
 
 // "WxH" to two numbers; throws UsageError.
 void parseSize(const std::string& text, uint32_t& width, uint32_t& height);
-
-// Choices by the names that files have for them (io/choice_keys.h).
-inline CLI::IsMember isOneOf(std::span<const std::string_view> names, std::vector<std::string> more = {}) {
-    std::vector<std::string> all(names.begin(), names.end());
-    all.insert(all.end(), more.begin(), more.end());
-    return CLI::IsMember(all);
-}
-template <class Enum>
-Enum chosen(std::span<const std::string_view> names, const std::string& name) {
-    return Enum(std::find(names.begin(), names.end(), name) - names.begin());
-}
 
 // Each file of this folder adds one subcommand.
 void addDevices(CLI::App& app);

@@ -225,14 +225,14 @@ void addCompare(CLI::App& app) {
     command->add_option("--light", a->light, "number of the light that sub-sets go by")->capture_default_str();
     command
         ->add_option("--unit-mm", a->unit, "millimetres per unit of positions (default: the scene's unit_mm)")
-        ->check(CLI::PositiveNumber);
+        ->check(isPositive());
     command->add_option("--picture", a->picture,
                         "PNG to write: both pictures, and their difference in colours");
     command->add_option("--exposure", a->exposure, "multiplies both pictures in it")->capture_default_str();
     command
         ->add_option("--max-rmse", a->maxRmse,
                      "exit with 1 if the RMSE over all channels is larger, or a value is NaN or Inf")
-        ->check(CLI::NonNegativeNumber);
+        ->check(isNotNegative());
     command->add_flag("--json", a->json, "print one JSON object on standard output");
     command->callback([a] { run(*a); });
 }

@@ -128,11 +128,11 @@ void addCurvature(CLI::App& app) {
     command
         ->add_option("--smooth-radius", a->params.smoothingRadius,
                      "smooths to a radius in the mesh's unit of length, whatever its density")
-        ->check(CLI::NonNegativeNumber);
+        ->check(isNotNegative());
     command
         ->add_option("--smooth-crease", a->creaseDegrees,
                      "with --smooth-radius: degrees between normals that stop it")
-        ->check(CLI::Range(0.0, 180.0));
+        ->check(inRange(0.0, 180.0));
     command
         ->add_option("--smooth-weights", a->smoothingWeights,
                      "with --smooth-radius: how neighbours are weighed")
@@ -149,11 +149,11 @@ void addCurvature(CLI::App& app) {
     command
         ->add_option("--up", a->up,
                      "of the picture: the mesh's up axis, z (it looks to -y) or y (it looks to +z)")
-        ->check(CLI::IsMember({"y", "z"}))
+        ->check(isOneOf({"y", "z"}))
         ->capture_default_str();
     command->add_option("--smooth", a->params.smoothingPasses, "smoothing passes")
         ->capture_default_str()
-        ->check(CLI::Range(0, 1000));
+        ->check(inRange(0, 1000));
     command->add_option("--scale", a->params.scale, "multiplies the result")->capture_default_str();
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });

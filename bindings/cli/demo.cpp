@@ -246,20 +246,20 @@ void addDemo(CLI::App& app) {
                       "of a mesh: turns triangles that face another way than their neighbours");
     command->add_option("--size", a->size, "pixels, WxH")->capture_default_str();
     command->add_option("--height", a->height, "mm that the mesh is scaled to, along its up axis")
-        ->check(CLI::PositiveNumber)
+        ->check(isPositive())
         ->capture_default_str();
     command
         ->add_option("--up", a->up,
                      "the mesh's up axis: z (it looks to -y), y (it looks to +z), or auto: y for OBJ files")
-        ->check(CLI::IsMember({"auto", "y", "z"}))
+        ->check(isOneOf({"auto", "y", "z"}))
         ->capture_default_str();
     command
         ->add_option("--subdivide", a->subdivide,
                      "levels of subdivision (default: 2 for the heads that come with pellucid, 1 for other "
                      "meshes that allow it)")
-        ->check(CLI::Range(0, 4));
+        ->check(inRange(0, 4));
     command->add_option("--smooth", a->smoothing, "smoothing passes of the curvature")
-        ->check(CLI::Range(0, 1000))
+        ->check(inRange(0, 1000))
         ->capture_default_str();
     command->add_flag("!--no-reference", a->reference,
                       "leave the surface integral out, which takes longer than all the rest");

@@ -110,7 +110,7 @@ void addImport(CLI::App& app) {
                      "PROFILE of all materials, or MATERIAL=PROFILE of one, in place of what the file says")
         ->allow_extra_args(false);
     command->add_option("--unit-mm", a->unitMm, "millimetres per unit; glTF's unit is the metre")
-        ->check(CLI::Range(1e-6, 1e9))
+        ->check(inRange(1e-6, 1e9))
         ->capture_default_str();
     command->add_option("--size", a->size,
                         "pixels of the G-buffer, WxH (default: 1024 wide, the camera's shape)");
@@ -121,10 +121,10 @@ void addImport(CLI::App& app) {
     command
         ->add_option("--lights", a->lights,
                      "factor of the lights' brightness: lux and candela count as they are")
-        ->check(CLI::Range(1e-9, 1e9))
+        ->check(inRange(1e-9, 1e9))
         ->capture_default_str();
     command->add_option("--smooth", a->smoothing, "smoothing passes of the curvature")
-        ->check(CLI::Range(0, 1000))
+        ->check(inRange(0, 1000))
         ->capture_default_str();
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });

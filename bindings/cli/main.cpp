@@ -78,8 +78,7 @@ int main(int argc, char** argv) {
         // A mistyped option may be why a required one is missing.
         for (const std::string& word : app.remaining(true))
             if (word.starts_with("-")) return fail(exitWrongUse, unknownOptions(app).c_str());
-        app.exit(e);
-        return exitWrongUse;
+        return fail(exitWrongUse, (e.what() + std::string("\nRun with --help for more information.")).c_str());
     } catch (const UsageError& e) {
         return fail(exitWrongUse, e.what());
     } catch (const InputError& e) {

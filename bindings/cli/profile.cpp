@@ -173,7 +173,7 @@ void addProfile(CLI::App& app) {
     add("show", "Widths, normal blend factors and values of one profile", show, true);
     add("plot", "Draws R and P", plot, true)->add_option("-o,--output", a->output, ".png to write")->required();
     CLI::App* fitting = add("fit", "The best sum of K Gaussians", fit, true);
-    fitting->add_option("--gaussians", a->gaussians, "how many")->check(CLI::Range(1, 12))->capture_default_str();
+    fitting->add_option("--gaussians", a->gaussians, "how many")->check(inRange(1, 12))->capture_default_str();
     fitting->add_option("-o,--output", a->output, "profile file (.toml) to write");
 }
 

@@ -259,11 +259,11 @@ void addReference(CLI::App& app) {
     command
         ->add_option("--diffusion-radius", a->diffusionRadius,
                      "scales the profile to this radius, mm; 0: its own")
-        ->check(CLI::NonNegativeNumber)
+        ->check(isNotNegative())
         ->capture_default_str();
     command
         ->add_option("--unit-mm", a->unit, "millimetres per unit of positions (default: the scene's unit_mm)")
-        ->check(CLI::PositiveNumber);
+        ->check(isPositive());
     command
         ->add_option("--cut", a->cut,
                      "mm per channel where the profile ends, as in renderers that cut it off; 0: nowhere")
@@ -271,20 +271,20 @@ void addReference(CLI::App& app) {
     command
         ->add_option("--subdivide", a->subdivide,
                      "levels of subdivision, done first: Catmull-Clark of OBJ files, Loop of others")
-        ->check(CLI::Range(0, 6))
+        ->check(inRange(0, 6))
         ->capture_default_str();
     command->add_option("--part", a->part, "group of an OBJ file that scatters; the others only cast shadows");
     command
         ->add_option("--finest", a->finest,
                      "length to which triangles are split at the edges of shadows (default: a quarter of the "
                      "narrowest channel's width)")
-        ->check(CLI::NonNegativeNumber);
+        ->check(isNotNegative());
     command
         ->add_option("--coarsest", a->coarsest,
                      "length above which they are split anywhere (default: the widest channel's width)")
-        ->check(CLI::NonNegativeNumber);
+        ->check(isNotNegative());
     command->add_option("--tolerance", a->tolerance, "bound of the error of far light, part of the brightest")
-        ->check(CLI::Range(1e-7, 1.0))
+        ->check(inRange(1e-7, 1.0))
         ->capture_default_str();
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });

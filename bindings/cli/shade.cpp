@@ -196,19 +196,19 @@ void addShade(CLI::App& app) {
     command->add_option("--show", a->show, "what the picture shows, side by side (default: final)")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(CLI::IsMember(showableParts()));
+        ->check(isOneOf(showableParts()));
     command
         ->add_option("--outputs", a->parts,
                      "parts of the picture to write beside it, as OUT_diffuse.exr and so on")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(CLI::IsMember({"diffuse", "deep_scatter", "specular", "thickness", "all"}));
+        ->check(isOneOf({"diffuse", "deep_scatter", "specular", "thickness", "all"}));
     command->add_flag("--stats", a->stats, "count tiles and pixels per feature");
     command
         ->add_option("--scratch-mib", a->scratchMib,
                      "most MiB for blurred normals and filtered shadows; larger frames are shaded in bands. "
                      "0: no limit")
-        ->check(CLI::Range(0, 1 << 30))
+        ->check(inRange(0, 1 << 30))
         ->capture_default_str();
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });

@@ -46,17 +46,16 @@ void writeShadePicture(const std::string& path, const io::Image& gbuffer, const 
 
 void addToneOptions(CLI::App& command, io::ToneMap& tone) {
     command.add_option("--exposure", tone.exposure, "of pictures: multiplies radiance")
-        ->check(CLI::PositiveNumber)
+        ->check(isPositive())
         ->capture_default_str();
-    std::map<std::string, io::ToneCurve> curves;
-    for (size_t i = 0; i < std::size(io::toneCurves); ++i)
-        curves[std::string(io::toneCurves[i])] = io::ToneCurve(i);
     command
-        .add_option("--tonemap", tone.curve,
-                    "of pictures: soft (true to radiance up to 0.8, then a shoulder), none (cut at 1), "
-                    "filmic or agx-like "
-                    "(default: soft)")
-        ->transform(CLI::CheckedTransformer(curves, CLI::ignore_case).description(""))
+        .add_option_function<std::string>(
+            "--tonemap",
+            [&tone](const std::string& curve) { tone.curve = chosen<io::ToneCurve>(io::toneCurves, curve); },
+            "of pictures: soft (true to radiance up to 0.8, then a shoulder), none (cut at 1), "
+            "filmic or agx-like "
+            "(default: soft)")
+        ->check(isOneOf(io::toneCurves).description(""))
         ->option_text("CURVE");
 }
 
