@@ -24,9 +24,9 @@ def material(name, colour, index):
     made.use_nodes = True
     made.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (*colour, 1)
     made.pass_index = index
-    for key in ("pellucid_curvature_lut", "pellucid_shadow_lut"):
-        made[key] = ""  # plain Lambert, to be compared with Blender's
     made["pellucid_preset"] = "skin"
+    made["pellucid_profile"] = ""  # no tables: plain Lambert, to be compared with Blender's
+    made["pellucid_deep_scatter_radius"] = 0.5
     made["pellucid_specular"] = 0.0
     made["pellucid_deep_scatter_color"] = [0.0, 0.0, 0.0]
     return made

@@ -86,7 +86,9 @@ TEST_F(BlenderScript, ABlendFileGivesBlendersLambertPicture) {
         io::SceneFile scene = io::readScene(folder + "/scene.toml");
         ASSERT_EQ(scene.lights.size(), 1u);
         ASSERT_EQ(scene.materials.size(), 2u);
-        EXPECT_FLOAT_EQ(scene.materials[0].material.diffusionRadius, 0.27f) << "a unit is a centimetre there";
+        EXPECT_FLOAT_EQ(scene.unitMm, 10) << "a unit is a centimetre there";
+        EXPECT_FLOAT_EQ(scene.materials[0].material.deepScatterNormalOffset, 0.02f);
+        EXPECT_FLOAT_EQ(scene.materials[0].material.deepScatterRadius, 0.5f) << "a custom property counts";
         // The world: radiance 0.5 + 0.5 (0.6 x + 0.8 z) in red. Irradiance / pi keeps the first order by two
         // thirds.
         const double y0 = std::sqrt(4 * M_PI), y1 = std::sqrt(4 * M_PI / 3);
@@ -206,6 +208,14 @@ TEST_F(BlenderScript, AMeshFileScatters) {
             high = std::max(high, p[3 * i + 2]);
         }
     EXPECT_GT(covered, 1000u);
+    // Skin by the tables that follow from its profile, none of an older format.
+    const io::SceneFile scene = io::readScene(path("out/scene.toml"));
+    EXPECT_TRUE(contains(read(path("out/scene.toml")), "\nversion = 2\n"));
+    EXPECT_TRUE(scene.luts.empty());
+    ASSERT_EQ(scene.materials.size(), 1u);
+    EXPECT_EQ(scene.materials[0].profile, "skin");
+    EXPECT_EQ(scene.materials[0].material.scattering, PEL_SCATTERING_PREINTEGRATED);
+    EXPECT_EQ(scene.materials[0].material.shadowFilterWidth, 0) << "follows from the profile";
     // cos(20 degrees) of 10 mm, the height of which is 19.4 mm, up along z; within a pixel.
     EXPECT_NEAR(high, 9.4, 0.5);
     EXPECT_NEAR(low, -10, 0.5);

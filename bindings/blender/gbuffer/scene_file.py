@@ -5,9 +5,9 @@ import os
 from . import principled
 from .fault import warn
 
-# Lengths of the defaults, in millimetres.
-SKIN = {"diffusion_radius": 2.7, "shadow_filter_width": 8.0, "deep_scatter_radius": 6.0, "deep_scatter_normal_offset": 0.2}
-OTHERS = {"deep_scatter_color": (0.7, 0.16, 0.05), "specular": 0.35}
+# The library's skin by its tables. Lengths in millimetres; those of the tables follow from the profile.
+SKIN = {"profile": "skin", "scattering": "preintegrated", "deep_scatter_color": (0.7, 0.16, 0.05), "specular": 0.35}
+SKIN_LENGTHS = {"deep_scatter_radius": 6.0, "deep_scatter_normal_offset": 0.2}
 EYES = {"scattering": "none", "thickness_taps": 0}  # the sclera; its gloss is that of the film of tears
 PLAIN = {"scattering": "none", "thickness_taps": 0}
 PREFIX = "pellucid_"  # custom properties of a Blender material that set a key of [[material]]
@@ -34,25 +34,21 @@ def comment(name):
     return "# " + "".join(c if c.isprintable() else " " for c in name)
 
 
-def keys_of(surface, preset, unit, folder, extents, curvature):
+def keys_of(surface, preset, unit, folder, extents):
     """Of [[material]], by what was chosen for it."""
     if preset == principled.EYE:
         keys = dict(EYES)
     elif preset == principled.PLAIN:
         keys = {**PLAIN, **surface.keys}
     elif preset == principled.SKIN:
-        keys = {key: length / unit for key, length in SKIN.items()}
-        keys.update(OTHERS)
-        keys["shadow_lut"] = "skin"
-        if curvature:
-            keys["curvature_lut"] = "skin"
+        keys = {**SKIN, **{key: length / unit for key, length in SKIN_LENGTHS.items()}}
     else:
         name = preset
         if preset == "own":
             name = principled.file_name(surface.name)
             with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                 file.write(principled.profile_text(surface, unit))
-        keys = {"profile": name, "scattering": "auto", "deep_scatter_normal_offset": SKIN["deep_scatter_normal_offset"] / unit, **surface.keys}
+        keys = {"profile": name, "scattering": "auto", "deep_scatter_normal_offset": SKIN_LENGTHS["deep_scatter_normal_offset"] / unit, **surface.keys}
     if extents and preset not in (principled.EYE, principled.PLAIN):
         keys["thickness_filter_radius"] = 3 / unit / max(extents)  # 3 mm
     return keys
@@ -68,7 +64,7 @@ def write(path, unit, camera, lamps, sky, materials, eyes, curvature, fallback):
     lines = [
         "# Written by bindings/blender/render_gbuffer.py. Axes: Blender's world, Z up. Lengths: Blender units,",
         f"# of {unit:g} mm each.",
-        "version = 1",
+        "version = 2",
         f"unit_mm = {number(unit)}",
         "blur_normals = 1",
         "",
@@ -110,16 +106,12 @@ def write(path, unit, camera, lamps, sky, materials, eyes, curvature, fallback):
     for id_, material, surface in materials:
         if material.name in of_eyes:
             lines += ["", "[[eye]]", f"material = {id_}", *(f"{key} = {value(v)}" for key, v in of_eyes[material.name].items())]
-        keys = keys_of(surface, chosen[id_], unit, os.path.dirname(path), extents, curvature)
+        keys = keys_of(surface, chosen[id_], unit, os.path.dirname(path), extents)
         for name in material.keys():
             if name.startswith(PREFIX) and not name.startswith("pellucid_eye") and name != principled.PRESET:
                 own = material[name]
                 keys[name[len(PREFIX) :]] = own if isinstance(own, (int, float, str)) else tuple(own)
         lines += ["", "[[material]]  " + comment(material.name), f"id = {id_}"]
         lines += [f"{key} = {value(v)}" for key, v in keys.items() if v != ""]
-    if principled.SKIN in chosen.values():
-        if curvature:
-            lines += ["", "[[curvature_lut]]  # in millimetres, as it stands", 'name = "skin"']
-        lines += ["", "[[shadow_lut]]", 'name = "skin"']
     with open(path, "w", encoding="utf-8") as file:
         file.write("\n".join(lines) + "\n")

@@ -35,7 +35,7 @@ def scene_text(session: Session, look: Look, width: int, height: int) -> str:
     """The scene file of the picture; floats keep their bits."""
     eye, _ = session.camera(width / height)
     profile = "profile.toml" if look.profile == "custom" else look.profile
-    text = _lines(version=1, unit_mm=float(session.mm), target_error=float(np.float32(look.target_error))) + "\n[channels]\n"
+    text = _lines(version=2, unit_mm=float(session.mm), target_error=float(np.float32(look.target_error))) + "\n[channels]\n"
     for key, name, components in (("material", "Id", "I"), ("position", "Position", "XYZ"), ("normal_geometric", "NormalGeometric", "XYZ"),
                                   ("normal_shading", "NormalShading", "XYZ"), ("curvature", "Curvature", "V"), ("albedo", "Albedo", "RGB"),
                                   *([("uv", "Uv", "XY")] if look.method == "texture" else [])):
