@@ -52,6 +52,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
      {"kernels/shared", "host/include/pellucid", "host/cl", "host/io", "host/sample", "bindings/bench",
       "tests/reference"}},
     {"tests/reference", {}},
+    {"tests/windows", {"host/io", "host/system", "tests"}},
 };
 
 const fs::path root = PELLUCID_SOURCE_DIR;
