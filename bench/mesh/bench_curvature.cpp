@@ -199,7 +199,7 @@ BENCHMARK(edgeBaseline)
     ->UseRealTime();
 BENCHMARK(estimatorDevice)
     ->ArgNames({"vertices", "order", "estimator"})
-    ->ArgsProduct({{100000, 1000000}, {0, 1}, {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}})
+    ->ArgsProduct({{100000, 1000000}, {0, 1, 2}, {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "mesh/two_ring.h"
 #include "shared/choices.h"
 
 namespace pel {
@@ -9,25 +10,6 @@ namespace {
 
 // What the kernel calls the quantities.
 #define NUMBER(name, number, key) {"PEL_QUANTITY_" #name, #number},
-
-const char* estimatorKernel(PelCurvatureEstimator estimator) {
-    return estimator == PEL_CURVATURE_EDGE     ? "curvature_edge"
-           : estimator == PEL_CURVATURE_TENSOR ? "curvature_tensor"
-                                               : "curvature_quadric";
-}
-
-// What the quadric estimator must know about the neighbours of neighbours. Made at the first call.
-void linkRings(MeshTopology& topology, const cl::Program& program) {
-    const cl::Memory& links =
-        topology.scratch(MeshTopology::scratchLinks, topology.ringEntries() * sizeof(uint32_t));
-    const cl::Memory& rounds =
-        topology.scratch(MeshTopology::scratchRounds, topology.slots() * sizeof(uint32_t));
-    if (topology.linked) return;
-    cl::Launch launch(program, "mesh_links");
-    launch.arg(topology.slots()).arg(topology.slices()).arg(topology.rings()).arg(links).arg(rounds);
-    topology.device().launch(launch, over(topology.slots()));
-    topology.linked = true;
-}
 
 // Beside what estimators have counted in `memory`.
 MeshCounts countFaults(MeshTopology& topology, const VertexView& positions, const VertexView& given,
@@ -96,7 +78,8 @@ uint32_t planesOf(PelCurvatureQuantity quantity) {
 }
 
 uint32_t planeStrideOf(const MeshTopology& topology) {
-    return (topology.slots() + PEL_MESH_LANES - 1) / PEL_MESH_LANES * PEL_MESH_LANES;  // whole slices are written
+    // Whole slices are written, of either kind.
+    return (topology.slots() + PEL_POINT_LANES - 1) / PEL_POINT_LANES * PEL_POINT_LANES;
 }
 
 cl::Defines passDefines(const MeshTopology& topology, const PelCurvatureParams& params, uint32_t stride) {
@@ -109,30 +92,46 @@ cl::Defines passDefines(const MeshTopology& topology, const PelCurvatureParams& 
             {"PEL_WIDTH", std::to_string(width(topology.device()))}};
 }
 
+namespace {
+
+void estimateQuadric(MeshTopology& topology, const cl::Defines& common, const SlotData& data,
+                     const cl::Memory& planes, const Rows& rows, const cl::Memory& counts) {
+    cl::Defines defines = common;
+    const uint32_t lanes = rows.list ? width(topology.device()) : topology.device().info().mathWidth;
+    defines["PEL_WIDTH"] = std::to_string(lanes);
+    // In one program, for each one costs a CPU's compiler a tenth of a second before its first kernel.
+    const cl::Program program =
+        topology.device().programs().get({{"mesh/curvature_quadric.cl", "mesh/two_ring.cl"}, defines});
+    const MeshTopology::TwoRings& lists = twoRings(topology, program);
+    cl::Launch estimate(program, "curvature_quadric");
+    rowArguments(topology, estimate, rows);
+    estimate.arg(topology.slices()).arg(topology.rings());
+    estimate.arg(data.positions.memory).arg(data.positions.layout.offset);
+    estimate.arg(data.normals.memory).arg(data.normals.layout.offset).arg(planeStrideOf(topology)).arg(planes);
+    estimate.arg(lists.starts).arg(lists.points).arg(lists.rounds).arg(counts);
+    launchRows(topology, estimate, rows, lanes);
+}
+
+}  // namespace
+
 void estimateCurvature(MeshTopology& topology, const PelCurvatureParams& params, const SlotData& data,
                        const cl::Memory& planes, const Rows& rows, const cl::Memory& counts) {
     cl::Defines defines = passDefines(topology, params, data.stride);
     defines["PEL_MESH_LISTED"] = listed(rows);
-    const char* kernel = estimatorKernel(params.estimator);
     const bool edge = params.estimator == PEL_CURVATURE_EDGE;
     if (!edge) {  // stored quantity and mapping do not change these programs
         defines.erase("PEL_MESH_MAPPED");
         defines["PEL_MESH_RUNS"] = "0";  // they compute much more than they read
         defines.erase("PEL_MESH_QUANTITY");
     }
-    cl::ProgramKey key{{text("mesh/", edge ? "curvature" : kernel, ".cl")}, defines};
-    // In one program, for each one costs a CPU's compiler a tenth of a second before its first kernel.
-    if (params.estimator == PEL_CURVATURE_QUADRIC) key.files.push_back("mesh/mesh_links.cl");
-    const cl::Program program = topology.device().programs().get(key);
-    cl::Launch estimate(program, kernel);
+    if (params.estimator == PEL_CURVATURE_QUADRIC)
+        return estimateQuadric(topology, defines, data, planes, rows, counts);
+    cl::Launch estimate(
+        topology.device().programs().get(edge ? "mesh/curvature.cl" : "mesh/curvature_tensor.cl", defines),
+        edge ? "curvature_edge" : "curvature_tensor");
     ringArguments(topology, estimate, rows);
     estimate.arg(data.positions.memory).arg(data.positions.layout.offset);
     estimate.arg(data.normals.memory).arg(data.normals.layout.offset).arg(planeStrideOf(topology)).arg(planes);
-    if (params.estimator == PEL_CURVATURE_QUADRIC) {
-        linkRings(topology, program);
-        estimate.arg(topology.scratch(MeshTopology::scratchLinks, 0));
-        estimate.arg(topology.scratch(MeshTopology::scratchRounds, 0)).arg(counts);
-    }
     launchRows(topology, estimate, rows, width(topology.device()));
 }
 

@@ -53,8 +53,6 @@ class MeshTopology final : public Object {
         scratchFactors,
         scratchSum,
         scratchNormals,
-        scratchLinks,
-        scratchRounds,
         scratchCount
     };
     std::unique_lock<std::mutex> lock() { return std::unique_lock(mutex_); }
@@ -68,8 +66,10 @@ class MeshTopology final : public Object {
         float most = 0, middle = 0;
     };
     DiffusionRates diffusionRates[2];
-    // Whether links and rounds (mesh_links.cl) are in their scratch memory, or queued. Guarded by lock().
-    bool linked = false;
+    // Starts, points and rounds of the two-rings (shared/mesh.h), made or queued; empty: not yet. Guarded by lock().
+    struct TwoRings {
+        cl::Memory starts, points, rounds;
+    } twoRings;
 
     explicit MeshTopology(Ref<Device> device) : Object(kind), device_(std::move(device)) {}
 

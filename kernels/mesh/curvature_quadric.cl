@@ -11,8 +11,8 @@
 // quadratic ones, the more, the longer the cells are. The plane must touch the surface for that: the slope of
 // the ring, unless it is small, is taken off first, and the bending fades out where the ring is still steep.
 //
-// The two-ring is walked as the rings of the ring. Where those are closed, their walks begin after the slot's
-// own neighbours and leave out the last vertex, with which the next walk begins, so each vertex of the
+// The two-ring is a list, made once from the rings of the ring (two_ring.cl). Where those are closed, their walks begin after the
+// slot's own neighbours and leave out the last vertex, with which the next walk begins, so each vertex of the
 // two-ring counts once. Some count several times: at borders; where triangles are not consistently oriented;
 // and the one vertex behind a neighbour with four neighbours, which is kept although the next walk begins
 // with it (on meshes of four and eight neighbours that takes up to a sixth off the error).
@@ -23,48 +23,19 @@
 // be off by more than that allows, the fit is done again too; if that does not help, to the rings of all these points.
 //
 // Of a ring with many neighbours (the hub of a fan, seen from its rim) only the nearest on either side are
-// walked.
+// in the list.
 //
 // What the points leave open (fewer than nine, all on a line) a ridge decides, towards a quadric and then a plane; a
 // term whose pivot is lost to rounding is dropped. The result is always finite. Such slots are counted.
 //
-// Inputs: position (length) and unit normal of each slot, one-rings (shared/mesh.h), links and rounds (mesh_links.cl).
+// Inputs: position (length) and unit normal of each slot, one-rings, and points of the two-ring (shared/mesh.h).
 // Output: lib/mesh/principal.clh; counts->lowDegreeFits, where counts is not NULL.
 //
-// One work-item: PEL_WIDTH slots.
+// One work-item: PEL_WIDTH slots, 16 of them too.
 //
-// Variants: PEL_MESH_STRIDE, PEL_MESH_RUNS (lib/mesh/mesh_slots.clh), PEL_MESH_PLANES (lib/mesh/principal.clh).
+// Variants: PEL_MESH_STRIDE (lib/mesh/mesh_slots.clh), PEL_MESH_PLANES (lib/mesh/principal.clh).
 
-#include "mesh/quadric_walk.clh"
-
-// From the moments of points to coordinates in which these are WIDE_SPREAD2 away in the mean, of the lanes in `wanted`; those that
-// have such.
-inline maskw widenChart(Chart* chart, const Moments* m, maskw wanted) {
-    const floatw spread2 = (m->uu + m->vv) / m->weight;
-    wanted &= finitew(spread2) & (spread2 > 0.0f);
-    const floatw unit2 = WIDE_SPREAD2 / selectw((floatw)(1.0f), spread2, wanted), part = unit2 / m->weight;
-    Chart other = *chart;
-    shapeChart(&other, m->uu * part, m->uv * part, m->vv * part,
-               selectw((floatw)(0.0f), m->nn * part, chart->replaced), WIDE_SIZE);
-    chart->xx = selectw(chart->xx, other.xx, wanted), chart->xy = selectw(chart->xy, other.xy, wanted);
-    chart->yy = selectw(chart->yy, other.yy, wanted), chart->round = selectw(chart->round, other.round, wanted);
-    chart->scale = selectw(chart->scale, chart->scale * sqrt(unit2), wanted);
-    chart->farthest2 = WIDE_FARTHEST2;
-    return wanted;
-}
-
-// Whether rounding of positions moves H by too much.
-inline maskw isNoisy(const Fit* fit, const Chart* chart) {
-    const floatw x = chart->n.x * chart->origin.x, y = chart->n.y * chart->origin.y,
-                 z = chart->n.z * chart->origin.z;
-    const floatw unit = chart->reach * chart->scale, amplified = fit->noise * unit * unit;
-    const floatw noise = amplified * ROUNDING * sqrt(fma(x, x, fma(y, y, z * z))) / chart->reach;
-    const floatw fxx = fit->right[2], fxy = fit->right[3], fyy = fit->right[4];
-    const floatw uu = chart->xx * fma(chart->xx, fxx, 2.0f * chart->xy * fxy) + chart->xy * chart->xy * fyy;
-    const floatw uv = chart->yy * fma(chart->xx, fxy, chart->xy * fyy), vv = chart->yy * chart->yy * fyy;
-    const floatw bent = unit * sqrt(0.5f * fma(uu, uu, fma(2.0f * uv, uv, vv * vv)));
-    return (noise > NOISE_LEAST) & (noise > NOISE_SHARE * bent) & (amplified > NOISE_REGULAR);
-}
+#include "mesh/quadric_again.clh"
 
 // How many lanes of the `slots` that begin at `first` are set.
 inline uint countLanes(maskw mask, uint first, uint slots) {
@@ -72,78 +43,68 @@ inline uint countLanes(maskw mask, uint first, uint slots) {
 #if PEL_WIDTH == 1
     return one;
 #else
-    const uint4 four = one.lo + one.hi;
+#if PEL_WIDTH == 16
+    const uint8 eight = one.lo + one.hi;
+#else
+    const uint8 eight = one;
+#endif
+    const uint4 four = eight.lo + eight.hi;
     const uint2 two = four.lo + four.hi;
     return two.x + two.y;
 #endif
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvature_quadric(
-    uint slots, uint listed, __global const uint* list, __global const uint* slices,
-    __global const uint* rings, __global const uint* runs, __global const float* positions, uint positionOffset,
+    uint slots, uint listed, __global const uint* slicesWanted, __global const uint* slices,
+    __global const uint* rings, __global const float* positions, uint positionOffset,
     __global const float* normals, uint normalOffset, uint planeStride, __global float* planes,
-    __global const uint* links, __global const uint* rounds, __global MeshCounts* counts) {
-    const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, list);
+    __global const uint* starts, __global const uint* points, __global const uint* rounds,
+    __global MeshCounts* counts) {
+    const uint first = meshSlot(get_global_id(0) * PEL_WIDTH, slots, listed, slicesWanted);
     if (first >= slots) return;
-    RingCursor ring = ringBegin(first, slots, slices);
+    const Points list = pointsBegin(first, slots, starts, rounds);
     positions += positionOffset;
     normals += normalOffset;
     Chart chart;
-    chart.last = ring.last;
+    chart.last = list.last;
     chart.replaced = 0;
-    const SlotFrame frame = slotFrame(&ring, positions, normals);
+    const SlotFrame frame = slotFrame(list.last, list.self, positions, normals);
     chart.origin = frame.origin, chart.n = frame.n, chart.u = frame.u, chart.v = frame.v;
-    maskw spread = scaleChart(&chart, ring, rings, runs, positions) & frame.sound;
-    const maskw doubtful = spread & chart.doubtful;
-    if (anyw(doubtful)) {
-        const Vec3w mean = ringNormal(ring, rings, runs, normals);
-        const maskw wrong = doubtful & (dot3(mean, chart.n) < WRONG_NORMAL);
-        if (anyw(wrong)) {
-            chart.replaced = wrong;
-            orientChart(&chart, select3(chart.n, mean, wrong));
-            spread = scaleChart(&chart, ring, rings, runs, positions) & frame.sound;
-        }
+    maskw spread;
+    for (int again = 0; again < 2; ++again) {
+        spread = scaleChart(&chart, &list, points, positions) & frame.sound;
+        const maskw doubtful = spread & chart.doubtful;
+        if (again || !anyw(doubtful)) break;
+        const Vec3w mean = ringNormal(&list, points, normals);
+        chart.replaced = doubtful & (dot3(mean, chart.n) < WRONG_NORMAL);
+        if (!anyw(chart.replaced)) break;
+        orientChart(&chart, select3(chart.n, mean, chart.replaced));
     }
 
     Fit fit;
-    Moments moments;
-    const Walk intoFit = {slices, rings, runs, links, rounds, positions, &chart, &fit, 0, 0};
-    floatw best[5];
-    maskw poor = spread, low = spread, moved = spread;
-    for (int attempt = 0; attempt < 3; ++attempt) {
-#pragma unroll
-        for (int i = 0; i < MONOMIALS; ++i) fit.moments[i] = 0.0f;
-#pragma unroll
-        for (int i = 0; i < TERMS; ++i) fit.right[i] = 0.0f;
-        fit.weight = fit.weight2 = fit.ones[0] = fit.ones[1] = 0.0f;
-        if (attempt < 2)
-            walkPoints(&intoFit, ring, poor);
-        else
-            walkFurther(&intoFit, ring, poor);
-        assemble(&fit);
-        const maskw unsure = solve(&fit, &chart);
-#pragma unroll
-        for (int i = 0; i < 5; ++i) best[i] = attempt ? selectw(best[i], fit.right[i], poor) : fit.right[i];
-        low = selectw(low, fit.low, poor) & spread;
-        const maskw noisy = isNoisy(&fit, &chart);
-        // What a ridge decides is not moved by noise, and not right for that.
-        poor &= attempt ? noisy | (unsure & moved) : noisy | unsure | (chart.round < LEAST_ROUND);
-        moved = noisy;
-        if (attempt == 2 || !anyw(poor)) break;
-        moments.uu = moments.uv = moments.vv = moments.nn = 0.0f, moments.weight = 1e-20f;
-        const Walk intoMoments = {slices,    rings,  runs, links,    rounds,
-                                  positions, &chart, 0,    &moments, attempt};
-        if (attempt)
-            walkFurther(&intoMoments, ring, poor);
-        else
-            walkPoints(&intoMoments, ring, poor);
-        poor = widenChart(&chart, &moments, poor);
+    clearFit(&fit);
+    for (uint row = list.row; row < list.end; ++row) {
+        const Slots at = pointsAt(&list, row, points);
+        addPoint(&fit, at, spread & (at.each != list.self.each), &chart, positions);
     }
+    assemble(&fit);
+    const maskw unsure = solve(&fit, &chart), noisy = isNoisy(&fit, &chart);
+    Result best = resultOf(&fit);
+    const maskw poor = spread & (noisy | unsure | (chart.round < LEAST_ROUND));
+    if (anyw(poor)) {
+        // Copies, so that what the first fit uses stays in registers.
+        const Lists lists = {slices, rings, points, rounds, positions};
+        const Points copy = list;
+        Chart wide = chart;
+        Result other = best;
+        fitAgain(&lists, &copy, &wide, &other, poor, noisy);
+        chart = wide, best = other;
+    }
+    const maskw low = spread & best.low;
     if (counts && anyw(low)) atomic_add(&counts->lowDegreeFits, countLanes(low, first, slots));
 
     // Back to derivatives of the height, in units of the reach, by the tangent vectors.
-    const floatw fx = best[0], fxx = best[2], fxy = best[3];
-    const floatw fy = best[1], fyy = best[4];
+    const floatw fx = best.x, fy = best.y, fxx = best.xx, fxy = best.xy, fyy = best.yy;
     const floatw du = chart.su + fma(chart.xx, fx, chart.xy * fy), dv = fma(chart.yy, fy, chart.sv);
     const floatw duu = chart.xx * fma(chart.xx, fxx, 2.0f * chart.xy * fxy) + chart.xy * chart.xy * fyy;
     const floatw duv = chart.yy * fma(chart.xx, fxy, chart.xy * fyy), dvv = chart.yy * chart.yy * fyy;

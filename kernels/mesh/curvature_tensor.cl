@@ -101,7 +101,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
     positions += positionOffset;
     normals += normalOffset;
     const Vec3w zero = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
-    const SlotFrame frame = slotFrame(&ring, positions, normals);
+    const SlotFrame frame = slotFrame(ring.last, ring.self, positions, normals);
     const Vec3w n = frame.n, u = frame.u, v = frame.v;
     const maskw sound = frame.sound;
 

@@ -32,7 +32,17 @@
 // none.
 #define PEL_MESH_NO_RUN 0xffffffffu
 
-#define PEL_MESH_ROUND 0x80000000u  // of a slot's neighbours: they are one closed walk (mesh_links.cl)
+// The quadric estimator reads the two-ring of a slot as a list of points: its neighbours, then theirs (docs/mathematics.md, section
+// 5, says which, and how often). The lists lie as those of the one-rings do, with slices of PEL_POINT_LANES slots and no flags:
+// starts[i] is the first row of slice i. rounds[slot]: the number of neighbours, and flags.
+#define PEL_POINT_LANES 16
+#define PEL_MESH_ROUND 0x80000000u   // the neighbours are one closed walk of more than two
+#define PEL_MESH_BORDER 0x40000000u  // an edge at the slot has one triangle
+#define PEL_MESH_LENGTH 0x0fffffffu
+// The stages of making them (two_ring.cl).
+#define PEL_TWO_RING_LINK 0
+#define PEL_TWO_RING_COUNT 1
+#define PEL_TWO_RING_LIST 2
 
 // Edges whose squared length is below this are too short to measure: their square is not a normal float.
 #define PEL_MESH_MIN_LENGTH2 1.17549435e-38f

@@ -374,8 +374,8 @@ typedef struct PelCurvatureParams {
 
 /* Curvature at each vertex. `positions`, `normals`: xyz float32 per vertex, as many as the topology has; normals are of
  * unit length; NULL: they are made from the positions, as by pelMeshNormals. `curvature`: one float32 per vertex (more for some quantities), 1/length, finite; 0 where nothing
- * could be measured. Signed values are smoothed, then the quantity is taken. With a `report` the call blocks. Same
- * input, same bits. Sources: FaceWorks 1.0; Rusinkiewicz, Estimating Curvatures, 3DPVT 2004. */
+ * could be measured. Signed values are smoothed, then the quantity is taken. With a `report` the call blocks, and so does a topology's first with PEL_CURVATURE_QUADRIC,
+ * which lists its two-rings. Same input, same bits. Sources: FaceWorks 1.0; Rusinkiewicz, Estimating Curvatures, 3DPVT 2004. */
 PEL_API PelError pelMeshCurvature(PelMeshTopology topology, const PelCurvatureParams* params,
                                   const PelVertexView* positions, const PelVertexView* normals,
                                   const PelVertexView* curvature, PelMeshReport* report,
@@ -415,7 +415,7 @@ PEL_API void pelLiveMeshRelease(PelLiveMesh live);
  * update measures everything, and so does one with normals after one without, or the reverse. An update with another
  * `curvature` writes all of it.
  * One asynchronous submission; the first with a smoothing radius measures the mesh, which blocks, unless
- * params.smoothingStages is given, and so does the first with `changed`, which reads the neighbour lists back. Errors:
+ * params.smoothingStages is given; so do a topology's first with PEL_CURVATURE_QUADRIC, and the first with `changed`, which reads the neighbour lists back. Errors:
  * PEL_ERROR_INVALID_ARGUMENT for a range that leaves the mesh. */
 PEL_API PelError pelLiveMeshUpdate(PelLiveMesh live, const PelVertexView* positions,
                                    const PelVertexView* normals, const PelVertexView* curvature,

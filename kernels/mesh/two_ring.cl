@@ -1,0 +1,124 @@
+// The two-ring of each slot as a list of points (shared/mesh.h), so that the quadric estimator reads one list instead of walking
+// the rings of a ring. It runs once for a topology, in three stages; one kernel, because each costs a CPU's compiler a tenth of a
+// second.
+//
+// PEL_TWO_RING_LINK finds the place of each slot in its neighbours' rings. Inputs: one-rings. Outputs: links, parallel to the entries
+// of the rings: the row, counted from the first of its slice, at which this slot is in that neighbour's ring (the last one if there
+// are several; 0 for fillers); rounds (shared/mesh.h).
+// Each edge is looked up in the shorter one of its two rings, by the slot that has the longer one: the hub of
+// a fan has as many neighbours as the fan has triangles.
+// PEL_TWO_RING_COUNT writes how many points each slot has, PEL_TWO_RING_LIST the points.
+//
+// One work-item: one slot. Variants: none.
+
+#include "shared/mesh.h"
+
+// Of longer rings than twice this and four, so many neighbours of neighbours are points to either side (curvature_quadric.cl).
+#define NEAR_STEPS 16
+
+inline size_t entryAt(__global const uint* slices, uint slot, uint row) {
+    return (size_t)(slices[slot / PEL_MESH_LANES] + row) * PEL_MESH_LANES + slot % PEL_MESH_LANES;
+}
+
+// Neighbours in a slot's list: it ends with its slice, or with the slot itself.
+inline uint listLength(__global const uint* slices, __global const uint* rings, uint slot, uint most) {
+    const uint rows = min(slices[slot / PEL_MESH_LANES + 1] - slices[slot / PEL_MESH_LANES], most);
+    uint length = 0;
+    while (length < rows && (rings[entryAt(slices, slot, length)] & PEL_MESH_SLOT) != slot) ++length;
+    return length;
+}
+
+// The part of a neighbour's ring that is listed: `count` steps from row `from` on, three rows left out before step `middle`.
+typedef struct Steps {
+    uint length, from, middle, count;
+} Steps;
+
+inline Steps stepsRound(uint round, uint here) {
+    Steps s;
+    s.length = round & PEL_MESH_LENGTH;
+    const int closed = (round & PEL_MESH_ROUND) != 0;
+    // Closed: all but this slot, its two neighbours and the last one; with four in the ring just one is left.
+    s.count = !closed ? s.length : s.length > 4 ? s.length - 4 : s.length == 4;
+    s.from = closed ? here + 2 : 0;
+    s.middle = s.count;
+    if (s.length > 2 * NEAR_STEPS + 4) {
+        // Past the part that is left out in the middle of a long one: this slot and its two neighbours.
+        const uint before = here - min(here, (uint)NEAR_STEPS);
+        s.from = closed ? here + (here < NEAR_STEPS + 1 ? s.length : 0) - 1 - NEAR_STEPS : before;
+        s.count = closed ? 2 * NEAR_STEPS : min((uint)(2 * NEAR_STEPS + 1), s.length - before);
+        s.middle = closed ? NEAR_STEPS : s.count;
+    }
+    return s;
+}
+
+inline void linkSlot(uint slot, uint slots, __global const uint* slices, __global const uint* rings,
+                     __global uint* links, __global uint* rounds) {
+    if (slot >= slots) {
+        rounds[slot] = 0;
+        return;
+    }
+    const uint length = listLength(slices, rings, slot, 0xffffffffu);
+    uint walks = 0, open = 0;
+    for (uint row = 0; row < length; ++row) {
+        const uint entry = rings[entryAt(slices, slot, row)], near_ = entry & PEL_MESH_SLOT;
+        walks += (entry & PEL_MESH_START) != 0;
+        open |= entry & PEL_MESH_SINGLE;
+        const uint others = listLength(slices, rings, near_, length + 1);
+        if (others > length || (others == length && near_ > slot)) continue;  // left to the neighbour
+        for (uint other = 0; other < others; ++other) {
+            const size_t at = entryAt(slices, near_, other);
+            if ((rings[at] & PEL_MESH_SLOT) != slot) continue;
+            // In both directions. Of several places the last one stays, because rows ascend.
+            links[at] = row;
+            links[entryAt(slices, slot, row)] = other;
+        }
+    }
+    for (uint row = length; row < slices[slot / PEL_MESH_LANES + 1] - slices[slot / PEL_MESH_LANES]; ++row)
+        links[entryAt(slices, slot, row)] = 0;
+    rounds[slot] =
+        length | (walks == 1 && !open && length > 2 ? PEL_MESH_ROUND : 0) | (open ? PEL_MESH_BORDER : 0);
+}
+
+// Without starts the points are only counted.
+inline void listPoints(uint slot, uint slots, __global const uint* slices, __global const uint* rings,
+                       __global const uint* links, __global const uint* rounds, __global uint* counts,
+                       __global const uint* starts, __global uint* points) {
+    const uint length = rounds[slot] & PEL_MESH_LENGTH;
+    size_t to = starts ? (size_t)starts[slot / PEL_POINT_LANES] * PEL_POINT_LANES + slot % PEL_POINT_LANES : 0;
+    uint count = length;
+    for (uint row = 0; starts && row < length; ++row, to += PEL_POINT_LANES)
+        points[to] = rings[entryAt(slices, slot, row)] & PEL_MESH_SLOT;
+    for (uint row = 0; row < length; ++row) {
+        const size_t at = entryAt(slices, slot, row);
+        const uint near_ = rings[at] & PEL_MESH_SLOT;
+        const Steps s = stepsRound(rounds[near_], links[at]);
+        for (uint step = 0; step < s.count; ++step) {
+            const uint place = s.from + step + (step < s.middle ? 0 : 3);
+            const uint far_ =
+                rings[entryAt(slices, near_, place < s.length ? place : place - s.length)] & PEL_MESH_SLOT;
+            if (far_ == slot) continue;
+            ++count;
+            if (!starts) continue;
+            points[to] = far_;
+            to += PEL_POINT_LANES;
+        }
+    }
+    if (!starts) {
+        counts[slot] = count;
+        return;
+    }
+    const uint rows = starts[slot / PEL_POINT_LANES + 1] - starts[slot / PEL_POINT_LANES];
+    for (uint row = count; row < rows; ++row, to += PEL_POINT_LANES) points[to] = min(slot, slots - 1);
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void two_ring(
+    uint stage, uint slots, __global const uint* slices, __global const uint* rings, __global uint* links,
+    __global uint* rounds, __global uint* counts, __global const uint* starts, __global uint* points) {
+    const uint slot = get_global_id(0);
+    if (slot >= (slots + PEL_POINT_LANES - 1) / PEL_POINT_LANES * PEL_POINT_LANES) return;
+    if (stage == PEL_TWO_RING_LINK)
+        linkSlot(slot, slots, slices, rings, links, rounds);
+    else
+        listPoints(slot, slots, slices, rings, links, rounds, counts, stage == PEL_TWO_RING_LIST ? starts : 0,
+                   points);
+}
