@@ -131,6 +131,11 @@ bool filtersShadow(const ShaderState& state, const ShaderLight& light) {
            (light.params.shadowFilterTexels > 0 || takesSharpShadows(state));
 }
 
+bool filtersWide(const ShaderState& state, const ShaderLight& light) {
+    return light.params.shadowFilterTexels > 0 &&
+           std::ranges::any_of(state.materials, [](const auto& m) { return !readsIrradiance(m.second); });
+}
+
 uint32_t formFeatures(const PelLight& l) {
     uint32_t features = 0;
     if (isCube(l)) features |= PEL_FEATURE_SHADOW_CUBE;

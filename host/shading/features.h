@@ -16,6 +16,8 @@ uint32_t formFeatures(const PelLight& light);
 
 // Whether a light's shadow image is made from its shadow map.
 bool filtersShadow(const ShaderState& state, const ShaderLight& light);
+// Whether some material takes what is made of a light's map as a wide shadow; all others take sharp ones.
+bool filtersWide(const ShaderState& state, const ShaderLight& light);
 // Whether a material's diffuse light comes from irradiance per pixel.
 inline bool readsIrradiance(const ShaderMaterial& material) {
     return material.params.scattering != PEL_SCATTERING_PREINTEGRATED;

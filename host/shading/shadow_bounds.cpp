@@ -68,10 +68,7 @@ class ShadowBounds final : public Pass {
 
   private:
     static bool isBounded(const ShaderPlan& plan, const ShaderLight& light) {
-        return !plan.state.options.disableSkipping && !isCube(light.params) &&
-               light.params.shadowFilterTexels > 0 &&
-               std::ranges::any_of(plan.state.materials,
-                                   [](const auto& m) { return !readsIrradiance(m.second); });
+        return !plan.state.options.disableSkipping && !isCube(light.params) && filtersWide(plan.state, light);
     }
 
     Ref<Buffer> bounds_;

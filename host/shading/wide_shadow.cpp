@@ -1,4 +1,5 @@
 // Wide shadows from shadow maps, for lights whose wide shadow the caller did not give.
+#include <algorithm>
 #include <cstddef>
 
 #include "shading/features.h"
@@ -47,7 +48,9 @@ class WideShadow final : public Pass {
     static bool needed(const ShaderPlan& plan) { return plan.features & PEL_FEATURE_FILTER_SHADOW; }
 
     PassScratch scratch(const ShaderPlan& plan) const override {
-        return {plan.filteredLights.size() * sizeof(float), 0, plan.interpolates() ? PEL_BETWEEN_ROWS : 0u};
+        const bool between = std::ranges::any_of(
+            plan.filteredLights, [&](const FilteredLight& f) { return interpolates(plan, f); });
+        return {plan.filteredLights.size() * sizeof(float), 0, between ? PEL_BETWEEN_ROWS : 0u};
     }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
@@ -99,29 +102,34 @@ class WideShadow final : public Pass {
     }
 
     void enqueueAround(PassWork& work) override {
-        if (work.plan.interpolates()) filter(work, PEL_PIXELS_SECOND);
+        for (const FilteredLight& light : work.plan.filteredLights)
+            if (interpolates(work.plan, light)) filter(work, light, PEL_PIXELS_SECOND);
     }
     void enqueue(PassWork& work) override {
-        filter(work, work.plan.interpolates() ? PEL_PIXELS_BETWEEN : PEL_PIXELS_ALL);
+        for (const FilteredLight& light : work.plan.filteredLights)
+            filter(work, light, interpolates(work.plan, light) ? PEL_PIXELS_BETWEEN : PEL_PIXELS_ALL);
     }
 
   private:
-    void filter(PassWork& work, cl_uint pixels) const {
+    // Sharp shadows are not interpolated.
+    static bool interpolates(const ShaderPlan& plan, const FilteredLight& light) {
+        return plan.interpolates() && filtersWide(plan.state, plan.state.lights[light.index]);
+    }
+
+    void filter(PassWork& work, const FilteredLight& filtered, cl_uint pixels) const {
         const ShaderPlan& plan = work.plan;
-        for (const FilteredLight& filtered : plan.filteredLights) {
-            const ShaderLight& light = plan.state.lights[filtered.index];
-            cl::Launch launch(program(), "wide_shadow");
-            launch.arg(work.constants.frameMemory()).arg(work.constants.materials()).arg(work.constants.lights());
-            launch.arg(plan.tileLists).arg(plan.counters);
-            for (PelImageSlot slot :
-                 {PEL_SLOT_MATERIAL, geometricNormalSlot(plan.state), PEL_SLOT_POSITION, PEL_SLOT_DEPTH})
-                launch.arg(memoryOf(plan.state.images[slot]));
-            launch.arg(filtered.constants).arg(cl_uint(filtered.index));
-            for (uint32_t i = 0; i < PEL_CASCADES; ++i)
-                launch.arg(i < cascadesOf(light) ? memoryOf(*shadowCascade(light, i).map) : cl::Memory());
-            launch.arg(plan.bounds).arg(images_->memory()).arg(pixels);
-            work.launch(launch, tileRange(work.device, work.tiles()));
-        }
+        const ShaderLight& light = plan.state.lights[filtered.index];
+        cl::Launch launch(program(), "wide_shadow");
+        launch.arg(work.constants.frameMemory()).arg(work.constants.materials()).arg(work.constants.lights());
+        launch.arg(plan.tileLists).arg(plan.counters);
+        for (PelImageSlot slot :
+             {PEL_SLOT_MATERIAL, geometricNormalSlot(plan.state), PEL_SLOT_POSITION, PEL_SLOT_DEPTH})
+            launch.arg(memoryOf(plan.state.images[slot]));
+        launch.arg(filtered.constants).arg(cl_uint(filtered.index));
+        for (uint32_t i = 0; i < PEL_CASCADES; ++i)
+            launch.arg(i < cascadesOf(light) ? memoryOf(*shadowCascade(light, i).map) : cl::Memory());
+        launch.arg(plan.bounds).arg(images_->memory()).arg(pixels);
+        work.launch(launch, tileRange(work.device, work.tiles()));
     }
 
     Ref<Buffer> images_;  // of one light after another
