@@ -1,14 +1,17 @@
 // What scattering "auto" costs on the demo's key view, against the pre-integrated pass of FaceWorks' preset that filters its own
 // wide shadow: both from a G-buffer and a plain shadow map, one after the other in one run.
 //
-//   sweep_auto_time [REPEATS, 15]
+//   sweep_auto_time [REPEATS, 15] [WAY]
 //
-// Medians of wall clock and of the kernels' time; pixels that were scattered and that were left as they are, and taps for each of
+// Its wide shadow is filtered twice: as the pass does it by default, and at every pixel over all of its texels. WAY: only those whose
+// names have this in them. Medians of wall clock and of the kernels' time; pixels that were scattered and that were left as they are, and taps for each of
 // the former. `pellucid demo -o out/demo` comes first (or PELLUCID_DEMO_DIR).
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
+#include <vector>
 
 #include "demo_files.h"
 #include "shading/shade_frames.h"
@@ -21,6 +24,7 @@ namespace {
 struct Way {
     const char* name;
     bool faceworks;
+    bool exact;  // the wide shadow, at every pixel
     PelScattering scattering;
     Shader shader;
     std::vector<double> wall, device;
@@ -46,7 +50,10 @@ void prepare(const Device& device, const Scene& s, Way& way) {
     set(PEL_SLOT_NORMAL_BLURRED, s.frame.blurred, PEL_FORMAT_RGB32F);
     set(PEL_SLOT_CURVATURE, s.frame.curvature, PEL_FORMAT_R32F);
     PelLight light = s.light;
-    light.shadowFilterTexels = 48;
+    light.shadowFilterTexels = way.exact ? 256 : 48;
+    PelShaderOptions options = pelShaderOptionsDefaults();
+    options.everyPixel = way.exact;
+    way.shader.set(options);
     way.shader.set(std::vector<PelLight>{light}).set(s.camera).set(s.ambient);
     way.shader.set(0, PEL_LIGHT_SHADOW_MAP,
                    imageDesc(Buffer(device, s.frame.map), PEL_FORMAT_R32F, uint32_t(s.frame.mapSize),
@@ -72,11 +79,18 @@ int main(int argc, char** argv) {
     const int repeats = argc > 1 ? std::atoi(argv[1]) : 15;
     const Device device("");
     const auto scene = readDemoView(device, demo::directory(), "key");
-    Way ways[] = {{"faceworks, wide shadow", true, PEL_SCATTERING_PREINTEGRATED, {}, {}, {}},
-                  {"pre-integrated", false, PEL_SCATTERING_PREINTEGRATED, {}, {}, {}},
-                  {"none, sharp shadow", false, PEL_SCATTERING_NONE, {}, {}, {}},
-                  {"screen", false, PEL_SCATTERING_SCREEN, {}, {}, {}},
-                  {"auto", false, PEL_SCATTERING_AUTO, {}, {}, {}}};
+    const std::string only = argc > 2 ? argv[2] : "";
+    std::vector<Way> ways;
+    const auto add = [&](const char* name, bool faceworks, bool exact, PelScattering scattering) {
+        if (std::string(name).find(only) != std::string::npos)
+            ways.push_back({name, faceworks, exact, scattering, {}, {}, {}});
+    };
+    add("faceworks, wide shadow", true, false, PEL_SCATTERING_PREINTEGRATED);
+    add("faceworks, every pixel", true, true, PEL_SCATTERING_PREINTEGRATED);
+    add("pre-integrated", false, false, PEL_SCATTERING_PREINTEGRATED);
+    add("none, sharp shadow", false, false, PEL_SCATTERING_NONE);
+    add("screen", false, false, PEL_SCATTERING_SCREEN);
+    add("auto", false, false, PEL_SCATTERING_AUTO);
     for (Way& way : ways) prepare(device, *scene, way);
     for (int i = 0; i < repeats; ++i)
         for (Way& way : ways) {
