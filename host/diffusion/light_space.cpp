@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "shading/launch_ranges.h"
 #include "shading/mapped_lights.h"
@@ -22,14 +23,18 @@ uint32_t pointsOf(uint32_t level) {
 }  // namespace
 
 // Returns the floats of all of them, and how many texels there are.
-uint64_t LightSpace::layOutLevels(std::vector<LightMap>& maps, bool hidden, uint64_t& seen) {
+uint64_t LightSpace::layOutLevels(std::vector<LightMap>& maps, bool hidden, uint64_t& seen, uint64_t& cells) {
     uint64_t floats = 0;
+    cells = 0;
     seen = PEL_PYRAMID_GUARD;  // vectors read before and after what is set
     for (LightMap& map : maps) {
         PelLightMap& m = map.constants;
         uint32_t width = m.level[0].width, height = m.level[0].height;
         m.seen = uint32_t(seen);
         seen += uint64_t(width) * height;
+        m.cells = uint32_t(cells);
+        cells += uint64_t((width + PEL_LIGHT_CELL - 1) / PEL_LIGHT_CELL) *
+                 ((height + PEL_LIGHT_CELL - 1) / PEL_LIGHT_CELL);
         m.levels = 0;
         for (PelPyramidLevel& level : m.level) {
             const uint32_t stride = (width + 15) / 16 * 16 + 3 * PEL_PYRAMID_GUARD;
@@ -51,13 +56,14 @@ uint64_t LightSpace::layOutLevels(std::vector<LightMap>& maps, bool hidden, uint
 uint64_t LightSpace::bytesFor(const std::vector<ShaderLight>& lights, bool hidden) {
     const float origin[3] = {};
     std::vector<LightMap> maps = lightMaps(lights, origin);
-    uint64_t seen = 0;
-    return maps.empty() ? 0 : layOutLevels(maps, hidden, seen) * sizeof(float) + (seen + 3) / 4 * 4;
+    uint64_t seen = 0, cells = 0;
+    const uint64_t floats = maps.empty() ? 0 : layOutLevels(maps, hidden, seen, cells);
+    return maps.empty() ? 0 : floats * sizeof(float) + (seen + 3) / 4 * 4 + 2 * cells;
 }
 
 void LightSpace::describeLevels() {
-    uint64_t seen = 0;
-    const size_t bytes = layOutLevels(maps_, hidden_, seen) * sizeof(float);
+    uint64_t seen = 0, cells = 0;
+    const size_t bytes = layOutLevels(maps_, hidden_, seen, cells) * sizeof(float);
     std::vector<PelLightMap> now;
     for (const LightMap& map : maps_) now.push_back(map.constants);
     const auto sameLevels = [](const PelLightMap& a, const PelLightMap& b) {
@@ -69,6 +75,12 @@ void LightSpace::describeLevels() {
         pyramid_ = device_->allocate(bytes);
         pyramidBytes_ = bytes;
         device_->fill(pyramid_.get(), 0, bytes, 0);  // no light outside of the maps
+    }
+    const size_t cellBytes = (size_t(cells) + 3) / 4 * 4;
+    if (cellBytes != cellBytes_) {
+        for (cl::Memory& marks : cells_) marks = device_->allocate(cellBytes);
+        cellBytes_ = cellBytes;
+        cellsKnown_ = false;
     }
     const size_t seenBytes = (size_t(seen) + 3) / 4 * 4;
     if (seenBytes != seenBytes_) seen_ = device_->allocate(seenBytes), seenBytes_ = seenBytes;
@@ -149,6 +161,9 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
     };
     device_->fill(counters_.get(), 0, PEL_LIGHT_COUNTERS * sizeof(cl_uint), 0);
     device_->fill(seen_.get(), 0, seenBytes_, 0);
+    if (!cellsKnown_) device_->fill(cells_[0].get(), 0, cellBytes_, ~0u);
+    cellsKnown_ = false;
+    device_->fill(cells_[1].get(), 0, cellBytes_, 0);
     const uint32_t lanes = device_->info().mathWidth;
     for (uint32_t k = 0; k < maps_.size(); ++k) {
         cl::Launch seen(programs[SEEN], "light_seen");
@@ -161,14 +176,18 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
     for (uint32_t k = 0; k < maps_.size(); ++k) {
         const PelLightMap& map = maps_[k].constants;
         cl::Launch texels(programs[TEXELS], "light_texels");
-        texels.arg(mapMemory_).arg(cl_uint(k)).arg(memory(maps_[k].image)).arg(seen_).arg(pyramid_);
+        texels.arg(mapMemory_).arg(cl_uint(k)).arg(memory(maps_[k].image)).arg(seen_);
+        texels.arg(cells_[0]).arg(cells_[1]).arg(pyramid_);
         launch(texels, rows(map.level[0]));
         for (uint32_t level = 1; level < map.levels; ++level) {
             cl::Launch reduce(programs[REDUCE], "light_reduce");
-            reduce.arg(mapMemory_).arg(cl_uint(k)).arg(cl_uint(level)).arg(pyramid_);
+            reduce.arg(mapMemory_).arg(cl_uint(k)).arg(cl_uint(level));
+            reduce.arg(cells_[0]).arg(cells_[1]).arg(pyramid_);
             launch(reduce, rows(map.level[level]));
         }
     }
+    std::swap(cells_[0], cells_[1]);
+    cellsKnown_ = true;
     cl::Launch classify(programs[CLASSIFY], "light_classify");
     classify.arg(screen.frame).arg(screen.pyramid).arg(screen.tables).arg(screen.nodes).arg(screen.tiles);
     classify.arg(mapMemory_).arg(cl_uint(maps_.size())).arg(pyramid_).arg(parts_).arg(counters_);
@@ -177,7 +196,6 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
 
 void LightSpace::enqueueHidden(const ScatterImages& images, const ScreenMemory& screen,
                                std::vector<cl::Event>& events) {
-    device_->fill(hiddenMemory_.get(), 0, hiddenBytes_, 0);  // as the sums
     cl::Launch hidden(device_->programs().get(programs(images)[SCATTER]), "light_hidden");
     hidden.arg(screen.frame)
         .arg(screen.pyramid)

@@ -38,21 +38,23 @@ class LightSpace {
     LightCounts counts();
     static uint64_t bytesFor(const std::vector<ShaderLight>& lights, bool hidden);
     size_t bytes() const {
-        return pyramidBytes_ + seenBytes_ + hiddenBytes_ + maps_.size() * sizeof(PelLightMap);
+        return pyramidBytes_ + seenBytes_ + hiddenBytes_ + 2 * cellBytes_ + maps_.size() * sizeof(PelLightMap);
     }
 
   private:
     void describeLevels();
-    static uint64_t layOutLevels(std::vector<LightMap>& maps, bool hidden, uint64_t& seen);
+    static uint64_t layOutLevels(std::vector<LightMap>& maps, bool hidden, uint64_t& seen, uint64_t& cells);
     cl::Range rows(const PelPyramidLevel& level) const;
 
     Ref<Device> device_;
     std::vector<LightMap> maps_;
     std::vector<PelLightMap> sent_;
     bool empty_ = true, hidden_ = true;
+    bool cellsKnown_ = false;  // whether cells_[0] says what the pyramid holds
     uint32_t mapFormat_ = 0, content_ = 0;
     cl::Memory mapMemory_, pyramid_, seen_, parts_, hiddenMemory_, counters_;
-    size_t pyramidBytes_ = 0, seenBytes_ = 0, partBytes_ = 0, hiddenBytes_ = 0;
+    cl::Memory cells_[2];  // which have flux: before this frame, now
+    size_t pyramidBytes_ = 0, seenBytes_ = 0, partBytes_ = 0, hiddenBytes_ = 0, cellBytes_ = 0;
 };
 
 }  // namespace pel

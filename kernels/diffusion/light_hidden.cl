@@ -1,8 +1,8 @@
 // What the texels of shadow maps that the camera does not see bring to blocks of 2 x 2 pixels, where the screen lacks mass
 // (docs/mathematics.md, section 10, "Light space").
 //
-// Input: the screen's pyramid, its tiles' words, the sums of level 1, what light_classify found, the lights' pyramids. Output: light and mass per block of covered tiles, 0 where
-// they matter to nothing. One work-group takes tiles, one work-item blocks of them. Variants: PEL_HIDDEN is 1.
+// Input: the screen's pyramid, its tiles' words, the sums of level 1, what light_classify found, the lights' pyramids. Output: light and mass per block of tiles that they reach, 0 where
+// they matter to nothing, and 0 in the tiles beside these. One work-group takes tiles, one work-item blocks of them. Variants: PEL_HIDDEN is 1.
 #include "lib/diffusion/levels.clh"
 #include "lib/diffusion/windowed.clh"
 
@@ -47,6 +47,16 @@ static inline bool lightCounts(__global const float* sums, __global const float*
     return most > PEL_HIDDEN_FROM * (most + least);
 }
 
+// Reached tiles interpolate between their blocks and the next ones of their neighbours.
+static inline bool isBesideReached(__global const PelDiffusionFrame* frame, __global const uint* tiles,
+                                   uint tile) {
+    const int x = (int)(tile % frame->tilesX), y = (int)(tile / frame->tilesX);
+    for (int j = max(y - 1, 0); j <= min(y + 1, (int)frame->tilesY - 1); ++j)
+        for (int i = max(x - 1, 0); i <= min(x + 1, (int)frame->tilesX - 1); ++i)
+            if (tiles[j * (int)frame->tilesX + i] & PEL_TILE_HIDDEN) return true;
+    return false;
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_hidden(
     __global const PelDiffusionFrame* frame, __global const float* pyramid,
     __global const PelProfileTable* tables, __global const float* nodes, __global const uint* tiles,
@@ -57,17 +67,16 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     const uint stride = level->stride;
     uint texels = 0, pixels = 0;
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
-        if (!tiles[tile]) continue;
         const bool reached = tiles[tile] & PEL_TILE_HIDDEN;
+        if (!reached && !isBesideReached(frame, tiles, tile)) continue;
         for (uint item = get_local_id(0); item < side * side; item += PEL_DIFFUSION_GROUP) {
             const uint x = tile % frame->tilesX * side + item % side,
                        y = tile / frame->tilesX * side + item / side;
             if (x >= level->width || y >= level->height) continue;
             __global const float* block = pyramid + pyramidRow(level, (int)y) + x;
-            if (!(block[PEL_PLANE_AREA * stride] > 0.0f)) continue;
             float3 light = (float3)(0.0f), mass = (float3)(0.0f), far = (float3)(0.0f);
             const uint id = as_uint(block[PEL_PLANE_ID * stride]);
-            if (reached &&
+            if (reached && block[PEL_PLANE_AREA * stride] > 0.0f &&
                 lightCounts(sums + sumRow(frame, 1, (int)y) + x, block, stride, as_float(change[tile]))) {
                 Place place;
                 place.id = id;

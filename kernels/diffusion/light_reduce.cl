@@ -64,13 +64,27 @@ static inline void storeSpot(Spot sum, Spot seed, size_t at, uint stride, __glob
     storew(p.z, at + PEL_LIGHT_Z * stride, pyramid);
 }
 
+// Whether some cell from texel (left, top) to (right, bottom) has flux, or had it.
+static inline bool cellsMatter(__global const PelLightMap* map, __global const uchar* before,
+                               __global const uchar* now, uint left, uint top, uint right, uint bottom) {
+    const uint across = cellsAcross(map), width = map->level[0].width, height = map->level[0].height;
+    for (uint y = top / PEL_LIGHT_CELL; y * PEL_LIGHT_CELL < min(bottom, height); ++y)
+        for (uint x = left / PEL_LIGHT_CELL; x * PEL_LIGHT_CELL < min(right, width); ++x) {
+            const uint cell = map->cells + y * across + x;
+            if (before[cell] | now[cell]) return true;
+        }
+    return false;
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_reduce(
-    __global const PelLightMap* maps, uint index, uint to, __global float* pyramid) {
+    __global const PelLightMap* maps, uint index, uint to, __global const uchar* before,
+    __global const uchar* now, __global float* pyramid) {
     __global const PelLightMap* map = maps + index;
     __global const PelPyramidLevel *fine = &map->level[to - 1], *coarse = &map->level[to];
     const uint across = (coarse->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
     if (y >= coarse->height) return;
     const uint x = get_global_id(0) % across * PEL_WIDTH, points = to == 1 ? 1 : 2, stride = fine->stride;
+    if (!cellsMatter(map, before, now, x << to, y << to, (x + PEL_WIDTH) << to, (y + 1) << to)) return;
     __global const float* upper = pyramid + lightRow(fine, points, 2 * (int)y) + 2 * x;
     __global const float* lower = pyramid + lightRow(fine, points, 2 * (int)y + 1) + 2 * x;
     const size_t at = lightRow(coarse, 2, (int)y) + x;

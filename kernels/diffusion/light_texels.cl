@@ -1,7 +1,7 @@
 // The finest level of a light's pyramid (shared/light_space.h): of each texel of its shadow map where the surface is that it shows, and
 // the light that falls on it (docs/mathematics.md, section 10, "Light space").
 //
-// Input: the map, and what the camera sees of it. Output: level 0. With PEL_HIDDEN only texels that it does not see have flux;
+// Input: the map, what the camera sees of it, and which cells of texels (PEL_LIGHT_CELL) had flux before. Output: level 0, and which cells have flux now. With PEL_HIDDEN only texels that it does not see have flux;
 // without, all but those of things that do not scatter, and their ids stand beside. One work-item:
 // PEL_WIDTH texels of a row. Variants: PEL_HIDDEN, PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT.
 #include "lib/diffusion/light_space.clh"
@@ -53,7 +53,7 @@ static inline maskw isBeside(Vec3w p, Vec3w q, floatw most, maskw seen) {
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_texels(
     __global const PelLightMap* maps, uint index, __global uchar* texels, __global const uchar* seen,
-    __global float* pyramid) {
+    __global const uchar* before, __global uchar* now, __global float* pyramid) {
     __global const PelLightMap* map = maps + index;
     __global const PelPyramidLevel* level = &map->level[0];
     const uint across = (level->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
@@ -62,13 +62,15 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     const size_t at = lightRow(level, 1, (int)y) + x;
     const uint stride = level->stride;
     __global const uchar* first = firstTexel(texels, &map->map);
-    const floatw depth = texelDepths(map, first, (int)x, (int)y);
     const intw column = lanesw() + (int)x;
-    maskw there = surfaceAt(map, depth) & (column < (int)level->width);
-    __global const uchar* row = seen + map->seen + (size_t)y * level->width;
-    uintw id = (uintw)(0);
-    if (anyw(there)) id = idsOfTexels(row + x);
-    there &= PEL_HIDDEN ? id == (uintw)(0) : id != (uintw)(PEL_SEEN_OTHER);
+    const uintw id = idsOfTexels(seen + map->seen + (size_t)y * level->width + x);
+    maskw there = (column < (int)level->width) & (PEL_HIDDEN ? id == (uintw)(0) : id != (uintw)(PEL_SEEN_OTHER));
+    floatw depth = 0.0f;
+    if (anyw(there)) {
+        depth = texelDepths(map, first, (int)x, (int)y);
+        there &= surfaceAt(map, depth);
+    }
+    const uint cell = map->cells + y / PEL_LIGHT_CELL * cellsAcross(map) + x / PEL_LIGHT_CELL;
     floatw flux = 0.0f;
     if (anyw(there)) {
         const floatw columns = convert_floatw(column), rows = (float)y;
@@ -95,8 +97,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
                           (t.y <= (float)finer->level[0].height - 0.5f) & (t.z >= 0.0f) & (t.z <= 1.0f));
         }
         there &= finite3(p) & finitew(across) & finitew(strength);
-        flux = selectw((floatw)(0.0f), strength * across, there);
-        const Vec3w before =
+        const Vec3w previous =
                         pointOfTexel(map, columns - 1.0f, rows, texelDepths(map, first, (int)x - 1, (int)y)),
                     next = pointOfTexel(map, columns + 1.0f, rows, texelDepths(map, first, (int)x + 1, (int)y)),
                     over = pointOfTexel(map, columns, rows - 1.0f, texelDepths(map, first, (int)x, (int)y - 1)),
@@ -106,13 +107,13 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
         const floatw near = NEAREST_HIDDEN * map->texel * matrixRow(map->toMap, 3, p);
         __global const uchar* all = seen + map->seen;
         const int i = (int)x, j = (int)y;
-        there &= notw(isBeside(p, before, near, isSeen(all, level, i - 1, j)) |
+        there &= notw(isBeside(p, previous, near, isSeen(all, level, i - 1, j)) |
                       isBeside(p, next, near, isSeen(all, level, i + 1, j)) |
                       isBeside(p, over, near, isSeen(all, level, i, j - 1)) |
                       isBeside(p, below, near, isSeen(all, level, i, j + 1)));
-        flux = selectw((floatw)(0.0f), flux, there);
 #endif
-        const Vec3w area = cross3(stepOf(p, before, next), stepOf(p, over, below));
+        flux = selectw((floatw)(0.0f), strength * across, there);
+        const Vec3w area = cross3(stepOf(p, previous, next), stepOf(p, over, below));
         floatw extent = sqrt(dot3(area, area));
         extent = fmin(selectw(across, extent, finitew(extent)), LONGEST_SLOPE * across);
         const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
@@ -123,5 +124,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
         storew(q.y, at + PEL_LIGHT_Y * stride, pyramid);
         storew(q.z, at + PEL_LIGHT_Z * stride, pyramid);
     }
+    if (anyw(flux > 0.0f))
+        now[cell] = 1;
+    else if (!before[cell])
+        return;
     storew(flux, at + PEL_LIGHT_FLUX * stride, pyramid);
 }

@@ -64,7 +64,7 @@ static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __glo
             const maskw mine = table == (intw)((int)t);
             if (!anyw(mine)) continue;
             Sums more = noSums();
-            addBand(at, stride, nodes, tables[t - 1], 0, here, &slope, mine, &more);
+            addPixels(at, stride, nodes, tables[t - 1], here, &slope, mine, &more);
             const Vec3w own = shareOfPixelItself(nodes, tables[t - 1], here->area, here->size);
             addNear(&all.sums.light.x, &all.sums.mass.x, &all.sums.centre.x, more.light.x, more.mass.x, own.x,
                     mine);
@@ -84,14 +84,40 @@ static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __glo
     return add3(e, scale3(sub3(found, e), (floatw)(weight)));
 }
 
+// Asks for what the tile on the right will read: the same rows there, and those beyond its ends.
+static inline void fetchNext(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                             __global const float* sums, uint x, uint y) {
+    const uint stride = frame->level[0].stride;
+    __global const float* at = pyramid + pyramidRow(&frame->level[0], (int)y) + x + PEL_DIFFUSION_TILE;
+    for (uint plane = 0; plane < PEL_PYRAMID_PLANES; ++plane)
+        if (plane != PEL_PLANE_BEND) PEL_PREFETCH(at + plane * stride);
+    const uint inTile = y % PEL_DIFFUSION_TILE;
+    if (inTile < 2 || inTile >= PEL_DIFFUSION_TILE - 2) {
+        at += (inTile < 2 ? -2L : 2L) * (long)(stride * PEL_PYRAMID_PLANES);
+        for (uint plane = 0; plane < PEL_PLANE_BEND; ++plane) PEL_PREFETCH(at + plane * stride);
+    }
+    if (inTile % 2 == 0) {
+        const uint sumStride = frame->level[1].stride;
+        __global const float* sum = sums + sumRow(frame, 1, (int)(y / 2)) + x / 2 + PEL_DIFFUSION_TILE / 2;
+        for (uint plane = 0; plane < PEL_SUM_PLANES; ++plane) PEL_PREFETCH(sum + plane * sumStride);
+    } else {
+        const uint blockStride = frame->level[1].stride;
+        __global const float* block =
+            pyramid + pyramidRow(&frame->level[1], (int)(y / 2)) + x / 2 + PEL_DIFFUSION_TILE / 2;
+        for (uint plane = 0; plane < PEL_PLANE_RED; ++plane) PEL_PREFETCH(block + plane * blockStride);
+    }
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_screen(
     __global const PelDiffusionFrame* frame, __global const float* pyramid,
     __global const PelProfileTable* tables, __global const float* nodes, __global const uint* tiles,
     __global const float* sums, __global const float* hidden, __global uchar* irradiance, __global uchar* out,
     __global uint* counters) {
-    const uint count = frame->tilesX * frame->tilesY;
+    // A run of tiles side by side, so that what one has read is near for the next.
+    const uint count = frame->tilesX * frame->tilesY, groups = get_num_groups(0), group = get_group_id(0);
+    const uint end = (uint)((ulong)count * (group + 1) / groups);
     uint pixels = 0, taps = 0;
-    for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
+    for (uint tile = (uint)((ulong)count * group / groups); tile < end; ++tile) {
         const uint word = tiles[tile];
         if (!word && frame->inPlace) continue;
         const bool near = word & PEL_TILE_NEAR;
@@ -110,6 +136,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
                            (imageColumn >= (int)x) & (imageColumn < (int)frame->width));
                 if (!word) continue;
             }
+            fetchNext(frame, pyramid, sums, x, y);
             const Blocks here =
                 loadBlocks(pyramid + pyramidRow(&frame->level[0], (int)y) + x, frame->level[0].stride);
             const maskw active = (column < (int)frame->width) & (here.area > 0.0f);

@@ -18,6 +18,10 @@
 // Planes of one point.
 #define PEL_LIGHT_PLANES(hidden) ((hidden) ? 5u : 6u)
 
+// A byte tells of each cell of so many texels along a side whether some have flux. Where none had it the frame before either, the pyramid
+// below the cell's own level holds zeros, and nothing is done.
+#define PEL_LIGHT_CELL 16
+
 #define PEL_SEEN_OTHER 255u  // of a texel: the camera sees something there that does not scatter
 
 typedef struct PelLightMap {
@@ -42,6 +46,7 @@ typedef struct PelLightMap {
     PelUint32 finer;     // maps before this one that take the surface which they hold
     PelUint32 firstRow;  // of the image: a cube's face
     PelUint32 seen;      // where its texels begin in the buffer of what the camera sees
+    PelUint32 cells;     // where its cells begin in the buffers of what has flux, row by row
     PelUint32 levels;
     PelUint32 light;  // maps of one light follow one another
     PelShadeImage map;
@@ -55,6 +60,6 @@ typedef struct PelLightMap {
 #define PEL_LIGHT_COUNTERS 3
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelLightMap) == 4 * (32 + 1 + 3 + 3 + 3 + 3 + 3 + 8 + 6) + 32 + PEL_LIGHT_LEVELS * 16);
+static_assert(sizeof(PelLightMap) == 4 * (32 + 1 + 3 + 3 + 3 + 3 + 3 + 8 + 7) + 32 + PEL_LIGHT_LEVELS * 16);
 #endif
 #endif

@@ -178,9 +178,9 @@ struct Request {
     float targetError = pelShaderOptionsDefaults().targetError;
 };
 
-inline Lit shaded(const Picture& p, const std::vector<LitBall>& lights, const Profile& profile,
-                  const Request& request) {
-    ShownImages shown(device(), p.width, p.height);
+// The next picture of the same shader.
+inline Lit show(ShownImages& shown, const Picture& p, const std::vector<LitBall>& lights,
+                const Profile& profile, const Request& request) {
     std::vector<float> normals = p.positions;
     for (float& n : normals) n /= float(radius);
     PelShaderOptions options = pelShaderOptionsDefaults();
@@ -203,6 +203,12 @@ inline Lit shaded(const Picture& p, const std::vector<LitBall>& lights, const Pr
                          lights[i].maps[k], lights[i].width, lights[i].height, uint32_t(i));
     std::vector<float> light = shown.execute();
     return {std::move(light), shown.shader.stats(), shown.shader.warnings()};
+}
+
+inline Lit shaded(const Picture& p, const std::vector<LitBall>& lights, const Profile& profile,
+                  const Request& request) {
+    ShownImages shown(device(), p.width, p.height);
+    return show(shown, p, lights, profile, request);
 }
 
 inline Lit shaded(const Picture& p, const LitBall& ball, PelScattering scattering, const Profile& profile,

@@ -152,6 +152,22 @@ TEST(LightSpace, SameInputSameBits) {
         EXPECT_EQ(shaded(p, ball, method, Profile::skin()).light, shaded(p, ball, method, Profile::skin()).light);
 }
 
+// Parts of the lights' pyramids that hold nothing are not written.
+TEST(LightSpace, AMapThatChangesLeavesNothingBehind) {
+    const LitBall first = makeBall(Form::parallel, normalized(Vec3{0.6, 0.2, -0.5}), 128),
+                  second = makeBall(Form::parallel, normalized(Vec3{-0.6, 0.1, -0.4}), 128);
+    LitBall nothing = second;
+    std::fill(nothing.maps[0].begin(), nothing.maps[0].end(), 1.0f);
+    for (PelScattering method : {PEL_SCATTERING_LIGHT, PEL_SCATTERING_AUTO}) {
+        ShownImages shown(device(), 48, 48);
+        for (const LitBall& ball : {first, second, nothing, nothing, first}) {
+            const Picture p = pictureOf(ball, 48);
+            EXPECT_EQ(show(shown, p, {ball}, Profile::skin(), {method}).light,
+                      shaded(p, ball, method, Profile::skin()).light);
+        }
+    }
+}
+
 // A light without a map beside it: as on the screen, and said.
 TEST(LightSpace, WithoutAllMapsTheScreenDoes) {
     LitBall ball = makeBall(Form::parallel, normalized(Vec3{1, 0.2, 0.4}), 64);

@@ -6,7 +6,6 @@
 #include <windows.h>
 
 #include <cerrno>
-#include <clocale>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -57,8 +56,7 @@ bool errorsAreSeen() {
 }
 
 bool prepareStreams() {
-    ::_setmode(1, _O_BINARY);      // the same bytes as on other systems
-    std::setlocale(LC_CTYPE, "");  // arguments are in the system's code page, and so are paths made of them
+    ::_setmode(1, _O_BINARY);  // the same bytes as on other systems
     return true;
 }
 
