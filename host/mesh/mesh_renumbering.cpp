@@ -21,6 +21,11 @@ void Renumbering::move(uint32_t next) {
         __builtin_prefetch(list);
         __builtin_prefetch(list + 6);
     }
+    if (next + 6 < known_) {  // this list has come meanwhile
+        const uint32_t slot = queue_[next + 6];
+        for (uint32_t i = table_.begins[slot]; i < table_.begins[slot + 1]; ++i)
+            __builtin_prefetch(numbers.data() + table_.corners[i].from);
+    }
     const uint32_t begin = table_.begins[queue_[next]], end = table_.begins[queue_[next] + 1];
     moved.begins[next] = written_;
     Corner* const to = moved.corners.data() + written_;

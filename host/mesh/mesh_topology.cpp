@@ -51,7 +51,7 @@ Ref<MeshTopology> MeshTopology::create(Ref<Device> device, const PelMeshTopology
         // Passes then work in an order of their own. Only the first and the last pass use the caller's order.
         std::vector<uint32_t> numbers;
         adjacency = buildRenumbered(corners, numbers);
-        renumberSlots(weld, numbers);
+        renumberSlots(weld, std::move(numbers));
     } else {
         adjacency = buildAdjacency(corners);
     }

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <utility>
 
 #include "cl/error.h"
 
@@ -112,12 +114,18 @@ void listMembers(MeshWeld& weld) {
 
 }  // namespace
 
-void renumberSlots(MeshWeld& weld, const std::vector<uint32_t>& numbers) {
-    if (weld.slotOf.empty())
-        weld.slotOf = numbers;
-    else
+void renumberSlots(MeshWeld& weld, std::vector<uint32_t> numbers) {
+    if (!weld.slotOf.empty()) {
         for (uint32_t& slot : weld.slotOf) slot = numbers[slot];
-    listMembers(weld);
+        listMembers(weld);
+        return;
+    }
+    // Each slot has one member.
+    weld.members.resize(numbers.size());
+    for (uint32_t v = 0; v < numbers.size(); ++v) weld.members[numbers[v]] = v;
+    weld.memberOffsets.resize(numbers.size() + 1);
+    std::iota(weld.memberOffsets.begin(), weld.memberOffsets.end(), 0u);
+    weld.slotOf = std::move(numbers);
 }
 
 MeshWeld weldVertices(const PelMeshTopologyDesc& desc, const std::function<void(double)>& progress) {

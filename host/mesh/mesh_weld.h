@@ -17,7 +17,7 @@ struct MeshWeld {
 };
 
 // Gives slot s the number numbers[s].
-void renumberSlots(MeshWeld& weld, const std::vector<uint32_t>& numbers);
+void renumberSlots(MeshWeld& weld, std::vector<uint32_t> numbers);
 
 // Exact: equal coordinates (-0 equals 0). Tolerance: a vertex joins the first earlier vertex within the
 // tolerance that did not itself join another; chains do not grow. NaN and Inf join nothing. `progress` gets a
