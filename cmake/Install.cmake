@@ -10,7 +10,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/host/include/pellucid DESTINATION ${CMAK
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/kernels/lib ${PROJECT_SOURCE_DIR}/kernels/shared
         DESTINATION ${CMAKE_INSTALL_DATADIR}/pellucid/kernels COMPONENT development)
 if(TARGET pellucid_cli AND (NOT PELLUCID_PYTHON OR PELLUCID_DEBIAN))  # the package has a place of its own for it
-  set_target_properties(pellucid_cli PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
+  set_target_properties(pellucid_cli PROPERTIES INSTALL_RPATH "${PELLUCID_ORIGIN}/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS pellucid_cli COMPONENT command)
   if(TARGET pellucid_pictures)
     install(TARGETS pellucid_pictures LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/pellucid COMPONENT command)
@@ -26,6 +26,7 @@ if(TARGET pellucid_cli AND (NOT PELLUCID_PYTHON OR PELLUCID_DEBIAN))  # the pack
       set(as_debian sh -c "gzip -9nf ${pages}/share/man/man1/*.1 && rm -rf ${pages}/share/zsh/vendor-completions && mv ${pages}/share/zsh/site-functions ${pages}/share/zsh/vendor-completions")
     endif()
     add_custom_command(OUTPUT ${first}
+                       COMMAND ${CMAKE_COMMAND} -E rm -rf ${pages}/share  # no pages of commands that are no more
                        COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/packaging/command_pages $<TARGET_FILE:pellucid_cli> --install ${pages}
                        COMMAND ${as_debian}
                        DEPENDS pellucid_cli ${PROJECT_SOURCE_DIR}/packaging/command_pages COMMENT "Manual pages and completions" VERBATIM)

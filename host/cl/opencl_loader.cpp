@@ -22,6 +22,11 @@ namespace {
 constexpr char separator = ';';
 constexpr const char* usual = "OpenCL.dll";
 constexpr const char* advice = "install the driver of your GPU's or CPU's vendor, which brings it";
+#elif defined(__APPLE__)
+constexpr char separator = ':';
+constexpr const char* usual =
+    "libOpenCL.1.dylib:libOpenCL.dylib:/opt/homebrew/lib/libOpenCL.dylib:/System/Library/Frameworks/OpenCL.framework/OpenCL";
+constexpr const char* advice = "install it and a driver for the CPU (brew install opencl-icd-loader pocl)";
 #else
 constexpr char separator = ':';
 constexpr const char* usual = "libOpenCL.so.1:libOpenCL.so";
@@ -92,8 +97,9 @@ const Library& library() {
     return found;
 }
 
-#ifdef _WIN32
-// By name: objects of Wine's OpenCL.dll are those of the Linux driver, whose functions are called in another way.
+#if defined(_WIN32) || defined(__APPLE__)
+// By name: objects of Wine's OpenCL.dll are those of the Linux driver, whose functions are called in another way, and objects of
+// Apple's framework have no table.
 template <class Function>
 Function* named(const char* name) {
     return reinterpret_cast<Function*>(system::symbolIn(library().handle, name));
@@ -114,7 +120,7 @@ std::string whyNoLoader() {
 
 }  // namespace pel::cl
 
-#ifdef _WIN32
+#if defined(_WIN32) || defined(__APPLE__)
 #define PEL_FUNCTION(object, name) pel::cl::named<decltype(::name)>(#name)
 #else
 #define PEL_FUNCTION(object, name) pel::cl::of(object).name

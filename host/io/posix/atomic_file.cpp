@@ -18,6 +18,10 @@
 #include "io/file_error.h"
 #include "io/input_file.h"
 
+#ifndef O_PATH
+#define O_PATH O_SEARCH  // as POSIX calls it
+#endif
+
 namespace pellucid::io {
 namespace fs = std::filesystem;
 // 8 hexadecimal digits; see the header.
@@ -84,6 +88,9 @@ std::string folderOf(const std::string& path) {
 
 // Flushes the names in this folder to the disk. Some file systems cannot flush folders, and report that.
 bool flushed(int fd) {
+#ifdef F_FULLFSYNC
+    if (::fcntl(fd, F_FULLFSYNC) == 0) return true;  // fsync of macOS leaves bytes in the disk's own memory
+#endif
     return ::fsync(fd) == 0 || errno == EINVAL || errno == EBADF || errno == ENOTSUP;
 }
 

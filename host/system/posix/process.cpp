@@ -12,7 +12,13 @@
 #include <filesystem>
 #include <fstream>
 
+#ifdef __APPLE__
+#include <crt_externs.h>  // libraries have no `environ` there
+#include <mach-o/dyld.h>
+#define environ (*_NSGetEnviron())
+#else
 extern char** environ;
+#endif
 
 namespace pel::system {
 namespace fs = std::filesystem;
@@ -46,7 +52,13 @@ std::string makeTemporaryFolder(const std::string& parent, const std::string& pr
 
 std::string programFile() {
     std::error_code error;
+#ifdef __APPLE__
+    char path[4096];
+    uint32_t size = sizeof path;
+    return ::_NSGetExecutablePath(path, &size) == 0 ? fs::canonical(path, error).string() : "";
+#else
     return fs::read_symlink("/proc/self/exe", error).string();
+#endif
 }
 
 bool errorsAreSeen() {
@@ -74,7 +86,7 @@ size_t filesLeft() {
     if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return SIZE_MAX;
     rlim_t taken = 0;
     std::error_code error;
-    for (fs::directory_iterator at("/proc/self/fd", error), end; !error && at != end; at.increment(error))
+    for (fs::directory_iterator at("/dev/fd", error), end; !error && at != end; at.increment(error))
         ++taken;
     return limit.rlim_cur > taken ? size_t(limit.rlim_cur - taken) : 0;
 }
