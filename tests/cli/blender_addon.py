@@ -84,8 +84,9 @@ report["size"], report["packed"] = list(image.size), image.packed_file is not No
 report["untouched"] = (before == {m.name: [n.name for n in m.node_tree.nodes] for m in bpy.data.materials if m.use_nodes}
                        and scene.render.engine == engine and len(bpy.data.scenes) == scenes and not bpy.data.filepath)
 report["log"] = bpy.data.texts["Pellucid log"].as_string()
-again = image.name
-bpy.ops.pellucid.render()
+scene.pellucid.samples = "1"
+bpy.ops.pellucid.render(filepath=os.path.join(out, "plain.png"))
+report["plain_size"] = list(bpy.data.images["Pellucid"].size)
 report["images"] = sorted(i.name for i in bpy.data.images if i.name.startswith("Pellucid"))
 
 # A command that is not there: a message, and nothing lost.

@@ -28,6 +28,9 @@ TEST_F(CommandTest, TheAddOnRendersSkinTeethAnEyeAndJade) {
     const nlohmann::json report = nlohmann::json::parse(read(out + "/report.json"));
     EXPECT_EQ(report["result"][0], "FINISHED");
     EXPECT_EQ(report["size"], (std::vector<int>{320, 160}));  // 2 x 2 samples, made smaller
+    EXPECT_EQ(report["plain_size"], (std::vector<int>{320, 160})) << "without anti-aliasing";
+    ASSERT_TRUE(fs::exists(out + "/plain.png"));
+    EXPECT_EQ(io::readImage(out + "/plain.png").width, 320);
     EXPECT_EQ(report["packed"], true);
     EXPECT_EQ(report["untouched"], true);
     EXPECT_EQ(report["images"], (std::vector<std::string>{"Pellucid"}))

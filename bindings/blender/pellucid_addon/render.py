@@ -54,9 +54,11 @@ def show(folder, factor, path):
     image = bpy.data.images.load(made)
     if factor > 1:
         image.scale(max(1, image.size[0] // factor), max(1, image.size[1] // factor))
-    if path:
+    if path and factor > 1:
         image.filepath_raw, image.file_format = path, "PNG"
         image.save()
+    elif path:  # Blender has not read it yet, and saves no such image
+        shutil.copyfile(made, path)
     image.pack()
     old = bpy.data.images.get(IMAGE)
     if old:
