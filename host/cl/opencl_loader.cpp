@@ -25,7 +25,8 @@ constexpr const char* advice = "install the driver of your GPU's or CPU's vendor
 #elif defined(__APPLE__)
 constexpr char separator = ':';
 constexpr const char* usual =
-    "libOpenCL.1.dylib:libOpenCL.dylib:/opt/homebrew/lib/libOpenCL.dylib:/System/Library/Frameworks/OpenCL.framework/OpenCL";
+    "libOpenCL.1.dylib:libOpenCL.dylib:/opt/homebrew/lib/libOpenCL.dylib:/System/Library/Frameworks/"
+    "OpenCL.framework/OpenCL";
 constexpr const char* advice = "install it and a driver for the CPU (brew install opencl-icd-loader pocl)";
 #else
 constexpr char separator = ':';

@@ -86,8 +86,7 @@ size_t filesLeft() {
     if (::getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return SIZE_MAX;
     rlim_t taken = 0;
     std::error_code error;
-    for (fs::directory_iterator at("/dev/fd", error), end; !error && at != end; at.increment(error))
-        ++taken;
+    for (fs::directory_iterator at("/dev/fd", error), end; !error && at != end; at.increment(error)) ++taken;
     return limit.rlim_cur > taken ? size_t(limit.rlim_cur - taken) : 0;
 }
 
