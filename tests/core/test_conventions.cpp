@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <pellucid/pellucid_conventions.hpp>
 #include <random>
 
@@ -155,6 +156,36 @@ TEST_P(Conventions, ACameraFindsPlacesFromDepth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Conventions, testing::ValuesIn(cases()));
+
+// What renderers have: arrays, pointers (glm::value_ptr), structures (glm::mat4, XMFLOAT4X4).
+TEST(ConventionsTake, MatricesOfAnyType) {
+    struct Column {
+        float x, y, z, w;
+    };
+    struct Mat4 {
+        Column columns[4];
+    };
+    float matrix[16] = {1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0.25f, 0, 0.5f, 0, 0.5f, 1};
+    Mat4 mat4;
+    std::memcpy(&mat4, matrix, sizeof mat4);
+    std::array<float, 16> array;
+    std::memcpy(&array, matrix, sizeof array);
+    const float* const pointer = matrix;
+    const PelConvention convention = {PEL_CLIP_DEPTH_ZERO_TO_ONE, 0, 0, 1};
+    const PelCamera expected = cameraFromViewProjection(matrix, convention);
+    EXPECT_EQ(expected.inverseViewProjection[5], 0.5f);
+    const PelLight light = lightFromViewProjection(matrix, convention);
+    const auto same = [&](const auto& other) {
+        const PelCamera camera = cameraFromViewProjection(other, convention);
+        const PelLight lamp = lightFromViewProjection(other, convention);
+        return std::memcmp(&camera, &expected, sizeof camera) == 0 &&
+               std::memcmp(lamp.worldToShadow, light.worldToShadow, sizeof lamp.worldToShadow) == 0;
+    };
+    EXPECT_TRUE(same(mat4));
+    EXPECT_TRUE(same(array));
+    EXPECT_TRUE(same(pointer));
+    EXPECT_TRUE(same(&matrix[0]));
+}
 
 TEST(ConventionsRefuse, WhatIsNoProjection) {
     float zero[16] = {}, bad[16] = {}, flat[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1};
