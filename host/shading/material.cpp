@@ -5,6 +5,7 @@
 
 #include "core/handle_table.h"
 #include "lut/luts.h"
+#include "shading/features.h"
 
 namespace pel {
 namespace {
@@ -66,11 +67,10 @@ double transmissionReach(const Profile& profile) {
     return 2 * profile.reach();
 }
 
-const ProfileTables::Tables& ProfileTables::get(const Ref<Device>& device, Profile& profile, float filterWidth) {
-    for (const Tables& known : all_)
+ProfileTables::Tables& ProfileTables::get(const Ref<Device>& device, Profile& profile, float filterWidth) {
+    for (Tables& known : all_)
         if (known.profile.get() == &profile && known.filterWidth == filterWidth) return known;
-    all_.push_back({Ref<Profile>(&profile), filterWidth, curvatureTable(device, profile),
-                    shadowTable(device, profile, filterWidth), transmissionTable(device, profile)});
+    all_.push_back({Ref<Profile>(&profile), filterWidth, transmissionTable(device, profile), {}, {}});
     return all_.back();
 }
 
@@ -95,12 +95,8 @@ void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const 
     material.shadowBias = float((profile ? biasWidths * widest(info) : plainBias) / unit);
     material.shadowSoftness = profile ? softness : plainSoftness;
     material.shadowConeSlope = profile ? coneSlope : plainConeSlope;
-    if (profile) {
-        const ProfileTables::Tables& made = tables.get(device, *profile, float(m.shadowFilterWidth * unit));
-        if (!material.curvatureLut) material.curvatureLut = made.curvature;
-        if (!material.shadowLut) material.shadowLut = made.shadow;
-        material.transmission = made.transmission;
-    }
+    if (profile)
+        material.transmission = tables.get(device, *profile, float(m.shadowFilterWidth * unit)).transmission;
     if (m.diffusionRadius == 0)
         m.diffusionRadius = profile                 ? float(profile->radius() / unit)
                             : material.curvatureLut ? radiusOf(*material.curvatureLut, unit)
@@ -124,6 +120,24 @@ void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const 
         profile && m.thinThickness > 0 ? profile->shape().transmission(m.thinThickness / stretch) : Rgb{};
     for (int c = 0; c < 3; ++c) material.through[c] = float(m.transmission * through[c]);
     material.params = m;
+}
+
+void withTables(ShaderState& state, const Ref<Device>& device, ProfileTables& tables) {
+    const double unit = state.options.millimetresPerUnit;
+    for (auto& [id, material] : state.materials) {
+        if (!material.profile || readsIrradiance(material)) continue;
+        Profile& profile = *material.profile;
+        const auto width = float(material.params.shadowFilterWidth * unit);
+        ProfileTables::Tables& made = tables.get(device, profile, width);
+        if (!material.curvatureLut) {
+            if (!made.curvature) made.curvature = curvatureTable(device, profile);
+            material.curvatureLut = made.curvature;
+        }
+        if (!material.shadowLut) {
+            if (!made.shadow) made.shadow = shadowTable(device, profile, width);
+            material.shadowLut = made.shadow;
+        }
+    }
 }
 
 }  // namespace pel

@@ -8,17 +8,17 @@
 
 namespace pel {
 
-// Finds or makes the tables of a profile, and keeps them as long as a material has it: setting the same
-// material again costs nothing.
+// The tables of profiles, each made when it is first wanted and kept as long as a material has its profile: setting the same material
+// again costs nothing.
 class ProfileTables {
   public:
     struct Tables {
         Ref<Profile> profile;
-        float filterWidth;  // mm, of the wide shadow
-        // Curvature and shadow; transmission: one row over the root of thickness, mm.
-        Ref<Lut> curvature, shadow, transmission;
+        float filterWidth;           // mm, of the wide shadow
+        Ref<Lut> transmission;       // one row over the root of thickness, mm
+        Ref<Lut> curvature, shadow;  // once withTables has made them
     };
-    const Tables& get(const Ref<Device>& device, Profile& profile, float filterWidth);
+    Tables& get(const Ref<Device>& device, Profile& profile, float filterWidth);
     // Releases tables that no material has.
     void keepOnly(const std::map<uint32_t, ShaderMaterial>& materials);
 
@@ -33,6 +33,9 @@ double transmissionReach(const Profile& profile);
 // PEL_ERROR_INVALID_ARGUMENT for what the profile cannot provide.
 void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const PelShaderOptions& options,
                      ProfileTables& tables);
+
+// Gives the materials that are shaded by tables, and brought none, those of their profiles.
+void withTables(ShaderState& state, const Ref<Device>& device, ProfileTables& tables);
 
 // Sentences, one a line, about what is set without effect or is unlikely (pelShaderGetWarnings). `given`: as the caller
 // set it, `state`: with what auto came to.

@@ -14,10 +14,11 @@
 namespace pel {
 namespace {
 
-ShaderPlan planOf(const ShaderState& given, uint32_t methods) {
+ShaderPlan planOf(const ShaderState& given, uint32_t methods, const Ref<Device>& device, ProfileTables& tables) {
     ShaderPlan plan;
     plan.state = given;
     plan.warnings = chooseMethods(plan.state, methods);
+    withTables(plan.state, device, tables);
     const ShaderState& state = plan.state;
     plan.features = deriveFeatures(state);
     plan.variants = variantFeatures(state, plan.features);
@@ -42,7 +43,7 @@ void Shader::commit() {
 // Makes a plan and the memory of its passes, in bands of at most this many rows of tiles.
 void Shader::allocate(uint32_t mostRows) {
     prepareEyes(device_, state_.materials);
-    ShaderPlan plan = planOf(state_, methods());
+    ShaderPlan plan = planOf(state_, methods(), device_, profileTables_);
     checkMethods(plan.state);
     checkScattering(plan.state);
     // Old images go before new ones are made: both together would not keep to a budget. After a failure
@@ -167,6 +168,7 @@ void Shader::runBand(PassWork& work) {
 void Shader::addWarmUpJobs(std::vector<std::function<void()>>& jobs) const {
     Ref<Shader> shader = make<Shader>(device_, passKinds_);
     shader->state_ = state_;
+    shader->profileTables_ = profileTables_;
     shader->allocate(1);
     std::vector<cl::ProgramKey> keys;  // each once
     shader->passes_.each([&](const Pass& pass) {

@@ -165,7 +165,10 @@ std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(const ShaderSt
         to.curvature = describe(from.curvatureLut.get(), m.diffusionRadius);
         to.shadow = describe(from.shadowLut.get(), m.diffusionRadius);
         to.penumbraPerCosine = 1 / m.shadowFilterWidth;
-        to.specularSharpening = from.shadowLut ? 0.9f * from.shadowLut->info().shadow.sharpening : 0.0f;
+        const float sharpening = from.shadowLut ? from.shadowLut->info().shadow.sharpening
+                                 : from.profile ? pelShadowLutDescDefaults().sharpening
+                                                : 0.0f;
+        to.specularSharpening = 0.9f * sharpening;
         copy(to.deepScatterColor, m.deepScatterColor);
         const double radius = m.deepScatterRadius, log2e = 1.4426950408889634;
         to.deepScatterFalloff = float(-log2e / (2 * radius * radius));

@@ -184,3 +184,20 @@ TEST(ScatterCost, PreintegratedBuildsNoProgramOfOtherMethods) {
         }
     }
 }
+
+// Nor does scattering on the screen need tables: their programs are built when a material is shaded by them.
+TEST(ScatterCost, ScatteringOnTheScreenMakesNoTables) {
+    const Picture p = stripes(64, 64);
+    PelLight light = pelLightDefaults();
+    const auto tables = [] {
+        return spy::launchesOf("curvature_rows") + spy::launchesOf("curvature_texels") +
+               spy::launchesOf("shadow_texels");
+    };
+    const Device fresh("");
+    const uint64_t before = tables();
+    shown(p, PEL_SCATTERING_AUTO, fresh, {light});
+    EXPECT_EQ(tables(), before);
+    EXPECT_EQ(fresh.stats().programsBuilt, 4u) << "irradiance, two that scatter, shading";
+    shown(p, PEL_SCATTERING_PREINTEGRATED, fresh, {light});
+    EXPECT_EQ(tables(), before + 3);
+}
