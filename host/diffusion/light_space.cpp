@@ -11,8 +11,6 @@
 namespace pel {
 namespace {
 
-enum Program { SEEN, TEXELS, REDUCE, CLASSIFY, SCATTER };
-
 // Texels are to be this much finer than a profile reaches.
 constexpr double texelsPerReach = 16;
 
@@ -123,26 +121,13 @@ void LightSpace::prepare(const std::vector<ShaderLight>& lights, const float ori
     if (!counters_) counters_ = device_->allocate(PEL_LIGHT_COUNTERS * sizeof(cl_uint));
 }
 
-std::vector<cl::ProgramKey> LightSpace::programs(const ScatterImages& images) const {
-    const uint32_t lanes = device_->info().mathWidth;
-    const auto code = [&](const ImageView& view) { return text(formatCode(view, lanes)); };
-    const cl::Defines kind{{"PEL_HIDDEN", text(int(hidden_))}};
-    cl::Defines map = kind,
-                seen{{"PEL_FORMAT_POSITION", code(images.positions)},
-                     {"PEL_FORMAT_DEPTH", images.positions ? text(0) : code(images.depth)},
-                     {"PEL_FORMAT_MATERIAL", code(images.ids)}},
-                out = kind;
-    for (cl::Defines* defines : {&map, &seen}) {
-        (*defines)["PEL_FORMAT_SHADOW_MAP"] = text(mapFormat_);
-        (*defines)["PEL_SHADOW_CONTENT"] = text(content_);
-    }
-    out["PEL_FORMAT_OUT"] = code(images.out);
-    return {{{"diffusion/light_seen.cl"}, seen},
-            {{"diffusion/light_texels.cl"}, map},
-            {{"diffusion/light_reduce.cl"}, kind},
-            {{"diffusion/light_classify.cl"}, kind},
-            hidden_ ? cl::ProgramKey{{"diffusion/light_hidden.cl"}, kind}
-                    : cl::ProgramKey{{"diffusion/scatter_light.cl"}, out}};
+void LightSpace::addFiles(cl::ProgramKey& program) const {
+    for (const char* file : {"light_seen", "light_texels", "light_reduce", "light_classify"})
+        program.files.push_back(text("diffusion/", file, ".cl"));
+    program.files.push_back(hidden_ ? "diffusion/light_hidden.cl" : "diffusion/scatter_light.cl");
+    program.defines["PEL_HIDDEN"] = text(int(hidden_));
+    program.defines["PEL_FORMAT_SHADOW_MAP"] = text(mapFormat_);
+    program.defines["PEL_SHADOW_CONTENT"] = text(content_);
 }
 
 // Work-items of a vector of texels each.
@@ -153,8 +138,6 @@ cl::Range LightSpace::rows(const PelPyramidLevel& level) const {
 
 void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory& screen,
                                  std::vector<cl::Event>& events) {
-    std::vector<cl::Program> programs;
-    for (const cl::ProgramKey& key : this->programs(images)) programs.push_back(device_->programs().get(key));
     const auto memory = [](const ImageView& view) { return view ? view.buffer->memory() : cl::Memory(); };
     const auto launch = [&](cl::Launch& launch, const cl::Range& range) {
         events.push_back(device_->launch(launch, range));
@@ -166,7 +149,7 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
     device_->fill(cells_[1].get(), 0, cellBytes_, 0);
     const uint32_t lanes = device_->info().mathWidth;
     for (uint32_t k = 0; k < maps_.size(); ++k) {
-        cl::Launch seen(programs[SEEN], "light_seen");
+        cl::Launch seen(screen.program, "light_seen");
         seen.arg(screen.frame).arg(memory(images.positions ? images.positions : images.depth));
         seen.arg(memory(images.ids)).arg(mapMemory_).arg(cl_uint(k)).arg(memory(maps_[k].image));
         seen.arg(screen.pyramid).arg(seen_);
@@ -175,12 +158,12 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
     }
     for (uint32_t k = 0; k < maps_.size(); ++k) {
         const PelLightMap& map = maps_[k].constants;
-        cl::Launch texels(programs[TEXELS], "light_texels");
+        cl::Launch texels(screen.program, "light_texels");
         texels.arg(mapMemory_).arg(cl_uint(k)).arg(memory(maps_[k].image)).arg(seen_);
         texels.arg(cells_[0]).arg(cells_[1]).arg(pyramid_);
         launch(texels, rows(map.level[0]));
         for (uint32_t level = 1; level < map.levels; ++level) {
-            cl::Launch reduce(programs[REDUCE], "light_reduce");
+            cl::Launch reduce(screen.program, "light_reduce");
             reduce.arg(mapMemory_).arg(cl_uint(k)).arg(cl_uint(level));
             reduce.arg(cells_[0]).arg(cells_[1]).arg(pyramid_);
             launch(reduce, rows(map.level[level]));
@@ -188,15 +171,14 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
     }
     std::swap(cells_[0], cells_[1]);
     cellsKnown_ = true;
-    cl::Launch classify(programs[CLASSIFY], "light_classify");
+    cl::Launch classify(screen.program, "light_classify");
     classify.arg(screen.frame).arg(screen.pyramid).arg(screen.tables).arg(screen.nodes).arg(screen.tiles);
     classify.arg(mapMemory_).arg(cl_uint(maps_.size())).arg(pyramid_).arg(parts_).arg(counters_);
     launch(classify, {{screen.tileCount, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
 }
 
-void LightSpace::enqueueHidden(const ScatterImages& images, const ScreenMemory& screen,
-                               std::vector<cl::Event>& events) {
-    cl::Launch hidden(device_->programs().get(programs(images)[SCATTER]), "light_hidden");
+void LightSpace::enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event>& events) {
+    cl::Launch hidden(screen.program, "light_hidden");
     hidden.arg(screen.frame)
         .arg(screen.pyramid)
         .arg(screen.tables)
@@ -211,7 +193,7 @@ void LightSpace::enqueueHidden(const ScatterImages& images, const ScreenMemory& 
 
 void LightSpace::enqueueSums(const ScatterImages& images, const ScreenMemory& screen,
                              std::vector<cl::Event>& events) {
-    cl::Launch scatter(device_->programs().get(programs(images)[SCATTER]), "scatter_light");
+    cl::Launch scatter(screen.program, "scatter_light");
     scatter.arg(screen.frame).arg(screen.pyramid).arg(screen.tables).arg(screen.nodes).arg(parts_);
     scatter.arg(mapMemory_).arg(cl_uint(maps_.size())).arg(pyramid_).arg(images.out.buffer->memory()).arg(counters_);
     const size_t groups = std::min<size_t>(screen.tileCount, 64 * size_t(device_->info().computeUnits));

@@ -7,6 +7,7 @@ namespace pel {
 
 // What ScreenScatter has on the device.
 struct ScreenMemory {
+    cl::Program program;  // with the files of LightSpace::addFiles
     cl::Memory frame, pyramid, tables, nodes, tiles, sums;
     uint32_t width, height;
     size_t tileCount;
@@ -20,18 +21,19 @@ class LightSpace {
   public:
     explicit LightSpace(Ref<Device> device) : device_(std::move(device)) {}
 
-    // What its programs follow from. `hidden`: texels that the camera does not see fill what the screen misses; else all texels are
+    // What its program follows from. `hidden`: texels that the camera does not see fill what the screen misses; else all texels are
     // the far part of the sum. The format and the content of all maps are one. Without a map nothing is done.
     void announce(const std::vector<ShaderLight>& lights, bool hidden);
     // `narrowest`: reach of the profiles, length. `blocks`: floats that hold what is hidden from the screen's blocks.
     void prepare(const std::vector<ShaderLight>& lights, const float origin[3], double narrowest,
                  size_t tileCount, size_t blocks);
     bool empty() const { return empty_; }
-    std::vector<cl::ProgramKey> programs(const ScatterImages& images) const;
+    // Adds its kernels to a program that reads the same pictures: each program by itself takes drivers their time.
+    void addFiles(cl::ProgramKey& program) const;
     // After the screen's pyramid and its words are made: the lights' pyramids, and what they matter to.
     void enqueuePyramids(const ScatterImages& images, const ScreenMemory& screen, std::vector<cl::Event>& events);
     // After the screen's sums by levels: what the camera does not see, for the screen's last step.
-    void enqueueHidden(const ScatterImages& images, const ScreenMemory& screen, std::vector<cl::Event>& events);
+    void enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event>& events);
     const cl::Memory& hidden() const { return hiddenMemory_; }
     // With the lights' texels alone, after the picture is copied.
     void enqueueSums(const ScatterImages& images, const ScreenMemory& screen, std::vector<cl::Event>& events);

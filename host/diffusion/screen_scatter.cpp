@@ -24,7 +24,7 @@ bool samePixels(const ImageView& a, const ImageView& b) {
 }
 
 namespace {
-enum Program { SURFACE, REDUCE, CLASSIFY, LEVEL, SCATTER };
+enum Program { PIXELS, CLASSIFY };
 }  // namespace
 
 void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
@@ -108,16 +108,12 @@ void ScreenScatter::announce(const ScatterLights& lights) {
     light_.announce(lights.lights, !lights.alone);
 }
 
-ScreenMemory ScreenScatter::memory() const {
-    return {constants_.memory(),
-            pyramid_,
-            tables_,
-            nodes_,
-            tiles_,
-            sums_,
-            frame_.width,
-            frame_.height,
-            size_t(frame_.tilesX) * frame_.tilesY};
+ScreenMemory ScreenScatter::memory(const cl::Program& program) const {
+    return {program,       constants_.memory(),
+            pyramid_,      tables_,
+            nodes_,        tiles_,
+            sums_,         frame_.width,
+            frame_.height, size_t(frame_.tilesX) * frame_.tilesY};
 }
 
 void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const ScatterImages& images,
@@ -151,21 +147,16 @@ void ScreenScatter::prepare(const std::map<uint32_t, Material>& materials, const
 std::vector<cl::ProgramKey> ScreenScatter::programs(const ScatterImages& images) const {
     const uint32_t lanes = device_->info().mathWidth;
     const auto code = [&](const ImageView& view) { return text(formatCode(view, lanes)); };
-    const cl::Defines inputs{{"PEL_FORMAT_IRRADIANCE", code(images.irradiance)},
-                             {"PEL_FORMAT_POSITION", code(images.positions)},
-                             {"PEL_FORMAT_DEPTH", images.positions ? text(0) : code(images.depth)},
-                             {"PEL_FORMAT_MATERIAL", code(images.ids)}};
-    const cl::Defines outputs{{"PEL_FORMAT_IRRADIANCE", code(images.irradiance)},
-                              {"PEL_FORMAT_OUT", code(images.out)},
-                              {"PEL_HIDDEN", text(int(fillsHidden()))}};
-    std::vector<cl::ProgramKey> keys{{{"diffusion/surface.cl"}, inputs},
-                                     {{"diffusion/reduce.cl"}, {}},
-                                     {{"diffusion/classify_scatter.cl"}, {{"PEL_WIDTH", text(1)}}},
-                                     {{"diffusion/scatter_level.cl"}, {}},
-                                     {{"diffusion/scatter_screen.cl"}, outputs}};
-    if (!light_.empty())
-        for (cl::ProgramKey& key : light_.programs(images)) keys.push_back(std::move(key));
-    return keys;
+    cl::ProgramKey pixels{{"diffusion/surface.cl", "diffusion/reduce.cl", "diffusion/scatter_level.cl",
+                           "diffusion/scatter_screen.cl"},
+                          {{"PEL_FORMAT_IRRADIANCE", code(images.irradiance)},
+                           {"PEL_FORMAT_POSITION", code(images.positions)},
+                           {"PEL_FORMAT_DEPTH", images.positions ? text(0) : code(images.depth)},
+                           {"PEL_FORMAT_MATERIAL", code(images.ids)},
+                           {"PEL_FORMAT_OUT", code(images.out)},
+                           {"PEL_HIDDEN", text(int(fillsHidden()))}}};
+    if (!light_.empty()) light_.addFiles(pixels);
+    return {std::move(pixels), {{"diffusion/classify_scatter.cl"}, {{"PEL_WIDTH", text(1)}}}};
 }
 
 // Work-items of a vector of pixels each.
@@ -177,24 +168,25 @@ cl::Range ScreenScatter::rows(uint32_t width, uint32_t height) const {
 void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>& events) {
     std::vector<cl::Program> programs;
     for (const cl::ProgramKey& key : this->programs(images)) programs.push_back(device_->programs().get(key));
+    const ScreenMemory screen = this->memory(programs[PIXELS]);
     const auto memory = [](const ImageView& view) { return view ? view.buffer->memory() : cl::Memory(); };
     const auto launch = [&](cl::Launch& launch, const cl::Range& range) {
         events.push_back(device_->launch(launch, range));
     };
     device_->fill(counters_.get(), 0, PEL_DIFFUSION_COUNTERS * sizeof(cl_uint), 0);
     {
-        cl::Launch points(programs[SURFACE], "surface_points");
+        cl::Launch points(programs[PIXELS], "surface_points");
         points.arg(constants_.memory())
             .arg(memory(images.irradiance))
             .arg(memory(images.positions ? images.positions : images.depth));
         points.arg(memory(images.ids)).arg(pyramid_).arg(counters_);
         launch(points, {{size_t(PEL_ROW_PARTS) * frame_.height, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
-        cl::Launch areas(programs[SURFACE], "surface_areas");
+        cl::Launch areas(programs[PIXELS], "surface_areas");
         areas.arg(constants_.memory()).arg(pyramid_);
         launch(areas, rows(frame_.width, frame_.height));
     }
     for (uint32_t k = 1; k < frame_.levels; ++k) {
-        cl::Launch reduce(programs[REDUCE], "reduce_surface");
+        cl::Launch reduce(programs[PIXELS], "reduce_surface");
         reduce.arg(constants_.memory()).arg(pyramid_).arg(cl_uint(k));
         launch(reduce, rows(frame_.level[k].width, frame_.level[k].height));
     }
@@ -202,7 +194,7 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
     cl::Launch classify(programs[CLASSIFY], "classify_scatter");
     classify.arg(constants_.memory()).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_).arg(counters_);
     launch(classify, {{tiles, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
-    if (!light_.empty()) light_.enqueuePyramids(images, this->memory(), events);
+    if (!light_.empty()) light_.enqueuePyramids(images, screen, events);
     // With the lights' texels alone the screen's sum only copies.
     const bool alone = !light_.empty() && lights_.alone;
     if (alone) device_->fill(tiles_.get(), 0, tileBytes_, 0);
@@ -211,19 +203,19 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
     const size_t asked = sumFloatsBelow(frame_.level, PEL_LEAST_LEVELS) * sizeof(float);
     if (!alone) device_->fill(sums_.get(), asked, sumBytes_ - asked, 0);
     for (uint32_t k = frame_.levels - 1; k > 0 && !alone; --k) {
-        cl::Launch level(programs[LEVEL], "scatter_level");
+        cl::Launch level(programs[PIXELS], "scatter_level");
         level.arg(constants_.memory()).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_);
         level.arg(cl_uint(k)).arg(sums_).arg(counters_);
         launch(level, rows(frame_.level[k].width, frame_.level[k].height));
     }
-    if (fillsHidden()) light_.enqueueHidden(images, this->memory(), events);
-    cl::Launch scatter(programs[SCATTER], "scatter_screen");
+    if (fillsHidden()) light_.enqueueHidden(screen, events);
+    cl::Launch scatter(programs[PIXELS], "scatter_screen");
     scatter.arg(constants_.memory()).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_);
     scatter.arg(sums_).arg(fillsHidden() ? light_.hidden() : cl::Memory());
     scatter.arg(memory(images.irradiance)).arg(memory(images.out)).arg(counters_);
     const size_t groups = groupsFor(*device_, tiles);
     launch(scatter, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
-    if (alone) light_.enqueueSums(images, this->memory(), events);
+    if (alone) light_.enqueueSums(images, screen, events);
 }
 
 ScatterCounts ScreenScatter::counts() {

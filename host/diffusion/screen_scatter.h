@@ -61,7 +61,7 @@ class ScreenScatter {
     void sendTables(const std::map<uint32_t, Material>& materials);
     void describeLevels(uint32_t width, uint32_t height);
     bool fillsHidden() const { return !light_.empty() && !lights_.alone; }
-    ScreenMemory memory() const;
+    ScreenMemory memory(const cl::Program& program) const;
     cl::Range rows(uint32_t width, uint32_t height) const;
 
     Ref<Device> device_;

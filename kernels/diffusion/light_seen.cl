@@ -36,7 +36,7 @@ static inline Vec3w loadPositions(__global const PelDiffusionFrame* frame, __glo
 #endif
 
 // The shorter of the ways to two neighbours; of `b` where that to `a` is not finite.
-static inline Vec3w shorterWay(Vec3w p, Vec3w a, Vec3w b) {
+static inline Vec3w shorterOffset(Vec3w p, Vec3w a, Vec3w b) {
     const Vec3w toA = sub3(a, p), toB = sub3(b, p);
     const floatw lengthA = dot3(toA, toA), lengthB = dot3(toB, toB);
     return select3(toB, toA, finitew(lengthA) & ((lengthA <= lengthB) | notw(finitew(lengthB))));
@@ -127,8 +127,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
 #endif
     Patch patch;
     maskw on = mine & finite3(p) &
-               patchOf(map, p, scale3(shorterWay(p, before, after), (floatw)(EVERY)),
-                       scale3(shorterWay(p, above, below), (floatw)(EVERY)), &patch);
+               patchOf(map, p, scale3(shorterOffset(p, before, after), (floatw)(EVERY)),
+                       scale3(shorterOffset(p, above, below), (floatw)(EVERY)), &patch);
     uintw id = (uintw)(1);
 #if PEL_FORMAT_MATERIAL
     id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &frame->ids, x, y));

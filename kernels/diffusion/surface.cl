@@ -11,7 +11,7 @@
 
 // A surface seen at a steeper angle than this cosine counts with the area at this angle: the normal of a
 // pixel is wrong for its whole area if the surface turns away inside the pixel.
-#define LEAST_COSINE 0.25f
+#define LEAST_FACING 0.25f
 
 // PEL_WIDTH pixels from (`from`, y) on.
 static inline void copyPoints(__global const PelDiffusionFrame* frame, __global uchar* irradiance,
@@ -118,7 +118,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
         area = sqrt(dot3(cross, cross));
         if (frame->facing) {
             const floatw cosine = fabs(dot3(cross, p)) * inverseRootw(dot3(cross, cross) * dot3(p, p));
-            area *= fmin(cosine * (1.0f / LEAST_COSINE), (floatw)(1.0f));
+            area *= fmin(cosine * (1.0f / LEAST_FACING), (floatw)(1.0f));
         }
         // A line of pixels counts as facing the camera. A single pixel has no size.
         area = selectw(area, right.length2, noDown);
