@@ -102,11 +102,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void f
     uint taken = 0;
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
         if (!tiles[tile]) continue;
-        const uint left = tile % frame->tilesX * PEL_DIFFUSION_TILE,
-                   top = tile / frame->tilesX * PEL_DIFFUSION_TILE;
-        for (uint item = get_local_id(0); item < PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE;
-             item += PEL_DIFFUSION_GROUP) {
-            const uint x = left + item % PEL_DIFFUSION_TILE, y = top + item / PEL_DIFFUSION_TILE;
+        for (uint item = get_local_id(0); item < PEL_TILE_ITEMS; item += PEL_DIFFUSION_GROUP) {
+            const uint x = columnOf(frame, tile, item), y = rowOf(frame, tile, item);
             if (x >= frame->width || y >= frame->height) continue;
             const size_t at = (size_t)y * frame->width + x;
             float4 light = gathered(points, at, PEL_GATHER_LIGHT);
@@ -132,11 +129,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void f
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
         const bool gathers = tiles[tile] & PEL_TILE_GATHERS;
         if (!gathers && frame->inPlace) continue;
-        const uint left = tile % frame->tilesX * PEL_DIFFUSION_TILE,
-                   top = tile / frame->tilesX * PEL_DIFFUSION_TILE;
-        for (uint item = get_local_id(0); item < PEL_DIFFUSION_TILE * PEL_DIFFUSION_TILE;
-             item += PEL_DIFFUSION_GROUP) {
-            const uint x = left + item % PEL_DIFFUSION_TILE, y = top + item / PEL_DIFFUSION_TILE;
+        for (uint item = get_local_id(0); item < PEL_TILE_ITEMS; item += PEL_DIFFUSION_GROUP) {
+            const uint x = columnOf(frame, tile, item), y = rowOf(frame, tile, item);
             if (x >= frame->width || y >= frame->height) continue;
             const size_t at = (size_t)y * frame->width + x;
             const float4 light = gathered(points, at, PEL_GATHER_LIGHT);
