@@ -61,7 +61,8 @@ bool whole(const fs::path& path, uint64_t size) {
 // kernel and size.
 unsigned removeDamagedPrograms(const fs::path& folder) {
     // Skips files that were complete at the last check and have not been written since, and files that may be
-    // being written right now.
+    // being written right now. A program that no process used for a day before that check is skipped whole: PoCL
+    // writes into its folder only after it touched last_accessed, and a large cache takes long to walk.
     const fs::path stamp = folder / "checked";
     const auto now = fs::file_time_type::clock::now();
     std::error_code error;
@@ -76,6 +77,9 @@ unsigned removeDamagedPrograms(const fs::path& folder) {
              !inner && program != fs::directory_iterator(); program.increment(inner)) {
             bool damaged = false;
             std::error_code gone;  // by another process
+            const auto used = fs::last_write_time(program->path() / "last_accessed", gone);
+            if (!gone && !first && used < before - std::chrono::hours(24)) continue;
+            gone.clear();
             for (auto at = fs::recursive_directory_iterator(*program, gone);
                  !damaged && !gone && at != fs::recursive_directory_iterator(); at.increment(gone)) {
                 const fs::path& path = at->path();

@@ -160,6 +160,24 @@ TEST_F(PoclCache, DamagedFilesAreCompiledAgain) {
         }
 }
 
+// A large cache is not walked: who damages a file used its program.
+TEST_F(PoclCache, ProgramsThatNobodyUsesAreNotRead) {
+    ASSERT_EQ(table([] {}), 0);
+    pel::cl::removeDamagedPrograms(ours());
+    const auto used = kernels(ours(), "");
+    std::vector<fs::path> touched;
+    for (const fs::path& file : used)
+        if (file.filename() == "last_accessed") touched.push_back(file);
+    ASSERT_GE(touched.size(), 1u);
+    for (const fs::path& file : kernels(ours(), ".so")) fs::resize_file(file, 0);
+    const auto now = fs::file_time_type::clock::now();
+    for (const fs::path& file : touched) fs::last_write_time(file, now - std::chrono::hours(25));
+    EXPECT_EQ(pel::cl::removeDamagedPrograms(ours()), 0u);
+    for (const fs::path& file : touched) fs::last_write_time(file, now - std::chrono::hours(23));
+    for (const fs::path& file : kernels(ours(), ".so")) fs::last_write_time(file, now);
+    EXPECT_EQ(pel::cl::removeDamagedPrograms(ours()), touched.size());
+}
+
 // Mounting needs a name space of its own: skipped where that is not allowed.
 TEST_F(PoclCache, AFullDiskIsAnError) {
     fs::create_directory(path("full"));
