@@ -9,6 +9,7 @@
 #include "demo_view.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
+#include "io/scene/scene_programs.h"
 #include "mesh_curvature.h"
 #include "stages.h"
 #include "system/process.h"
@@ -144,6 +145,8 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
     stages.add(view.name + ": wide shadow (sample host)", view.wideShadowMilliseconds, 0, pixels, "pixels",
                pixels * sizeof(float));
 
+    for (const io::SceneFile& scene : {withoutScattering(view.scene), byTables(view.scene), view.scene})
+        stages.prepare([&] { io::buildPrograms(run.device(), scene, luts); });
     ShadedView shaded;
     shaded.lambert = shadeAs(run, stages, luts, view, "Lambert", withoutScattering(view.scene));
     shaded.tables = shadeAs(run, stages, luts, view, "by tables", byTables(view.scene));

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 #include <sstream>
+#include <thread>
 
 #include "command.h"
 #include "io/atomic_file.h"
@@ -9,6 +10,7 @@
 #include "io/input_file.h"
 #include "io/scene/scene_frame.h"
 #include "io/scene/scene_keys.h"
+#include "io/scene/scene_programs.h"
 #include "shade_picture.h"
 
 namespace pellucid::cli {
@@ -44,6 +46,24 @@ std::vector<std::string> channelsOf(const io::SceneFile& scene) {
     for (const auto& slot : scene.channels) names.insert(names.end(), slot.begin(), slot.end());
     for (const io::SceneLight& light : scene.lights) names.push_back(light.wideShadow);
     return names;
+}
+
+struct Inputs {
+    io::Image gbuffer;
+    io::ShadowMaps shadowMaps;
+};
+
+// Reads what the scene names. Programs are built meanwhile; what goes wrong there is told by the frame that needs them.
+Inputs readWhileBuilding(const std::string& gbuffer, const Device& device, const io::SceneFile& scene,
+                         io::LutStore& luts, const PelShaderOptions& options,
+                         const std::vector<PelImageSlot>& outputs) {
+    const std::jthread building([&] {
+        try {
+            io::buildPrograms(device, scene, luts, options, outputs);
+        } catch (const std::exception&) {
+        }
+    });
+    return {io::readChannels(gbuffer, channelsOf(scene)), io::readShadowMaps(scene)};
 }
 
 void writeOutput(const std::string& path, PelImageSlot slot, const io::Image& gbuffer,
@@ -123,7 +143,7 @@ void run(const Arguments& a) {
         throw UsageError("--picture: -o is a picture already; write -o to an .exr, or leave --picture out");
     Run run(a.run);
     const io::SceneFile scene = io::readScene(a.scene);
-    const io::Image gbuffer = io::readChannels(a.gbuffer, channelsOf(scene));
+    io::checkReadable(a.gbuffer);
     const auto files = outputFiles(a, scene);
     std::vector<PelImageSlot> outputs;
     std::set<std::string> distinct{a.output, a.picture};
@@ -143,8 +163,10 @@ void run(const Arguments& a) {
     PelShaderOptions options = pelShaderOptionsDefaults();
     options.countPixels = a.stats;
     options.scratchBudget = a.scratchMib << 20;
+    const Inputs inputs = readWhileBuilding(a.gbuffer, run.device(), scene, luts, options, outputs);
+    const io::Image& gbuffer = inputs.gbuffer;
     try {
-        io::SceneFrame frame(run.device(), gbuffer, scene, luts, {}, options, outputs);
+        io::SceneFrame frame(run.device(), gbuffer, scene, luts, inputs.shadowMaps, options, outputs);
         frame.shade();
         const PelShaderStats stats = frame.stats();
         warnOfNothing(run, scene, outputs, stats.features);

@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "arrays.h"
-#include "io/scene/scene_frame.h"
 #include "io/scene/scene_keys.h"
+#include "io/scene/scene_programs.h"
 
 namespace pellucid::python {
 namespace {
@@ -223,6 +223,7 @@ class Scene {
         if (!onDevice_ || onDevice_->device.get() != device) onDevice_.emplace(device);
         onDevice_->frame.reset();
         onDevice_->outputs = outputs;
+        io::buildPrograms(onDevice_->device, scene, onDevice_->luts, options, outputs);  // with progress
         onDevice_->frame.emplace(onDevice_->device, *gbuffer_, scene, onDevice_->luts, io::ShadowMaps(),
                                  options, outputs);
         return *onDevice_->frame;

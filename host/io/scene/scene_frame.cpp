@@ -63,6 +63,32 @@ std::vector<std::string> colorChannels(const std::string& file, const Image& ima
 
 }  // namespace
 
+std::map<std::string, ShadowMapFile> shadowMapsOf(const SceneFile& scene) {
+    std::map<std::string, ShadowMapFile> files;
+    for (const SceneLight& light : scene.lights) {
+        if (light.shadowMapFile.empty()) continue;
+        const auto add = [&](const std::string& file, const std::string& channel, const std::string& second) {
+            ShadowMapFile& map = files[file.empty() ? light.shadowMapFile : file];
+            map.whole |= channel.empty();
+            map.cube |= light.light.shadowProjection >= PEL_SHADOW_CUBE;
+            for (const std::string& name : {channel, second})
+                if (!name.empty()) map.channels.insert(name);
+        };
+        add(light.shadowMapFile, light.shadowMapChannel, light.secondChannel);
+        for (uint32_t k = 0; k + 1 < light.light.shadowCascades; ++k)
+            add(light.cascades[k].file, light.cascades[k].channel, light.cascades[k].secondChannel);
+    }
+    return files;
+}
+
+ShadowMaps readShadowMaps(const SceneFile& scene) {
+    ShadowMaps maps;
+    for (const auto& [file, map] : shadowMapsOf(scene))
+        maps[file] =
+            map.whole ? readImage(file) : readChannels(file, {map.channels.begin(), map.channels.end()});
+    return maps;
+}
+
 Lut LutStore::faceworks(const Profile& profile, PelLutKind kind) {
     PelCurvatureLutDesc curvature = pelCurvatureLutDescFaceWorks();
     PelShadowLutDesc shadow = pelShadowLutDescFaceWorks();
@@ -87,12 +113,13 @@ Lut LutStore::get(const SceneFile& scene, const std::string& name, PelLutKind ki
 
 SceneFrame::SceneFrame(const Device& device, const Image& gbuffer, const SceneFile& scene, LutStore& luts,
                        const ShadowMaps& shadowMaps, const PelShaderOptions& options,
-                       const std::vector<PelImageSlot>& outputs)
+                       const std::vector<PelImageSlot>& outputs, bool buildOnly)
     : device_(device),
       gbuffer_(gbuffer),
       shadowMaps_(&shadowMaps),
       shader_(device),
-      radiance_(device, gbuffer.pixelCount() * 3 * sizeof(float)) {
+      radiance_(device, gbuffer.pixelCount() * 3 * sizeof(float)),
+      buildOnly_(buildOnly) {
     shader_.set(PEL_SLOT_RADIANCE,
                 imageDesc(radiance_, PEL_FORMAT_RGB32F, uint32_t(gbuffer.width), uint32_t(gbuffer.height)));
     for (PelImageSlot slot : outputs) {
@@ -149,8 +176,10 @@ void SceneFrame::update(const SceneFile& scene, LutStore& luts, const PelShaderO
     else
         shader_.setReflectionCube(cubeImage(scene.reflectionCube));
     shader_.set(scene.camera);
-    warmUpPrograms(device_, 0, {shader_});
-    shader_.commit();
+    if (buildOnly_)
+        warmUpPrograms(device_, 0, {shader_});
+    else
+        shader_.commit();
 }
 
 void SceneFrame::setLights(const SceneFile& scene) {

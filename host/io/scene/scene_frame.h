@@ -1,6 +1,7 @@
 // A G-buffer shaded as a scene file says: what `pellucid shade`, the demo and the Python package have in common.
 #pragma once
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,17 +30,26 @@ class LutStore {
 // Shadow maps by file, already in memory.
 using ShadowMaps = std::map<std::string, Image>;
 
+// What a scene reads from the files of its shadow maps.
+struct ShadowMapFile {
+    std::set<std::string> channels;
+    bool whole = false, cube = false;  // whole: a light names no channel
+};
+std::map<std::string, ShadowMapFile> shadowMapsOf(const SceneFile& scene);
+ShadowMaps readShadowMaps(const SceneFile& scene);
+
 // `options` with what the scene says of them.
 PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options);
 
 class SceneFrame {
   public:
-    // Uploads what the scene names, sets it and commits; kernels are built first, with progress. `outputs`: slots beside radiance that are
-    // wanted. `shadowMaps` holds maps that are in memory already, by the name that the scene gives them; others are read from
-    // files. The G-buffer must live as long as the frame is updated. Throws FileError when a channel is missing.
+    // Uploads what the scene names, sets it and commits. `outputs`: slots beside radiance that are wanted. `shadowMaps` holds maps that
+    // are in memory already, by the name that the scene gives them; others are read from files. The G-buffer must live as long as the
+    // frame is updated. `buildOnly`: builds programs, with progress, in place of the commit (scene_programs.h). Throws
+    // FileError when a channel is missing.
     SceneFrame(const Device& device, const Image& gbuffer, const SceneFile& scene, LutStore& luts,
                const ShadowMaps& shadowMaps = {}, const PelShaderOptions& options = pelShaderOptionsDefaults(),
-               const std::vector<PelImageSlot>& outputs = {});
+               const std::vector<PelImageSlot>& outputs = {}, bool buildOnly = false);
 
     // Sets everything but the channels again: materials, lights, ambient light, camera, options. Files that were read are not read again.
     void update(const SceneFile& scene, LutStore& luts,
@@ -80,6 +90,7 @@ class SceneFrame {
     std::map<std::string, std::vector<PelImageDesc>> normalMaps_;
     std::vector<uint32_t> materials_;  // that are set
     uint64_t inputBytes_ = 0;
+    bool buildOnly_;
 };
 
 // Sentences about sizes that are probably wrong: depth that is not device depth, bodies whose size does not
