@@ -14,6 +14,8 @@ import pellucid as pel
 from pellucid.conventions import light_from_view_projection
 from pellucid.files import write_image
 
+if len(sys.argv) != 2:
+    sys.exit("usage: opengl_host.py PICTURE.png")
 WIDTH, HEIGHT, MAP = 960, 540, 1024
 EYE, TO_LIGHT = np.array([0.0, -260.0, 60.0]), np.array([0.6, -0.62, 0.505])
 
