@@ -69,8 +69,10 @@ Memory createInHostMemory(cl_context context, size_t bytes, const void* initial,
     Memory memory(clCreateBuffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, block->at(), &code));
     if (code != CL_SUCCESS) check(code, text("clCreateBuffer(", bytes, " bytes)").c_str());
     const auto giveBack = [](cl_mem, void* user) { delete static_cast<Block*>(user); };
-    check(clSetMemObjectDestructorCallback(memory.get(), +giveBack, block.get()),
-          "clSetMemObjectDestructorCallback");
+    code = clSetMemObjectDestructorCallback(memory.get(), +giveBack, block.get());
+    if (code == CL_INVALID_OPERATION)
+        return {};  // Wine's loader has no callbacks; `memory` goes before `block`
+    check(code, "clSetMemObjectDestructorCallback");
     (void)block.release();
     return memory;
 }

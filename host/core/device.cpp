@@ -84,9 +84,9 @@ cl::Memory Device::allocate(size_t bytes, const void* initial, bool zeros) {
         fail(PEL_ERROR_OUT_OF_MEMORY, bytes, " bytes are more than this device allocates at once (",
              info_.maxAllocationBytes, ")");
     cl::Memory memory;
-    if (info_.type == PEL_DEVICE_CPU && info_.sharedMemory) {
+    if (info_.type == PEL_DEVICE_CPU && info_.sharedMemory)
         memory = cl::createInHostMemory(context_.get(), bytes, initial, zeros);
-    } else {
+    if (!memory) {
         cl_int code = CL_SUCCESS;
         const cl_mem_flags flags = CL_MEM_READ_WRITE | (initial ? CL_MEM_COPY_HOST_PTR : 0);
         memory = cl::Memory(clCreateBuffer(context_.get(), flags, bytes, const_cast<void*>(initial), &code));

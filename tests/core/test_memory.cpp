@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstring>
@@ -22,7 +23,8 @@ using namespace pellucid;
 
 namespace {
 
-std::atomic<int> untilFailure{0};  // calls of clCreateBuffer; 0: none fails
+std::atomic<int> untilFailure{0};   // calls of clCreateBuffer; 0: none fails
+std::atomic<bool> callbacks{true};  // the driver says when a buffer ends
 
 }  // namespace
 
@@ -34,6 +36,13 @@ extern "C" __attribute__((visibility("default"))) cl_mem clCreateBuffer(cl_conte
     }
     return reinterpret_cast<decltype(clCreateBuffer)*>(dlsym(RTLD_NEXT, "clCreateBuffer"))(context, flags,
                                                                                            bytes, host, code);
+}
+
+extern "C" __attribute__((visibility("default"))) cl_int clSetMemObjectDestructorCallback(
+    cl_mem memory, void(CL_CALLBACK* callback)(cl_mem, void*), void* user) {
+    if (!callbacks) return CL_INVALID_OPERATION;
+    return reinterpret_cast<decltype(clSetMemObjectDestructorCallback)*>(
+        dlsym(RTLD_NEXT, "clSetMemObjectDestructorCallback"))(memory, callback, user);
 }
 
 namespace {
@@ -243,5 +252,27 @@ TEST(Memory, DriversThatRefuse) {
             CHILD_EXPECT(failures > 0 && failures < 90);
             CHILD_EXPECT(addressSpace() < before + (30u << 20));
         }
+    });
+}
+
+// As with Wine's loader: the driver's memory stands in the library's place.
+TEST(Memory, IsTheDriversWhereBuffersEndUnseen) {
+    inFork([] {
+        const Device device("");
+        if (!sharesMemory(device)) return;
+        PelSpecularLutDesc desc = pelSpecularLutDescDefaults();
+        desc.width = desc.height = 8;
+        const std::vector<float> expected = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+        callbacks = false;
+        for (const size_t bytes : {size_t(16), size_t(1) << 20, size_t(40) << 20}) {
+            const Buffer buffer(device, bytes);
+            const std::vector<char> zeros = buffer.readAll<char>();
+            CHILD_EXPECT(zeros.size() == bytes);
+            CHILD_EXPECT(std::count(zeros.begin(), zeros.end(), 0) == ptrdiff_t(bytes));
+            std::vector<int> numbers(bytes / sizeof(int));
+            for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = int(i * 7);
+            CHILD_EXPECT(Buffer(device, numbers).readAll<int>() == numbers);
+        }
+        CHILD_EXPECT(Lut(device, desc).read<float>(PEL_LUT_FLOAT) == expected);
     });
 }

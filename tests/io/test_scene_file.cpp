@@ -65,6 +65,18 @@ TEST_F(SceneFileTest, TheDocumentedExampleIsRead) {
 }
 
 // What a material leaves to its profile is not written, and a profile file lies relative to the scene.
+TEST_F(SceneFileTest, DirectionsAreMadeUnit) {
+    const std::string to = "to_light = [0.6, 0.3, 0.742]", spot = "type = \"directional\"";
+    const SceneFile sun = readScene(write("s.toml", example(to, "to_light = [3, 0, 4e3]")));
+    EXPECT_FLOAT_EQ(sun.lights[0].light.toLight[0], float(3 / std::hypot(3, 4e3)));
+    EXPECT_FLOAT_EQ(sun.lights[0].light.toLight[2], float(4e3 / std::hypot(3, 4e3)));
+    const SceneFile lamp = readScene(write(
+        "s.toml", example(spot, "type = \"spot\"\nposition = [1, 2, 3]\nspot_direction = [0, -1e-3, 0]")));
+    EXPECT_EQ(lamp.lights[0].light.spotDirection[1], -1.0f);
+    EXPECT_TRUE(contains(errorOf(to, "to_light = [0, 0.0, 0]"),
+                         at("to_light") + "'to_light' in [[light]] is (0, 0, 0)"));
+}
+
 TEST_F(SceneFileTest, DefaultsOfAMaterialStayDefaults) {
     SceneFile scene = readScene(write("s.toml", example()));
     scene.materials[0] = SceneMaterial();

@@ -1,6 +1,7 @@
 #include "io/scene/scene_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -40,6 +41,15 @@ void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind, LutPreset pr
     scene.luts.push_back(std::move(lut));
 }
 
+// Makes a direction unit; one that is nearly so keeps its bits, so that scenes can be written and read again.
+void makeUnit(TomlReader& reader, const char* key, float (&v)[3]) {
+    const double length = std::hypot(double(v[0]), double(v[1]), double(v[2]));
+    if (length == 0) reader.fail(key, "is (0, 0, 0); a direction is needed");
+    if (!std::isfinite(length)) reader.fail(key, "is not finite; a direction is needed");
+    if (std::abs(length - 1) < 1e-6) return;
+    for (float& x : v) x = float(x / length);
+}
+
 void readLight(TomlReader& reader, SceneFile& scene) {
     SceneLight light;
     light.line = reader.line();
@@ -50,6 +60,8 @@ void readLight(TomlReader& reader, SceneFile& scene) {
     if (light.light.type == PEL_LIGHT_DIRECTIONAL) needs("to_light", "directional");
     if (light.light.type != PEL_LIGHT_DIRECTIONAL) needs("position", "point or spot");
     if (light.light.type == PEL_LIGHT_SPOT) needs("spot_direction", "spot");
+    if (light.light.type == PEL_LIGHT_DIRECTIONAL) makeUnit(reader, "to_light", light.light.toLight);
+    if (light.light.type == PEL_LIGHT_SPOT) makeUnit(reader, "spot_direction", light.light.spotDirection);
     if (reader.has("shadow_map") && light.shadowMapFile.empty())
         reader.fail("shadow_map", "has no 'file'; name the image of depths seen from the light");
     scene.lights.push_back(std::move(light));

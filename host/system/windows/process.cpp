@@ -6,6 +6,7 @@
 #include <windows.h>
 
 #include <cerrno>
+#include <clocale>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -56,7 +57,8 @@ bool errorsAreSeen() {
 }
 
 bool prepareStreams() {
-    ::_setmode(1, _O_BINARY);  // the same bytes as on other systems
+    ::_setmode(1, _O_BINARY);      // the same bytes as on other systems
+    std::setlocale(LC_CTYPE, "");  // arguments are in the system's code page, and so are paths made of them
     return true;
 }
 

@@ -1,0 +1,109 @@
+// What the files in folders named `windows` do in the place of those in `posix`: outputs, inputs, this process, libraries.
+#include "io/atomic_file.h"
+#include "io/file_error.h"
+#include "io/input_file.h"
+#include "io/io_files.h"
+#include "system/library.h"
+#include "system/process.h"
+
+namespace fs = std::filesystem;
+namespace io = pellucid::io;
+namespace host = pel::system;
+
+using System = FolderTest;
+
+TEST_F(System, OutputsAppearWholeOrNotAtAll) {
+    const std::string target = write("a.txt", "before");
+    {
+        io::AtomicFile file(target);
+        file.write("half", 4);
+        EXPECT_EQ(read(target), "before");
+        EXPECT_EQ(filesInFolder(), 2u);
+    }
+    EXPECT_EQ(filesInFolder(), 1u) << "what was not committed is gone";
+    EXPECT_EQ(read(target), "before");
+    const std::string bytes("line\n\r\n\0\x1a end",
+                            13);  // as they are: no line ends are translated, Ctrl-Z ends nothing
+    io::writeWholeFile(target, bytes);
+    EXPECT_EQ(read(target), bytes);
+    EXPECT_EQ(io::readWholeFile(target), bytes);
+    EXPECT_EQ(filesInFolder(), 1u);
+    io::checkWritable(path("new.txt"));
+    EXPECT_EQ(filesInFolder(), 1u);
+
+    fs::create_directories(path("folder"));
+    EXPECT_TRUE(
+        contains(messageOf<io::FileError>([&] { io::AtomicFile file(path("folder")); }), "is a folder"));
+    EXPECT_TRUE(contains(messageOf<io::FileError>([&] { io::AtomicFile file(path("no/a.txt")); }),
+                         "there is no folder"));
+    EXPECT_TRUE(contains(messageOf<io::FileError>([] { io::AtomicFile file(""); }), "needs a file name"));
+}
+
+TEST_F(System, AnOpenTargetIsKept) {
+    const std::string target = write("a.txt", "before");
+    std::ifstream reader(target);  // by which Windows refuses to replace it
+    const std::string said = messageOf<io::FileError>([&] { io::writeWholeFile(target, "after"); });
+    if (said.empty()) {
+        EXPECT_EQ(read(target), "after");
+    } else {
+        EXPECT_TRUE(contains(said, "cannot be written: "));
+        EXPECT_EQ(read(target), "before");
+    }
+    EXPECT_EQ(filesInFolder(), 1u);
+}
+
+TEST_F(System, RemovesWhatKilledProgramsLeft) {
+    const auto left = [&](const std::string& machine, std::chrono::seconds age) {
+        const std::string file = write(".a." + machine + "-0123456789abcdef.tmp.exr", "half");
+        fs::last_write_time(file, fs::file_time_type::clock::now() - age);
+    };
+    left(io::machineTag(), std::chrono::seconds(30));
+    write(".a.tmp", "somebody else's");
+    EXPECT_EQ(io::removeAbandonedFiles(folder_.string()), 0u);
+    left(io::machineTag(), std::chrono::seconds(90));
+    left("deadbeef", std::chrono::seconds(3600));
+    EXPECT_EQ(io::removeAbandonedFiles(folder_.string()), 1u);
+    left("deadbeef", std::chrono::seconds(2 * 86400));
+    EXPECT_EQ(io::removeAbandonedFiles(folder_.string()), 1u);
+    EXPECT_EQ(filesInFolder(), 1u);
+}
+
+TEST_F(System, InputsAreFiles) {
+    const std::string file = write("a.txt", std::string(100, 'x'));
+    EXPECT_TRUE(contains(messageOf<io::FileError>([&] { io::readWholeFile(file, 99); }), "a.txt"));
+    EXPECT_EQ(io::readWholeFile(file, 100).size(), 100u);
+    EXPECT_TRUE(
+        contains(messageOf<io::FileError>([&] { io::readWholeFile(folder_.string()); }), "is a folder"));
+    EXPECT_TRUE(
+        contains(messageOf<io::FileError>([&] { io::checkReadable(path("none")); }), "cannot be read"));
+}
+
+TEST_F(System, ProcessesKnowThemselves) {
+    EXPECT_TRUE(fs::exists(host::programFile()));
+    EXPECT_EQ(io::extensionOf(host::programFile()), "exe");
+    host::setVariable("PELLUCID_TEST", "a b");
+    const auto has = [](const std::string& entry) {
+        const std::vector<std::string> all = host::environment();
+        return std::find(all.begin(), all.end(), entry) != all.end();
+    };
+    EXPECT_TRUE(has("PELLUCID_TEST=a b"));
+    host::setVariable("PELLUCID_TEST", nullptr);
+    EXPECT_FALSE(has("PELLUCID_TEST=a b"));
+    const std::string first = host::makeTemporaryFolder(folder_.string(), "t-"),
+                      second = host::makeTemporaryFolder(folder_.string(), "t-");
+    EXPECT_TRUE(fs::is_directory(first) && fs::is_directory(second));
+    EXPECT_NE(first, second);
+    EXPECT_EQ(host::makeTemporaryFolder(path("nowhere"), "t-"), "");
+}
+
+TEST_F(System, LibrariesAreLoaded) {
+    std::string why;
+    EXPECT_EQ(host::openLibrary("no_such_library.dll", why), nullptr);
+    EXPECT_TRUE(contains(why, "no_such_library.dll cannot be loaded"));
+    void* const library = host::openLibrary("kernel32.dll", why);
+    ASSERT_NE(library, nullptr);
+    EXPECT_NE(host::symbolIn(library, "GetTickCount"), nullptr);
+    EXPECT_EQ(host::symbolIn(library, "GetTickCountry"), nullptr);
+    static const int here = 0;
+    EXPECT_EQ(fs::path(host::folderOf(&here)), fs::path(host::programFile()).parent_path() / "");
+}
