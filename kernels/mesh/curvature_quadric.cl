@@ -87,9 +87,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_MESH_GROUP, 1, 1))) void curvat
         const Slots at = pointsAt(&list, row, points);
         addPoint(&fit, at, spread & (at.each != list.self.each), &chart, positions);
     }
-    assemble(&fit);
-    const maskw unsure = solve(&fit, &chart), noisy = isNoisy(&fit, &chart);
-    Result best = resultOf(&fit);
+    // Copies, so that what the loop uses stays in registers.
+    Fit whole = fit;
+    const Chart same = chart;
+    const maskw unsure = solve(&whole, &same), noisy = isNoisy(&whole, &chart);
+    Result best = resultOf(&whole);
     const maskw poor = spread & (noisy | unsure | (chart.round < LEAST_ROUND));
     if (anyw(poor)) {
         // Copies, so that what the first fit uses stays in registers.
