@@ -45,6 +45,26 @@ double radiusOfNode(uint32_t bits) {
     return std::sqrt(double(std::bit_cast<float>(bits)));
 }
 
+// What a look-up between two nodes returns too much in the mean: lines between the values of a curve that bends upwards lie above it.
+template <class Density>
+Rgb aboveCurve(const Density& density, uint32_t bits, uint32_t step) {
+    const Rgb a = density(radiusOfNode(bits)), b = density(radiusOfNode(bits + step)),
+              middle = density(radiusOfNode(bits + step / 2));
+    Rgb above;
+    for (int c = 0; c < 3; ++c) above[c] = 2 / 3. * ((a[c] + b[c]) / 2 - middle[c]);
+    return above;
+}
+
+// The value of a node from which look-ups on both sides of it are right in the mean.
+template <class Density>
+Rgb valueOfNode(const Density& density, uint32_t bits, uint32_t step, bool isFirst) {
+    Rgb value = density(radiusOfNode(bits));
+    const Rgb after = aboveCurve(density, bits, step),
+              before = isFirst ? after : aboveCurve(density, bits - step, step);
+    for (int c = 0; c < 3; ++c) value[c] -= (before[c] + after[c]) / 2;
+    return value;
+}
+
 // Solves A x = b for a symmetric positive definite A (Cholesky), three right sides at a time.
 void solve(std::vector<double>& a, std::vector<Rgb>& b) {
     const size_t n = b.size();
@@ -155,8 +175,10 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
     result.values.resize(12 * nodes);
     const Rgb all = shares[nodes - 1];
     for (size_t k = 0; k < nodes; ++k) {
-        const double radius = radiusOfNode(firstBits + uint32_t(k) * step) / scale;
-        const Rgb density = shape.radial(radius), blocks = densityOfBlock(shape, radius);
+        const uint32_t bits = firstBits + uint32_t(k) * step;
+        const Rgb density = valueOfNode([&](double r) { return shape.radial(r / scale); }, bits, step, k == 0),
+                  blocks = valueOfNode([&](double r) { return densityOfBlock(shape, r / scale); }, bits, step,
+                                       k == 0);
         for (int c = 0; c < 3; ++c) {
             const double unit = all[c] * scale * scale;
             if (k + 1 < nodes) {

@@ -1,17 +1,31 @@
 // Irradiance scattered under the surface, with the texels of shadow maps as lit surface (docs/mathematics.md, sections 9 and 10, "Light space").
 //
-// Near the point the sum runs over pixels and is divided by its weights; further away it is that over the lights' texels, as it stands.
+// The sum over the lights' texels, as it stands; near the point that over pixels, divided by its weights, where it knows more. At the
+// point itself irradiance is known.
 //
 // Input: both pyramids, the words of light_classify. Output: pixels of its parts in an image like the irradiance's; others stay. One
 // work-group takes tiles, one work-item parts of them, pixel by pixel. Variants: PEL_HIDDEN is 0, PEL_FORMAT_OUT.
+#include "lib/diffusion/lit_surface.clh"
 #include "lib/diffusion/windowed.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 
-#define PART 4             // pixels along a side
-#define WINDOW 1.5f        // width, in steps from pixel to pixel or in texels
-#define LEAST_COSINE 0.2f  // to the light: texels on steeper surface count as if they were as long as on this
-#define NEARLY_PLANE 0.012f  // of the whole mass
+#define PART 4  // pixels along a side
+// Windows: of the pixel's own light, in points of a texel; of what pixels show, in texels. Both are lengths on the surface, of one that lies at no
+// smaller a cosine to the light: points lie closer along the slope, and the ring of texels that are points has an end.
+#define OWN_WINDOW 2.0f
+#define OWN_COSINE 0.4f
+#define SHOWN_WINDOW 1.0f
+#define SHOWN_COSINE 0.35f
+#define LEAST_COSINE 0.1f
+// A map tells the place of an edge to a fifth of a texel, pixels to a step over the root of 12: how much more the square of a step counts.
+#define STEP_OVER_TEXEL 2.0f
+#define MASS_OFF \
+    0.1f  // of what pixels show, over that of a plane: nothing is missing; none of it counts from three times that on
+#define AGREE \
+    0.02f  // of light that falls straight in: triangles of a mesh lean by so much from its smooth normals
+#define NEARLY_PLANE 0.03f  // of the mass
+#define MOST_PARTS 4.0f     // of a block
 
 typedef struct Pixel {
     float3 p, e;
@@ -46,20 +60,28 @@ static inline float3 shorterWay(__global const float* at, long to, uint stride, 
     return way;
 }
 
-// The longest side of a light's texel on the surface.
-static inline float texelOnSurface(__global const PelLightMap* map, float3 p, float3 normal) {
+// A light's texel at a point: its width across the light, and the light's cosine.
+typedef struct Texel {
+    float width, cosine;
+    float3 toLight;
+} Texel;
+
+static inline Texel texelAt(__global const PelLightMap* map, float3 p, float3 normal) {
     floatw w;
     Vec3w toLight;
     const Vec3w at = vec3((floatw)(p.x), (floatw)(p.y), (floatw)(p.z));
     texelOf(map, at, &w);
     lightAt(map, at, &toLight);
-    const floatw cosine = fabs(toLight.x * normal.x + toLight.y * normal.y + toLight.z * normal.z);
-    const floatw length = map->texel * w / fmax(cosine, (floatw)(LEAST_COSINE));
+    Texel texel;
 #if PEL_WIDTH == 1
-    return length;
+    texel.width = map->texel * w;
+    texel.toLight = (float3)(toLight.x, toLight.y, toLight.z);
 #else
-    return length.s0;
+    texel.width = map->texel * w.s0;
+    texel.toLight = (float3)(toLight.x.s0, toLight.y.s0, toLight.z.s0);
 #endif
+    texel.cosine = fabs(dot(texel.toLight, normal));
+    return texel;
 }
 
 static inline float3 shareOfPixel(__global const float* nodes, const PelProfileTable table, float area) {
@@ -77,11 +99,23 @@ static inline float3 meanLight(float3 light, float3 mass, float3 e) {
                     mass.z > 0.0f ? light.z / mass.z : e.z);
 }
 
-// Blocks add up to a mass that is a little off. Where it is nearly a plane's it is taken to be that: so light that is the same
-// all round stays what it is. Returns by how much the light is to be multiplied.
-static inline float3 planeLike(float3 mass, float3 plane) {
-    const float3 off = mass - plane, trust = clamp(2.0f - fabs(off) * (1.0f / NEARLY_PLANE), 0.0f, 1.0f);
-    return (mass - off * trust) / fmax(mass, (float3)(FLT_MIN));
+// Blocks add up to a mass that is a little off. Where it is nearly a plane's it is taken to be that. Returns by how much the light is to be
+// multiplied.
+static inline float asOfPlane(float mass, float plane) {
+    if (!(mass > 0.1f * plane)) return 1.0f;
+    const float off = mass / plane - 1.0f, trust = clamp(2.0f - fabs(off) * (1.0f / NEARLY_PLANE), 0.0f, 1.0f);
+    return (1.0f + off * (1.0f - trust)) / (1.0f + off);
+}
+
+// How much what pixels show counts in place of what texels do: where both differ by no more than the normals of a surface and of its triangles
+// may, or where pixels are the finer and show all surface there is.
+static inline float3 trustInPixels(float3 byPixels, float3 byTexels, float3 mass, float3 window, float cosine,
+                                   float texel, float step) {
+    const float finer = texel * texel / fma(STEP_OVER_TEXEL * step, step, texel * texel);
+    const float3 least = (float3)(FLT_MIN), off = fabs(mass / fmax(window, least) - 1.0f),
+                 whole = clamp(1.5f - off * (0.5f / MASS_OFF), 0.0f, 1.0f),
+                 apart = fabs(byPixels - byTexels) * cosine / fmax(fmax(byPixels, byTexels), least);
+    return fmax(clamp(2.0f - apart * (1.0f / AGREE), 0.0f, 1.0f), finer * whole);
 }
 
 // A pixel's scattered light. Returns false where it stays as it is.
@@ -100,25 +134,45 @@ static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __globa
     place.p = here->p;
     place.id = here->id;
     place.slack = 0.0f;
-    place.rho = WINDOW * longest;
     const float3 normal = across * rsqrt(fmax(dot(across, across), FLT_MIN));
+    float texel = 0.0f, point = 0.0f, shown = 0.0f;  // the longest on the surface
+    float steepest = 1.0f;                           // least cosine
     for (uint k = 0; k < mapCount; ++k) {
-        const float length = WINDOW * texelOnSurface(maps + k, here->p, normal);
-        if (length > place.rho && length < FLT_MAX) place.rho = length;
+        const Texel t = texelAt(maps + k, here->p, normal);
+        if (!(t.width > 0.0f && t.width < FLT_MAX)) continue;
+        steepest = fmin(steepest, fmax(t.cosine, LEAST_COSINE));
+        texel = fmax(texel, t.width / fmax(t.cosine, LEAST_COSINE));
+        shown = fmax(shown, t.width / fmax(t.cosine, SHOWN_COSINE));
+        point = fmax(point, t.width / fmax(t.cosine, OWN_COSINE));
     }
-    if (!(place.rho > 0.0f)) return false;
-    const float3 window = shareOfWindow(nodes, table, place.rho), none = (float3)(0.0f);
-    const bool isLit = here->e.x + here->e.y + here->e.z > 0.0f;
-    float3 sum = none;
+    LitPlace lit;
+    lit.p = here->p;
+    lit.id = here->id;
+    lit.own = OWN_WINDOW * point * (1.0f / PEL_TEXEL_ACROSS);
+    place.rho = lit.shown = fmax(SHOWN_WINDOW * shown, lit.own);
+    if (!(lit.own > 0.0f)) return false;
+    const float3 none = (float3)(0.0f);
+    const float3 ownWindow = shareOfWindow(nodes, table, lit.own),
+                 window = shareOfWindow(nodes, table, lit.shown);
+    float3 far = none, between = none, asPlane = none;
     for (uint k = 0; k < mapCount;) {
-        Windowed sums;
-        clearWindowed(&sums);
-        const uint light = maps[k].light;
+        LitSums sums;
+        clearLitSums(&sums);
+        const uint number = maps[k].light;
         const float3 color = vload3(0, maps[k].color);
-        for (; k < mapCount && maps[k].light == light; ++k)
-            *texels += addMap(&sums, maps + k, lights, nodes, table, &place);
-        const float3 far = color * sumOfLanes3(sums.farLight);
-        sum += isLit ? far * planeLike(sumOfLanes3(sums.farMass), 1.0f - window) : far;
+        for (; k < mapCount && maps[k].light == number; ++k) {
+            const Texel t = texelAt(maps + k, here->p, normal);
+            const float3 along = t.toLight - normal * dot(normal, t.toLight);
+            lit.along = along * rsqrt(fmax(dot(along, along), 1e-12f));
+            lit.parts = (uint)(fmin(1.0f / fmax(t.cosine, 0.01f), MOST_PARTS) + 0.5f);
+            *texels += addLitSurface(&sums, maps + k, lights, nodes, table, &lit);
+        }
+        far += color * sumOfLanes3(sums.far);
+        const float3 light = color * sumOfLanes3(sums.between), mass = sumOfLanes3(sums.mass);
+        between += light;
+        asPlane += light * (float3)(asOfPlane(mass.x, window.x - ownWindow.x),
+                                    asOfPlane(mass.y, window.y - ownWindow.y),
+                                    asOfPlane(mass.z, window.z - ownWindow.z));
     }
     Windowed screen;
     clearWindowed(&screen);
@@ -130,7 +184,10 @@ static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __globa
     const float3 own = shareOfPixel(nodes, table, here->area);
     const float3 nearMass = own + sumOfLanes3(screen.nearMass),
                  nearLight = own * here->e + sumOfLanes3(screen.nearLight);
-    *result = sum + window * meanLight(nearLight, nearMass, here->e);
+    const float3 byPixels = window * meanLight(nearLight, nearMass, here->e),
+                 byTexels = ownWindow * here->e + asPlane;
+    const float3 trust = trustInPixels(byPixels, byTexels, nearMass, window, steepest, texel, longest);
+    *result = far + ownWindow * here->e + between + trust * (byPixels - byTexels);
     return true;
 }
 

@@ -18,8 +18,8 @@ void print(const char* what, const Errors& e, double milliseconds = 0) {
     std::printf("%-28s 1e-4: %6.1f %6.1f %6.1f   %.1f ms\n", what, e[0], e[1], e[2], milliseconds);
 }
 
-// With visibility given: screen and maps keep to `most`, and, where much is hidden (`lacksMass`), are nearer than the screen alone; maps alone to `mostOfLight`, or, without, are nearer than Lambert.
-void hold(const Ruler& r, const tolerance::Tolerance (&most)[3], const tolerance::Tolerance* mostOfLight,
+// With visibility given: screen and maps keep to `most`, and, where much is hidden (`lacksMass`), are nearer than the screen alone; maps alone to `mostOfLight`.
+void hold(const Ruler& r, const tolerance::Tolerance (&most)[3], const tolerance::Tolerance (&mostOfLight)[3],
           bool lacksMass) {
     const Device device("");
     const Shown both = shade(device, r, PEL_SCATTERING_AUTO, true),
@@ -36,7 +36,7 @@ void hold(const Ruler& r, const tolerance::Tolerance (&most)[3], const tolerance
     for (int c = 0; c < 3; ++c) {
         EXPECT_LT(withMap[c], most[c]);
         EXPECT_LT(withMap[c], lambert[c]);
-        EXPECT_LT(ofLight[c], mostOfLight ? double(mostOfLight[c]) : lambert[c]);
+        EXPECT_LT(ofLight[c], mostOfLight[c]);
     }
     if (!lacksMass) return;
     EXPECT_LT(withMap[0], 0.95 * without[0]);
@@ -53,14 +53,14 @@ TEST(LightRulers, HeadLitFromTheSide) {
     const char *rulers = folder("PELLUCID_RULER_DIR"), *gbuffers = folder("PELLUCID_GBUFFER_DIR");
     if (!rulers || !gbuffers)
         GTEST_SKIP() << "PELLUCID_RULER_DIR or PELLUCID_GBUFFER_DIR is not set: no ruler";
-    hold(head1536(rulers, gbuffers), tolerance::lightHead, nullptr, true);
+    hold(head1536(rulers, gbuffers), tolerance::lightHead, tolerance::lightHeadOfLight, true);
 }
 
 TEST(LightRulers, HeadOfFourTimesTheRadius) {
     const char *rulers = folder("PELLUCID_RULER_DIR"), *gbuffers = folder("PELLUCID_GBUFFER_DIR");
     if (!rulers || !gbuffers)
         GTEST_SKIP() << "PELLUCID_RULER_DIR or PELLUCID_GBUFFER_DIR is not set: no ruler";
-    hold(headTimesFour(rulers, gbuffers), tolerance::lightFour, nullptr, true);
+    hold(headTimesFour(rulers, gbuffers), tolerance::lightFour, tolerance::lightFourOfLight, true);
 }
 
 TEST(LightRulers, Ball) {
@@ -104,7 +104,9 @@ TEST(LightRulers, EarFromBehind) {
         const Errors e = rms(lit::shade(device, s, profile(), 1, nullptr, way));
         print(scattering == PEL_SCATTERING_AUTO ? "auto and map" : "light", e);
         if (testsAreSmall()) continue;
-        for (int c = 0; c < 3; ++c) EXPECT_LT(e[c], tolerance::lightEar[c]);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_LT(e[c], scattering == PEL_SCATTERING_LIGHT ? tolerance::lightEarOfLight[c]
+                                                               : tolerance::lightEar[c]);
         if (scattering != PEL_SCATTERING_AUTO) continue;
         way.traced = false;
         const Errors byMap = rms(lit::shade(device, s, profile(), 1, nullptr, way));

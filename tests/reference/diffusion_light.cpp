@@ -13,10 +13,16 @@ namespace {
 constexpr double noNumber = std::numeric_limits<double>::quiet_NaN();
 
 // Constants of the definition.
-constexpr double window = 1.5;         // steps or texels
-constexpr double leastCosine = 0.2;    // of texels' length on the surface
-constexpr double nearlyPlane = 0.012;  // of the mass; none of it from twice that on
-constexpr double longestSlope = 10;    // of a texel's surface, over its area across the light
+constexpr double ownWindow = 2, ownCosine = 0.4;       // quarters of a texel
+constexpr double shownWindow = 1, shownCosine = 0.35;  // texels
+constexpr double leastCosine = 0.1;                    // to the light
+constexpr double stepOverTexel = 2;                    // of squares
+constexpr double massOff = 0.1;  // of what pixels show; nothing of it counts from three times that on
+constexpr double agree = 0.02;   // of light that falls straight in: no difference; one from twice that on
+constexpr double nearlyPlane = 0.03;  // of the mass; not at all from twice that on
+constexpr double longestSlope = 10;   // of a texel's surface, over its area across the light
+constexpr double pointsWithin = 3;    // lengths of a texel
+constexpr int pointsAcross = 4;
 
 Vec3 rowOf(const Matrix4& m, int r) {
     return {m[size_t(r)][0], m[size_t(r)][1], m[size_t(r)][2]};
@@ -162,10 +168,21 @@ Rgb shareOfWindow(const Cut& profile, double rho) {
     return sum / steps;
 }
 
-// What the mass is to be multiplied by.
+// What light with this mass is to be multiplied by.
 double planeLike(double mass, double plane) {
-    const double off = mass - plane, trust = saturate(2 - std::abs(off) / nearlyPlane);
-    return mass > 0 ? (mass - off * trust) / mass : 0;
+    if (!(mass > 0.1 * plane)) return 1;
+    const double off = mass / plane - 1, trust = saturate(2 - std::abs(off) / nearlyPlane);
+    return (1 + off * (1 - trust)) / (1 + off);
+}
+
+// How much the mean of the pixels counts instead of the texels, of one channel.
+double trustInPixels(double byPixels, double byTexels, double mass, double window, double cosine,
+                     double texel, double step) {
+    const double finer = texel * texel / (texel * texel + stepOverTexel * step * step),
+                 whole = saturate(1.5 - std::abs(mass / window - 1) / (2 * massOff)),
+                 most = std::max(byPixels, byTexels),
+                 apart = most > 0 ? std::abs(byPixels - byTexels) * cosine / most : 0;
+    return std::max(saturate(2 - apart / agree), finer * whole);
 }
 
 }  // namespace
@@ -191,9 +208,11 @@ std::vector<LitTexel> litTexels(const MappedLight& light) {
                 const double across = light.directional ? texel : texel * dot(from, from);
                 const Vec3 right = stepOf(p, place(x - 1, y, x - 1, y), place(x + 1, y, x + 1, y)),
                            down = stepOf(p, place(x, y - 1, x, y - 1), place(x, y + 1, x, y + 1));
-                const double area = length(cross(right, down));
+                const double area = length(cross(right, down)), farthest = longestSlope * std::sqrt(across);
+                const auto side = [&](Vec3 v) { return length(v) < farthest ? v : Vec3{}; };
                 all.push_back({p, strength(light, p) * texel,
-                               std::min(std::isfinite(area) ? area : across, longestSlope * across)});
+                               std::min(std::isfinite(area) ? area : across, longestSlope * across),
+                               side(right), side(down)});
             }
     }
     return all;
@@ -217,31 +236,51 @@ std::vector<Rgb> scatterFromLights(const ScatterPicture& p, const std::vector<Ma
             const Steps steps = stepsAt(p, x, y);
             const Vec3 across = cross(steps.right, steps.down),
                        normal = across / std::max(length(across), 1e-300);
-            double rho = window * std::max(length(steps.right), length(steps.down));
+            const double step = std::max(length(steps.right), length(steps.down));
+            double rho = 0, own = 0, texel = 0, steepest = 1;
             for (const MappedLight& light : lights) {
                 const Vec3 toLight = light.directional ? light.toLight : normalized(light.position - here);
-                const double cosine = std::max(std::abs(dot(normal, toLight)), leastCosine);
-                for (const LightDepths& map : light.maps)
-                    rho = std::max(rho, window * texelLength(map, light, here) / cosine);
-            }
-            const Rgb within = shareOfWindow(profile, rho), lit = p.irradiance[i];
-            Rgb sum;
-            for (size_t k = 0; k < lights.size(); ++k) {
-                Rgb light, mass;
-                for (const LitTexel& t : texels[k]) {
-                    const double distance = length(t.position - here), far = 1 - nearShare(distance, rho);
-                    if (!(far > 0) || !(t.flux > 0)) continue;
-                    const Rgb density = far * profile.radial(distance);
-                    light = light + t.flux * density;
-                    mass = mass + t.extent * density;
+                const double cosine = std::abs(dot(normal, toLight));
+                steepest = std::min(steepest, std::max(cosine, leastCosine));
+                for (const LightDepths& map : light.maps) {
+                    const double length = texelLength(map, light, here);
+                    if (!(length > 0)) continue;
+                    rho = std::max(rho, shownWindow * length / std::max(cosine, shownCosine));
+                    own = std::max(own, ownWindow / pointsAcross * length / std::max(cosine, ownCosine));
+                    texel = std::max(texel, length / std::max(cosine, leastCosine));
                 }
+            }
+            rho = std::max(rho, own);
+            const Rgb within = shareOfWindow(profile, rho), withinOwn = shareOfWindow(profile, own),
+                      lit = p.irradiance[i];
+            Rgb far, between, asPlane;
+            for (size_t k = 0; k < lights.size(); ++k) {
+                Rgb beyond, light, mass;
+                for (const LitTexel& t : texels[k]) {
+                    if (!(t.flux > 0)) continue;
+                    const Vec3 d = t.position - here;
+                    const double longest = std::max(length(t.right), length(t.down));
+                    const int n = length(d) < pointsWithin * longest ? pointsAcross : 1;
+                    for (int v = 0; v < n; ++v)
+                        for (int u = 0; u < n; ++u) {
+                            const double distance = length(d + ((u + 0.5) / n - 0.5) * t.right +
+                                                           ((v + 0.5) / n - 0.5) * t.down),
+                                         g = nearShare(distance, rho), ring = g - nearShare(distance, own);
+                            if (distance <= own) continue;
+                            const Rgb density = profile.radial(distance) / (n * n);
+                            beyond = beyond + (1 - g) * t.flux * density;
+                            light = light + ring * t.flux * density;
+                            mass = mass + ring * t.extent * density;
+                        }
+                }
+                far = far + lights[k].color * beyond;
+                between = between + lights[k].color * light;
                 for (int c = 0; c < 3; ++c)
-                    sum[c] += lights[k].color[c] * light[c] *
-                              (lit.x + lit.y + lit.z > 0 ? planeLike(mass[c], 1 - within[c]) : 1);
+                    asPlane[c] += lights[k].color[c] * light[c] * planeLike(mass[c], within[c] - withinOwn[c]);
             }
             // Near: the mean of what pixels show.
-            const Rgb own = profile.within(std::sqrt(areas[i] / std::numbers::pi));
-            Rgb weights = own, near = own * lit;
+            const Rgb self = profile.within(std::sqrt(areas[i] / std::numbers::pi));
+            Rgb weights = self, near = self * lit;
             for (size_t j = 0; j < p.positions.size(); ++j) {
                 if (j == i || !(areas[j] > 0) || p.ids[j] != p.ids[i]) continue;
                 const double distance = length(p.positions[j] - here), share = nearShare(distance, rho);
@@ -250,8 +289,13 @@ std::vector<Rgb> scatterFromLights(const ScatterPicture& p, const std::vector<Ma
                 weights = weights + weight;
                 near = near + weight * p.irradiance[j];
             }
-            for (int c = 0; c < 3; ++c)
-                result[i][c] = sum[c] + within[c] * (weights[c] > 0 ? near[c] / weights[c] : lit[c]);
+            for (int c = 0; c < 3; ++c) {
+                const double byPixels = within[c] * (weights[c] > 0 ? near[c] / weights[c] : lit[c]),
+                             byTexels = withinOwn[c] * lit[c] + asPlane[c];
+                result[i][c] = far[c] + withinOwn[c] * lit[c] + between[c] +
+                               trustInPixels(byPixels, byTexels, weights[c], within[c], steepest, texel, step) *
+                                   (byPixels - byTexels);
+            }
         }
     return result;
 }

@@ -34,8 +34,9 @@ struct MappedLight {
 // Lit surface: what one texel shows.
 struct LitTexel {
     Vec3 position;
-    double flux;    // irradiance times area, over the light's colour
-    double extent;  // area
+    double flux;       // irradiance times area, over the light's colour
+    double extent;     // area
+    Vec3 right, down;  // its sides
 };
 std::vector<LitTexel> litTexels(const MappedLight& light);
 
