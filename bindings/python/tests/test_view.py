@@ -224,6 +224,15 @@ def _write_triangle(path):
     return path
 
 
+def test_pixels_are_counted_when_asked(session):
+    fresh = Session(session.device)
+    fresh.show(session.mesh)
+    assert fresh.frame(160, 90).counts["pixels_specular"] == 0
+    fresh.count = True
+    fresh.orbit.azimuth += 1
+    assert fresh.frame(160, 90).counts["pixels_specular"] > 0
+
+
 def test_the_method_in_the_texture(session, tmp_path):
     reset(session)
     # The head: where scattering shows, at edges of shadows, the texture's is that of the other methods.
