@@ -15,7 +15,6 @@
 #include "lib/diffusion/pyramid.clh"
 
 // Measured on a head and on balls, so that 99 % of the pixels keep to the tolerance.
-#define ERROR_PER_BEND 0.15f
 #define LEFT_ALONE 0.5f     // of the tolerance: what a tile may lack without taps
 #define LEAST_LIGHT 0.002f  // that a level must contribute
 
@@ -81,11 +80,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void c
             const float beyond = 1.0f - fmin(within.x, fmin(within.y, within.z));
             if (beyond < LEAST_LIGHT) break;
             end = k + 1;
-            error += ERROR_PER_BEND * beyond * bends[k];
+            error += PEL_ERROR_PER_BEND * beyond * bends[k];
             if (k == 0) errorOfPixels = error;
         }
         if (!(error > LEFT_ALONE * frame->tolerance) && !frame->everyTile) continue;
-        near |= frame->everyTile || errorOfPixels > fmin(0.25f * frame->tolerance, 0.5f * error);
+        near |= frame->everyTile || errorOfPixels > fmin(PEL_LEFT_OF_PIXELS * frame->tolerance, 0.5f * error);
         greatest = fmax(greatest, error);
         levels = max(levels, max(end, PEL_LEAST_LEVELS));
     }

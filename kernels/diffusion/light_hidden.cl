@@ -7,9 +7,6 @@
 #include "lib/diffusion/windowed.clh"
 
 #define WINDOW 1.5f
-#define MOST_IN_CENTRE \
-    0.5f  // where more of it lies within the blocks that level 1 does not look at, what is missing is not known
-
 // Light, and the greatest mass of a light's texels.
 static inline void addHidden(__global const PelLightMap* maps, uint mapCount, __global const float* lights,
                              __global const float* nodes, const PelProfileTable table, Place* place,
@@ -30,10 +27,8 @@ static inline void addHidden(__global const PelLightMap* maps, uint mapCount, __
 
 static inline float missingOf(__global const float* sums, uint stride) {
     float most = 0.0f;
-    for (uint c = 0; c < 3; ++c) {
-        const float centre = sums[(PEL_SUM_CENTRE + c) * stride];
-        most = fmax(most, centre > MOST_IN_CENTRE ? 1.0f : 1.0f - centre - sums[(PEL_SUM_MASS + c) * stride]);
-    }
+    for (uint c = 0; c < 3; ++c)
+        most = fmax(most, 1.0f - sums[(PEL_SUM_CENTRE + c) * stride] - sums[(PEL_SUM_MASS + c) * stride]);
     return most;
 }
 

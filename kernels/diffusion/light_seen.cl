@@ -116,8 +116,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     const intw column = lanesw() + (int)x;
     const maskw mine = (column >= (int)from) & (column < (int)frame->width) & (column % EVERY == 0);
     const Vec3w p = loadPositions(frame, position, x, y);
-    const Vec3w above = loadPositions(frame, position, x, y > 0 ? y - 1 : min(y + 1, frame->height - 1)),
-                below = loadPositions(frame, position, x, y + 1 < frame->height ? y + 1 : max(y, 1u) - 1);
 #if PEL_WIDTH == 1
     const Vec3w before = loadPositions(frame, position, x > 0 ? x - 1 : min(x + 1, frame->width - 1), y),
                 after = loadPositions(frame, position, x + 1 < frame->width ? x + 1 : max(x, 1u) - 1, y);
@@ -125,10 +123,15 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     const Vec3w before = vec3(BEFORE(p.x), BEFORE(p.y), BEFORE(p.z)),
                 after = vec3(AFTER(p.x), AFTER(p.y), AFTER(p.z));
 #endif
+    // Without a step to a neighbour there is no patch: most of a background is left here.
+    const Vec3w sideways = shorterOffset(p, before, after);
+    const maskw steps = mine & finite3(p) & ((sideways.x != 0.0f) | (sideways.y != 0.0f) | (sideways.z != 0.0f));
+    if (!anyw(steps)) return;
+    const Vec3w above = loadPositions(frame, position, x, y > 0 ? y - 1 : min(y + 1, frame->height - 1)),
+                below = loadPositions(frame, position, x, y + 1 < frame->height ? y + 1 : max(y, 1u) - 1);
     Patch patch;
-    maskw on = mine & finite3(p) &
-               patchOf(map, p, scale3(shorterOffset(p, before, after), (floatw)(EVERY)),
-                       scale3(shorterOffset(p, above, below), (floatw)(EVERY)), &patch);
+    maskw on = steps & patchOf(map, p, scale3(sideways, (floatw)(EVERY)),
+                               scale3(shorterOffset(p, above, below), (floatw)(EVERY)), &patch);
     uintw id = (uintw)(1);
 #if PEL_FORMAT_MATERIAL
     id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &frame->ids, x, y));

@@ -21,6 +21,15 @@ static inline bool levelMatters(__global const PelDiffusionFrame* frame, __globa
     return false;
 }
 
+// Asks for what the next vector of blocks will read: so many rows of planes are more than processors follow by themselves.
+static inline void fetchNextBlocks(__global const float* at, uint stride) {
+    for (int y = -2; y <= 2; ++y) {
+        __global const float* row = at + (long)y * (long)(stride * PEL_PYRAMID_PLANES) + 2 * PEL_WIDTH;
+        for (uint plane = PEL_PLANE_AREA; plane <= PEL_PLANE_BLUE; ++plane)
+            PEL_PREFETCH(row + plane * stride);
+    }
+}
+
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_level(
     __global const PelDiffusionFrame* frame, __global const float* pyramid,
     __global const PelProfileTable* tables, __global const float* nodes, __global const uint* tiles,
@@ -32,6 +41,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
     if (!levelMatters(frame, tiles, level, x, min(x + PEL_WIDTH, blocks->width), y)) return;
     const uint stride = blocks->stride;
     __global const float* at = pyramid + pyramidRow(blocks, (int)y) + x;
+    fetchNextBlocks(at, stride);
     const Blocks here = loadBlocks(at, stride);
     const maskw on = here.area > 0.0f;
     if (!anyw(on)) return;

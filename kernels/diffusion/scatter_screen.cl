@@ -45,6 +45,25 @@ static inline void addNear(floatw* light, floatw* mass, floatw* centre, floatw n
     *centre = selectw(*centre, selectw(own, *centre - rest, *centre > 0.0f), on);
 }
 
+// Whether irradiance bends so much from pixel to pixel round PEL_WIDTH of them that single pixels count.
+static inline bool pixelsBend(__global const PelDiffusionFrame* frame, __global const float* pyramid, uint x,
+                              uint y) {
+    __global const PelPyramidLevel* level = &frame->level[1];
+    floatw bend = 0.0f;
+    for (int row = -1; row <= 1; ++row) {
+        __global const float* at = pyramid + pyramidRow(level, (int)(y / 2) + row) + (int)(x / 2) - 1 +
+                                   PEL_PLANE_BEND * level->stride;
+#if PEL_WIDTH == 1
+        bend = fmax(bend, fmax(at[0], fmax(at[1], at[2])));
+#else
+        bend = fmax(bend, loadw(0, at));
+#endif
+    }
+    // Blocks beyond those of the pixels and one more on each side say nothing.
+    const maskw far = PEL_ERROR_PER_BEND * bend > PEL_LEFT_OF_PIXELS * frame->tolerance;
+    return frame->everyTile || anyw(far & (lanesw() < PEL_WIDTH / 2 + 2));
+}
+
 // PEL_WIDTH pixels from (x, y) on, all of one tile.
 static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __global const float* pyramid,
                                   __global const PelProfileTable* tables, __global const float* nodes,
@@ -85,8 +104,8 @@ static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __glo
 }
 
 // Asks for what the tile on the right will read: the same rows there, and those beyond its ends.
-static inline void fetchNext(__global const PelDiffusionFrame* frame, __global const float* pyramid,
-                             __global const float* sums, uint x, uint y) {
+static inline void fetchNextTile(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                                 __global const float* sums, uint x, uint y) {
     const uint stride = frame->level[0].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[0], (int)y) + x + PEL_DIFFUSION_TILE;
     for (uint plane = 0; plane < PEL_PYRAMID_PLANES; ++plane)
@@ -120,7 +139,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
     for (uint tile = (uint)((ulong)count * group / groups); tile < end; ++tile) {
         const uint word = tiles[tile];
         if (!word && frame->inPlace) continue;
-        const bool near = word & PEL_TILE_NEAR;
         const uint items = PEL_DIFFUSION_TILE / PEL_WIDTH * PEL_DIFFUSION_TILE;
         for (uint item = get_local_id(0); item < items; item += PEL_DIFFUSION_GROUP) {
             const uint x = tile % frame->tilesX * PEL_DIFFUSION_TILE +
@@ -136,11 +154,12 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
                            (imageColumn >= (int)x) & (imageColumn < (int)frame->width));
                 if (!word) continue;
             }
-            fetchNext(frame, pyramid, sums, x, y);
+            fetchNextTile(frame, pyramid, sums, x, y);
             const Blocks here =
                 loadBlocks(pyramid + pyramidRow(&frame->level[0], (int)y) + x, frame->level[0].stride);
             const maskw active = (column < (int)frame->width) & (here.area > 0.0f);
             if (!anyw(active)) continue;
+            const bool near = word & PEL_TILE_NEAR && pixelsBend(frame, pyramid, x, y);
             const Vec3w s =
                 scatterPixels(frame, pyramid, tables, nodes, sums, word & PEL_TILE_HIDDEN ? hidden : NULL, x,
                               y, near, weightOfWord(word), &here, active);
