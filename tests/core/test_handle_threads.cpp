@@ -39,7 +39,8 @@ TEST(HandleThreads, SharedPlaces) {
     std::atomic<uint64_t> right{0}, refused{0}, lost{0};
     onThreads([&](unsigned t) {
         std::mt19937 random(t);
-        while (std::chrono::steady_clock::now() < end) {
+        // Longer where other programs keep the machine busy.
+        while (std::chrono::steady_clock::now() < end || (right == 0 && refused < 1000000)) {
             const size_t at = random() % places.size();
             const Kind &kind = kinds()[at % types], &other = kinds()[random() % types];
             void* const h = places[at];
