@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Weights of the bands by which scattering sums over the screen (kernels/lib/diffusion/levels.clh).
+"""Weights of the bands by which scattering sums over the screen (kernels/lib/diffusion/bands.clh).
 
     python3 bench/diffusion/fit_bands.py
 
