@@ -59,8 +59,15 @@ Device::~Device() {
     clFinish(queue_.get());
 }
 
-cl::Event Device::launch(cl::Launch& launch, const cl::Range& range) {
-    cl::Event event = launch.enqueue(queue_.get(), range);
+cl::Queue Device::anotherQueue() const {
+    cl_int code = CL_SUCCESS;
+    cl::Queue queue(clCreateCommandQueue(context_.get(), id_, profiling_ ? CL_QUEUE_PROFILING_ENABLE : 0, &code));
+    cl::check(code, "clCreateCommandQueue");
+    return queue;
+}
+
+cl::Event Device::launch(cl::Launch& launch, const cl::Range& range, cl_command_queue queue) {
+    cl::Event event = launch.enqueue(queue ? queue : queue_.get(), range);
     if (!event) return event;
     std::lock_guard lock(mutex_);
     ++stats_.launches;

@@ -22,8 +22,11 @@ class Device final : public Object {
     cl_command_queue queue() const { return queue_.get(); }
     cl::ProgramCache& programs() { return programs_; }
 
-    // Enqueues on the in-order queue and counts the launch. Returns its event (empty for an empty range).
-    cl::Event launch(cl::Launch& launch, const cl::Range& range);
+    // Enqueues on the in-order queue, or on another of this context, and counts the launch. Returns its event (empty for an
+    // empty range).
+    cl::Event launch(cl::Launch& launch, const cl::Range& range, cl_command_queue queue = nullptr);
+    // For work that the caller waits for: the device's queue may be waiting for an event that the caller has yet to set.
+    cl::Queue anotherQueue() const;
 
     // Device memory: a copy of `initial`, or uninitialised.
     cl::Memory allocate(size_t bytes, const void* initial = nullptr);

@@ -28,6 +28,7 @@ const MeshTopology::TwoRings& twoRings(MeshTopology& topology, const cl::Program
     Device& device = topology.device();
     const size_t padded = (size_t(topology.slots()) + PEL_POINT_LANES - 1) / PEL_POINT_LANES * PEL_POINT_LANES;
     std::vector<uint32_t> counts(padded);
+    const cl::Queue queue = device.anotherQueue();
     const cl::Memory links = device.allocate(std::max<size_t>(topology.ringEntries(), 1) * sizeof(uint32_t)),
                      rounds = device.allocate(padded * sizeof(uint32_t)),
                      counted = device.allocate(padded * sizeof(uint32_t));
@@ -35,16 +36,20 @@ const MeshTopology::TwoRings& twoRings(MeshTopology& topology, const cl::Program
         cl::Launch launch(program, "two_ring");
         launch.arg(stage).arg(topology.slots()).arg(topology.slices()).arg(topology.rings());
         launch.arg(links).arg(rounds).arg(counted).arg(starts).arg(points);
-        device.launch(launch, over(padded));
+        device.launch(launch, over(padded), queue.get());
     };
     run(PEL_TWO_RING_LINK, {}, {});
     run(PEL_TWO_RING_COUNT, {}, {});
-    device.read(counted.get(), 0, padded * sizeof(uint32_t), counts.data(), true);
+    cl::check(clEnqueueReadBuffer(queue.get(), counted.get(), CL_TRUE, 0, padded * sizeof(uint32_t),
+                                  counts.data(), 0, nullptr, nullptr),
+              "clEnqueueReadBuffer");
+    device.countTransfer(0, padded * sizeof(uint32_t));
     const std::vector<uint32_t> starts = startsOf(counts);
     const size_t entries = std::max<size_t>(size_t(starts.back()) * PEL_POINT_LANES, 1);
     const cl::Memory begin = device.allocate(starts.size() * sizeof(uint32_t), starts.data()),
                      points = device.allocate(entries * sizeof(uint32_t));
     run(PEL_TWO_RING_LIST, begin, points);
+    cl::check(clFinish(queue.get()), "clFinish");
     made = {begin, points, rounds};
     return made;
 }
