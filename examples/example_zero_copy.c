@@ -57,8 +57,6 @@ int main(void) {
     PelDeviceInfo info = pelDeviceInfoDefaults();
     PelDeviceStats before = pelDeviceStatsDefaults(), after = before;
     CHECK(pelDeviceGetInfo(device, &info));
-    /* A topology makes lists of its neighbours at the first call, which are not the vertices' memory. */
-    CHECK(pelMeshCurvature(topology, &params, &p, &n, &c, NULL, NULL));
     CHECK(pelDeviceGetStats(device, &before));
     CHECK(pelMeshCurvature(topology, &params, &p, &n, &c, NULL, NULL));
     CHECK(pelDeviceGetStats(device, &after));
