@@ -197,4 +197,25 @@ TEST(WideShadowEdges, EachBorderByItself) {
     for (size_t i = 0; i < f.pixels(); ++i) EXPECT_NEAR(shown[3 * i], 0.5, 0.05) << "border " << i % 4;
 }
 
+// The bounds of a map are of what its texels say, in whatever format.
+TEST(WideShadowEdges, AMapOfIntegersIsTheMapOfItsFloats) {
+    MapLight from = mapLight(7, false, false, {0.5, 0.2, 0.9}, {26, 12, 5}, 70, 200);
+    std::vector<uint16_t> integers;
+    for (size_t i = 0; i < from.light.map.values.size(); ++i) {
+        integers.push_back(uint16_t(std::lround(65535 * std::clamp(from.light.map.values[i], 0.0f, 1.0f))));
+        setDepth(from, i, from.view.decoding.range * integers.back() / 65535.0);
+    }
+    const Frame f = sceneUnder(from, 1);
+    const std::vector<float> expected = shade(device(), f, tables());
+    pellucid::Shader shader(device());
+    setFrame(device(), shader, f, tables());
+    const pellucid::Buffer target(device(), std::vector<float>(3 * f.pixels())), map(device(), integers);
+    shader.set(PEL_SLOT_RADIANCE, pellucid::imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+    shader.set(0, PEL_LIGHT_SHADOW_MAP, pellucid::imageDesc(map, PEL_FORMAT_R16_UNORM, 200, 200));
+    shader.commit().execute();
+    const std::vector<float> shown = target.readAll<float>();
+    EXPECT_GT(*std::max_element(shown.begin(), shown.end()), 0.1f);
+    for (size_t i = 0; i < shown.size(); ++i) ASSERT_NEAR(shown[i], expected[i], tolerance::wideShadow) << i;
+}
+
 }  // namespace
