@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "cli_run.h"
+#include "io/scene/scene_file.h"
 
 using DemoPictures = CommandTest;
 
@@ -27,4 +28,15 @@ TEST_F(DemoPictures, AreThoseThatSomebodyLookedAt) {
         const Result compared = run({"compare", now, then, "--max-rmse", most});
         EXPECT_EQ(compared.exitCode, 0) << name << ": " << compared.out << compared.err;
     }
+    // Too small in a picture to be seen there.
+    const auto scene = pellucid::io::readScene(path("demo/key.toml"));
+    const auto gloss = [&](uint32_t id) {
+        for (const auto& m : scene.materials)
+            if (m.id == id) return std::pair(m.material.specular, m.material.roughness);
+        return std::pair(-1.0f, -1.0f);
+    };
+    for (const uint32_t id : {2u, 5u, 6u})
+        EXPECT_EQ(gloss(id), std::pair(0.0f, 1.0f)) << "eyes, and where the head is cut: " << id;
+    for (const uint32_t id : {3u, 4u})
+        EXPECT_EQ(gloss(id), std::pair(0.05f, 0.2f)) << "teeth and tongue: " << id;
 }

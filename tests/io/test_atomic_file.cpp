@@ -212,6 +212,11 @@ TEST_F(AtomicFileTest, AbandonedFilesAreRemovedAndLiveOnesAreNot) {
 TEST_F(AtomicFileTest, InputsHaveALimit) {
     EXPECT_EQ(readWholeFile(write("a", "abc")), "abc");
     EXPECT_EQ(readWholeFile(write("e", "")), "");
+    const int input = ::dup(STDIN_FILENO);
+    ::close(STDIN_FILENO);
+    EXPECT_EQ(readWholeFile(path("a")), "abc") << "a program without an input gets handle 0";
+    ::dup2(input, STDIN_FILENO);
+    ::close(input);
     EXPECT_FALSE(readWholeFile("/proc/self/status").empty()) << "a file that says it has no bytes";
     EXPECT_EQ(readWholeFile(path("a"), 3), "abc");
     EXPECT_TRUE(contains(messageOf<FileError>([&] { readWholeFile(path("a"), 2); }), "may have 2"));
