@@ -151,6 +151,17 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     scene.lights[0].cascades[1].channel = "B.Z";
     scene.luts[1].file.clear();
     scene.luts[1].info.shadow.sharpening = 4.5f;
+    scene.eyes.emplace_back();
+    scene.eyes[0].material = scene.materials[0].id;
+    PelEye& eye = scene.eyes[0].eye;
+    eye = pelEyeDefaults();
+    for (float* f : {&eye.center[0],    &eye.center[2],       &eye.gaze[1],          &eye.up[0],
+                     &eye.scleraRadius, &eye.corneaRadius,    &eye.corneaConic,      &eye.limbusRadius,
+                     &eye.limbusWidth,  &eye.limbusDarkening, &eye.chamberDepth,     &eye.corneaIndex,
+                     &eye.aqueousIndex, &eye.irisRadius,      &eye.irisConcavity,    &eye.pupilRadius,
+                     &eye.texturePupil, &eye.tearRoughness,   &eye.wetLineRoughness, &eye.tearIndex})
+        *f = 1.01f * *f + 0.01f;
+    eye.irisSeed = 7;
     writeScene(path("out.toml"), scene);
     const SceneFile again = readScene(path("out.toml"));
     EXPECT_EQ(again.channels, scene.channels);
@@ -180,6 +191,8 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     EXPECT_EQ(again.materials[0].profile, scene.materials[0].profile);
     EXPECT_EQ(again.materials[0].preset, ScenePreset::faceworks);
     EXPECT_EQ(again.unitMm, 10);
+    ASSERT_EQ(again.eyes.size(), 1u);
+    EXPECT_TRUE(same(again.eyes[0].eye, eye));
     ASSERT_EQ(again.luts.size(), 2u);
     EXPECT_TRUE(same(again.luts[1].info.shadow, scene.luts[1].info.shadow));
 }
