@@ -1,5 +1,6 @@
 // pellucid demo: the whole chain on a real mesh. Load, curvature, look-up tables, G-buffer of the stand-in
 // host, shading, pictures.
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -112,6 +113,11 @@ std::vector<float> shadeAs(Run& run, Stages& stages, io::LutStore& luts, const D
     return frame->radiance();
 }
 
+// What each view is shaded as: Lambert, by tables, auto.
+std::array<io::SceneFile, 3> scenesOf(const DemoView& view) {
+    return {withoutScattering(view.scene), byTables(view.scene), view.scene};
+}
+
 // The pictures of a view rendered at twice the size.
 std::vector<io::Picture> finePictures(Run& run, io::LutStore& luts, const sample::Scene& scene,
                                       const DemoHead& head, DemoViewRequest request) {
@@ -121,7 +127,7 @@ std::vector<io::Picture> finePictures(Run& run, io::LutStore& luts, const sample
     Stages::begin(request.name + ": pictures with smooth edges");
     const DemoView view = renderDemoView(scene, head, request);
     std::vector<io::Picture> pictures;
-    for (const io::SceneFile& shown : {withoutScattering(view.scene), byTables(view.scene), view.scene}) {
+    for (const io::SceneFile& shown : scenesOf(view)) {
         io::SceneFrame frame(run.device(), view.gbuffer, shown, luts, view.shadowMaps);
         frame.shade();
         pictures.push_back(developed(view, frame.radiance()));
@@ -145,12 +151,13 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
     stages.add(view.name + ": wide shadow (sample host)", view.wideShadowMilliseconds, 0, pixels, "pixels",
                pixels * sizeof(float));
 
-    for (const io::SceneFile& scene : {withoutScattering(view.scene), byTables(view.scene), view.scene})
-        stages.prepare([&] { io::buildPrograms(run.device(), scene, luts); });
+    const std::array<io::SceneFile, 3> scenes = scenesOf(view);
+    for (const io::SceneFile& each : scenes)
+        stages.prepare([&] { io::buildPrograms(run.device(), each, luts); });
     ShadedView shaded;
-    shaded.lambert = shadeAs(run, stages, luts, view, "Lambert", withoutScattering(view.scene));
-    shaded.tables = shadeAs(run, stages, luts, view, "by tables", byTables(view.scene));
-    shaded.complete = shadeAs(run, stages, luts, view, "auto", view.scene);
+    shaded.lambert = shadeAs(run, stages, luts, view, "Lambert", scenes[0]);
+    shaded.tables = shadeAs(run, stages, luts, view, "by tables", scenes[1]);
+    shaded.complete = shadeAs(run, stages, luts, view, "auto", scenes[2]);
     stages.measure(view.name + ": pictures at twice the size", 4 * pixels, "pixels", 0,
                    [&] { shaded.fine = finePictures(run, luts, scene, head, request); });
     if (a.reference) {

@@ -53,7 +53,8 @@ struct Inputs {
     io::ShadowMaps shadowMaps;
 };
 
-// Reads what the scene names. Programs are built meanwhile; what goes wrong there is told by the frame that needs them.
+// Reads what the scene names. A second thread builds the programs meanwhile. Its errors are dropped: the frame needs the same programs and
+// reports them.
 Inputs readWhileBuilding(const std::string& gbuffer, const Device& device, const io::SceneFile& scene,
                          io::LutStore& luts, const PelShaderOptions& options,
                          const std::vector<PelImageSlot>& outputs) {

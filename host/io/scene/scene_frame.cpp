@@ -118,8 +118,7 @@ SceneFrame::SceneFrame(const Device& device, const Image& gbuffer, const SceneFi
       gbuffer_(gbuffer),
       shadowMaps_(&shadowMaps),
       shader_(device),
-      radiance_(device, gbuffer.pixelCount() * 3 * sizeof(float)),
-      buildOnly_(buildOnly) {
+      radiance_(device, gbuffer.pixelCount() * 3 * sizeof(float)) {
     shader_.set(PEL_SLOT_RADIANCE,
                 imageDesc(radiance_, PEL_FORMAT_RGB32F, uint32_t(gbuffer.width), uint32_t(gbuffer.height)));
     for (PelImageSlot slot : outputs) {
@@ -134,7 +133,11 @@ SceneFrame::SceneFrame(const Device& device, const Image& gbuffer, const SceneFi
             shader_.set(PEL_SLOT_CURVATURE, measureCurvature(scene));
         else if (!scene.channels[slot].empty())
             shader_.set(PelImageSlot(slot), upload(gbuffer, scene.channels[slot]));
-    update(scene, luts, options);
+    set(scene, luts, options);
+    if (buildOnly)
+        warmUpPrograms(device_, 0, {shader_});
+    else
+        shader_.commit();
     shadowMaps_ = nullptr;
 }
 
@@ -149,6 +152,11 @@ PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options)
 }
 
 void SceneFrame::update(const SceneFile& scene, LutStore& luts, const PelShaderOptions& options) {
+    set(scene, luts, options);
+    shader_.commit();
+}
+
+void SceneFrame::set(const SceneFile& scene, LutStore& luts, const PelShaderOptions& options) {
     shader_.set(withOptionsOf(scene, options));
     // Pixels whose material goes are not written any more.
     if (!materials_.empty()) {
@@ -176,10 +184,6 @@ void SceneFrame::update(const SceneFile& scene, LutStore& luts, const PelShaderO
     else
         shader_.setReflectionCube(cubeImage(scene.reflectionCube));
     shader_.set(scene.camera);
-    if (buildOnly_)
-        warmUpPrograms(device_, 0, {shader_});
-    else
-        shader_.commit();
 }
 
 void SceneFrame::setLights(const SceneFile& scene) {

@@ -67,6 +67,7 @@ class SceneFrame {
     uint64_t inputBytes() const { return inputBytes_; }
 
   private:
+    void set(const SceneFile& scene, LutStore& luts, const PelShaderOptions& options);  // all but the channels
     void setMaterial(const SceneFile& scene, const SceneMaterial& m, LutStore& luts);
     void setLights(const SceneFile& scene);
     // Images of files are kept by their names, wide shadows by their channels.
@@ -90,7 +91,6 @@ class SceneFrame {
     std::map<std::string, std::vector<PelImageDesc>> normalMaps_;
     std::vector<uint32_t> materials_;  // that are set
     uint64_t inputBytes_ = 0;
-    bool buildOnly_;
 };
 
 // Sentences about sizes that are probably wrong: depth that is not device depth, bodies whose size does not
