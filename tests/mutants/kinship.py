@@ -13,6 +13,8 @@ from pathlib import Path
 
 from workplace import BUILD, PASSED, TREE, WORK, say
 
+SAME_SUBJECT = 3  # a test in the folder of a file's subject counts as so many others of the same words
+
 
 @contextlib.contextmanager
 def launched(kernels):
@@ -135,6 +137,8 @@ class Coverage:
         def distance(name):
             other = self.weighed(self.words[name])
             near = sum(weight * other.get(word, 0) for word, weight in own.items())
+            if self.folders.get(name) in path.parts:
+                near *= SAME_SUBJECT
             return -near / (1 + self.tests.get(name, {}).get("seconds", 10) / 20) ** 0.5, name
 
         return sorted(names, key=distance)
