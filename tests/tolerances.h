@@ -427,6 +427,10 @@ inline constexpr Tolerance scatterFade{
 inline constexpr Tolerance scatterBluer{
     "scatterBluer", 0.01,
     "of white, in a dark gap: 0.006 in one pixel that few blocks round it are the same surface as"};
+inline constexpr Tolerance scatterWideRms{"scatterWideRms", 1.4e-2,
+                                          "a Gaussian of 96 pixels against its closed form; 1.2e-2 measured"};
+inline constexpr Tolerance scatterWideMost{
+    "scatterWideMost", 5e-2, "the same at the worst pixel, at the picture's border; 4.5e-2 measured"};
 inline constexpr Tolerance scatterStep{"scatterStep", 1e-3,
                                        "of white: how far the grid of pixels shows while it moves"};
 

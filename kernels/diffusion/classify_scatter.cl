@@ -66,6 +66,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void c
     const float size = leastSize(own, pyramid, tileX, tileY);
     float bends[PEL_PYRAMID_LEVELS];
     for (uint k = 0; k + 1 < frame->levels; ++k) bends[k] = bendNear(frame, pyramid, tileX, tileY, (int)k);
+    bends[frame->levels - 1] = bends[frame->levels - 2];  // no coarser blocks tell
     uint levels = 0;
     bool near = false;
     float greatest = 0.0f;
@@ -73,7 +74,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void c
         const PelProfileTable table = tables[t];
         float error = 0.0f, errorOfPixels = 0.0f;
         uint end = 1;
-        for (uint k = 0; k + 1 < frame->levels; ++k) {
+        for (uint k = 0; k < frame->levels; ++k) {
             // Beyond the pixel, or beyond the blocks that a level leaves to finer ones.
             const float half_ = k ? 1.6f * (float)(1 << k) : 0.56f;
             const Vec3w within = profileShare(nodes, table, half_ * half_ * size);

@@ -143,6 +143,23 @@ TEST(Scatter, NoLightIsLostOnAPlane) {
     EXPECT_GT(result.scattered[3 * p.at(uint32_t(middle / size) + 13, uint32_t(middle / size))], 0.1f);
 }
 
+// Its light comes from blocks of every level, the coarsest too. The sum over a picture of an edge has a closed form for a Gaussian.
+TEST(Scatter, AProfileAsWideAsThePicture) {
+    const uint32_t width = sized(640u, 64u), height = sized(320u, 32u);
+    const double edge = 0.4 * width, sigma = 0.15 * width;
+    Picture p = plane(width, height, 1, [&](double x, double) { return x < edge ? Vec3{1, 1, 1} : Vec3{}; });
+    p.params.everywhere = 1;
+    const PelGaussian gaussian{float(sigma * sigma), {1, 1, 1}};
+    const Result result = run(p, Profile::gaussians({gaussian}));
+    const auto below = [&](double x) { return 0.5 * std::erfc(-x / (sigma * std::sqrt(2.0))); };
+    const Difference d = difference(p, result.scattered, [&](size_t i, int) {
+        const double x = p.positions[3 * i];
+        return (below(edge - x) - below(-x)) / (below(width - x) - below(-x));
+    });
+    EXPECT_LT(d.rms, tolerance::scatterWideRms);
+    EXPECT_LT(d.most, tolerance::scatterWideMost);
+}
+
 TEST(Scatter, NothingFlowsBetweenIds) {
     Picture p = plane(64, 64, 0.2, [](double, double) { return Vec3{}; });
     for (size_t i = 0; i < p.pixels(); ++i) {
