@@ -300,6 +300,16 @@ TEST(TextureScatter, BadInput) {
     t.scatter.setPositions(pellucid::vertexView(nowhere, m.vertices()));
     for (float v : t.run(std::vector<float>(3 * 256, 0.5f), Profile::skin()))
         ASSERT_TRUE(v == 0.5f || v == 0);
+    // Texels too long along one axis alone.
+    for (double x : {1e38, 0.0})
+        for (double y : {1e38, 0.0}) {
+            Mesh stretched;
+            stretched.plate(0, 0, x ? x : 8, y ? y : 8, 0, 0, 1, 1);
+            Texture far(stretched, 16, 16);
+            std::vector<float> step(3 * 256, 0.5f);
+            std::fill_n(step.begin(), 3 * 100, 0.25f);
+            for (float v : far.run(step, Profile::skin())) ASSERT_TRUE(v >= 0.25f && v <= 0.5f) << v;
+        }
     // Same input, same bits; over the irradiance too.
     Texture again(sphere(5, 24, 12), 64, 32);
     std::vector<float> light;

@@ -24,7 +24,7 @@ class GltfDocument {
   private:
     struct Span {
         const char* data = nullptr;
-        uint64_t size = 0, stride = 0;
+        uint64_t size, stride;
     };
     struct Layout;
 
