@@ -164,6 +164,23 @@ TEST(Picture, SheetsHoldTheirTiles) {
     EXPECT_TRUE(written);  // the A below its tile
 }
 
+TEST(Picture, PastingIsCutAtEachBorder) {
+    const Srgb8 paper{9, 9, 9};
+    for (int y : {-5, -2, -1, 0, 3, 4, 7})
+        for (int x : {-5, -2, -1, 0, 4, 5, 8}) {
+            Picture sheet(6, 5, paper), stamp(3, 2, paper);
+            for (int j = 0; j < 2; ++j)
+                for (int i = 0; i < 3; ++i) stamp.paint(i, j, {uint8_t(100 + i), uint8_t(200 + j), 0});
+            sheet.paste(x, y, stamp);
+            for (int j = 0; j < 5; ++j)
+                for (int i = 0; i < 6; ++i) {
+                    const bool on = i >= x && i < x + 3 && j >= y && j < y + 2;
+                    EXPECT_EQ(at(sheet, i, j), on ? at(stamp, i - x, j - y) : paper)
+                        << i << ", " << j << " pasted at " << x << ", " << y;
+                }
+        }
+}
+
 TEST(Picture, ShrinkingAveragesLight) {
     Picture p(4, 2);
     p.paint(0, 0, {255, 255, 255});
