@@ -52,7 +52,7 @@ static inline maskw patchOf(__global const PelLightMap* map, Vec3w p, Vec3w righ
     floatw w, unused;
     const Vec3w at = texelOf(map, p, &w), a = sub3(texelOf(map, add3(p, right), &unused), at),
                 b = sub3(texelOf(map, add3(p, down), &unused), at);
-    const floatw across = a.x * a.y - b.y * b.x, inverse = 1.0f / across;
+    const floatw across = a.x * b.y - a.y * b.x, inverse = 1.0f / across;
     patch->column = at.x, patch->row = at.y, patch->depth = at.z;
     patch->slopeX = (a.z * b.y - b.z * a.y) * inverse;
     patch->slopeY = (b.z * a.x - a.z * b.x) * inverse;

@@ -1,5 +1,6 @@
 """Everything that the C interface does can be reached from Python: each function of pellucid.h is called by the native module,
 and each part of the native module by a Python file."""
+import ast
 import inspect
 import re
 
@@ -61,6 +62,19 @@ def test_every_native_function_is_used_and_described():
     unused = [p for p, member in parts if not re.search(rf"\.{member}\b", python) and member != "struct_offsets"]
     assert not unused, "of use to the tests alone"
     assert not [p for p, member in parts if not re.search(rf"^\s*(def )?{member}[(:]", stubs, re.M)]
+
+
+def test_every_native_function_that_is_described_is_there():
+    described = []
+    for node in ast.parse(sources("bindings/python/pellucid", "_native.pyi")).body:
+        if isinstance(node, ast.FunctionDef):
+            described.append((_native, node.name))
+        elif isinstance(node, ast.ClassDef):
+            kind = getattr(_native, node.name)
+            described += [(kind, part.name if isinstance(part, ast.FunctionDef) else part.target.id)
+                          for part in node.body if isinstance(part, (ast.FunctionDef, ast.AnnAssign))]
+    assert len(described) > 60
+    assert not [(owner.__name__, name) for owner, name in described if not hasattr(owner, name)]
 
 
 def test_every_call_that_does_work_can_be_submitted():
