@@ -1,5 +1,7 @@
 #include "core/device.h"
 
+#include <cstring>
+
 #include "cl/host_memory.h"
 #include "cl/platform.h"
 #include "cl/process.h"
@@ -126,6 +128,20 @@ void Device::write(cl_mem memory, size_t offset, size_t bytes, const void* sourc
     cl::check(clEnqueueWriteBuffer(queue_.get(), memory, blocking, offset, bytes, source, 0, nullptr, nullptr),
               "clEnqueueWriteBuffer");
     countTransfer(bytes, 0);
+}
+
+void Device::exchange(cl_mem memory, size_t bytes, const void* source, void* destination) {
+    if (bytes == 0) return;
+    const cl::Queue queue = anotherQueue();
+    cl_int code = CL_SUCCESS;
+    void* const at = clEnqueueMapBuffer(queue.get(), memory, CL_TRUE, source ? CL_MAP_WRITE : CL_MAP_READ, 0,
+                                        bytes, 0, nullptr, nullptr, &code);
+    cl::check(code, "clEnqueueMapBuffer");
+    std::memcpy(source ? at : destination, source ? source : at, bytes);
+    cl::check(clEnqueueUnmapMemObject(queue.get(), memory, at, 0, nullptr, nullptr),
+              "clEnqueueUnmapMemObject");
+    cl::check(clFinish(queue.get()), "clFinish");
+    if (!info_.sharedMemory) countTransfer(source ? bytes : 0, source ? 0 : bytes);
 }
 
 void Device::fill(cl_mem memory, size_t offset, size_t bytes, uint32_t word) {

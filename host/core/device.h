@@ -25,7 +25,7 @@ class Device final : public Object {
     // Enqueues on the in-order queue, or on another of this context, and counts the launch. Returns its event (empty for an
     // empty range).
     cl::Event launch(cl::Launch& launch, const cl::Range& range, cl_command_queue queue = nullptr);
-    // For work that the caller waits for: the device's queue may be waiting for an event that the caller has yet to set.
+    // For work that a call waits for: the device's queue may be waiting for an event that the caller has yet to set.
     cl::Queue anotherQueue() const;
 
     // Device memory: a copy of `initial`, or uninitialised.
@@ -35,6 +35,14 @@ class Device final : public Object {
     // `destination` and `source` are not NULL. Blocking calls return when the bytes are copied.
     void read(cl_mem memory, size_t offset, size_t bytes, void* destination, bool blocking);
     void write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking);
+    // The first bytes of memory that nothing queued uses, at once: on another queue, and where memory is shared without a
+    // transfer.
+    void readAside(cl_mem memory, size_t bytes, void* destination) {
+        exchange(memory, bytes, nullptr, destination);
+    }
+    void writeAside(cl_mem memory, size_t bytes, const void* source) {
+        exchange(memory, bytes, source, nullptr);
+    }
 
     // Enqueues: fills `bytes`, a multiple of 4, from `offset` on with copies of `word`.
     void fill(cl_mem memory, size_t offset, size_t bytes, uint32_t word);
@@ -53,6 +61,7 @@ class Device final : public Object {
     ~Device() override;
     void foldEvents();
     cl::Memory allocate(size_t bytes, const void* initial, bool zeros);
+    void exchange(cl_mem memory, size_t bytes, const void* source, void* destination);
 
     cl::Context context_;
     cl_device_id id_;

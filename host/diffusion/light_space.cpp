@@ -83,10 +83,9 @@ void LightSpace::describeLevels() {
     const size_t seenBytes = (size_t(seen) + 3) / 4 * 4;
     if (seenBytes != seenBytes_) seen_ = device_->allocate(seenBytes), seenBytes_ = seenBytes;
     const size_t mapBytes = now.size() * sizeof now[0];
-    if (!mapMemory_ || now.size() != sent_.size())
+    // A new buffer, because an execution that is still queued keeps reading the old one.
+    if (!mapMemory_ || now.size() != sent_.size() || std::memcmp(now.data(), sent_.data(), mapBytes))
         mapMemory_ = device_->allocate(mapBytes, now.data());
-    else if (std::memcmp(now.data(), sent_.data(), mapBytes))
-        device_->write(mapMemory_.get(), 0, mapBytes, now.data(), true);
     sent_ = std::move(now);
 }
 

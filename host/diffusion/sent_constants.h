@@ -10,10 +10,9 @@ template <class T>
 class SentConstants {
   public:
     void send(Device& device, const T& value) {
-        if (!memory_)
+        // A new buffer, because an execution that is still queued keeps reading the old one.
+        if (!memory_ || std::memcmp(&value, &sent_, sizeof value))
             memory_ = device.allocate(sizeof value, &value);
-        else if (std::memcmp(&value, &sent_, sizeof value))
-            device.write(memory_.get(), 0, sizeof value, &value, true);
         sent_ = value;
     }
     const cl::Memory& memory() const { return memory_; }

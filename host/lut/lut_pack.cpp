@@ -67,7 +67,7 @@ Ref<Lut> uploadLut(Ref<Device> device, const PelLutInfo& info, const float* texe
             const float* from = texels + (std::min(y, height - 1) * width + std::min(x, width - 1)) * 3;
             padded[y * rowTexels + x] = {{from[0], from[1], from[2], 0}};
         }
-    device->write(lut->texels().get(), 0, padded.size() * sizeof(cl_float4), padded.data(), true);
+    device->writeAside(lut->texels().get(), padded.size() * sizeof(cl_float4), padded.data());
     return lut;
 }
 

@@ -11,7 +11,7 @@ std::vector<uint32_t> readBack(Device& device, const cl::Memory& memory) {
     cl::check(clGetMemObjectInfo(memory.get(), CL_MEM_SIZE, sizeof bytes, &bytes, nullptr),
               "clGetMemObjectInfo");
     std::vector<uint32_t> values(bytes / sizeof(uint32_t));
-    device.read(memory.get(), 0, values.size() * sizeof(uint32_t), values.data(), true);
+    device.readAside(memory.get(), values.size() * sizeof(uint32_t), values.data());
     return values;
 }
 

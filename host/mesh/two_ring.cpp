@@ -1,7 +1,6 @@
 #include "mesh/two_ring.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "cl/error.h"
 #include "mesh/mesh_passes.h"
@@ -19,21 +18,6 @@ std::vector<uint32_t> startsOf(const std::vector<uint32_t>& counts) {
         starts.push_back(starts.back() + rows);
     }
     return starts;
-}
-
-// Reads numbers of the device, or writes them, by mapping: where memory is shared nothing is transferred.
-void exchange(Device& device, const cl::Queue& queue, const cl::Memory& memory,
-              std::vector<uint32_t>& numbers, cl_map_flags how) {
-    const size_t bytes = numbers.size() * sizeof(uint32_t);
-    cl_int code = CL_SUCCESS;
-    void* const at =
-        clEnqueueMapBuffer(queue.get(), memory.get(), CL_TRUE, how, 0, bytes, 0, nullptr, nullptr, &code);
-    cl::check(code, "clEnqueueMapBuffer");
-    const bool reads = how == CL_MAP_READ;
-    std::memcpy(reads ? numbers.data() : at, reads ? at : numbers.data(), bytes);
-    cl::check(clEnqueueUnmapMemObject(queue.get(), memory.get(), at, 0, nullptr, nullptr),
-              "clEnqueueUnmapMemObject");
-    if (!device.info().sharedMemory) device.countTransfer(reads ? 0 : bytes, reads ? bytes : 0);
 }
 
 }  // namespace
@@ -56,12 +40,13 @@ const MeshTopology::TwoRings& twoRings(MeshTopology& topology, const cl::Program
     };
     run(PEL_TWO_RING_LINK, {}, {});
     run(PEL_TWO_RING_COUNT, {}, {});
-    exchange(device, queue, counted, counts, CL_MAP_READ);
-    std::vector<uint32_t> starts = startsOf(counts);
+    cl::check(clFinish(queue.get()), "clFinish");
+    device.readAside(counted.get(), counts.size() * sizeof(uint32_t), counts.data());
+    const std::vector<uint32_t> starts = startsOf(counts);
     const size_t entries = std::max<size_t>(size_t(starts.back()) * PEL_POINT_LANES, 1);
     const cl::Memory begin = device.allocate(starts.size() * sizeof(uint32_t)),
                      points = device.allocate(entries * sizeof(uint32_t));
-    exchange(device, queue, begin, starts, CL_MAP_WRITE);
+    device.writeAside(begin.get(), starts.size() * sizeof(uint32_t), starts.data());
     run(PEL_TWO_RING_LIST, begin, points);
     cl::check(clFinish(queue.get()), "clFinish");
     made = {begin, points, rounds};

@@ -94,10 +94,10 @@ void Shader::send() {
 }
 
 // Halves the band. False if that is not possible.
-bool Shader::halveBand() {
+bool Shader::halveBand(bool blocking) {
     const uint32_t rows = std::min(plan_.bandRows, plan_.tileRows);
     if (!plan_.scratch || plan_.wholeFrame || rows <= 1) return false;
-    device_->finish();
+    if (blocking) device_->finish();  // then what is queued gives its memory back
     committed_ = false;
     passes_.allocate(device_, plan_, rows / 2);
     send();
@@ -129,7 +129,7 @@ void Shader::execute(bool blocking) {
         } catch (const Error& e) {
             // Drivers may notice only now that memory does not suffice. Pixels that are shaded already are
             // kept: if radiance overwrites an input they could not be shaded again.
-            if (e.code() != PEL_ERROR_OUT_OF_MEMORY || work.written || !halveBand()) throw;
+            if (e.code() != PEL_ERROR_OUT_OF_MEMORY || work.written || !halveBand(blocking)) throw;
             continue;
         }
         row = work.rows.end;

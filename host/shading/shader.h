@@ -59,7 +59,7 @@ class Shader final : public Object {
     PassWork beginWork();
     void runBand(PassWork& work);
     void setRows(const PassWork& work, TileRows rows);
-    bool halveBand();
+    bool halveBand(bool blocking);
 
     Ref<Device> device_;
     std::span<const PassKind> passKinds_;

@@ -1,0 +1,61 @@
+// A device whose queue waits for an event that the test has yet to set.
+#pragma once
+#ifndef CL_TARGET_OPENCL_VERSION
+#define CL_TARGET_OPENCL_VERSION 120
+#endif
+#include <CL/cl.h>
+#include <gtest/gtest.h>
+
+#include <pellucid/pellucid.hpp>
+
+#include <chrono>
+#include <future>
+
+namespace fixture {
+
+class HeldQueue {
+  public:
+    explicit HeldQueue(const pellucid::Device& device) : device_(device) {
+        void *context = nullptr, *id = nullptr, *queue = nullptr;
+        pellucid::check(pelDeviceGetCl(device.get(), &context, &id, &queue));
+        cl_int code = CL_SUCCESS;
+        event_ = clCreateUserEvent(cl_context(context), &code);
+        pellucid::check(pelEventCreateFromCl(device.get(), event_, &wait_));
+        const pellucid::Buffer nothing(device, 16);
+        nothing.read(nullptr, 0, 0, submit());
+    }
+    HeldQueue(const HeldQueue&) = delete;
+    HeldQueue& operator=(const HeldQueue&) = delete;
+    ~HeldQueue() {
+        release();
+        pelEventRelease(wait_);
+        clReleaseEvent(event_);
+    }
+    const PelSubmit* submit() const { return &submit_; }
+    void release() {
+        if (!released_) clSetUserEventStatus(event_, CL_COMPLETE);
+        released_ = true;
+        device_.finish();
+    }
+
+  private:
+    pellucid::Device device_;
+    cl_event event_ = nullptr;
+    PelEvent wait_ = nullptr;
+    PelSubmit submit_{&wait_, 1, nullptr};
+    bool released_ = false;
+};
+
+// `call` gets what makes it wait for the event, and must return before that is set. Everything has run at the end.
+template <class Call>
+void expectReturns(const pellucid::Device& device, const char* what, const Call& call) {
+    HeldQueue held(device);
+    auto running = std::async(std::launch::async, [&] { call(held.submit()); });
+    EXPECT_EQ(running.wait_for(std::chrono::seconds(30)), std::future_status::ready)
+        << what << " waited for an event that is set later";
+    held.release();
+    running.get();
+    device.finish();
+}
+
+}  // namespace fixture

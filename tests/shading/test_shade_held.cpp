@@ -1,0 +1,214 @@
+// Frames, tables and passes that are submitted behind an event that their caller sets later: calls return, and give the same.
+#include "diffusion/lit_ball.h"
+#include "held_queue.h"
+#include "pass_scene.h"
+
+using namespace pellucid;
+using fixture::expectReturns;
+
+namespace {
+
+const Device& own() {
+    static const Device device("");
+    return device;
+}
+
+// Commits and executes twice behind the event, with `change` between; the second frame is that of a shader that never waited.
+template <class Make, class Change>
+void expectFrames(const char* what, size_t floats, const Make& make, const Change& change) {
+    const Buffer held(own(), floats * sizeof(float)), plain(own(), floats * sizeof(float));
+    Shader shader(own());
+    make(shader, held);
+    expectReturns(own(), what, [&](const PelSubmit* submit) {
+        shader.commit().execute(submit);
+        change(shader);
+        shader.commit().execute(submit);
+    });
+    Shader other(own());
+    make(other, plain);
+    change(other);
+    other.commit().execute();
+    EXPECT_EQ(held.readAll<float>(), plain.readAll<float>()) << what;
+}
+
+TEST(ShadeHeld, FramesInBandsWithPasses) {
+    using namespace shade_test;
+    Frame f = reliefFrame(1, 70, 61, 0.4f);
+    f.lights.push_back(mapLight(1, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61).light);
+    f.curvatureLut = f.shadowLut = true;
+    f.slots[PEL_SLOT_CURVATURE] = f.slots[PEL_SLOT_MATERIAL];
+    const Tables made = makeTables(own(), 24, 16);
+    for (uint64_t budget : {uint64_t{0}, uint64_t{f.width} * 4 * 20}) {
+        f.options.scratchBudget = budget;
+        f.options.blurNormals = budget == 0;  // they would need all rows
+        expectFrames(
+            budget ? "a frame in bands" : "a frame", f.pixels() * 3,
+            [&](Shader& shader, const Buffer& out) {
+                setFrame(own(), shader, f, made);
+                shader.set(PEL_SLOT_RADIANCE, imageDesc(out, PEL_FORMAT_RGB32F, f.width, f.height));
+            },
+            [&](Shader& shader) {
+                PelAmbient ambient = f.ambient;
+                ambient.constant[1] = 0.7f;
+                PelMaterial material = f.materials.at(1);
+                material.albedo[0] = 0.3f;
+                shader.set(ambient).setMaterial(1, material, made.curvature, made.shadow);
+            });
+    }
+}
+
+// Tables, widths and transmission that the commit makes; scattering by every method that the screen has.
+TEST(ShadeHeld, FramesWithProfilesThatScatter) {
+    using namespace lit_ball;
+    const LitBall ball = makeBall(Form::parallel, reference::normalized(Vec3{0.3, 0.2, 1}), 48);
+    const Picture p = pictureOf(ball, 24);
+    std::vector<float> normals = p.positions, curvature(p.pixels(), 0.5f);
+    for (float& n : normals) n /= float(radius);
+    const Profile skin = Profile::skin();
+    for (PelScattering method : {PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_SCREEN, PEL_SCATTERING_LIGHT,
+                                 PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_AUTO})
+        expectFrames(
+            ("scattering method " + std::to_string(method)).c_str(), p.pixels() * 3,
+            [&](Shader& shader, const Buffer& out) {
+                const auto set = [&](PelImageSlot slot, const auto& values, PelFormat format) {
+                    shader.set(slot, imageDesc(Buffer(own(), values), format, p.width, p.height));
+                };
+                set(PEL_SLOT_POSITION, p.positions, PEL_FORMAT_RGB32F);
+                set(PEL_SLOT_NORMAL_SHADING, normals, PEL_FORMAT_RGB32F);
+                set(PEL_SLOT_NORMAL_GEOMETRIC, normals, PEL_FORMAT_RGB32F);
+                set(PEL_SLOT_IRRADIANCE, p.irradiance, PEL_FORMAT_RGB32F);
+                set(PEL_SLOT_MATERIAL, p.ids, PEL_FORMAT_R8_UINT);
+                set(PEL_SLOT_CURVATURE, curvature, PEL_FORMAT_R32F);
+                PelMaterial material = whiteMaterial(skin, method);
+                material.specular = 0;
+                shader.setMaterial(1, material).set(ball.light);
+                shader.set(0, PEL_LIGHT_SHADOW_MAP,
+                           imageDesc(Buffer(own(), ball.maps[0]), PEL_FORMAT_R32F, ball.width, ball.height));
+                shader.set(PEL_SLOT_RADIANCE, imageDesc(out, PEL_FORMAT_RGB32F, p.width, p.height));
+            },
+            [&](Shader& shader) {
+                PelMaterial material = whiteMaterial(skin, method);
+                material.specular = 0, material.diffusionRadius = 1.5f;
+                PelLight light = ball.light;
+                light.color[0] = 0.5f;
+                shader.setMaterial(1, material).set(light);
+                shader.set(0, PEL_LIGHT_SHADOW_MAP,
+                           imageDesc(Buffer(own(), ball.maps[0]), PEL_FORMAT_R32F, ball.width, ball.height));
+            });
+}
+
+TEST(ShadeHeld, ScatteringAlone) {
+    using namespace scatter_scene;
+    const Picture p = ball(24, 10, 0.9, reference::normalized(Vec3{1, 0.3, 0.2}));
+    const Buffer e(own(), p.irradiance), x(own(), p.positions), ids(own(), p.ids), out(own(), p.pixels() * 12);
+    const auto rgb = [&](const Buffer& b) { return imageDesc(b, PEL_FORMAT_RGB32F, p.width, p.height); };
+    const auto id = imageDesc(ids, PEL_FORMAT_R8_UINT, p.width, p.height);
+    const auto execute = [&](Scatter& scatter, float targetError, const PelSubmit* submit) {
+        PelScatterParams params = p.params;
+        params.targetError = targetError, params.frameIndex = targetError < 0.01f;
+        scatter.execute(params, rgb(e), rgb(x), nullptr, id, rgb(out), submit);
+    };
+    for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE}) {
+        PelScatterControls controls = pelScatterControlsDefaults();
+        controls.scattering = method;
+        Scatter scatter(own()), plain(own());
+        for (Scatter* s : {&scatter, &plain}) s->setMaterial(1, Profile::skin()), s->setControls(1, controls);
+        expectReturns(own(), "pelScatterExecute", [&](const PelSubmit* submit) {
+            execute(scatter, 0.05f, submit);
+            execute(scatter, 0.001f, submit);
+        });
+        const std::vector<float> held = out.readAll<float>();
+        execute(plain, 0.001f, nullptr);
+        EXPECT_EQ(held, out.readAll<float>()) << int(method);
+    }
+}
+
+TEST(ShadeHeld, OtherSubmissions) {
+    using namespace shade_test;
+    const Frame f = reliefFrame(2, 40, 30, 0.4f);
+    const auto image = [&](PelImageSlot slot, PelFormat format) {
+        return imageDesc(upload(own(), f.slots[slot]), format, f.width, f.height);
+    };
+    const auto normals = image(PEL_SLOT_NORMAL_GEOMETRIC, PEL_FORMAT_RGB32F),
+               positions = image(PEL_SLOT_POSITION, PEL_FORMAT_RGB32F);
+    const Buffer curvature(own(), f.pixels() * 4), again(own(), f.pixels() * 4);
+    const auto measure = [&](const Buffer& out, const PelSubmit* submit) {
+        screenCurvature(own(), pelScreenCurvatureParamsDefaults(), normals, positions, nullptr, nullptr,
+                        imageDesc(out, PEL_FORMAT_R32F, f.width, f.height), submit);
+    };
+    expectReturns(own(), "pelScreenCurvature", [&](const PelSubmit* submit) { measure(curvature, submit); });
+    measure(again, nullptr);
+    EXPECT_EQ(curvature.readAll<float>(), again.readAll<float>());
+
+    // A square of two triangles, which is the whole texture.
+    const std::vector<float> corners{0, 0, 0, 4, 0, 0, 4, 4, 0, 0, 4, 0}, uvs{0, 0, 1, 0, 1, 1, 0, 1},
+        light(12, 0.5f), points{1, 1, 0, 2, 3, 0};
+    const std::vector<uint32_t> triangles{0, 1, 2, 0, 2, 3};
+    PelSurfaceIntegralDesc integral = pelSurfaceIntegralDescDefaults();
+    integral.numVertices = 4, integral.positions = corners.data();
+    integral.numIndices = 6, integral.indices = triangles.data();
+    integral.irradiance = light.data(), integral.irradianceAt = PEL_IRRADIANCE_VERTEX;
+    const Buffer at(own(), points), sums(own(), 24), sumsAgain(own(), 24);
+    const auto integrate = [&](const Buffer& out, const PelSubmit* submit) {
+        integral.points = vertexView(at, 2), integral.result = vertexView(out, 2);
+        surfaceIntegral(own(), integral, submit);
+    };
+    expectReturns(own(), "pelSurfaceIntegral", [&](const PelSubmit* submit) { integrate(sums, submit); });
+    integrate(sumsAgain, nullptr);
+    EXPECT_EQ(sums.readAll<float>(), sumsAgain.readAll<float>());
+
+    PelTextureScatterDesc desc = pelTextureScatterDescDefaults();
+    desc.width = desc.height = 32;
+    desc.numVertices = 4, desc.uvs = uvs.data();
+    desc.numIndices = 6, desc.indices = triangles.data();
+    const Buffer vertices(own(), corners), values(own(), light), drawn(own(), 32 * 32 * 12),
+        scattered(own(), 32 * 32 * 12);
+    const PelImageDesc from = imageDesc(drawn, PEL_FORMAT_RGB32F, 32, 32),
+                       to = imageDesc(scattered, PEL_FORMAT_RGB32F, 32, 32);
+    const auto scatter = [&](TextureScatter& texture, const PelSubmit* submit) {
+        texture.setPositions(vertexView(vertices, 4), submit);
+        texture.draw(vertexView(values, 4), false, from, submit);
+        texture.execute(pelTextureScatterParamsDefaults(), from, nullptr, to, submit);
+    };
+    TextureScatter held(own(), desc), plain(own(), desc);
+    expectReturns(own(), "texture scattering", [&](const PelSubmit* submit) {
+        scatter(held, submit);
+        scatter(held, submit);
+    });
+    const std::vector<float> first = scattered.readAll<float>();
+    scatter(plain, nullptr);
+    EXPECT_EQ(first, scattered.readAll<float>());
+}
+
+TEST(ShadeHeld, Tables) {
+    PelCurvatureLutDesc curvature = pelCurvatureLutDescFaceWorks();
+    PelShadowLutDesc shadow = pelShadowLutDescFaceWorks();
+    curvature.width = shadow.width = 24, curvature.height = shadow.height = 8;
+    PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
+    specular.width = specular.height = 16;
+    const Profile burley = Profile::burleyDistance({1, 0.5f, 0.25f});
+    const auto expectTable = [&](const char* what, const auto& desc) {
+        Lut lut;
+        size_t bytes = 0;
+        std::vector<float> texels;
+        expectReturns(own(), what, [&](const PelSubmit* submit) {
+            lut = Lut(own(), desc, submit);
+            check(pelLutGetSize(lut.get(), PEL_LUT_FLOAT, &bytes));
+            texels.resize(bytes / sizeof(float));
+            check(pelLutRead(lut.get(), PEL_LUT_FLOAT, texels.data(), bytes, submit));
+        });
+        EXPECT_EQ(texels, Lut(own(), desc).template read<float>(PEL_LUT_FLOAT)) << what;
+        Lut copy;
+        expectReturns(own(), "pelLutCreateFromTexels",
+                      [&](const PelSubmit*) { copy = Lut(own(), lut.info(), texels); });
+        EXPECT_EQ(copy.read<float>(PEL_LUT_FLOAT), texels) << what;
+    };
+    expectTable("pelCurvatureLutCreate", curvature);
+    expectTable("pelShadowLutCreate", shadow);
+    expectTable("pelSpecularLutCreate", specular);
+    curvature.profile = shadow.profile = burley.get();
+    expectTable("pelCurvatureLutCreate of a tabulated profile", curvature);
+    expectTable("pelShadowLutCreate of a tabulated profile", shadow);
+}
+
+}  // namespace
