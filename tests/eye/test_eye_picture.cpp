@@ -62,6 +62,46 @@ TEST(EyePicture, SmallEyesShowTheMeanOfTheirTexture) {
     }
 }
 
+// Without a texture fibres are drawn: round a circle they differ, and each seed has its own.
+TEST(EyePicture, DrawnFibresDifferRoundTheIris) {
+    EyeScene scene;
+    for (int i = 0; i < 3; ++i) scene.eye.gaze[i] = float(scene.camera[i]) - scene.eye.center[i];
+    scene.eye.corneaIndex = scene.eye.aqueousIndex = 1;
+    scene.ambient.constant[0] = scene.ambient.constant[1] = scene.ambient.constant[2] = 1;
+    const auto seen = [&](uint32_t seed) {
+        scene.eye.irisSeed = seed;
+        return EyePicture(scene).shade();
+    };
+    const std::vector<float> one = seen(1), other = seen(2);
+    const double middle = 0.5 * scene.size;
+    const EyePicture picture(scene);
+    double most = 0;  // pixels from the middle to the rim
+    for (size_t k = 0; k < picture.pixels.size(); ++k)
+        if (picture.pixels[k].hit.share > 0)
+            most = std::max(most, std::hypot(double(k % 128) + 0.5 - middle, double(k / 128) + 0.5 - middle));
+    // By sixteenths of the circle, two rings: means and how much they differ.
+    const int parts = 16;
+    std::vector<double> sum(2 * parts), count(2 * parts), sumOfOther(2 * parts);
+    for (size_t k = 0; k < picture.pixels.size(); ++k) {
+        const double x = double(k % 128) + 0.5 - middle, y = double(k / 128) + 0.5 - middle,
+                     r = std::hypot(x, y) / most;
+        if (r < 0.6 || r > 0.84) continue;
+        const int at = (r > 0.72) * parts +
+                       std::min(parts - 1, int((std::atan2(y, x) / (2 * std::numbers::pi) + 0.5) * parts));
+        sum[at] += one[3 * k], sumOfOther[at] += other[3 * k], ++count[at];
+    }
+    double spread = 0, seeds = 0, mean = 0;
+    for (int i = 0; i < 2 * parts; ++i)
+        sum[i] /= count[i], sumOfOther[i] /= count[i], mean += sum[i] / (2 * parts);
+    for (int i = 0; i < 2 * parts; ++i) {
+        const int ring = i / parts * parts, next = ring + (i + 1) % parts;
+        spread += std::abs(sum[i] - sum[next]) / (2 * parts);
+        seeds += std::abs(sum[i] - sumOfOther[i]) / (2 * parts);
+    }
+    EXPECT_GT(spread, 0.04 * mean);
+    EXPECT_GT(seeds, 0.04 * mean);
+}
+
 TEST(EyePicture, GlossAsTheTracer) {
     EyeScene scene;
     for (float& c : scene.sclera.albedo) c = 0;
