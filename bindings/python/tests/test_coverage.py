@@ -83,7 +83,11 @@ def test_every_call_that_does_work_can_be_submitted():
                         (pel, "surface_integral"), (pel.Scatter, "execute"), (pel.TextureScatter, "set_positions"),
                         (pel.TextureScatter, "draw"), (pel.TextureScatter, "execute")]:
         submit = getattr(owner, f"submit_{name}")
-        assert {"waits"} <= set(inspect.signature(submit).parameters), name
+        known = inspect.signature(submit).parameters
+        assert {"waits"} <= set(known), name
+        for parameter in inspect.signature(getattr(owner, name)).parameters.values():
+            same = known.get(parameter.name, parameter)
+            assert same.default in (parameter.default, inspect.Parameter.empty), f"{name}: {parameter}"
     assert "waits" in inspect.signature(pel.Shader.submit).parameters
     for kind in ("curvature", "shadow", "specular", "eye"):
         assert {"wait", "waits"} <= set(inspect.signature(getattr(pel.Lut, kind)).parameters)
