@@ -1,5 +1,6 @@
 // pellucid shade: a host's G-buffer and a scene file in, radiance out.
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <thread>
@@ -51,20 +52,24 @@ std::vector<std::string> channelsOf(const io::SceneFile& scene) {
 struct Inputs {
     io::Image gbuffer;
     io::ShadowMaps shadowMaps;
+    std::optional<io::SceneFrame> prepared;
 };
 
-// Reads what the scene names. A second thread builds the programs meanwhile. Its errors are dropped: the frame needs the same programs and
-// reports them.
+// Reads what the scene names. A second thread prepares the frame meanwhile. Its errors are dropped: a frame that is not prepared is made
+// with all images at once, and reports them.
 Inputs readWhileBuilding(const std::string& gbuffer, const Device& device, const io::SceneFile& scene,
                          io::LutStore& luts, const PelShaderOptions& options,
                          const std::vector<PelImageSlot>& outputs) {
+    Inputs inputs;
     const std::jthread building([&] {
         try {
-            io::buildPrograms(device, scene, luts, options, outputs);
+            inputs.prepared.emplace(io::prepareFrame(device, scene, luts, options, outputs));
         } catch (const std::exception&) {
         }
     });
-    return {io::readChannels(gbuffer, channelsOf(scene)), io::readShadowMaps(scene)};
+    inputs.gbuffer = io::readChannels(gbuffer, channelsOf(scene));
+    inputs.shadowMaps = io::readShadowMaps(scene);
+    return inputs;
 }
 
 void writeOutput(const std::string& path, PelImageSlot slot, const io::Image& gbuffer,
@@ -164,10 +169,15 @@ void run(const Arguments& a) {
     PelShaderOptions options = pelShaderOptionsDefaults();
     options.countPixels = a.stats;
     options.scratchBudget = a.scratchMib << 20;
-    const Inputs inputs = readWhileBuilding(a.gbuffer, run.device(), scene, luts, options, outputs);
+    Inputs inputs = readWhileBuilding(a.gbuffer, run.device(), scene, luts, options, outputs);
     const io::Image& gbuffer = inputs.gbuffer;
     try {
-        io::SceneFrame frame(run.device(), gbuffer, scene, luts, inputs.shadowMaps, options, outputs);
+        std::optional<io::SceneFrame>& made = inputs.prepared;
+        if (made)
+            made->show(gbuffer, scene, inputs.shadowMaps);
+        else
+            made.emplace(run.device(), gbuffer, scene, luts, inputs.shadowMaps, options, outputs);
+        io::SceneFrame& frame = *made;
         frame.shade();
         const PelShaderStats stats = frame.stats();
         warnOfNothing(run, scene, outputs, stats.features);

@@ -67,12 +67,15 @@ class Irises final : public Pass {
             launch.arg(memoryOf(image)).arg(cl_ulong(image.byteOffset)).arg(cl_ulong(image.rowStride));
             launch.arg(cl_ulong(image.planeStride)).arg(cl_uint(image.pixelStride)).arg(side);
             launch.arg(cl_uint(material.eye->params.irisSeed)).arg(first).arg(texels_);
-            work.launch(launch, {{side + size_t(1), side + size_t(1), 1}, {group, 1, 1}});
+            const auto square = [&](size_t texels) {
+                return work.codeAlone ? cl::Range{{1, 1, 1}, {group, 1, 1}}
+                                      : cl::Range{{texels, texels, 1}, {group, 1, 1}};
+            };
+            work.launch(launch, square(side + size_t(1)));
             for (cl_uint level = 1; level < irisLevels(side); ++level) {
                 cl::Launch halve(program(eye), "iris_level");
                 halve.arg(side).arg(level).arg(first).arg(texels_);
-                const size_t texels = (side >> level) + size_t(1);
-                work.launch(halve, {{texels, texels, 1}, {group, 1, 1}});
+                work.launch(halve, square((side >> level) + size_t(1)));
             }
             ++eye;
             first += cl_uint(texelsOf(side));

@@ -29,6 +29,7 @@ struct PassWork {
     uint64_t band = 0;
     bool interruptible = false;  // the caller waits, and may want progress
     bool written = false;        // set by the pass that writes the caller's images
+    bool codeAlone = false;      // a warm-up: kernels are launched so that the driver compiles or loads them
 
     // Whether the band has no halo: the launch around it was a launch for it.
     bool alone() const { return rows.begin == around.begin && rows.end == around.end; }

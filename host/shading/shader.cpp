@@ -105,11 +105,12 @@ bool Shader::halveBand(bool blocking) {
     return true;
 }
 
-PassWork Shader::beginWork() {
+PassWork Shader::beginWork(bool codeAlone) {
     events_.clear();
     bands_ = 0;
     device_->fill(counters_.get(), 0, PEL_COUNTERS * sizeof(cl_uint), 0);
     PassWork work{*device_, plan_, constants_, events_};
+    work.codeAlone = codeAlone;
     passes_.each([&](Pass& pass) { pass.enqueueFrame(work); });
     return work;
 }
@@ -118,7 +119,7 @@ void Shader::execute(bool blocking) {
     if (!committed_)
         fail(PEL_ERROR_INVALID_STATE,
              "something was set after the last pelShaderCommit, or nothing was committed yet");
-    PassWork work = beginWork();
+    PassWork work = beginWork(false);
     work.interruptible = blocking && device_->hasProgress();
     for (uint32_t row = 0; row < plan_.tileRows;) {
         work.rows = {row, row + std::min(plan_.bandRows, plan_.tileRows - row)};
@@ -165,11 +166,13 @@ void Shader::runBand(PassWork& work) {
     passes_.each([&](Pass& pass) { pass.enqueue(work); });
 }
 
-void Shader::addWarmUpJobs(std::vector<std::function<void()>>& jobs) const {
+void Shader::addWarmUpJobs(std::vector<std::function<void()>>& jobs) {
     Ref<Shader> shader = make<Shader>(device_, passKinds_);
+    prepareEyes(device_, state_.materials);
     shader->state_ = state_;
     shader->profileTables_ = profileTables_;
     shader->allocate(1);
+    profileTables_ = shader->profileTables_;
     std::vector<cl::ProgramKey> keys;  // each once
     shader->passes_.each([&](const Pass& pass) {
         for (cl::ProgramKey& key : pass.programs(*device_, shader->plan_))
@@ -197,7 +200,7 @@ void Shader::addWarmUpJobs(std::vector<std::function<void()>>& jobs) const {
 // A frame without tiles: an execution launches every kernel, and none does anything.
 void Shader::beginOnNothing() {
     finishPlan();
-    PassWork work = beginWork();
+    PassWork work = beginWork(true);
     constants_.setBand(*device_, 0, 0, 0);
     work.rows = work.around = {0, 1};
     passes_.each([&](Pass& pass) { pass.enqueueAround(work); });

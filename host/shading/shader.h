@@ -41,9 +41,9 @@ class Shader final : public Object {
     PelShaderStats stats();
     // Warnings of the last commit, one sentence a line.
     const std::string& warnings() const { return warnings_; }
-    // Jobs for a warm-up: they build what a commit would, and launch each kernel on no tile. Throws what a
-    // commit would.
-    void addWarmUpJobs(std::vector<std::function<void()>>& jobs) const;
+    // Jobs for a warm-up: they build what a commit would, and launch each kernel on no tile. Tables of eyes and profiles are made here, and
+    // kept. Throws what a commit would.
+    void addWarmUpJobs(std::vector<std::function<void()>>& jobs);
     Device& device() const { return *device_; }
 
   private:
@@ -56,7 +56,7 @@ class Shader final : public Object {
     void send();
     void beginOnNothing();
     void launchOnNothing(Pass& pass);
-    PassWork beginWork();
+    PassWork beginWork(bool codeAlone);
     void runBand(PassWork& work);
     void setRows(const PassWork& work, TileRows rows);
     bool halveBand(bool blocking);

@@ -223,9 +223,14 @@ class Scene {
         if (!onDevice_ || onDevice_->device.get() != device) onDevice_.emplace(device);
         onDevice_->frame.reset();
         onDevice_->outputs = outputs;
-        io::buildPrograms(onDevice_->device, scene, onDevice_->luts, options, outputs);  // with progress
-        onDevice_->frame.emplace(onDevice_->device, *gbuffer_, scene, onDevice_->luts, io::ShadowMaps(),
-                                 options, outputs);
+        // With progress.
+        onDevice_->frame.emplace(io::prepareFrame(onDevice_->device, scene, onDevice_->luts, options, outputs));
+        try {
+            onDevice_->frame->show(*gbuffer_, scene);
+        } catch (...) {
+            onDevice_->frame.reset();
+            throw;
+        }
         return *onDevice_->frame;
     }
     py::array_t<float> image(const std::vector<float>& values, int components) const {

@@ -114,31 +114,51 @@ Lut LutStore::get(const SceneFile& scene, const std::string& name, PelLutKind ki
 SceneFrame::SceneFrame(const Device& device, const Image& gbuffer, const SceneFile& scene, LutStore& luts,
                        const ShadowMaps& shadowMaps, const PelShaderOptions& options,
                        const std::vector<PelImageSlot>& outputs, bool buildOnly)
-    : device_(device),
-      gbuffer_(gbuffer),
-      shadowMaps_(&shadowMaps),
-      shader_(device),
-      radiance_(device, gbuffer.pixelCount() * 3 * sizeof(float)) {
-    shader_.set(PEL_SLOT_RADIANCE,
-                imageDesc(radiance_, PEL_FORMAT_RGB32F, uint32_t(gbuffer.width), uint32_t(gbuffer.height)));
-    for (PelImageSlot slot : outputs) {
+    : device_(device), wanted_(outputs), shadowMaps_(&shadowMaps), shader_(device) {
+    setPictures(gbuffer, scene);
+    set(scene, luts, options);
+    shadowMaps_ = nullptr;
+    if (!buildOnly) {
+        shader_.commit();
+        return;
+    }
+    warmUpPrograms(device_, 0, {shader_});
+    gbuffer_ = nullptr;
+}
+
+void SceneFrame::show(const Image& gbuffer, const SceneFile& scene, const ShadowMaps& shadowMaps) {
+    shadowMaps_ = &shadowMaps;
+    pictures_.clear();
+    maps_.clear();
+    setPictures(gbuffer, scene);
+    setLights(scene);
+    shader_.commit();
+    shadowMaps_ = nullptr;
+}
+
+void SceneFrame::setPictures(const Image& gbuffer, const SceneFile& scene) {
+    gbuffer_ = &gbuffer;
+    const auto width = uint32_t(gbuffer.width), height = uint32_t(gbuffer.height);
+    radiance_ = Buffer(device_, gbuffer.pixelCount() * 3 * sizeof(float));
+    shader_.set(PEL_SLOT_RADIANCE, imageDesc(radiance_, PEL_FORMAT_RGB32F, width, height));
+    for (PelImageSlot slot : wanted_) {
         const bool length = slot == PEL_SLOT_OUT_THICKNESS;
-        const Buffer buffer(device, gbuffer.pixelCount() * (length ? 1 : 3) * sizeof(float));
-        shader_.set(slot, imageDesc(buffer, length ? PEL_FORMAT_R32F : PEL_FORMAT_RGB32F,
-                                    uint32_t(gbuffer.width), uint32_t(gbuffer.height)));
+        const Buffer buffer(device_, gbuffer.pixelCount() * (length ? 1 : 3) * sizeof(float));
+        shader_.set(slot, imageDesc(buffer, length ? PEL_FORMAT_R32F : PEL_FORMAT_RGB32F, width, height));
         outputs_[slot] = buffer;
     }
     for (size_t slot = 0; slot < scene.channels.size(); ++slot)
         if (slot == PEL_SLOT_CURVATURE && isScreenCurvature(gbuffer, scene))
             shader_.set(PEL_SLOT_CURVATURE, measureCurvature(scene));
         else if (!scene.channels[slot].empty())
-            shader_.set(PelImageSlot(slot), upload(gbuffer, scene.channels[slot]));
-    set(scene, luts, options);
-    if (buildOnly)
-        warmUpPrograms(device_, 0, {shader_});
-    else
-        shader_.commit();
-    shadowMaps_ = nullptr;
+            shader_.set(PelImageSlot(slot), upload(gbuffer, scene.channels[slot], pictures_));
+}
+
+uint64_t SceneFrame::inputBytes() const {
+    uint64_t bytes = 0;
+    for (const std::vector<Buffer>* buffers : {&pictures_, &files_})
+        for (const Buffer& b : *buffers) bytes += b.bytes();
+    return bytes;
 }
 
 PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options) {
@@ -193,8 +213,8 @@ void SceneFrame::setLights(const SceneFile& scene) {
     for (uint32_t i = 0; i < scene.lights.size(); ++i) {
         const SceneLight& l = scene.lights[i];
         if (!l.wideShadow.empty()) {
-            PelImageDesc& wide = images_[{"", l.wideShadow}];
-            if (!wide.buffer) wide = upload(gbuffer_, {l.wideShadow});
+            PelImageDesc& wide = maps_[{"", l.wideShadow}];
+            if (!wide.buffer) wide = upload(*gbuffer_, {l.wideShadow}, pictures_);
             shader_.set(i, PEL_LIGHT_WIDE_SHADOW, wide);
         }
         if (l.shadowMapFile.empty()) continue;
@@ -209,7 +229,7 @@ void SceneFrame::setLights(const SceneFile& scene) {
 
 PelImageDesc SceneFrame::mapOf(const std::string& file, const std::string& channel, const std::string& second) {
     const std::vector<std::string> key{file, channel, second};
-    if (const auto kept = images_.find(key); kept != images_.end()) return kept->second;
+    if (const auto kept = maps_.find(key); kept != maps_.end()) return kept->second;
     const Image* known = nullptr;
     if (shadowMaps_)
         if (const auto given = shadowMaps_->find(file); given != shadowMaps_->end()) known = &given->second;
@@ -218,7 +238,7 @@ PelImageDesc SceneFrame::mapOf(const std::string& file, const std::string& chann
     std::vector<std::string> channels{channel.empty() && map.channels.size() == 1 ? map.channels[0].name
                                                                                   : channel};
     if (!second.empty()) channels.push_back(second);
-    return images_[key] = upload(map, channels);
+    return maps_[key] = upload(map, channels, pictures_);
 }
 
 void SceneFrame::setMaterial(const SceneFile& scene, const SceneMaterial& m, LutStore& luts) {
@@ -268,7 +288,7 @@ PelImageDesc SceneFrame::cubeImage(const std::string& file) {
             "is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
                 "; a cube map is six square faces, one below the other (n x 6n) or side by side (6n x n)");
     return images_[{file}] =
-               upload(image, colorChannels(file, image, "a cube map needs three: red, green, blue"));
+               upload(image, colorChannels(file, image, "a cube map needs three: red, green, blue"), files_);
 }
 
 const std::vector<PelImageDesc>& SceneFrame::normalMap(const std::string& file) {
@@ -279,10 +299,9 @@ const std::vector<PelImageDesc>& SceneFrame::normalMap(const std::string& file) 
         image.interleaved(colorChannels(file, image, "a normal map needs three: x, y, z, from 0 to 1"));
     for (float& v : normals) v = 2 * v - 1;
     const MipChain chain = mipChain(image.width, image.height, std::move(normals));
-    inputs_.emplace_back(device_, chain.texels);
-    inputBytes_ += inputs_.back().bytes();
+    files_.emplace_back(device_, chain.texels);
     for (const MipLevel& level : chain.levels)
-        levels.push_back(imageDesc(inputs_.back(), PEL_FORMAT_RGB32F, uint32_t(level.width),
+        levels.push_back(imageDesc(files_.back(), PEL_FORMAT_RGB32F, uint32_t(level.width),
                                    uint32_t(level.height), level.byteOffset));
     return levels;
 }
@@ -290,12 +309,13 @@ const std::vector<PelImageDesc>& SceneFrame::normalMap(const std::string& file) 
 PelImageDesc SceneFrame::colorImage(const std::string& file, const char* need) {
     if (const auto kept = images_.find({file}); kept != images_.end()) return kept->second;
     const Image image = readImage(file);
-    return images_[{file}] = upload(image, colorChannels(file, image, need));
+    return images_[{file}] = upload(image, colorChannels(file, image, need), files_);
 }
 
 PelImageDesc SceneFrame::measureCurvature(const SceneFile& scene) {
     const auto image = [&](PelImageSlot slot) {
-        return scene.channels[slot].empty() ? pelImageDescDefaults() : upload(gbuffer_, scene.channels[slot]);
+        return scene.channels[slot].empty() ? pelImageDescDefaults()
+                                            : upload(*gbuffer_, scene.channels[slot], pictures_);
     };
     // The surface's own normals where there are: those of a normal map turn without the surface doing so.
     const PelImageDesc normals =
@@ -309,23 +329,23 @@ PelImageDesc SceneFrame::measureCurvature(const SceneFile& scene) {
                         "name their channels");
     PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
     std::copy_n(scene.camera.inverseViewProjection, 16, params.inverseViewProjection);
-    inputs_.emplace_back(device_, gbuffer_.pixelCount() * sizeof(float));
+    pictures_.emplace_back(device_, gbuffer_->pixelCount() * sizeof(float));
     const PelImageDesc curvature =
-        imageDesc(inputs_.back(), PEL_FORMAT_R32F, uint32_t(gbuffer_.width), uint32_t(gbuffer_.height));
+        imageDesc(pictures_.back(), PEL_FORMAT_R32F, uint32_t(gbuffer_->width), uint32_t(gbuffer_->height));
     screenCurvature(device_, params, normals, positions.buffer ? &positions : nullptr,
                     depth.buffer ? &depth : nullptr, ids.buffer ? &ids : nullptr, curvature);
     return curvature;
 }
 
-PelImageDesc SceneFrame::upload(const Image& image, const std::vector<std::string>& channels) {
+PelImageDesc SceneFrame::upload(const Image& image, const std::vector<std::string>& channels,
+                                std::vector<Buffer>& to) {
     static constexpr PelFormat formats[] = {PEL_FORMAT_R32F, PEL_FORMAT_RG32F, PEL_FORMAT_RGB32F,
                                             PEL_FORMAT_RGBA32F};
     for (const std::string& name : channels) image.channel(name);  // an error before memory is taken
-    const Buffer& buffer = inputs_.emplace_back(device_, channels.size() * image.pixelCount() * sizeof(float));
+    const Buffer& buffer = to.emplace_back(device_, channels.size() * image.pixelCount() * sizeof(float));
     image.interleave(channels, static_cast<float*>(buffer.map()));
     buffer.unmap();
-    inputBytes_ += buffer.bytes();
-    return imageDesc(inputs_.back(), formats[channels.size() - 1], uint32_t(image.width), uint32_t(image.height));
+    return imageDesc(buffer, formats[channels.size() - 1], uint32_t(image.width), uint32_t(image.height));
 }
 
 void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance) {

@@ -45,11 +45,15 @@ class SceneFrame {
   public:
     // Uploads what the scene names, sets it and commits. `outputs`: slots beside radiance that are wanted. `shadowMaps` holds maps that
     // are in memory already, by the name that the scene gives them; others are read from files. The G-buffer must live as long as the
-    // frame is updated. `buildOnly`: builds programs, with progress, in place of the commit (scene_programs.h). Throws
-    // FileError when a channel is missing.
+    // frame is updated. `buildOnly`: builds programs, with progress, in place of the commit; show() comes next (scene_programs.h).
+    // Throws FileError when a channel is missing.
     SceneFrame(const Device& device, const Image& gbuffer, const SceneFile& scene, LutStore& luts,
                const ShadowMaps& shadowMaps = {}, const PelShaderOptions& options = pelShaderOptionsDefaults(),
                const std::vector<PelImageSlot>& outputs = {}, bool buildOnly = false);
+
+    // Takes another G-buffer and other shadow maps in place of the former, and commits. Everything else is as it was set: the files of
+    // textures and cubes are not read again, tables are not made again.
+    void show(const Image& gbuffer, const SceneFile& scene, const ShadowMaps& shadowMaps = {});
 
     // Sets everything but the channels again: materials, lights, ambient light, camera, options. Files that were read are not read again.
     void update(const SceneFile& scene, LutStore& luts,
@@ -64,9 +68,10 @@ class SceneFrame {
     std::string warnings() const { return shader_.warnings(); }
     // Material `id` with every default filled in.
     PelMaterial material(uint32_t id) const { return shader_.material(id); }
-    uint64_t inputBytes() const { return inputBytes_; }
+    uint64_t inputBytes() const;
 
   private:
+    void setPictures(const Image& gbuffer, const SceneFile& scene);  // radiance, outputs, channels
     void set(const SceneFile& scene, LutStore& luts, const PelShaderOptions& options);  // all but the channels
     void setMaterial(const SceneFile& scene, const SceneMaterial& m, LutStore& luts);
     void setLights(const SceneFile& scene);
@@ -78,19 +83,19 @@ class SceneFrame {
     PelImageDesc measureCurvature(const SceneFile& scene);
     PelImageDesc cubeImage(const std::string& file);
     void setEye(const SceneFile& scene, const SceneEye& e);
-    PelImageDesc upload(const Image& image, const std::vector<std::string>& channels);
+    PelImageDesc upload(const Image& image, const std::vector<std::string>& channels, std::vector<Buffer>& to);
 
     Device device_;
-    const Image& gbuffer_;
-    const ShadowMaps* shadowMaps_;  // while the constructor runs
+    std::vector<PelImageSlot> wanted_;  // beside radiance
+    const Image* gbuffer_ = nullptr;
+    const ShadowMaps* shadowMaps_ = nullptr;  // while the constructor or show() runs
     Shader shader_;
     Buffer radiance_;
-    std::vector<Buffer> inputs_;
+    std::vector<Buffer> pictures_, files_;  // of the G-buffer and shadow maps; of other files
     std::map<PelImageSlot, Buffer> outputs_;
-    std::map<std::vector<std::string>, PelImageDesc> images_;
+    std::map<std::vector<std::string>, PelImageDesc> maps_, images_;  // of pictures_, of files_
     std::map<std::string, std::vector<PelImageDesc>> normalMaps_;
     std::vector<uint32_t> materials_;  // that are set
-    uint64_t inputBytes_ = 0;
 };
 
 // Sentences about sizes that are probably wrong: depth that is not device depth, bodies whose size does not

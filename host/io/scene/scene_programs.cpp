@@ -36,10 +36,14 @@ ShadowMaps blankMaps(const SceneFile& scene) {
 
 }  // namespace
 
+SceneFrame prepareFrame(const Device& device, const SceneFile& scene, LutStore& luts,
+                        const PelShaderOptions& options, const std::vector<PelImageSlot>& outputs) {
+    return {device, blankGBuffer(scene), scene, luts, blankMaps(scene), options, outputs, true};
+}
+
 void buildPrograms(const Device& device, const SceneFile& scene, LutStore& luts,
                    const PelShaderOptions& options, const std::vector<PelImageSlot>& outputs) {
-    const Image gbuffer = blankGBuffer(scene);
-    const SceneFrame frame(device, gbuffer, scene, luts, blankMaps(scene), options, outputs, true);
+    prepareFrame(device, scene, luts, options, outputs);
 }
 
 }  // namespace pellucid::io
