@@ -50,25 +50,35 @@ std::vector<std::string> channelsOf(const io::SceneFile& scene) {
 }
 
 struct Inputs {
-    io::Image gbuffer;
-    io::ShadowMaps shadowMaps;
-    std::optional<io::SceneFrame> prepared;
+    io::Image gbuffer;  // without pixels if there is a frame
+    std::optional<io::DeviceImages> images;
+    std::optional<io::SceneFrame> frame;
 };
 
-// Reads what the scene names. A second thread prepares the frame meanwhile. Its errors are dropped: a frame that is not prepared is made
-// with all images at once, and reports them.
-Inputs readWhileBuilding(const std::string& gbuffer, const Device& device, const io::SceneFile& scene,
-                         io::LutStore& luts, const PelShaderOptions& options,
-                         const std::vector<PelImageSlot>& outputs) {
+// Reads what the scene names into the device's memory. A second thread prepares the frame meanwhile. Its errors are dropped: where there is
+// no frame, the pictures are read again and it is made with them, and reports them.
+Inputs frameOf(const std::string& gbuffer, const Device& device, const io::SceneFile& scene,
+               io::LutStore& luts, const PelShaderOptions& options, const std::vector<PelImageSlot>& outputs) {
     Inputs inputs;
-    const std::jthread building([&] {
-        try {
-            inputs.prepared.emplace(io::prepareFrame(device, scene, luts, options, outputs));
-        } catch (const std::exception&) {
-        }
-    });
+    io::ShadowMaps maps;
+    {
+        const std::jthread building([&] {
+            try {
+                inputs.frame.emplace(io::prepareFrame(device, scene, luts, options, outputs));
+            } catch (const std::exception&) {
+            }
+        });
+        inputs.images.emplace(device);
+        inputs.gbuffer = inputs.images->read(gbuffer, io::gbufferGroups(scene));
+        maps = io::readShadowMaps(scene, *inputs.images);
+    }
+    if (inputs.frame) {
+        inputs.frame->show(inputs.gbuffer, scene, maps, &*inputs.images);
+        return inputs;
+    }
+    inputs.images.reset();
     inputs.gbuffer = io::readChannels(gbuffer, channelsOf(scene));
-    inputs.shadowMaps = io::readShadowMaps(scene);
+    inputs.frame.emplace(device, inputs.gbuffer, scene, luts, io::readShadowMaps(scene), options, outputs);
     return inputs;
 }
 
@@ -169,21 +179,18 @@ void run(const Arguments& a) {
     PelShaderOptions options = pelShaderOptionsDefaults();
     options.countPixels = a.stats;
     options.scratchBudget = a.scratchMib << 20;
-    Inputs inputs = readWhileBuilding(a.gbuffer, run.device(), scene, luts, options, outputs);
-    const io::Image& gbuffer = inputs.gbuffer;
     try {
-        std::optional<io::SceneFrame>& made = inputs.prepared;
-        if (made)
-            made->show(gbuffer, scene, inputs.shadowMaps);
-        else
-            made.emplace(run.device(), gbuffer, scene, luts, inputs.shadowMaps, options, outputs);
-        io::SceneFrame& frame = *made;
+        Inputs inputs = frameOf(a.gbuffer, run.device(), scene, luts, options, outputs);
+        const io::Image& gbuffer = inputs.gbuffer;
+        io::SceneFrame& frame = *inputs.frame;
         frame.shade();
         const PelShaderStats stats = frame.stats();
         warnOfNothing(run, scene, outputs, stats.features);
         std::istringstream warnings(frame.warnings());
         for (std::string line; std::getline(warnings, line);) run.warn(line);
-        for (const std::string& sentence : io::unlikely(gbuffer, scene)) run.warn(sentence);
+        for (const std::string& sentence :
+             io::unlikely(gbuffer, scene, inputs.images ? &*inputs.images : nullptr))
+            run.warn(sentence);
         warnOfInvalid(run, stats);
         if (picture != a.output) io::writeRadiance(a.output, gbuffer.width, gbuffer.height, frame.radiance());
         if (!picture.empty()) writeShadePicture(picture, gbuffer, frame, a.show, a.tone);

@@ -14,15 +14,16 @@ namespace {
 constexpr size_t page = 4096, cacheLine = 128;
 constexpr size_t mapped =
     32 << 20;  // from this size on memory has a mapping of its own: it is zero at first and returned to the system at once
+constexpr size_t mappedZeros = 2 << 20;  // the same for memory that has to be zero, as pages from the system are
 constexpr size_t unasked = 16 << 20;  // may be allocated without asking how much is left, which takes 100 us
 
 std::atomic<uint64_t> inUse{0};
 
 class Block {
   public:
-    Block(size_t bytes, bool zeros) : bytes_(bytes) {
-        if (bytes >= mapped) {
-            at_ = mapPages(bytes);
+    Block(size_t bytes, bool zeros) : bytes_(bytes), mapped_(bytes >= (zeros ? mappedZeros : mapped)) {
+        if (mapped_) {
+            at_ = bytes >= mapped ? mapPages(bytes) : mapZeros(bytes);
             if (!at_) none();
         } else {
             const size_t alignment = bytes < page ? cacheLine : page;
@@ -33,7 +34,7 @@ class Block {
         inUse.fetch_add(bytes, std::memory_order_relaxed);
     }
     ~Block() {
-        if (bytes_ >= mapped)
+        if (mapped_)
             unmapPages(at_, bytes_);
         else
             freeAligned(at_);
@@ -48,6 +49,7 @@ class Block {
         fail(PEL_ERROR_OUT_OF_MEMORY, "the system has no ", bytes_, " bytes of memory for a buffer");
     }
     size_t bytes_;
+    bool mapped_;
     void* at_ = nullptr;
 };
 

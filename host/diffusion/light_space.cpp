@@ -70,9 +70,8 @@ void LightSpace::describeLevels() {
     if (bytes != pyramidBytes_ || !std::equal(now.begin(), now.end(), sent_.begin(), sent_.end(), sameLevels)) {
         pyramid_ = cl::Memory();
         pyramidBytes_ = 0;
-        pyramid_ = device_->allocate(bytes);
+        pyramid_ = device_->allocateZeros(bytes);  // no light outside of the maps
         pyramidBytes_ = bytes;
-        device_->fill(pyramid_.get(), 0, bytes, 0);  // no light outside of the maps
     }
     const size_t cellBytes = (size_t(cells) + 3) / 4 * 4;
     if (cellBytes != cellBytes_) {
@@ -109,10 +108,7 @@ void LightSpace::prepare(const std::vector<ShaderLight>& lights, const float ori
     const size_t hiddenBytes = hidden_ ? blocks * sizeof(float) : 0;
     if (hiddenBytes != hiddenBytes_) {
         hiddenMemory_ = cl::Memory();
-        if (hiddenBytes) {
-            hiddenMemory_ = device_->allocate(hiddenBytes);
-            device_->fill(hiddenMemory_.get(), 0, hiddenBytes, 0);
-        }
+        if (hiddenBytes) hiddenMemory_ = device_->allocateZeros(hiddenBytes);
         hiddenBytes_ = hiddenBytes;
     }
     const size_t bytes = tileCount * sizeof(cl_uint);

@@ -94,13 +94,11 @@ void ScreenScatter::describeLevels(uint32_t width, uint32_t height) {
         return;
     pyramid_ = sums_ = cl::Memory();
     pyramidBytes_ = sumBytes_ = 0;
-    pyramid_ = device_->allocate(bytes);
+    pyramid_ = device_->allocateZeros(bytes);  // no area outside of the picture
     pyramidBytes_ = bytes;
-    device_->fill(pyramid_.get(), 0, bytes, 0);  // no area outside of the picture
     const size_t sumBytes = sumFloats(frame_.level, bytes / sizeof(float)) * sizeof(float);
-    sums_ = device_->allocate(sumBytes);
+    sums_ = device_->allocateZeros(sumBytes);  // vectors read beyond what is set
     sumBytes_ = sumBytes;
-    device_->fill(sums_.get(), 0, sumBytes, 0);  // vectors read beyond what is set
 }
 
 void ScreenScatter::announce(const ScatterLights& lights) {

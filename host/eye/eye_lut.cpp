@@ -79,8 +79,7 @@ Ref<Lut> integrateEyeLut(Ref<Device> device, const PelEyeLutDesc& desc) {
     const PelEyeLutGrid grid = gridOf(desc, shape);
     const PelEyeShape unit = describeShape(shape, desc, 1 / shape.iris);
     const size_t sumBytes = size_t(desc.width) * desc.height * desc.depth * sizeof(cl_uint);
-    const cl::Memory sums = device->allocate(sumBytes);
-    device->fill(sums.get(), 0, sumBytes, 0);
+    const cl::Memory sums = device->allocateZeros(sumBytes);
     const cl::Program& program =
         device->programs().get({{"eye/eye_lut.cl"}, {{"PEL_GROUP", std::to_string(group)}}});
     const size_t lanes = device->info().mathWidth;

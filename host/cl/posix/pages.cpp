@@ -7,9 +7,14 @@
 
 namespace pel::cl {
 
-void* mapPages(size_t bytes) {
+void* mapZeros(size_t bytes) {
     void* const at = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (at == MAP_FAILED) return nullptr;
+    return at == MAP_FAILED ? nullptr : at;
+}
+
+void* mapPages(size_t bytes) {
+    void* const at = mapZeros(bytes);
+    if (!at) return nullptr;
 #ifdef MADV_HUGEPAGE
     (void)::madvise(at, bytes, MADV_HUGEPAGE);
 #endif

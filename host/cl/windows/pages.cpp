@@ -9,6 +9,10 @@ void* mapPages(size_t bytes) {
     return ::VirtualAlloc(nullptr, bytes, MEM_RESERVE | MEM_COMMIT, PAGE_READWRITE);  // what Windows commits, it has
 }
 
+void* mapZeros(size_t bytes) {
+    return mapPages(bytes);
+}
+
 void unmapPages(void* at, size_t) {
     ::VirtualFree(at, 0, MEM_RELEASE);
 }

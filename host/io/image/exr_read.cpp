@@ -19,12 +19,14 @@
 #include <atomic>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
 
 #include "io/file_error.h"
 #include "io/image/exr_file.h"
+#include "io/image/exr_lines.h"
 #include "io/image/image_format.h"
 
 namespace pellucid::io {
@@ -128,26 +130,48 @@ PartPlan planPart(Image& image, const Imf::Header& header, int part, bool severa
     return plan;
 }
 
-// Rows from `begin` to before `end` of a part into those channels that have pixels.
-void readBand(Image& image, Imf::MultiPartInputFile& file, int part, const PartPlan& plan, int begin, int end) {
+// Whether rows of the file are rows of the picture.
+bool isDirect(const Imath::Box2i& data, const Imath::Box2i& display) {
+    return data.min.x == display.min.x && data.max.x == display.max.x && data.min.y >= display.min.y &&
+           data.max.y <= display.max.y;
+}
+
+// Rows from `begin` to before `end` of a part to the places of its channels, one for each channel of the image.
+void readLines(const ExrLines& lines, int part, const PartPlan& plan, const std::vector<Place>& places,
+               int top, int begin, int end) {
+    const auto width = size_t(plan.data.max.x - plan.data.min.x + 1);
+    std::vector<ExrLines::Target> targets;
+    for (size_t c = 0; c < plan.names.size(); ++c) {
+        const Place& place = places[plan.first + c];
+        if (place.first)
+            targets.push_back({plan.names[c], place.first + size_t(begin - top) * width * place.stride,
+                               place.stride, width * place.stride});
+    }
+    if (!targets.empty()) lines.read(part, begin, end, width, targets);
+}
+
+// The same for any part.
+void readBand(const Image& image, Imf::MultiPartInputFile& file, int part, const PartPlan& plan,
+              const std::vector<Place>& places, int begin, int end) {
     const Imath::Box2i &data = plan.data, display = file.header(part).displayWindow();
     const size_t width = size_t(data.max.x - data.min.x + 1);
-    const bool direct = data.min.x == display.min.x && data.max.x == display.max.x &&
-                        data.min.y >= display.min.y && data.max.y <= display.max.y;
+    const bool direct = isDirect(data, display);
     std::vector<std::vector<float>> bands;
-    std::vector<Channel*> wanted;
+    std::vector<Place> wanted;
     Imf::FrameBuffer frame;
     for (size_t c = 0; c < plan.names.size(); ++c) {
-        Channel& channel = image.channels[plan.first + c];
-        if (channel.pixels.empty()) continue;
-        wanted.push_back(&channel);
+        const Place& place = places[plan.first + c];
+        if (!place.first) continue;
+        wanted.push_back(place);
         if (!direct) bands.emplace_back(width * size_t(end - begin));
+        const size_t stride = direct ? place.stride : 1;
         float* firstPixel =
-            direct ? channel.pixels.data() + size_t(begin - display.min.y) * width : bands.back().data();
+            direct ? place.first + size_t(begin - display.min.y) * width * stride : bands.back().data();
         // OpenEXR wants the place where the pixel (0, 0) of its coordinates would be, which may lie outside.
-        const int64_t origin = (int64_t(begin) * int64_t(width) + data.min.x) * int64_t(sizeof(float));
+        const int64_t origin = (int64_t(begin) * int64_t(width) + data.min.x) * int64_t(stride * sizeof(float));
         char* base = reinterpret_cast<char*>(reinterpret_cast<uintptr_t>(firstPixel) - uintptr_t(origin));
-        frame.insert(plan.names[c], Imf::Slice(Imf::FLOAT, base, sizeof(float), width * sizeof(float)));
+        frame.insert(plan.names[c],
+                     Imf::Slice(Imf::FLOAT, base, stride * sizeof(float), width * stride * sizeof(float)));
     }
     if (wanted.empty()) return;
     Imf::InputPart input(file, part);
@@ -157,11 +181,21 @@ void readBand(Image& image, Imf::MultiPartInputFile& file, int part, const PartP
     const int left = std::max(data.min.x, display.min.x), right = std::min(data.max.x, display.max.x);
     if (left > right) return;
     for (int y = std::max(begin, display.min.y); y < std::min(end, display.max.y + 1); ++y)
-        for (size_t c = 0; c < wanted.size(); ++c)
-            std::copy_n(bands[c].data() + size_t(y - begin) * width + size_t(left - data.min.x),
-                        size_t(right - left + 1),
-                        wanted[c]->pixels.data() + size_t(y - display.min.y) * size_t(image.width) +
-                            size_t(left - display.min.x));
+        for (size_t c = 0; c < wanted.size(); ++c) {
+            const float* from = bands[c].data() + size_t(y - begin) * width + size_t(left - data.min.x);
+            const size_t first = size_t(y - display.min.y) * size_t(image.width) + size_t(left - display.min.x);
+            for (size_t x = 0; x <= size_t(right - left); ++x)
+                wanted[c].first[(first + x) * wanted[c].stride] = from[x];
+        }
+}
+
+// None for a file that this library refuses and the other one does not.
+std::unique_ptr<const ExrLines> linesOf(const std::string& path, const std::string& bytes) {
+    try {
+        return std::make_unique<const ExrLines>(path, bytes);
+    } catch (const FileError&) {
+        return nullptr;
+    }
 }
 
 struct Band {
@@ -198,8 +232,24 @@ void onProcessors(size_t count, const Worker& worker) {
 
 }  // namespace
 
+std::vector<Place> ownPlaces(Image& image, const std::vector<std::string>* names) {
+    std::vector<bool> wanted(image.channels.size(), !names);
+    if (names)
+        for (const std::string& name : *names)
+            if (image.has(name)) wanted[size_t(&image.channel(name) - image.channels.data())] = true;
+    std::vector<Place> places(image.channels.size());
+    onProcessors(wanted.size(), [&](auto&& next) {
+        while (const auto c = next())
+            if (wanted[*c]) {
+                image.channels[*c].pixels.resize(image.pixelCount());
+                places[*c].first = image.channels[*c].pixels.data();
+            }
+    });
+    return places;
+}
+
 void decodeExr(Image& image, const std::string& bytes, const std::function<void(const Image&)>& check,
-               uint64_t limit, const std::vector<std::string>* names) try {
+               uint64_t limit, const PlaceChannels& placesOf) try {
     MemoryStream stream(image.source, bytes);
     Imf::MultiPartInputFile file(stream, 0);
     copyAttributes(image, file.header(0));
@@ -208,27 +258,33 @@ void decodeExr(Image& image, const std::string& bytes, const std::function<void(
         parts.push_back(planPart(image, file.header(part), part, file.parts() > 1, limit));
     checkImageSize(image.source, image.width, image.height, double(image.channels.size()), limit);
     if (check) check(image);
-    std::vector<bool> wanted(image.channels.size(), !names);
-    if (names)
-        for (const std::string& name : *names)
-            if (image.has(name)) wanted[size_t(&image.channel(name) - image.channels.data())] = true;
-    onProcessors(wanted.size(), [&](auto&& next) {
-        while (const auto c = next())
-            if (wanted[*c]) image.channels[*c].pixels.resize(image.pixelCount());
-    });
+    const std::vector<Place> places = placesOf(image);
+    const std::unique_ptr<const ExrLines> lines = linesOf(image.source, bytes);
     std::vector<Band> bands;
+    std::vector<bool> inLines;
     for (size_t part = 0; part < parts.size(); ++part) {
         const PartPlan& plan = parts[part];
+        const Imf::Header& header = file.header(int(part));
+        inLines.push_back(lines && isDirect(plan.data, header.displayWindow()) &&
+                          !header.hasTileDescription() && header.compression() <= Imf::ZIP_COMPRESSION);
         for (int64_t y = plan.data.min.y; y <= plan.data.max.y; y += plan.rows)
             bands.push_back(
                 {int(part), int(y), int(std::min<int64_t>(y + plan.rows, int64_t(plan.data.max.y) + 1))});
     }
     onProcessors(bands.size(), [&](auto&& next) {
         MemoryStream own(image.source, bytes);
-        Imf::MultiPartInputFile reader(own, 0);
-        while (const auto i = next())
-            readBand(image, reader, bands[*i].part, parts[size_t(bands[*i].part)], bands[*i].begin,
-                     bands[*i].end);
+        std::optional<Imf::MultiPartInputFile> reader;
+        while (const auto i = next()) {
+            const Band& band = bands[*i];
+            const PartPlan& plan = parts[size_t(band.part)];
+            if (inLines[size_t(band.part)]) {
+                readLines(*lines, band.part, plan, places, file.header(band.part).displayWindow().min.y,
+                          band.begin, band.end);
+                continue;
+            }
+            if (!reader) reader.emplace(own, 0);
+            readBand(image, *reader, band.part, plan, places, band.begin, band.end);
+        }
     });
 } catch (const Iex::BaseExc& e) {
     throw FileError(image.source, std::string("is damaged or cut off: ") + e.what());

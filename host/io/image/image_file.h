@@ -64,6 +64,16 @@ Image decodeImage(const std::string& path, std::string bytes,
 // no pixels. Names are those of Image::channel(); one that fits no channel, or several, is no error here.
 Image readChannels(const std::string& path, const std::vector<std::string>& names);
 
+// Where a channel's values go: that of pixel i to first[i * stride]. nullptr: it is not wanted.
+struct Place {
+    float* first = nullptr;
+    size_t stride = 1;
+};
+// One for each channel of an image that has no pixels yet. The memory holds zeros.
+using PlaceChannels = std::function<std::vector<Place>(Image&)>;
+// Reads channels straight to where they are wanted. The image that is returned has no pixels.
+Image readChannelsTo(const std::string& path, const PlaceChannels& places);
+
 // Writes a single-part scan-line EXR, each channel in its own type; float32 values keep their bits. ZIP compression makes files
 // small; RLE, which is quick to read, a third larger where much is background, and hardly small elsewhere.
 enum class ExrCompression { Zip, Rle };

@@ -1,4 +1,6 @@
 // Reading of images: what imageFormat() accepted is decoded from memory.
+#include <utility>
+
 #include "io/file_error.h"
 #include "io/image/exr_file.h"
 #include "io/image/image_file.h"
@@ -13,7 +15,7 @@ Image decodeImage(const std::string& path, std::string bytes, const std::functio
     Image image;
     image.source = path;
     if (format.reader == std::string_view("openexr"))
-        decodeExr(image, format.bytes, check, limit, names);
+        decodeExr(image, format.bytes, check, limit, [&](Image& all) { return ownPlaces(all, names); });
     else
         pictureLibrary(path).decode(image, format, check, limit);
     return image;
@@ -25,6 +27,24 @@ Image readImage(const std::string& path, const std::function<void(const Image&)>
 
 Image readChannels(const std::string& path, const std::vector<std::string>& names) {
     return decodeImage(path, readWholeFile(path), {}, inputLimit(), &names);
+}
+
+Image readChannelsTo(const std::string& path, const PlaceChannels& places) {
+    const ImageFormat format = imageFormat(path, readWholeFile(path), inputLimit());
+    Image image;
+    image.source = path;
+    if (format.reader == std::string_view("openexr")) {
+        decodeExr(image, format.bytes, {}, inputLimit(), places);
+        return image;
+    }
+    pictureLibrary(path).decode(image, format, {}, inputLimit());
+    std::vector<std::vector<float>> pixels;
+    for (Channel& c : image.channels) pixels.push_back(std::exchange(c.pixels, {}));
+    const std::vector<Place> to = places(image);
+    for (size_t c = 0; c < to.size(); ++c)
+        if (to[c].first)
+            for (size_t i = 0; i < pixels[c].size(); ++i) to[c].first[i * to[c].stride] = pixels[c][i];
+    return image;
 }
 
 }  // namespace pellucid::io

@@ -73,6 +73,7 @@ std::map<std::string, ShadowMapFile> shadowMapsOf(const SceneFile& scene) {
             map.cube |= light.light.shadowProjection >= PEL_SHADOW_CUBE;
             for (const std::string& name : {channel, second})
                 if (!name.empty()) map.channels.insert(name);
+            map.groups.insert(second.empty() ? ChannelGroup{channel} : ChannelGroup{channel, second});
         };
         add(light.shadowMapFile, light.shadowMapChannel, light.secondChannel);
         for (uint32_t k = 0; k + 1 < light.light.shadowCascades; ++k)
@@ -86,6 +87,12 @@ ShadowMaps readShadowMaps(const SceneFile& scene) {
     for (const auto& [file, map] : shadowMapsOf(scene))
         maps[file] =
             map.whole ? readImage(file) : readChannels(file, {map.channels.begin(), map.channels.end()});
+    return maps;
+}
+
+ShadowMaps readShadowMaps(const SceneFile& scene, DeviceImages& images) {
+    ShadowMaps maps;
+    for (const auto& [file, map] : shadowMapsOf(scene)) maps[file] = images.read(file, map.groups);
     return maps;
 }
 
@@ -126,14 +133,17 @@ SceneFrame::SceneFrame(const Device& device, const Image& gbuffer, const SceneFi
     gbuffer_ = nullptr;
 }
 
-void SceneFrame::show(const Image& gbuffer, const SceneFile& scene, const ShadowMaps& shadowMaps) {
+void SceneFrame::show(const Image& gbuffer, const SceneFile& scene, const ShadowMaps& shadowMaps,
+                      const DeviceImages* images) {
     shadowMaps_ = &shadowMaps;
+    deviceImages_ = images;
     pictures_.clear();
     maps_.clear();
     setPictures(gbuffer, scene);
     setLights(scene);
     shader_.commit();
     shadowMaps_ = nullptr;
+    deviceImages_ = nullptr;
 }
 
 void SceneFrame::setPictures(const Image& gbuffer, const SceneFile& scene) {
@@ -341,6 +351,8 @@ PelImageDesc SceneFrame::upload(const Image& image, const std::vector<std::strin
                                 std::vector<Buffer>& to) {
     static constexpr PelFormat formats[] = {PEL_FORMAT_R32F, PEL_FORMAT_RG32F, PEL_FORMAT_RGB32F,
                                             PEL_FORMAT_RGBA32F};
+    if (deviceImages_)
+        if (const OwnedImage* known = deviceImages_->find(image, channels)) return **known;
     for (const std::string& name : channels) image.channel(name);  // an error before memory is taken
     const Buffer& buffer = to.emplace_back(device_, channels.size() * image.pixelCount() * sizeof(float));
     image.interleave(channels, static_cast<float*>(buffer.map()));

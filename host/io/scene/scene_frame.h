@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/image/image_file.h"
+#include "io/scene/device_images.h"
 #include "io/scene/scene_file.h"
 #include "pellucid/pellucid.hpp"
 
@@ -33,10 +34,13 @@ using ShadowMaps = std::map<std::string, Image>;
 // What a scene reads from the files of its shadow maps.
 struct ShadowMapFile {
     std::set<std::string> channels;
+    std::set<ChannelGroup> groups;     // the same, as they are read together
     bool whole = false, cube = false;  // whole: a light names no channel
 };
 std::map<std::string, ShadowMapFile> shadowMapsOf(const SceneFile& scene);
 ShadowMaps readShadowMaps(const SceneFile& scene);
+// The same into the device's memory; what is returned has no pixels.
+ShadowMaps readShadowMaps(const SceneFile& scene, DeviceImages& images);
 
 // `options` with what the scene says of them.
 PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options);
@@ -52,8 +56,9 @@ class SceneFrame {
                const std::vector<PelImageSlot>& outputs = {}, bool buildOnly = false);
 
     // Takes another G-buffer and other shadow maps in place of the former, and commits. Everything else is as it was set: the files of
-    // textures and cubes are not read again, tables are not made again.
-    void show(const Image& gbuffer, const SceneFile& scene, const ShadowMaps& shadowMaps = {});
+    // textures and cubes are not read again, tables are not made again. `images` has pixels that were read into the device's memory.
+    void show(const Image& gbuffer, const SceneFile& scene, const ShadowMaps& shadowMaps = {},
+              const DeviceImages* images = nullptr);
 
     // Sets everything but the channels again: materials, lights, ambient light, camera, options. Files that were read are not read again.
     void update(const SceneFile& scene, LutStore& luts,
@@ -88,7 +93,9 @@ class SceneFrame {
     Device device_;
     std::vector<PelImageSlot> wanted_;  // beside radiance
     const Image* gbuffer_ = nullptr;
-    const ShadowMaps* shadowMaps_ = nullptr;  // while the constructor or show() runs
+    // While the constructor or show() runs.
+    const ShadowMaps* shadowMaps_ = nullptr;
+    const DeviceImages* deviceImages_ = nullptr;
     Shader shader_;
     Buffer radiance_;
     std::vector<Buffer> pictures_, files_;  // of the G-buffer and shadow maps; of other files
@@ -100,7 +107,8 @@ class SceneFrame {
 
 // Sentences about sizes that are probably wrong: depth that is not device depth, bodies whose size does not
 // match their profile.
-std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene);
+std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene,
+                                  const DeviceImages* images = nullptr);
 
 // Writes RGB radiance as R, G, B of a float EXR, lengths as Thickness.V.
 void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance);

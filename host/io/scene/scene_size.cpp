@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "io/lut/profile_file.h"
 #include "io/scene/scene_frame.h"
@@ -16,14 +17,15 @@ std::string shown(float value) {
 
 // use(values of a slot, pixel) at each pixel that may have a material.
 template <class Use>
-void eachPixel(const Image& gbuffer, const SceneFile& scene, PelImageSlot slot, Use&& use) {
-    const std::vector<float> values = gbuffer.interleaved(scene.channels[slot]);
+void eachPixel(const Image& gbuffer, const SceneFile& scene, const DeviceImages* images, PelImageSlot slot,
+               Use&& use) {
+    const PixelValues values(gbuffer, scene.channels[slot], images);
     const size_t components = scene.channels[slot].size();
-    std::vector<float> ids;
+    std::optional<PixelValues> ids;
     if (!scene.channels[PEL_SLOT_MATERIAL].empty())
-        ids = gbuffer.interleaved(scene.channels[PEL_SLOT_MATERIAL]);
+        ids.emplace(gbuffer, scene.channels[PEL_SLOT_MATERIAL], images);
     for (size_t i = 0; i < gbuffer.pixelCount(); ++i)
-        if (ids.empty() || ids[i] > 0) use(&values[i * components], i);
+        if (!ids || ids->at()[i] > 0) use(values.at() + i * components, i);
 }
 
 // Bounds of points. A point with NaN or Inf is left out.
@@ -42,16 +44,16 @@ struct Extent {
 };
 
 // What is seen, from positions or from device depth.
-Extent extentOf(const Image& gbuffer, const SceneFile& scene) {
+Extent extentOf(const Image& gbuffer, const SceneFile& scene, const DeviceImages* images) {
     Extent extent;
     if (!scene.channels[PEL_SLOT_POSITION].empty()) {
-        eachPixel(gbuffer, scene, PEL_SLOT_POSITION, [&](const float* p, size_t) {
+        eachPixel(gbuffer, scene, images, PEL_SLOT_POSITION, [&](const float* p, size_t) {
             extent.add({double(p[0]), double(p[1]), double(p[2])});
         });
         return extent;
     }
     const float* m = scene.camera.inverseViewProjection;
-    eachPixel(gbuffer, scene, PEL_SLOT_DEPTH, [&](const float* depth, size_t i) {
+    eachPixel(gbuffer, scene, images, PEL_SLOT_DEPTH, [&](const float* depth, size_t i) {
         const double clip[] = {(double(i % size_t(gbuffer.width)) + 0.5) * 2 / gbuffer.width - 1,
                                1 - (double(i / size_t(gbuffer.width)) + 0.5) * 2 / gbuffer.height, depth[0], 1};
         double p[4] = {};
@@ -64,13 +66,13 @@ Extent extentOf(const Image& gbuffer, const SceneFile& scene) {
 
 }  // namespace
 
-std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene) {
+std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene, const DeviceImages* images) {
     std::vector<std::string> found;
     const bool fromDepth = scene.channels[PEL_SLOT_POSITION].empty();
     if (fromDepth && scene.channels[PEL_SLOT_DEPTH].empty()) return found;
     if (fromDepth) {
         float furthest = 0;  // beyond what device depth can be, on whichever side
-        eachPixel(gbuffer, scene, PEL_SLOT_DEPTH, [&](const float* v, size_t) {
+        eachPixel(gbuffer, scene, images, PEL_SLOT_DEPTH, [&](const float* v, size_t) {
             if (std::isfinite(v[0]) && std::abs(v[0]) > std::abs(furthest)) furthest = v[0];
         });
         if (std::abs(furthest) > 1.001f) {
@@ -82,7 +84,7 @@ std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene) 
             return found;
         }
     }
-    const Extent extent = extentOf(gbuffer, scene);
+    const Extent extent = extentOf(gbuffer, scene, images);
     if (!extent.any) return found;
     const auto size = float(extent.size() * scene.unitMm);
     for (const SceneMaterial& m : scene.materials) {

@@ -1,0 +1,152 @@
+#include "io/image/exr_lines.h"
+
+#include <Imath/half.h>
+#include <OpenEXR/openexr.h>
+
+#include <algorithm>
+#include <cstring>
+#include <mutex>
+
+#include "io/file_error.h"
+
+namespace pellucid::io {
+namespace {
+
+template <class Stored>
+void spread(const uint8_t* from, size_t count, float* to, size_t stride) {
+    for (size_t i = 0; i < count; ++i) {
+        Stored value;
+        std::memcpy(&value, from + i * sizeof value, sizeof value);
+        to[i * stride] = float(value);
+    }
+}
+
+// Values of the wanted channels as floats at their places. In a chunk rows follow each other, in each row the channels.
+exr_result_t unpack(exr_decode_pipeline_t* decode) {
+    const auto* at = static_cast<const uint8_t*>(decode->unpacked_buffer);
+    for (int32_t row = 0; row < decode->chunk.height; ++row)
+        for (int16_t c = 0; c < decode->channel_count; ++c) {
+            const exr_coding_channel_info_t& channel = decode->channels[c];
+            const auto count = size_t(channel.width);
+            const uint8_t* values = at;
+            at += count * size_t(channel.bytes_per_element);
+            if (!channel.decode_to_ptr) continue;
+            auto* to =
+                reinterpret_cast<float*>(channel.decode_to_ptr + row * ptrdiff_t(channel.user_line_stride));
+            const size_t stride = size_t(channel.user_pixel_stride) / sizeof(float);
+            if (channel.data_type == EXR_PIXEL_HALF)
+                spread<Imath::half>(values, count, to, stride);
+            else if (channel.data_type == EXR_PIXEL_UINT)
+                spread<uint32_t>(values, count, to, stride);
+            else if (stride == 1)
+                std::memcpy(to, values, count * sizeof(float));
+            else
+                spread<float>(values, count, to, stride);
+        }
+    return EXR_ERR_SUCCESS;
+}
+
+}  // namespace
+
+struct ExrLines::File {
+    std::string path;
+    const std::string& bytes;
+    exr_context_t context = nullptr;
+    mutable std::mutex mutex;
+    mutable std::string error;  // the last
+
+    void check(exr_result_t code) const {
+        if (code == EXR_ERR_SUCCESS) return;
+        const std::lock_guard lock(mutex);
+        throw FileError(
+            path, "is damaged or cut off: " + (error.empty() ? exr_get_default_error_message(code) : error));
+    }
+};
+
+ExrLines::ExrLines(const std::string& path, const std::string& bytes)
+    : file_(new File{path, bytes, nullptr, {}, {}}) {
+    exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    settings.user_data = file_.get();
+    settings.read_fn = [](exr_const_context_t, void* user, void* to, uint64_t size, uint64_t offset,
+                          exr_stream_error_func_ptr_t) -> int64_t {
+        const std::string& all = static_cast<const ExrLines::File*>(user)->bytes;
+        if (offset >= all.size()) return 0;
+        const uint64_t got = std::min<uint64_t>(size, all.size() - offset);
+        std::memcpy(to, all.data() + offset, got);
+        return int64_t(got);
+    };
+    settings.size_fn = [](exr_const_context_t, void* user) {
+        return int64_t(static_cast<const ExrLines::File*>(user)->bytes.size());
+    };
+    settings.error_handler_fn = [](exr_const_context_t context, exr_result_t, const char* message) {
+        void* user = nullptr;
+        if (!context || exr_get_user_data(context, &user) != EXR_ERR_SUCCESS || !user) return;
+        const auto* file = static_cast<const ExrLines::File*>(user);
+        const std::lock_guard lock(file->mutex);
+        file->error = message;
+    };
+    file_->check(exr_start_read(&file_->context, path.c_str(), &settings));
+}
+
+ExrLines::~ExrLines() {
+    if (file_->context) exr_finish(&file_->context);
+}
+
+void ExrLines::read(int part, int begin, int end, size_t width, const std::vector<Target>& targets) const {
+    struct Pipeline {
+        exr_context_t context;
+        exr_decode_pipeline_t all = EXR_DECODE_PIPELINE_INITIALIZER;
+        bool made = false;
+        ~Pipeline() {
+            if (made) exr_decoding_destroy(context, &all);
+        }
+    } pipeline{file_->context};
+    exr_decode_pipeline_t& decode = pipeline.all;
+    exr_compression_t compression = EXR_COMPRESSION_NONE;
+    file_->check(exr_get_compression(file_->context, part, &compression));
+    int32_t rows = 1;
+    file_->check(exr_get_scanlines_per_chunk(file_->context, part, &rows));
+    // Both libraries read the headers; of an attribute that comes twice each may take another.
+    const auto mustBe = [&](bool same) {
+        if (!same)
+            throw FileError(file_->path, "is damaged: its chunks are of another size than its picture");
+    };
+    for (int y = begin; y < end; y += rows) {
+        exr_chunk_info_t chunk;
+        file_->check(exr_read_scanline_chunk_info(file_->context, part, y, &chunk));
+        mustBe(chunk.start_y == y && chunk.height == std::min(rows, end - y) && size_t(chunk.width) == width);
+        const bool first = !pipeline.made;
+        file_->check(first ? exr_decoding_initialize(file_->context, part, &chunk, &decode)
+                           : exr_decoding_update(file_->context, part, &chunk, &decode));
+        pipeline.made = true;
+        uint64_t bytes = 0;
+        for (int16_t c = 0; c < decode.channel_count; ++c)
+            bytes += uint64_t(chunk.height) * uint64_t(decode.channels[c].width) *
+                     uint64_t(decode.channels[c].bytes_per_element);
+        mustBe(chunk.unpacked_size == bytes && chunk.packed_size <= bytes &&
+               chunk.packed_size <= file_->bytes.size());
+        mustBe(compression != EXR_COMPRESSION_NONE || chunk.packed_size == bytes);
+        for (int16_t c = 0; c < decode.channel_count; ++c) {
+            exr_coding_channel_info_t& channel = decode.channels[c];
+            channel.decode_to_ptr = nullptr;
+            const auto target =
+                std::ranges::find(targets, std::string_view(channel.channel_name), &Target::name);
+            if (target == targets.end()) continue;
+            mustBe(size_t(channel.width) == width && channel.height == chunk.height);
+            channel.decode_to_ptr =
+                reinterpret_cast<uint8_t*>(target->first + size_t(y - begin) * target->rowStride);
+            channel.user_bytes_per_element = sizeof(float);
+            channel.user_data_type = EXR_PIXEL_FLOAT;
+            channel.user_pixel_stride = int32_t(target->pixelStride * sizeof(float));
+            channel.user_line_stride = int32_t(target->rowStride * sizeof(float));
+        }
+        if (first) {
+            file_->check(exr_decoding_choose_default_routines(file_->context, part, &decode));
+            // The library's own fails where not all channels are wanted. None where values are read straight to their places.
+            if (decode.unpack_and_convert_fn) decode.unpack_and_convert_fn = unpack;
+        }
+        file_->check(exr_decoding_run(file_->context, part, &decode));
+    }
+}
+
+}  // namespace pellucid::io
