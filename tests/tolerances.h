@@ -245,6 +245,12 @@ inline constexpr Tolerance betweenShadowRms{
 inline constexpr Tolerance betweenShadowShare{
     "betweenShadowShare", 2e-3,
     "share of pixels more than a hundredth off: where shadows are narrower than two pixels"};
+inline constexpr Tolerance cellsOfPlane{"cellsOfPlane", 0.03,
+                                        "RMS of thickness by cells of a plane that falls by 0.1 a texel: "
+                                        "samples lie up to a sixteenth of the radius off their taps"};
+inline constexpr Tolerance cellsScaled{
+    "cellsScaled", 2e-3,
+    "RMS of thickness by cells in other units: depths of 150 are rounded by 1e-5, near edges more"};
 inline constexpr Tolerance contentShadow{
     "contentShadow", 2e-3,
     "variance is a difference of float squares: 1e-7 of z^2 is 0.1 mm in a map 300 mm deep"};

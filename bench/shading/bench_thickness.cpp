@@ -2,13 +2,14 @@
 //
 //     bench_thickness [out/demo/backlit]    reads backlit.toml, backlit_gbuffer.exr, backlit_shadowmap.exr
 //
-// Prints one line per number of taps, fixed and rotated from pixel to pixel: time of the whole pass (median of 39, interleaved), and the
+// Prints one line per number of taps, fixed and rotated from pixel to pixel, and one for cells of taps: time of the whole pass (median of 39, interleaved), and the
 // error of thickness (mm) and of the transmittance exp(-t^2 / 2 radius^2), RMS and largest, in every 23rd block of 4 x 4 pixels of
 // skin that the light reaches from behind; and RMS of the blocks' means, which is what a filter over pixels or frames leaves.
 #include <pellucid/pellucid.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -20,6 +21,16 @@
 
 using namespace pellucid;
 using reference::Vec3;
+
+namespace {
+
+struct Case {
+    uint32_t taps;
+    bool turned, cells;
+    auto operator<=>(const Case&) const = default;
+};
+
+}  // namespace
 
 int main(int argc, char** argv) try {
     const std::string base = argc > 1 && argv[1][0] != '-' ? argv[1] : "out/demo/backlit";
@@ -51,10 +62,11 @@ int main(int argc, char** argv) try {
     shader.set(scene.camera);
 
     PelMaterial material = demo::withDeepScatter(scene.materials.at(0).material);
-    const auto run = [&](uint32_t taps, bool turned, bool output) {
-        material.thicknessTaps = taps;
+    const auto run = [&](Case c, bool output) {
+        material.thicknessTaps = c.taps;
         PelShaderOptions options = pelShaderOptionsDefaults();
-        options.rotateTaps = turned;
+        options.rotateTaps = c.turned;
+        options.everyPixel = !c.cells;
         shader.set(options);
         shader.setMaterial(scene.materials[0].id, material);
         if (output)
@@ -87,22 +99,25 @@ int main(int argc, char** argv) try {
             for (size_t i : block) truth.emplace_back(i, manyTaps.at(at(position, i), at(normal, i)));
         }
 
-    const std::pair<uint32_t, bool> cases[] = {{0, false}, {8, false},  {8, true}, {16, false},
-                                               {16, true}, {32, false}, {32, true}};
-    std::map<std::pair<uint32_t, bool>, std::vector<double>> times;
+    const Case cases[] = {{0, false, false}, {8, false, false},  {8, true, false},  {16, false, false},
+                          {16, true, false}, {32, false, false}, {32, true, false}, {32, false, true}};
+    std::map<Case, std::vector<double>> times;
     for (int round = 0; round < 40; ++round)
-        for (const auto& [taps, turned] : cases)
-            if (const double time = run(taps, turned, false); round > 0)
-                times[{taps, turned}].push_back(time);
+        for (const Case& c : cases)
+            if (const double time = run(c, false); round > 0) times[c].push_back(time);
     std::printf("%s, %u x %u, %zu pixels compared\n", device.info().name, width, height, truth.size());
     const double radius = material.deepScatterRadius, count = double(truth.size());
     const auto through = [&](double t) { return std::exp(-t * t / (2 * radius * radius)); };
-    for (const auto& [taps, turned] : cases) {
-        auto& t = times[{taps, turned}];
+    for (const Case& c : cases) {
+        auto& t = times[c];
         std::nth_element(t.begin(), t.begin() + 19, t.end());
-        std::printf("%2u taps%s: %6.2f ms", taps, turned ? ", rotated" : "         ", t[19]);
-        if (taps) {
-            run(taps, turned, true);
+        std::printf("%2u taps%s: %6.2f ms", c.taps,
+                    c.cells    ? ", cells  "
+                    : c.turned ? ", rotated"
+                               : "         ",
+                    t[19]);
+        if (c.taps) {
+            run(c, true);
             const auto ours = lengths.readAll<float>();
             double error = 0, worst = 0, light2 = 0, worstLight = 0, blocks = 0, sum = 0;
             for (size_t k = 0; k < truth.size(); ++k) {

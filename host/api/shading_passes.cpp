@@ -8,10 +8,10 @@ namespace pel {
 // A pass reads what earlier passes made.
 std::span<const PassKind> shadingPasses() {
     static const PassKind passes[] = {
-        ambientCubePass,  reflectionCubePass, irisesPass,     classifyTilesPass, blurNormalsPass,
-        normalMapPass,    shadowBoundsPass,   wideShadowPass, irradiancePass,    prepareScatterPass,
-        diskPass,         separablePass,      texturePass,    scatterPass,       lightScatterPass,
-        weighScatterPass, shadePass};
+        ambientCubePass,    reflectionCubePass, irisesPass,       classifyTilesPass, tapCellsPass,
+        blurNormalsPass,    normalMapPass,      shadowBoundsPass, wideShadowPass,    irradiancePass,
+        prepareScatterPass, diskPass,           separablePass,    texturePass,       scatterPass,
+        lightScatterPass,   weighScatterPass,   shadePass};
     return passes;
 }
 

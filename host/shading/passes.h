@@ -5,6 +5,6 @@
 namespace pel {
 
 extern const PassKind ambientCubePass, classifyTilesPass, blurNormalsPass, normalMapPass, shadowBoundsPass,
-    wideShadowPass, irradiancePass, reflectionCubePass, irisesPass, shadePass;
+    wideShadowPass, irradiancePass, reflectionCubePass, irisesPass, tapCellsPass, shadePass;
 
 }  // namespace pel

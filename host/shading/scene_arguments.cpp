@@ -11,6 +11,7 @@ void sceneArguments(cl::Launch& launch, const PassWork& work) {
     launch.arg(constants.frameMemory()).arg(constants.materials()).arg(constants.lights()).arg(constants.luts());
     launch.arg(work.plan.tileLists).arg(work.plan.counters).arg(work.plan.ambientNodes);
     launch.arg(constants.eyes()).arg(work.plan.irises).arg(work.plan.reflectionNodes);
+    launch.arg(work.plan.tapCells);
     for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot)
         if (imageSlot(slot).role != SlotRole::PASS) launch.arg(memoryOf(work.plan.state.images[slot]));
     const auto& lights = constants.lightBuffers();

@@ -8,6 +8,7 @@
 #include "shading/features.h"
 #include "shading/image_slots.h"
 #include "shading/launch_ranges.h"
+#include "shading/tap_cells.h"
 #include "shared/features.h"
 #include "shared/shade.h"
 
@@ -34,6 +35,10 @@ bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
     return bits == uint32_t(PEL_BITS_ALL_) || features & bits;
 }
 
+bool usesCells(const ShaderState& state, uint32_t features) {
+    return features & PEL_FEATURE_THICKNESS_TAPS && !mapCells(state).empty();
+}
+
 }  // namespace
 
 cl::Defines sceneDefines(const Device& device, const ShaderState& state, uint32_t features) {
@@ -43,6 +48,7 @@ cl::Defines sceneDefines(const Device& device, const ShaderState& state, uint32_
     if (state.options.disableSkipping) features |= PEL_BIT_NO_SKIPPING;
     if (state.options.countPixels) features |= PEL_BIT_COUNT;
     if (state.options.rotateTaps && features & PEL_BIT_THICKNESS_TAPS) features |= PEL_BIT_ROTATE_TAPS;
+    if (usesCells(state, features)) features |= PEL_BIT_TAP_CELLS;
     if (features & PEL_BIT_AMBIENT_CUBE && isBlack(state.ambient)) features |= PEL_BIT_CUBE_ALONE;
     uint32_t wide = 0, map = 0, content = 0;
     for (const ShaderLight& light : state.lights) {
@@ -73,6 +79,11 @@ cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t
     key.defines["PEL_CLASSIFY_RUN"] = std::to_string(classifyRun(device));
     // One program, because a driver's cost per program is what a first frame waits for.
     if (state.images[PEL_SLOT_MATERIAL]) key.files.push_back("shading/classify_tiles.cl");
+    if (usesCells(state, features)) {
+        key.files.push_back("shading/tap_cells.cl");
+        key.defines["PEL_CELLS_GROUP"] = std::to_string(cellsGroup);
+        key.defines["PEL_CELLS_RUN"] = std::to_string(cellsRun(device));
+    }
     return key;
 }
 

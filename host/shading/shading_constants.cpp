@@ -8,6 +8,7 @@
 #include "eye/eye_constants.h"
 #include "shading/features.h"
 #include "shading/material.h"
+#include "shading/tap_cells.h"
 
 namespace pel {
 namespace {
@@ -15,12 +16,6 @@ namespace {
 template <size_t N>
 void copy(float (&to)[N], const float (&from)[N]) {
     std::copy_n(from, N, to);
-}
-
-// How much u (row 0) or v (row 1) of a parallel map grows per length.
-double uvPerLength(const float (&m)[16], int row) {
-    const float* r = m + 4 * row;
-    return std::sqrt(double(r[0]) * r[0] + double(r[1]) * r[1] + double(r[2]) * r[2]) / std::abs(double(m[15]));
 }
 
 // Texels of a table with its copied last column and row (shared/lut.h).
@@ -156,6 +151,7 @@ void ShadingConstants::fillFrame(const ShaderState& state) {
 std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(const ShaderState& state,
                                                                   const std::vector<uint32_t>& variants) const {
     std::vector<PelShadeMaterial> table(state.materials.empty() ? 1 : state.materials.rbegin()->first + 1);
+    const std::vector<float> disks = tapDisks(state);
     uint32_t eyes = 0;
     for (const auto& [id, from] : state.materials) {
         const PelMaterial& m = from.params;
@@ -176,6 +172,7 @@ std::vector<PelShadeMaterial> ShadingConstants::describeMaterials(const ShaderSt
         to.deepScatterNormalOffset = m.deepScatterNormalOffset;
         to.thicknessFilterRadius = m.thicknessFilterRadius;
         to.thicknessTaps = m.thicknessTaps;
+        to.tapDisk = tapDiskOf(disks, state, from);
         to.specular = m.specular;
         to.roughness = m.roughness;
         to.f0 = m.f0;
@@ -277,12 +274,13 @@ std::vector<PelShadeLight> ShadingConstants::describeLights(const ShaderState& s
             cascade.depthRange = c.depthRange;
             cascade.mapBuffer = lightBuffer(c.map->buffer->memory());
             cascade.map = describeImage(*c.map);
-            for (int r = 0; r < 2; ++r)
-                cascade.tapScale[r] =
-                    i == 0 ? 1.0f
-                           : float(uvPerLength(cascade.worldToShadow, r) / uvPerLength(l.worldToShadow, r));
+            for (int r = 0; r < 2; ++r) cascade.tapScale[r] = tapScale(from, i, r);
         }
         table.push_back(to);
+    }
+    for (const MapCells& map : mapCells(state)) {
+        PelShadeLight& light = table[map.light];
+        (light.cascades ? light.cascade[map.cascade].cells : light.cells)[map.disk] = map.cells;
     }
     return table;
 }

@@ -44,6 +44,7 @@ enum {
     PEL_BIT_COUNT = 0x80000,        // count pixels per feature; those of a material, and invalid ones, are counted without it
     PEL_BIT_CUBE_ALONE = 0x100000,  // ambient light has no other part than the cube map
     PEL_BIT_ROTATE_TAPS = 0x200000, // thickness taps are turned from pixel to pixel
+    PEL_BIT_TAP_CELLS = 0x400000,   // some thickness comes from cells of taps
     // Sets of features.
     PEL_BITS_OF_KERNEL = 0 PEL_EACH_FEATURE(PEL_FEATURE_KERNEL_),
     PEL_BITS_OF_MATERIALS = 0 PEL_EACH_FEATURE(PEL_FEATURE_MATERIAL_)

@@ -101,9 +101,23 @@ typedef struct PelShadeMaterial {
     float through[3];      // share of the light on a sheet's other side
     PelUint32 eye;         // 1 + which eye of shared/eye.h; 0: none
     PelUint32 variants;    // bit i: variant i of the shading kernel has all of these features
+    PelUint32 tapDisk;     // which of PelTapCells; PEL_TAP_DISKS: none
 } PelShadeMaterial;
 
-#define PEL_CASCADES 4  // of one light, at most
+#define PEL_CASCADES 4   // of one light, at most
+#define PEL_TAP_DISKS 4  // disks of thickness taps that materials share, at most
+// Nodes of a grid of tap cells along the radius of its disk: coarser ones err more than the taps do (docs/design-notes.md).
+#define PEL_CELLS_PER_RADIUS 4
+#define PEL_NODE_TAPS 32        // whatever the material asks for, since they cost next to nothing
+#define PEL_SAMPLES_PER_CELL 2  // samples of the map from node to node
+
+// What the taps of one disk read in one map, at the nodes of a grid (lib/shading/tap_cells.clh). Nodes begin a radius before the
+// map and end a radius behind it.
+typedef struct PelTapCells {
+    PelUint32 columns, rows;    // nodes; 0: no cells, pixels take taps of their own
+    PelUint32 offset, samples;  // floats, to the first node's lengths and to the first sample
+    float perUv[2];             // nodes per UV
+} PelTapCells;
 
 // One of the parallel maps of a light with cascades.
 typedef struct PelShadeCascade {
@@ -112,6 +126,7 @@ typedef struct PelShadeCascade {
     float tapScale[2];    // UV of this map per UV of the first, along u and v
     PelUint32 mapBuffer;  // which light buffer
     PelShadeImage map;
+    PelTapCells cells[PEL_TAP_DISKS];
 } PelShadeCascade;
 
 typedef struct PelShadeLight {
@@ -135,6 +150,7 @@ typedef struct PelShadeLight {
     PelUint32 cascades;  // 0: the map above is not a cascade
     float perExponent;   // depth per log2 of a texel; exponential maps
     PelShadeCascade cascade[PEL_CASCADES];
+    PelTapCells cells[PEL_TAP_DISKS];  // of the map above, unless that is a cascade
 } PelShadeLight;
 
 // Counters of one execution, in a buffer of their own.
@@ -156,8 +172,10 @@ typedef struct PelShadeLight {
 #ifndef __OPENCL_VERSION__
 static_assert(sizeof(PelShadeImage) == 32 && sizeof(PelShadeLut) == 40);
 static_assert(sizeof(PelShadeFrame) == 4 * (8 + 8 + 3 + 16 + 27 + 3 + 2) + PEL_IMAGE_SLOTS * 32);
-static_assert(sizeof(PelShadeMaterial) == 4 * 43 + 3 * sizeof(PelShadeLut));
-static_assert(sizeof(PelShadeCascade) == 4 * (16 + 4) + 32);
-static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64 + 8 + PEL_CASCADES * sizeof(PelShadeCascade));
+static_assert(sizeof(PelShadeMaterial) == 4 * 44 + 3 * sizeof(PelShadeLut));
+static_assert(sizeof(PelTapCells) == 24);
+static_assert(sizeof(PelShadeCascade) == 4 * (16 + 4) + 32 + PEL_TAP_DISKS * sizeof(PelTapCells));
+static_assert(sizeof(PelShadeLight) == 4 * (16 + 16 + 6) + 64 + 8 + PEL_CASCADES * sizeof(PelShadeCascade) +
+                                           PEL_TAP_DISKS * sizeof(PelTapCells));
 #endif
 #endif

@@ -832,7 +832,7 @@ typedef struct PelMaterial {
     float deepScatterRadius;       /* length, sigma of the transmission through thickness; 6 mm */
     float deepScatterNormalOffset; /* length the position moves inwards before thickness is measured; 0.2 mm */
     float thicknessFilterRadius;   /* radius of the disk of taps, in UV of the shadow map; 0.02 */
-    uint32_t thicknessTaps;        /* 8, 16 or 32; 0: thickness is not measured */
+    uint32_t thicknessTaps;        /* 8, 16 or 32, of a pixel that takes taps of its own; 0: thickness is not measured */
     float specular;                /* rho_s; 0: no specular */
     float roughness;               /* m of Beckmann; 0.3 */
     float f0;                      /* reflectance at normal incidence; 0.028 */
@@ -1012,9 +1012,10 @@ typedef struct PelShaderOptions {
     float millimetresPerUnit; /* of positions, > 0: profiles are in mm, every other length in the scene's unit; 1 */
     uint32_t frameIndex; /* gives scattering taps with random places other places in each frame, for hosts that
                                  average frames. The same number gives the same bits; 0 */
-    uint32_t everyPixel; /* 1: wide shadows that the shader filters are computed at every pixel. 0, the default: at every second one
-                            along both axes, and between them interpolated where material, surface and values go on smoothly
-                            (docs/guide/shading.md, "Between pixels") */
+    uint32_t everyPixel; /* 1: wide shadows that the shader filters, and thickness by taps, are computed at every pixel. 0, the default:
+                            shadows at every second one along both axes, and between them interpolated where material, surface and
+                            values go on smoothly (docs/guide/shading.md, "Between pixels"); thickness between nodes of a grid in
+                            the shadow map, where that is as exact (the same page, "Cells of taps") */
 } PelShaderOptions;
 
 PEL_API PelError pelShaderCreate(PelDevice device, PelShader* shader);

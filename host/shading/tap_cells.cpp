@@ -1,0 +1,151 @@
+#include "shading/tap_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shading/features.h"
+#include "shading/passes.h"
+#include "shading/scratch_image.h"
+#include "shading/shade_variants.h"
+#include "shading/shading_constants.h"
+
+namespace pel {
+namespace {
+
+// A node costs a third of what a pixel does that takes taps, and of a frame of a head a twentieth to a fifth does.
+constexpr uint64_t pixelsPerNode = 8;
+// All cells together, per pixel of the frame: lights with several maps and materials with several disks come to much memory.
+constexpr uint64_t floatsPerPixel = 16;
+
+bool hasDisk(const ShaderState& state, const ShaderMaterial& material) {
+    constexpr uint32_t both = PEL_FEATURE_DEEP_SCATTER | PEL_FEATURE_THICKNESS_TAPS;
+    return (materialNeeds(state, material) & both) == both;
+}
+
+// How much u (row 0) or v (row 1) of a parallel map grows per length.
+double uvPerLength(const float (&m)[16], int row) {
+    const float* r = m + 4 * row;
+    return std::sqrt(double(r[0]) * r[0] + double(r[1]) * r[1] + double(r[2]) * r[2]) / std::abs(double(m[15]));
+}
+
+uint64_t samplesAlong(uint32_t nodes) {
+    return uint64_t(nodes - 1) * PEL_SAMPLES_PER_CELL + 1 + 2 * PEL_CELLS_PER_RADIUS * PEL_SAMPLES_PER_CELL;
+}
+
+class TapCells final : public Pass {
+  public:
+    static bool needed(const ShaderPlan& plan) {
+        return plan.features & PEL_FEATURE_THICKNESS_TAPS && !mapCells(plan.state).empty();
+    }
+
+    void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
+        maps_ = mapCells(plan.state);
+        plan.tapCells = cl::Memory();
+        resize(cells_, device, (maps_.back().cells.samples + maps_.back().samples()) * sizeof(float));
+        plan.tapCells = cells_->memory();
+    }
+    size_t bytes() const override { return cells_ ? cells_->bytes() : 0; }
+
+    std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
+        return {shadeKey(device, plan.state, plan.variants[0])};
+    }
+
+    void enqueueAround(PassWork& work) override {
+        const ShaderPlan& plan = work.plan;
+        const bool lists = plan.state.options.tileLists != PEL_TILES_NO_LIST || plan.scratch;
+        const uint32_t lanes = work.device.info().mathWidth;
+        for (const MapCells& map : maps_) {
+            const ShaderLight& light = plan.state.lights[map.light];
+            const auto launch = [&](const char* kernel, bool readsMap, uint64_t items) {
+                cl::Launch one(program(), kernel);
+                one.arg(work.constants.frameMemory()).arg(work.constants.lights());
+                one.arg(lists ? plan.tileLists : cl::Memory());
+                one.arg(cl_uint(map.light)).arg(cl_uint(map.cascade)).arg(cl_uint(map.disk));
+                if (readsMap) one.arg(memoryOf(*shadowCascade(light, map.cascade).map));
+                one.arg(cells_->memory());
+                work.launch(one, {{size_t(items), 1, 1}, {cellsGroup, 1, 1}});
+            };
+            launch("tap_samples", true,
+                   (samplesAlong(map.cells.columns) + lanes - 1) / lanes * samplesAlong(map.cells.rows));
+            const uint32_t run = cellsRun(work.device);
+            launch("tap_cells", false, uint64_t(map.cells.columns + run - 1) / run * map.cells.rows);
+        }
+    }
+
+  private:
+    Ref<Buffer> cells_;
+    std::vector<MapCells> maps_;
+};
+
+}  // namespace
+
+uint64_t MapCells::samples() const {
+    constexpr uint64_t lanes = 16;  // the most that a vector has
+    return (samplesAlong(cells.columns) + lanes - 1) / lanes * lanes * samplesAlong(cells.rows);
+}
+
+uint32_t cellsRun(const Device& device) {
+    return device.info().mathWidth == 1 ? 1 : 32;
+}
+
+std::vector<float> tapDisks(const ShaderState& state) {
+    std::vector<float> disks;
+    for (const auto& [id, material] : state.materials) {
+        if (disks.size() == PEL_TAP_DISKS || !hasDisk(state, material)) continue;
+        if (std::ranges::find(disks, material.params.thicknessFilterRadius) == disks.end())
+            disks.push_back(material.params.thicknessFilterRadius);
+    }
+    return disks;
+}
+
+uint32_t tapDiskOf(const std::vector<float>& disks, const ShaderState& state, const ShaderMaterial& material) {
+    if (!hasDisk(state, material)) return PEL_TAP_DISKS;
+    const auto found = std::ranges::find(disks, material.params.thicknessFilterRadius);
+    return found == disks.end() ? PEL_TAP_DISKS : uint32_t(found - disks.begin());
+}
+
+float tapScale(const ShaderLight& light, uint32_t cascade, int axis) {
+    if (cascade == 0) return 1;
+    return float(uvPerLength(*shadowCascade(light, cascade).worldToShadow, axis) /
+                 uvPerLength(light.params.worldToShadow, axis));
+}
+
+std::vector<MapCells> mapCells(const ShaderState& state) {
+    std::vector<MapCells> maps;
+    if (state.options.everyPixel || state.options.rotateTaps || state.images[PEL_SLOT_THICKNESS]) return maps;
+    const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
+    const uint64_t pixels = uint64_t(frame.width) * frame.height, most = pixels / pixelsPerNode;
+    const std::vector<float> disks = tapDisks(state);
+    uint64_t floats = 0;
+    for (uint32_t i = 0; i < state.lights.size(); ++i) {
+        const ShaderLight& light = state.lights[i];
+        if (!light.images[PEL_LIGHT_SHADOW_MAP] || isCube(light.params)) continue;
+        for (uint32_t k = 0; k < cascadesOf(light); ++k)
+            for (uint32_t d = 0; d < disks.size(); ++d) {
+                PelTapCells cells{};
+                uint32_t nodes[2];
+                for (int axis = 0; axis < 2; ++axis) {
+                    const double perUv = PEL_CELLS_PER_RADIUS / (double(disks[d]) * tapScale(light, k, axis));
+                    cells.perUv[axis] = float(perUv);
+                    // A radius on either side of the map, and one node more.
+                    const double along = std::ceil(perUv + 2 * PEL_CELLS_PER_RADIUS) + 1;
+                    nodes[axis] = along <= double(most) ? uint32_t(along) : 0;
+                }
+                cells.columns = nodes[0];
+                cells.rows = nodes[1];
+                cells.offset = uint32_t(floats);
+                const uint64_t count = uint64_t(nodes[0]) * nodes[1], size = count * PEL_NODE_TAPS;
+                if (count == 0 || count > most ||
+                    floats + size > std::min<uint64_t>(UINT32_MAX, floatsPerPixel * pixels))
+                    continue;
+                cells.samples = uint32_t(floats + size);
+                maps.push_back({i, k, d, cells});
+                floats += size + maps.back().samples();
+            }
+    }
+    return maps;
+}
+
+constinit const PassKind tapCellsPass = passKind<TapCells>();
+
+}  // namespace pel

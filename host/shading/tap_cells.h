@@ -1,0 +1,33 @@
+// Which shadow maps are sampled once for all pixels, in cells of taps (kernels/lib/shading/tap_cells.clh).
+#pragma once
+#include <vector>
+
+#include "shading/shader_state.h"
+#include "shared/shade.h"
+
+namespace pel {
+
+// Work-items of a group of the kernel.
+constexpr size_t cellsGroup = 16;
+
+// Of one disk in one map.
+struct MapCells {
+    uint32_t light, cascade, disk;
+    PelTapCells cells;
+    uint64_t samples() const;  // with room for whole vectors
+};
+
+// Nodes of a work-item.
+uint32_t cellsRun(const Device& device);
+
+// The radii of disks of taps that may have cells, in the order of the materials that take them.
+std::vector<float> tapDisks(const ShaderState& state);
+// Which of them is a material's; PEL_TAP_DISKS: none.
+uint32_t tapDiskOf(const std::vector<float>& disks, const ShaderState& state, const ShaderMaterial& material);
+// How much of one of a light's maps a length in the first of them covers, along u (0) or v (1).
+float tapScale(const ShaderLight& light, uint32_t cascade, int axis);
+// Empty if pixels take taps of their own: because the caller wants that, or because the frame has too few pixels for
+// the nodes of such a disk. Depends on nothing that an execution finds out, so that bands and skipping change no bit.
+std::vector<MapCells> mapCells(const ShaderState& state);
+
+}  // namespace pel

@@ -1,0 +1,233 @@
+// Thickness interpolated between nodes of a grid in the shadow map, against a disk of very many taps and against the taps of
+// each pixel.
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <numbers>
+
+#include "shader_ready.h"
+#include "shadow_form_truth.h"
+#include "tolerances.h"
+
+using namespace shade_test;
+
+namespace {
+
+constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+
+Frame interpolated(Frame f) {
+    f.options.everyPixel = 0;
+    return f;
+}
+
+// A radius whose nodes are just few enough for the frame.
+float radiusFor(const Frame& f) {
+    return float(4 / (std::sqrt(double(f.pixels()) / 8) - 12));
+}
+
+Frame cellFrame(uint32_t seed, uint32_t width = 360, uint32_t height = 250) {
+    Frame f = formFrame(seed, width, height);
+    for (auto& [id, m] : f.materials) {
+        m.thicknessFilterRadius = radiusFor(f);
+        m.thicknessTaps = 32;
+    }
+    return f;
+}
+
+// Bodies under a parallel or perspective map that is smaller than the frame: some pixels lie beyond its border.
+FormLight lightOf(const MapLight& from) {
+    FormLight light;
+    light.params = from.light.params;
+    light.maps = {{PEL_LIGHT_SHADOW_MAP, from.light.mapSize, from.light.mapSize, 1, from.light.map.values}};
+    return light;
+}
+MapLight bumps(uint32_t seed, bool perspective, uint32_t size = 256) {
+    return mapLight(seed, perspective, false, {0.3, 0.2, 0.9}, {60, 45, 5}, 120, size);
+}
+
+std::vector<reference::Vec2> spiral(int count) {
+    std::vector<reference::Vec2> taps;
+    for (int i = 0; i < count; ++i) {
+        const double r = std::sqrt((i + 0.5) / count), a = i * std::numbers::pi * (3 - std::sqrt(5.0));
+        taps.push_back({r * std::cos(a), r * std::sin(a)});
+    }
+    return taps;
+}
+
+// RMS errors of what is seen against a thousand taps, at some pixels.
+struct Errors {
+    double of(const std::vector<float>& shown) const {
+        double sum = 0;
+        for (const auto& [i, t] : truth) sum += std::pow(shown[i] - t, 2);
+        return std::sqrt(sum / double(truth.size()));
+    }
+    std::vector<std::pair<size_t, double>> truth;
+};
+Errors errorsOf(const Frame& f, const FormTruth& truth) {
+    Errors errors;
+    const auto taps = spiral(1024);
+    for (size_t i = 0; i < f.pixels(); i += 37)
+        if (const PelMaterial* m = materialAt(f, i))
+            errors.truth.emplace_back(i, truth.thickness(*m, f.slots[PEL_SLOT_POSITION].vec(i),
+                                                         f.slots[PEL_SLOT_NORMAL_GEOMETRIC].vec(i), taps));
+    return errors;
+}
+
+// Of samples and nodes; without cells each light's wide shadow takes one launch less as well.
+uint64_t cellLaunches(const Seen& cells, const Seen& taps) {
+    constexpr uint64_t lights = 3;  // two black ones of other forms among them
+    return cells.stats.launches - taps.stats.launches - lights;
+}
+
+double rms(const Frame& f, const std::vector<float>& a, const std::vector<float>& b) {
+    double sum = 0, count = 0;
+    for (size_t i = 0; i < f.pixels(); ++i)
+        if (materialAt(f, i)) sum += std::pow(double(a[i]) - b[i], 2), count += 1;
+    return std::sqrt(sum / count);
+}
+
+TEST(TapCells, AreNearerToAFineDiskThanTheTapsAre) {
+    for (uint32_t seed = 0; seed < sized(6u, 2u); ++seed) {
+        const MapLight from = bumps(seed, seed & 1);
+        const Frame f = cellFrame(seed);
+        const Errors errors = errorsOf(f, truthOf(from));
+        ASSERT_GT(errors.truth.size(), sized(1000u, 20u));
+        const auto taps = shadeForms(f, {lightOf(from)}), cells = shadeForms(interpolated(f), {lightOf(from)});
+        EXPECT_EQ(cellLaunches(cells, taps), 4u) << "of its map and of the one of a black light";
+        EXPECT_LT(errors.of(cells.thickness), errors.of(taps.thickness)) << seed;
+        EXPECT_GT(errors.of(taps.thickness), 0.02) << "a map that taps get right tells nothing";
+    }
+}
+
+TEST(TapCells, OfASlantedPlaneAreExact) {
+    // A plane's mean over a disk is its middle, so what is left is where samples lie off the taps, and rounding.
+    for (const bool reversed : {false, true}) {
+        MapLight from = mapLight(1, false, reversed, {0, 0, 1}, {60, 45, 5}, 220, 128);
+        const double sign = reversed ? -1 : 1;
+        for (uint32_t i = 0; i < 128 * 128; ++i)
+            from.light.map.values[i] = float(sign * (100 + 0.1 * (i % 128) + 0.07 * (i / 128)) / 300);
+        from.map.depth.assign(from.light.map.values.begin(), from.light.map.values.end());
+        const Frame f = cellFrame(2);
+        const Errors errors = errorsOf(f, truthOf(from));
+        EXPECT_LE(errors.of(shadeForms(interpolated(f), {lightOf(from)}).thickness), tolerance::cellsOfPlane);
+        EXPECT_GT(errors.truth[errors.truth.size() / 2].second, 10);
+    }
+}
+
+TEST(TapCells, SkippingRunsListsAndBandsChangeNoBit) {
+    for (uint32_t seed = 0; seed < 4; ++seed) {
+        Frame f = interpolated(cellFrame(seed));
+        const FormLight light = lightOf(bumps(seed, seed & 1));
+        const auto first = shadeForms(f, {light}).thickness;
+        EXPECT_EQ(first, shadeForms(f, {light}).thickness);
+        for (const PelTileLists lists : {PEL_TILES_NO_LIST, PEL_TILES_PER_VARIANT}) {
+            f.options.tileLists = lists;
+            EXPECT_EQ(first, shadeForms(f, {light}).thickness) << seed << ", lists " << lists;
+        }
+        f.options.tileLists = PEL_TILES_ONE_LIST;
+        f.options.scratchBudget = uint64_t(f.width) * 12 * 12;
+        const Seen bands = shadeForms(f, {light});
+        EXPECT_EQ(first, bands.thickness) << seed;
+        EXPECT_GT(bands.stats.bands, 3u);
+    }
+}
+
+TEST(TapCells, EachDiskHasItsOwn) {
+    Frame f = cellFrame(3);
+    f.materials[2].thicknessFilterRadius *= 2.5f;
+    f.materials[2].thicknessTaps = 8;
+    const MapLight from = bumps(3, false);
+    const Errors errors = errorsOf(f, truthOf(from));
+    const auto taps = shadeForms(f, {lightOf(from)}), cells = shadeForms(interpolated(f), {lightOf(from)});
+    EXPECT_EQ(cellLaunches(cells, taps), 8u);
+    EXPECT_LT(errors.of(cells.thickness), errors.of(taps.thickness));
+    // More disks than have cells: the rest takes taps of its own.
+    for (uint32_t id = 3; id < 9; ++id) {
+        f.materials[id] = f.materials[1];
+        f.materials[id].thicknessFilterRadius *= 1 + 0.1f * float(id);
+    }
+    for (size_t i = 0; i < f.pixels(); ++i)
+        f.slots[PEL_SLOT_MATERIAL].values[i] = float(1 + i % f.width * 8 / f.width);
+    const auto own = shadeForms(f, {lightOf(from)}), some = shadeForms(interpolated(f), {lightOf(from)});
+    size_t same = 0, other = 0;
+    for (size_t i = 0; i < f.pixels(); ++i)
+        (f.slots[PEL_SLOT_MATERIAL].at(i) > 4 ? same : other) += own.thickness[i] == some.thickness[i];
+    EXPECT_EQ(same, f.pixels() / 2);
+    EXPECT_LT(other, f.pixels() / 4);
+}
+
+TEST(TapCells, CascadesHaveThemToo) {
+    const CascadeLight from = cascadeLight({40, 90, 160}, false, 97, false);
+    Frame f = cellFrame(1);
+    for (auto& [id, m] : f.materials) m.thicknessFilterRadius *= 4.2f;
+    const Errors errors = errorsOf(f, truthOf(from));
+    const Seen taps = shadeForms(f, {from.light}), cells = shadeForms(interpolated(f), {from.light});
+    EXPECT_EQ(cellLaunches(cells, taps), 8u);
+    EXPECT_GT(errors.of(taps.thickness), 0.02);
+    EXPECT_LT(errors.of(cells.thickness), errors.of(taps.thickness));
+}
+
+TEST(TapCells, AreNotUsedWhereTapsAreAskedForOrNodesWouldBeMany) {
+    const FormLight light = lightOf(bumps(1, false));
+    Frame f = cellFrame(1);
+    f.options.rotateTaps = 1;
+    EXPECT_EQ(shadeForms(f, {light}).thickness, shadeForms(interpolated(f), {light}).thickness);
+    f = cellFrame(1);
+    for (auto& [id, m] : f.materials) m.thicknessFilterRadius *= 0.7f;
+    EXPECT_EQ(shadeForms(f, {light}).thickness, shadeForms(interpolated(f), {light}).thickness);
+    for (auto& [id, m] : f.materials) m.thicknessFilterRadius = 0;
+    EXPECT_EQ(shadeForms(f, {light}).thickness, shadeForms(interpolated(f), {light}).thickness);
+}
+
+TEST(TapCells, BadTexelsAreNoThicknessAndBadPixelsStayAlone) {
+    const MapLight from = bumps(5, false);
+    FormLight light = lightOf(from);
+    Frame f = interpolated(cellFrame(5));
+    const auto before = shadeForms(f, {light}).thickness;
+    const size_t bad = f.pixels() / 2 + 31;
+    f.slots[PEL_SLOT_POSITION].values[3 * bad] = nan;
+    f.slots[PEL_SLOT_POSITION].values[3 * bad + 3] = infinity;
+    auto after = shadeForms(f, {light}).thickness;
+    for (size_t i = 0; i < f.pixels(); ++i) {
+        if (i == bad || i == bad + 1)
+            EXPECT_EQ(after[i], 0);
+        else
+            ASSERT_EQ(after[i], before[i]) << i;
+    }
+    f = interpolated(cellFrame(5));
+    for (const float value : {nan, infinity}) {
+        for (size_t i = 0; i < light.maps[0].values.size(); i += 2) light.maps[0].values[i] = value;
+        const auto holes = shadeForms(f, {light}).thickness;
+        double sum = 0, all = 0;
+        for (size_t i = 0; i < f.pixels(); ++i) {
+            ASSERT_TRUE(std::isfinite(holes[i])) << i;
+            ASSERT_LE(holes[i], before[i] + 60);
+            sum += holes[i], all += before[i];
+        }
+        EXPECT_LT(sum, 0.1 * all) << "each tap reads a bad texel beside a good one";
+        for (float& v : light.maps[0].values) v = value;
+        for (const float t : shadeForms(f, {light}).thickness) ASSERT_NEAR(t, 0, 1e-4);
+    }
+}
+
+TEST(TapCells, AtAnyScaleOfLengths) {
+    for (const float scale : {1e-5f, 1e5f}) {
+        const MapLight from = bumps(4, false);
+        FormLight light = lightOf(from);
+        Frame f = interpolated(cellFrame(4));
+        const auto usual = shadeForms(f, {light}).thickness;
+        for (float& p : f.slots[PEL_SLOT_POSITION].values) p *= scale;
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) light.params.worldToShadow[4 * r + c] /= scale;
+        light.params.shadowDepthRange *= scale;
+        for (auto& [id, m] : f.materials) {
+            m.deepScatterNormalOffset *= scale;
+            m.deepScatterRadius *= scale;
+        }
+        auto scaled = shadeForms(f, {light}).thickness;
+        for (float& t : scaled) t /= scale;
+        EXPECT_LE(rms(f, usual, scaled), tolerance::cellsScaled) << scale;
+    }
+}
+
+}  // namespace
