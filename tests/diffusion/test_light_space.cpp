@@ -180,6 +180,20 @@ TEST(LightSpace, WithoutAllMapsTheScreenDoes) {
     EXPECT_EQ(screen.warnings.find("shadow maps do not hold"), std::string::npos);
 }
 
+// Maps of all lights, faces of cubes one by one: 24 are the most.
+TEST(LightSpace, MoreMapsThanThereIsRoomForAreSummedOnTheScreen) {
+    const Vec3 toLight = normalized(Vec3{0.3, 0.2, 1});
+    std::vector<LitBall> lights;
+    for (int cubes = 0; cubes <= 4; ++cubes) {
+        const Lit lit = shaded(pictureOf(lights, 16), lights, Profile::skin(), {PEL_SCATTERING_LIGHT});
+        EXPECT_EQ(lit.warnings.find("do not hold all light") != std::string::npos, cubes == 0) << lit.warnings;
+        lights.push_back(makeBall(Form::cube, toLight, 8));
+    }
+    lights.back() = makeBall(Form::parallel, toLight, 16);
+    const Lit lit = shaded(pictureOf(lights, 16), lights, Profile::skin(), {PEL_SCATTERING_LIGHT});
+    EXPECT_NE(lit.warnings.find("do not hold all light"), std::string::npos);
+}
+
 TEST(LightSpace, ASingularMatrixIsAnError) {
     LitBall ball = makeBall(Form::parallel, {0, 0, 1}, 16);
     std::fill_n(ball.light.worldToShadow + 4, 4, 0.0f);

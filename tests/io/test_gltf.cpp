@@ -229,6 +229,8 @@ TEST(Gltf, WrongFilesSayWhatAndWhere) {
     expectSays(json2("\"2.0\"", "\"1.0\""), {"asset", "1.0"});
     expectSays(json2(R"("byteLength":92)", R"("byteLength":93)"), {"buffers[0]", "93"});
     expectSays(json2(R"("byteOffset":80)", R"("byteOffset":81)"), {"bufferViews[2]", "ends at byte 93", "92"});
+    // Bytes behind what the buffer says it has are nobody's.
+    expectSays(json2(R"("byteLength":92)", R"("byteLength":91)"), {"bufferViews[2]", "ends at byte 92", "91"});
     expectSays(json2(R"("byteOffset":80)", R"("byteOffset":9007199254740992)"), {"bufferViews[2]"});
     expectSays(json2(R"("byteOffset":80)", R"("byteOffset":-1)"), {"bufferViews[2].byteOffset"});
     expectSays(json2(R"("byteOffset":80)", R"("byteOffset":"x")"),

@@ -134,13 +134,13 @@ def progress_bar() -> Progress:
                 print(f"{what}: {fraction:.0%}", file=sys.stderr)
                 bars[what] = fraction
         else:
-            bar = bars.setdefault(what, None) or bars.setdefault(what + "\0", tqdm(total=1.0, desc=what, leave=False))
-            bar.update(fraction - bar.n)
+            if what not in bars:
+                bars[what] = tqdm(total=1.0, desc=what, leave=False)
+            bars[what].update(fraction - bars[what].n)
         if fraction >= 1:
-            closing = [bars.pop(what, None), bars.pop(what + "\0", None)]
-            for bar in closing:
-                if hasattr(bar, "close"):
-                    bar.close()
+            bar = bars.pop(what, None)
+            if hasattr(bar, "close"):
+                bar.close()
 
     return show
 

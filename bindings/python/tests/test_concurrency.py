@@ -7,6 +7,7 @@ import sys
 import textwrap
 import threading
 import time
+import types
 import weakref
 
 import numpy as np
@@ -14,6 +15,7 @@ import pytest
 
 import pellucid as pel
 from pellucid import _flight
+from pellucid.device import progress_bar
 
 
 def test_other_threads_run_during_work(device, make_sphere):
@@ -116,6 +118,31 @@ def test_progress_bar(large, capsys, monkeypatch):
     device.set_progress(True)
     work()
     assert "%" in capsys.readouterr().err
+
+
+def test_progress_bar_ends_with_its_work(monkeypatch):
+    """A piece of work that is done again begins a bar of its own."""
+    bars = []
+
+    class Bar:
+        def __init__(self, **_):
+            self.n, self.closed = 0.0, 0
+            bars.append(self)
+
+        def update(self, more):
+            self.n += more
+
+        def close(self):
+            self.closed += 1
+
+    monkeypatch.setitem(sys.modules, "tqdm.auto", types.SimpleNamespace(tqdm=Bar))
+    show = progress_bar()
+    for again in (1, 2):
+        for fraction in (0.0, 0.25, 0.5, 1.0):
+            show(fraction, "work")
+            show(fraction / 2, "other work")
+            assert bars[-1 if again == 2 else 0].n == fraction
+    assert [(bar.n, bar.closed) for bar in bars] == [(1.0, 1), (0.5, 0), (1.0, 1)]
 
 
 # Seconds until Ctrl-C is noticed; code under sanitizers is several times as slow.
