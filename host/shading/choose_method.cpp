@@ -7,9 +7,6 @@
 namespace pel {
 namespace {
 
-// Of scratch: a pixel, with irradiance and the shadow of a light; a texel of a light's map.
-constexpr uint64_t bytesOnScreen = 96, bytesPerTexel = 33;
-
 bool isAuto(const ShaderMaterial& material) {
     return material.given.scattering == PEL_SCATTERING_AUTO;
 }
@@ -36,20 +33,13 @@ bool shadowsAreSharp(const ShaderState& state) {
 
 }  // namespace
 
-std::string chooseMethods(ShaderState& state, uint32_t methods) {
+std::string chooseMethods(ShaderState& state, uint32_t methods, uint64_t tooMany) {
     std::string all;
     const auto say = [&](auto&&... parts) { all += (all.empty() ? "" : "\n") + text(parts...); };
     const bool places = state.images[PEL_SLOT_POSITION] || state.images[PEL_SLOT_DEPTH];
     const bool given = bool(state.images[PEL_SLOT_IRRADIANCE]);
-    const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
-    uint64_t bytes = uint64_t(frame.width) * frame.height * bytesOnScreen;
-    for (const ShaderLight& light : state.lights)
-        for (uint32_t i = 0; light.images[PEL_LIGHT_SHADOW_MAP] && i < cascadesOf(light); ++i)
-            bytes += uint64_t(shadowCascade(light, i).map->width) * shadowCascade(light, i).map->height *
-                     bytesPerTexel;
-    const bool fits = !state.options.scratchBudget || bytes <= state.options.scratchBudget;
     const bool onScreen =
-        places && fits && (given || shadowsAreSharp(state)) && (methods >> PEL_SCATTERING_SCREEN & 1);
+        places && !tooMany && (given || shadowsAreSharp(state)) && (methods >> PEL_SCATTERING_SCREEN & 1);
     const bool lit = !state.lights.empty() || !isBlack(state.ambient) || state.ambientCube;
     bool scatters = false;
     for (auto& [id, material] : state.materials) {
@@ -67,10 +57,10 @@ std::string chooseMethods(ShaderState& state, uint32_t methods) {
                     "maps "
                     "show "
                     "beside it");
-        } else if (!fits) {
+        } else if (tooMany) {
             say("material ", id, " scatters by its tables, for PelShaderOptions.scratchBudget is ",
                 state.options.scratchBudget,
-                " bytes, and scattering on the screen takes the whole frame at a time, ", bytes, " bytes");
+                " bytes, and scattering on the screen takes the whole frame at a time, ", tooMany, " bytes");
         } else if (!places) {
             say("material ", id,
                 " scatters by its tables, for there are neither positions nor depth: with them it would "

@@ -41,7 +41,8 @@ uint32_t ShaderPlan::listRows() const {
     return std::min(tileRows, bandRows + 2 * haloRows);
 }
 
-void PassList::allocate(const Ref<Device>& device, ShaderPlan& plan, uint32_t mostRows) {
+// Makes the needed passes and drops the others.
+PassScratch PassList::choose(const ShaderPlan& plan) {
     PassScratch scratch;
     for (size_t i = 0; i < kinds_.size(); ++i) {
         if (!kinds_[i].needed(plan)) {
@@ -55,7 +56,18 @@ void PassList::allocate(const Ref<Device>& device, ShaderPlan& plan, uint32_t mo
         scratch.haloRows = std::max(scratch.haloRows, one.haloRows);
         scratch.wholeFrame |= one.wholeFrame;
     }
-    chooseBand(plan, scratch, mostRows);
+    return scratch;
+}
+
+uint64_t PassList::bytesOfWholeFrame(const ShaderPlan& plan) {
+    const PassScratch scratch = choose(plan);
+    const ImageView& frame = plan.state.images[PEL_SLOT_RADIANCE];
+    return scratch.wholeFrame ? uint64_t(frame.width) * frame.height * scratch.pixelBytes + scratch.guardBytes
+                              : 0;
+}
+
+void PassList::allocate(const Ref<Device>& device, ShaderPlan& plan, uint32_t mostRows) {
+    chooseBand(plan, choose(plan), mostRows);
     for (;;) {
         try {
             return each([&](Pass& pass) { pass.allocate(device, plan); });

@@ -15,6 +15,8 @@ class PassList {
     // PelShaderOptions.scratchBudget, memory and `mostRows` allow.
     void allocate(const Ref<Device>& device, ShaderPlan& plan, uint32_t mostRows);
     size_t bytes() const;
+    // That the passes of a plan will take, if one of them works on the whole frame at a time; else 0.
+    uint64_t bytesOfWholeFrame(const ShaderPlan& plan);
     bool empty() const { return kinds_.empty(); }
 
     template <class Call>
@@ -24,6 +26,8 @@ class PassList {
     }
 
   private:
+    PassScratch choose(const ShaderPlan& plan);
+
     std::span<const PassKind> kinds_;
     std::vector<std::unique_ptr<Pass>> passes_;  // one for each kind; empty: not needed
 };

@@ -14,10 +14,12 @@
 namespace pel {
 namespace {
 
-ShaderPlan planOf(const ShaderState& given, uint32_t methods, const Ref<Device>& device, ProfileTables& tables) {
+// `tooMany`: see chooseMethods().
+ShaderPlan planOf(const ShaderState& given, uint32_t methods, uint64_t tooMany, const Ref<Device>& device,
+                  ProfileTables& tables) {
     ShaderPlan plan;
     plan.state = given;
-    plan.warnings = chooseMethods(plan.state, methods);
+    plan.warnings = chooseMethods(plan.state, methods, tooMany);
     withTables(plan.state, device, tables);
     const ShaderState& state = plan.state;
     plan.features = deriveFeatures(state);
@@ -43,7 +45,11 @@ void Shader::commit() {
 // Makes a plan and the memory of its passes, in bands of at most this many rows of tiles.
 void Shader::allocate(uint32_t mostRows) {
     prepareEyes(device_, state_.materials);
-    ShaderPlan plan = planOf(state_, methods(), device_, profileTables_);
+    ShaderPlan plan = planOf(state_, methods(), 0, device_, profileTables_);
+    // What scatters on the screen because it was chosen to must fit.
+    const uint64_t budget = state_.options.scratchBudget,
+                   bytes = budget ? PassList(passKinds_).bytesOfWholeFrame(plan) : 0;
+    if (bytes > budget) plan = planOf(state_, methods(), bytes, device_, profileTables_);
     checkMethods(plan.state);
     checkScattering(plan.state);
     // Old images go before new ones are made: both together would not keep to a budget. After a failure

@@ -202,7 +202,7 @@ void Shader::setReflectionCube(const PelImageDesc* faces) {
 const PelMaterial& Shader::material(uint32_t id) const {
     const auto found = state_.materials.find(id);
     if (found == state_.materials.end()) invalidArgument("material ", id, " is not set");
-    return found->second.params;
+    return (committed_ ? plan_.state.materials.at(id) : found->second).params;
 }
 
 void Shader::setCamera(const PelCamera& camera) {

@@ -145,6 +145,8 @@ TEST_F(CliLut, ShadowLutAndItsFlags) {
 TEST_F(CliLut, ProfilesAreListedShownDrawnAndFitted) {
     EXPECT_GE(run({"profile", "list", "--json"}).json()["profiles"].size(), 9u);
     EXPECT_EQ(run({"profile", "show", "marble", "--json"}).json()["kind"], "dipole");
+    for (const auto& [name, singular] : {std::pair{"skin", false}, {"marble", true}})
+        EXPECT_EQ(run({"profile", "show", name, "--json"}).json()["singular"], singular) << name;
     EXPECT_EQ(run({"profile", "plot", "jade", "-o", path("jade.png")}).exitCode, 0);
     EXPECT_GT(std::filesystem::file_size(path("jade.png")), 1000u);
     ASSERT_EQ(run({"profile", "fit", "marble", "--gaussians", "3", "-o", path("fit.toml")}).exitCode, 0);

@@ -166,6 +166,10 @@ TEST(LutProfiles, RefusesWhatMakesNoSense) {
     refused([&] { Profile::table({0}, {1, 1, 1}); }, "2 to");
     refused([&] { Profile::table({0, 0}, {1, 1, 1, 1, 1, 1}); }, "distance 1");
     refused([&] { Profile::table({0, 1}, {1, 1, 1, 1, 1, -1}); }, "blue value");
+    for (const float wrong : {-1.0f, NAN, INFINITY}) {
+        refused([&] { Profile::table({wrong, 1}, {1, 1, 1, 1, 1, 1}); }, "distance 0");
+        refused([&] { Profile::table({0, 1}, {1, wrong, 1, 1, 1, 1}); }, "green value");
+    }
     refused([&] { Profile::table({0, 1}, {0, 1, 1, 0, 1, 1}); }, "red");
     refused([&] { Profile::skin().setName(std::string(64, 'x')); }, "63");
 }

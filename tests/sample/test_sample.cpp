@@ -221,6 +221,19 @@ TEST(SampleDetail, AlbedoVariesAboutItsMean) {
     }
 }
 
+// Of an adult's eye: pupil, iris with its limbus, sclera, by the distance from the axis on the ball.
+TEST(SampleDetail, PaintedEyesHaveTheSizesOfAnAdults) {
+    const sample::EyeLook eye;
+    const auto red = [&](double mm) {
+        const double angle = mm / eye.radius;
+        return eye.at(eye.radius * Vec3{std::sin(angle), 0, std::cos(angle)})[0];
+    };
+    for (double mm : {0.0, 1.8}) EXPECT_NEAR(red(mm), 0.01, 1e-9) << mm;
+    for (double mm : {2.3, 3.0, 4.4}) EXPECT_NEAR(red(mm), 0.17, 0.25 * 0.17) << mm;
+    EXPECT_LT(red(5.7), 0.5 * red(4.4)) << "the limbus";
+    for (double mm : {6.8, 9.0, 30.0}) EXPECT_NEAR(red(mm), 0.72, 1e-9) << mm;
+}
+
 TEST(SampleWaves, MeanSquaresAreOneOverManySurfaces) {
     const sample::WaveField field(6, 100, 5);
     double value = 0, slope = 0;

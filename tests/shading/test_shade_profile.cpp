@@ -280,6 +280,39 @@ TEST(ShadeProfile, WhatHasNoEffectIsSaid) {
     EXPECT_EQ(Shading(m, in).shader.warnings(), "");
 }
 
+// PEL_SCATTERING_AUTO scatters on the screen where that fits; it says how much there must be.
+TEST(ShadeProfile, AutoKeepsToTheScratchBudget) {
+    const Profile profile = Profile::named("skin-burley");
+    PelMaterial material = materialOf(profile);
+    material.scattering = PEL_SCATTERING_AUTO;
+    Inputs in;
+    in.thickness = false;
+    Shading shading(material, in);
+    shading.buffers.emplace_back(shading.device, shading.scene.position);
+    shading.shader.set(PEL_SLOT_POSITION, imageDesc(shading.buffers.back(), PEL_FORMAT_RGB32F, width, height));
+    const auto said = [&](uint64_t budget) {
+        PelShaderOptions options = pelShaderOptionsDefaults();
+        options.scratchBudget = budget;
+        shading.shader.set(options).commit();
+        return std::string(shading.shader.warnings());
+    };
+    const std::string all = "takes the whole frame at a time, ";
+    const std::string small = said(4096);
+    const size_t at = small.find(all);
+    ASSERT_NE(at, std::string::npos) << small;
+    EXPECT_EQ(shading.shader.material(1).scattering, PEL_SCATTERING_PREINTEGRATED);
+    const uint64_t needed = std::stoull(small.substr(at + all.size()));
+    EXPECT_NE(said(needed - 1).find(all), std::string::npos);
+    EXPECT_EQ(said(needed).find(all), std::string::npos);
+    EXPECT_EQ(shading.shader.material(1).scattering, PEL_SCATTERING_SCREEN);
+    EXPECT_GT(needed, uint64_t(width) * height * 4 * sizeof(float));
+    // Beside it, what has no profile takes light as it comes.
+    shading.shader.setMaterial(2, pelMaterialDefaults()).commit();
+    EXPECT_EQ(shading.shader.material(2).scattering, PEL_SCATTERING_NONE);
+    said(4096);
+    EXPECT_EQ(shading.shader.material(2).scattering, PEL_SCATTERING_PREINTEGRATED);
+}
+
 TEST(ShadeProfile, TexelsLongerThanTheReachAreSaid) {
     const Profile profile = Profile::burleyDistance(distance);
     Inputs in;

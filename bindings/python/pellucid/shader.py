@@ -234,7 +234,7 @@ class Shader(OfThisProcess):
         return Event(submit(self.device, [i._view for i in images], _handles(waits), self._handle.execute, self, images))
 
     def material(self, id: int) -> Material:
-        """Material `id` as it is shaded: what was left to defaults has its value. Its profile is left out."""
+        """Material `id` as it is shaded: what was left to defaults has its value, after a commit also AUTO. Its profile is left out."""
         return _filled(Material, self._handle.material(id))
 
     def warnings(self) -> list[str]:

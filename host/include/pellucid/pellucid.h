@@ -1071,7 +1071,7 @@ PEL_API PelError pelShaderCommit(PelShader shader);
 /* Shades. A blocking call reports progress to the device's callback about every million pixels; if that cancels,
  * some pixels are shaded and others not. Errors: PEL_ERROR_CANCELLED; PEL_ERROR_INVALID_STATE when something was set after the last commit. */
 PEL_API PelError pelShaderExecute(PelShader shader, const PelSubmit* submit);
-/* Material `id` as it is shaded: every default is replaced by its value. profile is NULL. */
+/* Material `id` as it is shaded: each default is replaced by its value, after a commit AUTO by its choice. profile is NULL. */
 PEL_API PelError pelShaderGetMaterial(PelShader shader, uint32_t id, PelMaterial* material);
 /* Warnings of the last commit: settings without effect, and unlikely values. One sentence a line; "" if none. Valid until the
  * shader's next commit or its release. */
