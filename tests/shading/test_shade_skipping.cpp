@@ -48,6 +48,11 @@ Scene randomScene(uint32_t seed, const Choices& choices) {
             l.shadowFilterTexels = 0;
             fill(light.wide, 1, -0.5f, 1.5f);
             for (float& w : light.wide.values) w = std::clamp(w, 0.0f, 1.0f);
+            // Whole vectors in full shadow or full light, as most of a frame is.
+            auto& wide = light.wide.values;
+            for (size_t i = 0; i + 70 < wide.size(); i += 70)
+                if (const uint32_t kind = random.below(3); kind > 0)
+                    std::fill_n(wide.begin() + ptrdiff_t(i), 70, kind == 1 ? 0.0f : 1.0f);
         }
         if (spot) {
             l.type = PEL_LIGHT_SPOT;
@@ -150,5 +155,36 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair{"BlurAndMapHalfPlain", Choices{true, false, false, true, false, true, true}},
                     std::pair{"FilteredShadowsOutputs", Choices{true, true, false, false, true, false, true}}),
     nameOf);
+
+TEST(ShadeSkipping, TracesOfLightInFullShadowAreNone) {
+    Frame f = reliefFrame(3, 100, 8, 0.5f);
+    f.slots[PEL_SLOT_CURVATURE].components = 1;
+    f.slots[PEL_SLOT_CURVATURE].values.assign(f.pixels(), 0.1f);
+    Light light;
+    light.wide.components = 1;
+    light.wide.values.assign(f.pixels(), 0.0f);
+    f.lights = {light};
+    f.curvatureLut = f.shadowLut = true;
+    for (const bool trace : {true, false}) {
+        const std::vector<float> texels(size_t(3) * 96 * 64, trace ? 9e-7f : 1e-6f);
+        const pellucid::Lut shadow(device(), tables().shadow.info(), texels);
+        for (const uint32_t all : {0u, 1u}) {
+            Shader shader(device());
+            f.options.disableSkipping = all;
+            setFrame(device(), shader, f, tables());
+            for (const auto& [id, m] : f.materials) shader.setMaterial(id, m, tables().curvature, shadow);
+            const Buffer target(device(), f.pixels() * 12);
+            shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+            shader.commit().execute();
+            const auto radiance = target.readAll<float>();
+            size_t some = 0;
+            for (const float r : radiance) some += r > 0;
+            if (trace)
+                EXPECT_EQ(some, 0u);
+            else
+                EXPECT_GT(some, f.pixels());
+        }
+    }
+}
 
 }  // namespace
