@@ -832,7 +832,7 @@ typedef struct PelMaterial {
     float deepScatterRadius;       /* length, sigma of the transmission through thickness; 6 mm */
     float deepScatterNormalOffset; /* length the position moves inwards before thickness is measured; 0.2 mm */
     float thicknessFilterRadius;   /* radius of the disk of taps, in UV of the shadow map; 0.02 */
-    uint32_t thicknessTaps;        /* 8, 16 or 32, of a pixel that takes taps of its own; 0: thickness is not measured */
+    uint32_t thicknessTaps;        /* 8, 16 or 32; 0: thickness is not measured */
     float specular;                /* rho_s; 0: no specular */
     float roughness;               /* m of Beckmann; 0.3 */
     float f0;                      /* reflectance at normal incidence; 0.028 */
