@@ -160,6 +160,20 @@ TEST_F(Files, NamesThatAreNoUtf8) {
     EXPECT_TRUE(contains(batch.json().at("warnings").at(0), "b\xef\xbf\xbd.toml"));
 }
 
+TEST_F(Files, WhatStandsInATextIsNeitherAKeyNorABracket) {
+    std::string text = std::string(40, '[') + std::string(40, '{');
+    for (int i = 0; i < 40; ++i) text += ".a";
+    for (const std::string& source : {'"' + text + " # \\\" " + text + '"', "'" + text + " \\'",
+                                      "\"\"\"" + text + "\" \"\"" + text + "\"\"\"", "'''\n" + text + "''''"}) {
+        const std::string file =
+            write("t.toml", "name = \"t\"\nkind = \"gaussians\"\nunit = \"mm\"\nsource = " + source +
+                                "\n[[gaussian]] # " + text + "\nvariance = 1\nweight = [1, 1, 1]\n");
+        const Result result = run({"profile", "show", file, "--json"});
+        ASSERT_EQ(result.exitCode, 0) << source << "\n" << result.err;
+        EXPECT_TRUE(contains(result.json()["source"].get<std::string>(), text)) << source;
+    }
+}
+
 TEST_F(Files, KeysWithoutEndAndBracketsWithoutEnd) {
     std::string key = "a";
     for (int i = 0; i < 31000; ++i) key += ".a";

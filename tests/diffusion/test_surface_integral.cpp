@@ -238,20 +238,25 @@ TEST(SurfaceIntegral, SphereHasTheClosedForm) {
 // The error bound holds where the mesh is much finer than the profile is wide, and every far set counts as a
 // point.
 TEST(SurfaceIntegral, HierarchyKeepsItsBound) {
-    const Mesh mesh = sheet(sized(160, 8), 0.25f);
-    const std::vector<float> points = pointsOn(mesh, 200);
-    PelSurfaceIntegralDesc desc = mesh.desc();
-    desc.tolerance = 1e-7f;
-    const std::vector<float> exact = integrate(desc, points);
-    for (float tolerance : {1e-3f, 1e-2f, 1e-1f}) {
-        desc.tolerance = tolerance;
-        const std::vector<float> found = integrate(desc, points);
-        double worst = 0;
-        for (size_t i = 0; i < found.size(); ++i)
-            worst = std::max(worst, double(std::abs(found[i] - exact[i])));
-        EXPECT_LE(worst, tolerance);
-        // Light mostly cancels a bound that holds for all of it; but something must have been left out.
-        EXPECT_GT(worst, 0);
+    for (float unit : {1.0f, 20.0f, 0.05f}) {
+        Mesh mesh = sheet(sized(160, 8), 0.25f);
+        std::vector<float> points = pointsOn(mesh, 200);
+        for (float& v : mesh.positions) v /= unit;
+        for (float& v : points) v /= unit;
+        PelSurfaceIntegralDesc desc = mesh.desc();
+        desc.millimetresPerUnit = unit;
+        desc.tolerance = 1e-7f;
+        const std::vector<float> exact = integrate(desc, points);
+        for (float tolerance : {1e-3f, 1e-2f, 1e-1f}) {
+            desc.tolerance = tolerance;
+            const std::vector<float> found = integrate(desc, points);
+            double worst = 0;
+            for (size_t i = 0; i < found.size(); ++i)
+                worst = std::max(worst, double(std::abs(found[i] - exact[i])));
+            EXPECT_LE(worst, tolerance) << "unit " << unit;
+            // Light mostly cancels a bound that holds for all of it; but something must have been left out.
+            EXPECT_GT(worst, 0) << "unit " << unit;
+        }
     }
 }
 

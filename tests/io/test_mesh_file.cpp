@@ -104,6 +104,11 @@ TEST_F(MeshFile, NonManifoldOffSurvivesButIsNotSubdivided) {
 TEST_F(MeshFile, DegenerateFacesAreLeftInOrNamed) {
     const MeshData off = loadMesh(write("d.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 1\n3 0 1 2\n"));
     EXPECT_EQ(off.triangleCount(), 2u);  // the library counts and skips it
+    for (const char* twice : {"1 2 2", "1 2 1", "1 1 2", "1 2 3 1", "1 2 3 2", "3 2 1 2"}) {
+        const MeshData left =
+            loadMesh(write("d.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf " + std::string(twice) + "\nf 1 2 3\n"));
+        EXPECT_EQ(left.triangles.size(), 3u) << twice;
+    }
     const MeshData obj = loadMesh(write("d.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2\nf 1 2 3\n"));
     EXPECT_EQ(obj.triangleCount(), 1u);
     ASSERT_EQ(obj.warnings.size(), 1u);

@@ -156,6 +156,16 @@ TEST(CurvatureDiffusion, AreaWeightsKeepEveryValueBetweenItsNeighbours) {
     EXPECT_THROW(run(mesh, params), pellucid::Error);
 }
 
+TEST(CurvatureDiffusion, MeshesTooSmallForTheirAreasStayFinite) {
+    for (auto weights : bothWeights)
+        for (double size : {1e-9, 1e-11, 1e-13, 1e-16, 1e9, 1e13}) {
+            const AnalyticMesh torus =
+                tessellate(reference::torusSurface(3 * size, size), 24, 12, Tessellation::irregular);
+            for (float value : run(pairOf(torus.mesh).mesh, smoothed(float(size), PEL_CURVATURE_EDGE, weights)))
+                ASSERT_TRUE(std::isfinite(value)) << size << ", " << int(weights);
+        }
+}
+
 TEST(CurvatureDiffusion, KeepsWhatLiesBeyondACrease) {
     // Two planes at a right angle, welded along the fold, curvature of the fold itself: edge-preserving
     // smoothing leaves it where it is, plain smoothing carries it into the planes.

@@ -306,6 +306,9 @@ TEST(ShadeProfile, AutoKeepsToTheScratchBudget) {
     EXPECT_EQ(said(needed).find(all), std::string::npos);
     EXPECT_EQ(shading.shader.material(1).scattering, PEL_SCATTERING_SCREEN);
     EXPECT_GT(needed, uint64_t(width) * height * 4 * sizeof(float));
+    shading.shader.execute();
+    EXPECT_LE(shading.shader.stats().scratchBytes, needed + needed / 4) << "the budget is for images alone";
+    EXPECT_GE(shading.shader.stats().scratchBytes, needed / 2);
     // Beside it, what has no profile takes light as it comes.
     shading.shader.setMaterial(2, pelMaterialDefaults()).commit();
     EXPECT_EQ(shading.shader.material(2).scattering, PEL_SCATTERING_NONE);
