@@ -189,6 +189,13 @@ TEST_F(HostileImage, SizesInOtherHeadersToo) {
                          "60000 x 60000 pixels of 4 channels take"));
     EXPECT_TRUE(
         contains(refusal("a.tga", with(written("tga"), 12, "\x60\xea\x60\xea")), "60000 x 60000 pixels"));
+    // A map of two colours, one byte a pixel; a map of none is no map.
+    const auto mapped = [](char colors) {
+        const char header[] = {0, 1, 1, 0, 0, colors, 0, 24, 0, 0, 0, 0, 2, 0, 1, 0, 8, 0x20};
+        return std::string(header, sizeof header) + std::string("\1\2\3\4\5\6", 6) + std::string("\0\1", 2);
+    };
+    EXPECT_EQ(refusal("m.tga", mapped(2)), "");
+    EXPECT_TRUE(contains(refusal("m.tga", mapped(0)), "is not a TGA of a known kind"));
     EXPECT_TRUE(contains(refusal("a.tga", with(written("tga"), 12, std::string("\0\x10\0\x10", 4))),
                          "too short for its pixels"))
         << "4096 x 4096";
