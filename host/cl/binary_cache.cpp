@@ -12,12 +12,18 @@ namespace {
 
 constexpr uint64_t defaultLimit = 512;  // MiB: some three hundred shading programs of a CPU
 
-bool wanted(cl_device_id device) {
+struct Use {
+    bool load, store;
+};
+
+Use wanted(cl_device_id device) {
     const char* text = std::getenv("PELLUCID_CACHE");
     const std::string value = text ? text : "";
-    if (value.empty() || value == "auto") return !keepsPrograms(device);
-    if (value == "on" || value == "1") return true;
-    if (value == "off" || value == "0") return false;
+    // PoCL compiles everything once more to make a binary, and is quicker to load one than to find a program in its own cache.
+    if (value.empty() || value == "auto")
+        return {!keepsPrograms(device) || isPocl(device), !keepsPrograms(device)};
+    if (value == "on" || value == "1") return {true, true};
+    if (value == "off" || value == "0") return {false, false};
     invalidArgument("PELLUCID_CACHE is \"", value, "\"; it can be on, off or auto");
 }
 
@@ -53,7 +59,10 @@ std::string describeBuilder(cl_device_id device) {
     for (const cl_device_info what :
          {CL_DEVICE_NAME, CL_DEVICE_VENDOR, CL_DEVICE_VERSION, CL_DRIVER_VERSION, CL_DEVICE_EXTENSIONS})
         all.addPart(infoString(device, what));
-    all.addPart(platformName(device)).addPart(system::instructionSet()).addPart(settings());
+    all.addPart(platformName(device))
+        .addPart(platformVersion(device))
+        .addPart(system::instructionSet())
+        .addPart(settings());
     return all.text();
 }
 
@@ -61,7 +70,9 @@ std::string describeBuilder(cl_device_id device) {
 
 BinaryCache::BinaryCache(cl_context context, cl_device_id device) : context_(context), device_(device) {
     const uint64_t limit = limitBytes();
-    if (!wanted(device)) return;
+    const Use use = wanted(device);
+    if (!use.load) return;
+    stores_ = use.store;
     const std::filesystem::path folder = binaryFolder();
     if (folder.empty()) return;
     builtBy_ = describeBuilder(device);
@@ -87,7 +98,7 @@ Program BinaryCache::load(const std::string& source, const std::string& options)
 }
 
 bool BinaryCache::store(const Program& program, const std::string& source, const std::string& options) const {
-    if (!files_) return false;
+    if (!files_ || !stores_) return false;
     // A program of a context with several devices has an entry for each.
     cl_uint count = 0;
     if (clGetProgramInfo(program.get(), CL_PROGRAM_NUM_DEVICES, sizeof count, &count, nullptr) != CL_SUCCESS ||

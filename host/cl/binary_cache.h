@@ -10,7 +10,7 @@ namespace pel::cl {
 
 class BinaryCache {
   public:
-    // Off where the driver keeps compiled programs itself, unless PELLUCID_CACHE says otherwise.
+    // Where the driver keeps compiled programs itself, nothing is stored unless PELLUCID_CACHE says so, and only PoCL's are loaded.
     BinaryCache(cl_context context, cl_device_id device);
 
     // Empty when there is none, or the driver refuses it.
@@ -25,6 +25,7 @@ class BinaryCache {
     cl_device_id device_;
     std::string builtBy_;  // whatever else the driver's output depends on
     std::optional<BinaryFiles> files_;
+    bool stores_ = false;
 };
 
 }  // namespace pel::cl

@@ -14,6 +14,14 @@ struct Range {
     std::array<size_t, 3> group{1, 1, 1};
 };
 
+// `items` work-items, and more up to whole rows, in two dimensions of less than 65,535 each (lib/diffusion/item.clh numbers them): PoCL compiles
+// a kernel once for ranges below, and once more for larger ones. Fewer work-items lie in one dimension.
+inline Range folded(size_t items, size_t group) {
+    constexpr size_t most = 32768;
+    if (items <= most) return {{items, 1, 1}, {group, 1, 1}};
+    return {{most, (items + most - 1) / most, 1}, {group, 1, 1}};
+}
+
 class Launch {
   public:
     // A new cl_kernel: making one costs about a microsecond and needs no lock.

@@ -76,13 +76,22 @@ std::optional<uint32_t> requestedMathWidth() {
 
 }  // namespace
 
-std::string platformName(cl_device_id device) {
+static std::string platformString(cl_device_id device, cl_platform_info what) {
     const auto platform = info<cl_platform_id>(device, CL_DEVICE_PLATFORM);
     size_t size = 0;
-    check(clGetPlatformInfo(platform, CL_PLATFORM_NAME, 0, nullptr, &size), "clGetPlatformInfo");
-    std::string name(size, '\0');
-    check(clGetPlatformInfo(platform, CL_PLATFORM_NAME, size, name.data(), nullptr), "clGetPlatformInfo");
-    return name.c_str();
+    check(clGetPlatformInfo(platform, what, 0, nullptr, &size), "clGetPlatformInfo");
+    std::string value(size, '\0');
+    check(clGetPlatformInfo(platform, what, size, value.data(), nullptr), "clGetPlatformInfo");
+    value.resize(std::strlen(value.c_str()));  // without the NUL
+    return value;
+}
+
+std::string platformName(cl_device_id device) {
+    return platformString(device, CL_PLATFORM_NAME);
+}
+
+std::string platformVersion(cl_device_id device) {
+    return platformString(device, CL_PLATFORM_VERSION);
 }
 
 bool isPocl(cl_device_id device) {
@@ -91,8 +100,8 @@ bool isPocl(cl_device_id device) {
 
 bool keepsPrograms(cl_device_id device) {
     const std::string platform = platformName(device);
-    // Drivers whose programs this library does not keep. PoCL would compile everything once more to make
-    // binaries, NVIDIA has ~/.nv/ComputeCache, Oclgrind compiles next to nothing.
+    // Drivers whose programs this library does not keep by itself. PoCL would compile everything once more to
+    // make binaries, NVIDIA has ~/.nv/ComputeCache, Oclgrind compiles next to nothing.
     return platform == pocl || platform == "NVIDIA CUDA" || platform == "Oclgrind";
 }
 
@@ -101,7 +110,8 @@ std::string infoString(cl_device_id device, cl_device_info what) {
     check(clGetDeviceInfo(device, what, 0, nullptr, &size), "clGetDeviceInfo");
     std::string value(size, '\0');
     check(clGetDeviceInfo(device, what, size, value.data(), nullptr), "clGetDeviceInfo");
-    return value.c_str();
+    value.resize(std::strlen(value.c_str()));  // without the NUL
+    return value;
 }
 
 std::vector<cl_device_id> allDevices() {
@@ -162,8 +172,9 @@ PelDeviceInfo describe(cl_device_id device, uint32_t index) {
     if (d.mathWidth > 1) quirks += text("explicit ", d.mathWidth, "-wide arithmetic; ");
     if (platform == pocl)
         quirks +=
-            "fixed work-group sizes and no global offsets (each is compiled anew); no program binaries (own "
-            "cache); ";
+            "fixed work-group sizes, short ranges and no global offsets (each is compiled anew); program "
+            "binaries "
+            "by a warm-up alone (own cache); ";
     if (!quirks.empty()) quirks.resize(quirks.size() - 2);
     copyText(d.quirks, quirks);
     return d;

@@ -22,6 +22,7 @@ bool isPocl(cl_device_id device);
 bool keepsPrograms(cl_device_id device);
 
 std::string platformName(cl_device_id device);
+std::string platformVersion(cl_device_id device);
 std::string infoString(cl_device_id device, cl_device_info what);
 
 }  // namespace pel::cl

@@ -49,6 +49,10 @@ ProgramCache::Counts ProgramCache::counts() const {
 Program ProgramCache::build(const std::vector<std::string>& files, const std::string& options,
                             Counts& counts) const {
     const std::string source = kernelSource(files);
+    if (isPocl(device_)) {  // PoCL ends the process if it cannot write
+        checkPoclCache();
+        requireMemory(0, "compiling a program");
+    }
     if (Program program = binaries_.load(source, options)) {
         counts.loaded = 1;
         return program;
@@ -60,10 +64,6 @@ Program ProgramCache::build(const std::vector<std::string>& files, const std::st
 
 Program ProgramCache::compile(const std::string& source, const std::vector<std::string>& files,
                               const std::string& options) const {
-    if (isPocl(device_)) {  // PoCL ends the process if it cannot write
-        checkPoclCache();
-        requireMemory(0, "compiling a program");
-    }
     const char* text = source.c_str();
     cl_int code = CL_SUCCESS;
     Program program(clCreateProgramWithSource(context_.get(), 1, &text, nullptr, &code));

@@ -128,7 +128,7 @@ void LightSpace::addFiles(cl::ProgramKey& program) const {
 // Work-items of a vector of texels each.
 cl::Range LightSpace::rows(const PelPyramidLevel& level) const {
     const uint32_t lanes = device_->info().mathWidth;
-    return {{size_t((level.width + lanes - 1) / lanes) * level.height, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}};
+    return cl::folded(size_t((level.width + lanes - 1) / lanes) * level.height, PEL_DIFFUSION_GROUP);
 }
 
 void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory& screen,
@@ -148,8 +148,8 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
         seen.arg(screen.frame).arg(memory(images.positions ? images.positions : images.depth));
         seen.arg(memory(images.ids)).arg(mapMemory_).arg(cl_uint(k)).arg(memory(maps_[k].image));
         seen.arg(screen.pyramid).arg(seen_);
-        launch(seen, {{size_t((screen.width + lanes - 1) / lanes) * ((screen.height + 1) / 2), 1, 1},
-                      {PEL_DIFFUSION_GROUP, 1, 1}});
+        launch(seen, cl::folded(size_t((screen.width + lanes - 1) / lanes) * ((screen.height + 1) / 2),
+                                PEL_DIFFUSION_GROUP));
     }
     for (uint32_t k = 0; k < maps_.size(); ++k) {
         const PelLightMap& map = maps_[k].constants;

@@ -160,7 +160,7 @@ std::vector<cl::ProgramKey> ScreenScatter::programs(const ScatterImages& images)
 // Work-items of a vector of pixels each.
 cl::Range ScreenScatter::rows(uint32_t width, uint32_t height) const {
     const uint32_t lanes = device_->info().mathWidth;
-    return {{size_t((width + lanes - 1) / lanes) * height, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}};
+    return cl::folded(size_t((width + lanes - 1) / lanes) * height, PEL_DIFFUSION_GROUP);
 }
 
 void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>& events) {

@@ -2,6 +2,7 @@
 //
 // A block's flux stands at two points. The first is that of the brightest child; children far from it, or of another id, gather at the
 // second, which begins at the farthest of them. Input and output: the pyramid. One work-item: PEL_WIDTH blocks of a row. Variants: PEL_HIDDEN.
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/light_space.clh"
 #include "lib/diffusion/pyramid.clh"
 
@@ -81,9 +82,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     __global const uchar* now, __global float* pyramid) {
     __global const PelLightMap* map = maps + index;
     __global const PelPyramidLevel *fine = &map->level[to - 1], *coarse = &map->level[to];
-    const uint across = (coarse->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
+    const uint across = (coarse->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
     if (y >= coarse->height) return;
-    const uint x = get_global_id(0) % across * PEL_WIDTH, points = to == 1 ? 1 : 2, stride = fine->stride;
+    const uint x = itemOfFolded() % across * PEL_WIDTH, points = to == 1 ? 1 : 2, stride = fine->stride;
     if (!cellsMatter(map, before, now, x << to, y << to, (x + PEL_WIDTH) << to, (y + 1) << to)) return;
     __global const float* upper = pyramid + lightRow(fine, points, 2 * (int)y) + 2 * x;
     __global const float* lower = pyramid + lightRow(fine, points, 2 * (int)y + 1) + 2 * x;

@@ -5,6 +5,7 @@
 // beforehand to 0: the pixel's id, or PEL_SEEN_OTHER where it does not scatter; which of several ids is the same each time, for equal
 // writes are all that meet inside of an object. One work-item: PEL_WIDTH pixels of every other row. Variants: PEL_FORMAT_POSITION or
 // PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT.
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/light_space.clh"
 #include "lib/diffusion/pyramid.clh"
 #include "lib/shading/material_id.clh"
@@ -109,10 +110,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     __global const PelDiffusionFrame* frame, __global uchar* position, __global uchar* ids,
     __global const PelLightMap* maps, uint index, __global uchar* texels, __global const float* pyramid,
     __global uchar* seen) {
-    const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across * EVERY;
+    const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across * EVERY;
     if (y >= frame->height) return;
     __global const PelLightMap* map = maps + index;
-    const uint from = get_global_id(0) % across * PEL_WIDTH, x = vectorStart(from, frame->width);
+    const uint from = itemOfFolded() % across * PEL_WIDTH, x = vectorStart(from, frame->width);
     const intw column = lanesw() + (int)x;
     const maskw mine = (column >= (int)from) & (column < (int)frame->width) & (column % EVERY == 0);
     const Vec3w p = loadPositions(frame, position, x, y);

@@ -4,6 +4,7 @@
 // Input: the map, what the camera sees of it, and which cells of texels (PEL_LIGHT_CELL) had flux before. Output: level 0, and which cells have flux now. With PEL_HIDDEN only texels that it does not see have flux;
 // without, all but those of things that do not scatter, and their ids stand beside. One work-item:
 // PEL_WIDTH texels of a row. Variants: PEL_HIDDEN, PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT.
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/light_space.clh"
 #include "lib/image/planes.clh"
 
@@ -56,9 +57,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     __global const uchar* before, __global uchar* now, __global float* pyramid) {
     __global const PelLightMap* map = maps + index;
     __global const PelPyramidLevel* level = &map->level[0];
-    const uint across = (level->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
+    const uint across = (level->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
     if (y >= level->height) return;
-    const uint x = get_global_id(0) % across * PEL_WIDTH;
+    const uint x = itemOfFolded() % across * PEL_WIDTH;
     const size_t at = lightRow(level, 1, (int)y) + x;
     const uint stride = level->stride;
     __global const uchar* first = firstTexel(texels, &map->map);

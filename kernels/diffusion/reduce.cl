@@ -3,6 +3,7 @@
 // A block belongs to one object: to that of the child with the largest area, with those other children that
 // have its id and are near it. So no light bleeds from one object to another, or to a surface behind. Inputs:
 // the finer level. Output: the coarser one. One work-item: PEL_WIDTH blocks of a row.
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/pyramid.clh"
 
 // Children further apart than this many times the width of the largest belong to another surface.
@@ -110,9 +111,9 @@ static inline Child largerChild(Child a, Child b) {
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void reduce_surface(
     __global const PelDiffusionFrame* frame, __global float* pyramid, uint to) {
     __global const PelPyramidLevel *fine = &frame->level[to - 1], *coarse = &frame->level[to];
-    const uint across = (coarse->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
+    const uint across = (coarse->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
     if (y >= coarse->height) return;
-    const uint x = get_global_id(0) % across * PEL_WIDTH, stride = fine->stride;
+    const uint x = itemOfFolded() % across * PEL_WIDTH, stride = fine->stride;
     __global const float* upper = pyramid + pyramidRow(fine, 2 * (int)y) + 2 * x;
     const size_t rowValues = (size_t)stride * PEL_PYRAMID_PLANES;
     const size_t at = pyramidRow(coarse, (int)y) + x;

@@ -4,6 +4,7 @@
 // Blocks near tiles that classify_scatter has found take the sums of the next coarser level, interpolated, and add the band of their own. Others
 // are left as they are. Input: the pyramid, the words of classify_scatter, the sums of
 // the coarser level. Output: the level's. One work-item: PEL_WIDTH blocks of a row.
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/levels.clh"
 
 // Whether some tile under blocks of the level from x to `end`, or as far round them as interpolation reaches, goes up to this level.
@@ -35,9 +36,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
     __global const PelProfileTable* tables, __global const float* nodes, __global const uint* tiles,
     uint level, __global float* sums, __global uint* counters) {
     __global const PelPyramidLevel* blocks = &frame->level[level];
-    const uint across = (blocks->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
+    const uint across = (blocks->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
     if (y >= blocks->height) return;
-    const uint x = get_global_id(0) % across * PEL_WIDTH;
+    const uint x = itemOfFolded() % across * PEL_WIDTH;
     if (!levelMatters(frame, tiles, level, x, min(x + PEL_WIDTH, blocks->width), y)) return;
     const uint stride = blocks->stride;
     __global const float* at = pyramid + pyramidRow(blocks, (int)y) + x;

@@ -4,6 +4,7 @@
 // Inputs: images of irradiance, of positions (length) or depth, of ids (0 is background). Output: level 0 of the pyramid. One
 // work-item: a part of a row (surface_points), PEL_WIDTH pixels of one (surface_areas). Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL
 // (0: everything is id 1).
+#include "lib/diffusion/item.clh"
 #include "lib/diffusion/pyramid.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
@@ -98,9 +99,9 @@ static inline Step shorterStep(__global const float* pyramid, size_t here, long 
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void surface_areas(
     __global const PelDiffusionFrame* frame, __global float* pyramid) {
-    const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
+    const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
     if (y >= frame->height) return;
-    const uint x = get_global_id(0) % across * PEL_WIDTH;  // beyond the last column lies the guard
+    const uint x = itemOfFolded() % across * PEL_WIDTH;  // beyond the last column lies the guard
     __global const PelPyramidLevel* level = &frame->level[0];
     const size_t row = pyramidRow(level, (int)y) + x;
     const uint stride = level->stride;

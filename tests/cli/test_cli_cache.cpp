@@ -76,6 +76,25 @@ TEST_F(ProgramsOnDisk, ASecondProcessCompilesNothingAndComputesTheSameBits) {
     EXPECT_EQ(table(on(), "mended.npy"), truth);
 }
 
+TEST_F(ProgramsOnDisk, AWarmUpMakesBinariesForPoclAndOthersLoadThem) {
+    const std::string folder = "PELLUCID_CACHE_DIR='" + path("cache") + "' ";
+    const std::string truth = table(folder, "before.npy");
+    if (pellucid::Device("").info().platform != std::string("Portable Computing Language"))
+        GTEST_SKIP() << "PoCL is not the device";
+    EXPECT_TRUE(files().empty()) << "a table alone makes none: that would compile everything once more";
+    const nlohmann::json made = warmUp(folder);
+    EXPECT_EQ(made.at("stored"), made.at("programs"));
+    const nlohmann::json quick = warmUp(folder + "PELLUCID_CACHE=auto");
+    EXPECT_EQ(quick.at("loaded"), made.at("programs"));
+    EXPECT_EQ(quick.at("stored"), 0);
+    EXPECT_EQ(table(folder, "after.npy"), truth);
+    // Not from a folder where others may write.
+    fs::permissions(path("cache"), fs::perms::all);
+    const nlohmann::json open = warmUp(folder + "PELLUCID_CACHE=auto");
+    EXPECT_EQ(open.at("loaded"), 0);
+    EXPECT_EQ(open.at("programs"), made.at("programs"));
+}
+
 TEST_F(ProgramsOnDisk, ABinaryThatTheDriverRefusesIsCompiledAgain) {
     const nlohmann::json first = warmUp(on());
     // Whole files, with a check sum that is right, of something that is no program.

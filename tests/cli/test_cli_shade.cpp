@@ -236,7 +236,7 @@ TEST_F(Shade, ProgramsAreBuiltAheadForTheDriversCache) {
     wide.addInterleaved(std::vector<std::string>{"View.Id.X"}, std::vector<float>(pixels, 1.0f));
     io::writeExr(path("w.exr"), wide);
     std::filesystem::create_directories(path("cache"));
-    const std::string cache = "POCL_CACHE_DIR=" + path("cache");
+    const std::string cache = "POCL_CACHE_DIR=" + path("cache") + " PELLUCID_CACHE_DIR=" + path("binaries");
     const auto compiled = [&] {  // kernels, where the device is PoCL's
         size_t count = 0;
         for (const auto& entry : std::filesystem::recursive_directory_iterator(path("cache")))
@@ -254,4 +254,62 @@ TEST_F(Shade, ProgramsAreBuiltAheadForTheDriversCache) {
         EXPECT_GT(before, 0u) << "PoCL keeps kernels there";
     }
     expectRefused({"warm-up", path("none.toml")}, 3, "none.toml");
+}
+
+TEST_F(Shade, AWarmUpOfALargeFrameThatScattersLeavesNothingToCompile) {
+    // More vectors of pixels, and of texels of the shadow map, than the ranges for which PoCL compiles a kernel by itself.
+    const auto grid = [](int columns, int rows, const std::vector<std::string>& names, auto value) {
+        io::Image image;
+        image.width = columns, image.height = rows;
+        std::vector<float> values;
+        for (int y = 0; y < rows; ++y)
+            for (int x = 0; x < columns; ++x)
+                for (size_t c = 0; c < names.size(); ++c) values.push_back(value(x, y, c));
+        image.addInterleaved(names, values);
+        return image;
+    };
+    const std::vector<std::string> positions{"P.X", "P.Y", "P.Z"};
+    io::Image frame = grid(1440, 760, positions, [](int x, int y, size_t c) {
+        return c == 0 ? 0.1f * float(x - 720) : c == 1 ? 0.1f * float(380 - y) : 0.0f;
+    });
+    for (io::Channel& c :
+         grid(1440, 760, normalNames, [](int, int, size_t c) { return c == 2 ? 1.0f : 0.0f; }).channels)
+        frame.channels.push_back(std::move(c));
+    for (io::Channel& c :
+         grid(1440, 760, {"View.Id.X"}, [](int x, int, size_t) { return x < 300 ? 1.0f : 0.0f; }).channels)
+        frame.channels.push_back(std::move(c));
+    io::writeExr(path("w.exr"), frame, io::ExrCompression::Rle);
+    io::writeExr(path("map.exr"),
+                 grid(1200, 900, {"Z"}, [](int x, int, size_t) { return x < 400 ? 0.2f : 1.0f; }),
+                 io::ExrCompression::Rle);
+    scene_.channels[PEL_SLOT_POSITION] = positions;
+    scene_.channels[PEL_SLOT_ALBEDO] = {};
+    scene_.materials[0].profile = "skin";
+    scene_.camera.position[2] = 300;
+    io::SceneLight& light = scene_.lights[0];
+    light.shadowMapFile = path("map.exr");
+    for (int i = 0; i < 4; ++i) light.light.worldToShadow[5 * i] = i < 2 ? 0.005f : i == 2 ? -0.01f : 1.0f;
+    for (int i = 0; i < 3; ++i) light.light.worldToShadow[4 * i + 3] = 0.5f;
+    light.light.shadowDepthRange = 100;
+    io::writeScene(path("s.toml"), scene_);
+    std::filesystem::create_directories(path("cache"));
+    const auto compiled = [&] {
+        std::vector<std::string> kernels;
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(path("cache")))
+            if (entry.path().extension() == ".so") kernels.push_back(entry.path());
+        std::ranges::sort(kernels);
+        return kernels;
+    };
+    const std::string cache = "PELLUCID_CACHE=auto POCL_CACHE_DIR=" + path("cache");
+    const Result built = run({"warm-up", path("s.toml"), "--json"}, cache);
+    ASSERT_EQ(built.exitCode, 0) << built.err;
+    const std::vector<std::string> before = compiled();
+    const Result shaded = run(command("s.toml", "w.exr"), cache);
+    ASSERT_EQ(shaded.exitCode, 0) << shaded.err;
+    EXPECT_EQ(compiled(), before);
+    if (contains(built.json().at("device").get<std::string>(), "pthread")) {
+        EXPECT_GT(
+            std::ranges::count_if(before, [](const std::string& k) { return k.ends_with("light_texels.so"); }),
+            0);
+    }
 }
