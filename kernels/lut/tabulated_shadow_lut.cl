@@ -16,14 +16,30 @@
 #include "lib/lut/profile_tails.clh"
 #include "shared/lut.h"
 
-// Tails from any x. P is even, so a tail from x < 0 is the whole minus its mirror image.
-inline float4 secondFrom(__global const float4* tails, const float x, const float4 mass, const float end) {
-    const float4 beyond = tailAt(tails, PEL_TAIL_SECOND, fabs(x), end);
-    return x < 0.0f ? 0.5f * x * x * mass + 2.0f * tails[PEL_TAIL_SECOND] - beyond : beyond;
-}
-inline float4 thirdFrom(__global const float4* tails, const float x, const float4 mass, const float end) {
-    const float4 beyond = tailAt(tails, PEL_TAIL_THIRD, fabs(x), end);
-    return x < 0.0f ? -x * (x * x * (1.0f / 6.0f) * mass + 2.0f * tails[PEL_TAIL_SECOND]) + beyond : beyond;
+// M2(x) + k M3(x) for any x. P is even, so a tail from x < 0 is the whole minus its mirror image. Both tails in one: the
+// value of one is the slope of the other, and their weights are the same.
+inline float4 tailsFrom(__global const float4* tails, const float x, const float k, const float4 mass,
+                        const float end) {
+    const float s = fabs(x), sign = x < 0.0f ? -1.0f : 1.0f;
+    float4 sum = 0.0f;
+    if (s < end) {
+        const int cell = tailCell(s, end);
+        const TailPlace place = tailPlace(s, cell, end);
+        const float t = place.t, u = 1.0f - t, before = u * u, behind = t * t;
+        const float a = before * (1.0f + 2.0f * t), aSlope = -before * place.h * t,
+                    b = behind * (3.0f - 2.0f * t), bSlope = behind * place.h * u;
+        __global const float4 *low = tails + (size_t)cell * PEL_TAIL_VALUES, *high = low + PEL_TAIL_VALUES;
+        const float4 second = a * low[PEL_TAIL_SECOND] + aSlope * low[PEL_TAIL_FIRST] +
+                              b * high[PEL_TAIL_SECOND] + bSlope * high[PEL_TAIL_FIRST];
+        const float4 thirds = a * low[PEL_TAIL_THIRD] + aSlope * low[PEL_TAIL_SECOND] +
+                              b * high[PEL_TAIL_THIRD] + bSlope * high[PEL_TAIL_SECOND];
+        sum = sign * second + k * thirds;
+    }
+    if (x < 0.0f) {
+        const float4 whole = 2.0f * tails[PEL_TAIL_SECOND];
+        sum += 0.5f * x * x * mass + whole - k * x * (x * x * (1.0f / 6.0f) * mass + whole);
+    }
+    return sum;
 }
 
 // Share of the ramp from -1 to y.
@@ -109,9 +125,7 @@ inline float4 farSide(__global const float4* tails, __global const float4* nodes
     }
     if (row.b < PEL_WIDE_RAMP) return farByQuadrature(tails, zeta, row.b, mass, end).U;
     const float r = 1.0f / row.b, e1 = zeta - row.b, e2 = zeta + row.b;
-    return 1.5f * r * r *
-           (secondFrom(tails, e1, mass, end) + secondFrom(tails, e2, mass, end) -
-            r * (thirdFrom(tails, e1, mass, end) - thirdFrom(tails, e2, mass, end)));
+    return 1.5f * r * r * (tailsFrom(tails, e1, -r, mass, end) + tailsFrom(tails, e2, r, mass, end));
 }
 
 // samples: room for nodes + 2 PEL_RAMP_PARTS + PEL_RAMP_TOGETHER values, and as many slopes, of each row.
