@@ -249,7 +249,8 @@ TEST(TextureScatter, OtherProfilesAreAFewGaussians) {
     const Profile burley = Profile::burleyDistance({1.0f, 0.4f, 0.2f}),
                   table = Profile::table({0.1f, 1, 2}, {1, 1, 1, 0.5f, 0.3f, 0.2f, 0.01f, 0.01f, 0.01f});
     double before = 1;
-    for (uint32_t count : {3u, 6u, 12u}) {
+    // Measured: the fit is the best of its kind, so that another would have a greater error.
+    for (const auto& [count, measured] : {std::pair{3u, 0.0824}, {6u, 0.0187}, {12u, 0.0029}}) {
         PelTextureScatterParams params = pelTextureScatterParamsDefaults();
         params.gaussians = count;
         for (float v : t.run(e, burley, params)) ASSERT_NEAR(v, 1, 1e-4);
@@ -258,6 +259,7 @@ TEST(TextureScatter, OtherProfilesAreAFewGaussians) {
         RecordProperty("burley" + std::to_string(count), std::to_string(error));
         std::printf("burley by %u Gaussians: %.4f of the light\n", count, error);
         EXPECT_LT(error, before);
+        EXPECT_NEAR(error, measured, 1e-4);
         before = error;
         t.run(e, table, params);
     }
