@@ -145,8 +145,19 @@ TEST_F(CliLut, ShadowLutAndItsFlags) {
 TEST_F(CliLut, ProfilesAreListedShownDrawnAndFitted) {
     EXPECT_GE(run({"profile", "list", "--json"}).json()["profiles"].size(), 9u);
     EXPECT_EQ(run({"profile", "show", "marble", "--json"}).json()["kind"], "dipole");
-    for (const auto& [name, singular] : {std::pair{"skin", false}, {"marble", true}})
+    for (const auto& [name, singular] : {std::pair{"skin", false}, {"skin-burley", true}, {"marble", false}})
         EXPECT_EQ(run({"profile", "show", name, "--json"}).json()["singular"], singular) << name;
+    const auto rows = run({"profile", "show", "marble", "--json"}).json()["values"];
+    ASSERT_EQ(rows.size(), 7u);
+    for (const auto& row : rows) {
+        const Profile marble = Profile::named("marble");
+        const std::vector<double> at{row["distance_mm"].get<double>()};
+        const auto radial = marble.radial(at), line = marble.lineSpread(at);
+        for (size_t c = 0; c < 3; ++c) {
+            EXPECT_NEAR(row["radial_per_mm2"][c].get<double>() / radial[c], 1, 1e-6);
+            EXPECT_NEAR(row["line_spread_per_mm"][c].get<double>() / line[c], 1, 1e-6);
+        }
+    }
     EXPECT_EQ(run({"profile", "plot", "jade", "-o", path("jade.png")}).exitCode, 0);
     EXPECT_GT(std::filesystem::file_size(path("jade.png")), 1000u);
     ASSERT_EQ(run({"profile", "fit", "marble", "--gaussians", "3", "-o", path("fit.toml")}).exitCode, 0);

@@ -122,6 +122,21 @@ TEST_F(CliReference, VerticesAndUnit) {
     }
 }
 
+TEST_F(CliReference, TheMaterialsProfileUnlessAnotherIsNamed) {
+    auto scene = pellucid::io::readScene(path("s.toml"));
+    scene.materials[0].profile = "marble";
+    pellucid::io::writeScene(path("marble.toml"), scene);
+    const auto values = [&](const std::string& file, const std::vector<std::string>& more) {
+        std::vector<std::string> command{"reference",   path("ball.off"), "--scene", path(file),   "-o",
+                                         path("v.npy"), "--finest",       "0.5",     "--coarsest", "2"};
+        command.insert(command.end(), more.begin(), more.end());
+        const Result result = run(command);
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return read(path("v.npy"));
+    };
+    EXPECT_TRUE(values("marble.toml", {}) == values("s.toml", {"--profile", "marble"}));
+}
+
 TEST_F(CliReference, WrongUseIsRefused) {
     expectRefused({"reference", path("ball.off"), "--scene", path("s.toml"), "-o", path("o.exr")}, 2,
                   "needs --gbuffer");

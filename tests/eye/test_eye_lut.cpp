@@ -123,6 +123,23 @@ TEST(EyeLut, MeanIsTheFlux) {
     }
 }
 
+// Texels that hold a large part of all light: their sums must not overflow.
+TEST(EyeLut, AFewTexelsHoldTheSameLight) {
+    PelEyeLutDesc desc = descOf(pelEyeDefaults());
+    const auto mean = [&](const std::vector<float>& texels, uint32_t z) {
+        const size_t all = size_t(desc.width) * desc.height;
+        double sum = 0;
+        for (size_t i = 0; i < all; ++i) sum += texels[3 * (z * all + i)];
+        return sum / double(all);
+    };
+    desc.depth = 2;
+    const double known = mean(tableOf(desc), 0);
+    for (uint32_t side : {32u, 8u, 4u, 2u}) {
+        desc.width = desc.height = side;
+        EXPECT_NEAR(mean(tableOf(desc), 0) / known, 1, 0.1) << side;
+    }
+}
+
 TEST(EyeLut, ScattersByTheProfile) {
     PelEyeLutDesc desc = descOf(pelEyeDefaults());
     const std::vector<float> plain = tableOf(desc);

@@ -99,6 +99,30 @@ TEST(Gltf, NodesMoveTurnScaleAndMirror) {
     for (size_t v = 0; v < 8; ++v) EXPECT_NEAR(s.mesh.normals[3 * v + 2], 1, 1e-6) << v;
 }
 
+// However a node is turned, its triangles face the way of its normals, mirrored or not.
+TEST(Gltf, TurnedAndMirroredFacesKeepTheirFront) {
+    for (const char* turn :
+         {"0,0,0,1", "0,0,0.70710678,0.70710678", "0,0.70710678,0,0.70710678", "0.70710678,0,0,0.70710678",
+          "0.5,0.5,0.5,0.5", "0.18257,0.36515,0.54772,0.73030"})
+        for (const char* scale : {"1,1,1", "-1,1,1", "1,-2,1", "1,1,-3", "-1,-1,-1"}) {
+            const MeshData m = decoded(square("", "[{\"mesh\":0,\"rotation\":[" + std::string(turn) +
+                                                      "],\"scale\":[" + scale + "]}]"))
+                                   .mesh;
+            for (size_t t = 0; t < m.triangles.size(); t += 3) {
+                const float* p[3];
+                for (size_t k = 0; k < 3; ++k) p[k] = &m.positions[3 * m.triangles[t + k]];
+                double facing = 0;
+                for (size_t c = 0; c < 3; ++c) {
+                    const size_t d = (c + 1) % 3, e = (c + 2) % 3;
+                    facing +=
+                        m.normals[3 * m.triangles[t] + c] * (double(p[1][d] - p[0][d]) * (p[2][e] - p[0][e]) -
+                                                             double(p[1][e] - p[0][e]) * (p[2][d] - p[0][d]));
+                }
+                EXPECT_GT(facing, 0.9) << turn << " times " << scale;
+            }
+        }
+}
+
 TEST(Gltf, StripsFansAndNoIndices) {
     const auto triangles = [](const char* mode) {
         return decoded(square(std::string(",\"mode\":") + mode)).mesh.triangles;
