@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "lanes.h"
 #include "shade_scene.h"
 #include "tolerances.h"
 
@@ -47,6 +48,20 @@ TEST(ShadeIrradiance, UnscatteredIsLambert) {
         other.options.scratchBudget = 3 * (2 * 800 + 211 * 8) * sizeof(float);
         EXPECT_EQ(shade(device(), other, tables(), &stats), result);
         EXPECT_GT(stats.bands, 4u);
+    }
+}
+
+// The last pixel of a tile too, where a vector is one pixel.
+TEST(ShadeIrradiance, UnscatteredIsLambertWithAnyLanes) {
+    for (int lanes : {1, 8, 16}) {
+        const pellucid::Device narrow = deviceOf(lanes);
+        const Tables none = makeTables(narrow, 8, 8);
+        Frame f = lambert(4);
+        setScattering(f, PEL_SCATTERING_NONE);
+        f.options.countPixels = 1;
+        PelShaderStats stats = pelShaderStatsDefaults();
+        EXPECT_LT(worstError(f, shade(narrow, f, none, &stats)), tolerance::shadeSum) << lanes;
+        EXPECT_EQ(stats.pixelsIrradiance, stats.pixelsShaded) << lanes;
     }
 }
 
