@@ -36,7 +36,7 @@ bool slotIsRead(const ShaderState& state, int slot, uint32_t features) {
 }
 
 bool usesCells(const ShaderState& state, uint32_t features) {
-    return features & PEL_FEATURE_THICKNESS_TAPS && !mapCells(state).empty();
+    return features & PEL_FEATURE_THICKNESS_TAPS && mayHaveCells(state);
 }
 
 }  // namespace

@@ -110,9 +110,17 @@ float tapScale(const ShaderLight& light, uint32_t cascade, int axis) {
                  uvPerLength(light.params.worldToShadow, axis));
 }
 
+bool mayHaveCells(const ShaderState& state) {
+    if (state.options.everyPixel || state.options.rotateTaps || state.images[PEL_SLOT_THICKNESS])
+        return false;
+    return !tapDisks(state).empty() && std::ranges::any_of(state.lights, [](const ShaderLight& light) {
+        return light.images[PEL_LIGHT_SHADOW_MAP] && !isCube(light.params);
+    });
+}
+
 std::vector<MapCells> mapCells(const ShaderState& state) {
     std::vector<MapCells> maps;
-    if (state.options.everyPixel || state.options.rotateTaps || state.images[PEL_SLOT_THICKNESS]) return maps;
+    if (!mayHaveCells(state)) return maps;
     const ImageView& frame = state.images[PEL_SLOT_RADIANCE];
     const uint64_t pixels = uint64_t(frame.width) * frame.height, most = pixels / pixelsPerNode;
     const std::vector<float> disks = tapDisks(state);

@@ -179,6 +179,19 @@ TEST(TapCells, AreNotUsedWhereTapsAreAskedForOrNodesWouldBeMany) {
     EXPECT_EQ(shadeForms(f, {light}).thickness, shadeForms(interpolated(f), {light}).thickness);
 }
 
+// A viewer makes small pictures while something moves: it must not wait for a compiler then.
+TEST(TapCells, AnotherSizeOfTheFrameNeedsNoOtherProgram) {
+    const FormLight light = lightOf(bumps(1, false));
+    const Frame large = interpolated(cellFrame(1));
+    Frame small = interpolated(formFrame(1));
+    for (auto& [id, m] : small.materials) m = large.materials.at(id);
+    const Seen cells = shadeForms(large, {light});
+    const uint32_t built = device().stats().programsBuilt;
+    const Seen taps = shadeForms(small, {light});
+    EXPECT_LT(taps.stats.launches, cells.stats.launches) << "too few pixels for nodes";
+    EXPECT_EQ(device().stats().programsBuilt, built);
+}
+
 TEST(TapCells, BadTexelsAreNoThicknessAndBadPixelsStayAlone) {
     const MapLight from = bumps(5, false);
     FormLight light = lightOf(from);

@@ -154,7 +154,7 @@ def act_and_compare(page, act):
     before = picture(page)
     count = page.execute_script("return window.pelFrames")
     act()
-    wait_for(lambda: page.execute_script("return window.pelFrames") > count, "another picture", 30)
+    wait_for(lambda: page.execute_script("return window.pelFrames") > count, "another picture", 60)
     return before, picture(page)
 
 
@@ -227,7 +227,7 @@ def changes_by(page, name):
         count = page.execute_script("return window.pelFrames")
         click_slider(page, name, share)
         with contextlib.suppress(AssertionError):  # it may have been there already
-            wait_for(lambda: page.execute_script("return window.pelFrames") > count, f"a picture by {name}", 20)
+            wait_for(lambda: page.execute_script("return window.pelFrames") > count, f"a picture by {name}", 60)
         seen.append(picture(page))
     return not np.array_equal(*seen)
 
