@@ -52,8 +52,8 @@ void run(const Arguments& a) {
 }  // namespace
 
 void addWarmUp(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("warm-up", "Build OpenCL programs before their first use, for the driver's cache");
+    CLI::App* command = app.add_subcommand(
+        "warm-up", "Build OpenCL programs before their first use, for the driver's cache and as binaries");
     command->alias("prefill");  // its first name
     auto a = std::make_shared<Arguments>();
     command->add_option("scene", a->scenes, "scene files (TOML) that `pellucid shade` will be given");

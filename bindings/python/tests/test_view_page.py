@@ -227,7 +227,7 @@ def changes_by(page, name):
         count = page.execute_script("return window.pelFrames")
         click_slider(page, name, share)
         with contextlib.suppress(AssertionError):  # it may have been there already
-            wait_for(lambda: page.execute_script("return window.pelFrames") > count, f"a picture by {name}", 60)
+            wait_for(lambda: page.execute_script("return window.pelFrames") > count, f"a picture by {name}", 30)
         seen.append(picture(page))
     return not np.array_equal(*seen)
 

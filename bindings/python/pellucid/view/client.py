@@ -4,7 +4,7 @@ PICTURE = """
 <div id="pel-view" style="position:relative;width:100%;height:100%;background:#111;overflow:hidden">
 <canvas id="pel-canvas" style="width:100%;height:100%;display:block;cursor:grab;touch-action:none"></canvas>
 <div id="pel-error" style="display:none;position:absolute;left:1rem;right:1rem;top:1rem;padding:.6rem 1rem;background:#7f1d1d;color:#fff;border-radius:.4rem;white-space:pre-wrap"><span id="pel-message"></span> <button id="pel-again" style="margin-left:1rem;padding:.2rem .6rem;background:#fff;color:#7f1d1d;border-radius:.3rem">Open the device again</button></div>
-<div id="pel-busy" style="display:none;position:absolute;left:50%;top:45%;transform:translateX(-50%);padding:.5rem 1rem;background:#222c;color:#ddd;border-radius:.4rem"></div>
+<div id="pel-busy" style="display:none;pointer-events:none;position:absolute;left:50%;top:45%;transform:translateX(-50%);padding:.5rem 1rem;background:#222c;color:#ddd;border-radius:.4rem"></div>
 <div id="pel-help" style="position:absolute;left:1rem;bottom:.6rem;color:#bbb;font-size:.8rem">drag: turn &middot; shift or right button: move &middot; wheel: nearer &middot; ctrl: key light</div>
 <div id="pel-rate" style="position:absolute;right:1rem;bottom:.6rem;color:#bbb;font-size:.8rem"></div>
 </div>"""
