@@ -49,8 +49,8 @@ class CliEye : public shade_files::Shade {
 }  // namespace
 
 TEST_F(CliEye, TablesAreWrittenAndReadBack) {
-    const Result made =
-        run({"lut", "eye", "-o", path("e.exr"), "--size", "32x16x8", "--chamber-depth", "3.4", "--json"});
+    const Result made = run({"lut", "eye", "-o", path("e.exr"), "--size", "32x16x8", "--chamber-depth", "3.4",
+                             "--iris-radius", "5.5", "--json"});
     ASSERT_EQ(made.exitCode, 0) << made.err;
     EXPECT_EQ(made.json()["texels"], 32 * 16 * 8);
     const Lut lut = io::readLut(Device(""), path("e.exr"));
@@ -58,9 +58,10 @@ TEST_F(CliEye, TablesAreWrittenAndReadBack) {
     EXPECT_EQ(lut.info().eye.depth, 8u);
     EXPECT_EQ(lut.info().eye.height, 16u);
     EXPECT_EQ(lut.info().eye.chamberDepth, 3.4f);
+    EXPECT_EQ(lut.info().eye.irisRadius, 5.5f);
     EXPECT_EQ(std::string(lut.info().profile), "none");
     PelEyeLutDesc desc = pelEyeLutDescDefaults();
-    desc.width = 32, desc.height = 16, desc.depth = 8, desc.chamberDepth = 3.4f;
+    desc.width = 32, desc.height = 16, desc.depth = 8, desc.chamberDepth = 3.4f, desc.irisRadius = 5.5f;
     EXPECT_EQ(lut.read<float>(PEL_LUT_FLOAT), Lut(Device(""), desc).read<float>(PEL_LUT_FLOAT));
     ASSERT_EQ(
         run({"lut", "eye", "-o", path("h.exr"), "--size", "8x8x4", "--encoding", "half", "--profile", "skin"}).exitCode,

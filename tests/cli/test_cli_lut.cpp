@@ -174,6 +174,8 @@ TEST_F(CliLut, LutFilesCarryWhatTheyAre) {
               0);
     const PelLutInfo info = io::readLut(Device(""), path("a.exr")).info();
     EXPECT_EQ(info.curvature.form, PEL_FORM_SPHERE);
+    ASSERT_EQ(run({"lut", "curvature", "-o", path("r.exr"), "--size", "8x6", "--form", "arc"}).exitCode, 0);
+    EXPECT_EQ(io::readLut(Device(""), path("r.exr")).info().curvature.form, PEL_FORM_ARC);
     EXPECT_EQ(info.curvature.axis, PEL_AXIS_ROOT);
     EXPECT_STREQ(info.profile, "ketchup");
     ASSERT_EQ(run({"lut", "specular", "-o", path("s.exr"), "--size", "8x6"}).exitCode, 0);

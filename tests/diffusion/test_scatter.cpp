@@ -305,6 +305,26 @@ TEST(Scatter, DepthIsAsGoodAsPositions) {
         difference(p, e.readAll<float>(), [&](size_t k, int c) { return byPosition.scattered[3 * k + c]; });
     EXPECT_GT(byPosition.stats.pixelsTapped, 0u);
     EXPECT_LT(d.most, tolerance::scatterUnits);
+    // By taps as well.
+    for (const PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE}) {
+        PelScatterControls controls = pelScatterControlsDefaults();
+        controls.scattering = method;
+        controls.scatterTaps = 16;
+        scatter.setControls(1, controls);
+        const Buffer lit(device(), p.irradiance), x(device(), p.positions), a(device(), p.irradiance),
+            b(device(), p.irradiance);
+        const auto rgb = [&](const Buffer& of) {
+            return pellucid::imageDesc(of, PEL_FORMAT_RGB32F, side, side);
+        };
+        const PelImageDesc positions = rgb(x);
+        scatter.execute(p.params, rgb(lit), &positions, nullptr, &ids, rgb(a));
+        scatter.execute(p.params, rgb(lit), nullptr, &depths, &ids, rgb(b));
+        const std::vector<float> known = a.readAll<float>();
+        EXPECT_LT(difference(p, b.readAll<float>(), [&](size_t k, int c) { return known[3 * k + c]; }).most,
+                  tolerance::scatterUnits)
+            << int(method);
+        EXPECT_GT(difference(p, p.irradiance, [&](size_t k, int c) { return known[3 * k + c]; }).most, 0.02);
+    }
 }
 
 TEST(Scatter, SaysWhatIsWrong) {
