@@ -35,8 +35,7 @@ class Device final : public Object {
     // `destination` and `source` are not NULL. Blocking calls return when the bytes are copied.
     void read(cl_mem memory, size_t offset, size_t bytes, void* destination, bool blocking);
     void write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking);
-    // The first bytes of memory that nothing queued uses, at once: on another queue, and where memory is shared without a
-    // transfer.
+    // The first bytes of memory that nothing queued uses, at once: on another queue.
     void readAside(cl_mem memory, size_t bytes, void* destination) {
         exchange(memory, bytes, nullptr, destination);
     }

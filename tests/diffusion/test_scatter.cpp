@@ -114,7 +114,7 @@ TEST(Scatter, ABallIsNearerToItsClosedFormThanLambert) {
         }
     }
     for (int c = 0; c < 3; ++c) {
-        RecordProperty(("rmse" + std::to_string(c)).c_str(), std::to_string(std::sqrt(error[c] / count)));
+        RecordProperty("rmse" + std::to_string(c), std::to_string(std::sqrt(error[c] / count)));
         EXPECT_LT(std::sqrt(error[c] / count), tolerance::scatterBall);
         EXPECT_LT(error[c], lambert[c]);
     }

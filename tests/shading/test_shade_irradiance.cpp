@@ -56,7 +56,7 @@ TEST(ShadeIrradiance, UnscatteredIsLambertWithAnyLanes) {
     for (int lanes : {1, 8, 16}) {
         const pellucid::Device narrow = deviceOf(lanes);
         const Tables none = makeTables(narrow, 8, 8);
-        Frame f = lambert(4);
+        Frame f = lambert(1);
         setScattering(f, PEL_SCATTERING_NONE);
         f.options.countPixels = 1;
         PelShaderStats stats = pelShaderStatsDefaults();
