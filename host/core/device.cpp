@@ -133,14 +133,27 @@ void Device::write(cl_mem memory, size_t offset, size_t bytes, const void* sourc
 void Device::exchange(cl_mem memory, size_t bytes, const void* source, void* destination) {
     if (bytes == 0) return;
     const cl::Queue queue = anotherQueue();
-    // Not mapped: PoCL confuses mappings of one buffer that several threads make at the same time.
-    if (source)
-        cl::check(clEnqueueWriteBuffer(queue.get(), memory, CL_TRUE, 0, bytes, source, 0, nullptr, nullptr),
-                  "clEnqueueWriteBuffer");
-    else
-        cl::check(clEnqueueReadBuffer(queue.get(), memory, CL_TRUE, 0, bytes, destination, 0, nullptr, nullptr),
-                  "clEnqueueReadBuffer");
-    countTransfer(source ? bytes : 0, source ? 0 : bytes);
+    if (!info_.sharedMemory) {
+        if (source)
+            cl::check(clEnqueueWriteBuffer(queue.get(), memory, CL_TRUE, 0, bytes, source, 0, nullptr, nullptr),
+                      "clEnqueueWriteBuffer");
+        else
+            cl::check(
+                clEnqueueReadBuffer(queue.get(), memory, CL_TRUE, 0, bytes, destination, 0, nullptr, nullptr),
+                "clEnqueueReadBuffer");
+        return countTransfer(source ? bytes : 0, source ? 0 : bytes);
+    }
+    // One at a time: PoCL confuses mappings of one buffer that several threads make.
+    static std::mutex mapping;
+    const std::lock_guard lock(mapping);
+    cl_int code = CL_SUCCESS;
+    void* const at = clEnqueueMapBuffer(queue.get(), memory, CL_TRUE, source ? CL_MAP_WRITE : CL_MAP_READ, 0,
+                                        bytes, 0, nullptr, nullptr, &code);
+    cl::check(code, "clEnqueueMapBuffer");
+    std::memcpy(source ? at : destination, source ? source : at, bytes);
+    cl::check(clEnqueueUnmapMemObject(queue.get(), memory, at, 0, nullptr, nullptr),
+              "clEnqueueUnmapMemObject");
+    cl::check(clFinish(queue.get()), "clFinish");
 }
 
 void Device::fill(cl_mem memory, size_t offset, size_t bytes, uint32_t word) {
