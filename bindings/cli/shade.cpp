@@ -41,14 +41,6 @@ std::vector<std::pair<PelImageSlot, std::string>> outputFiles(const Arguments& a
     return files;
 }
 
-// The channels of the G-buffer that the scene names.
-std::vector<std::string> channelsOf(const io::SceneFile& scene) {
-    std::vector<std::string> names;
-    for (const auto& slot : scene.channels) names.insert(names.end(), slot.begin(), slot.end());
-    for (const io::SceneLight& light : scene.lights) names.push_back(light.wideShadow);
-    return names;
-}
-
 struct Inputs {
     io::Image gbuffer;  // without pixels if there is a frame
     std::optional<io::DeviceImages> images;
@@ -77,7 +69,8 @@ Inputs frameOf(const std::string& gbuffer, const Device& device, const io::Scene
         return inputs;
     }
     inputs.images.reset();
-    inputs.gbuffer = io::readChannels(gbuffer, channelsOf(scene));
+    const std::set<std::string> names = io::namesOf(io::gbufferGroups(scene));
+    inputs.gbuffer = io::readChannels(gbuffer, {names.begin(), names.end()});
     inputs.frame.emplace(device, inputs.gbuffer, scene, luts, io::readShadowMaps(scene), options, outputs);
     return inputs;
 }

@@ -3,24 +3,6 @@
 namespace pellucid::io {
 namespace {
 
-constexpr PelFormat formats[] = {PEL_FORMAT_R32F, PEL_FORMAT_RG32F, PEL_FORMAT_RGB32F, PEL_FORMAT_RGBA32F};
-
-// Unmaps what it mapped.
-class Mapped {
-  public:
-    explicit Mapped(const Buffer& buffer) : buffer_(buffer), at_(static_cast<float*>(buffer.map())) {}
-    Mapped(Mapped&& other) noexcept
-        : buffer_(std::move(other.buffer_)), at_(std::exchange(other.at_, nullptr)) {}
-    ~Mapped() {
-        if (at_) pelBufferUnmap(buffer_.get());
-    }
-    float* at() const { return at_; }
-
-  private:
-    Buffer buffer_;
-    float* at_;
-};
-
 // The full names of those channels; empty if one is not there. "" is the only channel.
 ChannelGroup fullNames(const Image& image, const ChannelGroup& group) {
     ChannelGroup names;
@@ -43,17 +25,17 @@ Image DeviceImages::read(const std::string& path, const std::set<ChannelGroup>& 
     };
     std::vector<Place> places;
     std::vector<Copy> copies;  // of channels that are in several groups
-    std::vector<Mapped> mapped;
+    std::vector<MappedBuffer> mapped;
     std::map<ChannelGroup, OwnedImage> made;
     Image read = readChannelsTo(path, [&](const Image& image) {
         places.resize(image.channels.size());
         for (const ChannelGroup& group : groups) {
             const ChannelGroup names = fullNames(image, group);
-            if (names.empty() || names.size() > std::size(formats) || made.contains(names)) continue;
+            if (names.empty() || names.size() > std::size(groupFormats) || made.contains(names)) continue;
             Buffer buffer(device_, names.size() * image.pixelCount() * sizeof(float));
             float* const first = mapped.emplace_back(buffer).at();
-            made.emplace(names, imageDesc(std::move(buffer), formats[names.size() - 1], uint32_t(image.width),
-                                          uint32_t(image.height)));
+            made.emplace(names, imageDesc(std::move(buffer), groupFormats[names.size() - 1],
+                                          uint32_t(image.width), uint32_t(image.height)));
             for (size_t k = 0; k < names.size(); ++k) {
                 const auto channel = size_t(&image.channel(names[k]) - image.channels.data());
                 const Place to{first + k, names.size()};
@@ -88,23 +70,18 @@ std::set<ChannelGroup> gbufferGroups(const SceneFile& scene) {
     return groups;
 }
 
+std::set<std::string> namesOf(const std::set<ChannelGroup>& groups) {
+    std::set<std::string> names;
+    for (const ChannelGroup& group : groups) names.insert(group.begin(), group.end());
+    return names;
+}
+
 PixelValues::PixelValues(const Image& image, const ChannelGroup& channels, const DeviceImages* images) {
     if (const OwnedImage* known = images ? images->find(image, channels) : nullptr) {
         pelBufferRetain((*known)->buffer);
-        mapped_ = (*known)->buffer;
-        void* at = nullptr;
-        check(pelBufferMap(mapped_, &at));
-        at_ = static_cast<const float*>(at);
-        return;
-    }
-    own_ = image.interleaved(channels);
-    at_ = own_.data();
-}
-
-PixelValues::~PixelValues() {
-    if (!mapped_) return;
-    pelBufferUnmap(mapped_);
-    pelBufferRelease(mapped_);
+        mapped_.emplace(Buffer((*known)->buffer));
+    } else
+        own_ = image.interleaved(channels);
 }
 
 }  // namespace pellucid::io

@@ -1,6 +1,7 @@
 // Channels of image files in a device's memory, read straight into it: nothing is copied on the way.
 #pragma once
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -14,6 +15,26 @@ namespace pellucid::io {
 
 // Channels that are read together: they become one image of as many components. "" is a file's only channel.
 using ChannelGroup = std::vector<std::string>;
+
+// What such an image holds, by its number of components less one.
+inline constexpr PelFormat groupFormats[] = {PEL_FORMAT_R32F, PEL_FORMAT_RG32F, PEL_FORMAT_RGB32F,
+                                             PEL_FORMAT_RGBA32F};
+
+// A buffer in the host's hands until this goes.
+class MappedBuffer {
+  public:
+    explicit MappedBuffer(Buffer buffer)
+        : buffer_(std::move(buffer)), at_(static_cast<float*>(buffer_.map())) {}
+    MappedBuffer(MappedBuffer&& other) noexcept = default;
+    ~MappedBuffer() {
+        if (buffer_) pelBufferUnmap(buffer_.get());
+    }
+    float* at() const { return at_; }
+
+  private:
+    Buffer buffer_;
+    float* at_;
+};
 
 class DeviceImages {
   public:
@@ -32,20 +53,18 @@ class DeviceImages {
 
 // What a scene reads from its G-buffer.
 std::set<ChannelGroup> gbufferGroups(const SceneFile& scene);
+// The names in all groups; "" among them where a file's only channel is.
+std::set<std::string> namesOf(const std::set<ChannelGroup>& groups);
 
 // Channels of an image interleaved, wherever their pixels are.
 class PixelValues {
   public:
     PixelValues(const Image& image, const ChannelGroup& channels, const DeviceImages* images);
-    PixelValues(const PixelValues&) = delete;
-    PixelValues& operator=(const PixelValues&) = delete;
-    ~PixelValues();
-    const float* at() const { return at_; }
+    const float* at() const { return mapped_ ? mapped_->at() : own_.data(); }
 
   private:
     std::vector<float> own_;
-    PelBuffer mapped_ = nullptr;
-    const float* at_ = nullptr;
+    std::optional<MappedBuffer> mapped_;
 };
 
 }  // namespace pellucid::io

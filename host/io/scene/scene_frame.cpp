@@ -69,10 +69,7 @@ std::map<std::string, ShadowMapFile> shadowMapsOf(const SceneFile& scene) {
         if (light.shadowMapFile.empty()) continue;
         const auto add = [&](const std::string& file, const std::string& channel, const std::string& second) {
             ShadowMapFile& map = files[file.empty() ? light.shadowMapFile : file];
-            map.whole |= channel.empty();
             map.cube |= light.light.shadowProjection >= PEL_SHADOW_CUBE;
-            for (const std::string& name : {channel, second})
-                if (!name.empty()) map.channels.insert(name);
             map.groups.insert(second.empty() ? ChannelGroup{channel} : ChannelGroup{channel, second});
         };
         add(light.shadowMapFile, light.shadowMapChannel, light.secondChannel);
@@ -84,9 +81,10 @@ std::map<std::string, ShadowMapFile> shadowMapsOf(const SceneFile& scene) {
 
 ShadowMaps readShadowMaps(const SceneFile& scene) {
     ShadowMaps maps;
-    for (const auto& [file, map] : shadowMapsOf(scene))
-        maps[file] =
-            map.whole ? readImage(file) : readChannels(file, {map.channels.begin(), map.channels.end()});
+    for (const auto& [file, map] : shadowMapsOf(scene)) {
+        const std::set<std::string> names = namesOf(map.groups);
+        maps[file] = names.contains("") ? readImage(file) : readChannels(file, {names.begin(), names.end()});
+    }
     return maps;
 }
 
@@ -349,15 +347,12 @@ PelImageDesc SceneFrame::measureCurvature(const SceneFile& scene) {
 
 PelImageDesc SceneFrame::upload(const Image& image, const std::vector<std::string>& channels,
                                 std::vector<Buffer>& to) {
-    static constexpr PelFormat formats[] = {PEL_FORMAT_R32F, PEL_FORMAT_RG32F, PEL_FORMAT_RGB32F,
-                                            PEL_FORMAT_RGBA32F};
     if (deviceImages_)
         if (const OwnedImage* known = deviceImages_->find(image, channels)) return **known;
     for (const std::string& name : channels) image.channel(name);  // an error before memory is taken
     const Buffer& buffer = to.emplace_back(device_, channels.size() * image.pixelCount() * sizeof(float));
-    image.interleave(channels, static_cast<float*>(buffer.map()));
-    buffer.unmap();
-    return imageDesc(buffer, formats[channels.size() - 1], uint32_t(image.width), uint32_t(image.height));
+    image.interleave(channels, MappedBuffer(buffer).at());
+    return imageDesc(buffer, groupFormats[channels.size() - 1], uint32_t(image.width), uint32_t(image.height));
 }
 
 void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance) {

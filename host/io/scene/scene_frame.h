@@ -33,9 +33,8 @@ using ShadowMaps = std::map<std::string, Image>;
 
 // What a scene reads from the files of its shadow maps.
 struct ShadowMapFile {
-    std::set<std::string> channels;
-    std::set<ChannelGroup> groups;     // the same, as they are read together
-    bool whole = false, cube = false;  // whole: a light names no channel
+    std::set<ChannelGroup> groups;  // {""}: a light names no channel
+    bool cube = false;
 };
 std::map<std::string, ShadowMapFile> shadowMapsOf(const SceneFile& scene);
 ShadowMaps readShadowMaps(const SceneFile& scene);

@@ -27,8 +27,8 @@ Image blankGBuffer(const SceneFile& scene) {
 ShadowMaps blankMaps(const SceneFile& scene) {
     ShadowMaps maps;
     for (const auto& [file, map] : shadowMapsOf(scene)) {
-        std::set<std::string> names = map.channels;
-        if (map.whole) names.insert("Z");
+        std::set<std::string> names = namesOf(map.groups);
+        if (names.erase("")) names.insert("Z");
         maps[file] = blank(names, map.cube ? 6 * 16 : 2);
     }
     return maps;
