@@ -117,15 +117,18 @@ void Device::countTransfer(size_t toDevice, size_t toHost) {
     stats_.bytesToHost += toHost;
 }
 
-void Device::read(cl_mem memory, size_t offset, size_t bytes, void* destination, bool blocking) {
-    cl::check(
-        clEnqueueReadBuffer(queue_.get(), memory, blocking, offset, bytes, destination, 0, nullptr, nullptr),
-        "clEnqueueReadBuffer");
+void Device::read(cl_mem memory, size_t offset, size_t bytes, void* destination, bool blocking,
+                  cl_command_queue queue) {
+    cl::check(clEnqueueReadBuffer(queue ? queue : queue_.get(), memory, blocking, offset, bytes, destination,
+                                  0, nullptr, nullptr),
+              "clEnqueueReadBuffer");
     countTransfer(0, bytes);
 }
 
-void Device::write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking) {
-    cl::check(clEnqueueWriteBuffer(queue_.get(), memory, blocking, offset, bytes, source, 0, nullptr, nullptr),
+void Device::write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking,
+                   cl_command_queue queue) {
+    cl::check(clEnqueueWriteBuffer(queue ? queue : queue_.get(), memory, blocking, offset, bytes, source, 0,
+                                   nullptr, nullptr),
               "clEnqueueWriteBuffer");
     countTransfer(bytes, 0);
 }
@@ -133,16 +136,9 @@ void Device::write(cl_mem memory, size_t offset, size_t bytes, const void* sourc
 void Device::exchange(cl_mem memory, size_t bytes, const void* source, void* destination) {
     if (bytes == 0) return;
     const cl::Queue queue = anotherQueue();
-    if (!info_.sharedMemory) {
-        if (source)
-            cl::check(clEnqueueWriteBuffer(queue.get(), memory, CL_TRUE, 0, bytes, source, 0, nullptr, nullptr),
-                      "clEnqueueWriteBuffer");
-        else
-            cl::check(
-                clEnqueueReadBuffer(queue.get(), memory, CL_TRUE, 0, bytes, destination, 0, nullptr, nullptr),
-                "clEnqueueReadBuffer");
-        return countTransfer(source ? bytes : 0, source ? 0 : bytes);
-    }
+    if (!info_.sharedMemory)
+        return source ? write(memory, 0, bytes, source, true, queue.get())
+                      : read(memory, 0, bytes, destination, true, queue.get());
     // One at a time: PoCL confuses mappings of one buffer that several threads make.
     static std::mutex mapping;
     const std::lock_guard lock(mapping);

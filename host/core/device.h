@@ -33,9 +33,12 @@ class Device final : public Object {
     cl::Memory allocateZeros(size_t bytes);
     void countTransfer(size_t toDevice, size_t toHost);
     // `destination` and `source` are not NULL. Blocking calls return when the bytes are copied.
-    void read(cl_mem memory, size_t offset, size_t bytes, void* destination, bool blocking);
-    void write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking);
-    // The first bytes of memory that nothing queued uses, at once: on another queue.
+    void read(cl_mem memory, size_t offset, size_t bytes, void* destination, bool blocking,
+              cl_command_queue queue = nullptr);
+    void write(cl_mem memory, size_t offset, size_t bytes, const void* source, bool blocking,
+               cl_command_queue queue = nullptr);
+    // The first bytes of memory that nothing queued uses, at once: on another queue, and where memory is shared without a
+    // transfer.
     void readAside(cl_mem memory, size_t bytes, void* destination) {
         exchange(memory, bytes, nullptr, destination);
     }

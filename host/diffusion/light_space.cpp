@@ -81,10 +81,7 @@ void LightSpace::describeLevels() {
     }
     const size_t seenBytes = (size_t(seen) + 3) / 4 * 4;
     if (seenBytes != seenBytes_) seen_ = device_->allocate(seenBytes), seenBytes_ = seenBytes;
-    const size_t mapBytes = now.size() * sizeof now[0];
-    // A new buffer, because an execution that is still queued keeps reading the old one.
-    if (!mapMemory_ || now.size() != sent_.size() || std::memcmp(now.data(), sent_.data(), mapBytes))
-        mapMemory_ = device_->allocate(mapBytes, now.data());
+    mapUpload_.update(*device_, now.data(), now.size() * sizeof now[0]);
     sent_ = std::move(now);
 }
 
@@ -146,7 +143,7 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
     for (uint32_t k = 0; k < maps_.size(); ++k) {
         cl::Launch seen(screen.program, "light_seen");
         seen.arg(screen.frame).arg(memory(images.positions ? images.positions : images.depth));
-        seen.arg(memory(images.ids)).arg(mapMemory_).arg(cl_uint(k)).arg(memory(maps_[k].image));
+        seen.arg(memory(images.ids)).arg(mapUpload_.memory()).arg(cl_uint(k)).arg(memory(maps_[k].image));
         seen.arg(screen.pyramid).arg(seen_);
         launch(seen, cl::folded(size_t((screen.width + lanes - 1) / lanes) * ((screen.height + 1) / 2),
                                 PEL_DIFFUSION_GROUP));
@@ -154,12 +151,12 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
     for (uint32_t k = 0; k < maps_.size(); ++k) {
         const PelLightMap& map = maps_[k].constants;
         cl::Launch texels(screen.program, "light_texels");
-        texels.arg(mapMemory_).arg(cl_uint(k)).arg(memory(maps_[k].image)).arg(seen_);
+        texels.arg(mapUpload_.memory()).arg(cl_uint(k)).arg(memory(maps_[k].image)).arg(seen_);
         texels.arg(cells_[0]).arg(cells_[1]).arg(pyramid_);
         launch(texels, rows(map.level[0]));
         for (uint32_t level = 1; level < map.levels; ++level) {
             cl::Launch reduce(screen.program, "light_reduce");
-            reduce.arg(mapMemory_).arg(cl_uint(k)).arg(cl_uint(level));
+            reduce.arg(mapUpload_.memory()).arg(cl_uint(k)).arg(cl_uint(level));
             reduce.arg(cells_[0]).arg(cells_[1]).arg(pyramid_);
             launch(reduce, rows(map.level[level]));
         }
@@ -168,7 +165,7 @@ void LightSpace::enqueuePyramids(const ScatterImages& images, const ScreenMemory
     cellsKnown_ = true;
     cl::Launch classify(screen.program, "light_classify");
     classify.arg(screen.frame).arg(screen.pyramid).arg(screen.tables).arg(screen.nodes).arg(screen.tiles);
-    classify.arg(mapMemory_).arg(cl_uint(maps_.size())).arg(pyramid_).arg(parts_).arg(counters_);
+    classify.arg(mapUpload_.memory()).arg(cl_uint(maps_.size())).arg(pyramid_).arg(parts_).arg(counters_);
     launch(classify, {{screen.tileCount, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
 }
 
@@ -180,7 +177,7 @@ void LightSpace::enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event
         .arg(screen.nodes)
         .arg(screen.tiles)
         .arg(screen.sums);
-    hidden.arg(parts_).arg(mapMemory_).arg(cl_uint(maps_.size())).arg(pyramid_).arg(hiddenMemory_).arg(counters_);
+    hidden.arg(parts_).arg(mapUpload_.memory()).arg(cl_uint(maps_.size())).arg(pyramid_).arg(hiddenMemory_).arg(counters_);
     const size_t groups = std::min<size_t>(screen.tileCount, 64 * size_t(device_->info().computeUnits));
     events.push_back(
         device_->launch(hidden, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}}));
@@ -190,7 +187,7 @@ void LightSpace::enqueueSums(const ScatterImages& images, const ScreenMemory& sc
                              std::vector<cl::Event>& events) {
     cl::Launch scatter(screen.program, "scatter_light");
     scatter.arg(screen.frame).arg(screen.pyramid).arg(screen.tables).arg(screen.nodes).arg(parts_);
-    scatter.arg(mapMemory_).arg(cl_uint(maps_.size())).arg(pyramid_).arg(images.out.buffer->memory()).arg(counters_);
+    scatter.arg(mapUpload_.memory()).arg(cl_uint(maps_.size())).arg(pyramid_).arg(images.out.buffer->memory()).arg(counters_);
     const size_t groups = std::min<size_t>(screen.tileCount, 64 * size_t(device_->info().computeUnits));
     events.push_back(
         device_->launch(scatter, {{groups * PEL_DIFFUSION_GROUP, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}}));

@@ -2,6 +2,7 @@
 #pragma once
 #include "diffusion/light_maps.h"
 #include "diffusion/scatter_images.h"
+#include "shading/cached_upload.h"
 
 namespace pel {
 
@@ -54,7 +55,8 @@ class LightSpace {
     bool empty_ = true, hidden_ = true;
     bool cellsKnown_ = false;  // whether cells_[0] says what the pyramid holds
     uint32_t mapFormat_ = 0, content_ = 0;
-    cl::Memory mapMemory_, pyramid_, seen_, parts_, hiddenMemory_, counters_;
+    CachedUpload mapUpload_;
+    cl::Memory pyramid_, seen_, parts_, hiddenMemory_, counters_;
     cl::Memory cells_[2];  // which have flux: before this frame, now
     size_t pyramidBytes_ = 0, seenBytes_ = 0, partBytes_ = 0, hiddenBytes_ = 0, cellBytes_ = 0;
 };

@@ -1,8 +1,6 @@
 // A structure that kernels read, on the device; sent only where it changed.
 #pragma once
-#include <cstring>
-
-#include "core/device.h"
+#include "shading/cached_upload.h"
 
 namespace pel {
 
@@ -10,16 +8,14 @@ template <class T>
 class SentConstants {
   public:
     void send(Device& device, const T& value) {
-        // A new buffer, because an execution that is still queued keeps reading the old one.
-        if (!memory_ || std::memcmp(&value, &sent_, sizeof value))
-            memory_ = device.allocate(sizeof value, &value);
+        upload_.update(device, &value, sizeof value);
         sent_ = value;
     }
-    const cl::Memory& memory() const { return memory_; }
+    const cl::Memory& memory() const { return upload_.memory(); }
     const T& sent() const { return sent_; }
 
   private:
-    cl::Memory memory_;
+    CachedUpload upload_;
     T sent_{};
 };
 
