@@ -76,14 +76,22 @@ std::optional<uint32_t> requestedMathWidth() {
 
 }  // namespace
 
-static std::string platformString(cl_device_id device, cl_platform_info what) {
-    const auto platform = info<cl_platform_id>(device, CL_DEVICE_PLATFORM);
+// What query(size, place, size needed) tells, asked for its size first.
+template <class Query>
+static std::string told(const char* function, const Query& query) {
     size_t size = 0;
-    check(clGetPlatformInfo(platform, what, 0, nullptr, &size), "clGetPlatformInfo");
+    check(query(0, nullptr, &size), function);
     std::string value(size, '\0');
-    check(clGetPlatformInfo(platform, what, size, value.data(), nullptr), "clGetPlatformInfo");
+    check(query(size, value.data(), nullptr), function);
     value.resize(std::strlen(value.c_str()));  // without the NUL
     return value;
+}
+
+static std::string platformString(cl_device_id device, cl_platform_info what) {
+    const auto platform = info<cl_platform_id>(device, CL_DEVICE_PLATFORM);
+    return told("clGetPlatformInfo", [&](size_t room, void* to, size_t* size) {
+        return clGetPlatformInfo(platform, what, room, to, size);
+    });
 }
 
 std::string platformName(cl_device_id device) {
@@ -106,12 +114,9 @@ bool keepsPrograms(cl_device_id device) {
 }
 
 std::string infoString(cl_device_id device, cl_device_info what) {
-    size_t size = 0;
-    check(clGetDeviceInfo(device, what, 0, nullptr, &size), "clGetDeviceInfo");
-    std::string value(size, '\0');
-    check(clGetDeviceInfo(device, what, size, value.data(), nullptr), "clGetDeviceInfo");
-    value.resize(std::strlen(value.c_str()));  // without the NUL
-    return value;
+    return told("clGetDeviceInfo", [&](size_t room, void* to, size_t* size) {
+        return clGetDeviceInfo(device, what, room, to, size);
+    });
 }
 
 std::vector<cl_device_id> allDevices() {
@@ -172,9 +177,8 @@ PelDeviceInfo describe(cl_device_id device, uint32_t index) {
     if (d.mathWidth > 1) quirks += text("explicit ", d.mathWidth, "-wide arithmetic; ");
     if (platform == pocl)
         quirks +=
-            "fixed work-group sizes, short ranges and no global offsets (each is compiled anew); program "
-            "binaries "
-            "by a warm-up alone (own cache); ";
+            "fixed work-group sizes, short ranges and no global offsets (each is compiled anew); "
+            "program binaries by a warm-up alone (own cache); ";
     if (!quirks.empty()) quirks.resize(quirks.size() - 2);
     copyText(d.quirks, quirks);
     return d;

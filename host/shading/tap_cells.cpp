@@ -29,7 +29,11 @@ double uvPerLength(const float (&m)[16], int row) {
 }
 
 uint64_t samplesAlong(uint32_t nodes) {
-    return uint64_t(nodes - 1) * PEL_SAMPLES_PER_CELL + 1 + 2 * PEL_CELLS_PER_RADIUS * PEL_SAMPLES_PER_CELL;
+    return PEL_TAP_SAMPLES(uint64_t(nodes));
+}
+
+bool mayBeSampled(const ShaderLight& light) {
+    return light.images[PEL_LIGHT_SHADOW_MAP] && !isCube(light.params);
 }
 
 class TapCells final : public Pass {
@@ -113,9 +117,7 @@ float tapScale(const ShaderLight& light, uint32_t cascade, int axis) {
 bool mayHaveCells(const ShaderState& state) {
     if (state.options.everyPixel || state.options.rotateTaps || state.images[PEL_SLOT_THICKNESS])
         return false;
-    return !tapDisks(state).empty() && std::ranges::any_of(state.lights, [](const ShaderLight& light) {
-        return light.images[PEL_LIGHT_SHADOW_MAP] && !isCube(light.params);
-    });
+    return !tapDisks(state).empty() && std::ranges::any_of(state.lights, mayBeSampled);
 }
 
 std::vector<MapCells> mapCells(const ShaderState& state) {
@@ -127,7 +129,7 @@ std::vector<MapCells> mapCells(const ShaderState& state) {
     uint64_t floats = 0;
     for (uint32_t i = 0; i < state.lights.size(); ++i) {
         const ShaderLight& light = state.lights[i];
-        if (!light.images[PEL_LIGHT_SHADOW_MAP] || isCube(light.params)) continue;
+        if (!mayBeSampled(light)) continue;
         for (uint32_t k = 0; k < cascadesOf(light); ++k)
             for (uint32_t d = 0; d < disks.size(); ++d) {
                 PelTapCells cells{};

@@ -26,7 +26,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_CELLS_GROUP, 1, 1))) void tap_c
     const uint runs = (cells->columns + PEL_CELLS_RUN - 1) / PEL_CELLS_RUN;
     const uint begin = get_global_id(0) % runs * PEL_CELLS_RUN, j = get_global_id(0) / runs;
     if (j >= cells->rows || !anyTile(frame, list)) return;
-    const uint perRow = (tapSamples(cells->columns) + PEL_WIDTH - 1) / PEL_WIDTH * PEL_WIDTH;
+    const uint perRow = (PEL_TAP_SAMPLES(cells->columns) + PEL_WIDTH - 1) / PEL_WIDTH * PEL_WIDTH;
     const uint end = min(begin + PEL_CELLS_RUN, cells->columns);
     const float perRadius = PEL_CELLS_PER_RADIUS * PEL_SAMPLES_PER_CELL;
     __constant float2* places = poissonDisk(PEL_NODE_TAPS);
@@ -60,9 +60,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_CELLS_GROUP, 1, 1))) void tap_s
     __global const PelTapCells* cells = cellsOf(light, cascade, disk);
     __global const PelShadeImage* image = light->cascades ? &light->cascade[cascade].map : &light->map;
     const float depthRange = light->cascades ? light->cascade[cascade].depthRange : light->depthRange;
-    const uint columns = tapSamples(cells->columns), vectors = (columns + PEL_WIDTH - 1) / PEL_WIDTH;
+    const uint columns = PEL_TAP_SAMPLES(cells->columns), vectors = (columns + PEL_WIDTH - 1) / PEL_WIDTH;
     const uint i = get_global_id(0) % vectors * PEL_WIDTH, j = get_global_id(0) / vectors;
-    if (j >= tapSamples(cells->rows) || !anyTile(frame, list)) return;
+    if (j >= PEL_TAP_SAMPLES(cells->rows) || !anyTile(frame, list)) return;
     const float perRadius = PEL_CELLS_PER_RADIUS * PEL_SAMPLES_PER_CELL;
     const float stepX = (float)image->width / (PEL_SAMPLES_PER_CELL * cells->perUv[0]),
                 stepY = (float)image->height / (PEL_SAMPLES_PER_CELL * cells->perUv[1]);

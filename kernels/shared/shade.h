@@ -110,6 +110,9 @@ typedef struct PelShadeMaterial {
 #define PEL_CELLS_PER_RADIUS 4
 #define PEL_NODE_TAPS 32        // whatever the material asks for, since they cost next to nothing
 #define PEL_SAMPLES_PER_CELL 2  // samples of the map from node to node
+// Samples along an axis with so many nodes: a radius more on either side.
+#define PEL_TAP_SAMPLES(nodes) \
+    (((nodes)-1) * PEL_SAMPLES_PER_CELL + 1 + 2 * PEL_CELLS_PER_RADIUS * PEL_SAMPLES_PER_CELL)
 
 // What the taps of one disk read in one map, at the nodes of a grid (lib/shading/tap_cells.clh). Nodes begin a radius before the
 // map and end a radius behind it.

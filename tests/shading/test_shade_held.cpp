@@ -8,9 +8,9 @@ using fixture::expectReturns;
 
 namespace {
 
+// Of the two that the headers have.
 const Device& own() {
-    static const Device device("");
-    return device;
+    return shade_test::device();
 }
 
 // Commits and executes twice behind the event, with `change` between; the second frame is that of a shader that never waited.
