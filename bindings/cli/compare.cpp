@@ -18,7 +18,7 @@ namespace pellucid::cli {
 namespace {
 
 struct Arguments {
-    std::string a, b, channelsA, channelsB, gbuffer, scene, picture;
+    std::string a, b, secondHalf, channelsA, channelsB, gbuffer, scene, picture;
     float scaleA = 1, scaleB = 1, exposure = 1, maxRmse = INFINITY, unit = 0;
     uint32_t light = 0;
     bool json = false;
@@ -27,7 +27,9 @@ struct Arguments {
 // RGB per pixel, linear.
 struct Rgb {
     int width = 0, height = 0;
-    std::vector<float> values, alpha, irradiance;  // the last two empty when the file has none
+    std::vector<float> values;
+    // Empty unless the file has them. secondHalf: another estimate of `values`, as noisy.
+    std::vector<float> secondHalf, alpha, irradiance, meanCurvature, thickness, meanFreePath;
 };
 
 std::vector<std::string> layerOf(const std::string& layer) {
@@ -55,17 +57,36 @@ Rgb readRgb(const std::string& path, const std::string& layer, float scale) {
         std::vector<std::string> names = layerOf(layer);
         if (layer.empty() && !image.has("R"))
             names.assign(3, image.channels.size() == 1 ? image.channels[0].name : "R");
+        if (layer.empty() && image.has("First.R") && image.has("Second.R")) {
+            names = layerOf("First");
+            out.secondHalf = image.interleaved(layerOf("Second"));
+        }
         out.values = image.interleaved(names);
         if (image.has("A")) out.alpha = image.channel("A").pixels;
         if (image.has("Irradiance.R")) out.irradiance = image.interleaved(layerOf("Irradiance"));
+        if (image.has("MeanCurvature") && image.has("Thickness") && image.has("MeanFreePath.R")) {
+            out.meanCurvature = image.channel("MeanCurvature").pixels;
+            out.thickness = image.channel("Thickness").pixels;
+            const std::vector<float> paths = image.interleaved(layerOf("MeanFreePath"));
+            for (size_t i = 0; i < paths.size(); i += 3)
+                out.meanFreePath.push_back(std::max({paths[i], paths[i + 1], paths[i + 2]}));
+        }
         if (extension != "exr")  // 8-bit files hold what a screen shows
             for (float& v : out.values) v = io::decodeSrgb(v);
     }
-    for (float& v : out.values) v *= scale;
+    for (auto* values : {&out.values, &out.secondHalf})
+        for (float& v : *values) v *= scale;
     return out;
 }
 
-// Which pixels belong to what, by the light named.
+void requireSameSize(const std::string& pathA, const Rgb& a, const std::string& pathB, const Rgb& b) {
+    if (a.width == b.width && a.height == b.height) return;
+    throw InputError(pathA + " is " + std::to_string(a.width) + " x " + std::to_string(a.height) + ", " +
+                     pathB + " is " + std::to_string(b.width) + " x " + std::to_string(b.height) +
+                     "; only pictures of the same size can be compared");
+}
+
+// The sub-sets of each pixel, with regard to the light that --light names. Clears `mask` off materials.
 std::vector<uint8_t> subsets(const Arguments& a, const Rgb& one, const Rgb& two, std::vector<uint8_t>& mask) {
     const io::SceneFile scene = io::readScene(a.scene);
     const io::Image gbuffer = io::readImage(a.gbuffer);
@@ -96,7 +117,7 @@ std::vector<uint8_t> subsets(const Arguments& a, const Rgb& one, const Rgb& two,
         const float length = std::hypot(d[0], d[1], d[2]);
         for (int c = 0; c < 3; ++c) toLight[3 * i + c] = length > 0 ? d[c] / length : 0;
     }
-    // A reference knows what is lit; else the host's own shadow may say so.
+    // Visibility comes from the reference's irradiance, else from the host's own shadow.
     const std::vector<float>& irradiance = two.irradiance.empty() ? one.irradiance : two.irradiance;
     if (!irradiance.empty() && scene.lights.size() == 1)
         for (size_t i = 0; i < mask.size(); ++i)
@@ -104,30 +125,38 @@ std::vector<uint8_t> subsets(const Arguments& a, const Rgb& one, const Rgb& two,
     else if (!light.wideShadow.empty())
         visible = gbuffer.interleaved(std::vector<std::string>{light.wideShadow});
     return io::subsetsOf({one.width, one.height, positions, normals, toLight, visible, mask,
-                          1 / (a.unit > 0 ? a.unit : scene.unitMm)});
+                          1 / (a.unit > 0 ? a.unit : scene.unitMm), two.meanCurvature, two.thickness,
+                          two.meanFreePath});
 }
 
 nlohmann::ordered_json toJson(const io::ImageDifference& d) {
-    nlohmann::ordered_json psnr;
-    if (std::isfinite(d.psnr)) psnr = d.psnr;
+    // JSON has neither Inf, the PSNR of equal pictures, nor NaN, the statistics of no pixels: both become null.
     return {{"pixels", d.pixels},
             {"rmse", d.rmse},
             {"rmse_all", d.rmseAll},
-            {"psnr", psnr},
+            {"noise", d.noise},
+            {"psnr", d.psnr},
             {"mean", d.mean},
             {"p99", d.p99},
-            {"max", d.most},
+            {"max", d.max},
             {"delta_e_mean", d.deltaEMean},
             {"delta_e_p99", d.deltaE99},
-            {"delta_e_max", d.deltaEMost}};
+            {"delta_e_max", d.deltaEMax}};
 }
 
 void print(const std::string& name, const io::ImageDifference& d) {
+    if (d.pixels == 0) {
+        std::printf("%-11s        0 pixels   empty, nothing to compare\n", name.c_str());
+        return;
+    }
     std::printf(
         "%-11s %8zu pixels   RMSE %.6f %.6f %.6f   P99 %.5f %.5f %.5f   PSNR %.1f dB   CIEDE2000 mean %.3f, "
         "P99 %.2f\n",
         name.c_str(), d.pixels, d.rmse[0], d.rmse[1], d.rmse[2], d.p99[0], d.p99[1], d.p99[2], d.psnr,
         d.deltaEMean, d.deltaE99);
+    if (d.noise[0] + d.noise[1] + d.noise[2] > 0)
+        std::printf("%-11s                   noise of the reference, not in RMSE: %.6f %.6f %.6f\n", "",
+                    d.noise[0], d.noise[1], d.noise[2]);
 }
 
 // Both pictures, and the largest difference of a pixel's channels on a scale.
@@ -152,7 +181,7 @@ void writePicture(const Arguments& a, const Rgb& one, const Rgb& two, const std:
 void run(const Arguments& a) {
     if (a.gbuffer.empty() != a.scene.empty())
         throw UsageError(
-            "--gbuffer and --scene go together: one has the pixels, the other says what they are");
+            "--gbuffer and --scene go together: the scene file names the channels of the G-buffer");
     if (!a.picture.empty()) {
         try {
             io::requireExtension(a.picture, {"png"});
@@ -161,31 +190,37 @@ void run(const Arguments& a) {
             throw UsageError(e.what());
         }
     }
-    const Rgb one = readRgb(a.a, a.channelsA, a.scaleA), two = readRgb(a.b, a.channelsB, a.scaleB);
-    if (one.width != two.width || one.height != two.height)
-        throw InputError(a.a + " is " + std::to_string(one.width) + " x " + std::to_string(one.height) +
-                         ", " + a.b + " is " + std::to_string(two.width) + " x " +
-                         std::to_string(two.height) + "; pictures of one size can be compared");
+    const Rgb one = readRgb(a.a, a.channelsA, a.scaleA);
+    Rgb two = readRgb(a.b, a.channelsB, a.scaleB);
+    requireSameSize(a.a, one, a.b, two);
+    if (!a.secondHalf.empty()) {
+        const Rgb half = readRgb(a.secondHalf, a.channelsB, a.scaleB);
+        requireSameSize(a.b, two, a.secondHalf, half);
+        two.secondHalf = half.values;
+    }
     std::vector<uint8_t> mask(one.values.size() / 3, 1);
     // Where a pixel is not wholly covered, two renderers filter the edge in their own ways.
-    for (const auto* alpha : {&one.alpha, &two.alpha})
-        for (size_t i = 0; i < alpha->size(); ++i) mask[i] = mask[i] && (*alpha)[i] >= 0.999f;
+    for (const Rgb* picture : {&one, static_cast<const Rgb*>(&two)})
+        for (size_t i = 0; i < picture->alpha.size(); ++i) mask[i] = mask[i] && picture->alpha[i] >= 0.999f;
     std::vector<uint8_t> parts;
     if (!a.scene.empty()) parts = subsets(a, one, two, mask);
     size_t invalid = 0;
-    const io::ImageDifference all = io::compareImages(one.values, two.values, mask, &invalid);
+    const io::ImageDifference all = io::compareImages(one.values, two.values, mask, &invalid, two.secondHalf);
     nlohmann::ordered_json report{{"a", a.a}, {"b", a.b}, {"width", one.width}, {"height", one.height}};
     report["all"] = toJson(all);
     if (!a.json) print("all", all);
     if (!parts.empty()) {
-        const std::pair<const char*, uint8_t> names[] = {{"unlit", io::SUBSET_UNLIT},
-                                                         {"terminator", io::SUBSET_TERMINATOR},
-                                                         {"penumbra", io::SUBSET_PENUMBRA},
-                                                         {"rest", io::SUBSET_REST}};
+        std::vector<std::pair<const char*, uint8_t>> names{{"unlit", io::SUBSET_UNLIT},
+                                                           {"terminator", io::SUBSET_TERMINATOR},
+                                                           {"penumbra", io::SUBSET_PENUMBRA}};
+        if (!two.meanFreePath.empty())
+            names.insert(names.end(), {{"hollows", io::SUBSET_HOLLOWS}, {"thin", io::SUBSET_THIN}});
+        names.emplace_back("rest", io::SUBSET_REST);
         for (const auto& [name, bit] : names) {
             std::vector<uint8_t> within(mask.size());
             for (size_t i = 0; i < mask.size(); ++i) within[i] = mask[i] && (parts[i] & bit);
-            const io::ImageDifference d = io::compareImages(one.values, two.values, within);
+            const io::ImageDifference d =
+                io::compareImages(one.values, two.values, within, nullptr, two.secondHalf);
             report["subsets"][name] = toJson(d);
             if (!a.json) print(name, d);
         }
@@ -193,6 +228,8 @@ void run(const Arguments& a) {
     report["invalid_pixels"] = invalid;
     if (invalid > 0) std::fprintf(stderr, "warning: %zu pixels with NaN or Inf were left out\n", invalid);
     if (!a.picture.empty()) {
+        for (size_t i = 0; i < two.secondHalf.size(); ++i)
+            two.values[i] = (two.values[i] + two.secondHalf[i]) / 2;
         writePicture(a, one, two, mask, std::max({all.p99[0], all.p99[1], all.p99[2]}));
         report["picture"] = a.picture;
     }
@@ -201,8 +238,11 @@ void run(const Arguments& a) {
     if (bound) report["within"] = !worse;
     if (a.json) std::cout << report.dump(2) << std::endl;
     if (!worse) return;
-    std::fprintf(stderr, "pellucid: the RMSE is %.6g over %zu pixels, more than --max-rmse %.6g allows\n",
-                 all.rmseAll, all.pixels, double(a.maxRmse));
+    if (all.pixels == 0)
+        std::fprintf(stderr, "pellucid: no pixel could be compared with --max-rmse\n");
+    else
+        std::fprintf(stderr, "pellucid: the RMSE is %.6g over %zu pixels, more than --max-rmse %.6g allows\n",
+                     all.rmseAll, all.pixels, double(a.maxRmse));
     throw CLI::RuntimeError(exitWorse);
 }
 
@@ -213,7 +253,11 @@ void addCompare(CLI::App& app) {
         app.add_subcommand("compare", "How far two pictures are apart: RMSE, PSNR, P99, CIEDE2000");
     auto a = std::make_shared<Arguments>();
     command->add_option("a", a->a, "EXR, NPY, or an 8-bit picture, which is decoded from sRGB")->required();
-    command->add_option("b", a->b, "what it is compared with")->required();
+    command->add_option("b", a->b, "reference to compare A with")->required();
+    command->add_option(
+        "--second-half", a->secondHalf,
+        "if B is noisy: an independent estimate with the same noise, which is then left out of "
+        "the RMSE (default: the layer Second of B, beside First)");
     command->add_option("--layer-a", a->channelsA, "layer of A: its .R, .G and .B instead of R, G, B");
     command->add_option("--layer-b", a->channelsB, "layer of B, such as Surface");
     command->add_option("--scale-a", a->scaleA, "multiplies A")->capture_default_str();

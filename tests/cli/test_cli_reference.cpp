@@ -173,6 +173,14 @@ TEST_F(CliReference, Compare) {
     EXPECT_EQ(report["all"]["pixels"].get<size_t>(), covered);
     EXPECT_GT(report["subsets"]["unlit"]["pixels"].get<size_t>(), covered / 3);
     EXPECT_GT(report["subsets"]["rest"]["pixels"].get<size_t>(), covered / 4);
+    const auto penumbra = report["subsets"]["penumbra"];
+    EXPECT_EQ(penumbra["pixels"].get<size_t>(), 0u) << "no image says where shadows are";
+    for (const char* key : {"rmse_all", "psnr", "delta_e_mean", "delta_e_p99", "delta_e_max"})
+        EXPECT_TRUE(penumbra[key].is_null()) << key;
+    for (const char* key : {"rmse", "mean", "p99", "max"}) EXPECT_TRUE(penumbra[key][2].is_null()) << key;
+    result =
+        run({"compare", path("b.exr"), path("a.exr"), "--gbuffer", path("g.exr"), "--scene", path("s.toml")});
+    EXPECT_TRUE(contains(result.out, "penumbra           0 pixels   empty")) << result.out;
     const Image picture = pellucid::io::readImage(path("d.png"));
     EXPECT_GT(picture.width, 3 * side);
     // In other formats; as far apart as before; exit codes.
@@ -190,13 +198,45 @@ TEST_F(CliReference, Compare) {
     result = run({"compare", path("n.npy"), path("a.exr"), "--max-rmse", "1"});
     EXPECT_EQ(result.exitCode, 1);
     EXPECT_TRUE(contains(result.err, "1 pixels with NaN"));
+    values.assign(values.size(), std::nanf(""));
+    pellucid::io::writeNpy(path("n.npy"), shape, values);
+    result = run({"compare", path("n.npy"), path("a.exr"), "--max-rmse", "1"});
+    EXPECT_EQ(result.exitCode, 1);
+    EXPECT_TRUE(contains(result.err, "no pixel could be compared"));
+}
+
+TEST_F(CliReference, CompareTakesNoiseOutOfTheError) {
+    const size_t shape[] = {1, 2, 3};
+    pellucid::io::writeNpy(path("v.npy"), shape, std::vector<float>(6, 0.5f));
+    const std::vector<float> first{0.6f, 0.6f, 0.6f, 0.5f, 0.5f, 0.5f},
+        second{0.4f, 0.6f, 0.7f, 0.5f, 0.5f, 0.5f};
+    pellucid::io::writeNpy(path("first.npy"), shape, first);
+    pellucid::io::writeNpy(path("second.npy"), shape, second);
+    Image halves;
+    halves.width = 2, halves.height = 1;
+    halves.addInterleaved(std::vector<std::string>{"R", "G", "B"}, std::vector<float>(6, 9.0f));
+    halves.addInterleaved(std::vector<std::string>{"First.R", "First.G", "First.B"}, first);
+    halves.addInterleaved(std::vector<std::string>{"Second.R", "Second.G", "Second.B"}, second);
+    pellucid::io::writeExr(path("halves.exr"), halves);
+    const auto expectError = [&](const std::vector<std::string>& arguments) {
+        const auto all = run(arguments).json()["all"];
+        EXPECT_NEAR(all["rmse"][0].get<double>(), 0, 1e-6) << "(0.5 - 0.6)(0.5 - 0.4) < 0";
+        EXPECT_NEAR(all["rmse"][1].get<double>(), std::sqrt(0.1 * 0.1 / 2), 1e-6);
+        EXPECT_NEAR(all["rmse"][2].get<double>(), std::sqrt(0.1 * 0.2 / 2), 1e-6);
+        EXPECT_NEAR(all["noise"][0].get<double>(), std::sqrt(0.1 * 0.1 / 2), 1e-6);
+        EXPECT_NEAR(all["mean"][2].get<double>(), -0.15 / 2, 1e-6);
+    };
+    expectError({"compare", path("v.npy"), path("first.npy"), "--second-half", path("second.npy"), "--json"});
+    expectError({"compare", path("v.npy"), path("halves.exr"), "--json"});
+    expectRefused({"compare", path("v.npy"), path("first.npy"), "--second-half", path("none.npy")}, 3,
+                  "none.npy");
 }
 
 TEST_F(CliReference, CompareRefuses) {
     const size_t shape[] = {2, 2, 3}, other[] = {3, 2, 3};
     pellucid::io::writeNpy(path("a.npy"), shape, std::vector<float>(12));
     pellucid::io::writeNpy(path("b.npy"), other, std::vector<float>(18));
-    expectRefused({"compare", path("a.npy"), path("b.npy")}, 3, "pictures of one size");
+    expectRefused({"compare", path("a.npy"), path("b.npy")}, 3, "only pictures of the same size");
     expectRefused({"compare", path("a.npy"), path("none.npy")}, 3, "none.npy");
     expectRefused({"compare", path("a.npy"), path("a.npy"), "--gbuffer", path("g.exr")}, 2, "go together");
     expectRefused(

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "io/file_error.h"
 #include "io/image/color_difference.h"
@@ -84,7 +85,7 @@ TEST(CompareImages, SumsByHand) {
     EXPECT_NEAR(d.psnr, -20 * std::log10(0.05 / std::sqrt(3)), 1e-5);
     EXPECT_NEAR(d.mean[0], 0.003, 1e-7);
     EXPECT_NEAR(d.mean[1], -0.004, 1e-7);
-    EXPECT_NEAR(d.most[0], 0.3, 1e-6);
+    EXPECT_NEAR(d.max[0], 0.3, 1e-6);
     EXPECT_EQ(d.p99[0], 0) << "99 of 100 have none";
     a[3] += 0.1f;
     EXPECT_NEAR(io::compareImages(a, b).p99[0], 0.1, 1e-6);
@@ -105,9 +106,35 @@ TEST(CompareImages, MaskAndPixelsThatAreNoNumbers) {
     d = io::compareImages(a, b, mask);
     EXPECT_EQ(d.pixels, 1u);
     EXPECT_EQ(d.rmseAll, 0);
+    const io::ImageDifference none = io::compareImages(a, b, std::vector<uint8_t>(4));
+    EXPECT_EQ(none.pixels, 0u);
+    for (double value : {none.rmse[0], none.mean[1], none.p99[2], none.max[0], none.noise[1], none.rmseAll,
+                         none.psnr, none.deltaEMean, none.deltaE99, none.deltaEMax})
+        EXPECT_TRUE(std::isnan(value)) << value;
     EXPECT_EQ(io::compareImages({}, {}).pixels, 0u);
+    EXPECT_THROW(io::compareImages(a, b, {}, nullptr, std::vector<float>(9)), std::invalid_argument);
     EXPECT_THROW(io::compareImages(a, std::vector<float>(9)), std::invalid_argument);
     EXPECT_THROW(io::compareImages(a, b, std::vector<uint8_t>(3)), std::invalid_argument);
+}
+
+// Two noisy estimates of 0.5: their noise is much larger than the difference of the pictures.
+TEST(CompareImages, NoiseOfTwoHalvesIsNotInTheError) {
+    constexpr size_t count = 3 * 40000;
+    constexpr double difference = 0.02, noise = 0.1;
+    const std::vector<float> a(count, float(0.5 + difference));
+    std::vector<float> first, second;
+    std::mt19937 random(3);
+    std::normal_distribution<float> normal(0.5f, float(noise));
+    for (size_t i = 0; i < count; ++i) first.push_back(normal(random)), second.push_back(normal(random));
+    const io::ImageDifference d = io::compareImages(a, first, {}, nullptr, second);
+    for (size_t c = 0; c < 3; ++c) {
+        // The squared error has a standard deviation of noise^2 / sqrt(pixels) = 5e-5, four of which are allowed.
+        EXPECT_NEAR(d.rmse[c] * d.rmse[c], difference * difference, 2e-4);
+        EXPECT_NEAR(d.noise[c], noise / std::sqrt(2), 0.002);
+        EXPECT_NEAR(d.mean[c], difference, 0.002);
+    }
+    EXPECT_GT(io::compareImages(a, first).rmse[0], noise);
+    EXPECT_EQ(io::compareImages(a, first).noise[0], 0);
 }
 
 // A row that turns away from the light, with a cast shadow over two pixels of its lit part.
@@ -134,6 +161,17 @@ TEST(Subsets, OfARow) {
     }
     EXPECT_FALSE(io::subsetsOf({width, 1, positions, normals, light, {}, covered, 0.25f})[5] &
                  io::SUBSET_PENUMBRA);
+}
+
+TEST(Subsets, HollowsAndThinParts) {
+    const std::vector<float> positions(15), normals{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1},
+        light = normals, curvature{-0.4f, -0.1f, 0.4f, -0.4f, -0.4f}, thickness{9, 1.9f, 2.1f, 1, 1},
+        path{0.5f, 0.5f, 0.5f, 0.5f, 0.1f};
+    const std::vector<uint8_t> covered{1, 1, 1, 0, 1};
+    const auto subsets =
+        io::subsetsOf({5, 1, positions, normals, light, {}, covered, 1, curvature, thickness, path});
+    EXPECT_EQ(subsets,
+              (std::vector<uint8_t>{io::SUBSET_HOLLOWS, io::SUBSET_THIN, io::SUBSET_REST, 0, io::SUBSET_REST}));
 }
 
 using NpyRead = FolderTest;

@@ -29,10 +29,10 @@ void bindCompare(py::module_& module) {
         result["psnr"] = d.psnr;
         result["mean"] = d.mean;
         result["p99"] = d.p99;
-        result["max"] = d.most;
+        result["max"] = d.max;
         result["delta_e_mean"] = d.deltaEMean;
         result["delta_e_p99"] = d.deltaE99;
-        result["delta_e_max"] = d.deltaEMost;
+        result["delta_e_max"] = d.deltaEMax;
         return result;
     });
 #else

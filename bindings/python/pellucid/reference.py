@@ -90,7 +90,8 @@ def compare(a: Any, b: Any, mask: Any = None) -> dict[str, Any]:
     -------
     dict
         pixels, invalid_pixels (with a NaN or Inf: left out), rmse, mean, p99 and max per channel (of a - b; the last two of its
-        size), rmse_all, psnr in dB of a white of 1, and CIEDE2000 [Sharma et al. 2005] as delta_e_mean, delta_e_p99, delta_e_max.
+        size), rmse_all, psnr in dB of a white of 1, and CIEDE2000 [Sharma et al. 2005] as delta_e_mean, delta_e_p99,
+        delta_e_max. All but the counts are NaN when no pixel was compared.
     """
     one, two = (np.ascontiguousarray(x, np.float32) for x in (a, b))
     if one.shape != two.shape or one.ndim < 1 or one.shape[-1] != 3:

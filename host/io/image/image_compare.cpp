@@ -10,7 +10,7 @@
 namespace pellucid::io {
 namespace {
 
-// The value that 99 of 100 do not exceed.
+// The smallest value that 99 % of the values do not exceed.
 double percentile99(std::vector<float>& values) {
     if (values.empty()) return 0;
     const size_t rank = (values.size() * 99 + 99) / 100 - 1;
@@ -24,19 +24,25 @@ double dot3(const float* a, const float* b) {
 
 }  // namespace
 
-ImageDifference compareImages(std::span<const float> a, std::span<const float> b,
-                              std::span<const uint8_t> mask, size_t* invalid) {
-    if (a.size() != b.size() || a.size() % 3 != 0 || (!mask.empty() && mask.size() != a.size() / 3))
+ImageDifference compareImages(std::span<const float> a, std::span<const float> b, std::span<const uint8_t> mask,
+                              size_t* invalid, std::span<const float> secondHalf) {
+    if (a.size() != b.size() || a.size() % 3 != 0 || (!mask.empty() && mask.size() != a.size() / 3) ||
+        (!secondHalf.empty() && secondHalf.size() != a.size()))
         throw std::invalid_argument("compareImages: the pictures and the mask have different sizes");
     ImageDifference d;
     std::array<std::vector<float>, 3> errors;
     std::vector<float> colors;
-    std::array<double, 3> squares{};
+    std::array<double, 3> squares{}, noise{};
     for (size_t i = 0; i < a.size() / 3; ++i) {
         if (!mask.empty() && !mask[i]) continue;
-        const float *p = &a[3 * i], *q = &b[3 * i];
+        const float *p = &a[3 * i], *first = &b[3 * i],
+                    *second = secondHalf.empty() ? first : &secondHalf[3 * i];
+        std::array<double, 3> q;
         bool finite = true;
-        for (int c = 0; c < 3; ++c) finite = finite && std::isfinite(p[c]) && std::isfinite(q[c]);
+        for (int c = 0; c < 3; ++c) {
+            q[c] = (double(first[c]) + second[c]) / 2;
+            finite = finite && std::isfinite(p[c]) && std::isfinite(q[c]);
+        }
         if (!finite) {
             if (invalid) ++*invalid;
             continue;
@@ -44,26 +50,32 @@ ImageDifference compareImages(std::span<const float> a, std::span<const float> b
         ++d.pixels;
         for (int c = 0; c < 3; ++c) {
             const double e = double(p[c]) - q[c];
-            squares[c] += e * e;
+            squares[c] += (double(p[c]) - first[c]) * (double(p[c]) - second[c]);
+            noise[c] += std::pow((double(first[c]) - second[c]) / 2, 2);
             d.mean[c] += e;
             errors[c].push_back(float(std::abs(e)));
         }
-        colors.push_back(float(deltaE2000(labFromLinear({p[0], p[1], p[2]}), labFromLinear({q[0], q[1], q[2]}))));
+        colors.push_back(float(deltaE2000(labFromLinear({p[0], p[1], p[2]}), labFromLinear(q))));
         d.deltaEMean += colors.back();
     }
-    d.psnr = std::numeric_limits<double>::infinity();
-    if (d.pixels == 0) return d;
+    if (d.pixels == 0) {
+        constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+        for (auto* values : {&d.rmse, &d.noise, &d.mean, &d.p99, &d.max}) values->fill(nan);
+        for (double* value : {&d.rmseAll, &d.psnr, &d.deltaEMean, &d.deltaE99, &d.deltaEMax}) *value = nan;
+        return d;
+    }
     const double n = double(d.pixels);
     for (int c = 0; c < 3; ++c) {
-        d.rmse[c] = std::sqrt(squares[c] / n);
+        d.rmse[c] = std::sqrt(std::max(0.0, squares[c] / n));
+        d.noise[c] = std::sqrt(noise[c] / n);
         d.mean[c] /= n;
-        d.most[c] = *std::max_element(errors[c].begin(), errors[c].end());
+        d.max[c] = *std::max_element(errors[c].begin(), errors[c].end());
         d.p99[c] = percentile99(errors[c]);
     }
-    d.rmseAll = std::sqrt((squares[0] + squares[1] + squares[2]) / (3 * n));
-    if (d.rmseAll > 0) d.psnr = -20 * std::log10(d.rmseAll);
+    d.rmseAll = std::sqrt(std::max(0.0, (squares[0] + squares[1] + squares[2]) / (3 * n)));
+    d.psnr = d.rmseAll > 0 ? -20 * std::log10(d.rmseAll) : std::numeric_limits<double>::infinity();
     d.deltaEMean /= n;
-    d.deltaEMost = *std::max_element(colors.begin(), colors.end());
+    d.deltaEMax = *std::max_element(colors.begin(), colors.end());
     d.deltaE99 = percentile99(colors);
     return d;
 }
@@ -79,6 +91,9 @@ std::vector<uint8_t> subsetsOf(const SubsetInputs& in) {
         cosine[i] = float(dot3(&in.normals[3 * i], &in.toLight[3 * i]));
         subsets[i] = uint8_t((cosine[i] < 0 ? SUBSET_UNLIT : 0) |
                              (std::abs(cosine[i]) < terminator ? SUBSET_TERMINATOR : 0));
+        if (in.meanFreePath.empty()) continue;
+        if (in.meanCurvature[i] * in.meanFreePath[i] < hollow) subsets[i] |= SUBSET_HOLLOWS;
+        if (in.thickness[i] < thin * in.meanFreePath[i]) subsets[i] |= SUBSET_THIN;
     }
     const auto distance = [&](size_t i, size_t j) {
         double sum = 0;
