@@ -1,5 +1,6 @@
 // pellucid batch: makes the look-up tables of a manifest that are not there yet. A file is named by what was
 // asked for, holds a check sum, and appears complete or not at all.
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -147,14 +148,18 @@ void runBatch(const Arguments& arguments) {
     }
     display.show(run.counts().done, true);
     const std::string index = io::batchIndexName(arguments.manifest);
+    const std::vector<bool> there = run.there();
+    const bool anyTable = std::ranges::find(there, true) != there.end();
     try {
-        io::writeWholeFile((std::filesystem::path(arguments.folder) / index).string(),
-                           io::batchIndex(manifest, arguments.manifest, run.there()));
+        // An index without a table would replace that of an earlier run for nothing.
+        if (anyTable)
+            io::writeWholeFile((std::filesystem::path(arguments.folder) / index).string(),
+                               io::batchIndex(manifest, arguments.manifest, there));
     } catch (const io::FileError&) {
         if (!fatal) throw;
     }
     nlohmann::ordered_json report = reportOf(manifest, run, options.devices, seconds() - start, failures);
-    report["index"] = index;
+    report["index"] = anyTable ? nlohmann::ordered_json(index) : nlohmann::ordered_json();
     if (arguments.json)
         printJson(report);
     else

@@ -7,6 +7,7 @@
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/input_file.h"
+#include "io/shortest.h"
 #include "mesh_curvature.h"
 
 namespace pellucid::cli {
@@ -16,7 +17,8 @@ struct Arguments {
     Run::Options run;
     std::string file, output, size, camera = "first";
     std::vector<std::string> profiles;
-    double unitMm = 1000, lights = 1;
+    double unitMm = 1000;
+    std::optional<double> lights;
     uint32_t smoothing = 2;
 };
 
@@ -75,6 +77,9 @@ void run(const Arguments& a) {
     }
     for (const std::string& warning : mesh.warnings) run.warn(warning);
     reportMaterials(run, a, imported);
+    if (!imported.lampAdded && !a.lights && imported.lightFactor != 1)
+        run.note("lights times " + io::shortest(imported.lightFactor) +
+                 ", so that the picture is well exposed; --lights 1 takes lux and candela as they are");
     if (imported.lampAdded) run.note("no lights in " + a.file + ": a lamp and a little sky were added");
     PelCurvatureParams params = pelCurvatureParamsDefaults();
     params.smoothingPasses = a.smoothing;
@@ -89,6 +94,7 @@ void run(const Arguments& a) {
             "names");
     }
     io::writeImported(a.output, imported);
+    run.report["light_factor"] = imported.lightFactor;
     run.report["lights"] = imported.scene.lights.size();
     run.report["cameras"] = gltf.cameras.size();
     run.report["output"] = a.output;
@@ -120,9 +126,9 @@ void addImport(CLI::App& app) {
         ->capture_default_str();
     command
         ->add_option("--lights", a->lights,
-                     "factor of the lights' brightness: lux and candela count as they are")
-        ->check(inRange(1e-9, 1e9))
-        ->capture_default_str();
+                     "factor of the lights' brightness in lux and candela (default: chosen by how bright the "
+                     "scene becomes)")
+        ->check(inRange(1e-9, 1e9));
     command->add_option("--smooth", a->smoothing, "smoothing passes of the curvature")
         ->check(inRange(0, 1000))
         ->capture_default_str();

@@ -59,7 +59,8 @@ sample::Camera cameraOf(const io::GltfCamera* given, const sample::Scene& scene,
     const io::GltfCamera& c = *given;
     sample::Camera camera;
     camera.eye = vec(c.position);
-    camera.target = camera.eye + vec(c.forward);
+    // As far away as the origin, so that their difference keeps the direction.
+    camera.target = camera.eye + vec(c.forward) * std::max(length(camera.eye), 1.0);
     camera.up = vec(c.up);
     camera.verticalFov = c.verticalFov * 180 / std::numbers::pi;
     double near = INFINITY, far = 0;
@@ -84,28 +85,26 @@ void addChannels(io::Image& image, io::SceneFile& scene, PelImageSlot slot, cons
     }
 }
 
-// Multiplies the albedo of pixels whose material has a texture.
+// Multiplies the albedo of pixels whose material has a texture, one texture after another to save memory.
 void applyTextures(Run& run, const io::GltfScene& v, sample::GBuffer& g) {
-    if (g.uv.data.empty()) return;
-    std::vector<Texture> textures(v.images.size());
-    for (size_t i = 0; i < v.images.size(); ++i) {
+    const size_t pixels = g.material.size();
+    for (size_t i = 0; i < v.images.size() && !g.uv.data.empty(); ++i) {
         if (v.images[i].bytes.empty()) {
             run.warn(v.images[i].name + " is neither PNG nor JPEG, and left out");
             continue;
         }
+        Texture texture;
         try {
-            textures[i] = textureOf(v.images[i]);
+            texture = textureOf(v.images[i]);
         } catch (const io::FileError& e) {
             run.warn(std::string(e.what()) + "; the texture is left out");
+            continue;
         }
-    }
-    const size_t pixels = g.material.size();
-    for (size_t i = 0; i < pixels; ++i) {
-        if (!g.material[i]) continue;
-        const int image = v.materials[g.material[i] - 1].baseColorImage;
-        if (image < 0 || textures[size_t(image)].rgb.empty()) continue;
-        const auto color = textures[size_t(image)].at(g.uv.data[i], g.uv.data[pixels + i]);
-        for (size_t c = 0; c < 3; ++c) g.albedo.data[c * pixels + i] *= color[c];
+        for (size_t p = 0; p < pixels; ++p) {
+            if (!g.material[p] || v.materials[g.material[p] - 1].baseColorImage != int(i)) continue;
+            const auto color = texture.at(g.uv.data[p], g.uv.data[pixels + p]);
+            for (size_t c = 0; c < 3; ++c) g.albedo.data[c * pixels + p] *= color[c];
+        }
     }
 }
 

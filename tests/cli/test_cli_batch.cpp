@@ -96,6 +96,13 @@ TEST_F(BatchCommand, ReportsWrongEntriesAndGoesOn) {
     EXPECT_EQ(result.json()["failed"], 3);
     for (const char* text : {"m.toml:5", "m.toml:8", "granite", "m.toml:12", "colour"})
         EXPECT_NE(result.err.find(text), std::string::npos) << text << "\n" << result.err;
+    // A manifest of wrong entries alone leaves the index of an earlier run as it is, or makes none.
+    const std::string before = read(path("out/m.index.json"));
+    const std::string wrong = manifest("[[lut]]\nsize = -3\n");
+    EXPECT_EQ(run({"batch", wrong, "-o", path("out")}).exitCode, 3);
+    EXPECT_EQ(read(path("out/m.index.json")), before);
+    EXPECT_EQ(run({"batch", wrong, "-o", path("new")}).exitCode, 3);
+    EXPECT_FALSE(fs::exists(path("new/m.index.json")));
 }
 
 TEST_F(BatchCommand, NamesFilesAndWritesAnIndexOfThem) {

@@ -123,8 +123,8 @@ TEST_F(Import, LightsCamerasAndProfilesOfOnesOwn) {
     std::string json = file.substr(20, length);
     json.replace(json.find(from), from.size(), to);
     file = gltf::glb(json, file.substr(28 + length));
-    const Result result =
-        run({"import", write("head.glb", file), "-o", out(), "--profile", "Head=skin", "--json"});
+    const Result result = run({"import", write("head.glb", file), "-o", out(), "--profile", "Head=skin",
+                               "--lights", "1", "--json"});
     ASSERT_EQ(result.exitCode, 0) << result.err;
     EXPECT_EQ(result.json()["materials"][0]["profile"], "skin");
     EXPECT_EQ(result.json()["lights"], 3);
@@ -144,6 +144,22 @@ TEST_F(Import, LightsCamerasAndProfilesOfOnesOwn) {
     expectRefused({"import", path("head.glb"), "-o", out(), "--profile", "Neck=skin"}, 2, "there are Head");
     expectRefused({"import", path("head.glb"), "-o", out(), "--profile", "granite"}, 3, "granite");
     expectRefused({"import", path("head.glb"), "-o", out(), "--camera", "7"}, 2, "the scene has 1");
+}
+
+// Each camera is drawn, or left out with a warning; what is written can be shaded.
+TEST_F(Import, CamerasFarAwayAndBentOutOfShape) {
+    for (const char* place :
+         {R"("translation":[0,0,1e12])", R"("translation":[1e30,0,0])", R"("translation":[0,0,5],"scale":[0,0,0])",
+          R"("matrix":[1,0,0,0, 0,0,1,0, 0,0,1,0, 0,0,3,1])", R"("translation":[0.5,0.5,99000])"}) {
+        const std::string nodes = std::string(R"([{"mesh":0,"children":[1]},{"camera":0,)") + place + "}]";
+        const std::string file = gltf::square(
+            "", nodes, R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}])");
+        const Result result =
+            run({"import", write("far.glb", file), "-o", out(), "--size", "32x32", "--json"});
+        ASSERT_EQ(result.exitCode, 0) << place << result.err;
+        EXPECT_NO_THROW(io::readScene(out("scene.toml"))) << place;
+        if (draws()) EXPECT_EQ(shaded().exitCode, 0) << place;
+    }
 }
 
 TEST_F(Import, RefusesWhatIsWrong) {

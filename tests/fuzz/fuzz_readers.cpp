@@ -74,6 +74,7 @@ std::string inputOf(const fuzz::Reader& reader, const std::vector<std::string>& 
     uint64_t name = 0;
     for (char c : reader.name) name = 131 * name + uint8_t(c);
     fuzz::Random random(o.seed * 0x100000001b3u + name * 0x9e3779b9u + i * 0x2545f4914f6cdd1du);
+    if (reader.structured && random.below(4)) return reader.structured(random);
     const std::string bytes = fuzz::mutant(random, reader.seeds, reader.words);
     return reader.mend && random.below(8) ? reader.mend(bytes) : bytes;
 }

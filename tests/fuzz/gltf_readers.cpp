@@ -1,6 +1,8 @@
+#include <nlohmann/json.hpp>
+
 #include "fuzz/reader_parts.h"
 #include "io/gltf/gltf_file.h"
-#include "io/gltf/gltf_scene.h"
+#include "io/gltf/gltf_import.h"
 #include "io/gltf_bytes.h"
 #include "io/lut/profile_file.h"
 
@@ -27,47 +29,60 @@ Reader gltfScenes(const Folder& folder) {
         sparse.find(R"("count":4,"type":"VEC3")"),
         R"("sparse":{"count":1,"indices":{"bufferView":2,"componentType":5123},"values":{"bufferView":0}},)");
     seeds.push_back(gltf::glb(sparse, gltf::squareBuffer()));
-    return {"gltf",
-            std::move(seeds),
-            [picture = picture(folder, "png", 3)](const std::string& bytes) {
-                const io::GltfScene scene = io::decodeGltf("s.glb", bytes, [&](const std::string& name) {
-                    return name.ends_with(".png") ? picture : gltf::squareBuffer();
-                });
-                if (scene.materialOf.size() != scene.mesh.triangleCount())
-                    throw std::logic_error("a triangle without a material");
-                for (uint32_t t : scene.mesh.triangles)
-                    if (t >= scene.mesh.vertexCount())
-                        throw std::logic_error("a triangle of a vertex that there is not");
-                for (uint32_t m : scene.materialOf)
-                    if (m >= scene.materials.size())
-                        throw std::logic_error("a triangle of a material that there is not");
-                for (const io::GltfMaterial& m : scene.materials) {
-                    const io::GltfLook look = io::lookOf(m, "m", 1, "");
-                    if (!look.profileText.empty()) io::parseProfile("m.toml", look.profileText);
-                }
-                for (const io::GltfLight& l : scene.lights) io::sceneLight(l, 1000, 1);
-            },
-            {},
-            {"\"bufferView\":",
-             "\"byteOffset\":",
-             "\"byteStride\":",
-             "\"count\":",
-             "\"sparse\":",
-             "\"children\":[0]",
-             "\"componentType\":5125",
-             "5121",
-             "5126",
-             "VEC4",
-             "\"uri\":\"a\"",
-             "null",
-             "{}",
-             "[]",
-             "-1",
-             "1e308",
-             "9007199254740992",
-             "4294967295",
-             "\"mode\":6",
-             "true"}};
+    return {
+        "gltf",
+        std::move(seeds),
+        [picture = picture(folder, "png", 3)](const std::string& bytes) {
+            const io::GltfScene scene = io::decodeGltf("s.glb", bytes, [&](const std::string& name) {
+                return name.ends_with(".png") ? picture : gltf::squareBuffer();
+            });
+            if (scene.materialOf.size() != scene.mesh.triangleCount())
+                throw std::logic_error("a triangle without a material");
+            for (uint32_t t : scene.mesh.triangles)
+                if (t >= scene.mesh.vertexCount())
+                    throw std::logic_error("a triangle of a vertex that there is not");
+            for (uint32_t m : scene.materialOf)
+                if (m >= scene.materials.size())
+                    throw std::logic_error("a triangle of a material that there is not");
+            // The scene that `pellucid import` writes, which can then be read.
+            const io::ImportedGltf made = io::importScene(scene);
+            for (const io::GltfLook& look : made.looks)
+                if (!look.profileText.empty()) io::parseProfile("m.toml", look.profileText);
+            io::parseScene("scene.toml", io::sceneText(made.scene));
+        },
+        {},
+        {"\"bufferView\":",
+         "\"byteOffset\":",
+         "\"byteStride\":",
+         "\"count\":",
+         "\"sparse\":",
+         "\"children\":[0]",
+         "\"componentType\":5125",
+         "5121",
+         "5126",
+         "VEC4",
+         "\"uri\":\"a\"",
+         "null",
+         "{}",
+         "[]",
+         "-1",
+         "1e308",
+         "9007199254740992",
+         "4294967295",
+         "\"mode\":6",
+         "true"},
+        [json = nlohmann::json::parse(gltf::squareJson(",\"material\":0,\"mode\":5", nodes, more))](Random& random) {
+            static const std::vector<std::string> words = {
+                "SCALAR",      "VEC2", "VEC3",     "VEC4",        "MAT4",     "orthographic",
+                "perspective", "spot", "point",    "directional", "POSITION", "data:;base64,AAAA",
+                "a.bin",       "",     "image/png"};
+            nlohmann::json document = json;
+            mutateJson(random, document, words);
+            std::string buffer = gltf::squareBuffer();
+            for (size_t i = random.below(3); i > 0; --i)
+                buffer[random.below(buffer.size())] = char(random.next());
+            return gltf::glb(document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), buffer);
+        }};
 }
 
 }  // namespace fuzz

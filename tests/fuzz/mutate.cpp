@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <nlohmann/json.hpp>
 
 namespace fuzz {
 namespace {
@@ -98,7 +99,57 @@ void once(Random& r, std::string& b, const std::vector<std::string>& files,
     if (b.size() > longest) b.resize(longest);
 }
 
+using nlohmann::json;
+
+void collect(json& value, std::vector<json*>& all) {
+    all.push_back(&value);
+    if (value.is_structured())
+        for (json& member : value) collect(member, all);
+}
+
+void replaceNumber(Random& r, json& value) {
+    constexpr double extremes[] = {0, -1, 1e-30, 0.5, 1e9, 1e12, -1e12, 1e30, 3.5e38, 1e300};
+    switch (r.below(3)) {
+        case 0:
+            value = r.below(6);
+            break;
+        case 1:
+            value = special[r.below(std::size(special))];
+            break;
+        default:
+            value = extremes[r.below(std::size(extremes))];
+    }
+}
+
 }  // namespace
+
+void mutateJson(Random& r, json& document, const std::vector<std::string>& words) {
+    for (size_t changes = 1 + r.below(8); changes > 0; --changes) {
+        std::vector<json*> all;
+        collect(document, all);
+        json& value = *all[r.below(all.size())];
+        const json other = *all[r.below(all.size())];
+        if (value.is_number()) {
+            replaceNumber(r, value);
+        } else if (value.is_string()) {
+            value = words[r.below(words.size())];
+        } else if (value.is_array() && !value.empty()) {
+            const size_t at = r.below(value.size());
+            if (r.below(3) == 0)
+                value.erase(at);
+            else
+                value.insert(value.end(), r.below(20) ? 1 : 2000, json(value[at]));
+        } else if (value.is_object() && !value.empty()) {
+            auto member = value.begin();
+            std::advance(member, std::ptrdiff_t(r.below(value.size())));
+            if (r.below(3) == 0)
+                value.erase(member);
+            else if (r.below(3) == 0)
+                *member = other;
+        }
+        if (document.dump().size() > longest) return;
+    }
+}
 
 std::string mutant(Random& random, const std::vector<std::string>& files, const std::vector<std::string>& words) {
     std::string bytes = files[random.below(files.size())];

@@ -55,6 +55,10 @@ io::SceneFile scene() {
     s.lights[0].shadowMapFile = "map.exr";
     s.materials.resize(1);
     s.materials[0].curvatureLut = "skin";
+    s.eyes.resize(1);
+    s.eyes[0].irisTexture = "iris.png";
+    s.eyes[0].irisProfile = "skin";
+    s.targetError = 0.5f;
     s.luts.resize(1);
     s.luts[0].name = "skin";
     return s;
@@ -88,9 +92,13 @@ std::vector<Reader> readers() {
         {"variance", "weight", "albedo", "mean_free_path", "eta", "table", "[[gaussian]]", "[[sample]]"}));
     io::writeScene(folder / "s.toml", scene());
     all.push_back(text("scene", {bytesOf(folder / "s.toml")},
-                       [](const std::string& t) { io::parseScene("s.toml", t); },
+                       [](const std::string& t) {
+                           // What can be read can be written, and that can be read.
+                           io::parseScene("s.toml", io::sceneText(io::parseScene("s.toml", t)));
+                       },
                        {"[[light]]", "[[material]]", "[channels]", "[outputs]", "shadow_map", "cascade_1",
-                        "thickness_taps"}));
+                        "thickness_taps", "version = 2", "[[eye]]", "iris_radius", "limbus_radius",
+                        "iris_texture", "caustics", "target_error"}));
     all.push_back(
         text("manifest",
              {"[[lut]]\nkind = \"shadow\"\nsize = 256\n[[grid]]\nkind = \"curvature\"\nprofile = [\"skin\", "

@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 
 #include "gltf_bytes.h"
 #include "io/file_error.h"
-#include "io/gltf/gltf_scene.h"
+#include "io/gltf/gltf_import.h"
 #include "io/lut/profile_file.h"
 #include "io_files.h"
 
@@ -176,13 +179,13 @@ TEST(Gltf, CamerasAndLights) {
     EXPECT_EQ(s.cameras[0].aspect, 2);
     ASSERT_EQ(s.lights.size(), 2u);
     EXPECT_NEAR(s.lights[0].forward[1], -1, 1e-6);  // -z, turned a quarter about -x
-    const SceneLight sun = sceneLight(s.lights[0], 1000, 1), spot = sceneLight(s.lights[1], 1000, 2);
+    const SceneLight sun = sceneLight(s.lights[0], 1), spot = sceneLight(s.lights[1], 2);
     EXPECT_NEAR(sun.light.toLight[1], 1, 1e-6);
     EXPECT_NEAR(sun.light.color[1], 1.5 / M_PI, 1e-6);
-    EXPECT_EQ(spot.light.position[1], 2000);
+    EXPECT_EQ(spot.light.position[1], 2);
     EXPECT_NEAR(spot.light.color[0], 2 * 10 * 1e6 / M_PI, 1);  // 10 lux at a metre
     EXPECT_NEAR(spot.light.spotCosOuter, std::cos(0.4), 1e-6);
-    EXPECT_EQ(spot.light.range, 4000);
+    EXPECT_EQ(spot.light.range, 4);
 }
 
 TEST(Gltf, MaterialsThatScatter) {
@@ -280,4 +283,100 @@ TEST(Gltf, WrongFilesSayWhatAndWhere) {
     bad = squareBuffer();
     bad[80] = 9;
     expectSays(errorOf(glb(json, bad)), {"meshes[0].primitives[0]", "index 9", "4 vertices"});
+}
+
+namespace {
+
+// `count` times `element`, as the elements of a JSON array.
+std::string repeated(const std::string& element, size_t count) {
+    std::string list;
+    for (size_t i = 0; i < count; ++i) (list += i ? "," : "") += element;
+    return list;
+}
+
+ImportedGltf imported(const std::string& nodes, const std::string& more, std::optional<double> lights = {}) {
+    return importScene(decoded(square("", nodes, more)), {{}, 1000, lights});
+}
+
+bool warns(const ImportedGltf& made, const std::string& text) {
+    return std::ranges::any_of(made.gltf.mesh.warnings,
+                               [&](const std::string& w) { return w.find(text) != std::string::npos; });
+}
+
+const std::string camera = R"("cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}])";
+const std::string lamp =
+    R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":54351}]}})";
+
+std::string nodesWith(const std::string& key, const std::string& place) {
+    return R"([{"mesh":0,"children":[1]},{)" + key + "," + place + "}]";
+}
+
+}  // namespace
+
+// The work of a file is bounded by what the file draws: nodes times primitives that draw nothing are not visited.
+TEST(Gltf, PrimitivesAreDecodedOnceHoweverManyNodesPlaceThem) {
+    std::string json = with(
+        squareJson("", "[" + repeated(R"({"mesh":0})", 20000) + "]"), R"([{"nodes":[0]}])", R"([{"nodes":[)" + [] {
+            std::string list = "0";
+            for (int i = 1; i < 20000; ++i) list += "," + std::to_string(i);
+            return list;
+        }() + "]}]");
+    json = with(json, R"("primitives":[)",
+                R"("primitives":[)" + repeated(R"({"attributes":{"POSITION":0},"mode":1})", 20000) + ",");
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_EQ(decoded(glb(json, squareBuffer())).mesh.triangleCount(), 40000u);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+TEST(Gltf, DecodedAccessorsCountTowardsTheLimitOfInput) {
+    ::setenv("PELLUCID_INPUT_LIMIT_MIB", "64", 1);
+    std::string json = with(squareJson(), R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,)",
+                            R"("accessors":[{"componentType":5126,"count":1000000,)");
+    json = with(json, R"("primitives":[)",
+                R"("primitives":[)" + repeated(R"({"attributes":{"POSITION":0},"mode":5})", 100) + ",");
+    EXPECT_NE(errorOf(glb(json, squareBuffer())).find("makes the scene too large"), std::string::npos);
+    ::unsetenv("PELLUCID_INPUT_LIMIT_MIB");
+}
+
+// Cameras and lights that no scene file can hold are left out with a warning; the rest is imported.
+TEST(Gltf, CamerasAndLightsAtInfinity) {
+    for (const char* place : {R"("translation":[0,0,1e12])", R"("translation":[1e9,0,0],"scale":[1,1,1e-9])"}) {
+        const ImportedGltf made = imported(nodesWith("\"camera\":0", place), "," + camera);
+        EXPECT_TRUE(made.gltf.cameras.empty()) << place;
+        EXPECT_TRUE(warns(made, "cameras are left out")) << place;
+        EXPECT_NO_THROW(parseScene("s.toml", sceneText(made.scene))) << place;
+    }
+    // An axis of no length and axes that coincide still give a direction and another one across.
+    for (const char* place :
+         {R"("scale":[1,0,0],"translation":[0,0,3])", R"("matrix":[1,0,0,0, 0,0,1,0, 0,0,1,0, 0,0,3,1])"}) {
+        const GltfCamera c = imported(nodesWith("\"camera\":0", place), "," + camera).gltf.cameras.at(0);
+        double cosine = 0;
+        for (size_t i = 0; i < 3; ++i) cosine += c.up[i] * c.forward[i];
+        EXPECT_LT(std::abs(cosine), 0.9) << place;
+    }
+    EXPECT_NE(
+        errorOf(square("", R"([{"mesh":0,"scale":[1e12,1e12,1e12],"children":[1]},{"scale":[1e12,1e12,1e12],"children":[2]},{"scale":[1e12,1,1]}])"))
+            .find("nodes[2]"),
+        std::string::npos);
+}
+
+// A lamp of 1 kW as Blender writes it would make everything white.
+TEST(Gltf, LightsGetAFactorThatExposesTheScene) {
+    const std::string nodes =
+        nodesWith(R"("extensions":{"KHR_lights_punctual":{"light":0}})", R"("translation":[0.5,0.5,4])");
+    const std::string material = R"(,"materials":[{"pbrMetallicRoughness":{"metallicFactor":0}}],)";
+    const auto lit = [&](const std::string& light, std::optional<double> factor = {}) {
+        return importScene(decoded(square(",\"material\":0", nodes, material + light)), {{}, 1000, factor});
+    };
+    const ImportedGltf made = lit(lamp);
+    // 54351 cd at 4 m are 3397 lx, and a white wall reflects 3397 / pi of it.
+    EXPECT_NEAR(made.lightFactor, 0.8 / (54351 / (16 * M_PI)), 1e-5);
+    EXPECT_NEAR(made.scene.lights.at(0).light.color[0], made.lightFactor * 54351e6 / M_PI, 1e3);
+    EXPECT_FALSE(warns(made, "too bright"));
+    const ImportedGltf literal = lit(lamp, 1);
+    EXPECT_EQ(literal.lightFactor, 1);
+    EXPECT_TRUE(warns(literal, "too bright"));
+    EXPECT_EQ(
+        lit(R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":16}]}})").lightFactor,
+        1);
 }

@@ -138,6 +138,12 @@ TEST_F(HostileImage, SizesAreCheckedBeforeAnythingIsAllocated) {
 }
 
 TEST_F(HostileImage, HeadersThatLie) {
+    for (const uint32_t chunks : {0u, uint32_t(-1), 1u << 31, (1u << 31) - 1}) {
+        Exr counted;
+        counted.more = Exr::attribute("chunkCount", "int", Exr::word(chunks));
+        EXPECT_TRUE(contains(refusal("a.exr", counted.bytes()),
+                             "a.exr: is damaged or cut off: its attribute chunkCount"));
+    }
     const auto bent = [](auto change) {
         Exr exr;
         change(exr);

@@ -25,7 +25,8 @@ std::vector<uint32_t> idsOfVertices(const io::GltfScene& gltf) {
 
 class Gltf {
   public:
-    Gltf(const std::string& path, const std::vector<std::string>& profiles, double unitMm, double lights) {
+    Gltf(const std::string& path, const std::vector<std::string>& profiles, double unitMm,
+         std::optional<double> lights) {
         const py::gil_scoped_release free;
         io::requireExtension(path, {"glb", "gltf"});
         made_ = io::importGltf(path, {profiles, unitMm, lights});

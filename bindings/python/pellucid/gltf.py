@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Union
+from typing import Any, Optional, Union
 
 from ._types import Ambient, Light, Material
 from .device import _filled
@@ -54,7 +54,8 @@ class Gltf:
         self._native.save(str(folder))
 
 
-def load_gltf(path: Any, *, profiles: Union[str, Mapping[str, Any], None] = None, unit_mm: float = 1000.0, lights: float = 1.0) -> Gltf:
+def load_gltf(path: Any, *, profiles: Union[str, Mapping[str, Any], None] = None, unit_mm: float = 1000.0,
+              lights: Optional[float] = None) -> Gltf:
     """Reads a glTF 2.0 scene as docs/guide/gltf.md describes it.
 
     Parameters
@@ -65,8 +66,8 @@ def load_gltf(path: Any, *, profiles: Union[str, Mapping[str, Any], None] = None
         In place of what the file says: a profile of the library or a .toml file for all materials, or by the names of materials.
     unit_mm : float
         Millimetres per unit; glTF's unit is the metre.
-    lights : float
-        Factor of the lights' brightness; lux and candela count as they are.
+    lights : float, optional
+        Factor of the lights' brightness in lux and candela. Without it a factor is chosen that exposes the scene well.
 
     Raises
     ------
@@ -76,7 +77,7 @@ def load_gltf(path: Any, *, profiles: Union[str, Mapping[str, Any], None] = None
         A material in `profiles` that the file does not have.
     """
     for name, value in (("unit_mm", unit_mm), ("lights", lights)):
-        if not 1e-9 <= value <= 1e9:
+        if value is not None and not 1e-9 <= value <= 1e9:
             raise ValueError(f"{name} is {value!r}; it must be from 1e-9 to 1e9")
     words = [profiles] if isinstance(profiles, str) else [f"{material}={os.fspath(profile)}" for material, profile in (profiles or {}).items()]
     native = _files.Gltf(str(path), words, unit_mm, lights)

@@ -204,6 +204,12 @@ std::string GltfDocument::resource(const GltfValue& value) const {
     return fromBase64(value, uri, comma + 1);
 }
 
+void GltfDocument::spend(const GltfValue& value, double bytes) const {
+    decodedBytes_ += bytes;
+    if (decodedBytes_ > double(inputLimit()))
+        value.fail("makes the scene too large: " + tooLarge(decodedBytes_, inputLimit()));
+}
+
 GltfDocument::Span GltfDocument::view(const GltfValue& owner, const char* key) const {
     const GltfValue top = root(),
                     view = top["bufferViews"][owner.reference(key, "bufferViews", top.count("bufferViews"))];
@@ -215,7 +221,7 @@ GltfDocument::Span GltfDocument::view(const GltfValue& owner, const char* key) c
     return {buffer.data() + offset, length, view.whole("byteStride", 0, 252)};
 }
 
-GltfDocument::Layout GltfDocument::layout(const GltfValue& accessor, uint64_t most) const {
+GltfDocument::Layout GltfDocument::layout(const GltfValue& accessor) const {
     Layout l;
     l.count = accessor["count"].whole(mostBytes);
     l.type = accessor["componentType"].whole(mostBytes);
@@ -225,9 +231,7 @@ GltfDocument::Layout GltfDocument::layout(const GltfValue& accessor, uint64_t mo
     if (!l.components)
         accessor["type"].fail("is '" + type.substr(0, 20) + "'; SCALAR, VEC2, VEC3 or VEC4 would be right");
     l.normalized = accessor.flag("normalized");
-    if (l.count > most / (4 * l.components))
-        accessor["count"].fail("is " + std::to_string(l.count) + ": " +
-                               tooLarge(4.0 * double(l.count) * double(l.components), most));
+    spend(accessor["count"], 4.0 * double(l.count) * double(l.components));
     return l;
 }
 
@@ -271,7 +275,7 @@ void GltfDocument::readSparse(const GltfValue& accessor, const Layout& l, Store&
 std::vector<float> GltfDocument::floats(const GltfValue& owner, const char* key, size_t components) const {
     const GltfValue top = root(),
                     accessor = top["accessors"][owner.reference(key, "accessors", top.count("accessors"))];
-    const Layout l = layout(accessor, inputLimit());
+    const Layout l = layout(accessor);
     if (l.components != components)
         accessor["type"].fail("has " + std::to_string(l.components) + " numbers each; " + owner.where() +
                               "." + key + " needs " + std::to_string(components));
@@ -288,7 +292,7 @@ std::vector<float> GltfDocument::floats(const GltfValue& owner, const char* key,
 std::vector<uint32_t> GltfDocument::indices(const GltfValue& owner, const char* key) const {
     const GltfValue top = root(),
                     accessor = top["accessors"][owner.reference(key, "accessors", top.count("accessors"))];
-    const Layout l = layout(accessor, inputLimit());
+    const Layout l = layout(accessor);
     if (l.components != 1 || l.type == 5126 || l.type == 5120 || l.type == 5122)
         accessor.fail("holds no indices: unsigned SCALARs would be right");
     std::vector<uint32_t> values(l.count);
@@ -309,6 +313,7 @@ GltfImage GltfDocument::image(size_t index) const {
         const Span span = view(image, "bufferView");
         found.bytes.assign(span.data, span.size);
     }
+    spend(image, double(found.bytes.size()));
     // By what they begin with, for what the file says is often wrong.
     const bool png = found.bytes.starts_with("\x89PNG\r\n"), jpeg = found.bytes.starts_with("\xff\xd8\xff");
     found.name = path_ + ": " + image.where() + (png ? ".png" : jpeg ? ".jpg" : "");

@@ -1,4 +1,5 @@
-// The container of a glTF: its JSON, its buffers, and accessors read out of them with every bound checked.
+// The container of a glTF: its JSON, its buffers, and accessors decoded with every bound checked. A small file can name the same
+// accessor or image many times, so all that is decoded counts towards inputLimit().
 #pragma once
 #include <string>
 #include <vector>
@@ -21,6 +22,9 @@ class GltfDocument {
 
     GltfImage image(size_t index) const;
 
+    // Counts `bytes` of decoded data. Throws FileError at `value` once the total exceeds inputLimit().
+    void spend(const GltfValue& value, double bytes) const;
+
   private:
     struct Span {
         const char* data = nullptr;
@@ -31,7 +35,7 @@ class GltfDocument {
     std::string resource(const GltfValue& value) const;  // what a "uri" names
     const std::string& buffer(const GltfValue& view) const;
     Span view(const GltfValue& owner, const char* key) const;
-    Layout layout(const GltfValue& accessor, uint64_t mostBytes) const;
+    Layout layout(const GltfValue& accessor) const;
     template <class Store>
     void read(const GltfValue& accessor, const Layout& layout, Store&& store) const;
     template <class Store>
@@ -42,6 +46,7 @@ class GltfDocument {
     nlohmann::json json_;
     std::string binary_;                // the chunk of a .glb
     std::vector<std::string> buffers_;  // of the document
+    mutable double decodedBytes_ = 0;
 };
 
 }  // namespace pellucid::io

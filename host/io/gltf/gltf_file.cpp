@@ -13,6 +13,8 @@ namespace {
 
 // Row-major, multiplies column vectors.
 using Matrix = std::array<double, 16>;
+constexpr size_t mostMaterials = 255;    // ids of a material channel
+constexpr double mostCoordinate = 1e30;  // metres, of a node or its axes
 constexpr Matrix identity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
 
 Matrix product(const Matrix& a, const Matrix& b) {
@@ -128,11 +130,12 @@ class Builder {
         if (entered_[index]) node.fail("is a child of two nodes, or of itself");
         entered_[index] = true;
         const Matrix m = product(above, localOf(node));
+        for (const double x : m)
+            if (!(std::abs(x) <= mostCoordinate)) node.fail("is placed or scaled beyond what a float holds");
         if (node.has("mesh")) {
-            const GltfValue mesh = root_["meshes"][node.reference("mesh", "meshes", root_.count("meshes"))];
             if (node.has("skin")) warn("skins are left out: meshes are in their rest pose");
-            const GltfValue primitives = mesh["primitives"];
-            for (size_t i = 0; i < primitives.size(); ++i) add(primitives[i], m);
+            for (const Part& part : partsOf(node.reference("mesh", "meshes", root_.count("meshes"))))
+                place(part, m);
         }
         if (node.has("camera"))
             addCamera(root_["cameras"][node.reference("camera", "cameras", root_.count("cameras"))], m);
@@ -157,10 +160,21 @@ class Builder {
         c.position = point(m, {0, 0, 0});
         c.forward = unit({-m[2], -m[6], -m[10]}, {0, 0, -1});
         c.up = unit({m[1], m[5], m[9]}, {0, 1, 0});
+        // Sheared axes can coincide; any other direction will do then.
+        if (std::abs(c.up[0] * c.forward[0] + c.up[1] * c.forward[1] + c.up[2] * c.forward[2]) > 0.999999)
+            c.up = std::abs(c.forward[1]) < 0.9 ? Triple{0, 1, 0} : Triple{0, 0, 1};
         scene_.cameras.push_back(c);
     }
 
-    // Three indices each, of what the mode says [glTF 2.0, 3.7.2.1].
+    // A primitive that holds triangles, before any node places it.
+    struct Part {
+        GltfValue primitive;
+        std::vector<float> positions, normals, uvs;  // normals and uvs may be empty
+        std::vector<uint32_t> triangles;             // never empty
+        uint32_t material;
+    };
+
+    // Three indices per triangle [glTF 2.0, 3.7.2.1].
     std::vector<uint32_t> trianglesOf(const GltfValue& primitive, uint64_t mode, size_t vertices) const {
         std::vector<uint32_t> list;
         if (primitive.has("indices")) {
@@ -188,32 +202,55 @@ class Builder {
         return triangles;
     }
 
-    void add(const GltfValue& primitive, const Matrix& m) {
-        const uint64_t mode = primitive.whole("mode", 4, 6);
-        if (mode < 4) return warn("points and lines are left out");
-        if (primitive.hasExtension("KHR_draco_mesh_compression"))
-            primitive.fail("is compressed by Draco: write the scene uncompressed");
-        if (primitive.has("targets")) warn("morph targets are left out: meshes are in their rest pose");
-        const GltfValue attributes = primitive["attributes"];
-        const std::vector<float> positions = document_.floats(attributes, "POSITION", 3);
+    // The parts of a mesh, decoded once however many nodes place it.
+    const std::vector<Part>& partsOf(size_t mesh) {
+        const auto [found, fresh] = parts_.try_emplace(mesh);
+        if (!fresh) return found->second;
+        const GltfValue primitives = root_["meshes"][mesh]["primitives"];
+        for (size_t i = 0; i < primitives.size(); ++i) {
+            const GltfValue primitive = primitives[i];
+            const uint64_t mode = primitive.whole("mode", 4, 6);
+            if (mode < 4) {
+                warn("points and lines are left out");
+                continue;
+            }
+            if (primitive.hasExtension("KHR_draco_mesh_compression"))
+                primitive.fail("is compressed by Draco: write the scene uncompressed");
+            if (primitive.has("targets")) warn("morph targets are left out: meshes are in their rest pose");
+            const GltfValue attributes = primitive["attributes"];
+            Part part{primitive, document_.floats(attributes, "POSITION", 3), {}, {}, {}, 0};
+            const size_t vertices = part.positions.size() / 3;
+            checkSceneSize(primitive, vertices, 0);
+            part.triangles = trianglesOf(primitive, mode, vertices);
+            if (part.triangles.empty()) continue;
+            if (attributes.has("NORMAL")) part.normals = sized(attributes, "NORMAL", 3, vertices);
+            if (attributes.has("TEXCOORD_0")) part.uvs = sized(attributes, "TEXCOORD_0", 2, vertices);
+            part.material = materialIndex(primitive);
+            found->second.push_back(std::move(part));
+        }
+        return found->second;
+    }
+
+    void checkSceneSize(const GltfValue& primitive, size_t vertices, size_t indices) const {
+        const double bytes = double(scene_.mesh.vertexCount() + vertices) * 32 +
+                             double(scene_.mesh.triangles.size() + indices) * 8;
+        if (bytes > double(inputLimit()))
+            primitive.fail("makes the scene too large: " + tooLarge(bytes, inputLimit()));
+    }
+
+    // Adds a part to the scene's mesh, transformed by the node's matrix.
+    void place(const Part& part, const Matrix& m) {
+        const std::vector<float>&positions = part.positions, &normals = part.normals, &uvs = part.uvs;
         const size_t vertices = positions.size() / 3, first = scene_.mesh.vertexCount();
-        const std::vector<uint32_t> triangles = trianglesOf(primitive, mode, vertices);
-        if (triangles.empty()) return;
-        std::vector<float> normals, uvs;
-        if (attributes.has("NORMAL")) normals = sized(attributes, "NORMAL", 3, vertices);
-        if (attributes.has("TEXCOORD_0")) uvs = sized(attributes, "TEXCOORD_0", 2, vertices);
-        // One accessor may be drawn by many nodes.
-        const uint64_t bytes = (first + vertices) * 32 + (scene_.mesh.triangles.size() + triangles.size()) * 8;
-        if (bytes > inputLimit())
-            primitive.fail("makes the scene too large: " + tooLarge(double(bytes), inputLimit()));
+        checkSceneSize(part.primitive, vertices, part.triangles.size());
         MeshData& mesh = scene_.mesh;
         bool bad = normals.empty();
         for (size_t v = 0; v < vertices; ++v) {
             const Triple p = point(m, {positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]});
             for (const double x : p) {
                 if (!std::isfinite(float(x)))
-                    attributes["POSITION"].fail("has vertex " + std::to_string(v) +
-                                                " at a place that is not finite");
+                    part.primitive["attributes"]["POSITION"].fail("has vertex " + std::to_string(v) +
+                                                                  " at a place that is not finite");
                 mesh.positions.push_back(float(x));
             }
             Triple n{0, 0, 1};
@@ -234,10 +271,10 @@ class Builder {
         normalsEverywhere_ &= !bad;
         uvsEverywhere_ &= !uvs.empty();
         const bool mirrored = determinant(m) < 0;
-        for (size_t i = 0; i < triangles.size(); i += 3)
+        for (size_t i = 0; i < part.triangles.size(); i += 3)
             for (const size_t k : {size_t{0}, size_t{mirrored ? 2u : 1u}, size_t{mirrored ? 1u : 2u}})
-                mesh.triangles.push_back(uint32_t(first + triangles[i + k]));
-        scene_.materialOf.insert(scene_.materialOf.end(), triangles.size() / 3, materialIndex(primitive));
+                mesh.triangles.push_back(uint32_t(first + part.triangles[i + k]));
+        scene_.materialOf.insert(scene_.materialOf.end(), part.triangles.size() / 3, part.material);
     }
 
     std::vector<float> sized(const GltfValue& attributes, const char* key, size_t components,
@@ -255,6 +292,9 @@ class Builder {
             primitive.has("material") ? primitive.reference("material", "materials", count) : count;
         const auto [at, fresh] = known_.try_emplace(index, uint32_t(scene_.materials.size()));
         if (!fresh) return at->second;
+        if (scene_.materials.size() == mostMaterials)
+            throw FileError(document_.path(),
+                            "uses more than " + std::to_string(mostMaterials) + " materials");
         GltfMaterial m;
         if (index < count) m = readGltfMaterial(document_, root_["materials"][index], warnings_);
         if (m.name.empty()) m.name = index < count ? "material_" + std::to_string(index) : "default";
@@ -275,6 +315,7 @@ class Builder {
     const GltfValue root_;
     GltfScene scene_;
     std::vector<bool> entered_;
+    std::map<size_t, std::vector<Part>> parts_;  // by mesh
     std::map<size_t, uint32_t> known_;
     std::map<int, int> images_;
     std::vector<std::string> warnings_;

@@ -1,10 +1,11 @@
 #include "io/gltf/gltf_scene.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <set>
+
+#include "io/shortest.h"
 
 namespace pellucid::io {
 namespace {
@@ -13,12 +14,7 @@ constexpr double sheet = 0.5;  // mm: thickness that is given to walls without o
 
 std::string triple(const Triple& values) {
     std::string text = "[";
-    for (const double v : values) {
-        char digits[32];
-        text.append(digits, std::to_chars(digits, digits + sizeof digits, float(v)).ptr);
-        text += ", ";
-    }
-    text.resize(text.size() - 2);
+    for (const double v : values) text += (text.size() > 1 ? ", " : "") + shortest(float(v));
     return text + "]";
 }
 
@@ -122,7 +118,7 @@ GltfLook lookOf(const GltfMaterial& m, const std::string& name, uint32_t id, con
     return look;
 }
 
-SceneLight sceneLight(const GltfLight& l, double scale, double brightness) {
+SceneLight sceneLight(const GltfLight& l, double brightness) {
     SceneLight scene;
     PelLight& p = scene.light;
     p.type = l.kind == GltfLight::Kind::Directional ? PEL_LIGHT_DIRECTIONAL
@@ -132,13 +128,13 @@ SceneLight sceneLight(const GltfLight& l, double scale, double brightness) {
     const double at = l.kind == GltfLight::Kind::Directional ? 1 : 1e6;
     for (size_t c = 0; c < 3; ++c) {
         p.color[c] = float(std::min(l.color[c] * l.intensity * at * brightness / std::numbers::pi, 1e30));
-        p.position[c] = float(l.position[c] * scale);
+        p.position[c] = float(l.position[c]);
         p.toLight[c] = float(-l.forward[c]);
         p.spotDirection[c] = float(l.forward[c]);
     }
     p.spotCosInner = float(std::cos(l.innerCone));
     p.spotCosOuter = float(std::cos(std::max(l.outerCone, l.innerCone + 1e-3)));
-    p.range = float(l.range * scale);
+    p.range = float(l.range);
     return scene;
 }
 

@@ -20,8 +20,8 @@ struct GltfLook {
 // Material `id`. `profile`: of the library or a .toml, in place of what the file says; "": what the file says.
 GltfLook lookOf(const GltfMaterial& material, const std::string& name, uint32_t id, const std::string& profile);
 
-// `scale`: millimetres per unit of the file; `brightness` multiplies colours.
-SceneLight sceneLight(const GltfLight& light, double scale, double brightness);
+// Of a light whose position and range are in millimetres. `brightness` multiplies its colour.
+SceneLight sceneLight(const GltfLight& light, double brightness);
 
 // Names that are fit for files and keys: letters, digits, _ and -; each another one.
 std::vector<std::string> plainNames(const std::vector<GltfMaterial>& materials);

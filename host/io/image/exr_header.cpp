@@ -10,6 +10,7 @@ namespace pellucid::io {
 namespace {
 
 constexpr uint32_t deepFlag = 0x800, multiPartFlag = 0x1000;
+constexpr size_t placeOfChunk = 8;     // bytes per chunk in the table before the pixels
 constexpr size_t mostChannels = 1024;  // OpenImageIO's own limit
 
 template <class T>
@@ -83,6 +84,11 @@ class Check {
                 if (method >= std::size(rows))
                     damaged("its compression " + std::to_string(method) + " is not known");
                 part.rowsPerChunk = rows[method];
+            } else if (a->name == "chunkCount") {
+                need("int", 4);
+                const auto chunks = numberAt<int32_t>(a->value, 0);
+                if (chunks < 1 || size_t(chunks) > file_.size() / placeOfChunk)
+                    damaged("its attribute chunkCount is " + std::to_string(chunks));
             } else if (a->name == "type" && a->value.starts_with("deep")) {
                 throw FileError(path_, "holds deep pixels; flatten it first");
             }
@@ -142,8 +148,7 @@ class Check {
                                        " of them stored) of " + std::to_string(part.channels) +
                                        " channels take " + tooLarge(taken_, uint64_t(limit_)));
         }
-        constexpr double placeOfChunk = 8;  // bytes in the table before the pixels
-        if (chunks * placeOfChunk > double(file_.size()))
+        if (chunks * double(placeOfChunk) > double(file_.size()))
             damaged("it is too short for " + std::to_string(part.data.width) + " x " +
                     std::to_string(part.data.height) + " pixels");
     }

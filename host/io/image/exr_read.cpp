@@ -22,6 +22,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stdexcept>
 #include <thread>
 
 #include "io/file_error.h"
@@ -288,6 +289,8 @@ void decodeExr(Image& image, const std::string& bytes, const std::function<void(
     });
 } catch (const Iex::BaseExc& e) {
     throw FileError(image.source, std::string("is damaged or cut off: ") + e.what());
+} catch (const std::length_error&) {  // of a container inside OpenEXR
+    throw FileError(image.source, "is damaged: it gives a number of elements that is impossible");
 }
 
 }  // namespace pellucid::io

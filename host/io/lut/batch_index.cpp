@@ -1,9 +1,9 @@
 #include "io/lut/batch_index.h"
 
-#include <charconv>
 #include <filesystem>
 
 #include "io/lut/lut_describe.h"
+#include "io/shortest.h"
 
 namespace pellucid::io {
 namespace {
@@ -23,8 +23,7 @@ class JsonObject {
     template <class Number>
     void number(std::string_view key, Number value) {
         begin(key);
-        char digits[32];  // the shortest that is read back as the same number, in any locale
-        out_.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+        out_ += shortest(value);
     }
 
   private:

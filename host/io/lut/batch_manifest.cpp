@@ -1,6 +1,5 @@
 #include "io/lut/batch_manifest.h"
 
-#include <charconv>
 #include <filesystem>
 #include <iomanip>
 #include <map>
@@ -13,6 +12,7 @@
 #include "io/lut/lut_describe.h"
 #include "io/lut/lut_preset.h"
 #include "io/lut/profile_file.h"
+#include "io/shortest.h"
 #include "io/toml_reader.h"
 
 namespace pellucid::io {
@@ -256,11 +256,6 @@ class Expansion {
                                          ? "; put what differs into it, such as {size}"
                                          : "; the one of line " + std::to_string(first.line) + " has it"));
         ++manifest_.duplicates;
-    }
-
-    static std::string shortest(float value) {
-        char digits[32];
-        return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
     }
 
     // r.name with each {key} replaced by its value.

@@ -94,8 +94,10 @@ SceneFile readScene(const std::string& path);
 // The same from text. `path` is for messages, and the scene's paths are relative to it.
 SceneFile parseScene(const std::string& path, const std::string& text);
 
+// The text of a scene file.
+std::string sceneText(const SceneFile& scene);
 // Writes a scene that readScene reads back to the same values, floats to the bit. File paths are written
-// unchanged.
+// unchanged. Throws FileError for a scene that readScene would refuse, such as one with a matrix of NaN.
 void writeScene(const std::string& path, const SceneFile& scene);
 
 }  // namespace pellucid::io

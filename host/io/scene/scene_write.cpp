@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <charconv>
 #include <span>
 
 #include "io/atomic_file.h"
 #include "io/scene/scene_file.h"
 #include "io/scene/scene_keys.h"
+#include "io/shortest.h"
 
 namespace pellucid::io {
 namespace {
@@ -15,7 +15,7 @@ class TomlWriter {
     explicit TomlWriter(std::string& out, std::string name = "") : out_(out), name_(std::move(name)) {}
 
     void number(std::string_view key, float value, Range range) {
-        if (!(value == range.special && value < 0)) line(key, shown(value));
+        if (!(value == range.special && value < 0)) line(key, shortest(value));
     }
     // If all values are the special one they mean the default, and the key is left out.
     void numbers(std::string_view key, const float* values, size_t count, Range range) {
@@ -54,22 +54,22 @@ class TomlWriter {
         out_.append(key).append(" = ").append(value) += '\n';
     }
 
-    // The shortest digits that are read back as the same float, in any locale.
-    static std::string shown(float value) {
-        char digits[32];
-        const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
-        return std::string(digits, end);
-    }
     static std::string shown(const float* values, size_t count) {
         std::string list;
-        for (size_t i = 0; i < count; ++i) list += (i ? ", " : "") + shown(values[i]);
+        for (size_t i = 0; i < count; ++i) list += (i ? ", " : "") + shortest(values[i]);
         return "[" + list + "]";
     }
     static std::string quoted(std::string_view text) {
+        constexpr char hex[] = "0123456789ABCDEF";
         std::string out = "\"";
-        for (char c : text) {
-            if (c == '"' || c == '\\') out += '\\';
-            out += c;
+        for (const char c : text) {
+            const auto byte = static_cast<unsigned char>(c);
+            if (byte < 0x20 || byte == 0x7f) {
+                ((out += "\\u00") += hex[byte >> 4]) += hex[byte & 15];
+            } else {
+                if (c == '"' || c == '\\') out += '\\';
+                out += c;
+            }
         }
         return out + "\"";
     }
@@ -80,7 +80,7 @@ class TomlWriter {
 
 }  // namespace
 
-void writeScene(const std::string& path, const SceneFile& scene) {
+std::string sceneText(const SceneFile& scene) {
     std::string out =
         "# A scene of `pellucid shade`. Lengths are in the unit of the G-buffer's positions.\nversion = 2\n";
     if (scene.blurNormals) TomlWriter(out).integer("blur_normals", scene.blurNormals, {0, 1});
@@ -125,7 +125,13 @@ void writeScene(const std::string& path, const SceneFile& scene) {
             }
         });
     }
-    writeWholeFile(path, out);
+    return out;
+}
+
+void writeScene(const std::string& path, const SceneFile& scene) {
+    const std::string text = sceneText(scene);
+    parseScene(path, text);  // a scene that cannot be read must not replace one that can
+    writeWholeFile(path, text);
 }
 
 }  // namespace pellucid::io

@@ -123,7 +123,9 @@ class Dispatcher:
         return self.summary
 
     def _write_index(self) -> None:
-        """Also of a batch that did not come to its end, unless its output is what failed."""
+        """Also of a batch that did not come to its end, unless its output is what failed or no table is there."""
+        if not any(self._there):
+            return
         other = sys.exc_info()[1]  # what is on its way to the caller
         try:
             self._store.write(self._manifest.index_name, self._manifest.index(self._there))
