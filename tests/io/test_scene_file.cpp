@@ -302,9 +302,8 @@ TEST_F(SceneFileTest, EveryKeyIsDocumented) {
     SceneFile scene = readScene(write("s.toml", example()));
     for (auto& names : scene.channels) names.assign(3, "x");
     scene.luts[1].file.clear();
-    writeScene(path("all.toml"), scene);
     const std::string page = read(PELLUCID_SOURCE_DIR "/docs/guide/scene-file.md");
-    std::istringstream lines(read(path("all.toml")));
+    std::istringstream lines(sceneText(scene));
     size_t keys = 0;
     for (std::string line; std::getline(lines, line);) {
         const size_t equals = line.find(" = ");
