@@ -9,9 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "Memory.h"
 #include "llvm/IR/DerivedTypes.h"
 #include "llvm/IR/Value.h"
+
+namespace oclgrind {
+class Memory;  // its header has no include guard, and Plugin.h needs it first
+}
 
 namespace {
 
