@@ -71,8 +71,14 @@ unsigned removeDamagedPrograms(const fs::path& folder) {
     unsigned removed = 0;
     for (auto letters = fs::directory_iterator(folder, error); !error && letters != fs::directory_iterator();
          letters.increment(error)) {
-        if (letters->path().filename().string().size() != 2) continue;
+        const std::string name = letters->path().filename().string();
         std::error_code inner;
+        if (name.starts_with("tempfile_") || name.starts_with("tempdir_")) {  // of a process that was killed
+            const auto written = letters->last_write_time(inner);
+            if (!inner && now - written > std::chrono::hours(1)) fs::remove_all(*letters, inner);
+            continue;
+        }
+        if (name.size() != 2) continue;
         for (auto program = fs::directory_iterator(*letters, inner);
              !inner && program != fs::directory_iterator(); program.increment(inner)) {
             bool damaged = false;

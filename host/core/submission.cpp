@@ -12,12 +12,17 @@ void Event::wait() const {
     cl::check(clWaitForEvents(1, &event), "clWaitForEvents");
 }
 
-bool Event::isDone() const {
+cl_int Event::status() const {
     cl_int status = CL_QUEUED;
     cl::check(clGetEventInfo(event_.get(), CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof status, &status, nullptr),
               "clGetEventInfo");
-    if (status < 0) cl::check(status, "the submitted work");
-    return status == CL_COMPLETE;
+    return status;
+}
+
+bool Event::isDone() const {
+    const cl_int now = status();
+    if (now < 0) cl::check(now, "the submitted work");
+    return now == CL_COMPLETE;
 }
 
 Submission::Submission(Device& device, const PelSubmit* submit) : device_(device), submit_(submit) {
@@ -27,6 +32,9 @@ Submission::Submission(Device& device, const PelSubmit* submit) : device_(device
     std::vector<cl_event> waits;
     for (uint32_t i = 0; i < submit->numWaits; ++i) {
         events.push_back(fromHandle<Event>(submit->waits[i]));
+        // PoCL ends the process when a command waits for an event that failed.
+        if (const cl_int status = events.back()->status(); status < 0)
+            cl::check(status, text("PelSubmit.waits[", i, "]").c_str());
         waits.push_back(events.back()->cl().get());
     }
     cl::check(clEnqueueBarrierWithWaitList(device.queue(), cl_uint(waits.size()), waits.data(), nullptr),

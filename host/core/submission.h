@@ -12,6 +12,7 @@ class Event final : public Object {
     const cl::Event& cl() const { return event_; }
     void wait() const;
     bool isDone() const;
+    cl_int status() const;  // CL_COMPLETE, a state before it, or the negative code of a failure
 
   private:
     ~Event() override = default;

@@ -11,7 +11,8 @@ std::vector<std::string> environment();
 void setVariable(const char* name, const char* value);  // nullptr removes it
 // What tells apart processors whose names are the same; "" if the system does not say.
 std::string instructionSet();
-// A new folder of this process alone in `parent`, whose name begins with `prefix`; "" if none can be made.
+// A new folder for this process only in `parent`, whose name begins with `prefix`; "" if none can be made. First
+// removes such folders of this user's processes that were killed (not on Windows).
 std::string makeTemporaryFolder(const std::string& parent, const std::string& prefix);
 
 // The file of this program; "" if the system does not say.

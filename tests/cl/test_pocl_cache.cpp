@@ -1,7 +1,9 @@
 // Where PoCL keeps compiled kernels: in a folder of this user's alone, and nothing in it that PoCL would die
 // of.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>
+#include <sys/file.h>
 #include <sys/mount.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -11,6 +13,7 @@
 #include <fstream>
 #include <functional>
 #include <pellucid/pellucid.hpp>
+#include <set>
 
 #include "cl/pocl_cache.h"
 #include "cl/private_folder.h"
@@ -176,6 +179,38 @@ TEST_F(PoclCache, ProgramsThatNobodyUsesAreNotRead) {
     for (const fs::path& file : touched) fs::last_write_time(file, now - std::chrono::hours(23));
     for (const fs::path& file : kernels(ours(), ".so")) fs::last_write_time(file, now);
     EXPECT_EQ(pel::cl::removeDamagedPrograms(ours()), touched.size());
+}
+
+// PoCL's own temporary files in the folder, and folders of this library for a single process.
+TEST_F(PoclCache, WhatKilledProcessesLeaveIsRemoved) {
+    const auto age = [](const fs::path& at, std::chrono::minutes by) {
+        fs::last_write_time(at, fs::file_time_type::clock::now() - by);
+    };
+    fs::create_directories(ours() / "tempdir_old");
+    for (const char* name : {"tempfile_old.so", "tempfile_old.so.o", "tempfile_new.so", "note"})
+        std::ofstream(ours() / name) << "half a file";
+    for (const char* name : {"tempfile_old.so", "tempfile_old.so.o", "tempdir_old", "note"})
+        age(ours() / name, std::chrono::minutes(90));
+    pel::cl::removeDamagedPrograms(ours());
+    std::set<std::string> left;
+    for (const auto& entry : fs::directory_iterator(ours())) left.insert(entry.path().filename().string());
+    EXPECT_EQ(left, (std::set<std::string>{"checked", "note", "tempfile_new.so"}));
+
+    ::chmod(path("home").c_str(), 0777);  // so that the process makes a temporary folder
+    const fs::path temporary = path("temporary");
+    for (const char* name : {"pellucid-pocl-killed", "pellucid-pocl-running", "pellucid-pocl-new", "other"})
+        fs::create_directories(temporary / name);
+    ::chmod(temporary.c_str(), 0700);
+    std::ofstream(temporary / "pellucid-pocl-killed" / "program.bc") << "half a file";
+    const int running = ::open((temporary / "pellucid-pocl-running").c_str(), O_RDONLY);
+    ASSERT_EQ(::flock(running, LOCK_SH), 0);
+    for (const char* name : {"pellucid-pocl-killed", "pellucid-pocl-running", "other"})
+        age(temporary / name, std::chrono::minutes(2));
+    EXPECT_EQ(table([&] { ::setenv("TMPDIR", temporary.c_str(), 1); }), 0);
+    ::close(running);
+    left.clear();
+    for (const auto& entry : fs::directory_iterator(temporary)) left.insert(entry.path().filename().string());
+    EXPECT_EQ(left, (std::set<std::string>{"pellucid-pocl-running", "pellucid-pocl-new", "other"}));
 }
 
 // Mounting needs a name space of its own: skipped where that is not allowed.

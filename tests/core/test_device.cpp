@@ -1,4 +1,6 @@
 // Devices, buffers, errors, events: what every other object stands on.
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
 #include <gtest/gtest.h>
 
 #include <pellucid/pellucid.hpp>
@@ -199,6 +201,29 @@ TEST(Events, DoneAndWaits) {
     pelEventRelease(read);
     const PelSubmit broken{nullptr, 2, nullptr};
     EXPECT_EQ(pelBufferRead(buffer.get(), 0, 4, back.data(), &broken), PEL_ERROR_INVALID_ARGUMENT);
+}
+
+// PoCL aborts when a queued command waits for such an event.
+TEST(Events, WaitingForAFailedEventIsAnError) {
+    const Device device("");
+    const Buffer buffer(device, std::vector<int>{1, 2});
+    void *context = nullptr, *id = nullptr, *queue = nullptr;
+    check(pelDeviceGetCl(device.get(), &context, &id, &queue));
+    cl_int code = CL_SUCCESS;
+    const cl_event failed = clCreateUserEvent(cl_context(context), &code);
+    PelEvent event = nullptr;
+    check(pelEventCreateFromCl(device.get(), failed, &event));
+    ASSERT_EQ(clSetUserEventStatus(failed, -5), CL_SUCCESS);
+    const PelSubmit after{&event, 1, nullptr};
+    int back[2] = {};
+    EXPECT_EQ(pelBufferRead(buffer.get(), 0, sizeof back, back, &after), PEL_ERROR_OUT_OF_MEMORY);
+    EXPECT_NE(std::strstr(pelGetErrorMessage(), "PelSubmit.waits[0]"), nullptr) << pelGetErrorMessage();
+    int done = 7;
+    EXPECT_NE(pelEventIsDone(event, &done), PEL_SUCCESS);
+    EXPECT_NE(pelEventWait(event), PEL_SUCCESS);
+    pelEventRelease(event);
+    clReleaseEvent(failed);
+    EXPECT_EQ(buffer.readAll<int>(), (std::vector<int>{1, 2}));
 }
 
 TEST(Errors, CallbackGetsTheMessage) {

@@ -1,7 +1,9 @@
 #include "system/process.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -9,6 +11,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 
@@ -22,6 +25,27 @@ extern char** environ;
 
 namespace pel::system {
 namespace fs = std::filesystem;
+namespace {
+
+// Removes the folders of processes that were killed: each process holds a lock on its own for as long as it
+// runs. A folder that is younger than a minute may not be locked yet.
+void removeAbandoned(const fs::path& parent, const std::string& prefix) {
+    std::error_code error;
+    for (auto at = fs::directory_iterator(parent, error); !error && at != fs::directory_iterator();
+         at.increment(error)) {
+        if (!at->path().filename().string().starts_with(prefix)) continue;
+        const int folder = ::open(at->path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+        if (folder < 0) continue;
+        struct stat status {};
+        const bool old = ::fstat(folder, &status) == 0 && status.st_uid == ::geteuid() &&
+                         status.st_mtime + 60 < std::time(nullptr);
+        std::error_code gone;
+        if (old && ::flock(folder, LOCK_EX | LOCK_NB) == 0) fs::remove_all(at->path(), gone);
+        ::close(folder);
+    }
+}
+
+}  // namespace
 
 unsigned long processId() {
     return static_cast<unsigned long>(::getpid());
@@ -46,8 +70,13 @@ std::string instructionSet() {
 }
 
 std::string makeTemporaryFolder(const std::string& parent, const std::string& prefix) {
+    removeAbandoned(parent, prefix);
     std::string name = (fs::path(parent) / (prefix + "XXXXXX")).string();
-    return ::mkdtemp(name.data()) ? name : "";  // nobody else can enter it
+    if (!::mkdtemp(name.data())) return "";  // nobody else can enter it
+    // The lock ends with the process, however that ends.
+    if (const int folder = ::open(name.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); folder >= 0)
+        ::flock(folder, LOCK_SH);
+    return name;
 }
 
 std::string programFile() {
