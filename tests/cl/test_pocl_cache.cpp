@@ -18,6 +18,7 @@
 #include "cl/pocl_cache.h"
 #include "cl/private_folder.h"
 #include "io/io_files.h"
+#include "system/process.h"
 
 namespace fs = std::filesystem;
 using pel::cl::whyNotPrivate;
@@ -196,17 +197,20 @@ TEST_F(PoclCache, WhatKilledProcessesLeaveIsRemoved) {
     for (const auto& entry : fs::directory_iterator(ours())) left.insert(entry.path().filename().string());
     EXPECT_EQ(left, (std::set<std::string>{"checked", "note", "tempfile_new.so"}));
 
-    ::chmod(path("home").c_str(), 0777);  // so that the process makes a temporary folder
     const fs::path temporary = path("temporary");
     for (const char* name : {"pellucid-pocl-killed", "pellucid-pocl-running", "pellucid-pocl-new", "other"})
         fs::create_directories(temporary / name);
-    ::chmod(temporary.c_str(), 0700);
     std::ofstream(temporary / "pellucid-pocl-killed" / "program.bc") << "half a file";
     const int running = ::open((temporary / "pellucid-pocl-running").c_str(), O_RDONLY);
     ASSERT_EQ(::flock(running, LOCK_SH), 0);
     for (const char* name : {"pellucid-pocl-killed", "pellucid-pocl-running", "other"})
         age(temporary / name, std::chrono::minutes(2));
-    EXPECT_EQ(table([&] { ::setenv("TMPDIR", temporary.c_str(), 1); }), 0);
+    const fs::path made = pel::system::makeTemporaryFolder(temporary, "pellucid-pocl-");
+    EXPECT_EQ(mode(made), 0700u);
+    age(made, std::chrono::minutes(2));
+    const std::string second = pel::system::makeTemporaryFolder(temporary, "pellucid-pocl-");
+    EXPECT_TRUE(fs::remove(made)) << "it is locked";
+    EXPECT_TRUE(fs::remove(second));
     ::close(running);
     left.clear();
     for (const auto& entry : fs::directory_iterator(temporary)) left.insert(entry.path().filename().string());
