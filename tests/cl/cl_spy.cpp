@@ -47,6 +47,22 @@ F* next(const char* name) {
     return reinterpret_cast<F*>(dlsym(RTLD_NEXT, name));
 }
 
+// Writes the program to a file that its content names, the build options first, for tests/gpu/check.py.
+void dumpProgram(const char* folder, cl_program program, const char* options) {
+    size_t size = 0;
+    const auto info = next<decltype(clGetProgramInfo)>("clGetProgramInfo");
+    if (info(program, CL_PROGRAM_SOURCE, 0, nullptr, &size) != CL_SUCCESS || size < 2) return;
+    std::string source(size, '\0');
+    if (info(program, CL_PROGRAM_SOURCE, size, source.data(), nullptr) != CL_SUCCESS) return;
+    source.resize(size - 1);
+    source = "// " + std::string(options ? options : "") + "\n" + source;
+    const std::string path = std::string(folder) + "/" + std::to_string(std::hash<std::string>()(source)) + ".cl";
+    if (std::FILE* file = std::fopen(path.c_str(), "w")) {
+        std::fwrite(source.data(), 1, source.size(), file);
+        std::fclose(file);
+    }
+}
+
 void remember(cl_kernel kernel) {
     char name[256] = {};
     const auto info = next<decltype(clGetKernelInfo)>("clGetKernelInfo");
@@ -221,6 +237,7 @@ cl_program clCreateProgramWithBinary(cl_context context, cl_uint count, const cl
 }
 cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* devices, const char* options,
                       void(CL_CALLBACK* notify)(cl_program, void*), void* user) {
+    if (const char* folder = std::getenv("PELLUCID_DUMP_PROGRAMS")) dumpProgram(folder, program, options);
     const cl_int code = REAL(clBuildProgram)(program, count, devices, options, notify, user);
     if (code == CL_SUCCESS && count == 1) lookForWarnings(program, devices[0]);
     return code;
