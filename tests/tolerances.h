@@ -399,6 +399,7 @@ inline constexpr Tolerance scatterBall{"scatterBall", 1.3e-3,
 inline constexpr Tolerance scatterEnergy{"scatterEnergy", 5e-3, "relative: blocks, and what is left out"};
 inline constexpr Tolerance scatterOneMissing{"scatterOneMissing", 2e-2,
                                              "neighbours of a pixel that counts no more"};
+inline constexpr Tolerance widthsAgree{"widthsAgree", 1e-3, "between widths of vectors: the order of sums"};
 inline constexpr Tolerance scatterUnits{
     "scatterUnits", 1e-3,
     "RMS, a tenth of the maximum: a ring of blocks with 0.4 % of the light may count or not"};

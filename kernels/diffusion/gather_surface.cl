@@ -5,6 +5,7 @@
 // which tiles have something to gather. One work-item is one pixel, or one tile. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH,
 // PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SCATTER_WEIGHT (0: all 1).
 #include "lib/diffusion/gather.clh"
+#include "lib/diffusion/usable_light.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/position.clh"
 
@@ -40,7 +41,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void g
 #endif
             const Vec3w light =
                 loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y));
-            const bool gathers = frame->materialOf[id] != 0, sound = finite3(at) && finite3(light);
+            const bool gathers = frame->materialOf[id] != 0, sound = finite3(at) && usableLight(light);
             covered += gathers, invalid += gathers && !sound;
             if (sound) {
                 p = (float4)(at.x - frame->origin[0], at.y - frame->origin[1], at.z - frame->origin[2], 0.0f);
@@ -71,6 +72,11 @@ typedef struct Step {
     float length2;  // FLT_MAX: there is none
 } Step;
 
+// The position of a pixel, without the area behind it, which another work-item may be writing.
+static inline float3 pointOf(__global const float* points, size_t pixel) {
+    return vload3(0, points + PEL_GATHER_FLOATS * pixel + PEL_GATHER_POINT);
+}
+
 // The shorter of the steps to the neighbours that are of the same object: the longer one may lead off the surface.
 static inline Step shorterStep(__global const float* points, size_t here, long to, bool before, bool after,
                                float3 p, uint id) {
@@ -79,7 +85,7 @@ static inline Step shorterStep(__global const float* points, size_t here, long t
         if (!(side < 0 ? before : after)) continue;
         const size_t at = (size_t)((long)here + side * to);
         if (as_uint(gathered(points, at, PEL_GATHER_LIGHT).w) != id) continue;
-        const float3 v = (gathered(points, at, PEL_GATHER_POINT).xyz - p) * (float)side;
+        const float3 v = (pointOf(points, at) - p) * (float)side;
         const float length2 = dot(v, v);
         if (length2 < step.length2) step.v = v, step.length2 = length2;
     }
@@ -96,7 +102,7 @@ static inline float across(__global const PelGatherFrame* frame, float3 p, float
 
 static inline void measurePixel(__global const PelGatherFrame* frame, __global float* points, uint x, uint y) {
     const size_t here = (size_t)y * frame->width + x;
-    const float3 p = gathered(points, here, PEL_GATHER_POINT).xyz;
+    const float3 p = pointOf(points, here);
     const uint id = as_uint(gathered(points, here, PEL_GATHER_LIGHT).w);
     const Step right = shorterStep(points, here, 1, x > 0, x + 1 < frame->width, p, id);
     const Step down = shorterStep(points, here, (long)frame->width, y > 0, y + 1 < frame->height, p, id);

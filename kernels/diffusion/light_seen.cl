@@ -1,10 +1,12 @@
 // Which texels of a shadow map show surface that the camera sees too (docs/mathematics.md, section 10, "Light space").
 //
 // A pixel's patch of surface, a parallelogram of two of its steps to the neighbours, falls on some texels; those whose depth is that of
-// the patch there show the same surface. So one pixel of 2 x 2 is enough. Input: images of positions (length) or depth, and of ids. Output: a byte per texel, set
-// beforehand to 0: the pixel's id, or PEL_SEEN_OTHER where it does not scatter; which of several ids is the same each time, for equal
-// writes are all that meet inside of an object. One work-item: PEL_WIDTH pixels of every other row. Variants: PEL_FORMAT_POSITION or
-// PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT.
+// the patch there show the same surface. So one pixel of 2 x 2 is enough. Input: images of positions (length) or
+// depth, and of ids. Output: a byte per texel, set to 0 beforehand: the id of the pixel, or PEL_SEEN_OTHER where the
+// pixel does not scatter. Patches of several work-items meet at a texel, so bytes are merged atomically, and the result
+// does not depend on their order: with PEL_HIDDEN the bits of all ids, since only "not 0" matters, otherwise the
+// smallest id. One work-item: PEL_WIDTH pixels of every other row. Variants: PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH,
+// PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT, PEL_HIDDEN.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/light_space.clh"
 #include "lib/diffusion/pyramid.clh"
@@ -69,9 +71,30 @@ static inline maskw patchOf(__global const PelLightMap* map, Vec3w p, Vec3w righ
            (at.y > -FARTHEST_TEXEL) & (at.x < width + FARTHEST_TEXEL) & (at.y < height + FARTHEST_TEXEL);
 }
 
+// Merges the bytes of up to four texels, those of `mask`, into a word of the output.
+static inline void mergeMarks(volatile __global uint* word, uint mask, uint id) {
+    if (!mask) return;
+    const uint marks = mask & id * 0x01010101u;
+    if (PEL_HIDDEN) {
+        atomic_or(word, marks);
+        return;
+    }
+    for (uint old = 0, expected;;) {
+        expected = old;
+        uint merged = 0;
+        for (uint shift = 0; shift < 32; shift += 8) {
+            const uint now = old >> shift & 255u, mark = marks >> shift & 255u;
+            merged |= (!now || (mark && mark < now) ? mark : now) << shift;
+        }
+        if (merged == expected) return;
+        old = atomic_cmpxchg(word, expected, merged);
+        if (old == expected) return;
+    }
+}
+
 static inline void markPatch(__global const PelLightMap* map, __global const uchar* first,
-                             __global uchar* seen, float column, float row, float depth, float acrossX,
-                             float acrossY, float slopeX, float slopeY, float most, uchar id) {
+                             volatile __global uint* seen, float column, float row, float depth,
+                             float acrossX, float acrossY, float slopeX, float slopeY, float most, uint id) {
     const int left = max((int)ceil(column - acrossX), 0),
               right = min((int)floor(column + acrossX), (int)map->level[0].width - 1);
     const int top = max((int)ceil(row - acrossY), 0),
@@ -79,7 +102,9 @@ static inline void markPatch(__global const PelLightMap* map, __global const uch
     for (int y = top; y <= bottom; ++y) {
         __global const uchar* texels =
             first + (size_t)(map->firstRow + imageTexel(y, map->step, map->height)) * map->map.rowStride;
-        __global uchar* marks = seen + map->seen + (size_t)y * map->level[0].width;
+        const size_t start = map->seen + (size_t)y * map->level[0].width;
+        size_t word = (start + left) / 4;
+        uint mask = 0;
         for (int x = left; x <= right; ++x) {
             float there = pixelComponent(
                 PEL_FORMAT_SHADOW_MAP,
@@ -91,8 +116,14 @@ static inline void markPatch(__global const PelLightMap* map, __global const uch
                 there = sqrt(fma(s, s, fma(t, t, 1.0f))) / (there * map->radialRange);
             }
             const float plane = fma((float)x - column, slopeX, fma((float)y - row, slopeY, depth));
-            if (fabs(there - plane) <= most) marks[x] = id;
+            const size_t texel = start + x;
+            if (texel / 4 != word) {
+                mergeMarks(seen + word, mask, id);
+                word = texel / 4, mask = 0;
+            }
+            if (fabs(there - plane) <= most) mask |= 255u << texel % 4 * 8;
         }
+        mergeMarks(seen + word, mask, id);
     }
 }
 
@@ -109,7 +140,7 @@ static inline void fetchDepths(__global const PelLightMap* map, __global const u
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_seen(
     __global const PelDiffusionFrame* frame, __global uchar* position, __global uchar* ids,
     __global const PelLightMap* maps, uint index, __global uchar* texels, __global const float* pyramid,
-    __global uchar* seen) {
+    volatile __global uint* seen) {
     const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across * EVERY;
     if (y >= frame->height) return;
     __global const PelLightMap* map = maps + index;
@@ -121,8 +152,11 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     const Vec3w before = loadPositions(frame, position, x > 0 ? x - 1 : min(x + 1, frame->width - 1), y),
                 after = loadPositions(frame, position, x + 1 < frame->width ? x + 1 : max(x, 1u) - 1, y);
 #else
-    const Vec3w before = vec3(BEFORE(p.x), BEFORE(p.y), BEFORE(p.z)),
-                after = vec3(AFTER(p.x), AFTER(p.y), AFTER(p.z));
+    // Shuffled only at the borders of the picture: marks must not depend on where vectors begin.
+    const Vec3w before = x > 0 ? loadPositions(frame, position, x - 1, y)
+                               : vec3(BEFORE(p.x), BEFORE(p.y), BEFORE(p.z)),
+                after = x + PEL_WIDTH < frame->width ? loadPositions(frame, position, x + 1, y)
+                                                     : vec3(AFTER(p.x), AFTER(p.y), AFTER(p.z));
 #endif
     // Without a step to a neighbour there is no patch: most of a background is left here.
     const Vec3w sideways = shorterOffset(p, before, after);
@@ -151,12 +185,12 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     if (on s) fetchDepths(map, first, patch.column s, patch.row s);
     PEL_EACH_LANE(FETCH)
 #undef FETCH
-#define MARK(k, s)                                                                                             \
-    if (on s)                                                                                                  \
-        markPatch(map, first, seen, patch.column s, patch.row s, patch.depth s, patch.acrossX s,               \
-                  patch.acrossY s, patch.slopeX s, patch.slopeY s, patch.most s,                               \
-                  (uchar)(id s && id s < PEL_DIFFUSION_IDS && frame->tableOf[id s] ? min(id s, PEL_SEEN_OTHER) \
-                                                                                   : PEL_SEEN_OTHER));
+#define MARK(k, s)                                                                                    \
+    if (on s)                                                                                         \
+        markPatch(map, first, seen, patch.column s, patch.row s, patch.depth s, patch.acrossX s,      \
+                  patch.acrossY s, patch.slopeX s, patch.slopeY s, patch.most s,                      \
+                  id s&& id s < PEL_DIFFUSION_IDS && frame->tableOf[id s] ? min(id s, PEL_SEEN_OTHER) \
+                                                                          : PEL_SEEN_OTHER);
     PEL_EACH_LANE(MARK)
 #undef MARK
 }

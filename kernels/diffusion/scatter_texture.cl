@@ -4,6 +4,7 @@
 // surface, over texels of the same island; what is not covered does not count. texture_result: times albedo^after; texels within two of a
 // covered one take the nearest one's. One work-group takes tiles with something covered, or texels. Variants: PEL_FORMAT_....
 #include "lib/diffusion/texels.clh"
+#include "lib/diffusion/usable_light.clh"
 #include "lib/image/image.clh"
 
 #define LEAST_SIGMA \
@@ -35,7 +36,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void tex
     if (stretch[at].w > 0.0f) {
         const Vec3w e = loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y));
         const Vec3w l = mul3(e, albedoAt(frame, albedo, x, y, frame->before));
-        if (finite3(l) && finite3(albedoAt(frame, albedo, x, y, frame->after)))
+        if (usableLight(l) && finite3(albedoAt(frame, albedo, x, y, frame->after)))
             result = (float4)(l.x, l.y, l.z, 1.0f);
         else
             atomic_inc(&counters[PEL_COUNT_TEXELS_INVALID]);

@@ -6,6 +6,7 @@
 // (0: everything is id 1).
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/pyramid.clh"
+#include "lib/diffusion/usable_light.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 #include "lib/shading/position.clh"
@@ -41,11 +42,11 @@ static inline void copyPoints(__global const PelDiffusionFrame* frame, __global 
 #endif
         p = sub3(p, vec3((floatw)(frame->origin[0]), (floatw)(frame->origin[1]), (floatw)(frame->origin[2])));
         Vec3w e = loadColor(PEL_FORMAT_IRRADIANCE, imageSpan(irradiance, &frame->irradiance, x, y));
-        const maskw there = id != (uintw)(0), sound = finite3(e) & finite3(p);
+        const maskw there = id != (uintw)(0), sound = usableLight(e) & finite3(p);
         *covered += countw(mine & there);
         *invalid += countw(mine & there & notw(sound));
         id = as_uintw(selectw((intw)(0), as_intw(id), there & sound));
-        // Values with NaN or Inf are left out of all sums: zeros take their place.
+        // Values with NaN or Inf, or far too large, are left out of all sums: zeros take their place.
         const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
         p = select3(none, p, sound), e = select3(none, e, sound);
         storePlane(pyramid, row + PEL_PLANE_X * stride, p.x, mine);

@@ -40,6 +40,7 @@
 #define PEL_DIFFUSION_GROUP 16  // work-items
 #define PEL_ROW_PARTS 4         // that different work-items copy
 #define PEL_DIFFUSION_IDS 256
+#define PEL_MAX_IRRADIANCE 1e15f  // larger values count as invalid: sums over areas would overflow
 
 // A profile as three tables over the squared distance, four floats a node: R (1/length^2), the share of the light that stays within, and the
 // mean of R over a block of a ring at that distance. Nodes are equally spaced in the bits of a float, PEL_PROFILE_NODES to the octave. From the last node on R is 0 and the share 1.

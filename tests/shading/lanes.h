@@ -1,19 +1,8 @@
-// Devices that compute 1, 8 and 16 lanes at a time, as other hardware does.
+// Random frames on devices of other widths.
 #pragma once
-#include <cstdlib>
-#include <string>
-
+#include "../device_lanes.h"
 #include "shade_scene.h"
 
 namespace shade_test {
-
-inline pellucid::Device deviceOf(int lanes) {
-    const char* before = std::getenv("PELLUCID_MATH_WIDTH");
-    const std::string saved = before ? before : "";
-    setenv("PELLUCID_MATH_WIDTH", std::to_string(lanes).c_str(), 1);
-    pellucid::Device device("");
-    before ? setenv("PELLUCID_MATH_WIDTH", saved.c_str(), 1) : unsetenv("PELLUCID_MATH_WIDTH");
-    return device;
+using lanes::deviceOf;
 }
-
-}  // namespace shade_test

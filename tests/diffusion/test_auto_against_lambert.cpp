@@ -1,6 +1,6 @@
-// With default settings no method is further from light than Lambert with a ray-traced shadow, in no channel
-// and no sub-set. A method is held to it when `holds` says so, but for what known_worse.h names; of the others the table of errors is
-// printed, and whoever improves one sets `holds`.
+// With default settings `auto` is no further from the surface integral than Lambert with a ray-traced shadow, in no
+// channel and no sub-set, with a few exceptions, which known_worse.h lists with their size. Errors of the methods that
+// read tables or do not scatter are printed beside it, but not tested: these are worse in places.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -18,7 +18,7 @@ using namespace lit_scenes;
 struct Contender {
     const char* name;
     Method shade;
-    bool holds;
+    bool tested;
 };
 
 const Contender contenders[] = {
@@ -74,7 +74,7 @@ io::ImageDifference within(const LitScene& s, const std::vector<float>& picture,
     return io::compareImages(picture, s.truth, mask);
 }
 
-void hold(const LitScene& s, const Profile& profile, const std::string& where) {
+void compare(const LitScene& s, const Profile& profile, const std::string& where) {
     const Device device("");
     for (const Contender& c : contenders) {
         const std::vector<float> picture = c.shade(device, s, profile, 1, nullptr);
@@ -86,7 +86,7 @@ void hold(const LitScene& s, const Profile& profile, const std::string& where) {
                             where.c_str(), c.name, name, own.pixels, 1e4 * own.rmse[0], 1e4 * own.rmse[1],
                             1e4 * own.rmse[2], 1e4 * lambert.rmse[0], 1e4 * lambert.rmse[1],
                             1e4 * lambert.rmse[2]);
-            for (int channel = 0; c.holds && channel < 3; ++channel)
+            for (int channel = 0; c.tested && channel < 3; ++channel)
                 EXPECT_LE(own.rmse[channel], std::max(lambert.rmse[channel] + tolerance::neverWorse,
                                                       knownLimit(c.name, where, name, channel)))
                     << c.name << ", " << where << ", " << name << ", channel " << channel;
@@ -106,7 +106,7 @@ std::string headFile(const char* name) {
            ".obj";
 }
 
-void holdBody(const Body& body, int size, double fill = 0.94) {
+void compareBody(const Body& body, int size, double fill = 0.94) {
     const Device device("");
     const Profile skin = Profile::skin();
     const Stage stage(device, body, 1);
@@ -120,7 +120,7 @@ void holdBody(const Body& body, int size, double fill = 0.94) {
         stage.addTruth(device, inMm, skin, 1);
         for (const auto& [unit, name] : {std::pair{1.0, "mm"}, {10.0, "cm"}, {1000.0, "m"}}) {
             if (unit != 1 && &light != lights) continue;  // the unit is no matter of the light
-            hold(inUnit(inMm, unit), skin, body.name + ", " + light.name + ", " + name);
+            compare(inUnit(inMm, unit), skin, body.name + ", " + light.name + ", " + name);
         }
     }
 }
@@ -135,31 +135,31 @@ const Body& wholeHead(const char* name) {
 
 }  // namespace
 
-TEST(NeverWorse, Ball) {
-    holdBody(ball(10, sized(96, 8)), sized(96, 12));
+TEST(AutoAgainstLambert, Ball) {
+    compareBody(ball(10, sized(96, 8)), sized(96, 12));
 }
-TEST(NeverWorse, Relief) {
-    holdBody(relief(sized(160, 10)), sized(96, 12));
+TEST(AutoAgainstLambert, Relief) {
+    compareBody(relief(sized(160, 10)), sized(96, 12));
 }
-TEST(NeverWorse, FemaleHead) {
-    holdBody(wholeHead("female"), sized(128, 12));
+TEST(AutoAgainstLambert, FemaleHead) {
+    compareBody(wholeHead("female"), sized(128, 12));
 }
-TEST(NeverWorse, Nose) {
-    holdBody(closeUp(
-                 wholeHead("female"), "nose", [](Vec3 p) { return p.z - 10 * std::abs(p.x); }, 45),
-             sized(112, 12));
+TEST(AutoAgainstLambert, Nose) {
+    compareBody(closeUp(
+                    wholeHead("female"), "nose", [](Vec3 p) { return p.z - 10 * std::abs(p.x); }, 45),
+                sized(112, 12));
 }
-TEST(NeverWorse, Ear) {
-    holdBody(closeUp(
-                 wholeHead("male"), "ear", [](Vec3 p) { return p.x; }, 70),
-             sized(112, 12));
+TEST(AutoAgainstLambert, Ear) {
+    compareBody(closeUp(
+                    wholeHead("male"), "ear", [](Vec3 p) { return p.x; }, 70),
+                sized(112, 12));
 }
-TEST(NeverWorse, MaleHead) {
-    holdBody(wholeHead("male"), sized(128, 12));
+TEST(AutoAgainstLambert, MaleHead) {
+    compareBody(wholeHead("male"), sized(128, 12));
 }
 
 // The references of these scenes are right: a ball's has a closed form, whatever the unit.
-TEST(NeverWorse, ReferenceOfTheBallIsTheClosedForm) {
+TEST(AutoAgainstLambert, ReferenceOfTheBallIsTheClosedForm) {
     const Device device("");
     const Profile skin = Profile::skin();
     for (double unit : {1.0, 1000.0}) {
