@@ -141,6 +141,8 @@ void runJobs(Device& device, const WarmUpJobs& jobs, uint32_t threads) {
         changed.notify_one();
     };
     if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
+    if (std::string_view(device.info().platform) == "Oclgrind")
+        threads = 1;  // it stops where kernels overlap
     std::vector<std::jthread> workers;
     const auto tell = [&](size_t ready) {
         const std::string what = "building kernels " + std::to_string(ready) + "/" + std::to_string(jobs.size());

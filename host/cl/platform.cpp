@@ -179,6 +179,8 @@ PelDeviceInfo describe(cl_device_id device, uint32_t index) {
         quirks +=
             "fixed work-group sizes, short ranges and no global offsets (each is compiled anew); "
             "program binaries by a warm-up alone (own cache); ";
+    if (platform == "rusticl" && std::string(d.driver).starts_with("22."))
+        quirks += "its compiler crashes on kernels of auto, screen and light scattering; ";
     if (!quirks.empty()) quirks.resize(quirks.size() - 2);
     copyText(d.quirks, quirks);
     return d;
