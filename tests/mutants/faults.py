@@ -1,12 +1,16 @@
-"""Small faults in C++, OpenCL C and Python text: one for each line that has code, the same ones for the same text.
+"""Small faults in C++, OpenCL C and Python text: one for each line with code, the same ones for the same text.
 
 A fault is found in the text with comments, strings, preprocessor lines and messages blanked out, so that each one changes what runs.
 """
 import hashlib
 import io
 import re
+import sys
 import tokenize
 from dataclasses import dataclass
+
+import meanings
+from meanings import closing
 
 COMPARISON = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "=="}
 OPERATOR = {"+": "-", "-": "+", "*": "/", "/": "*", "%": "/", "&": "|", "|": "&", "<<": ">>", ">>": "<<",
@@ -63,16 +67,6 @@ def masked_python(text):
             if token.type == tokenize.STRING:
                 out[begin] = out[end - 1] = '"'
     return "".join(out)
-
-
-def closing(text, opening):
-    """The index of the bracket that closes the one at `opening`, or -1."""
-    depth = 0
-    for i in range(opening, len(text)):
-        depth += (text[i] in "([{") - (text[i] in ")]}")
-        if depth == 0:
-            return i
-    return -1
 
 
 def masked(path, text):
@@ -192,8 +186,8 @@ def candidates(path, text, m):
 NOTHING_CHANGES = re.compile(r"\breserve\(|static_assert|\btemplate\b|__attribute__|PEL_API|\boperator\b|^\s*(?:from|import)\b|\bassert\b|#pragma|noexcept")
 
 
-def faults(path, text):
-    """One fault for each line of `text` that has any."""
+def faults(path, text, meaning=False):
+    """One fault for each line of `text` that has any; with `meaning` of meanings.py."""
     m = masked(path, text)
     lines, shown = text.split("\n"), {}
     starts = [0]
@@ -201,7 +195,7 @@ def faults(path, text):
         starts.append(starts[-1] + len(line) + 1)
     by_line = {}
     row = 0
-    for found in sorted(set(candidates(path, text, m))):
+    for found in sorted(set((meanings if meaning else sys.modules[__name__]).candidates(path, text, m))):
         while starts[row + 1] <= found[0]:
             row += 1
         if not NOTHING_CHANGES.search(lines[row]) and text[found[0]:found[1]] != found[2]:

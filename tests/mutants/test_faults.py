@@ -3,6 +3,7 @@ import unittest
 from pathlib import Path
 
 import faults
+import meanings
 
 ROOT = Path(__file__).resolve().parents[2]
 CODE = """// a comment: 1 + 2 < 3
@@ -36,6 +37,26 @@ class Faults(unittest.TestCase):
             if "fail(" in text:
                 self.assertIn('fail("not 1 + 2 but 3", n + 1)', text)
 
+    def test_every_kind_of_meaning(self):
+        code = """void Sums::prepare() {
+    if (empty_) return;
+    device_->fill(sums_.get(), 0,
+                  bytes, 0);
+    sums_ = device_->allocateZeros(bytes);
+    if (bytes != bytes_ || !std::equal(now.begin(), now.end(), sent_.begin()))
+        key.addPart(name).addPart(options);
+    keys = {{"PEL_A", text(1)}, {"PEL_B", f(x, 2)}};
+    for (int j = -1; j <= 1; ++j) low = min(size[0], min(left, at[x + 1]));
+}
+"""
+        made = [code[:start] + new + code[end:]
+                for start, end, new, _ in meanings.candidates("a.cpp", code, faults.masked("a.cpp", code))]
+        for wanted in ("if (false) return;", "    ;\n    sums_", "device_->allocate(bytes)", "if (bytes != bytes_)\n",
+                       "if (!std::equal(", "key.addPart(options);", "key.addPart(name);", '{{"PEL_A", text(1)}};',
+                       '{ {"PEL_B", f(x, 2)}};', "int j = 0; j <= 1", "j <= 0;", "low = size[0];", "low = min(left, at[x + 1]);",
+                       "min(size[0], left)", "min(size[0], at[x + 1])", "at[x]"):
+            self.assertTrue(any(wanted in text for text in made), wanted)
+
     def test_python(self):
         code = 'def f(a, b):\n    """1 + 2"""\n    if not a:  # 3 < 4\n        raise ValueError("5 + 6")\n    g(a, b)\n    return a and b is None\n'
         made = self.every("a.py", code)
@@ -57,6 +78,8 @@ class Faults(unittest.TestCase):
         for path in [*ROOT.glob("kernels/**/*.cl*"), *ROOT.glob("host/**/*.cpp"), *ROOT.glob("bindings/python/pellucid/**/*.py")]:
             text = path.read_text()
             found = list(faults.faults(str(path.relative_to(ROOT)), text))
+            for fault in faults.faults(str(path.relative_to(ROOT)), text, True):
+                self.assertNotEqual(fault.apply(text), text)
             count, names = count + len(found), names + len({f.name for f in found})
             for fault in found:
                 self.assertNotEqual(fault.apply(text), text)

@@ -45,7 +45,7 @@ class Workplace:
     """The copy of the tree, its build, and its Python environment."""
 
     def __init__(self, as_is):
-        for folder in ("tmp", "pocl", "cache", "counts"):
+        for folder in ("tmp", "pocl", "cache"):
             (WORK / folder).mkdir(parents=True, exist_ok=True)
         BUILD.mkdir(parents=True, exist_ok=True)
         self.scratch = WORK / "tmp"
@@ -80,14 +80,10 @@ class Workplace:
             if str(path.relative_to(TREE)) not in wanted:
                 path.unlink()
 
-    counting = True  # whether the build counts lines
-
     def build(self, *targets):
         if not (BUILD / "build.ninja").exists():
             launcher = ["-DCMAKE_C_COMPILER_LAUNCHER=ccache", "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-            counting = [f"-DCMAKE_PROJECT_pellucid_INCLUDE={TREE}/tests/mutants/count_lines.cmake",
-                        "-DCMAKE_EXE_LINKER_FLAGS=--coverage", "-DCMAKE_SHARED_LINKER_FLAGS=--coverage"] if self.counting else []
-            status, _ = command(["cmake", "-G", "Ninja", "-S", TREE, "-B", BUILD, "-DCMAKE_BUILD_TYPE=Release", *counting, *launcher],
+            status, _ = command(["cmake", "-G", "Ninja", "-S", TREE, "-B", BUILD, "-DCMAKE_BUILD_TYPE=Release", *launcher],
                                 600, WORK / "build.log")
             if status:
                 sys.exit((WORK / "build.log").read_text())
@@ -95,7 +91,7 @@ class Workplace:
 
     def test(self, name, limit, log, **extra):
         """A test program, or a file of Python tests."""
-        environment = {"POCL_CACHE_DIR": WORK / "pocl", "GCOV_PREFIX": WORK / "tmp" / "gcov", **self.environment, **extra}
+        environment = {"POCL_CACHE_DIR": WORK / "pocl", **self.environment, **extra}
         if name.endswith(".py"):
             words = [WORK / "python/test-environment/bin/python", "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--tb=short",
                      "--rootdir", TREE, TREE / name]
