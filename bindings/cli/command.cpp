@@ -47,6 +47,10 @@ int Run::onProgress(void* user, double fraction, const char* what) {
     return !interrupted;
 }
 
+void Run::progress(double fraction, const char* what) {
+    if (!onProgress(this, fraction, what)) throw Error(PEL_ERROR_CANCELLED, "interrupted");
+}
+
 double Run::deviceMilliseconds() const {
     return device_.stats().kernelMilliseconds - before_.kernelMilliseconds;
 }

@@ -40,6 +40,8 @@ class Run {
     const Device& device() const { return device_; }
     double deviceMilliseconds() const;  // kernels since this run began
 
+    // Shows progress of work on the host. Throws Error after Ctrl-C.
+    void progress(double fraction, const char* what);
     void note(const std::string& text) const;  // to stderr, for people
     // To stderr, and into the report; with --strict an InputError. Before anything is written.
     void warn(const std::string& text);

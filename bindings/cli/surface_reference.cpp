@@ -1,7 +1,9 @@
 #include "surface_reference.h"
 
+#include <charconv>
 #include <cmath>
 
+#include "command.h"
 #include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/mesh/mesh_parts.h"
@@ -58,22 +60,50 @@ sample::Lighting lightingOf(const io::SceneFile& scene) {
     return lighting;
 }
 
-ReferenceMesh loadReferenceMesh(const std::string& path, int subdivide, const std::string& part) {
-    ReferenceMesh out;
-    if (io::extensionOf(path) == "obj" && (subdivide > 0 || !part.empty())) {
-        io::PartedMesh parted = io::loadParts(path, subdivide);
-        if (!part.empty()) {
-            const int wanted = parted.part(part);
-            if (wanted < 0) {
-                std::string names;
-                for (const std::string& name : parted.parts) names += (names.empty() ? "" : ", ") + name;
-                throw io::FileError(path, "has no part '" + part + "'; it has: " + names);
-            }
-            for (uint32_t p : parted.partOf) out.materials.push_back(p == uint32_t(wanted) ? 1 : 2);
+namespace {
+
+constexpr uint32_t shadowOnly = 255;
+
+// The id of each triangle: that of its group, or shadowOnly.
+std::vector<uint32_t> idsOf(const std::string& path, const io::PartedMesh& mesh,
+                            const std::vector<std::string>& parts, bool byMaterial) {
+    std::vector<uint32_t> ids(mesh.partOf.size(), shadowOnly);
+    for (const std::string& part : parts) {
+        const size_t equals = part.find('=');
+        const std::string name = byMaterial ? part.substr(equals + 1) : part;
+        uint32_t id = 1;
+        if (byMaterial) {
+            const char *text = part.data(), *end = text + std::min(equals, part.size());
+            const auto [stopped, error] = std::from_chars(text, end, id);
+            if (error != std::errc() || stopped != end || id == 0 || id >= shadowOnly)
+                throw UsageError("--part " + part +
+                                 ": several parts are written ID=GROUP, with an id from 1 to " +
+                                 std::to_string(shadowOnly - 1));
         }
+        const int wanted = mesh.part(name);
+        if (wanted < 0) {
+            std::string names;
+            for (const std::string& known : mesh.parts) names += (names.empty() ? "" : ", ") + known;
+            throw io::FileError(path, "has no part '" + name + "'; it has: " + names);
+        }
+        for (size_t t = 0; t < ids.size(); ++t)
+            if (mesh.partOf[t] == uint32_t(wanted)) ids[t] = id;
+    }
+    return ids;
+}
+
+}  // namespace
+
+ReferenceMesh loadReferenceMesh(const std::string& path, int subdivide, const std::vector<std::string>& parts) {
+    ReferenceMesh out;
+    if (io::extensionOf(path) == "obj" && (subdivide > 0 || !parts.empty())) {
+        io::PartedMesh parted = io::loadParts(path, subdivide);
+        out.byMaterial = parts.size() > 1 || (parts.size() == 1 && parts[0].find('=') != std::string::npos &&
+                                              parted.part(parts[0]) < 0);
+        if (!parts.empty()) out.materials = idsOf(path, parted, parts, out.byMaterial);
         out.mesh = std::move(parted.mesh);
     } else {
-        if (!part.empty()) throw io::FileError(path, "has no parts; only the groups of an OBJ file are");
+        if (!parts.empty()) throw io::FileError(path, "has no parts; only the groups of an OBJ file are");
         out.mesh = io::loadMesh(path);
         io::loopSubdivide(out.mesh, subdivide);
     }

@@ -64,38 +64,6 @@ Sample sampleLight(const SurfaceLight& light, const Place& place) {
     return s;
 }
 
-// For up to a packet of points.
-void lightPacket(const Scene& scene, const Lighting& lighting, const SurfacePoint* points, int count,
-                 double lift, float* out) {
-    Place places[Scene::packetSize];
-    std::array<double, 3> sums[Scene::packetSize]{};
-    for (int i = 0; i < count; ++i) {
-        places[i] = placeOf(scene.mesh(), points[i], lift);
-        if (lighting.ambient) sums[i] = lighting.ambient(places[i].normal);
-    }
-    for (const SurfaceLight& light : lighting.lights) {
-        Ray rays[Scene::packetSize];
-        Hit hits[Scene::packetSize];
-        Sample samples[Scene::packetSize];
-        int who[Scene::packetSize], towards = 0;
-        for (int i = 0; i < count; ++i) {
-            samples[i] = sampleLight(light, places[i]);
-            if (!(samples[i].strength > 0)) continue;
-            rays[towards] = {places[i].origin, samples[i].direction};
-            who[towards++] = i;
-        }
-        if (towards == 0) continue;
-        scene.intersect(rays, hits, towards);
-        for (int k = 0; k < towards; ++k) {
-            const int i = who[k];
-            if (hits[k].triangle != Hit::none && hits[k].distance < samples[i].distance) continue;
-            for (int c = 0; c < 3; ++c) sums[i][c] += samples[i].strength * light.color[c];
-        }
-    }
-    for (int i = 0; i < count; ++i)
-        for (int c = 0; c < 3; ++c) out[3 * i + c] = float(sums[i][c]);
-}
-
 // A part of a triangle of the mesh.
 struct Piece {
     uint32_t triangle;
@@ -206,6 +174,13 @@ class Refiner {
 
 }  // namespace
 
+Surface surfaceAt(const Mesh& mesh, const SurfacePoint& point) {
+    const uint32_t* v = &mesh.triangles[3 * size_t(point.triangle)];
+    const Vec3 a = vectorAt(mesh.positions, v[0]), b = vectorAt(mesh.positions, v[1]),
+               c = vectorAt(mesh.positions, v[2]);
+    return {a * point.weights[0] + b * point.weights[1] + c * point.weights[2], normalize(cross(b - a, c - a))};
+}
+
 std::vector<SurfacePoint> nearestPoints(const Scene& scene, std::span<const float> positions,
                                         std::vector<double>& distances) {
     std::vector<SurfacePoint> places(positions.size() / 3);
@@ -219,17 +194,48 @@ std::vector<SurfacePoint> nearestPoints(const Scene& scene, std::span<const floa
     return places;
 }
 
-std::vector<float> irradianceAt(const Scene& scene, const Lighting& lighting,
-                                std::span<const SurfacePoint> points) {
+void irradianceOfPacket(const Scene& scene, const Lighting& lighting, const SurfacePoint* points, int count,
+                        float* out) {
     const Vec3 extent = scene.bounds().high - scene.bounds().low;
     const double lift = scene.bounds().empty() ? 0 : liftPart * std::max({extent.x, extent.y, extent.z});
+    Place places[Scene::packetSize];
+    std::array<double, 3> sums[Scene::packetSize]{};
+    for (int i = 0; i < count; ++i) {
+        places[i] = placeOf(scene.mesh(), points[i], lift);
+        if (lighting.ambient) sums[i] = lighting.ambient(places[i].normal);
+    }
+    for (const SurfaceLight& light : lighting.lights) {
+        Ray rays[Scene::packetSize];
+        Hit hits[Scene::packetSize];
+        Sample samples[Scene::packetSize];
+        int who[Scene::packetSize], towards = 0;
+        for (int i = 0; i < count; ++i) {
+            samples[i] = sampleLight(light, places[i]);
+            if (!(samples[i].strength > 0)) continue;
+            rays[towards] = {places[i].origin, samples[i].direction};
+            who[towards++] = i;
+        }
+        if (towards == 0) continue;
+        scene.intersect(rays, hits, towards);
+        for (int k = 0; k < towards; ++k) {
+            const int i = who[k];
+            if (hits[k].triangle != Hit::none && hits[k].distance < samples[i].distance) continue;
+            for (int c = 0; c < 3; ++c) sums[i][c] += samples[i].strength * light.color[c];
+        }
+    }
+    for (int i = 0; i < count; ++i)
+        for (int c = 0; c < 3; ++c) out[3 * i + c] = float(sums[i][c]);
+}
+
+std::vector<float> irradianceAt(const Scene& scene, const Lighting& lighting,
+                                std::span<const SurfacePoint> points) {
     std::vector<float> result(3 * points.size());
     const auto packets = int64_t((points.size() + Scene::packetSize - 1) / Scene::packetSize);
 #pragma omp parallel for schedule(dynamic, 64)
     for (int64_t i = 0; i < packets; ++i) {
         const size_t first = size_t(i) * Scene::packetSize,
                      count = std::min(size_t(Scene::packetSize), points.size() - first);
-        lightPacket(scene, lighting, &points[first], int(count), lift, &result[3 * first]);
+        irradianceOfPacket(scene, lighting, &points[first], int(count), &result[3 * first]);
     }
     return result;
 }

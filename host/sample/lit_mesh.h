@@ -34,6 +34,11 @@ struct SurfacePoint {
     std::array<double, 3> weights;
 };
 
+struct Surface {
+    Vec3 position, normal;  // normal: of the triangle, unit, outwards
+};
+Surface surfaceAt(const Mesh& mesh, const SurfacePoint& point);
+
 // The place on the mesh that is nearest to each of `positions` (xyz), and how far away it is.
 std::vector<SurfacePoint> nearestPoints(const Scene& scene, std::span<const float> positions,
                                         std::vector<double>& distances);
@@ -43,6 +48,10 @@ std::vector<SurfacePoint> nearestPoints(const Scene& scene, std::span<const floa
 // shadow terminator"].
 std::vector<float> irradianceAt(const Scene& scene, const Lighting& lighting,
                                 std::span<const SurfacePoint> points);
+
+// The same for up to Scene::packetSize points on the calling thread; `out` takes RGB for each.
+void irradianceOfPacket(const Scene& scene, const Lighting& lighting, const SurfacePoint* points, int count,
+                        float* out);
 
 struct LitMesh {
     std::vector<float> positions;     // xyz of each corner: three corners per triangle, none shared

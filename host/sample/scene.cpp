@@ -102,6 +102,28 @@ void Scene::intersect(const Ray* rays, Hit* hits, int count) const {
     }
 }
 
+Hit Scene::firstHit(const Ray& ray, double within, Vec3& normal) const {
+    RTCRayHit query{};
+    query.ray.org_x = float(ray.origin.x), query.ray.dir_x = float(ray.direction.x);
+    query.ray.org_y = float(ray.origin.y), query.ray.dir_y = float(ray.direction.y);
+    query.ray.org_z = float(ray.origin.z), query.ray.dir_z = float(ray.direction.z);
+    query.ray.tfar = float(within);
+    query.ray.mask = ~0u;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(device_->scene, &context, &query);
+    Hit hit;
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
+    hit.triangle = query.hit.primID;
+    hit.distance = query.ray.tfar;
+    hit.weights[1] = query.hit.u;
+    hit.weights[2] = query.hit.v;
+    hit.weights[0] = std::max(0.0, 1 - hit.weights[1] - hit.weights[2]);
+    normal = normalize(Vec3{query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z});
+    return hit;
+}
+
 namespace {
 
 // Barycentric weights of the point of a triangle next to p.

@@ -36,6 +36,10 @@ class Scene {
     // on the triangle and distance are then solved in double. May be called from several threads.
     void intersect(const Ray* rays, Hit* hits, int count) const;
 
+    // The first hit of a single ray no further than `within`, and the unit normal of that triangle. All is in
+    // Embree's single precision, for rays by the million. May be called from several threads.
+    Hit firstHit(const Ray& ray, double within, Vec3& normal) const;
+
     // The point of the mesh next to `p`, no further than `within` away. Weights and distance as for rays. May be called from
     // several threads.
     Hit nearest(Vec3 p, double within = INFINITY) const;

@@ -1,0 +1,62 @@
+// Light that walks through the volume of a body (docs/mathematics.md, section 14): what the surface integral
+// itself approximates.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "sample/lit_mesh.h"
+#include "sample/medium.h"
+
+namespace pellucid::sample {
+
+// The triangles of a scene that enclose one medium. The scene must outlive it.
+class WalkBody {
+  public:
+    // `material`: only triangles of this id enclose the medium, all others just cast shadows; 0: all triangles.
+    // Throws std::invalid_argument if the scene has no such triangle.
+    WalkBody(const Scene& scene, uint32_t material);
+
+    const Scene& lit() const { return lit_; }                  // the whole scene, for shadows
+    const Scene& body() const { return own_ ? *own_ : lit_; }  // the boundary of the medium
+    // The triangle of the whole scene that a triangle of the boundary is.
+    uint32_t litTriangle(uint32_t triangle) const { return own_ ? triangles_[triangle] : triangle; }
+    bool encloses(uint32_t litTriangle) const;
+    uint32_t material() const { return material_; }
+
+  private:
+    const Scene& lit_;
+    uint32_t material_;
+    std::unique_ptr<Scene> own_;
+    std::vector<uint32_t> triangles_;
+};
+
+struct WalkOptions {
+    uint32_t samples = 64;  // walks per point, channel and half
+    double noise = 0;  // if above 0: take as many samples as the mean of both halves needs for this noise
+    uint64_t seed = 1;
+    // Called by the calling thread with the finished fraction, about ten times a second. May throw to cancel.
+    std::function<void(double)> progress;
+};
+
+constexpr uint32_t maxWalkSamples = 1u << 16;
+
+// Two independent estimates with the same noise. Where E is the irradiance of a surface point (1 under a
+// light of colour 1 that faces it), the values are the radiance of the body times pi, and equal
+// reflectance times E on a large, evenly lit plane.
+struct WalkedLight {
+    std::vector<float> first, second;  // RGB per point
+    uint32_t samples = 0;              // per point, channel and half
+    double noise = 0;                  // standard error of the mean of both halves, root mean square
+    uint64_t lost = 0;                 // walks that left through a hole of the mesh; they count as dark
+};
+
+// Walks from each of `points` (on triangles of the whole scene that enclose the medium) until the surface is
+// met, and takes the irradiance there, with ray-traced visibility. The result depends on the seed, not on the
+// number of threads.
+WalkedLight walkLight(const WalkBody& body, const Lighting& lighting, std::span<const SurfacePoint> points,
+                      const Medium& medium, const WalkOptions& options);
+
+}  // namespace pellucid::sample

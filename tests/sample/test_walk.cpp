@@ -1,0 +1,340 @@
+// Light that walks through the volume of a mesh, against the naive walk of the oracle in double precision, and
+// against walks made outside of this project (PELLUCID_RULER_DIR).
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include "io/image/image_file.h"
+#include "io/mesh/mesh_parts.h"
+#include "npy.h"
+#include "reference/random_walk.h"
+#include "sample/random_walk.h"
+#include "test_size.h"
+
+namespace sample = pellucid::sample;
+using sample::Vec3;
+
+namespace {
+
+constexpr std::array<double, 3> white{1, 1, 1};
+// Of facets against a ball, and of tabulated walks with noise of their own: 0.5 to 1.5e-3 measured.
+constexpr double ballError = 2.5e-3;
+// Of a head, where the two programs know the irradiance at a shadow's edge differently.
+constexpr double headError = 4e-3, headBias = 1e-3;
+// 0.0024 of the fit of the medium, and three standard errors of 38,000 walks.
+constexpr double reflectanceError = 6e-3;
+
+sample::Lighting fromAbove() {
+    return {{sample::SurfaceLight{}}, {}};
+}
+sample::Lighting fromEverywhere() {
+    return {{}, [](Vec3) { return white; }};
+}
+
+sample::Medium medium(double meanFreePath, double albedo = 0.99055) {
+    return {{meanFreePath, meanFreePath, meanFreePath}, {albedo, albedo, albedo}};
+}
+
+// Points of the triangles' middles, on every `stride`-th triangle.
+std::vector<sample::SurfacePoint> middles(const sample::Scene& scene, size_t stride) {
+    std::vector<sample::SurfacePoint> points;
+    for (size_t t = 0; t < scene.mesh().triangles.size() / 3; t += stride)
+        points.push_back({uint32_t(t), {1 / 3., 1 / 3., 1 / 3.}});
+    return points;
+}
+
+double cosineAt(const sample::Scene& scene, const sample::SurfacePoint& point) {
+    const Vec3 p = surfaceAt(scene.mesh(), point).position;
+    return p.z / length(p);
+}
+
+// Squared differences to `expected` without noise: the mean of the product of both halves' differences, and its
+// standard error.
+struct Error {
+    double mean = 0, uncertainty = 0;
+};
+template <class Expected>
+Error errorOf(const sample::WalkedLight& light, const Expected& expected) {
+    double sum = 0, square = 0;
+    const size_t count = light.first.size();
+    for (size_t i = 0; i < count; ++i) {
+        const double product = (light.first[i] - expected(i)) * (light.second[i] - expected(i));
+        sum += product, square += product * product;
+    }
+    return {sum / double(count), std::sqrt(square) / double(count)};
+}
+
+}  // namespace
+
+// Small and large against the mean free path.
+TEST(WalkLight, BallEqualsTheOraclesWalk) {
+    constexpr int bins = 20;
+    const sample::Scene scene(sample::makeSphere(1, 96, 192).view());
+    const sample::WalkBody body(scene, 0);
+    for (double radius : {4.0, 15.0}) {  // mean free paths
+        const auto points = middles(scene, testsAreSmall() ? 1600 : 160);
+        const sample::WalkedLight light =
+            walkLight(body, fromAbove(), points, medium(1 / radius), {uint32_t(sized(64, 8))});
+        const reference::WalkResult expected =
+            reference::walkBall({1, 0.99055}, radius, bins, sized(300000, 3000), 5);
+        const Error e = errorOf(light, [&](size_t i) {
+            // Linear between the middles of the bins.
+            const double at = (cosineAt(scene, points[i / 3]) + 1) / 2 * bins - 0.5;
+            const int bin = std::clamp(int(std::floor(at)), 0, bins - 2);
+            return expected.radiance[bin] + (at - bin) * (expected.radiance[bin + 1] - expected.radiance[bin]);
+        });
+        if (testsAreSmall()) continue;
+        EXPECT_LT(e.mean, ballError * ballError + 3 * e.uncertainty) << radius;
+        EXPECT_LT(light.noise, 0.02);
+        EXPECT_GT(light.noise, 0.002);
+    }
+}
+
+TEST(WalkLight, LargePlaneReflectsWhatTheMediumWasMadeFor) {
+    // A box so large that it is a half-space to its top.
+    sample::Mesh box;
+    const float s = 100, deep = 60;
+    for (int i = 0; i < 8; ++i)
+        box.positions.insert(box.positions.end(), {i & 1 ? s : -s, i & 2 ? s : -s, i & 4 ? 0 : -deep});
+    box.triangles = {4, 5, 7, 4, 7, 6, 0, 3, 1, 0, 2, 3, 0, 1, 5, 0, 5, 4,
+                     1, 3, 7, 1, 7, 5, 3, 2, 6, 3, 6, 7, 2, 0, 4, 2, 4, 6};
+    const sample::Scene scene(box.view());
+    const sample::WalkBody body(scene, 0);
+    const std::array<double, 3> reflectance{0.8, 0.5, 0.25};
+    for (const auto boundary : {sample::Boundary::IndexMatched, sample::Boundary::Fresnel}) {
+        const sample::Medium m = sample::burleyMedium({0.9, 0.9, 0.9}, reflectance, boundary);
+        const std::vector<sample::SurfacePoint> middle(sized(32, 2), {0, {0.5, 0, 0.5}});
+        const sample::WalkedLight light =
+            walkLight(body, fromEverywhere(), middle, m, {uint32_t(sized(600, 50))});
+        for (size_t c = 0; c < 3; ++c) {
+            double sum = 0;
+            for (size_t i = c; i < light.first.size(); i += 3) sum += light.first[i] + light.second[i];
+            EXPECT_NEAR(sum / double(2 * middle.size()), reflectance[c], testsAreSmall() ? 0.1 : reflectanceError)
+                << "channel " << c << ", index " << m.refractiveIndex;
+        }
+        EXPECT_EQ(light.lost, 0u);
+    }
+}
+
+TEST(WalkLight, MediumOfBurleysProfile) {
+    // docs/mathematics.md, section 14: l = 1.087 d and an albedo of 0.99055 at a reflectance of 0.8.
+    const sample::Medium m = sample::burleyMedium({1, 2, 0.1}, {0.8, 0.8, 0.8}, sample::Boundary::IndexMatched);
+    EXPECT_NEAR(m.meanFreePath[0], 1.087, 0.004);
+    EXPECT_NEAR(m.meanFreePath[1], 2 * m.meanFreePath[0], 1e-12);
+    EXPECT_NEAR(m.albedo[2], 0.99055, 1e-4);
+    double before = 0;
+    for (double A : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0}) {
+        const sample::Medium one = sample::burleyMedium({1, 1, 1}, {A, A, A}, sample::Boundary::IndexMatched);
+        EXPECT_GT(one.albedo[0], before);
+        EXPECT_LT(one.albedo[0], 1);
+        EXPECT_TRUE(one.meanFreePath[0] > 0.5 && one.meanFreePath[0] < 5);
+        before = one.albedo[0];
+    }
+}
+
+TEST(WalkLight, SameResultWithAnyNumberOfThreads) {
+    const sample::Scene scene(sample::makeSphere(1, 24, 48).view());
+    const sample::WalkBody body(scene, 0);
+    const auto points = middles(scene, 60);
+    const auto walked = [&](int threads, uint64_t seed) {
+        omp_set_num_threads(threads);
+        return walkLight(body, fromAbove(), points, medium(0.1), {8, 0, seed}).first;
+    };
+    const int before = omp_get_max_threads();
+    EXPECT_EQ(walked(1, 3), walked(5, 3));
+    EXPECT_NE(walked(1, 3), walked(1, 4));
+    omp_set_num_threads(before);
+}
+
+TEST(WalkLight, SamplesForANoise) {
+    const sample::Scene scene(sample::makeSphere(1, 24, 48).view());
+    const sample::WalkBody body(scene, 0);
+    const auto points = middles(scene, 10);
+    for (double noise : {0.02, 0.01}) {
+        const sample::WalkedLight light = walkLight(body, fromAbove(), points, medium(0.1), {1, noise});
+        EXPECT_NEAR(light.noise / noise, 1, 0.25) << light.samples;
+    }
+    EXPECT_EQ(walkLight(body, fromAbove(), {}, medium(0.1), {1, 1e-9}).first.size(), 0u);
+}
+
+TEST(WalkLight, CancelsWhileItWalks) {
+    const sample::Scene scene(sample::makeSphere(1, 24, 48).view());
+    const sample::WalkBody body(scene, 0);
+    const auto points = middles(scene, 1);
+    const sample::WalkOptions options{sample::maxWalkSamples, 0, 1,
+                                      [](double) { throw std::domain_error("cancelled"); }};
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_THROW(walkLight(body, fromAbove(), points, medium(0.1), options), std::domain_error);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(10)) << "of many hours";
+}
+
+// A ball inside of a ball. The outer one lets walks of the inner one's medium pass, and shades it.
+TEST(WalkLight, BodiesOfTheirOwn) {
+    sample::Mesh two = sample::makeSphere(1, 24, 48);
+    two.materials.assign(two.triangles.size() / 3, 1);
+    sample::Mesh outer = sample::makeSphere(2, 24, 48);
+    outer.materials.assign(outer.triangles.size() / 3, 2);
+    const size_t inner = two.materials.size();
+    two.append(outer);
+    const sample::Scene scene(two.view()), alone(sample::makeSphere(1, 24, 48).view());
+    const sample::WalkBody body(scene, 1);
+    std::vector<sample::SurfacePoint> points = middles(scene, 100);
+    std::erase_if(points, [&](const auto& p) { return p.triangle >= inner; });
+    EXPECT_EQ(walkLight(body, fromEverywhere(), points, medium(0.2), {8}).first,
+              walkLight(sample::WalkBody(alone, 0), fromEverywhere(), points, medium(0.2), {8}).first);
+    for (float v : walkLight(body, fromAbove(), points, medium(0.2), {8}).first)
+        EXPECT_EQ(v, 0) << "in the shadow";
+    points.push_back({uint32_t(inner), {1, 0, 0}});
+    EXPECT_THROW(walkLight(body, fromAbove(), points, medium(0.2), {8}), std::invalid_argument);
+    EXPECT_THROW(sample::WalkBody(scene, 3), std::invalid_argument);
+}
+
+TEST(WalkLight, RefusesWhatHasNoResult) {
+    const sample::Scene scene(sample::makeSphere(1, 8, 16).view());
+    const sample::WalkBody body(scene, 0);
+    const std::vector<sample::SurfacePoint> points{{0, {1, 0, 0}}};
+    const auto refused = [&](const sample::Medium& m, const sample::WalkOptions& options = {}) {
+        EXPECT_THROW(walkLight(body, fromAbove(), points, m, options), std::invalid_argument);
+    };
+    for (double path : {0.0, -1.0, double(INFINITY), std::nan("")}) refused(medium(path));
+    for (double albedo : {-0.1, 1.1, std::nan("")}) refused(medium(1, albedo));
+    refused(medium(1), {0});
+    refused(medium(1), {sample::maxWalkSamples + 1});
+    refused(medium(1), {1, std::nan("")});
+    sample::Medium glass = medium(1);
+    glass.refractiveIndex = 0.5;
+    refused(glass);
+    // A white medium behind a boundary, and an open mesh: walks end.
+    glass.refractiveIndex = 3;
+    glass.albedo = white;
+    glass.meanFreePath = {1e-3, 1e3, 1};
+    for (float v : walkLight(body, fromEverywhere(), points, glass, {2}).first)
+        EXPECT_TRUE(v >= 0 && v <= 1.001f);
+    const sample::Scene sheet(sample::makeRectangle(-1, 1, -1, 1, 0).view());
+    const sample::WalkedLight open =
+        walkLight(sample::WalkBody(sheet, 0), fromAbove(), points, medium(0.1), {64});
+    EXPECT_GT(open.lost, 0u);
+    for (float v : open.first) EXPECT_TRUE(std::isfinite(v));
+}
+
+TEST(WalkLight, BallsEqualAnotherProgramsWalks) {
+    const char* folder = std::getenv("PELLUCID_RULER_DIR");
+    if (!folder) GTEST_SKIP() << "PELLUCID_RULER_DIR names no folder";
+    const npy::Array<double> theirs = npy::read<double>(std::filesystem::path(folder) / "ball_walks_f64.npy");
+    ASSERT_EQ(theirs.shape, (std::vector<size_t>{6, 101, 3}));
+    const sample::Scene scene(sample::makeSphere(1, 192, 384).view());
+    const sample::WalkBody body(scene, 0);
+    const auto points = middles(scene, testsAreSmall() ? 8000 : 800);
+    const double radii[] = {3.47, 8.68, 11.57, 17.35, 28.92, 57.84};
+    for (size_t ball = 0; ball < 6; ball += 3) {
+        const sample::WalkedLight light =
+            walkLight(body, fromAbove(), points, medium(1 / radii[ball]), {uint32_t(sized(64, 4))});
+        const Error e = errorOf(light, [&](size_t i) {
+            const double at = (cosineAt(scene, points[i / 3]) + 1) * 50;
+            const size_t node = std::min<size_t>(99, size_t(at));
+            const double *a = &theirs.data[3 * (101 * ball + node)], *b = a + 3;
+            return a[1] + (at - double(node)) * (b[1] - a[1]);
+        });
+        EXPECT_LT(e.mean, ballError * ballError + 3 * e.uncertainty) << radii[ball];
+    }
+}
+
+namespace {
+
+// The head of the G-buffers: the triangles of the reference data are halves of quads, which were subdivided
+// twice. Its y axis is up; that of the G-buffers is z.
+pellucid::io::PartedMesh subdividedHead(const std::filesystem::path& folder) {
+    const auto positions = npy::read<float>(folder / "mesh_head_pos_f32.npy").data;
+    const auto triangles = npy::read<int32_t>(folder / "mesh_head_idx_i32.npy").data;
+    std::map<std::array<float, 3>, size_t> welded;
+    std::string text;
+    std::vector<size_t> numbers;
+    for (size_t i = 0; i < positions.size(); i += 3) {
+        const std::array<float, 3> p{positions[i], -positions[i + 2], positions[i + 1]};
+        const auto [at, isNew] = welded.try_emplace(p, welded.size() + 1);
+        numbers.push_back(at->second);
+        char line[80];
+        std::snprintf(line, sizeof line, "v %.8g %.8g %.8g\n", double(p[0]), double(p[1]), double(p[2]));
+        if (isNew) text += line;
+    }
+    const auto vertex = [&](size_t corner) { return numbers[size_t(triangles[corner])]; };
+    for (size_t t = 0; t < triangles.size(); t += 6) {
+        // The corner of each half that the other one does not have, and the corners after it.
+        const std::set<size_t> second{vertex(t + 3), vertex(t + 4), vertex(t + 5)};
+        size_t k = 0;
+        while (second.contains(vertex(t + k))) ++k;
+        const size_t a = vertex(t + k), b = vertex(t + (k + 1) % 3), d = vertex(t + (k + 2) % 3);
+        size_t c = 0;
+        for (const size_t v : second)
+            if (v != b && v != d) c = v;
+        for (const size_t v : {a, b, c, d}) text += (v == a ? "f " : " ") + std::to_string(v);
+        text += "\n";
+    }
+    return pellucid::io::decodeParts("head.obj", text, 2);
+}
+
+}  // namespace
+
+TEST(WalkLight, HeadEqualsAnotherProgramsWalk) {
+    const char *rulers = std::getenv("PELLUCID_RULER_DIR"), *gbuffers = std::getenv("PELLUCID_GBUFFER_DIR"),
+               *oracle = std::getenv("PELLUCID_ORACLE_DIR");
+    if (!rulers || !gbuffers || !oracle)
+        GTEST_SKIP() << "PELLUCID_RULER_DIR, PELLUCID_GBUFFER_DIR and PELLUCID_ORACLE_DIR are needed";
+    const pellucid::io::PartedMesh head = subdividedHead(oracle);
+    ASSERT_EQ(head.mesh.triangleCount(), 2u * 141472);
+    const sample::Scene scene(
+        sample::MeshView{head.mesh.positions, head.mesh.normals, {}, {}, head.mesh.triangles, {}});
+    const sample::WalkBody body(scene, 0);
+    const pellucid::io::Image gbuffer = pellucid::io::readImage(gbuffers + std::string("/head_gbuf.exr"));
+    const std::vector<float> positions = gbuffer.interleaved(
+        std::vector<std::string>{"ViewLayer.Position.X", "ViewLayer.Position.Y", "ViewLayer.Position.Z"});
+    const struct {
+        const char* file;
+        double scale;
+        Vec3 toLight;
+    } cases[] = {{"head_side_walk_f32.npy", 1, {0.7990018725, -0.4494385421, 0.3995009363}},
+                 {"head_side_x4_walk_f32.npy", 4, {0.7990018725, -0.4494385421, 0.3995009363}},
+                 {"head_back_x4_walk_f32.npy", 4, {0.55, 0.75, 0.36}}};
+    for (const auto& c : cases) {
+        const auto theirs = npy::read<float>(std::filesystem::path(rulers) / c.file);
+        ASSERT_EQ(theirs.shape, (std::vector<size_t>{6000, 10}));
+        std::vector<float> from;
+        std::vector<const float*> rows;
+        const size_t stride = testsAreSmall() ? 60 : 6;
+        for (size_t i = 0; i < 6000; i += stride) {
+            const float* row = &theirs.data[10 * i];
+            const float* p = &positions[3 * (size_t(row[0]) * 512 + size_t(row[1]))];
+            from.insert(from.end(), p, p + 3);
+            rows.push_back(row);
+        }
+        std::vector<double> off;
+        const std::vector<sample::SurfacePoint> points = nearestPoints(scene, from, off);
+        EXPECT_LT(*std::max_element(off.begin(), off.end()), 0.01) << "cm";
+        sample::Lighting lighting = fromAbove();
+        lighting.lights[0].toLight = normalize(c.toLight);
+        // Lengths of the profile in cm.
+        const double d = 0.1 * c.scale;
+        const sample::Medium m = sample::burleyMedium({0.29205 * d, 0.10902 * d, 0.05411 * d},
+                                                      {0.8, 0.8, 0.8}, sample::Boundary::IndexMatched);
+        const sample::WalkedLight light = walkLight(body, lighting, points, m, {uint32_t(sized(64, 4))});
+        for (size_t channel = 0; channel < 3; ++channel) {
+            // Both programs have two halves, so that the product of their differences has no noise in the mean.
+            double sum = 0, square = 0, bias = 0;
+            for (size_t i = 0; i < rows.size(); ++i) {
+                const double e = light.first[3 * i + channel] - rows[i][4 + 2 * channel],
+                             f = light.second[3 * i + channel] - rows[i][5 + 2 * channel];
+                sum += e * f, square += e * f * e * f, bias += (e + f) / 2;
+            }
+            const double n = double(rows.size()), uncertainty = std::sqrt(square) / n;
+            std::printf("%s, channel %zu: squared difference %.3g +- %.2g, bias %.2g\n", c.file, channel,
+                        sum / n, uncertainty, bias / n);
+            EXPECT_LT(sum / n, headError * headError + 3 * uncertainty) << c.file << ", channel " << channel;
+            EXPECT_NEAR(bias / n, 0, testsAreSmall() ? 0.02 : headBias) << c.file << ", channel " << channel;
+        }
+    }
+}
