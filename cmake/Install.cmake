@@ -9,7 +9,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/host/include/pellucid DESTINATION ${CMAK
 # The device functions that a renderer may include in its own kernels.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/kernels/lib ${PROJECT_SOURCE_DIR}/kernels/shared
         DESTINATION ${CMAKE_INSTALL_DATADIR}/pellucid/kernels COMPONENT development)
-if(TARGET pellucid_cli AND (NOT PELLUCID_PYTHON OR PELLUCID_DEBIAN))  # the package has a place of its own for it
+if(TARGET pellucid_cli AND NOT SKBUILD)  # a wheel has a place of its own for it
   set_target_properties(pellucid_cli PROPERTIES INSTALL_RPATH "${PELLUCID_ORIGIN}/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS pellucid_cli COMPONENT command)
   if(TARGET pellucid_pictures)
@@ -65,8 +65,8 @@ install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentation
         PATTERN "__pycache__" EXCLUDE)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/bindings/blender DESTINATION ${CMAKE_INSTALL_DATADIR}/pellucid COMPONENT command
-        PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/apps/blender DESTINATION ${CMAKE_INSTALL_DATADIR}/pellucid COMPONENT command
+        PATTERN "__pycache__" EXCLUDE PATTERN "tests" EXCLUDE)
 # What the demo shows.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/heads DESTINATION ${CMAKE_INSTALL_DATADIR}/pellucid COMPONENT command)
 

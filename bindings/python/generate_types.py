@@ -148,16 +148,16 @@ def python_struct(name, doc, fields, enums, structs, say):
 def python_module(enums, structs):
     say = Translator(enums, structs)
     out = ['"""Enumerations and plain structures of pellucid.h. Written by generate_types.py: do not edit."""',
-           "from __future__ import annotations\n", "from enum import IntEnum, IntFlag\n", "import numpy as np",
+           "from __future__ import annotations\n", "import numpy as np",
            "from numpy.typing import ArrayLike\n",
-           "from ._struct import ArrayField, EnumField, FloatField, IntField, ProfileField, Struct, StructField, TextField",
+           "from ._struct import (ArrayField, Enumeration, EnumField, Flags, FloatField, IntField, ProfileField, Struct,\n                      StructField, TextField)",
            "from typing import TYPE_CHECKING\n", "if TYPE_CHECKING:\n    from .profile import Profile\n"]
     exported = []
     for name, (doc, members) in enums.items():
         python = {"PelError": "ErrorCode"}.get(name, name[3:])
         say.words.update({full: f"{python}.{short}" for short, _, _, full in members})
         exported.append(python)
-        base = "IntFlag" if any("<<" in value for _, value, _, _ in members) else "IntEnum"
+        base = "Flags" if any("<<" in value for _, value, _, _ in members) else "Enumeration"
         out.append(f"\nclass {python}({base}):")
         out.append(f'    """{say(doc) or python + " values."}"""\n')
         for short, value, comment, _ in members:

@@ -10,8 +10,8 @@
 namespace pages {
 
 inline const std::filesystem::path root = PELLUCID_SOURCE_DIR;
-inline const std::set<std::string> folders = {"bench",    "bindings", "cmake",   "docs",
-                                              "examples", "host",     "kernels", "tests"};
+inline const std::set<std::string> folders = {"apps",     "bench", "bindings", "cmake", "docs",
+                                              "examples", "host",  "kernels",  "tests"};
 
 inline std::string contents(const std::filesystem::path& path) {
     std::ifstream in(path);

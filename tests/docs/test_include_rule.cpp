@@ -42,7 +42,7 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"bindings/head", {"host/io", "host/sample"}},
     {"bindings/cli",
      {"host/include/pellucid", "host/system", "host/io", "host/sample", "bindings/bench", "bindings/head"}},
-    {"bindings/python", {"host/include/pellucid", "host/io", "host/sample", "bindings/head"}},
+    {"bindings/python", {"host/include/pellucid", "host/io", "bindings/head"}},
     {"examples", {"host/include/pellucid"}},
     {"bench",
      {"kernels/shared", "kernels/lib", "host/include/pellucid", "host/io", "host/sample", "bindings/head",

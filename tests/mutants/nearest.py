@@ -49,7 +49,8 @@ class Tests:
         self.place, self.file = place, WORK / "tests.json"
         self.measured = json.loads(self.file.read_text()) if self.file.exists() else {}
         programs = {p.stem: p for p in TREE.glob("tests/*/test_*.cpp")}
-        scripts = {str(p.relative_to(TREE)): p for p in TREE.glob("bindings/python/tests/test_*.py")}
+        scripts = {str(p.relative_to(TREE)): p for folder in ("bindings/python", "apps/*")
+                   for p in TREE.glob(f"{folder}/tests/test_*.py")}
         self.programs, self.scripts = sorted(programs), sorted(scripts)
         self.folders = {name: path.parent.name for name, path in programs.items()}
         self.words = {name: words_of(p.stem) * 5 + words_of(p.parent.name) * 5 + words_of(p.read_text())
@@ -96,7 +97,7 @@ class Tests:
                 near *= SAME_SUBJECT
             return -near / (1 + self.measured.get(name, {}).get("seconds", 10) / 20) ** 0.5, name
 
-        return sorted(self.scripts if fault.path.startswith("bindings/python") else self.programs, key=distance)
+        return sorted(self.scripts if fault.path.startswith(("bindings/python", "apps")) else self.programs, key=distance)
 
     def weighed(self, words):
         """{word: weight}, of length 1: rare words count most, and the tenth of a kind little more than the first."""

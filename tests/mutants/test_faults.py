@@ -75,7 +75,7 @@ class Faults(unittest.TestCase):
 
     def test_the_tree(self):
         count = names = 0
-        for path in [*ROOT.glob("kernels/**/*.cl*"), *ROOT.glob("host/**/*.cpp"), *ROOT.glob("bindings/python/pellucid/**/*.py")]:
+        for path in [*ROOT.glob("kernels/**/*.cl*"), *ROOT.glob("host/**/*.cpp"), *ROOT.glob("bindings/python/pellucid/**/*.py"), *ROOT.glob("apps/*/*/*.py")]:
             text = path.read_text()
             found = list(faults.faults(str(path.relative_to(ROOT)), text))
             for fault in faults.faults(str(path.relative_to(ROOT)), text, True):

@@ -1,5 +1,4 @@
 """A copy of the tree in build/mutants, its build, and its Python environment: where faults are put in."""
-import hashlib
 import json
 import os
 import resource
@@ -93,7 +92,8 @@ class Workplace:
         """A test program, or a file of Python tests."""
         environment = {"POCL_CACHE_DIR": WORK / "pocl", **self.environment, **extra}
         if name.endswith(".py"):
-            words = [WORK / "python/test-environment/bin/python", "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--tb=short",
+            environment["PYTHONPATH"] = BUILD / "python"
+            words = [WORK / "python-environment/bin/python", "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--tb=short",
                      "--rootdir", TREE, TREE / name]
         else:
             words = [BUILD / "bin" / name, "--gtest_fail_fast", "--gtest_brief=1"]
@@ -103,30 +103,7 @@ class Workplace:
         return result
 
     def python(self):
-        """The package in a virtual environment of its own; made again when anything compiled in it changed."""
-        home = WORK / "python"
-        text = hashlib.sha256()
-        faster = {"CMAKE_CXX_COMPILER_LAUNCHER": "ccache"} if shutil.which("ccache") else {}
-        for folder in ("host", "kernels", "bindings/python/native"):
-            for path in sorted(p for p in (TREE / folder).rglob("*") if p.is_file()):
-                text.update(path.read_bytes())
-        key = home / "key"
-        if key.exists() and key.read_text() == text.hexdigest():
-            installed = next((home / "test-environment").glob("lib/python*/site-packages/pellucid"))
-            shutil.copytree(TREE / "bindings/python/pellucid", installed, dirs_exist_ok=True)
-            return True
-        key.unlink(missing_ok=True)
-        log = WORK / "build.log"
-        environment = home / "test-environment/bin/python"
-        if environment.exists():
-            status, _ = command([home / "build-environment/bin/python", "-m", "pip", "wheel", "-q", "--no-build-isolation", "--no-deps",
-                                 f"--config-settings=build-dir={home / 'build'}", "-w", home / "wheels", TREE], 1800, log, **faster)
-            if not status:
-                status, _ = command([environment, "-m", "pip", "install", "-q", "--no-deps", "--force-reinstall",
-                                     *(home / "wheels").glob("*.whl")], 600, log)
-        else:
-            status, _ = command([sys.executable, TREE / "bindings/python/tests/run_installed.py", TREE, home, "--collect-only", "-q"],
-                                3000, log, **faster)
-        if status in PASSED:
-            key.write_text(text.hexdigest())
-        return status in PASSED
+        """The package as the build lays it out, and the environment of its tests."""
+        status, _ = command([sys.executable, TREE / "bindings/python/tests/run_tests.py", "--prepare", WORK / "python-environment"],
+                            3000, WORK / "build.log")
+        return not status and self.build("python_package")

@@ -12,6 +12,7 @@ from typing import Any
 from . import _driver, _native
 from ._arrays import Image, Vertices
 from ._errors import PellucidError
+from ._struct import did_you_mean
 from ._types import *  # noqa: F401,F403
 from ._types import __all__ as _type_names
 from .device import Buffer, Device, Event, devices, set_error_callback
@@ -38,14 +39,19 @@ def __getattr__(name: str) -> Any:
         from .gltf import load_gltf
 
         return load_gltf
-    raise AttributeError(f"module 'pellucid' has no attribute {name!r}")
+    raise AttributeError(f"module 'pellucid' has no attribute {name!r}{did_you_mean(name, __all__)}")
+
+
+def __dir__() -> list[str]:
+    return sorted([*__all__, "__doc__", "__version__", "files", "load_gltf", "load_mesh", "load_profile", "read_image",
+                   "tonemap", "write_image"])
 
 
 _number = _native.version()
 __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
 
 __all__ = [  # noqa: PLE0604
-    "Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile", "Scatter", "Scene", "Shaded",
-    "Shader",
-    "TextureScatter", "Vertices", "compare", "devices", "load_scene", "orient_mesh", "shade", "warm_up_programs", "screen_curvature", "set_error_callback",
-    "submit_screen_curvature", "submit_surface_integral", "surface_integral", *_type_names]
+    "Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile", "Scatter",
+    "Scene", "Shaded", "Shader", "TextureScatter", "Vertices", "compare", "devices", "load_scene", "orient_mesh",
+    "shade", "warm_up_programs", "screen_curvature", "set_error_callback", "submit_screen_curvature",
+    "submit_surface_integral", "surface_integral", *_type_names]

@@ -6,7 +6,7 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from . import _flight, _native
+from . import _in_flight, _native
 from ._struct import to_enum
 from ._types import Format
 from .device import Buffer, Device, Event, _cl_address
@@ -100,14 +100,14 @@ def submit(device: Device, views: list[View], waits: list[_native.Event], enqueu
     """
     spans = {id(v.span): v.span for v in views if isinstance(v.span, Span)}.values()
     # What is under way when something goes wrong, or Ctrl-C comes, still reads and writes the arrays.
-    with _flight.kept(device._handle, views, used):
+    with _in_flight.kept(device._handle, views, used):
         for span in spans:
             span.upload(waits)
         done = enqueue(waits)
         for span in spans:
             done = span.download() or done
         if done is not None:
-            _flight.hold(done, views, used)
+            _in_flight.hold(done, views, used)
     return done
 
 

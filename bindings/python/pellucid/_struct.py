@@ -1,7 +1,9 @@
 """Base of the generated structures: the C structure's own bytes, with attributes over them."""
 from __future__ import annotations
 
-from enum import IntEnum
+import difflib
+from collections.abc import Iterable
+from enum import EnumMeta, IntEnum, IntFlag
 from typing import Any, ClassVar, Generic, NoReturn, TypeVar, overload
 
 import numpy as np
@@ -11,6 +13,35 @@ from . import _native
 
 E = TypeVar("E", bound=IntEnum)
 S = TypeVar("S", bound="Struct")
+
+
+def did_you_mean(name: object, known: Iterable[str]) -> str:
+    """"; did you mean 'roughness'?" where a known name is close, else ""."""
+    by_lower = {k.lower(): k for k in known}
+    near = difflib.get_close_matches(str(name).lower(), by_lower, 1)
+    return f"; did you mean {by_lower[near[0]]!r}?" if near else ""
+
+
+class _PublicNames(type):
+    """help() and completion show public names alone; Python's own methods fill hundreds of lines."""
+
+    def __dir__(cls) -> list[str]:
+        return [name for name in super().__dir__() if not name.startswith("_")]
+
+
+class _MemberNames(EnumMeta):
+    """Of an enumeration: its members, and none of the methods of int."""
+
+    def __dir__(cls) -> list[str]:
+        return ["__doc__", *cls.__members__]
+
+
+class Enumeration(IntEnum, metaclass=_MemberNames):
+    """Base of the enumerations."""
+
+
+class Flags(IntFlag, metaclass=_MemberNames):
+    """Base of the sets of bits."""
 
 
 def to_enum(kind: type[E], value: Any, what: str) -> E:
@@ -23,8 +54,8 @@ def to_enum(kind: type[E], value: Any, what: str) -> E:
             return kind(value)
         except ValueError:
             pass
-    names = ", ".join(name.lower() for name in kind.__members__)
-    raise ValueError(f"{what} is {value!r}; it must be one of {names}")
+    names = [name.lower() for name in kind.__members__]
+    raise ValueError(f"{what} is {value!r}{did_you_mean(value, names)}; it must be one of {', '.join(names)}")
 
 
 class OfThisProcess:
@@ -36,7 +67,7 @@ class OfThisProcess:
         raise TypeError(f"a {type(self).__name__} belongs to this process and cannot be pickled: {self._instead}")
 
 
-class Struct:
+class Struct(metaclass=_PublicNames):
     """A C structure by value. Every field starts at the library's default; keyword arguments set others.
 
     Fields that are arrays come back read-only: assign a whole new value to change one.
@@ -47,6 +78,17 @@ class Struct:
     _data: NDArray[Any]
     _profile: Any = None  # kept alive for the handle in _data
 
+    def __new__(cls: type[S], *_: Any, **fields: Any) -> S:
+        for name in fields:
+            if name not in cls.field_names():
+                raise TypeError(cls._unknown(name))
+        return super().__new__(cls)
+
+    @classmethod
+    def _unknown(cls, name: str) -> str:
+        known = cls.field_names()
+        return f"{cls.__name__} has no field {name!r}{did_you_mean(name, known)}; it has {', '.join(known)}"
+
     def __init__(self, **fields: Any) -> None:
         # A writable copy of the library's own defaults, structSize included.
         self._data = np.frombuffer(bytearray(_native.struct_defaults(self._c_name)), self._dtype)
@@ -56,7 +98,7 @@ class Struct:
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name not in ("_data", "_profile") and name not in self.field_names():
-            raise AttributeError(f"{type(self).__name__} has no field {name!r}; it has {', '.join(self.field_names())}")
+            raise AttributeError(self._unknown(name))
         super().__setattr__(name, value)
 
     @classmethod

@@ -9,7 +9,7 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _flight, _native
+from . import _in_flight, _native
 from ._struct import OfThisProcess, S
 from ._types import DeviceInfo, DeviceStats, DeviceType
 
@@ -58,7 +58,7 @@ class Device(OfThisProcess):
     _instead = "make one there, pellucid.Device(selector)"
 
     def __init__(self, selector: str | int = "") -> None:
-        self._open(_flight.aside(lambda: _native.Device.create(str(selector))))
+        self._open(_in_flight.aside(lambda: _native.Device.create(str(selector))))
 
     def _open(self, handle: _native.Device) -> None:
         self._handle = handle
@@ -101,7 +101,7 @@ class Device(OfThisProcess):
     def finish(self) -> None:
         """Waits until everything submitted has finished."""
         self._handle.marker().wait()
-        _flight.sweep()
+        _in_flight.sweep()
 
     def set_progress(self, callback: Progress | bool | None) -> None:
         """Reports how far long work is.
@@ -167,7 +167,7 @@ class Event(OfThisProcess):
             The work failed.
         """
         self._handle.wait()
-        _flight.sweep()
+        _in_flight.sweep()
 
     def __await__(self) -> Generator[Any, None, None]:
         """`await event` waits on a thread of the event loop's, which runs on meanwhile."""
@@ -207,7 +207,7 @@ class Buffer(OfThisProcess):
             self._setup(device, _native.Buffer.create(device._handle, int(initial), 0))
         else:
             values = np.ascontiguousarray(initial)
-            self._setup(device, _flight.aside(
+            self._setup(device, _in_flight.aside(
                 lambda: _native.Buffer.create(device._handle, values.nbytes, values.ctypes.data), values))
 
     def _setup(self, device: Device, handle: _native.Buffer, owner: Any = None) -> None:
@@ -256,9 +256,9 @@ class Buffer(OfThisProcess):
         """The same after `waits`, without waiting; `out` is valid once the event is done."""
         if not out.flags.c_contiguous or not out.flags.writeable:
             raise ValueError("out must be C-contiguous and writable")
-        with _flight.kept(self.device._handle, self, out):
+        with _in_flight.kept(self.device._handle, self, out):
             event = self._handle.read(offset, out.nbytes, out.ctypes.data, _handles(waits))
-            _flight.hold(event, self, out)
+            _in_flight.hold(event, self, out)
         return Event(event)
 
     def write(self, values: NDArray[Any], offset: int = 0) -> None:
@@ -269,9 +269,9 @@ class Buffer(OfThisProcess):
         """The same after `waits`, without waiting; leave `values` as it is until the event is done."""
         if not values.flags.c_contiguous:
             raise ValueError("values must be C-contiguous")
-        with _flight.kept(self.device._handle, self, values):
+        with _in_flight.kept(self.device._handle, self, values):
             event = self._handle.write(offset, values.nbytes, values.ctypes.data, _handles(waits))
-            _flight.hold(event, self, values)
+            _in_flight.hold(event, self, values)
         return Event(event)
 
     @contextlib.contextmanager

@@ -7,10 +7,10 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _flight, _native, _show
+from . import _in_flight, _native, _show
 from ._arrays import output_array
 from ._struct import OfThisProcess, to_enum
-from ._types import CurvatureLutDesc, EyeLutDesc, LutEncoding, LutInfo, ShadowLutDesc, SpecularLutDesc
+from ._types import CurvatureLutDesc, EyeLutDesc, LutAxis, LutEncoding, LutInfo, ShadowLutDesc, SpecularLutDesc
 from .device import Device, Event, _filled, _handles
 from .profile import Profile
 
@@ -42,7 +42,7 @@ class Lut(OfThisProcess):
         self.device, self._handle = device, handle
         self.ready = None if event is None else Event(event)
         if event is not None:
-            _flight.hold(event, self._handle)
+            _in_flight.hold(event, self._handle)
         return self
 
     @classmethod
@@ -109,7 +109,7 @@ class Lut(OfThisProcess):
         if texels.dtype != np.float32:
             raise ValueError(f"texels are {texels.dtype}; float32 is needed")
         packed = np.ascontiguousarray(texels)
-        handle = _flight.aside(lambda: _native.Lut.from_texels(device._handle, info._data, packed.ctypes.data, packed.nbytes), packed, info)
+        handle = _in_flight.aside(lambda: _native.Lut.from_texels(device._handle, info._data, packed.ctypes.data, packed.nbytes), packed, info)
         return cls._made(device, handle, None)
 
     def _waited(self, wait: bool) -> Lut:
@@ -132,7 +132,7 @@ class Lut(OfThisProcess):
 
         0 for other kinds. Waits for the table.
         """
-        return _flight.aside(self._handle.clipped)
+        return _in_flight.aside(self._handle.clipped)
 
     def read(self, encoding: LutEncoding | str = LutEncoding.FLOAT, out: Optional[NDArray[Any]] = None) -> NDArray[Any]:
         """The texels, top row first.
@@ -160,13 +160,30 @@ class Lut(OfThisProcess):
         return _show.png(_show.srgb(self.read()))
 
     def plot(self, ax: Optional[Any] = None) -> Any:
-        """Shows the table with its axes; returns matplotlib's axes (new ones without `ax`)."""
+        """Shows the table with its axes; returns matplotlib's axes (new ones without `ax`). Lengths in mm, as the library's."""
         info, ax = self.info, _show.axes(ax)
-        across, down = {"CURVATURE": ("N.L", "curvature"), "SHADOW": ("shadow", "1 / penumbra width"),
-                        "SPECULAR": ("n.h", "roughness"), "EYE": ("place on the iris", "light's angle")}[info.kind.name]
-        ax.imshow(_show.srgb(self.read()), aspect="auto", extent=(-1 if across == "N.L" else 0, 1, 1, 0))
-        ax.set_xlabel(across)
-        ax.set_ylabel(f"{down}, from its smallest to its largest")
+        kind, quarters = info.kind.name, np.linspace(0, 1, 5)
+        labels = {"CURVATURE": ("N.L", "curvature, 1/mm"), "SHADOW": ("shadow", "1 / penumbra width, 1/mm"),
+                  "SPECULAR": ("N.H", "roughness"), "EYE": ("position on the iris", "slice by the light's angle")}
+        ax.imshow(_show.srgb(self.read()), aspect="auto", extent=(0, 1, 1, 0))
+        desc = getattr(info, kind.lower())
+        across, at, down = quarters, quarters, quarters
+        if kind in ("CURVATURE", "SHADOW"):
+            root = desc.axis == LutAxis.ROOT
+            high, low = (desc.radius_min, desc.radius_max) if kind == "CURVATURE" else (desc.width_min, desc.width_max)
+            power = 2 if root else 1
+            down = ((1 - quarters) * low ** (-1 / power) + quarters * high ** (-1 / power)) ** power
+            if kind == "CURVATURE":
+                across = 2 * quarters - 1
+                at = 0.5 + 0.5 * np.sign(across) * np.abs(across) ** (1 / power)
+            elif root:
+                at = 0.5 + 0.5 * (np.sqrt(across) - np.sqrt(1 - across))
+        elif kind == "EYE":
+            down = quarters * desc.depth
+        ax.set_xticks(at, [f"{value:g}" for value in across])
+        ax.set_yticks(quarters, [f"{value:.3g}" for value in down])
+        ax.set_xlabel(labels[kind][0])
+        ax.set_ylabel(labels[kind][1])
         return ax
 
     def read_bc6h(self) -> tuple[NDArray[np.uint8], float, float]:
@@ -197,8 +214,8 @@ class Lut(OfThisProcess):
         result = output_array(out, (*self._size(info), components), dtype, "out")
         if not result.flags.c_contiguous or not result.flags.writeable:
             raise ValueError("out must be C-contiguous and writable")
-        with _flight.kept(self.device._handle, self, result):
+        with _in_flight.kept(self.device._handle, self, result):
             event = self._handle.read(int(e), result.ctypes.data, result.nbytes, _handles(waits))
-            _flight.hold(event, self, result)
+            _in_flight.hold(event, self, result)
         return result, Event(event)
 

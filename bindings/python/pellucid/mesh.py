@@ -7,7 +7,7 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _flight, _native
+from . import _in_flight, _native
 from ._arrays import Vertices, output_array, submit, vertex_view
 from ._struct import OfThisProcess, to_enum
 from ._types import CurvatureEstimator, CurvatureParams, CurvatureQuantity, MeshOrientation, MeshReport, SmoothingWeights, Weld
@@ -150,7 +150,7 @@ class MeshTopology(OfThisProcess):
                 return self._handle.curvature(params._data, p, n, c, None, w)
         else:
             def enqueue(w: list[_native.Event]) -> Any:  # waits for the counts
-                return _flight.aside(lambda: self._handle.curvature(params._data, p, n, c, report._data, w), views, report)
+                return _in_flight.aside(lambda: self._handle.curvature(params._data, p, n, c, report._data, w), views, report)
         return Event(submit(self.device, views, _handles(waits), enqueue, self))
 
     def uv_scale(self, positions: Any, uvs: Any) -> float:
@@ -169,7 +169,7 @@ class MeshTopology(OfThisProcess):
         views = [vertex_view(self.device, positions, 3, "positions"), vertex_view(self.device, uvs, 2, "uvs")]
         p, u = (v.native for v in views)
         scale: list[float] = []
-        submit(self.device, views, [], lambda waits: scale.append(_flight.aside(lambda: self._handle.uv_scale(p, u), views)))
+        submit(self.device, views, [], lambda waits: scale.append(_in_flight.aside(lambda: self._handle.uv_scale(p, u), views)))
         return scale[0]
 
 

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native, _show
-from ._struct import OfThisProcess, to_enum
+from ._errors import PellucidError
+from ._struct import OfThisProcess, did_you_mean, to_enum
 from ._types import BurleyFit, ProfileInfo
 from .device import _filled
 
@@ -23,8 +24,8 @@ def _triple(value: ArrayLike, what: str) -> list[float]:
 class Profile(OfThisProcess):
     """How much of the light that enters at one point leaves at a distance, per RGB channel.
 
-    Made by `named`, `skin`, `gaussians`, `burley`, `burley_distance`, `dipole` or `table`; belongs to no device and never changes. Lengths are in any one
-    unit. Each channel is normalised. `name` is what tables and their files carry, up to 63 bytes.
+    Made by `named`, `skin`, `gaussians`, `burley`, `burley_distance`, `dipole` or `table`; belongs to no device and never
+    changes. Lengths are in any one unit. Each channel is normalised. `name` is what tables and their files carry, up to 63 bytes.
     """
 
     _instead = "make one there"
@@ -65,7 +66,13 @@ class Profile(OfThisProcess):
     @classmethod
     def named(cls, material: str) -> Profile:
         """A material of the library, in mm: "skin", "marble", ...; `library_names` lists them."""
-        return cls._made(_native.Profile.named(material))
+        try:
+            return cls._made(_native.Profile.named(material))
+        except PellucidError as error:
+            near = did_you_mean(material, cls.library_names())
+            if "did you mean" in str(error) or not near:
+                raise
+            raise PellucidError(int(error.code), f"{error}{near}") from None
 
     @staticmethod
     def library_names() -> list[str]:

@@ -7,7 +7,7 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _flight, _native
+from . import _in_flight, _native
 from ._arrays import Image, submit
 from ._struct import OfThisProcess, to_enum
 from ._types import Ambient, Camera, Eye, Format, ImageSlot, Light, LightSlot, Material, ProgramGroup, ShaderOptions, ShaderStats
@@ -206,7 +206,7 @@ class Shader(OfThisProcess):
         PellucidError
             What is missing or does not fit.
         """
-        _flight.aside(self._handle.commit)  # compilers take seconds, on some devices minutes
+        _in_flight.aside(self._handle.commit)  # compilers take seconds, on some devices minutes
         return self
 
     def execute(self) -> None:
@@ -276,7 +276,7 @@ def warm_up_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Se
         What a shader's commit would raise; CANCELLED.
     """
     handles = [s._handle for s in shaders]
-    return int(_flight.aside(lambda: _native.warm_up_programs(device._handle, int(groups), handles, threads)))
+    return int(_in_flight.aside(lambda: _native.warm_up_programs(device._handle, int(groups), handles, threads)))
 
 
 def _below(faces: Any, which: str) -> Any:

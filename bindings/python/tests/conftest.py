@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from places import ROOT
 from shader_view import View
 
 import pellucid as pel
 
-ROOT = Path(__file__).resolve().parents[3]
 assert ROOT / "bindings/python/pellucid" not in Path(pel.__file__).parents, "the tests are for the installed package"
 
 
@@ -23,20 +23,6 @@ def moving_device():
     device = pel.Device()
     device._in_place = False
     return device
-
-
-@pytest.fixture(scope="module")
-def session():
-    """A session of the viewer with the package's head; modules that use it import moderngl first."""
-    from pellucid import files
-    from pellucid.view.session import Session
-
-    try:
-        made = Session()
-    except RuntimeError as error:
-        pytest.skip(f"no OpenGL: {error}")
-    made.load(files.standard_head(), subdivide=1)
-    return made
 
 
 @pytest.fixture(scope="session")

@@ -2,17 +2,14 @@
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 from pellucid import _command
 
-COMMAND = Path(sys.executable).parent / "pellucid"
-
 
 def run(*arguments):
-    return subprocess.run([COMMAND, *arguments], capture_output=True, text=True, timeout=120)
+    return subprocess.run([sys.executable, "-m", "pellucid._command", *arguments], capture_output=True, text=True, timeout=120)
 
 
 def test_the_compiled_program_answers():

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import pellucid as pel
-from pellucid import _flight
+from pellucid import _in_flight
 from pellucid.device import progress_bar
 
 
@@ -56,7 +56,7 @@ def test_arrays_live_until_their_work_is_done(device, make_sphere):
         event.wait()
         assert gone == [1] and np.allclose(out, 1, atol=1e-4)
         gone.clear()
-    assert _flight.in_flight() == 0
+    assert _in_flight.in_flight() == 0
 
 
 class Steps:

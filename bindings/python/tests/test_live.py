@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 import pellucid as pel
-from pellucid import _flight
+from pellucid import _in_flight
 
 
 @pytest.mark.parametrize("moving", [False, True])
@@ -55,7 +55,7 @@ def test_screen_curvature_of_a_sphere(device, tolerance):
 def test_arrays_outlive_what_a_later_error_left_under_way(moving_device, sphere, monkeypatch):
     live = pel.LiveMesh(pel.MeshTopology(moving_device, sphere.triangles, len(sphere.positions)))
     held = []
-    monkeypatch.setattr(_flight, "hold", lambda event, *used: (event.wait(), held.append(used)))
+    monkeypatch.setattr(_in_flight, "hold", lambda event, *used: (event.wait(), held.append(used)))
     with pytest.raises(pel.PellucidError, match="range 0"):
         live.update(sphere.positions, None, np.empty(len(sphere.positions), np.float32), [(len(sphere.positions), 1)])
     arrays = [view.span.array for views, _ in held for view in views]

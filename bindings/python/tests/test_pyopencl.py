@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pellucid as pel
-from pellucid import _flight
+from pellucid import _in_flight
 
 cl = pytest.importorskip("pyopencl")
 cl_array = pytest.importorskip("pyopencl.array")
@@ -87,7 +87,7 @@ def test_what_waiting_work_uses_is_kept_until_it_is_done(queue, sphere, kind):
     event.wait()
     device.finish()
     del event
-    _flight.sweep()
+    _in_flight.sweep()
     gc.collect()
     assert gone, "and no longer"
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import pellucid as pel
-from pellucid import _flight
+from pellucid import _in_flight
 
 # The last reference to a device waits for its queue. Here the queue waits for an event that another Python thread sets, which it can
 # only with the GIL.
@@ -91,7 +91,7 @@ def test_everything_dropped_while_work_is_in_flight(make_sphere):
         thread.join(120)
         assert not thread.is_alive()
     assert not failed
-    while _flight.in_flight():
+    while _in_flight.in_flight():
         pass
 
 
@@ -107,14 +107,14 @@ def test_work_may_be_submitted_from_finalizers(device):
             return True
 
     ends = Ends()
-    thread = threading.Thread(target=_flight.hold, args=(ends, np.empty(1)), daemon=True)
+    thread = threading.Thread(target=_in_flight.hold, args=(ends, np.empty(1)), daemon=True)
     thread.start()
     thread.join(60)
     if thread.is_alive():
-        _flight._flying.clear()
+        _in_flight._flying.clear()
         pytest.fail("stuck")
-    _flight.sweep()
-    assert ends.looked and _flight.in_flight() == 0
+    _in_flight.sweep()
+    assert ends.looked and _in_flight.in_flight() == 0
 
 
 def test_two_threads_warm_up_the_same_shaders(device):

@@ -37,8 +37,24 @@ def test_plots(device):
     r, y = axes.lines[0].get_data()
     assert 0.75 < np.trapezoid(y, r) < 1.01  # nearly all of the light
     assert pixels(profile._repr_png_()).std() > 5
-    assert pel.Lut.shadow(device, width=8, height=8).plot().get_xlabel() == "shadow"
     assert profile.plot(axes) is axes and len(axes.lines) == 6
+
+
+def test_a_plotted_table_has_readable_axes(device):
+    pytest.importorskip("matplotlib", reason="matplotlib is not installed")
+    curvature = pel.Lut.curvature(device, width=8, height=8, radius_min=1, radius_max=25, axis="root").plot()
+    assert [t.get_text() for t in curvature.get_yticklabels()] == ["0.04", "0.16", "0.36", "0.64", "1"]
+    assert [t.get_text() for t in curvature.get_xticklabels()] == ["-1", "-0.5", "0", "0.5", "1"]
+    assert curvature.get_xticks()[1] == pytest.approx(0.5 - 0.5 * 0.5**0.5)
+    shadow = pel.Lut.shadow(device, width=8, height=8, axis="linear", width_min=2, width_max=4).plot()
+    assert [t.get_text() for t in shadow.get_yticklabels()] == ["0.25", "0.312", "0.375", "0.438", "0.5"]
+    for axes in (curvature, shadow, pel.Lut.specular(device, width=4, height=4).plot(),
+                 pel.Lut.eye(device, width=4, height=4, depth=2).plot()):
+        axes.figure.canvas.draw()
+        across, down = (label.get_window_extent() for label in (axes.xaxis.label, axes.yaxis.label))
+        whole = axes.figure.bbox
+        assert 0 <= across.x0 and across.x1 <= whole.x1 and 0 <= down.y0 and down.y1 <= whole.y1
+    assert curvature.get_ylabel().endswith("1/mm") and shadow.get_xlabel() == "shadow"
 
 
 def test_without_matplotlib_it_is_named(monkeypatch):

@@ -1,6 +1,7 @@
 """Structures and enumerations: the same memory as in C, the same defaults, and wrong values named."""
 import enum
 import pickle
+import pydoc
 
 import numpy as np
 import pytest
@@ -55,10 +56,25 @@ def test_wrong_values_are_named(use, message):
 
 def test_unknown_fields_are_named():
     material = pel.Material()
-    with pytest.raises(AttributeError, match="no field 'albdo'; it has albedo"):
+    with pytest.raises(AttributeError, match="no field 'albdo'; did you mean 'albedo'.; it has albedo"):
         material.albdo = (1, 1, 1)
-    with pytest.raises(TypeError):
-        pel.Material(albdo=(1, 1, 1))
+    with pytest.raises(TypeError, match="Material has no field 'roughnes'; did you mean 'roughness'"):
+        pel.Material(roughnes=0.2)
+    with pytest.raises(TypeError, match="did you mean 'width'"):
+        pel.CurvatureLutDesc(widht=4)
+    with pytest.raises(ValueError, match="'directionl'; did you mean 'directional'"):
+        pel.Light(type="directionl")
+    with pytest.raises(pel.PellucidError, match="did you mean 'skin'"):
+        pel.Profile.named("skn")
+    with pytest.raises(AttributeError, match="no attribute 'Materal'; did you mean 'Material'"):
+        pel.Materal
+
+
+def test_help_is_about_the_package():
+    text = pydoc.plain(pydoc.render_doc(pel))
+    assert len(text.splitlines()) < 4500
+    assert "__divmod__" not in text and "roughness" in text and "SPOT" in text
+    assert not {"Any", "annotations"} & set(dir(pel)) and set(pel.__all__) <= set(dir(pel))
 
 
 def test_array_fields_come_back_read_only():

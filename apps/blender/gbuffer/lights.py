@@ -1,0 +1,211 @@
+"""Lights as the scene file has them, their shadow maps, and light from the world around."""
+
+import math
+import os
+
+import bpy
+from mathutils import Matrix, Vector
+
+from .fault import warn
+from .passes import look, render_exr
+
+
+class Lamp:
+    """A light, and what its shadow map says. Blender's watts spread over 4 pi: a point light of P watts gives irradiance
+    P / (4 pi d^2), so that irradiance / pi at distance 1 is P / (4 pi^2). A sun's strength is irradiance itself."""
+
+    def __init__(self, name, data, matrix):
+        self.name, self.kind = name, data.type
+        self.matrix = matrix
+        self.position = matrix.translation.copy()
+        self.forward = (matrix.to_3x3() @ Vector((0, 0, -1))).normalized()
+        share = 1 / math.pi if data.type == "SUN" else 1 / (4 * math.pi**2)
+        share *= data.energy * 2 ** getattr(data, "exposure", 0)  # Blender 4.5 and newer
+        warmth = data.temperature_color if getattr(data, "use_temperature", False) else (1, 1, 1)
+        self.color = [c * w * share for c, w in zip(data.color, warmth)]
+        if data.type == "SPOT":
+            self.angle = data.spot_size
+            self.cos_outer = math.cos(data.spot_size / 2)
+            self.cos_inner = self.cos_outer + (1 - self.cos_outer) * data.spot_blend
+        self.map_file = None
+
+
+def gather(source, scene, bounds):
+    """The source scene's suns, points and spots; without any, a sun from the side. Copies without size go to `scene`."""
+    lamps = []
+    for instance in bpy.context.evaluated_depsgraph_get().object_instances:
+        thing = instance.object
+        if thing.type != "LIGHT" or thing.original.hide_render or not thing.data.energy > 0:
+            continue
+        if thing.data.type == "AREA":
+            warn(f"light '{thing.name}' is an area light, which has no counterpart; it is left out")
+            continue
+        add(scene, lamps, thing.name, thing.data.copy(), instance.matrix_world.copy())
+    if not lamps:
+        if source.world is None:
+            data = bpy.data.lights.new("sun", "SUN")
+            data.energy = math.pi
+            add(scene, lamps, "sun", data, look(bounds.centre, Vector((-0.8, 0.5, -0.35)).normalized()))
+        else:
+            warn("there is no light but the world's")
+    return lamps
+
+
+def add(scene, lamps, name, data, matrix):
+    if data.type == "SUN":
+        data.angle = 0
+    else:
+        data.shadow_soft_size = 0
+    data.use_nodes = False
+    thing = bpy.data.objects.new(f"pellucid {name}", data)
+    thing.matrix_world = matrix
+    scene.collection.objects.link(thing)
+    lamps.append(Lamp(name, data, matrix))
+
+
+def file_name(name, taken):
+    """Of a light's shadow map: instances of a light share its name, and names may differ in signs alone."""
+    stem = "shadow_" + "".join(c if c.isalnum() else "_" for c in name)
+    number, file = 1, stem + ".exr"
+    while file.lower() in taken:  # some disks know no letter case
+        number += 1
+        file = f"{stem}_{number}.exr"
+    taken.add(file.lower())
+    return file
+
+
+def render_shadow_map(scene, lamp, bounds, options, taken):
+    """Depths seen from a sun or a spot, 0 near to 1 far and where nothing is. `taken`: files of other lights."""
+    if lamp.kind == "POINT":
+        warn(f"light '{lamp.name}' is a point light: no shadow map is rendered for it")
+        return
+    lamp.map_file = file_name(lamp.name, taken)
+    camera = bpy.data.objects.new("pellucid shadow", bpy.data.cameras.new("pellucid shadow"))
+    scene.collection.objects.link(camera)
+    rotation = lamp.matrix.to_3x3().normalized()
+    right, up = rotation.col[0].copy(), rotation.col[1].copy()
+    along = [lamp.forward.dot(c) for c in bounds.corners()]
+    margin = 0.02 * bounds.radius
+    if lamp.kind == "SUN":
+        across, upward = [right.dot(c) for c in bounds.corners()], [up.dot(c) for c in bounds.corners()]
+        lamp.extent = max(max(across) - min(across), max(upward) - min(upward)) + 2 * margin
+        near, far = min(along) - margin, max(along) + margin
+        middle = (max(across) + min(across)) / 2, (max(upward) + min(upward)) / 2
+        # Depth is measured from the camera, which therefore stands on the near plane.
+        camera.matrix_world = Matrix.Translation(right * middle[0] + up * middle[1] + lamp.forward * near) @ rotation.to_4x4()
+        camera.data.type, camera.data.ortho_scale = "ORTHO", lamp.extent
+        camera.data.clip_start, camera.data.clip_end = 0, far - near
+        lamp.depth_range = far - near
+        lamp.to_shadow = [[*(right / lamp.extent), 0.5 - middle[0] / lamp.extent],
+                          [*(up / -lamp.extent), 0.5 + middle[1] / lamp.extent],
+                          [*(lamp.forward / lamp.depth_range), -near / lamp.depth_range], [0, 0, 0, 1]]
+        encode = ("LINEAR", 1 / lamp.depth_range, 0.0)
+    else:
+        eye = lamp.forward.dot(lamp.position)
+        far = max(1.01 * (max(along) - eye), 1e-3 * bounds.radius)
+        near = min(max(0.99 * (min(along) - eye), 1e-3 * far), 0.9 * far)
+        camera.matrix_world = Matrix.Translation(lamp.position) @ rotation.to_4x4()
+        camera.data.angle = min(lamp.angle, math.radians(170))
+        camera.data.clip_start, camera.data.clip_end = near, far
+        lamp.extent = 2 * math.tan(camera.data.angle / 2)  # of the map at distance 1
+        # 1 / distance is linear in z: 1 / (depth_a z + depth_b).
+        lamp.depth_a, lamp.depth_b = 1 / far - 1 / near, 1 / near
+
+        def row(axis, w):
+            return [*(axis + w * lamp.forward), -lamp.position.dot(axis + w * lamp.forward)]
+
+        z = row(Vector((0, 0, 0)), -lamp.depth_b / lamp.depth_a)
+        z[3] += 1 / lamp.depth_a
+        lamp.to_shadow = [row(right / lamp.extent, 0.5), row(up / -lamp.extent, 0.5), z, row(Vector((0, 0, 0)), 1)]
+        encode = ("INVERSE", 1 / lamp.depth_a, -lamp.depth_b / lamp.depth_a)
+    scene.camera = camera
+    width, height = scene.render.resolution_x, scene.render.resolution_y
+    scene.render.resolution_x = scene.render.resolution_y = options.shadow_size
+    write_depth(scene, os.path.join(options.output, lamp.map_file), *encode)
+    scene.render.resolution_x, scene.render.resolution_y = width, height
+
+
+def depth_material(kind, factor, offset):
+    """Emits depth * factor + offset, or factor / depth + offset, clamped to [0, 1]. Depth is along the camera's axis."""
+    material = bpy.data.materials.new("pellucid depth")
+    material.use_nodes = True
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    nodes.clear()
+    value = nodes.new("ShaderNodeCameraData").outputs["View Z Depth"]
+    for operation, operand in (("MULTIPLY" if kind == "LINEAR" else "DIVIDE", factor), ("ADD", offset)):
+        step = nodes.new("ShaderNodeMath")
+        step.operation, step.use_clamp = operation, operation == "ADD"
+        first, second = (1, 0) if operation == "DIVIDE" else (0, 1)
+        links.new(value, step.inputs[first])
+        step.inputs[second].default_value = operand
+        value = step.outputs[0]
+    emission = nodes.new("ShaderNodeEmission")
+    links.new(value, emission.inputs["Strength"])
+    links.new(emission.outputs[0], nodes.new("ShaderNodeOutputMaterial").inputs["Surface"])
+    return material
+
+
+def white_world():
+    """Depth 1 where nothing is."""
+    world = bpy.data.worlds.new("pellucid depth")
+    world.use_nodes = True
+    nodes = world.node_tree.nodes
+    nodes.clear()
+    background = nodes.new("ShaderNodeBackground")
+    background.inputs["Color"].default_value = (1, 1, 1, 1)
+    world.node_tree.links.new(background.outputs[0], nodes.new("ShaderNodeOutputWorld").inputs["Surface"])
+    world.cycles.sampling_method = "NONE"  # it lights nothing
+    return world
+
+
+def write_depth(scene, path, kind, factor, offset):
+    """Renders depth as light that surfaces emit, for Blender 5 has another compositor than its predecessors."""
+    layer, world = scene.view_layers[0], scene.world
+    layer.material_override, scene.world = depth_material(kind, factor, offset), white_world()
+    render_exr(scene, path)
+    layer.material_override, scene.world = None, world
+
+
+def ambient(source, folder):
+    """The nine spherical harmonics of irradiance / pi that the world sends, as the scene file has them; None without."""
+    if source.world is None:
+        return None
+    width, height = 64, 32
+    scene = bpy.data.scenes.new("pellucid sky")
+    scene.world = source.world
+    scene.world.cycles.sampling_method = "NONE"  # nothing is lit by it here, and its map takes a second
+    camera = bpy.data.objects.new("pellucid sky", bpy.data.cameras.new("pellucid sky"))
+    camera.data.type = "PANO"
+    lens = camera.data if hasattr(camera.data, "panorama_type") else camera.data.cycles  # Blender 3
+    lens.panorama_type = "EQUIRECTANGULAR"
+    camera.matrix_world = look(Vector((0, 0, 0)), Vector((0, 1, 0)))
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+    scene.render.engine = "CYCLES"
+    scene.cycles.device, scene.cycles.samples, scene.cycles.use_denoising = "CPU", 16, False
+    scene.render.resolution_x, scene.render.resolution_y = width, height
+    scene.render.resolution_percentage = 100
+    render_exr(scene, os.path.join(folder, ".sky.exr"))
+    image = bpy.data.images.load(scene.render.filepath)
+    pixels = list(image.pixels)
+    os.remove(scene.render.filepath)
+    sums = [[0.0] * 3 for _ in range(9)]
+    for y in range(height):  # Blender's first row is the lowest
+        up = (y + 0.5) / height * math.pi - math.pi / 2
+        area = math.cos(up) * (math.pi / height) * (2 * math.pi / width)
+        for x in range(width):
+            round_ = (x + 0.5) / width * 2 * math.pi - math.pi  # from the middle, +y, to the right
+            basis = harmonics(math.cos(up) * math.sin(round_), math.cos(up) * math.cos(round_), math.sin(up))
+            for i in range(9):
+                for c in range(3):
+                    sums[i][c] += basis[i] * pixels[4 * (y * width + x) + c] * area
+    # The clamped cosine over pi, per order: 1, 2/3, 1/4 [Ramamoorthi and Hanrahan 2001].
+    share = [1] + [2 / 3] * 3 + [1 / 4] * 5
+    return [[share[i] * v for v in sums[i]] for i in range(9)]
+
+
+def harmonics(x, y, z):
+    """Orthonormal, real, orders 0 to 2, in the order of PelAmbient."""
+    a, b, c = math.sqrt(1 / (4 * math.pi)), math.sqrt(3 / (4 * math.pi)), math.sqrt(15 / (4 * math.pi))
+    return [a, b * y, b * z, b * x, c * x * y, c * y * z, math.sqrt(5 / (16 * math.pi)) * (3 * z * z - 1), c * x * z,
+            0.5 * c * (x * x - y * y)]

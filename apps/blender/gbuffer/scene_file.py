@@ -1,0 +1,118 @@
+"""The scene file of `pellucid shade` (docs/guide/scene-file.md)."""
+
+import os
+
+from . import principled
+from .fault import warn
+from .passes import MATERIAL_CHANNEL
+
+# The library's skin by its tables. Lengths in millimetres; those of the tables follow from the profile.
+SKIN = {"profile": "skin", "scattering": "preintegrated", "deep_scatter_color": (0.7, 0.16, 0.05), "specular": 0.35}
+SKIN_LENGTHS = {"deep_scatter_radius": 6.0, "deep_scatter_normal_offset": 0.2}
+EYES = {"scattering": "none", "thickness_taps": 0}  # the sclera; its gloss is that of the film of tears
+PLAIN = {"scattering": "none", "thickness_taps": 0}
+PREFIX = "pellucid_"  # custom properties of a Blender material that set a key of [[material]]
+
+
+def number(value):
+    text = f"{float(value):.9g}"
+    return text if "." in text or "e" in text or "n" in text else text + ".0"
+
+
+def value(v):
+    if isinstance(v, str):
+        return '"' + v.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    if isinstance(v, int):
+        return str(v)
+    try:
+        return "[" + ", ".join(value(inner) for inner in v) + "]"
+    except TypeError:
+        return number(v)
+
+
+def comment(name):
+    """A name as the end of a line, which ends nowhere else."""
+    return "# " + "".join(c if c.isprintable() else " " for c in name)
+
+
+def keys_of(surface, preset, unit, folder, extents):
+    """Of [[material]], by what was chosen for it."""
+    if preset == principled.EYE:
+        keys = dict(EYES)
+    elif preset == principled.PLAIN:
+        keys = {**PLAIN, **surface.keys}
+    elif preset == principled.SKIN:
+        keys = {**SKIN, **{key: length / unit for key, length in SKIN_LENGTHS.items()}}
+    else:
+        name = preset
+        if preset == "own":
+            name = principled.file_name(surface.name)
+            with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
+                file.write(principled.profile_text(surface, unit))
+        keys = {"profile": name, "scattering": "auto", "deep_scatter_normal_offset": SKIN_LENGTHS["deep_scatter_normal_offset"] / unit, **surface.keys}
+    if extents and preset not in (principled.EYE, principled.PLAIN):
+        keys["thickness_filter_radius"] = 3 / unit / max(extents)  # 3 mm
+    return keys
+
+
+def write(path, unit, camera, lamps, sky, materials, eyes, curvature, fallback):
+    """unit: millimetres per Blender unit. materials: (id, Blender material, Surface). eyes: (Blender material, keys). fallback: the preset of materials that have none."""
+    of_eyes = {material.name: keys for material, keys in eyes}
+    chosen = {id_: surface.chosen(of_eyes, fallback) for id_, _, surface in materials}
+    if not any(preset not in (principled.PLAIN, principled.EYE) for preset in chosen.values()):
+        warn("nothing scatters: no material has Subsurface above 0; give it one, or the custom property pellucid_preset = \"skin\", or pass --preset skin")
+    surfaces = [surface for _, _, surface in materials]
+    lines = [
+        "# Written by apps/blender/render_gbuffer.py. Axes: Blender's world, Z up. Lengths: Blender units,",
+        f"# of {unit:g} mm each.",
+        "version = 2",
+        f"unit_mm = {number(unit)}",
+        "blur_normals = 1",
+        "",
+        "[channels]",
+        f'material = "{MATERIAL_CHANNEL}"',
+        'position = ["Position.X", "Position.Y", "Position.Z"]',
+        'normal_shading = ["NShading.R", "NShading.G", "NShading.B"]',
+        'normal_geometric = ["NGeom.R", "NGeom.G", "NGeom.B"]',
+        'albedo = ["Albedo.R", "Albedo.G", "Albedo.B"]',
+    ]
+    if curvature:
+        lines += ['curvature = "Curvature.X"']
+    if any(s.roughness for s in surfaces):
+        lines += ['roughness = "Roughness.X"']
+    if any(s.weight or (s.scattering and s.scattering.weight < 1) for s in surfaces):
+        lines += ['scatter_weight = "ScatterWeight.X"']
+    lines += ["", "[camera]", "position = " + value(tuple(camera.matrix_world.translation))]
+    if sky:
+        lines += ["", "[ambient]", "sh = [", *("    " + value(row) + "," for row in sky), "]"]
+    for lamp in lamps:
+        lines += ["", "[[light]]  " + comment(lamp.name)]
+        if lamp.kind == "SUN":
+            lines += ['type = "directional"', "to_light = " + value(tuple(-lamp.forward))]
+        else:
+            lines += [f'type = "{lamp.kind.lower()}"', "position = " + value(tuple(lamp.position))]
+        if lamp.kind == "SPOT":
+            lines += ["spot_direction = " + value(tuple(lamp.forward)), "spot_cos_inner = " + number(lamp.cos_inner),
+                      "spot_cos_outer = " + number(lamp.cos_outer)]
+        lines += ["color = " + value(lamp.color)]
+        if lamp.map_file:
+            lines += ["", "[light.shadow_map]", "file = " + value(lamp.map_file), 'channel = "R"']
+            lines += ["filter_texels = 48", "bias = " + number(0.5 / unit)]
+            lines += ["world_to_shadow = " + value([v for row in lamp.to_shadow for v in row])]
+            if lamp.kind == "SUN":
+                lines += ['projection = "parallel"', "depth_range = " + number(lamp.depth_range)]
+            else:
+                lines += ['projection = "perspective"', "depth_a = " + number(lamp.depth_a), "depth_b = " + number(lamp.depth_b)]
+    extents = [lamp.extent for lamp in lamps if lamp.map_file and lamp.kind == "SUN"]
+    for id_, material, surface in materials:
+        if material.name in of_eyes:
+            lines += ["", "[[eye]]", f"material = {id_}", *(f"{key} = {value(v)}" for key, v in of_eyes[material.name].items())]
+        keys = keys_of(surface, chosen[id_], unit, os.path.dirname(path), extents)
+        for name in material.keys():
+            if name.startswith(PREFIX) and not name.startswith("pellucid_eye") and name != principled.PRESET:
+                own = material[name]
+                keys[name[len(PREFIX) :]] = own if isinstance(own, (int, float, str)) else tuple(own)
+        lines += ["", "[[material]]  " + comment(material.name), f"id = {id_}"]
+        lines += [f"{key} = {value(v)}" for key, v in keys.items() if v != ""]
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n".join(lines) + "\n")

@@ -1,0 +1,371 @@
+// apps/blender/render_gbuffer.py in the installed Blender, then `pellucid shade` on what it wrote,
+// unchanged. A scene with what a .blend file may hold (apps/blender/tests/blender_scene.py) must give Blender's own
+// Lambert picture wherever its light arrives.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "blender.h"
+#include "cli/cli_run.h"
+#include "io/image/image_file.h"
+#include "io/scene/scene_file.h"
+#include "sample/gbuffer.h"
+#include "sample/shadow_map.h"
+#include "tolerances.h"
+
+using namespace pellucid;
+
+namespace {
+
+class BlenderScript : public CommandTest {
+  protected:
+    void SetUp() override {
+        CommandTest::SetUp();
+        if (!blender::installed()) GTEST_SKIP() << "blender is not installed";
+    }
+
+    // Runs render_gbuffer.py after the script `scene`, if one is named. Returns the exit code; Blender's output is in said.txt.
+    int render(const std::string& before, const std::string& arguments, const std::string& scene = "") const {
+        const std::string folder = PELLUCID_SOURCE_DIR "/apps/blender/";
+        return run("PELLUCID_COMMAND='" PELLUCID_COMMAND "' " + before + " '" + blender::command() +
+                   "' --factory-startup -b -t 2" +
+                   (scene.empty() ? "" : " --python " + folder + "tests/" + scene) + " --python " + folder +
+                   "render_gbuffer.py -- " + arguments + " >" + path("said.txt") + " 2>&1 </dev/null");
+    }
+    // Without a .blend file.
+    int render(const std::string& arguments) const { return render("", arguments); }
+    static int run(const std::string& line) {
+        const int status = std::system(line.c_str());
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+    using CommandTest::run;
+    std::string said() const { return read(path("said.txt")); }
+
+    std::vector<float> shade(const std::string& gbuffer, const std::string& scene) const {
+        const Result result = run({"shade", gbuffer, "--scene", scene, "-o", path("out.exr")});
+        EXPECT_EQ(result.exitCode, 0) << result.err;
+        return result.exitCode == 0 ? rgb(io::readImage(path("out.exr")), "R", "G", "B") : std::vector<float>();
+    }
+    static std::vector<float> rgb(const io::Image& image, const std::string& r, const std::string& g,
+                                  const std::string& b) {
+        const std::vector<std::string> names{r, g, b};
+        return image.interleaved(names);
+    }
+};
+
+// z of a point in a shadow map and z of the map there, nearest texel.
+struct Depths {
+    double point, map;
+};
+Depths look(const PelLight& light, const io::Image& map, const float* p) {
+    double row[4];
+    for (int i = 0; i < 4; ++i) {
+        const float* m = light.worldToShadow + 4 * i;
+        row[i] = double(m[0]) * p[0] + double(m[1]) * p[1] + double(m[2]) * p[2] + m[3];
+    }
+    const auto texel = [&](double t, int size) { return std::clamp(int(t * size), 0, size - 1); };
+    const int x = texel(row[0] / row[3], map.width), y = texel(row[1] / row[3], map.height);
+    return {row[2] / row[3], map.channel("R").pixels[size_t(y) * size_t(map.width) + size_t(x)]};
+}
+
+}  // namespace
+
+TEST_F(BlenderScript, ABlendFileGivesBlendersLambertPicture) {
+    for (const std::string light : {"SUN", "SPOT"}) {
+        const std::string folder = path(light);
+        ASSERT_EQ(render("PELLUCID_SCENE='" + path("scene.blend") + " " + light + "'",
+                         "-o '" + folder + "' --shadow-size 512", "blender_scene.py"),
+                  0)
+            << said();
+        io::SceneFile scene = io::readScene(folder + "/scene.toml");
+        ASSERT_EQ(scene.lights.size(), 1u);
+        ASSERT_EQ(scene.materials.size(), 2u);
+        EXPECT_FLOAT_EQ(scene.unitMm, 10) << "a unit is a centimetre there";
+        EXPECT_FLOAT_EQ(scene.materials[0].material.deepScatterNormalOffset, 0.02f);
+        EXPECT_FLOAT_EQ(scene.materials[0].material.deepScatterRadius, 0.5f) << "a custom property counts";
+        // The world: radiance 0.5 + 0.5 (0.6 x + 0.8 z) in red. Irradiance / pi keeps the first order by two
+        // thirds.
+        const double y0 = std::sqrt(4 * M_PI), y1 = std::sqrt(4 * M_PI / 3);
+        const double expected[4] = {0.5 * y0, 0, 0.8 / 3 * y1, 0.6 / 3 * y1};
+        for (int i = 0; i < 9; ++i) {
+            EXPECT_NEAR(scene.ambient.sh[i][0], i < 4 ? expected[i] : 0, tolerance::blenderSky) << i;
+            EXPECT_EQ(scene.ambient.sh[i][1], 0);
+        }
+        // Blender's picture has no light from the world in it.
+        scene.ambient = pelAmbientDefaults();
+        // Nor soft shadows.
+        EXPECT_EQ(scene.lights[0].light.shadowFilterTexels, 48u);
+        scene.lights[0].light.shadowFilterTexels = 0;
+        io::writeScene(path("lambert.toml"), scene);
+        const std::vector<float> out = shade(folder + "/gbuffer.exr", path("lambert.toml"));
+        ASSERT_FALSE(out.empty());
+
+        const io::Image g = io::readImage(folder + "/gbuffer.exr");
+        EXPECT_EQ(g.width, 160);
+        EXPECT_EQ(g.height, 120);
+        const std::vector<float> blender = rgb(g, "Combined.R", "Combined.G", "Combined.B");
+        const std::vector<float> n = rgb(g, "NShading.R", "NShading.G", "NShading.B");
+        const std::vector<float> p = rgb(g, "Position.X", "Position.Y", "Position.Z");
+        const std::vector<float> id = blender::pass(g, "Material Index", "IndexMA"),
+                                 depth = g.channel("Depth.Z").pixels,
+                                 object = blender::pass(g, "Object Index", "IndexOB"),
+                                 curvature = g.channel("Curvature.X").pixels;
+        const io::Image map = io::readImage(scene.lights[0].shadowMapFile);
+        const PelLight& lamp = scene.lights[0].light;
+        std::set<float> ids(id.begin(), id.end());
+        EXPECT_EQ(ids, (std::set<float>{0, 7, 9})) << light;
+        double worst[2] = {}, square[2] = {};  // [1]: spots dimmed by the cosine
+        size_t lit = 0, shadowed = 0, wrong = 0;
+        std::vector<float> ball;
+        for (size_t i = 0; i < id.size(); ++i) {
+            if (id[i] == 0) {
+                ASSERT_EQ(out[3 * i], 0) << light << ", pixel " << i;
+                if (object[i] == 0) {
+                    EXPECT_EQ(depth[i], 1e10f);
+                }
+                continue;
+            }
+            const double radius = std::hypot(p[3 * i], p[3 * i + 1], p[3 * i + 2]);
+            if (std::abs(radius - 1) < 0.01) ball.push_back(curvature[i]);
+            const bool arrives = blender[3 * i] > 1e-4f, faces = out[3 * i] > 0.05f;
+            // Cycles darkens bumped surfaces at grazing light beyond the cosine: the ring says only what its
+            // albedo is.
+            if (arrives && id[i] == 7) {
+                ++lit;
+                double cosine = 1;  // of the angle to a spot's axis, by which Blender 3 dims it
+                if (light == "SPOT") {
+                    double along = 0, distance = 0;
+                    for (size_t c = 0; c < 3; ++c) {
+                        const double d = p[3 * i + c] - lamp.position[c];
+                        along += d * lamp.spotDirection[c];
+                        distance += d * d;
+                    }
+                    cosine = along / std::sqrt(distance);
+                }
+                for (size_t c = 0; c < 3; ++c)
+                    for (const bool dimmed : {false, true}) {
+                        const double ours = (dimmed ? cosine : 1) * out[3 * i + c];
+                        const double e = std::abs(ours - blender[3 * i + c]);
+                        worst[dimmed] = std::max(worst[dimmed], e);
+                        square[dimmed] += e * e;
+                    }
+            }
+            if (!faces) continue;
+            const Depths z = look(lamp, map, &p[3 * i]);
+            // In shadow the map must hold something nearer; in the light the point itself.
+            if (!arrives) ++shadowed;
+            wrong += arrives ? z.point > z.map + 0.03 : z.point < z.map + 1e-3;
+        }
+        const bool dimmed = square[1] < square[0];
+        const double rms = std::sqrt(square[dimmed] / double(3 * lit));
+        std::printf("%s: RMSE %.2g, largest %.2g, %zu pixels; %zu in shadow, %zu against the map\n",
+                    light.c_str(), rms, worst[dimmed], lit, shadowed, wrong);
+        EXPECT_GT(lit, 2000u);
+        EXPECT_LT(rms, tolerance::blenderScriptLambert) << light;
+        EXPECT_GT(shadowed, 20u);
+        EXPECT_LT(wrong, lit / 50) << "edges of texels only";
+        // A sphere of radius 1 unit.
+        ASSERT_GT(ball.size(), 1000u);
+        std::nth_element(ball.begin(), ball.begin() + ptrdiff_t(ball.size() / 2), ball.end());
+        EXPECT_NEAR(ball[ball.size() / 2], 1, tolerance::blenderCurvature);
+    }
+}
+
+TEST_F(BlenderScript, AMeshFileScatters) {
+    // A ball of radius 1 with y up, its north pole cut off so that axes can be told apart.
+    std::string off;
+    int vertices = 0, faces = 0;
+    const int rings = 24, segments = 48;
+    for (int r = 0; r <= rings; ++r)
+        for (int s = 0; s < segments; ++s, ++vertices) {
+            const double a = M_PI * (r + 3) / (rings + 3), b = 2 * M_PI * s / segments;
+            off += std::to_string(std::sin(a) * std::cos(b)) + " " + std::to_string(std::cos(a)) + " " +
+                   std::to_string(std::sin(a) * std::sin(b)) + "\n";
+        }
+    for (int r = 0; r < rings; ++r)
+        for (int s = 0; s < segments; ++s, ++faces) {
+            const int a = r * segments + s, b = r * segments + (s + 1) % segments;
+            off += "4 " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(b + segments) +
+                   " " + std::to_string(a + segments) + "\n";
+        }
+    const std::string mesh =
+        write("ball.off", "OFF\n" + std::to_string(vertices) + " " + std::to_string(faces) + " 0\n" + off);
+    ASSERT_EQ(render("'" + mesh + "' -o '" + path("out") +
+                     "' --size 96x64 --up y --height 19.4 --half --shadow-size 256"),
+              0)
+        << said();
+    const io::Image g = io::readImage(path("out/gbuffer.exr"));
+    ASSERT_EQ(g.width, 96);
+    const std::vector<float> p = rgb(g, "Position.X", "Position.Y", "Position.Z");
+    const std::vector<float> id = blender::pass(g, "Material Index", "IndexMA");
+    float low = 1e9f, high = -1e9f;
+    size_t covered = 0;
+    for (size_t i = 0; i < id.size(); ++i)
+        if (id[i] == 1) {
+            ++covered;
+            low = std::min(low, p[3 * i + 2]);
+            high = std::max(high, p[3 * i + 2]);
+        }
+    EXPECT_GT(covered, 1000u);
+    // Skin by the tables that follow from its profile, none of an older format.
+    const io::SceneFile scene = io::readScene(path("out/scene.toml"));
+    EXPECT_TRUE(contains(read(path("out/scene.toml")), "\nversion = 2\n"));
+    EXPECT_TRUE(scene.luts.empty());
+    ASSERT_EQ(scene.materials.size(), 1u);
+    EXPECT_EQ(scene.materials[0].profile, "skin");
+    EXPECT_EQ(scene.materials[0].material.scattering, PEL_SCATTERING_PREINTEGRATED);
+    EXPECT_EQ(scene.materials[0].material.shadowFilterWidth, 0) << "follows from the profile";
+    // cos(20 degrees) of 10 mm, the height of which is 19.4 mm, up along z; within a pixel.
+    EXPECT_NEAR(high, 9.4, 0.5);
+    EXPECT_NEAR(low, -10, 0.5);
+    const Result result = run({"shade", path("out/gbuffer.exr"), "--scene", path("out/scene.toml"), "-o",
+                               path("out/p.exr"), "--stats", "--json"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const nlohmann::json features = result.json().at("stats").at("features");
+    for (const char* feature : {"direct_scatter", "deep_scatter", "thickness_taps", "specular"})
+        EXPECT_NE(std::find(features.begin(), features.end(), feature), features.end()) << feature;
+    EXPECT_EQ(result.json().at("stats").at("pixels_invalid"), 0);
+    const std::vector<float> out = rgb(io::readImage(path("out/p.exr")), "R", "G", "B");
+    // Past the terminator, to the right in the back, red light is left and blue is not.
+    float red = 0;
+    for (size_t i = 0; i < id.size(); ++i)
+        if (out[3 * i + 2] < 0.2f * out[3 * i]) red = std::max(red, out[3 * i]);
+    EXPECT_GT(red, 0.01f);
+}
+
+// A y-up OBJ added to a .blend file of odd names, whose camera sees none of it.
+TEST_F(BlenderScript, OddThings) {
+    std::string obj;  // a box of 1 x 6 x 2
+    for (int i = 0; i < 8; ++i) {
+        obj += i & 1 ? "v 1 " : "v 0 ";
+        obj += i & 2 ? "6 " : "0 ";
+        obj += i & 4 ? "2\n" : "0\n";
+    }
+    obj += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+    const std::string mesh = write("box ü.1.obj", obj), folder = path("out \"ü\" 1.2");
+    ASSERT_EQ(render("PELLUCID_SCENE='" + path("scene.blend") + "'",
+                     "'" + mesh + "' -o '" + folder + "' --up y --no-curvature --shadow-size 64",
+                     "blender_names.py"),
+              0)
+        << said();
+    EXPECT_TRUE(contains(said(), "the camera sees none of the 2 objects")) << said();
+    const io::SceneFile scene = io::readScene(folder + "/scene.toml");
+    ASSERT_EQ(scene.lights.size(), 2u);
+    ASSERT_EQ(scene.materials.size(), 2u);
+    EXPECT_NE(scene.lights[0].shadowMapFile, scene.lights[1].shadowMapFile);
+    const Result result =
+        run({"shade", folder + "/gbuffer.exr", "--scene", folder + "/scene.toml", "-o", path("p.exr")});
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    // The light that is tilted less looks down: from the box's top, 6 up, to the text, 1 below the ground.
+    const float* m = scene.lights[0].light.worldToShadow;
+    const float depths = m[10] * scene.lights[0].light.shadowDepthRange;
+    EXPECT_NEAR(depths, -std::cos(0.2), 1e-4);
+    const io::Image map = io::readImage(scene.lights[0].shadowMapFile);
+    const auto& depth = map.channel("R").pixels;
+    EXPECT_LT(*std::min_element(depth.begin(), depth.end()), 0.1f) << "the box's top is near the light";
+    EXPECT_GT(scene.lights[0].light.shadowDepthRange, 7 * std::cos(0.2));
+}
+
+TEST_F(BlenderScript, SaysWhatIsWrong) {
+    EXPECT_EQ(render("nothing.off -o '" + path("out") + "'"), 3);
+    EXPECT_TRUE(contains(said(), "nothing.off: there is no such file")) << said();
+    EXPECT_EQ(render("'" + write("empty.obj", "") + "' -o '" + path("out") + "'"), 3);
+    EXPECT_TRUE(contains(said(), "empty.obj: there are no faces in it")) << said();
+    EXPECT_EQ(render("empty.obj -o '" + path("out") + "' --smooth 2000"), 2);
+    EXPECT_TRUE(contains(said(), "--smooth: 0 to 1000 is possible")) << said();
+    EXPECT_EQ(render("-o '" + path("out") + "'"), 2);
+    EXPECT_TRUE(contains(said(), "name a .blend file before --python, or a mesh after --")) << said();
+    EXPECT_EQ(render("'" + write("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n") + "' -o '" +
+                     path("out") + "' --pellucid /nowhere/pellucid"),
+              3);
+    EXPECT_TRUE(contains(said(), "--pellucid or PELLUCID_COMMAND")) << said();
+}
+
+// The conventions without Blender: a torus rendered by the sample host, stored under the script's names, half
+// and float mixed, must shade as the same images do under names of their own.
+class BlenderNames : public CommandTest {};
+
+TEST_F(BlenderNames, ShadeAsAnyOthers) {
+    const int size = 96;
+    const sample::Scene scene(sample::makeTorus(20, 8, 64, 32).view());
+    const sample::Camera camera = sample::frameHead(scene.bounds(), {}, {}, 1);
+    sample::GBufferOptions options;
+    options.detail.enabled = true;
+    const sample::GBuffer g = sample::renderGBuffer(scene, camera, size, size, options);
+    const sample::ShadowMap map =
+        sample::renderShadowMap(scene, sample::DirectionalLight{{0.6, -0.48, 0.64}}, 128);
+
+    io::Image named, plain;
+    const auto add = [&](const std::string& pass, const std::string& components, const sample::Image& image,
+                         io::ChannelType type) {
+        for (size_t c = 0; c < components.size(); ++c) {
+            const std::vector<float> plane(image.plane(int(c)), image.plane(int(c)) + image.planeSize());
+            named.channels.push_back({"ViewLayer." + pass + "." + components[c], type, plane});
+            plain.channels.push_back({"plain" + pass + components[c], type, plane});
+        }
+    };
+    named.width = named.height = plain.width = plain.height = size;
+    add("Position", "XYZ", g.position, io::ChannelType::Float);
+    add("Depth", "Z", g.viewDepth, io::ChannelType::Float);
+    add("NShading", "RGB", g.shadingNormal, io::ChannelType::Half);
+    add("NGeom", "RGB", g.geometricNormal, io::ChannelType::Half);
+    add("Albedo", "RGB", g.albedo, io::ChannelType::Half);
+    add("Curvature", "X", g.curvature, io::ChannelType::Half);
+    add("IndexMA", "X", g.coverage, io::ChannelType::Half);
+    io::writeExr(path("blender.exr"), named);
+    io::writeExr(path("plain.exr"), plain);
+    io::Image depths;
+    depths.width = depths.height = map.size;
+    for (const char* channel : {"R", "G", "B", "A"})
+        depths.channels.push_back({channel, io::ChannelType::Float, map.depth});
+    io::writeExr(path("shadow_sun.exr"), depths);
+
+    std::string matrix;
+    for (const float v : map.worldToUvz.toFloats())
+        matrix += (matrix.empty() ? "" : ", ") + std::to_string(v);
+    const std::string rest =
+        "[camera]\nposition = [" + std::to_string(camera.eye.x) + ", " + std::to_string(camera.eye.y) + ", " +
+        std::to_string(camera.eye.z) +
+        "]\n[[light]]\ntype = \"directional\"\nto_light = [0.6, -0.48, 0.64]\n[light.shadow_map]\n"
+        "file = \"shadow_sun.exr\"\nchannel = \"R\"\nprojection = \"parallel\"\nworld_to_shadow = [" +
+        matrix + "]\ndepth_range = " + std::to_string(map.depthRange) +
+        "\n[[material]]\nid = 1\ncurvature_lut = \"skin\"\ndeep_scatter_color = [0.7, 0.16, 0.05]\n"
+        "specular = 0.35\n[[curvature_lut]]\nname = \"skin\"\nwidth = 64\nheight = 64\n";
+    const auto channels = [](const char* pattern) {
+        std::string text = "version = 1\n[channels]\n";
+        const std::pair<const char*, std::pair<const char*, const char*>> keys[] = {
+            {"material", {"IndexMA", "X"}},          {"position", {"Position", "XYZ"}},
+            {"normal_shading", {"NShading", "RGB"}}, {"normal_geometric", {"NGeom", "RGB"}},
+            {"albedo", {"Albedo", "RGB"}},           {"curvature", {"Curvature", "X"}}};
+        for (const auto& [key, names] : keys) {
+            text += std::string(key) + " = [";
+            for (const char* c = names.second; *c; ++c) {
+                char name[64];
+                std::snprintf(name, sizeof name, pattern, names.first, *c);
+                text += (c == names.second ? "\"" : ", \"") + std::string(name) + "\"";
+            }
+            text += "]\n";
+        }
+        return text;
+    };
+    std::vector<std::string> pictures;
+    for (const auto& [file, pattern] : {std::pair("blender", "%s.%c"), std::pair("plain", "plain%s%c")}) {
+        const std::string toml = write(std::string(file) + ".toml", channels(pattern) + rest);
+        const Result result = run({"shade", path(std::string(file) + ".exr"), "--scene", toml, "-o",
+                                   path("out.exr"), "--stats", "--json"});
+        ASSERT_EQ(result.exitCode, 0) << result.err;
+        EXPECT_EQ(result.json().at("stats").at("features").size(), 4u);
+        pictures.push_back(read(path("out.exr")));
+        const io::Image out = io::readImage(path("out.exr"));
+        // Background is left alone, whatever its depth and position say; the object is lit.
+        double sum = 0;
+        for (size_t i = 0; i < out.pixelCount(); ++i) {
+            if (g.material[i] == 0) {
+                ASSERT_EQ(out.channel("R").pixels[i], 0);
+            }
+            sum += out.channel("R").pixels[i];
+        }
+        EXPECT_GT(sum, 100);
+    }
+    EXPECT_EQ(pictures[0], pictures[1]);
+}

@@ -1,0 +1,124 @@
+"""The viewer's controls without a browser: what the guide lists is there, and sets the look."""
+import asyncio
+import re
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("moderngl", reason="moderngl is not installed")
+nicegui = pytest.importorskip("nicegui", reason="nicegui is not installed")
+pytest.importorskip("pellucid.files", reason="this build reads no files")
+from nicegui import Client, core, ui  # noqa: E402
+from nicegui.page import page  # noqa: E402
+from view_session import reset  # noqa: E402
+
+from pellucid.view.look import Look  # noqa: E402
+from pellucid.view.page import Page  # noqa: E402
+
+
+class Shown:
+    """What a page asks of a viewer."""
+
+    def __init__(self, session):
+        self.session, self.last, self.changes = session, None, 0
+
+    def changed(self, moving=False):
+        self.changes += 1
+
+
+def opened(session, act):
+    """Calls act(elements, viewer) on a page of this session."""
+    async def run():
+        core.loop = asyncio.get_running_loop()
+        client, viewer = Client(page("/")), Shown(session)
+        with client:
+            Page(viewer)
+            act(list(client.elements.values()), viewer)
+
+    reset(session)
+    session.count, session.wipe = False, 0.5
+    asyncio.run(run())
+
+
+def marked(elements, kind):
+    return {e.props["data-pel"]: e for e in elements if isinstance(e, kind) and "data-pel" in e.props}
+
+
+def label(slider):
+    return next(e.text for e in slider.parent_slot.children if isinstance(e, ui.label) and e.text)
+
+
+def test_the_guide_lists_every_slider_with_its_limits(session):
+    text = (Path(__file__).parents[3] / "docs/guide/viewer.md").read_text(encoding="utf-8")
+    listed = [row for row in re.findall(r"^\| (.+?) \| ([-\d.]+) \| ([-\d.]+) \| ([-\d.]+) \|$", text, re.M)]
+    shown = []
+
+    def look(elements, viewer):
+        for e in marked(elements, ui.slider).values():
+            row = (label(e), *(f"{e.props[k]:g}" for k in ("min", "max", "step")))
+            if row not in shown:  # three lamps have the same ones
+                shown.append(row)
+
+    opened(session, look)
+    assert listed == shown
+
+
+def test_every_control_sets_the_value_that_it_names(session):
+    def act(elements, viewer):
+        look = session.look
+        fallow = {f.name for f in fields(Look)} - {"lamps", "iris_texture", "profile"}
+        for name, e in marked(elements, ui.slider).items():
+            lamp, channel = re.match(r"slider-lamp-(\d)-(\w+)", name), re.match(r"slider-(\w+)-(\d)", name)
+
+            def value(name=name, lamp=lamp, channel=channel):
+                if lamp:
+                    return getattr(look.lamps[int(lamp[1])], lamp[2])
+                if name == "slider-wipe":
+                    return session.wipe
+                return getattr(look, channel[1])[int(channel[2])] if channel else getattr(look, name[len("slider-"):])
+
+            low, high = e.props["min"], e.props["max"]
+            assert low <= value() <= high and low < high, name
+            assert e.value == value(), name
+            for wanted in (high, low, high):
+                e.set_value(wanted)
+                assert value() == wanted and viewer.changes, name
+                viewer.changes = 0
+            fallow.discard(channel[1] if channel else name[len("slider-"):])
+        for name, e in marked(elements, ui.switch).items():
+            if name == "count":
+                continue
+            lamp = re.match(r"lamp-(\d)-(\w+)", name)
+            of, field = (look.lamps[int(lamp[1])], lamp[2]) if lamp else (look, name)
+            for wanted in (not getattr(of, field), getattr(of, field)):
+                e.set_value(wanted)
+                assert getattr(of, field) is wanted and viewer.changes, name
+                viewer.changes = 0
+            fallow.discard(field)
+        for name, e in marked(elements, ui.color_input).items():
+            lamp = re.match(r"lamp-(\d)-(\w+)", name)
+            of, field = (look.lamps[int(lamp[1])], lamp[2]) if lamp else (look, name.replace("-", "_"))
+            e.set_value("#ff8000")
+            assert getattr(of, field) == pytest.approx((1.0, 0.2159, 0.0), abs=1e-4), name
+            fallow.discard(field)
+        for name, e in marked(elements, ui.select).items():
+            if name in ("preset", "unit"):
+                continue
+            for wanted in e.options:
+                e.set_value(wanted)
+                assert getattr(look, name) == wanted, name
+            fallow.discard(name)
+        assert not fallow, "values that no control sets"
+
+    opened(session, act)
+
+
+def test_a_preset_sets_the_material_and_keeps_the_light(session):
+    def act(elements, viewer):
+        session.look.ambient, session.look.exposure, session.look.specular = 0.7, 2.0, 0.9
+        marked(elements, ui.select)["preset"].set_value("Jade")
+        assert session.look.profile == "jade" and session.look.specular == 0.6
+        assert (session.look.ambient, session.look.exposure) == (0.7, 2.0)
+
+    opened(session, act)

@@ -1,0 +1,143 @@
+"""What goes on beside the viewer's pictures: the reference on its own thread, units of meshes, files for pages that are closed."""
+import asyncio
+import threading
+import time
+import types
+
+import numpy as np
+import pytest
+
+pytest.importorskip("moderngl", reason="moderngl is not installed")
+files = pytest.importorskip("pellucid.files", reason="this build reads no files")
+pytest.importorskip("nicegui", reason="nicegui is not installed")
+from view_session import reset  # noqa: E402
+
+from pellucid.view.reference import Reference  # noqa: E402
+from pellucid.view.session import Session  # noqa: E402
+from pellucid.view.widgets import Panel  # noqa: E402
+
+
+def wait_until(condition, seconds=120):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def test_the_reference_leaves_the_session_free(session):
+    reset(session)
+    session.look.mode = "reference"
+    whole = session.frame(96, 54).pixels  # without `report` it is complete at once
+    session.cancel_reference("main")
+    reports, gate = [], threading.Event()
+
+    def report():
+        reports.append(threading.current_thread().name)
+        gate.wait(60)
+
+    session.report = report
+    try:
+        first = session.frame(96, 54).pixels
+        wait_until(lambda: reports)
+        assert "%" in session.work and set(reports) == {"pellucid-reference"}
+        session.look.pores = 0.0
+        session.look.mode = "final"
+        other = session.frame(120, 68).pixels  # while the reference waits
+        assert other.any() and session.work == "" and not np.array_equal(first, whole)
+        gate.set()
+        session.look.mode = "reference"
+        session.frame(96, 54)
+        made = session.references["main"]
+        wait_until(lambda: made.fraction == 1)
+        assert np.array_equal(session.frame(96, 54).pixels, whole) and session.references["main"] is made
+        moving = session.frame(96, 54, small=True).pixels
+        assert session.references["main"] is made and not np.array_equal(moving, whole)
+    finally:
+        gate.set()
+        session.report = None
+        reset(session)
+
+
+def test_a_reference_is_coarse_first_and_can_be_cancelled():
+    points = np.zeros((40, 60, 3), np.float32)
+    points[..., 0], points[..., 1] = np.meshgrid(np.arange(60), np.arange(40))
+    seen = points[..., 0] >= 8
+    sizes = []
+
+    def compute(p):
+        sizes.append(len(p))
+        return p + 1
+
+    done = Reference("key", compute, points, seen)
+    done.start(None)
+    assert np.array_equal(done.picture(), np.where(seen[..., None], points + 1, 0)) and done.fraction == 1
+    assert sizes[0] == 5 * 7  # every eighth pixel of every eighth row
+
+    stopped = Reference("key", compute, points, seen)
+    pieces = []
+    stopped._run(lambda: (pieces.append(1), stopped.cancel()), 1024)
+    picture = stopped.picture()
+    assert np.array_equal(picture[::8, ::8], np.where(seen[..., None], points + 1, 0)[::8, ::8])
+    assert np.array_equal(picture[9, 20], points[8, 16] + 1)  # the nearest known pixel above on the left
+    assert len(pieces) == 2  # the piece, and the end
+
+    def broken(p):
+        raise ValueError("the device is gone")
+
+    failed = Reference("key", broken, points, seen)
+    failed.start(None)
+    with pytest.raises(ValueError, match="the device is gone"):
+        failed.picture()
+
+
+@pytest.mark.parametrize("scale, better", [(1e-3, 1000.0), (0.1, 10.0), (1.0, None), (100.0, None)])
+def test_a_mesh_of_another_unit_is_noticed(session, tmp_path, scale, better):
+    corners = 240 * scale * np.array([[0, 0, 0], [0.7, 0, 0], [0, 1, 0], [0, 0, 0.8]])
+    faces = ["3 0 2 1", "3 0 1 3", "3 0 3 2", "3 1 2 3"]
+    mesh = tmp_path / "mesh.off"
+    mesh.write_text("OFF\n4 4 0\n" + "\n".join(" ".join(map(repr, map(float, c))) for c in corners) + "\n" + "\n".join(faces) + "\n")
+    own = Session(session.device)
+    own.load(mesh)
+    if scale == 100.0:  # of a tenth of a millimetre: no unit in use
+        own.set_unit(0.01)
+    assert own.better_unit() == better
+    if better is not None:
+        before = own.orbit
+        own.set_unit(better)
+        assert own.better_unit() is None and own.size() == pytest.approx(240, rel=1e-3) and own.orbit is before
+        assert own.renderer._mm == better
+
+
+def test_a_file_for_a_closed_page_is_dropped(monkeypatch):
+    """The export of a page that was closed meanwhile ends without a traceback; one that fails says so on its page."""
+    from nicegui import Client, core, ui
+    from nicegui.page import page
+
+    given, told, closing = [], [], []
+    monkeypatch.setattr(ui, "download", lambda data, name: given.append(name))
+    monkeypatch.setattr(ui, "notify", lambda text, **_: told.append(text))
+    changes = []
+
+    async def on_thread(work):
+        if closing:
+            closing.pop().delete()
+        return work()
+
+    def fails():
+        raise OSError("the disk is full")
+
+    async def run():
+        core.loop = asyncio.get_running_loop()
+        viewer = types.SimpleNamespace(on_thread=on_thread, changed=lambda: changes.append(1))
+        panel = Panel(types.SimpleNamespace(viewer=viewer))
+        client = Client(page("/"))
+        with client:
+            await panel.deliver(lambda: b"", "closed.zip")
+            await panel.deliver(fails, "failed.zip")
+        gone = Client(page("/"))
+        with gone:
+            closing.append(gone)
+            await panel.deliver(fails, "gone.zip")
+
+    asyncio.run(run())
+    assert given == [] and told[:1] == ["the disk is full"] and len(changes) == 3

@@ -1,0 +1,130 @@
+"""What can be tuned in the viewer: one set of values, to be shown, kept as a preset and exported."""
+from __future__ import annotations
+
+import copy
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any
+
+MODES = {
+    "final": "Final picture",
+    "lambert": "Without scattering",
+    "difference": "Scattering difference (x 4, grey: none)",
+    "error": "Error against the reference (x 10, grey: none)",
+    "reference": "Reference: the surface integral",
+    "diffuse": "Diffuse part",
+    "specular": "Specular part",
+    "deep_scatter": "Transmitted light",
+    "irradiance": "Irradiance",
+    "thickness": "Thickness along the key light (white: 20 mm)",
+    "curvature": "Curvature (white: 0.2 per mm)",
+    "normals": "Shading normals",
+    "albedo": "Albedo",
+    "materials": "Material ids",
+    "tiles": "Tiles by method (dark: not scattered)",
+}
+
+METHODS = {
+    "auto": "Auto: chosen by the inputs",
+    "none": "None: Lambert",
+    "preintegrated": "Pre-integrated",
+    "separable": "Screen space, separable",
+    "screen": "Screen space, disk",
+    "light": "Light space (shadow map)",
+    "texture": "Texture space",
+}
+
+# Material ids of the heads that come with the package.
+SKIN, EYES, TEETH, TONGUE, CUT, RIGHT_EYE = MATERIALS = 1, 2, 3, 4, 5, 6  # EYES: the left one
+
+
+@dataclass
+class Lamp:
+    """A distant light round the object: azimuth 0 is its front, 90 its left. Degrees."""
+
+    name: str
+    azimuth: float
+    elevation: float
+    color: tuple[float, float, float] = (1.0, 1.0, 1.0)  # linear
+    intensity: float = 1.0                               # irradiance / pi
+    shadow: bool = True
+    on: bool = True
+
+
+def _lamps() -> list[Lamp]:
+    return [Lamp("Key", 55.0, 30.0, (1.0, 0.95, 0.88), 1.0), Lamp("Fill", -50.0, 10.0, (0.8, 0.9, 1.0), 0.15, shadow=False),
+            Lamp("Rim", 160.0, 15.0, (1.0, 0.97, 0.92), 0.2)]
+
+
+@dataclass
+class Look:
+    """Materials, lights and how the picture is shown. Lengths in mm."""
+
+    profile: str = "skin"            # of the library, or "custom"
+    distance: tuple[float, float, float] = (0.29, 0.11, 0.054)  # mm, of "custom": Burley's d per channel
+    radius_scale: float = 1.0        # times the profile's lengths
+    method: str = "auto"
+    target_error: float = 0.002      # of white, what `auto` may be off
+    transmission: float = 1.0
+    deep_scatter: tuple[float, float, float] = (0.0, 0.0, 0.0)  # colour of FaceWorks' own term, in place of transmission
+    albedo: tuple[float, float, float] = (1.0, 1.0, 1.0)  # times the mesh's
+    specular: float = 0.35
+    roughness: float = 0.3
+    f0: float = 0.028
+    ggx: bool = False
+    roughness2: float = 0.15
+    lobe_mix: float = 0.15
+    pores: float = 0.06              # slope of the relief that the renderer adds
+    # Of eyes; mm of an eye of an adult's size.
+    pupil: float = 2.0               # radius
+    iris_color: tuple[float, float, float] = (0.22, 0.12, 0.06)  # linear: colours fibres, or multiplies the texture, by which it is 1
+    iris_seed: int = 0               # pattern of the fibres
+    iris_texture: str = ""           # file of a square image; "": fibres are drawn
+    iris_concavity: float = 0.0
+    iris_profile: str = ""           # of the library, by which light scatters in the iris; "": not at all
+    limbus_width: float = 1.0
+    limbus_darkening: float = 0.6
+    cornea_radius: float = 7.8
+    chamber_depth: float = 3.05      # no less than the cornea needs
+    tear_roughness: float = 0.03
+    gaze: tuple[float, float] = (0.0, 0.0)  # degrees to its left and up
+    ambient: float = 0.12            # irradiance / pi from everywhere
+    lamps: list[Lamp] = field(default_factory=_lamps)
+    shadow_size: int = 1024          # texels a side
+    exposure: float = 1.0
+    curve: str = "soft"              # tone mapping
+    shoulder: float = 0.8            # of "soft"
+    mode: str = "final"
+
+    def copy(self) -> Look:
+        return copy.deepcopy(self)
+
+    def to_dict(self) -> dict[str, Any]:
+        return asdict(self)
+
+    @classmethod
+    def from_dict(cls, values: dict[str, Any]) -> Look:
+        """From `to_dict`. Raises ValueError, naming it, for a key that there is not."""
+        known = {f.name for f in fields(cls)}
+        for key in values:
+            if key not in known:
+                raise ValueError(f"a look has no {key!r}; it has {', '.join(sorted(known))}")
+        look = cls(**{k: tuple(v) if k in ("albedo", "deep_scatter", "distance", "iris_color", "gaze") else v for k, v in values.items() if k != "lamps"})
+        if "lamps" in values:
+            look.lamps = [Lamp(**{k: tuple(v) if k == "color" else v for k, v in lamp.items()}) for lamp in values["lamps"]]
+        return look
+
+
+# What a preset leaves as it is: lights and view.
+KEPT_BY_PRESETS = ("lamps", "ambient", "shadow_size", "exposure", "curve", "shoulder", "mode", "target_error")
+
+# Tints are chosen by eye, for a mesh of skin's albedo; profiles are those of the library.
+PRESETS: dict[str, dict[str, Any]] = {
+    "Skin": {},
+    "Skin, softer": {"radius_scale": 2.0},
+    "Skin, oily": {"specular": 0.6, "roughness": 0.2, "ggx": True},
+    "Marble": {"profile": "marble", "albedo": (1.05, 1.4, 1.6), "specular": 0.3, "roughness": 0.15, "pores": 0.0},
+    "Jade": {"profile": "jade", "albedo": (0.35, 1.2, 0.75), "specular": 0.6, "roughness": 0.12, "pores": 0.0},
+    "Wax": {"profile": "paraffin", "albedo": (1.15, 1.35, 1.1), "specular": 0.25, "roughness": 0.35, "pores": 0.0},
+    "Leaf": {"profile": "custom", "distance": (0.25, 0.5, 0.12), "albedo": (0.3, 1.1, 0.25), "specular": 0.3, "roughness": 0.35, "pores": 0.1, "transmission": 1.0},
+    "Plain (Lambert)": {"method": "none", "transmission": 0.0},
+}

@@ -1,0 +1,215 @@
+"""The page: the picture, and panels of what can be tuned."""
+from __future__ import annotations
+
+import io
+import json
+import tempfile
+import zipfile
+from pathlib import Path
+from typing import Any, Callable
+
+from fastapi import WebSocket
+from nicegui import app, events, ui
+
+from .. import files
+from .client import PICTURE, SCRIPT
+from .export import export
+from .look import Look
+from .panels import ComparePanel, EyesPanel, LightsPanel, MaterialPanel, PicturePanel, ProfilePanel
+from .scene_page import SceneExportPanel, SceneLightsPanel, SceneMaterialsPanel, ScenePanel
+from .scene_session import SceneSession
+from .server import Viewer
+from .session import UNITS
+from .widgets import Panel, fail
+
+
+class StatisticsPanel(Panel):
+    name, open = "Statistics", True
+
+    def build(self) -> None:
+        self.bars: dict[str, Any] = {}
+        for name in ("OpenGL", "Pellucid", "on the device", "JPEG"):
+            with ui.row().classes("w-full items-center no-wrap gap-2"):
+                ui.label(name).classes("text-xs").style("width:6rem")
+                self.bars[name] = ui.linear_progress(value=0, show_value=False).style("flex:1")
+                self.bars[name + " ms"] = ui.label().classes("text-xs text-right").style("width:4rem")
+        self.counts = ui.label().classes("text-xs").style("white-space:pre-line").props("data-pel=counts")
+        self.switch("Count pixels (slightly slower)", self.viewer.session, "count")
+
+    def update(self) -> None:
+        frame = self.viewer.last
+        if frame is None:
+            return
+        longest = max(50.0, *frame.milliseconds.values())
+        for name, ms in frame.milliseconds.items():
+            if name in self.bars:
+                self.bars[name].set_value(min(1.0, ms / longest))
+                self.bars[name + " ms"].set_text(f"{ms:.1f} ms")
+        c = frame.counts
+        lines = [f"tiles shaded {c['tiles_shaded']} of {c['tiles_total']}",
+                 f"pixels shaded {c['pixels_shaded']} of {c['pixels_total']}",
+                 f"launches {c['launches']}, scratch {c['scratch_bytes'] / 2**20:.1f} MiB"]
+        if self.viewer.session.count:
+            lines += [f"{name.replace('_', ' ')} {value}" for name, value in c.items()
+                      if name.startswith(("pixels_", "tiles_by", "taps")) and name not in ("pixels_total", "pixels_shaded")]
+        lines.append(f"kernels compiled {frame.kernels}, {frame.compiled} of them for the last picture")
+        lines += ["warning: " + w for w in frame.warnings]
+        self.counts.set_text("\n".join(lines))
+
+
+class MeshPanel(Panel):
+    name = "Mesh"
+
+    async def change(self, act: Callable[[], Any]) -> bool:
+        """Changes the mesh on the session's thread; where that fails, the previous one stays."""
+        try:
+            await self.viewer.on_thread(act)
+        except Exception as error:
+            fail(error)
+            return False
+        self.rebuild()
+        return True
+
+    async def load(self, path: Any) -> None:
+        session = self.viewer.session
+        if await self.change(lambda: session.load(path)):
+            ui.notify(f"{len(session.mesh.positions)} vertices, {len(session.mesh.triangles)} triangles")
+            self.question()
+
+    def question(self) -> None:
+        """Where the object is too small or too large for its unit to be right: which one it is."""
+        session = self.viewer.session
+        better = session.better_unit()
+        if better is None:
+            return
+        with ui.dialog(value=True).props("persistent data-pel=unit-dialog") as dialog, ui.card():
+            ui.label(f"{session.size_text()} Are its lengths in {UNITS[better]}?")
+            with ui.row():
+                async def accept() -> None:
+                    dialog.close()
+                    await self.change(lambda: session.set_unit(better))
+
+                ui.button(f"Yes: {UNITS[better]}", on_click=accept).props("dense data-pel=unit-yes")
+                ui.button("No: keep the unit", on_click=dialog.close).props("dense flat data-pel=unit-no")
+
+    def build(self) -> None:
+        session = self.viewer.session
+
+        async def dropped(e: events.UploadEventArguments) -> None:
+            with tempfile.TemporaryDirectory() as folder:
+                path = Path(folder) / ("mesh" + Path(e.file.name).suffix.lower())
+                path.write_bytes(await e.file.read())
+                await self.load(path)
+
+        for which in ("female", "male"):
+            async def head(which: str = which) -> None:
+                await self.load(files.standard_head(which))
+
+            self.button(f"Head, {which}", head, f"head-{which}")
+        self.upload("Drop an OFF, OBJ, PLY or STL file here", dropped, "upload")
+
+        async def unit(e: events.ValueChangeEventArguments) -> None:
+            await self.change(lambda: session.set_unit(e.value))
+
+        names = UNITS if session.mm in UNITS else {session.mm: f"{session.mm:g} mm", **UNITS}
+        ui.select(names, label="Unit of the mesh", value=session.mm, on_change=unit).props(
+            "dense options-dense data-pel=unit").classes("w-full")
+        ui.label(session.size_text()).classes("text-xs")
+
+        async def restart() -> None:
+            try:
+                await self.viewer.restart()
+            except Exception as error:
+                fail(error)
+
+        self.button("Reopen device", restart, "restart", flat=True)
+
+
+class ExportPanel(Panel):
+    name = "Export"
+
+    def build(self) -> None:
+        def pack() -> bytes:
+            with tempfile.TemporaryDirectory() as folder:
+                data = io.BytesIO()
+                with zipfile.ZipFile(data, "w", zipfile.ZIP_STORED) as archive:
+                    for path in export(self.viewer.session, Path(folder) / "pellucid-look"):
+                        archive.write(path, f"pellucid-look/{path.name}")
+                return data.getvalue()
+
+        def draw() -> bytes:
+            with tempfile.TemporaryDirectory() as folder:
+                path = Path(folder) / "picture.png"
+                files.write_image(path, self.viewer.session.smooth(1920, 1080))
+                return path.read_bytes()
+
+        def look() -> bytes:
+            return json.dumps(self.look.to_dict(), indent=2).encode()
+
+        for label, make, name, marker in (
+                ("Scene, G-buffer, pictures, C++ (.zip)", pack, "pellucid-look.zip", "export"),
+                ("Picture (.png, 1920 x 1080)", draw, "pellucid.png", "picture"), ("Look (.json)", look, "look.json", "look")):
+            async def give(make: Callable[[], bytes] = make, name: str = name) -> None:
+                await self.deliver(make, name)
+
+            self.button(label, give, marker)
+
+        async def read(e: events.UploadEventArguments) -> None:
+            try:
+                self.viewer.session.look = Look.from_dict(json.loads(await e.file.read()))
+            except (ValueError, TypeError) as error:
+                fail(f"{e.file.name}: {error}")
+                return
+            self.rebuild()
+
+        self.upload("Load a look (.json)", read, "look-upload")
+
+
+class Page:
+    """The widgets of one open page, over the viewer that all pages share."""
+
+    def __init__(self, viewer: Viewer) -> None:
+        self.viewer = viewer
+        ui.add_body_html(SCRIPT)
+        ui.query("body").style("margin:0;overflow:hidden")
+        ui.query(".nicegui-content").classes("p-0 gap-0")
+        ui.dark_mode(True)
+        with ui.row().classes("w-full no-wrap gap-0").style("height:100vh"):
+            ui.html(PICTURE, sanitize=False).style("flex:1;min-width:0;height:100%")
+            self.column = ui.column().classes("p-3 gap-1").style("width:23rem;height:100%;overflow-y:auto")
+        self.statistics = StatisticsPanel(self)
+        self.panels: list[Panel]
+        if isinstance(viewer.session, SceneSession):
+            self.panels = [ScenePanel(self), SceneMaterialsPanel(self), SceneLightsPanel(self), self.statistics,
+                           SceneExportPanel(self)]
+        else:
+            mesh = MeshPanel(self)
+            self.panels = [PicturePanel(self), MaterialPanel(self), EyesPanel(self), LightsPanel(self), ProfilePanel(self),
+                           ComparePanel(self), self.statistics, mesh, ExportPanel(self)]
+            mesh.question()
+        self.build()
+        ui.timer(0.5, self.statistics.update)
+
+    def build(self) -> None:
+        self.column.clear()
+        with self.column:
+            ui.label("Pellucid").classes("text-lg")
+            for panel in self.panels:
+                if panel.name:
+                    with ui.expansion(panel.name, value=panel.open).classes("w-full"):
+                        panel.build()
+                else:
+                    panel.build()
+
+
+def serve(viewer: Viewer) -> None:
+    """Adds the page and its socket to NiceGUI's application."""
+
+    @ui.page("/", title="Pellucid")
+    def page() -> None:
+        Page(viewer)
+
+    @app.websocket("/frames")
+    async def frames(socket: WebSocket) -> None:
+        await socket.accept()
+        await viewer.stream(socket)

@@ -1,0 +1,166 @@
+"""The parts of the page that set what is shown."""
+from __future__ import annotations
+
+import numpy as np
+from nicegui import events, ui
+
+from ..profile import Profile
+from .iris import iris_image
+from .look import KEPT_BY_PRESETS, METHODS, MODES, PRESETS, Look
+from .widgets import Panel, fail
+
+CURVES = {"soft": "Soft", "none": "None", "filmic": "Filmic", "agx-like": "AgX-like"}
+
+
+def tone_mapping(panel: Panel) -> None:
+    panel.slider("Exposure", panel.look, "exposure", 0.1, 4, 0.05)
+    panel.select("Tone mapping", CURVES, "curve")
+    panel.slider("Highlight roll-off", panel.look, "shoulder", 0.3, 1, 0.05)
+
+
+class PicturePanel(Panel):
+    def build(self) -> None:
+        shown = next((name for name in PRESETS if self.of_preset(name) == self.look), None)
+        ui.select(list(PRESETS), label="Preset", value=shown, on_change=lambda e: self.preset(e.value)).props(
+            "dense options-dense data-pel=preset").classes("w-full")
+        self.select("Picture", MODES, "mode")
+        tone_mapping(self)
+
+    def of_preset(self, name: str) -> Look:
+        """The preset's material with the light and the view of now."""
+        new = Look.from_dict(PRESETS[name])
+        for kept in KEPT_BY_PRESETS:
+            setattr(new, kept, getattr(self.look, kept))
+        return new
+
+    def preset(self, name: str) -> None:
+        if name in PRESETS:
+            self.viewer.session.look = self.of_preset(name)
+            self.rebuild()
+
+
+class MaterialPanel(Panel):
+    name, open = "Material", True
+
+    def build(self) -> None:
+        self.select("Scattering", METHODS, "method")
+        self.slider("Target error", self.look, "target_error", 0.0005, 0.02, 0.0005)
+        self.slider("Radius scale", self.look, "radius_scale", 0.1, 5, 0.05)
+        self.slider("Transmission", self.look, "transmission", 0, 2, 0.05)
+        self.slider("Specular", self.look, "specular", 0, 1, 0.01)
+        self.slider("Roughness", self.look, "roughness", 0.05, 1, 0.01)
+        self.slider("f0", self.look, "f0", 0.0, 0.2, 0.002)
+        self.switch("Dual-lobe GGX", self.look, "ggx")
+        self.slider("Second roughness", self.look, "roughness2", 0.05, 1, 0.01)
+        self.slider("Second lobe weight", self.look, "lobe_mix", 0, 1, 0.01)
+        self.slider("Pores", self.look, "pores", 0, 0.5, 0.01)
+        self.channels(("Albedo scale, red", "Albedo scale, green", "Albedo scale, blue"), "albedo", 0.0, 2.0, 0.01)
+        self.channels(("Deep scatter, red", "Deep scatter, green", "Deep scatter, blue"), "deep_scatter", 0.0, 3.0, 0.05)
+
+
+class EyesPanel(Panel):
+    name = "Eyes"
+
+    def build(self) -> None:
+        if not self.viewer.session.mesh.eyes:
+            ui.label("This mesh comes without eyes; the heads of the package have some.").classes("text-xs")
+        self.slider("Pupil radius, mm", self.look, "pupil", 0.5, 4, 0.1)
+        self.color("Iris", self.look, "iris_color", "iris-color")
+        self.slider("Fibre pattern", self.look, "iris_seed", 0, 20, 1)
+        self.slider("Iris concavity, mm", self.look, "iris_concavity", 0, 1, 0.05)
+        profiles = {"": "None", **{name: name for name in Profile.library_names()}}
+        self.select("Scattering in the iris", profiles, "iris_profile")
+        self.slider("Limbus width, mm", self.look, "limbus_width", 0.1, 3, 0.05)
+        self.slider("Limbus darkening", self.look, "limbus_darkening", 0, 1, 0.01)
+        self.slider("Cornea radius, mm", self.look, "cornea_radius", 7, 10, 0.05)
+        self.slider("Chamber depth, mm", self.look, "chamber_depth", 2.7, 4.5, 0.05)
+        self.slider("Tear roughness", self.look, "tear_roughness", 0.005, 0.3, 0.005)
+        self.slider("Gaze to the left, degrees", self.look, "gaze", -40, 40, 1, index=0)
+        self.slider("Gaze up, degrees", self.look, "gaze", -30, 30, 1, index=1)
+
+        async def dropped(e: events.UploadEventArguments) -> None:
+            path = self.viewer.keep(e.file.name, await e.file.read())
+            try:
+                await self.viewer.on_thread(lambda: iris_image(path))
+            except Exception as error:  # the previous iris stays
+                fail(f"{e.file.name}: {error}")
+                return
+            self.look.iris_texture, self.look.iris_color = str(path), (1.0, 1.0, 1.0)
+            self.rebuild()
+
+        def fibres() -> None:
+            self.look.iris_texture, self.look.iris_color = "", Look().iris_color
+            self.rebuild()
+
+        self.upload("Drop an image of an iris here", dropped, "iris-upload", 1 << 28)
+        if self.look.iris_texture:
+            self.button("Draw fibres instead", fibres, "iris-fibres", flat=True)
+
+
+class LightsPanel(Panel):
+    name = "Lights"
+
+    def build(self) -> None:
+        self.slider("Ambient", self.look, "ambient", 0, 1, 0.01)
+        self.select("Shadow map, texels", [512, 1024, 2048, 4096], "shadow_size")
+        for i, lamp in enumerate(self.look.lamps):
+            self.switch(lamp.name, lamp, "on", f"lamp-{i}-on")
+            self.slider("Intensity", lamp, "intensity", 0, 4, 0.05, f"lamp-{i}-intensity")
+            self.slider("Azimuth", lamp, "azimuth", -180, 180, 1, f"lamp-{i}-azimuth")
+            self.slider("Elevation", lamp, "elevation", -89, 89, 1, f"lamp-{i}-elevation")
+            self.color("Colour", lamp, "color", f"lamp-{i}-color")
+            self.switch("Shadow", lamp, "shadow", f"lamp-{i}-shadow")
+
+
+class ProfilePanel(Panel):
+    name = "Profile"
+
+    def build(self) -> None:
+        self.select("Profile", [*Profile.library_names(), "custom"], "profile", self.draw_profile)
+        self.channels(("Custom d, red, mm", "Custom d, green, mm", "Custom d, blue, mm"), "distance", 0.01, 5.0, 0.01,
+                      self.draw_profile)
+        text = {"color": "#ccc"}
+        lines = [{"type": "line", "showSymbol": False, "data": [], "lineStyle": {"color": color}}
+                 for color in ("#f66", "#6d6", "#69f")]
+        self.curve = ui.echart({
+            "animation": False, "grid": {"left": 45, "right": 10, "top": 25, "bottom": 40}, "textStyle": text,
+            "title": {"text": "light by distance: 2πr R(r), 1/mm", "textStyle": {"fontSize": 11, **text}},
+            "xAxis": {"type": "value", "name": "mm", "nameLocation": "middle", "nameGap": 25},
+            "yAxis": {"type": "value"}, "series": lines}).style("height:13rem;width:100%")
+        self.draw_profile()
+
+    def draw_profile(self) -> None:
+        p = self.viewer.session.profile(self.look)
+        scale = self.look.radius_scale
+        r = np.linspace(0.01, 0.5 * p.info.reach, 120)
+        radial, _ = p.evaluate(r)
+        for c, series in enumerate(self.curve.options["series"]):
+            series["data"] = np.stack([r * scale, 2 * np.pi * r * radial[:, c] / scale], 1).round(5).tolist()
+        self.curve.update()
+
+
+class ComparePanel(Panel):
+    name = "Compare"
+
+    def build(self) -> None:
+        session = self.viewer.session
+
+        def keep() -> None:
+            session.other = self.look.copy()
+            self.viewer.changed()
+
+        def drop() -> None:
+            session.other = None
+            self.viewer.changed()
+
+        def swap() -> None:
+            if session.other is not None:
+                session.look, session.other = session.other, session.look
+                self.rebuild()
+
+        ui.label("Keep shows the current settings right of a divider; change those on the left. "
+                 "Alt and drag moves the divider.").classes("text-xs")
+        with ui.row():
+            for name, act in (("Keep", keep), ("Swap", swap), ("Drop", drop)):
+                ui.button(name, on_click=act).props(f"dense data-pel=wipe-{name.lower()}")
+        self.slider("Divider", session, "wipe", 0, 1, 0.01)

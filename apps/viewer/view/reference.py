@@ -1,0 +1,138 @@
+"""The picture that every diffusion method approximates, for what the viewer shows.
+
+Irradiance is made at the vertices, with the shadows of the lights' maps there; the surface integral then spreads it. Edges of
+shadows are therefore as sharp as the mesh is fine: `pellucid reference` traces them exactly.
+"""
+from __future__ import annotations
+
+import threading
+import time
+from typing import TYPE_CHECKING, Any, Callable, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..reference import surface_integral
+from .look import SKIN, Look
+from .passes import tinted
+
+if TYPE_CHECKING:
+    from .session import Session
+
+
+def _lit(map: Any, positions: NDArray[Any], normals: NDArray[Any], texel: float) -> NDArray[np.float32]:
+    """Share of 3 x 3 texels that are lit, with a bias of a texel along the normal."""
+    matrix = np.asarray(map.light.world_to_shadow, float).reshape(4, 4)
+    p = positions + normals * (1.5 * texel)
+    uvz = p @ matrix[:3, :3].T + matrix[:3, 3]
+    size = len(map.depth)
+    x, y = (np.floor(uvz[:, k] * size).astype(int) for k in (0, 1))
+    share = np.zeros(len(p), np.float32)
+    for dy in (-1, 0, 1):
+        for dx in (-1, 0, 1):
+            share += uvz[:, 2] <= map.depth[np.clip(y + dy, 0, size - 1), np.clip(x + dx, 0, size - 1)] + 1e-4
+    return share / 9
+
+
+def vertex_irradiance(session: Session, look: Look) -> NDArray[np.float32]:
+    """Irradiance / pi at each vertex of skin, (n, 3); 0 elsewhere."""
+    mesh = session.mesh
+    p, n = mesh.positions.astype(float), mesh.normals.astype(float)
+    e = np.full((len(p), 3), look.ambient, np.float32)
+    for light, map in session.lights(look):
+        cosine = np.maximum(n @ np.asarray(light.to_light, float), 0).astype(np.float32)
+        if map is not None:
+            cosine *= _lit(map, p, n, 2.04 * session.renderer.radius / len(map.depth))
+        e += cosine[:, None] * np.asarray(light.color, np.float32)
+    if mesh.ids is not None:
+        e[mesh.ids != SKIN] = 0
+    return e
+
+
+class Reference:
+    """The reference of one picture, on a thread of its own or at once. Every eighth pixel of every eighth row comes first."""
+
+    STEPS = (8, 4, 2, 1)
+    SECONDS = 0.5  # that one piece of the work may take; between two of them it can be cancelled
+
+    def __init__(self, key: Any, compute: Callable[[Any], NDArray[np.float32]], points: NDArray[np.float32],
+                 seen: NDArray[np.bool_]) -> None:
+        self.key = key
+        self._compute, self._points, self._seen = compute, points, seen
+        self._values = np.zeros((*seen.shape, 3), np.float32)
+        self._known = ~seen
+        self._error: Optional[Exception] = None
+        self._cancelled = threading.Event()
+        self.fraction = 0.0
+
+    def start(self, report: Optional[Callable[[], None]]) -> None:
+        """Computes on a thread and calls `report` there after each piece of the work; without `report` computes at once."""
+        if report is None:
+            self._run(lambda: None, int(self._seen.sum()))
+        else:
+            threading.Thread(target=self._run, args=(report, 1024), name="pellucid-reference", daemon=True).start()
+
+    def _run(self, report: Callable[[], None], size: int) -> None:
+        total, made, before = int(self._seen.sum()), 0, np.zeros_like(self._seen)
+        try:
+            for step in self.STEPS:
+                lattice = np.zeros_like(self._seen)
+                lattice[::step, ::step] = True
+                pixels = np.argwhere(lattice & self._seen & ~before)
+                before |= lattice
+                while len(pixels) and not self._cancelled.is_set():
+                    (rows, columns), pixels = pixels[:size].T, pixels[size:]
+                    started = time.monotonic()
+                    self._values[rows, columns] = self._compute(np.ascontiguousarray(self._points[rows, columns]))
+                    self._known[rows, columns] = True
+                    made += len(rows)
+                    self.fraction = made / total
+                    size = max(256, int(size * min(2.0, self.SECONDS / max(time.monotonic() - started, 1e-3))))
+                    report()
+        except Exception as error:
+            self._error = error
+        self.fraction = 1.0
+        report()
+
+    def cancel(self) -> None:
+        self._cancelled.set()
+
+    def picture(self) -> NDArray[np.float32]:
+        """What is known so far; between known pixels the nearest one above on the left."""
+        if self._error is not None:
+            raise self._error
+        values, known = self._values.copy(), self._known.copy()
+        height, width = known.shape
+        for step in reversed(self.STEPS[:-1]):
+            rows, columns = (np.arange(n) // step * step for n in (height, width))
+            near = np.ix_(rows, columns)
+            fill = ~known & self._known[near]
+            values[fill] = self._values[near][fill]
+            known |= fill
+        return values
+
+
+def reference(session: Session, name: str, look: Look, width: int, height: int, small: bool = False) -> NDArray[np.float32]:
+    """Diffuse radiance of the skin that is seen, (height, width, 3); 0 elsewhere.
+
+    Kept by `name` until light, camera or profile change. Where the session has somebody to report to, this is what is known so far.
+    """
+    g = session.gbuffer(width, height, small)
+    lights = [(lamp.azimuth, lamp.elevation, lamp.color, lamp.intensity, lamp.shadow, lamp.on) for lamp in look.lamps]
+    key = (session.drawn_state(width, height, small), lights, look.ambient, look.profile, look.distance, look.radius_scale, look.shadow_size)
+    made = session.references.get(name)
+    if made is None or made.key != key:
+        session.cancel_reference(name)
+        mesh, profile = session.mesh, session.profile(look)
+        radius = profile.info.radius * look.radius_scale
+        triangles = mesh.triangles if mesh.ids is None else mesh.triangles[mesh.ids[mesh.triangles[:, 0]] == SKIN]
+        irradiance, device, mm = vertex_irradiance(session, look), session.device, session.mm
+
+        def compute(points: Any) -> NDArray[np.float32]:
+            return surface_integral(device, mesh.positions, triangles, irradiance, points, profile=profile,
+                                    diffusion_radius=radius, millimetres_per_unit=mm)
+
+        seen = (g.material == SKIN) & bool(len(triangles))
+        made = session.references[name] = Reference(key, compute, g.position.copy(), seen)
+        made.start(session.report)
+    return made.picture() * tinted(g, look)

@@ -1,0 +1,265 @@
+"""Between page and session: one thread that renders, and pictures over a socket."""
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import io
+import json
+import math
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any, Callable, Optional, TypeVar
+
+from PIL import Image
+
+from .._errors import PellucidError
+from ..device import Device
+from .session import Frame
+
+T = TypeVar("T")
+SETTLED = 0.2  # seconds without a motion, after which the picture is drawn in full
+PERIOD = 1 / 17  # seconds that a picture may take, from one to the next, while something moves
+
+
+class Pace:
+    """How small pictures are while something moves: so small that they come in time."""
+
+    SCALES = (1.0, 0.71, 0.5, 0.4, 0.33, 0.25)  # of the sides
+
+    def __init__(self) -> None:
+        self._step = 2
+        self._last: Optional[float] = None
+        self._periods: list[float] = []
+        self._rest = 0  # pictures for which larger ones are not tried: they were too slow
+
+    @property
+    def scale(self) -> float:
+        return self.SCALES[self._step]
+
+    def shown(self, now: float, moving: bool) -> None:
+        """A picture has been taken at `now`."""
+        if not moving:
+            self._last = None
+            self._periods.clear()
+            return
+        if self._last is not None and now - self._last < 1:
+            self._periods.append(now - self._last)
+        self._last = now
+        if len(self._periods) < 5:
+            return
+        self._rest = max(self._rest - len(self._periods), 0)
+        period = sorted(self._periods)[len(self._periods) // 2]
+        self._periods.clear()
+        if period > 1.1 * PERIOD:
+            self._step = min(self._step + 1, len(self.SCALES) - 1)
+            self._rest = 60
+        elif self._step > 0 and not self._rest:
+            pixels = self.SCALES[self._step - 1]**2 / self.scale**2
+            if period * (0.5 + 0.5 * pixels) < PERIOD:  # about half of the time goes into pixels
+                self._step -= 1
+
+
+class Viewer:
+    """One session, and the state that all open pages share. All but `on_thread` belongs to the event loop."""
+
+    def __init__(self, open_device: Callable[[], Device], make: Callable[[Device], Any]) -> None:
+        self._open = open_device
+        self.changes = 0
+        self._preparing: Optional[int] = None  # kernels, after that many changes: the next one ends it
+        self._thread = ThreadPoolExecutor(1, "pellucid-view")  # OpenGL contexts belong to a thread
+        self.session: Any = self._thread.submit(lambda: make(self._device())).result()  # a Session or a SceneSession
+        self._folder, self._kept = tempfile.TemporaryDirectory(), 0
+        self.error = ""
+        self.last: Optional[Frame] = None
+        self.busy = ""  # what takes long just now
+        self.stamp = 0.0  # of the browser's clock: the last motion that was applied
+        self._pace = Pace()
+        self._changed: set[asyncio.Event] = set()
+        self._loop: Optional[asyncio.AbstractEventLoop] = None
+        self._moved = 0.0
+        self.session.report = self._advanced
+
+    def _device(self) -> Device:
+        device = self._open()
+
+        def progress(fraction: float, what: str) -> bool:
+            self.busy = what if fraction < 1 and what.startswith("building") else ""
+            return self._preparing is None or self._preparing == self.changes
+
+        device.set_progress(progress)
+        return device
+
+    def keep(self, name: str, data: bytes) -> Path:
+        """Writes a file that the page was given, to be there as long as the viewer."""
+        self._kept += 1
+        path = Path(self._folder.name) / f"{self._kept}{Path(name).suffix.lower()}"
+        path.write_bytes(data)
+        return path
+
+    async def on_thread(self, work: Callable[[], T]) -> T:
+        return await asyncio.get_running_loop().run_in_executor(self._thread, work)
+
+    def changed(self, moving: bool = False) -> None:
+        """Tells every page to draw again. `moving`: soon once more, so that a rougher picture serves now."""
+        self._moved = time.monotonic() if moving else 0.0
+        self.changes += 1
+        for event in self._changed:
+            event.set()
+
+    def _advanced(self) -> None:
+        """A reference has advanced, on its own thread: every page draws again."""
+        def draw() -> None:
+            for event in self._changed:
+                event.set()
+
+        if self._loop is not None:
+            with contextlib.suppress(RuntimeError):  # the loop is closed: the viewer has ended
+                self._loop.call_soon_threadsafe(draw)
+
+    @property
+    def moving(self) -> bool:
+        return time.monotonic() - self._moved < SETTLED
+
+    async def restart(self) -> None:
+        """A new device and OpenGL context, with the same mesh, look and camera."""
+        self.session = await self.on_thread(lambda: self.session.restarted(self._device()))
+        self.error = ""
+        self.changed()
+
+    async def frame(self, width: int, height: int, small: bool, sample: int = 0) -> Optional[tuple[Frame, bytes]]:
+        """The next picture and its JPEG file, or None and `error`."""
+        def make() -> tuple[Frame, bytes]:
+            frame = self.session.frame(width, height, small, sample)
+            started = time.perf_counter()
+            data = io.BytesIO()
+            Image.fromarray(frame.pixels).save(data, "JPEG", quality=80 if small else 92, subsampling=2 if small else 0)
+            frame.milliseconds["JPEG"] = 1e3 * (time.perf_counter() - started)
+            return frame, data.getvalue()
+
+        try:
+            made = await self.on_thread(make)
+            self.last, self.error = made[0], ""
+            return made
+        except Exception as error:  # shown on the page, where another setting may do
+            self.error, self.last = f"{type(error).__name__}: {error}", None
+        finally:
+            self.busy = getattr(self.session, "work", "")
+        return None
+
+    def apply(self, message: dict[str, Any]) -> None:
+        """A motion of the mouse over the picture."""
+        kind = message.get("kind")
+        if kind != "size" and not hasattr(self.session, "orbit"):  # a scene's camera stays
+            return
+        orbit = getattr(self.session, "orbit", None)
+        dx, dy = (max(-1.0, min(1.0, float(message.get(k, 0)))) for k in ("dx", "dy"))  # parts of the picture's height
+        if kind == "orbit":
+            orbit.azimuth = (orbit.azimuth - 120 * dx + 180) % 360 - 180
+            orbit.elevation = max(-89.0, min(89.0, orbit.elevation + 120 * dy))
+        elif kind == "pan":
+            tall = 2 * orbit.distance * math.tan(math.radians(orbit.fov) / 2)
+            orbit.pan = (orbit.pan[0] - dx * tall, orbit.pan[1] + dy * tall)
+        elif kind == "zoom":
+            orbit.distance = max(0.24 * self.session.renderer.radius, min(50 * self.session.renderer.radius, orbit.distance * 1.2 ** (5 * dy)))
+        elif kind == "light":
+            for look in filter(None, (self.session.look, self.session.other)):
+                lamp = look.lamps[0]
+                lamp.azimuth = (lamp.azimuth + 120 * dx + 180) % 360 - 180
+                lamp.elevation = max(-89.0, min(89.0, lamp.elevation - 120 * dy))
+        elif kind == "wipe":
+            self.session.wipe = max(0.0, min(1.0, float(message.get("x", 0.5))))
+        elif kind != "size":
+            return
+        self.stamp = float(message.get("at", self.stamp))
+        self.changed(moving=kind != "size")
+
+    async def _prepare(self, width: int, height: int) -> None:
+        """Builds kernels while nobody wants a picture; the one that is being built is waited for, the rest comes at the next rest."""
+        self._preparing = self.changes
+        try:
+            await self.on_thread(lambda: self.session.prepare(width, height))
+        except PellucidError:
+            pass  # a change cancelled it; any other error shows when a slider needs these kernels
+        finally:
+            self._preparing, self.busy = None, ""
+
+    async def stream(self, socket: Any) -> None:
+        """Sends pictures to one page until it goes; at most one that the page has not taken yet, so that both work at the same time."""
+        event, size, news = asyncio.Event(), [960, 540], asyncio.Event()
+        sent = taken = 0
+        self._loop = asyncio.get_running_loop()
+        self._changed.add(event)
+        event.set()
+
+        async def listen() -> None:
+            nonlocal taken
+            while True:
+                message = json.loads(await socket.receive_text())
+                kind = message.get("kind")
+                if kind == "taken":
+                    self._pace.shown(time.monotonic(), self.moving)
+                    taken = min(taken + 1, sent)
+                    news.set()
+                elif kind == "restart":
+                    try:
+                        await self.restart()
+                    except Exception as error:
+                        self.error = f"{type(error).__name__}: {error}"
+                        event.set()
+                else:
+                    if kind == "size":
+                        size[:] = (max(16, min(4096, int(message["width"]))), max(16, min(4096, int(message["height"]))))
+                    self.apply(message)
+
+        async def send() -> None:
+            nonlocal sent, taken
+            sample = 0
+            while True:
+                # At rest, one picture after the other makes edges smoother, until something changes.
+                if sample == 0 or self.error or sample >= self.session.samples:
+                    await event.wait()
+                if event.is_set():
+                    sample = 0
+                event.clear()
+                small = self.moving
+                width, height = (max(16, round(v * self._pace.scale)) if small else v for v in size)
+                changes, stamp = self.changes, self.stamp
+                made = await self.frame(width, height, small, 0 if small else sample)
+                sample = 0 if small else sample + 1
+                head = {"error": self.error, "moving": small, "width": width, "height": height, "changes": changes, "at": stamp, "sample": sample}
+                if made is not None:
+                    frame = made[0]
+                    head |= {"milliseconds": frame.milliseconds, "kernels": frame.kernels, "compiled": frame.compiled}
+                sent += 1
+                await socket.send_text(json.dumps(head))
+                if made is not None:
+                    await socket.send_bytes(made[1])
+                while sent - taken > 1:
+                    news.clear()
+                    try:
+                        await asyncio.wait_for(news.wait(), 5)
+                    except asyncio.TimeoutError:
+                        taken = sent
+                if made is not None and not small and sample >= self.session.samples and not event.is_set():
+                    await self._prepare(width, height)
+                if small and not event.is_set():
+                    asyncio.get_running_loop().call_later(SETTLED, event.set)
+
+        async def tell() -> None:
+            told = ""
+            while True:
+                await asyncio.sleep(0.25)
+                if self.busy != told:
+                    told = self.busy
+                    await socket.send_text(json.dumps({"busy": told}))
+
+        tasks = [asyncio.create_task(listen()), asyncio.create_task(send()), asyncio.create_task(tell())]
+        try:
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            self._changed.discard(event)
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)

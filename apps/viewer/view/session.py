@@ -1,0 +1,368 @@
+"""Mesh, look and camera in, picture out: what the page shows, and what a program can use without it."""
+from __future__ import annotations
+
+import copy
+import time
+from dataclasses import dataclass, field
+from typing import Any, Callable, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import files
+from .._types import Eye, Light, Material
+from ..device import Device
+from ..mesh import MeshTopology
+from ..profile import Profile
+from .camera import Orbit, direction
+from .iris import iris_image
+from .look import CUT, EYES, RIGHT_EYE, SKIN, TEETH, TONGUE, Lamp, Look
+from .passes import Pass
+from .pictures import LINEAR, picture, srgb_bytes
+from .reference import Reference
+from .renderer import GBuffer, Renderer
+from .texture import Texture
+
+
+@dataclass
+class Frame:
+    """One picture, and what it took."""
+
+    pixels: NDArray[np.uint8]                                   # (h, w, 3), sRGB
+    milliseconds: dict[str, float] = field(default_factory=dict)  # per stage
+    counts: dict[str, Any] = field(default_factory=dict)        # of the shader
+    warnings: list[str] = field(default_factory=list)
+    kernels: int = 0                                            # programs that the device has compiled
+    compiled: int = 0                                           # of them, for this picture
+
+
+@dataclass
+class ShadowMap:
+    depth: NDArray[np.float32]  # (size, size)
+    light: Light
+
+
+# (specular, roughness) of what is not skin, as in the demo.
+# Eyes: that of their film of tears.
+_GLOSS = {EYES: (0.0, 1.0), RIGHT_EYE: (0.0, 1.0), TEETH: (0.05, 0.2), TONGUE: (0.05, 0.2), CUT: (0.0, 1.0)}
+SAMPLES = 8  # pictures that are averaged for smooth edges
+UNITS = {1.0: "millimetres", 10.0: "centimetres", 25.4: "inches", 1000.0: "metres"}
+PLAUSIBLE = 30.0, 3000.0  # mm: size of an object on which scattering in skin shows
+
+
+def eyes_of(mesh: files.Mesh, look: Optional[Look] = None, mm: float = 1.0) -> dict[int, Eye]:
+    """The eyes of a head of the package by material id: an adult's, as large as its balls, with what the look says of them. `mm`: millimetres per unit."""
+    look = Look() if look is None else look
+    found = {}
+    for id, ball in zip((EYES, RIGHT_EYE), mesh.eyes):
+        eye = Eye(center=ball["centre"], gaze=direction(mesh.up, ball["gaze"], *look.gaze), up=mesh.up, pupil_radius=look.pupil,
+                  limbus_width=look.limbus_width, limbus_darkening=look.limbus_darkening, cornea_radius=look.cornea_radius,
+                  chamber_depth=look.chamber_depth, iris_concavity=look.iris_concavity, iris_color=look.iris_color,
+                  iris_seed=look.iris_seed, tear_roughness=look.tear_roughness)
+        # The iris lies below the cornea's rim, however steep that is.
+        r2, cornea = eye.limbus_radius**2, eye.cornea_radius
+        rim = r2 / (cornea + np.sqrt(max(cornea**2 - (1 + eye.cornea_conic) * r2, 0)))
+        eye.chamber_depth = max(eye.chamber_depth, rim + 0.05)
+        scale = ball["radius"] * mm / eye.sclera_radius
+        for length in ("sclera_radius", "cornea_radius", "limbus_radius", "limbus_width", "chamber_depth", "pupil_radius", "iris_concavity"):
+            setattr(eye, length, scale * getattr(eye, length))
+        found[id] = eye
+    return found
+
+
+def _halton(i: int, base: int) -> float:
+    """Element i of a sequence that fills 0 to 1 evenly [Halton 1964]."""
+    value, part = 0.0, 1.0
+    while i:
+        part /= base
+        value += part * (i % base)
+        i //= base
+    return value
+
+
+class Session:
+    """Owns the renderer and the device. One thread makes it and uses it."""
+
+    def __init__(self, device: Optional[Device] = None, millimetres_per_unit: float = 1.0) -> None:
+        self.device = Device() if device is None else device
+        self.renderer = Renderer()
+        self.mm = millimetres_per_unit
+        self.orbit = Orbit()
+        self.look = Look()
+        self.other: Optional[Look] = None  # on the right of the wipe
+        self.wipe = 0.5
+        self.count = False  # fill every counter of the shader, at some cost
+        self._passes: dict[str, Pass] = {}
+        self._maps: dict[Any, ShadowMap] = {}
+        self._profiles: dict[str, Profile] = {}
+        self._gbuffers: dict[tuple[int, int], tuple[Any, GBuffer]] = {}  # by size: the state they were drawn in
+        self._irises: dict[str, NDArray[np.float32]] = {}  # by file
+        self._textures: dict[bool, Texture] = {}  # by whether something moves
+        self._sum: Optional[tuple[int, NDArray[np.float32]]] = None  # of pictures shifted by parts of a pixel
+        self.references: dict[str, Reference] = {}  # by pass
+        self.report: Optional[Callable[[], None]] = None  # called as references advance; None: pictures wait for them
+        self._shift = (0.0, 0.0)
+        self._prepared: Any = None
+
+    # ---- What is shown -----------------------------------------------------------------------------------------------
+
+    def load(self, path: Any, subdivide: Optional[int] = None, up: str = "auto") -> files.Mesh:
+        """Shows another mesh. Raises what files.load_mesh and MeshTopology raise; the mesh before it then stays."""
+        return self.show(files.load_mesh(path, subdivide, up))
+
+    def show(self, mesh: files.Mesh) -> files.Mesh:
+        """The same with a mesh in memory."""
+        if len(mesh.triangles) == 0:
+            raise ValueError(f"{mesh.source or 'the mesh'} has no triangles")
+        topology = MeshTopology(self.device, mesh.triangles, len(mesh.positions), weld="exact", positions=mesh.positions)
+        curvature = topology.curvature(mesh.positions, mesh.normals, smoothing_passes=2)
+        self.renderer.set_mesh(mesh, curvature, self.mm)
+        self.mesh = mesh
+        self.centre = (np.asarray(mesh.low, float) + mesh.high) / 2
+        for made in (self._maps, self._gbuffers, self._textures):
+            made.clear()
+        for name in list(self.references):
+            self.cancel_reference(name)
+        self.orbit.frame(mesh.low, mesh.high, 16 / 9)
+        return mesh
+
+    def size(self) -> float:
+        """Largest extent of the mesh, mm."""
+        return float(np.max(np.subtract(self.mesh.high, self.mesh.low))) * self.mm
+
+    def size_text(self) -> str:
+        return f"The mesh is {self.size():.3g} mm across."
+
+    def better_unit(self) -> Optional[float]:
+        """Millimetres per unit with which the mesh is nearest to a head's size; None where its size is plausible."""
+        if PLAUSIBLE[0] <= self.size() <= PLAUSIBLE[1]:
+            return None
+        bare = self.size() / self.mm
+        best = min(UNITS, key=lambda mm: abs(np.log(max(bare, 1e-30) * mm / 250)))
+        return best if best != self.mm else None
+
+    def set_unit(self, mm: float) -> None:
+        """Takes the lengths of the mesh in units of `mm` millimetres; the camera stays."""
+        orbit, self.mm = self.orbit, mm
+        self.orbit = copy.copy(orbit)
+        self.show(self.mesh)
+        self.orbit = orbit
+
+    def cancel_reference(self, name: str) -> None:
+        made = self.references.pop(name, None)
+        if made is not None:
+            made.cancel()
+
+    @property
+    def work(self) -> str:
+        """What goes on beside the pictures, for the page."""
+        running = [made.fraction for made in self.references.values() if made.fraction < 1]
+        return f"reference: {100 * min(running):.0f} % (another picture cancels it)" if running else ""
+
+    def restarted(self, device: Device) -> Session:
+        """The same mesh, look and camera on another device, and in an OpenGL context of its own."""
+        for name in list(self.references):
+            self.cancel_reference(name)
+        fresh = Session(device, self.mm)
+        fresh.look, fresh.other, fresh.wipe, fresh.count = self.look, self.other, self.wipe, self.count
+        fresh.report = self.report
+        fresh.show(self.mesh)
+        fresh.orbit = self.orbit
+        return fresh
+
+    def to_light(self, lamp: Lamp) -> NDArray[np.float64]:
+        return direction(self.mesh.up, self.mesh.front, lamp.azimuth, lamp.elevation)
+
+    def shadow_map(self, lamp: Lamp, size: int, small: bool = False) -> ShadowMap:
+        """The map of a lamp; made once, until the lamp moves. `small`: of a coarser mesh, to go with such a picture."""
+        level = self._level(small)
+        key = (lamp.azimuth, lamp.elevation, size, level)
+        if key not in self._maps:
+            while len(self._maps) > 8:
+                self._maps.pop(next(iter(self._maps)))
+            self._maps[key] = ShadowMap(*self.renderer.shadow_map(self.to_light(lamp), size, self.mesh.up, level))
+        return self._maps[key]
+
+    def _level(self, small: bool) -> int:
+        """Which version of the mesh serves: while something moves, one whose edges are few pixels of a small picture long."""
+        # A texture has seams that a coarser mesh would tear apart.
+        if not small or self.look.method == "texture":
+            return 0
+        return self.renderer.level(5 * 2 * self.orbit.distance * np.tan(np.radians(self.orbit.fov) / 2) / 270)
+
+    def profile(self, look: Look) -> Profile:
+        key = f"custom {look.distance}" if look.profile == "custom" else look.profile
+        if key not in self._profiles:
+            while len(self._profiles) > 32:
+                self._profiles.pop(next(iter(self._profiles)))
+            self._profiles[key] = Profile.burley_distance(look.distance, "custom") if look.profile == "custom" else Profile.named(key)
+        return self._profiles[key]
+
+    def camera(self, aspect: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Eye, and world to clip space in OpenGL's convention."""
+        return self.orbit.matrices(self.mesh.up, self.mesh.front, self.centre, self.renderer.radius + float(np.linalg.norm(
+            self.renderer.centre - self.centre)), aspect)
+
+    def gbuffer(self, width: int, height: int, small: bool = False) -> GBuffer:
+        state = self.drawn_state(width, height, small)
+        made = self._gbuffers.get((width, height))
+        if made is None or made[0] != state:
+            _, matrix = self.camera(width / height)
+            while len(self._gbuffers) > 2:
+                self._gbuffers.pop(next(iter(self._gbuffers)))
+            made = (state, self.renderer.gbuffer(matrix, width, height, state[3], state[4], self._shift))
+            self._gbuffers[width, height] = made
+        return made[1]
+
+    def drawn_state(self, width: int, height: int, small: bool = False) -> tuple[Any, ...]:
+        """What a G-buffer depends on."""
+        _, matrix = self.camera(width / height)
+        # The reference has the mesh's own normals.
+        pores = 0.0 if self.look.mode in ("error", "reference") else self.look.pores
+        return (matrix.tobytes(), width, height, pores, self._level(small), self._shift)
+
+    # ---- Shading -----------------------------------------------------------------------------------------------------
+
+    def materials(self, look: Look) -> dict[int, Material]:
+        """What the ids of the mesh are made of."""
+        specular = {"specular": look.specular, "roughness": look.roughness, "f0": look.f0, "roughness2": look.roughness2,
+                    "lobe_mix": look.lobe_mix, "specular_model": "ggx" if look.ggx else "ksk"}
+        skin = Material(scattering=look.method, **specular)
+        sharp = 1.0 / self.mm  # of shadows where nothing scatters: 1 mm
+        if look.method == "none" and look.transmission == 0:
+            skin.shadow_filter_width = sharp
+        else:
+            skin.profile = self.profile(look)
+            skin.transmission = look.transmission
+            skin.deep_scatter_color = look.deep_scatter
+            if look.radius_scale != 1:
+                skin.diffusion_radius = skin.profile.info.radius * look.radius_scale / self.mm
+        made = {SKIN: skin}
+        for id, (amount, roughness) in _GLOSS.items():
+            made[id] = Material(scattering="none", thickness_taps=0, specular=amount, roughness=roughness, shadow_filter_width=sharp)
+        present = {1} if self.mesh.ids is None else set(np.unique(self.mesh.ids).tolist())
+        return {id: m for id, m in made.items() if id in present}
+
+    def eyes(self, look: Look) -> dict[int, Eye]:
+        """The eyes of the mesh, by material id."""
+        eyes = eyes_of(self.mesh, look, self.mm)
+        for eye in eyes.values():
+            eye.iris_profile = Profile.named(look.iris_profile) if look.iris_profile else None
+        return eyes
+
+    def iris(self, look: Look) -> Optional[NDArray[np.float32]]:
+        """The texture of the irises, (n, n, 3), linear; None: fibres are drawn. Raises what files.read_image raises, and ValueError."""
+        if not look.iris_texture:
+            return None
+        if look.iris_texture not in self._irises:
+            self._irises.clear()
+            self._irises[look.iris_texture] = iris_image(look.iris_texture)
+        return self._irises[look.iris_texture]
+
+    def lights(self, look: Look, small: bool = False) -> list[tuple[Light, Optional[ShadowMap]]]:
+        found: list[tuple[Light, Optional[ShadowMap]]] = []
+        for lamp in look.lamps:
+            if not lamp.on or lamp.intensity <= 0:
+                continue
+            map = self.shadow_map(lamp, look.shadow_size // (2 if small else 1), small) if lamp.shadow else None
+            light = map.light.copy() if map else Light(to_light=self.to_light(lamp))
+            light.color = np.multiply(lamp.color, lamp.intensity)
+            if map:
+                light.shadow_filter_texels = 48
+            found.append((light, map))
+        return found
+
+    @staticmethod
+    def ambient(look: Look) -> float:
+        """Irradiance / pi from everywhere; at 0 so little that nobody sees it: a frame without any needs other kernels."""
+        return max(look.ambient, 1e-6)
+
+    def texture(self, look: Look, small: bool = False) -> Texture:
+        """The look's light, scattered in the mesh's texture."""
+        if small not in self._textures:
+            self._textures[small] = Texture(self, 512 if small else 1024)
+        return self._textures[small].make(self, look, small)
+
+    def shade(self, name: str, look: Look, width: int, height: int, small: bool = False, outputs: tuple[str, ...] = (),
+              albedo: bool = True) -> Pass:
+        """Shades what is seen. `name`: of a pass that keeps its settings and images from picture to picture."""
+        kept = self._passes.setdefault(name + "/small" if small else name, Pass(self.device))
+        return kept.shade(self, self.gbuffer(width, height, small), look, outputs, small, albedo)
+
+    def radiance(self, look: Optional[Look] = None, width: int = 960, height: int = 540) -> NDArray[np.float32]:
+        """Linear radiance, (height, width, 3), 0 on background."""
+        return self.shade("radiance", look or self.look, width, height).outputs["radiance"].copy()
+
+    @property
+    def samples(self) -> int:
+        """How many pictures a smooth one takes. The reference takes seconds for one."""
+        return 1 if self.look.mode in ("reference", "error", "tiles") else SAMPLES
+
+    def frame(self, width: int, height: int, small: bool = False, sample: int = 0) -> Frame:
+        """The picture of now.
+
+        small : bool
+            While something moves: meshes are coarser, and shadow maps have half the size.
+        sample : int
+            0 for a picture by itself. After it 1, 2, .. `samples` - 1: the mean with one more that is shifted by a part of a pixel,
+            so that edges become smooth.
+        """
+        built = self.device.stats().programs_built
+        started = time.perf_counter()
+        self._shift = (_halton(sample, 2) - 0.5, _halton(sample, 3) - 0.5) if sample else (0.0, 0.0)
+        try:
+            self.gbuffer(width, height, small)
+            self.lights(self.look, small)
+            drawn = time.perf_counter()
+            pixels, p = picture(self, "main", self.look, width, height, small)
+            stats = p.shader.stats()
+            if self.other is None:
+                self.cancel_reference("other")
+            else:
+                pixels = self._beside(pixels, picture(self, "other", self.other, width, height, small)[0])
+        finally:
+            self._shift = (0.0, 0.0)
+        if not small:
+            pixels = self._mean(pixels, sample)
+        shaded = time.perf_counter()
+        times = {"OpenGL": 1e3 * (drawn - started), "Pellucid": 1e3 * (shaded - drawn), "on the device": stats.device_milliseconds}
+        after = self.device.stats().programs_built
+        return Frame(pixels, times, stats.to_dict(), p.shader.warnings() + list(self.mesh.warnings), after, after - built)
+
+    def prepare(self, width: int, height: int) -> None:
+        """Builds the kernels that a slider of material will want when it leaves 0 or comes to it, so that none has to wait for them."""
+        base = self.look
+        structure = (base.mode, base.method, base.ggx, [(lamp.on, lamp.shadow) for lamp in base.lamps])
+        if structure == self._prepared or base.mode in ("reference", "error", "tiles"):
+            return
+        for change in ({"deep_scatter": (1.0, 1.0, 1.0)}, {"deep_scatter": (0.0, 0.0, 0.0), "transmission": 0.0}):
+            other = base.copy()
+            for name, value in change.items():
+                setattr(other, name, value)
+            picture(self, "main", other, width, height, False)
+        self._prepared = structure
+
+    def _beside(self, left: NDArray[np.uint8], right: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        width = left.shape[1]
+        x = int(np.clip(round(self.wipe * width), 0, width))
+        both = left.copy()
+        both[:, x:] = right[:, x:]
+        both[:, max(x - 1, 0):x + 1] = 255
+        return both
+
+    def _mean(self, pixels: NDArray[np.uint8], sample: int) -> NDArray[np.uint8]:
+        """Of this picture and those since sample 0, in light, not in bytes."""
+        if sample == 0 or self._sum is None or self._sum[1].shape != pixels.shape:
+            self._sum = (1, LINEAR[pixels])
+            return pixels
+        count, total = self._sum
+        total += LINEAR[pixels]
+        self._sum = (count + 1, total)
+        return srgb_bytes(total * np.float32(1 / (count + 1)))
+
+    def smooth(self, width: int, height: int) -> NDArray[np.uint8]:
+        """The picture with smooth edges, (height, width, 3), sRGB."""
+        pixels = self.frame(width, height).pixels
+        for sample in range(1, self.samples):
+            pixels = self.frame(width, height, sample=sample).pixels
+        return pixels

@@ -1,0 +1,141 @@
+"""Widgets that set values of the look and have the picture drawn again."""
+from __future__ import annotations
+
+import contextlib
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any, Callable, Optional
+
+import numpy as np
+from nicegui import events, ui
+
+from .. import files
+from .look import Look
+
+if TYPE_CHECKING:
+    from .page import Page
+    from .server import Viewer
+
+
+def _hex(color: Any) -> str:
+    srgb = files.tonemap(np.asarray(color, np.float32).reshape(1, 1, 3), 1.0, 1.0)[0, 0]
+    return "#{:02x}{:02x}{:02x}".format(*srgb.tolist())
+
+
+def _linear(text: str) -> tuple[float, float, float]:
+    c = np.array([int(text[i:i + 2], 16) for i in (1, 3, 5)]) / 255
+    return tuple(np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4).tolist())  # type: ignore[return-value]
+
+
+def fail(message: object) -> None:
+    """An error that stays on the page until it is closed."""
+    ui.notify(f"{message}", type="negative", multi_line=True, close_button=True, timeout=0)
+
+
+class Panel:
+    """A part of the page: `name` is its heading, `build` makes its widgets."""
+
+    name = ""
+    open = False
+
+    def __init__(self, page: Page) -> None:
+        self.page = page
+
+    @property
+    def viewer(self) -> Viewer:
+        return self.page.viewer
+
+    @property
+    def look(self) -> Look:
+        return self.viewer.session.look
+
+    def build(self) -> None:
+        raise NotImplementedError
+
+    def rebuild(self) -> None:
+        """All widgets anew, and the picture."""
+        self.page.build()
+        self.viewer.changed()
+
+    async def deliver(self, make: Callable[[], bytes], name: str) -> None:
+        """Makes a file on the session's thread and has the browser download it, unless the page was closed meanwhile."""
+        client = ui.context.client
+        try:
+            data = await self.viewer.on_thread(make)
+            if client.has_socket_connection:
+                with client:
+                    ui.download(data, name)
+        except Exception as error:
+            with contextlib.suppress(RuntimeError), client:  # of a page that is gone
+                fail(error)
+        self.viewer.changed()
+
+    def slider(self, name: str, owner: Any, attribute: str, low: float, high: float, step: float, marker: str = "",
+               index: Optional[int] = None, then: Callable[[], None] = lambda: None) -> None:
+        """A slider for a number, or for element `index` of several."""
+        def value() -> Any:
+            whole = getattr(owner, attribute)
+            return whole if index is None else whole[index]
+
+        def change(e: events.ValueChangeEventArguments) -> None:
+            if e.value is None or value() == e.value:
+                return
+            whole = getattr(owner, attribute)
+            if index is None:
+                setattr(owner, attribute, type(whole)(e.value))
+            else:
+                values = list(whole)
+                values[index] = float(e.value)
+                setattr(owner, attribute, type(whole)(values))
+            then()
+            self.viewer.changed(moving=True)
+
+        marker = marker or (attribute if index is None else f"{attribute}-{index}")
+        with ui.row().classes("w-full items-center no-wrap gap-2"):
+            ui.label(name).classes("text-xs").style("width:8.5rem")
+            ui.label().classes("text-xs text-right").style("width:3.2rem").bind_text_from(
+                owner, attribute, backward=lambda v: f"{v if index is None else v[index]:.4g}")
+            ui.slider(min=low, max=high, step=step, value=value(), on_change=change).props(
+                f"dense data-pel=slider-{marker}")
+
+    def channels(self, names: tuple[str, ...], attribute: str, low: float, high: float, step: float,
+                 then: Callable[[], None] = lambda: None) -> None:
+        """A slider for each element."""
+        for index, name in enumerate(names):
+            self.slider(name, self.look, attribute, low, high, step, index=index, then=then)
+
+    def select(self, name: str, options: Any, attribute: str, then: Callable[[], None] = lambda: None,
+               owner: Any = None, marker: str = "") -> None:
+        of = self.look if owner is None else owner
+        value = getattr(of, attribute)
+
+        def change(e: events.ValueChangeEventArguments) -> None:
+            setattr(of, attribute, e.value)
+            then()
+            self.viewer.changed()
+
+        ui.select(options, value=value.name.lower() if isinstance(value, IntEnum) else value, label=name,
+                  on_change=change).props(f"dense options-dense data-pel={marker or attribute}").classes("w-full")
+
+    def switch(self, name: str, owner: Any, attribute: str, marker: str = "") -> None:
+        def change(e: events.ValueChangeEventArguments) -> None:
+            setattr(owner, attribute, bool(e.value))
+            self.viewer.changed()
+
+        ui.switch(name, value=getattr(owner, attribute), on_change=change).props(
+            f"dense data-pel={marker or attribute}").classes("text-xs")
+
+    def color(self, name: str, owner: Any, attribute: str, marker: str = "") -> None:
+        def change(e: events.ValueChangeEventArguments) -> None:
+            if isinstance(e.value, str) and len(e.value) == 7:
+                setattr(owner, attribute, _linear(e.value))
+                self.viewer.changed()
+
+        ui.color_input(name, value=_hex(getattr(owner, attribute)), on_change=change).props(
+            f"dense data-pel={marker or attribute}").classes("w-full")
+
+    def button(self, name: str, act: Any, marker: str, flat: bool = False) -> None:
+        ui.button(name, on_click=act).props(f"dense {'flat ' if flat else ''}data-pel={marker}").classes("w-full")
+
+    def upload(self, name: str, act: Any, marker: str, largest: int = 1 << 30) -> None:
+        ui.upload(label=name, auto_upload=True, on_upload=act, max_file_size=largest).props(
+            f"dense flat data-pel={marker}").classes("w-full")
