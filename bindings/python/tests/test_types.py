@@ -67,7 +67,7 @@ def test_unknown_fields_are_named():
     with pytest.raises(pel.PellucidError, match="did you mean 'skin'"):
         pel.Profile.named("skn")
     with pytest.raises(AttributeError, match="no attribute 'Materal'; did you mean 'Material'"):
-        pel.Materal
+        _ = pel.Materal
 
 
 def test_help_is_about_the_package():
