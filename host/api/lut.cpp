@@ -1,37 +1,54 @@
 #include "api/entry.h"
 #include "core/submission.h"
+#include "eye/check_eye.h"
 #include "eye/eye_lut.h"
+#include "lut/lut_check.h"
 #include "lut/luts.h"
 
 using namespace pel;
 
 namespace {
 
-// What every call that makes a table from a description does. `olderHeaders`: what fields are that an older header does not have; these
-// began as FaceWorks'. `make` is the operation of lut/luts.h.
-template <class Desc>
+// Makes a table from a description by `integrate`. `olderHeaders`: defaults for fields that older headers lack; the first
+// headers had the fields of FaceWorks.
+template <class Desc, class Integrate>
 PelError createLut(PelDevice device, const Desc* desc, const Desc& olderHeaders, const char* name,
-                   PelLut* lut, const PelSubmit* submit, Ref<Lut> (*make)(Ref<Device>, const Desc&)) {
+                   PelLut* lut, const PelSubmit* submit, Integrate&& integrate) {
     return entry([&] {
         const Ref<Device> d = fromHandle<Device>(device);
         const Desc request = readStruct(desc, olderHeaders, name);
         PelLut& result = output(lut, "lut");
         Submission submission(*d, submit);
-        Ref<Lut> made = make(d, request);
+        Ref<Lut> made = integrate(d, request);
         submission.finish();
         result = toHandle<PelLut>(std::move(made));
     });
+}
+
+void checkInfo(const PelLutInfo& info) {
+    switch (info.kind) {
+        case PEL_LUT_CURVATURE:
+            return checkCurvatureDesc(info.curvature);
+        case PEL_LUT_SHADOW:
+            return checkShadowDesc(info.shadow);
+        case PEL_LUT_SPECULAR:
+            return checkSpecularDesc(info.specular);
+        case PEL_LUT_EYE:
+            return checkEyeLutDesc(info.eye);
+    }
+    invalidArgument("PelLutInfo.kind is ", int(info.kind),
+                    "; PEL_LUT_CURVATURE (0), PEL_LUT_SHADOW (1), PEL_LUT_SPECULAR (2) or PEL_LUT_EYE (3) is "
+                    "needed");
 }
 
 }  // namespace
 
 PelError pelCurvatureLutCreate(PelDevice device, const PelCurvatureLutDesc* desc, PelLut* lut,
                                const PelSubmit* submit) {
-    return createLut(
-        device, desc, pelCurvatureLutDescFaceWorks(), "PelCurvatureLutDesc", lut, submit,
-        +[](Ref<Device> d, const PelCurvatureLutDesc& request) {
-            return integrateCurvatureLut(std::move(d), request);  // with its usual number of nodes
-        });
+    return createLut(device, desc, pelCurvatureLutDescFaceWorks(), "PelCurvatureLutDesc", lut, submit,
+                     [](const Ref<Device>& d, const PelCurvatureLutDesc& request) {
+                         return integrateCurvatureLut(d, request);  // with the default number of nodes
+                     });
 }
 
 PelError pelShadowLutCreate(PelDevice device, const PelShadowLutDesc* desc, PelLut* lut, const PelSubmit* submit) {
@@ -46,7 +63,10 @@ PelError pelSpecularLutCreate(PelDevice device, const PelSpecularLutDesc* desc, 
 }
 
 PelError pelEyeLutCreate(PelDevice device, const PelEyeLutDesc* desc, PelLut* lut, const PelSubmit* submit) {
-    return createLut(device, desc, pelEyeLutDescDefaults(), "PelEyeLutDesc", lut, submit, integrateEyeLut);
+    return createLut(device, desc, pelEyeLutDescDefaults(), "PelEyeLutDesc", lut, submit,
+                     [&](const Ref<Device>& d, const PelEyeLutDesc& request) {
+                         return integrateEyeLut(d, request, submit == nullptr);
+                     });
 }
 
 PelError pelLutCreateFromTexels(PelDevice device, const PelLutInfo* info, const float* texels, size_t bytes,
@@ -54,6 +74,7 @@ PelError pelLutCreateFromTexels(PelDevice device, const PelLutInfo* info, const 
     return entry([&] {
         const Ref<Device> d = fromHandle<Device>(device);
         const auto known = readStruct(info, pelLutInfoDefaults(), "PelLutInfo");
+        checkInfo(known);
         handOut(lut, "lut", [&] { return uploadLut(d, known, texels, bytes); });
     });
 }

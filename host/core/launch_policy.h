@@ -11,10 +11,11 @@ struct LaunchPolicy {
     size_t group;         // work-items
     size_t columns;       // of a table's row per work-item, where a texel is cheap
     size_t tableColumns;  // where each texel of it walks a tabulated profile
+    size_t texels;        // work-items of a group, where each makes one texel or a few cells
 };
 
 inline LaunchPolicy launchPolicy(const Device& device) {
-    return device.info().mathWidth > 1 ? LaunchPolicy{1, 256, 64} : LaunchPolicy{64, 1, 1};
+    return device.info().mathWidth > 1 ? LaunchPolicy{1, 256, 64, 16} : LaunchPolicy{64, 1, 1, 64};
 }
 
 // Groups that share `tiles` among them: enough of them to keep every compute unit busy to the end, and no more.

@@ -3,12 +3,13 @@
 #include <cmath>
 
 #include "core/check_range.h"
-#include "lut/eye_shape.h"
+#include "eye/eye_lut.h"
+#include "eye/eye_shape.h"
 
 namespace pel {
 namespace {
 
-// False for a vector without a direction.
+// Returns false for a vector of length 0.
 bool normalize(double (&v)[3]) {
     const double length = std::hypot(v[0], v[1], v[2]);
     if (!(length > 0)) return false;
@@ -30,10 +31,10 @@ PelEye resolvedEye(const PelEye& given) {
     PEL_EACH_EYE_RANGE(PEL_CHECK_RANGE)
     PelEye eye = given;
     if (eye.irisRadius == 0) eye.irisRadius = eye.limbusRadius;
-    EyeShape(pelEyeLutDescOf(&eye), structure);
+    checkEyeLutWork(pelEyeLutDescOf(&eye), structure);
     if (eye.pupilRadius >= eye.irisRadius)
         invalidArgument("PelEye.pupilRadius is ", eye.pupilRadius,
-                        "; it must be less than the iris' radius, ", eye.irisRadius);
+                        "; it must be less than the radius of the iris, ", eye.irisRadius);
     checkFinite("center", eye.center);
     checkFinite("gaze", eye.gaze);
     checkFinite("up", eye.up);
@@ -49,6 +50,12 @@ PelEye resolvedEye(const PelEye& given) {
         eye.up[i] = float(u[i]);
     }
     return eye;
+}
+
+void checkEyeLutDesc(const PelEyeLutDesc& fields) {
+    const char* structure = "PelEyeLutDesc";
+    PEL_EACH_EYE_LUT_RANGE(PEL_CHECK_RANGE)
+    checkEyeLutWork(fields, structure);
 }
 
 }  // namespace pel

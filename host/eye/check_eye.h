@@ -1,11 +1,14 @@
-// Checks a PelEye, and fills in what it leaves to defaults. Throws PEL_ERROR_INVALID_ARGUMENT with the field, its value and what would
-// be right.
+// Checks of PelEye and PelEyeLutDesc. They throw PEL_ERROR_INVALID_ARGUMENT with the field, its value and the valid
+// range.
 #pragma once
 #include <pellucid/pellucid.h>
 
 namespace pel {
 
-// Everything but the colour of the iris, which depends on a texture. gaze and up come back as unit vectors at a right angle.
+// Fills in all defaults except the colour of the iris, which depends on a texture. In the result `gaze` and `up` are
+// perpendicular unit vectors.
 PelEye resolvedEye(const PelEye& eye);
+
+void checkEyeLutDesc(const PelEyeLutDesc& desc);
 
 }  // namespace pel

@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 
-#include "lut/eye_shape.h"
+#include "eye/eye_shape.h"
 #include "shared/eye.h"
 
 namespace pel {

@@ -54,7 +54,7 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
         terms = {{float(1e-8 / std::max(1.0, curvatureMax)), 1, 1, 1}};
 
     const uint32_t lanes = device->info().mathWidth;
-    const auto [group, columnsPerItem, unused] = launchPolicy(*device);
+    const size_t group = launchPolicy(*device).group, columnsPerItem = launchPolicy(*device).columns;
     const cl::Program program = device->programs().get(
         "lut/curvature_lut.cl", {PEL_EACH_CURVATURE_FORM(NUMBER){"PEL_FORM", std::to_string(int(desc.form))},
                                  {"PEL_GROUP", std::to_string(group)},

@@ -8,8 +8,6 @@ namespace pel {
 void checkCurvatureDesc(const PelCurvatureLutDesc& desc);
 void checkShadowDesc(const PelShadowLutDesc& desc);
 void checkSpecularDesc(const PelSpecularLutDesc& desc);
-void checkEyeDesc(const PelEyeLutDesc& desc);
-void checkInfo(const PelLutInfo& info);
 // That the ends of its range are in order, once lengths that were left out are known.
 void checkOrder(const PelLutInfo& info);
 

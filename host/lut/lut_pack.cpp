@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lut/lut_check.h"
 #include "lut/luts.h"
 
 namespace pel {
@@ -49,7 +48,6 @@ void readFloats(const Lut& lut, float* destination) {
 }  // namespace
 
 Ref<Lut> uploadLut(Ref<Device> device, const PelLutInfo& info, const float* texels, size_t bytes) {
-    checkInfo(info);
     if (!texels) invalidArgument("texels are needed, not NULL");
     Ref<Lut> lut = make<Lut>(device, info);
     const size_t width = lut->width(), height = lut->height();

@@ -37,7 +37,7 @@ Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
         params.mass[channel] = float(mass);
     }
 
-    const auto [group, columnsPerItem, unused] = launchPolicy(*device);
+    const size_t group = launchPolicy(*device).group, columnsPerItem = launchPolicy(*device).columns;
     const cl::Program program = device->programs().get(
         "lut/shadow_lut.cl",
         {{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}});

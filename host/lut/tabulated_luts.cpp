@@ -77,7 +77,7 @@ void integrateTabulatedCurvature(Lut& lut, double curvatureMin, double curvature
     params.normalised = chord;
 
     const uint32_t lanes = device.info().mathWidth;
-    const auto [group, columnsPerItem, unused] = launchPolicy(device);
+    const size_t group = launchPolicy(device).group, columnsPerItem = launchPolicy(device).columns;
     cl::Defines options{{"PEL_GROUP", std::to_string(group)},
                         {"PEL_NODES", std::to_string(intervals)},
                         {"PEL_COLUMNS", std::to_string(columnsPerItem)}};
@@ -121,7 +121,7 @@ void integrateTabulatedShadow(Lut& lut, double reciprocalMin, double reciprocalM
     const TabulatedShadowLutParams params{desc.width,          desc.height,     float(axis.min),
                                           float(axis.step),    desc.sharpening, float(end),
                                           uint32_t(desc.axis), desc.closedEnds, nodes};
-    const auto [group, unused, columnsPerItem] = launchPolicy(device);
+    const size_t group = launchPolicy(device).group, columnsPerItem = launchPolicy(device).tableColumns;
     const cl::Program program = device.programs().get(
         "lut/tabulated_shadow_lut.cl",
         {{"PEL_GROUP", std::to_string(group)}, {"PEL_COLUMNS", std::to_string(columnsPerItem)}});

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/handle_table.h"
+#include "core/launch_policy.h"
 #include "eye/eye_constants.h"
 #include "eye/eye_lut.h"
 #include "shading/launch_ranges.h"
@@ -12,8 +13,6 @@
 
 namespace pel {
 namespace {
-
-constexpr size_t group = 16;
 
 size_t texelsOf(cl_uint side) {
     return size_t(irisRowTexels(side)) * irisRows(side);
@@ -39,12 +38,12 @@ class Irises final : public Pass {
     }
     size_t bytes() const override { return bytes_; }
 
-    std::vector<cl::ProgramKey> programs(const Device&, const ShaderPlan& plan) const override {
+    std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
         std::vector<cl::ProgramKey> keys;
         for (const auto& [id, material] : plan.state.materials)
             if (material.eye)
                 keys.push_back({{"eye/iris_texels.cl"},
-                                {{"PEL_GROUP", text(group)},
+                                {{"PEL_GROUP", text(launchPolicy(device).texels)},
                                  {"PEL_WIDTH", "1"},
                                  {"PEL_FORMAT_IRIS", text(formatCode(material.eye->iris, 1))}}});
         return keys;
@@ -57,6 +56,7 @@ class Irises final : public Pass {
 
     void enqueueFrame(PassWork& work) const override {
         if (!std::exchange(pending_, false)) return;
+        const size_t group = launchPolicy(work.device).texels;
         size_t eye = 0;
         cl_uint first = 0;
         for (const auto& [id, material] : work.plan.state.materials) {

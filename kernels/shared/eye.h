@@ -59,8 +59,8 @@ typedef struct PelEyeLutGrid {
     PelUint32 columns;  // cells across the limbus
     PelUint32 rows;     // from the middle to the rim
     float anglePerSlice;
-    float perTexel;  // counts of the sums for one texel's irradiance of 1
-    PelUint32 pad;
+    float perTexel;        // counts of the sums for one texel's irradiance of 1
+    PelUint32 firstSlice;  // of a launch
 } PelEyeLutGrid;
 
 #define PEL_FIBRE_TEXELS 256  // along a side of an iris that is drawn

@@ -20,7 +20,7 @@ constexpr const char* names[types] = {"contexts", "queues",  "memory objects",
                                       "programs", "kernels", "events"};
 std::atomic<int64_t> live[types];
 std::atomic<int64_t> memoryBytes;
-std::atomic<uint64_t> buffersMade, bytesCopied, transfers, launches;
+std::atomic<uint64_t> buffersMade, bytesCopied, transfers, launches, bytesFilled, waits;
 std::atomic<bool> warned;  // the compiler, about a kernel
 
 // Never destroyed: the library may launch until the very end.
@@ -159,8 +159,9 @@ void check() {
 namespace spy {
 
 Counts counts() {
-    return {live[contexts], live[queues], live[memory], live[programs], live[kernels], live[events],
-            memoryBytes,    buffersMade,  bytesCopied,  transfers,      launches};
+    return {live[contexts], live[queues], live[memory], live[programs], live[kernels],
+            live[events],   memoryBytes,  buffersMade,  bytesCopied,    transfers,
+            launches,       bytesFilled,  waits};
 }
 
 uint64_t launchesOf(const char* kernel) {
@@ -273,9 +274,18 @@ cl_int clEnqueueCopyBuffer(cl_command_queue queue, cl_mem from, cl_mem to, size_
 }
 cl_int clEnqueueFillBuffer(cl_command_queue queue, cl_mem buffer, const void* pattern, size_t patternBytes,
                            size_t offset, size_t bytes, cl_uint waits, const cl_event* list, cl_event* event) {
+    ::bytesFilled += bytes;
     return withEvent(
         REAL(clEnqueueFillBuffer)(queue, buffer, pattern, patternBytes, offset, bytes, waits, list, event),
         event);
+}
+cl_int clFinish(cl_command_queue queue) {
+    ++::waits;
+    return REAL(clFinish)(queue);
+}
+cl_int clWaitForEvents(cl_uint count, const cl_event* list) {
+    ++::waits;
+    return REAL(clWaitForEvents)(count, list);
 }
 void* clEnqueueMapBuffer(cl_command_queue queue, cl_mem buffer, cl_bool blocking, cl_map_flags flags,
                          size_t offset, size_t bytes, cl_uint waits, const cl_event* list, cl_event* event,

@@ -15,6 +15,8 @@ struct [[gnu::visibility("default")]] Counts {
     uint64_t bytesCopied;  // by CL_MEM_COPY_HOST_PTR and the enqueued reads, writes and copies between buffers
     uint64_t transfers;    // how many of those
     uint64_t launches;     // clEnqueueNDRangeKernel that succeeded
+    uint64_t bytesFilled;  // by clEnqueueFillBuffer
+    uint64_t waits;        // clFinish and clWaitForEvents
 
     int64_t left() const {
         return contexts + queues + memory + programs + kernels + events;

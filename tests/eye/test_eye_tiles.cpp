@@ -1,70 +1,12 @@
 // Eyes cost nothing where there are none, and bad input around them is an error by name or a finite picture.
 #include <gtest/gtest.h>
 
-#include <pellucid/pellucid.hpp>
-
-#include <cmath>
-#include <functional>
+#include "eye/eye_frame.h"
 
 using namespace pellucid;
+using eye_test::EyeFrame;
 
 namespace {
-
-// A wall of material 1, in which a ball of material 2 sits; 1 pixel is 0.25 mm.
-class EyeFrame {
-  public:
-    static constexpr uint32_t width = 512, height = 256;
-    EyeFrame() {
-        std::vector<float> position, normal;
-        std::vector<uint8_t> id;
-        for (uint32_t y = 0; y < height; ++y)
-            for (uint32_t x = 0; x < width; ++x) {
-                const float px = 0.25f * (float(x) - 400), py = 0.25f * (128 - float(y)), r2 = px * px + py * py;
-                const bool ball = r2 < 121;
-                const float pz = ball ? std::sqrt(144 - r2) : 4.8f, length = ball ? 12 : 1;
-                for (const float c : {px, py, pz}) position.push_back(c);
-                for (const float c : {ball ? px : 0.0f, ball ? py : 0.0f, ball ? pz : 1.0f})
-                    normal.push_back(c / length);
-                id.push_back(ball ? 2 : 1);
-            }
-        positions_ = Buffer(device, position), normals_ = Buffer(device, normal), ids_ = Buffer(device, id);
-        out_ = Buffer(device, std::vector<float>(3 * width * height));
-    }
-    // `prepare` changes the shader before it is committed.
-    std::vector<float> shade(const std::function<void(Shader&)>& prepare = {},
-                             PelTileLists lists = PEL_TILES_ONE_LIST) {
-        Shader shader(device);
-        PelMaterial wall = pelMaterialDefaults(), sclera = pelMaterialDefaults();
-        wall.specular = 1;
-        wall.scattering = sclera.scattering = PEL_SCATTERING_NONE;
-        PelShaderOptions options = pelShaderOptionsDefaults();
-        options.tileLists = lists;
-        options.countPixels = 1;
-        PelCamera camera = pelCameraDefaults();
-        camera.position[2] = 300;
-        PelLight light = pelLightDefaults();
-        light.toLight[0] = 0.6f, light.toLight[2] = 0.8f;
-        shader.set(options).set(camera).set(std::vector{light}).setMaterial(1, wall).setMaterial(2, sclera);
-        shader.set(PEL_SLOT_RADIANCE, imageDesc(out_, PEL_FORMAT_RGB32F, width, height));
-        shader.set(PEL_SLOT_POSITION, imageDesc(positions_, PEL_FORMAT_RGB32F, width, height));
-        shader.set(PEL_SLOT_NORMAL_SHADING, imageDesc(normals_, PEL_FORMAT_RGB32F, width, height));
-        shader.set(PEL_SLOT_MATERIAL, imageDesc(ids_, PEL_FORMAT_R8_UINT, width, height));
-        if (prepare) prepare(shader);
-        shader.commit().execute();
-        stats = shader.stats();
-        return out_.readAll<float>();
-    }
-    static bool isEye(size_t pixel) {
-        const float px = 0.25f * (float(pixel % width) - 400), py = 0.25f * (128 - float(pixel / width));
-        return px * px + py * py < 121;
-    }
-
-    Device device{""};
-    PelShaderStats stats{};
-
-  private:
-    Buffer positions_, normals_, ids_, out_;
-};
 
 void expectFinite(const std::vector<float>& picture) {
     size_t wrong = 0;
@@ -90,10 +32,10 @@ TEST(EyeTiles, TilesWithoutAnEyeHaveNoCodeForEyes) {
     EXPECT_EQ(frame.stats.variants, 2u);
     size_t changed = 0, pixels = 0;
     for (size_t i = 0; i < plain.size(); ++i) {
-        if (EyeFrame::isEye(i / 3))
+        if (frame.isEye(i / 3))
             changed += eye[i] != plain[i], ++pixels;
         else
-            ASSERT_EQ(eye[i], plain[i]) << i / 3 % EyeFrame::width << ", " << i / 3 / EyeFrame::width;
+            ASSERT_EQ(eye[i], plain[i]) << i / 3 % frame.width << ", " << i / 3 / frame.width;
     }
     EXPECT_EQ(frame.stats.pixelsEye, pixels / 3);
     EXPECT_GT(changed, pixels / 5);
@@ -110,8 +52,8 @@ TEST(EyeTiles, OutputsAddUp) {
         specular(frame.device, std::vector<float>(alone.size()));
     const std::vector<float> picture = frame.shade([&](Shader& s) {
         s.setEye(2, pelEyeDefaults());
-        s.set(PEL_SLOT_OUT_DIFFUSE, imageDesc(diffuse, PEL_FORMAT_RGB32F, EyeFrame::width, EyeFrame::height));
-        s.set(PEL_SLOT_OUT_SPECULAR, imageDesc(specular, PEL_FORMAT_RGB32F, EyeFrame::width, EyeFrame::height));
+        s.set(PEL_SLOT_OUT_DIFFUSE, frame.image(diffuse));
+        s.set(PEL_SLOT_OUT_SPECULAR, frame.image(specular));
     });
     EXPECT_EQ(picture, alone);
     const std::vector<float> d = diffuse.readAll<float>(), s = specular.readAll<float>();
@@ -222,7 +164,7 @@ TEST(EyeTiles, NanInImagesOfEyesStaysInItsPixels) {
     EyeFrame frame;
     const float bad[] = {std::nanf(""), INFINITY, -INFINITY};
     const auto withEye = [](Shader& s) { s.setEye(2, pelEyeDefaults()); };
-    constexpr size_t pixels = size_t(EyeFrame::width) * EyeFrame::height;
+    const size_t pixels = frame.pixels();
     // At least one pixel and at most `limit` change.
     const auto sameBeyond = [&](const std::vector<float>& is, const std::vector<float>& should, size_t limit) {
         expectFinite(is);
@@ -237,11 +179,11 @@ TEST(EyeTiles, NanInImagesOfEyesStaysInItsPixels) {
     const auto wetFrame = [&](const Buffer& wetness) {
         return frame.shade([&](Shader& s) {
             withEye(s);
-            s.set(PEL_SLOT_WETNESS, imageDesc(wetness, PEL_FORMAT_R32F, EyeFrame::width, EyeFrame::height));
+            s.set(PEL_SLOT_WETNESS, imageDesc(wetness, PEL_FORMAT_R32F, frame.width, frame.height));
         });
     };
     const std::vector<float> dry = wetFrame(even);
-    for (int i = 0; i < 3; ++i) wet[128 * EyeFrame::width + 400 + 9 * i] = bad[i];
+    for (int i = 0; i < 3; ++i) wet[128 * frame.width + 400 + 9 * i] = bad[i];
     wet[100] = bad[0];  // on the wall, which has no tears
     sameBeyond(wetFrame(Buffer(frame.device, wet)), dry, 3);
 
@@ -276,21 +218,20 @@ TEST(EyeTiles, NanInImagesOfEyesStaysInItsPixels) {
 // Light of the lids does not reach the eye, nor the other way: by every method that gathers on the screen. Within the sclera it does scatter.
 TEST(EyeTiles, NothingBleedsBetweenEyeAndLid) {
     EyeFrame frame;
-    constexpr size_t pixels = size_t(EyeFrame::width) * EyeFrame::height;
+    const size_t pixels = frame.pixels();
     const Profile profile = Profile::skin();
     const auto shade = [&](PelScattering method, float onWall, float onEye) {
         std::vector<float> light(3 * pixels);
         for (size_t k = 0; k < pixels; ++k)
             for (size_t c = 0; c < 3; ++c)
-                light[3 * k + c] = EyeFrame::isEye(k) ? (k % EyeFrame::width / 4 % 2 ? onEye : 0) : onWall;
+                light[3 * k + c] = frame.isEye(k) ? (k % frame.width / 4 % 2 ? onEye : 0) : onWall;
         const Buffer irradiance(frame.device, light);
         return frame.shade([&](Shader& s) {
             PelMaterial m = pelMaterialDefaults();
             m.profile = profile.get();
             m.scattering = method;
             s.setMaterial(1, m).setMaterial(2, m).setEye(2, pelEyeDefaults());
-            s.set(PEL_SLOT_IRRADIANCE,
-                  imageDesc(irradiance, PEL_FORMAT_RGB32F, EyeFrame::width, EyeFrame::height));
+            s.set(PEL_SLOT_IRRADIANCE, frame.image(irradiance));
         });
     };
     for (const PelScattering method : {PEL_SCATTERING_SEPARABLE, PEL_SCATTERING_SCREEN, PEL_SCATTERING_AUTO}) {
@@ -301,7 +242,7 @@ TEST(EyeTiles, NothingBleedsBetweenEyeAndLid) {
         size_t scattered = 0;
         float bled = 0, wall = 0;  // largest change
         for (size_t i = 0; i < dark.size(); ++i) {
-            const bool eye = EyeFrame::isEye(i / 3);
+            const bool eye = frame.isEye(i / 3);
             if (eye) bled = std::max(bled, std::abs(dark[i] - bright[i]));
             scattered += eye && std::abs(dark[i] - sharp[i]) > 0.02f;
             if (!eye) wall = std::max(wall, std::abs(bright[i] - off[i]));

@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdlib>
 
 namespace pel::cl {
@@ -30,12 +31,19 @@ void unmapPages(void* at, size_t bytes) {
     ::munmap(at, bytes);
 }
 
+// Not by std::aligned_alloc, with which glibc maps and unmaps blocks of 128 KiB and more each time, page fault by page
+// fault: a freed block raises the threshold for mappings only by its size after alignment, so that the next block of
+// this size exceeds the threshold again. The address of the whole block precedes the aligned one.
 void* allocateAligned(size_t alignment, size_t bytes) {
-    return std::aligned_alloc(alignment, bytes);
+    void* const whole = std::malloc(bytes + alignment);
+    if (!whole) return nullptr;
+    const auto at = (reinterpret_cast<uintptr_t>(whole) + alignment) & ~uintptr_t(alignment - 1);
+    reinterpret_cast<void**>(at)[-1] = whole;
+    return reinterpret_cast<void*>(at);
 }
 
 void freeAligned(void* at) {
-    std::free(at);
+    if (at) std::free(static_cast<void**>(at)[-1]);
 }
 
 }  // namespace pel::cl

@@ -1,7 +1,8 @@
-#include "lut/eye_shape.h"
+#include "eye/eye_shape.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "cl/error.h"
 
@@ -24,11 +25,11 @@ EyeShape::EyeShape(const PelEyeLutDesc& d, const char* structure)
       concavity(d.irisConcavity) {
     if (limbus >= sclera)
         invalidArgument(structure, ".limbusRadius is ", limbus, "; it must be less than scleraRadius, ", sclera);
-    // A vertical edge has no slope.
+    // Keeps the slope finite at the edge of the cornea.
     if ((1 + conic) * limbus * limbus > 0.98 * cornea * cornea)
         invalidArgument(structure, ".limbusRadius is ", limbus, "; a cornea of corneaRadius ", cornea,
                         " and corneaConic ", conic, " is only ", cornea / std::sqrt(1 + conic),
-                        " wide: 0.98 of that is the most");
+                        " wide; the limbus may be at most 0.98 of that");
     if (iris > limbus)
         invalidArgument(structure, ".irisRadius is ", iris, "; it must not exceed limbusRadius, ", limbus);
     limbusZ = std::sqrt(sclera * sclera - limbus * limbus);
@@ -36,17 +37,18 @@ EyeShape::EyeShape(const PelEyeLutDesc& d, const char* structure)
     irisZ = apexZ - d.chamberDepth;
     if (d.chamberDepth < sag(iris))
         invalidArgument(structure, ".chamberDepth is ", d.chamberDepth,
-                        "; the iris would cut through the cornea, which at the iris' rim lies ", sag(iris),
-                        " below its apex: that is the least");
+                        "; the iris would cut through the cornea, which lies ", sag(iris),
+                        " below its apex at the rim of the iris: at least that is needed");
     if (irisZ - concavity <= -sclera || std::hypot(iris, irisZ) > sclera)
         invalidArgument(structure, ".chamberDepth is ", d.chamberDepth, " and irisConcavity ", concavity,
                         "; the iris would leave the sclera, of scleraRadius ", sclera);
-    // A point of the cornea sees light up to its own horizon and up to the sclera's.
+    // Light reaches a point of the cornea above the point's own horizon and above that of the sclera.
     largestAngle = 0;
     for (int i = 1; i <= 256; ++i) {
         const double r = limbus * i / 256, z = apexZ - sag(r), far = std::hypot(r, z);
-        const double own = std::atan(slope(r)), past = std::atan2(r, z) + std::acos(std::min(1.0, sclera / far));
-        largestAngle = std::max(largestAngle, 1.5707963267948966 + std::min(own, past));
+        const double local = std::atan(slope(r)),
+                     past = std::atan2(r, z) + std::acos(std::min(1.0, sclera / far));
+        largestAngle = std::max(largestAngle, std::numbers::pi / 2 + std::min(local, past));
     }
 }
 

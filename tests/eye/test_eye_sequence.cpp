@@ -1,0 +1,138 @@
+// One shader through a sequence of eyes and frames: each picture equals that of a new shader to the bit.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+
+#include "eye/eye_frame.h"
+
+using namespace pellucid;
+using eye_test::EyeFrame;
+
+namespace {
+
+// What a shader is set to; `apply` leaves nothing of an earlier state.
+struct State {
+    std::string name;
+    std::function<void(PelEye&)> change = [](PelEye&) {};
+    size_t frame = 0;
+    uint32_t texture = 0;                    // texels on a side; 0: none
+    const Lut* caustics = nullptr;           // of the caller
+    std::function<void(PelEye&)> wall = {};  // a second eye, of material 1
+};
+
+class Sequence {
+  public:
+    Sequence() {
+        for (const auto& [width, height, pixel] :
+             {std::tuple{96u, 64u, 0.5f}, {64u, 96u, 0.5f}, {40u, 24u, 1.2f}, {192u, 32u, 1.0f}})
+            frames.push_back(
+                std::make_unique<EyeFrame>(width, height, pixel, 0.5f * float(width), 0.5f * float(height)));
+        for (const uint32_t side : {16u, 64u}) {
+            std::vector<float> texels;
+            for (uint32_t i = 0; i < side * side * 3; ++i) texels.push_back(float(i * 7919 % 97) / 97);
+            textures.emplace_back(frames[0]->device, texels);
+        }
+    }
+    std::vector<float> shade(const State& state, Shader& shader) {
+        EyeFrame& frame = *frames[state.frame];
+        frame.prepare(shader);
+        PelEye eye = pelEyeDefaults();
+        state.change(eye);
+        shader.setEye(2, eye, state.caustics ? *state.caustics : Lut());
+        if (state.texture)
+            shader.setIrisTexture(
+                2, imageDesc(textures[state.texture == 64], PEL_FORMAT_RGB32F, state.texture, state.texture));
+        else
+            shader.clearIrisTexture(2);
+        if (state.wall) {
+            PelEye second = pelEyeDefaults();
+            state.wall(second);
+            shader.setEye(1, second);
+        } else {
+            shader.clearEye(1);
+        }
+        return frame.execute(shader);
+    }
+
+    std::vector<std::unique_ptr<EyeFrame>> frames;
+    std::vector<Buffer> textures;
+};
+
+}  // namespace
+
+TEST(EyeSequence, EqualsNewShaders) {
+    Sequence sequence;
+    const Device& device = sequence.frames[0]->device;
+    const Profile skin = Profile::skin(), marble = Profile::named("marble");
+    PelEyeLutDesc desc = pelEyeLutDescDefaults();
+    desc.width = 16, desc.height = 8, desc.depth = 12;
+    const Lut small(device, desc);
+    desc.aqueousIndex = 1.2f, desc.width = 8, desc.height = 16;  // as many texels
+    const Lut other(device, desc);
+
+    std::vector<State> states;
+    // Every length and index from which the caustics follow, with the default eye between two changes.
+    for (const auto& [name, field, value] : {std::tuple{"scleraRadius", &PelEye::scleraRadius, 11.0f},
+                                             {"corneaRadius", &PelEye::corneaRadius, 7.5f},
+                                             {"corneaConic", &PelEye::corneaConic, -0.6f},
+                                             {"limbusRadius", &PelEye::limbusRadius, 5.6f},
+                                             {"chamberDepth", &PelEye::chamberDepth, 3.4f},
+                                             {"corneaIndex", &PelEye::corneaIndex, 1.5f},
+                                             {"aqueousIndex", &PelEye::aqueousIndex, 1.2f},
+                                             {"irisRadius", &PelEye::irisRadius, 5.4f},
+                                             {"irisConcavity", &PelEye::irisConcavity, 0.6f}}) {
+        states.push_back({name, [field, value](PelEye& e) { e.*field = value; }});
+        states.push_back({"defaults"});
+    }
+    states.push_back({"moved", [](PelEye& e) { e.center[0] = 2, e.gaze[0] = 0.3f, e.gaze[2] = 0.9f; }});
+    states.push_back({"pupil", [](PelEye& e) { e.pupilRadius = 3; }});
+    states.push_back({"profile", [&](PelEye& e) { e.irisProfile = skin.get(); }});
+    states.push_back({"other profile", [&](PelEye& e) { e.irisProfile = marble.get(); }});
+    states.push_back({"no profile"});
+    states.push_back({"table of the caller", [](PelEye&) {}, 0, 0, &small});
+    states.push_back({"other table of the caller", [](PelEye&) {}, 0, 0, &other});
+    states.push_back({"own table", [](PelEye&) {}, 1});
+    states.push_back({"seed", [](PelEye& e) { e.irisSeed = 7; }, 1});
+    states.push_back({"texture of 64", [](PelEye&) {}, 1, 64});
+    states.push_back({"texture of 16", [](PelEye&) {}, 2, 16});
+    states.push_back({"no texture", [](PelEye&) {}, 3});
+    const auto skinned = [&](PelEye& e) { e.irisProfile = skin.get(); };
+    states.push_back({"two eyes alike", [](PelEye&) {}, 0, 16, nullptr, [](PelEye&) {}});
+    states.push_back({"two profiles", [](PelEye&) {}, 0, 0, nullptr, skinned});
+    states.push_back({"profiles exchanged", skinned, 1, 0, nullptr, [](PelEye&) {}});
+    states.push_back({"two shapes", [](PelEye& e) { e.corneaIndex = 1.5f; }, 2, 64, nullptr, [](PelEye&) {}});
+    states.push_back({"one eye", [](PelEye&) {}, 0});
+
+    Shader shader(device);
+    std::vector<std::vector<float>> pictures;
+    for (const State& state : states) {
+        SCOPED_TRACE(state.name);
+        Shader fresh(device);
+        const std::vector<float> wanted = sequence.shade(state, fresh), picture = sequence.shade(state, shader);
+        EXPECT_GT(sequence.frames[state.frame]->stats.pixelsCaustic, 0u);
+        EXPECT_TRUE(picture == wanted) << "the picture depends on what was shaded before";
+        if (!pictures.empty()) {
+            EXPECT_TRUE(picture != pictures.back()) << "a state like the one before tests nothing";
+        }
+        pictures.push_back(picture);
+    }
+}
+
+// Tables one after another on one device equal the same tables in the reverse order.
+TEST(EyeSequence, TablesInAnyOrder) {
+    const Profile skin = Profile::skin();
+    std::vector<PelEyeLutDesc> descs;
+    for (int i = 0; i < 6; ++i) {
+        PelEyeLutDesc desc = pelEyeLutDescDefaults();
+        desc.width = i % 2 ? 16 : 24, desc.height = i % 2 ? 24 : 16, desc.depth = 6;
+        desc.irisRadius = i < 3 ? 6.0f : 5.0f;
+        desc.profile = i % 3 == 2 ? skin.get() : nullptr;
+        descs.push_back(desc);
+    }
+    const Device device("");
+    std::vector<std::vector<float>> forwards;
+    for (const PelEyeLutDesc& desc : descs) forwards.push_back(Lut(device, desc).read<float>(PEL_LUT_FLOAT));
+    for (size_t i = descs.size(); i-- > 0;)
+        EXPECT_EQ(Lut(device, descs[i]).read<float>(PEL_LUT_FLOAT), forwards[i]) << i;
+}

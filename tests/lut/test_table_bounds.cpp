@@ -1,0 +1,230 @@
+// Every description of a table within the ranges of its fields is integrated in bounded time, or refused.
+#include <gtest/gtest.h>
+
+#include <pellucid/pellucid.hpp>
+
+#include <cmath>
+#include <ctime>
+#include <type_traits>
+
+#include "shared/field_ranges.h"
+#include "test_size.h"
+
+using namespace pellucid;
+
+namespace {
+
+// Five seconds on two cores. Time of the processor, so that a busy machine fails no test.
+constexpr double maxSeconds = 10;
+
+struct Extents {
+    uint32_t width, height, depth;
+};
+const std::vector<Extents> lutExtents{{16, 8}, {16384, 1}, {1, 16384}, {16384, 16384}},
+    eyeExtents{{16, 8, 4}, {1024, 2, 2}, {2, 1024, 2}, {2, 2, 256}, {1024, 1024, 256}};
+
+template <class Desc>
+struct Field {
+    const char* name;
+    void (*set)(Desc&, float);
+    float ends[2];
+};
+
+#define PEL_FIELD(name, least, most, special) \
+    {#name, [](Desc& d, float v) { d.name = std::remove_cvref_t<decltype(d.name)>(v); }, {least, most}},
+
+const auto curvatureFields = [] {
+    using Desc = PelCurvatureLutDesc;
+    return std::vector<Field<Desc>>{PEL_EACH_CURVATURE_LUT_RANGE(PEL_FIELD)};
+}();
+const auto shadowFields = [] {
+    using Desc = PelShadowLutDesc;
+    return std::vector<Field<Desc>>{PEL_EACH_SHADOW_LUT_RANGE(PEL_FIELD)};
+}();
+const auto eyeFields = [] {
+    using Desc = PelEyeLutDesc;
+    return std::vector<Field<Desc>>{PEL_EACH_EYE_LUT_RANGE(PEL_FIELD)};
+}();
+
+// Returns false for a description that is refused.
+template <class Desc>
+bool finishes(const Device& device, const Desc& desc, const std::string& what) {
+    const std::clock_t start = std::clock();
+    bool made = false;
+    try {
+        const Lut lut(device, desc);
+        made = true;
+    } catch (const Error& e) {
+        EXPECT_TRUE(e.code() == PEL_ERROR_INVALID_ARGUMENT || e.code() == PEL_ERROR_OUT_OF_MEMORY)
+            << what << ": " << e.what();
+    }
+    EXPECT_LT(double(std::clock() - start) / CLOCKS_PER_SEC, maxSeconds) << what;
+    return made;
+}
+
+void setExtents(PelCurvatureLutDesc& desc, const Extents& e) {
+    desc.width = e.width, desc.height = e.height;
+}
+void setExtents(PelShadowLutDesc& desc, const Extents& e) {
+    desc.width = e.width, desc.height = e.height;
+}
+void setExtents(PelEyeLutDesc& desc, const Extents& e) {
+    desc.width = e.width, desc.height = e.height, desc.depth = e.depth;
+}
+
+// Each field at both ends of its range with all extents, and pairs of fields in a small table.
+template <class Desc>
+void expectBounded(const Desc& usual, const std::vector<Field<Desc>>& fields,
+                   const std::vector<Extents>& extents) {
+    const Device device("");
+    size_t made = 0;
+    for (const Field<Desc>& field : fields)
+        for (const float end : field.ends) {
+            const std::string what = std::string(field.name) + " " + std::to_string(end);
+            for (const Extents& e : extents) {
+                Desc desc = usual;
+                setExtents(desc, e);
+                field.set(desc, end);
+                made += finishes(device, desc,
+                                 what + " in " + std::to_string(e.width) + "x" + std::to_string(e.height));
+            }
+            for (const Field<Desc>& other : fields)
+                for (const float otherEnd : other.ends) {
+                    Desc desc = usual;
+                    setExtents(desc, extents[0]);
+                    field.set(desc, end);
+                    other.set(desc, otherEnd);
+                    made += finishes(device, desc, what + ", " + other.name + " " + std::to_string(otherEnd));
+                }
+        }
+    EXPECT_GT(made, fields.size());
+}
+
+// Profiles with as much content as the library accepts.
+std::vector<std::pair<const char*, Profile>> largeProfiles() {
+    std::vector<PelGaussian> gaussians;
+    for (int i = 0; i < 256; ++i) gaussians.push_back({std::pow(10.0f, float(i - 128) / 16), {1, 1, 1}});
+    std::vector<float> distances, values;
+    for (int i = 0; i < 4096; ++i) {
+        distances.push_back(float(i));
+        for (int c = 0; c < 3; ++c) values.push_back(float(i % 7 + c));
+    }
+    const float path[3] = {1e-30f, 1, 1e30f}, albedo[3] = {0, 0.5f, 1}, scattering[3] = {1e30f, 1, 1e-30f},
+                absorption[3] = {1e-30f, 1, 1e30f};
+    std::vector<std::pair<const char*, Profile>> profiles;
+    profiles.emplace_back("256 Gaussians", Profile::gaussians(gaussians));
+    profiles.emplace_back("table of 4096", Profile::table(distances, values));
+    profiles.emplace_back("burley", Profile::burley(path, albedo));
+    profiles.emplace_back("dipole", Profile::dipole(absorption, scattering, 1.3f));
+    return profiles;
+}
+
+}  // namespace
+
+TEST(TableBounds, OfCurvatureTables) {
+    expectBounded(pelCurvatureLutDescDefaults(), curvatureFields, lutExtents);
+}
+
+TEST(TableBounds, OfShadowTables) {
+    expectBounded(pelShadowLutDescDefaults(), shadowFields, lutExtents);
+}
+
+TEST(TableBounds, OfCausticTables) {
+    expectBounded(pelEyeLutDescDefaults(), eyeFields, eyeExtents);
+    const Profile skin = Profile::skin();
+    PelEyeLutDesc scattering = pelEyeLutDescDefaults();
+    scattering.profile = skin.get();
+    expectBounded(scattering, eyeFields, {eyeExtents[0]});
+}
+
+TEST(TableBounds, OfTheLargestProfiles) {
+    const Device device("");
+    const uint32_t longest = sized(16384u, 64u);
+    for (const auto& [name, profile] : largeProfiles()) {
+        for (int form = PEL_FORM_ARC; form <= PEL_FORM_PENNER_RING; ++form)
+            for (const Extents& e : {Extents{4, longest}, Extents{longest, 4}}) {
+                PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+                setExtents(desc, e);
+                desc.form = PelCurvatureForm(form);
+                desc.profile = profile.get();
+                EXPECT_TRUE(finishes(device, desc, name + std::string(", form ") + std::to_string(form)));
+            }
+        for (const float sharpening : {1.0f, 10.0f, 1e6f})
+            for (const Extents& e : {Extents{4, longest}, Extents{longest, 4}, Extents{longest / 8, 256}}) {
+                PelShadowLutDesc desc = pelShadowLutDescDefaults();
+                setExtents(desc, e);
+                desc.sharpening = sharpening;
+                desc.profile = profile.get();
+                EXPECT_TRUE(finishes(device, desc, name + std::string(", shadow")));
+            }
+        for (const float unit : {1.0f, 1e-4f, 1e4f}) {
+            PelEyeLutDesc desc = pelEyeLutDescDefaults();
+            desc.profile = profile.get();
+            desc.millimetresPerUnit = unit;
+            EXPECT_TRUE(finishes(device, desc, name + std::string(", caustic")));
+        }
+    }
+}
+
+TEST(TableBounds, OfTables16384OnASide) {
+    const Device device("");
+    PelSpecularLutDesc desc = pelSpecularLutDescDefaults();
+    desc.width = 1 << 14, desc.height = 1 << 13;
+    EXPECT_FALSE(finishes(device, desc, "2^27 texels"));
+    EXPECT_NE(std::string(pelGetErrorMessage()).find("PelSpecularLutDesc.width"), std::string::npos)
+        << pelGetErrorMessage();
+}
+
+// An iris far smaller than the limbus, which takes so many cells, is refused by the name of its field.
+TEST(TableBounds, ATinyIrisIsRefused) {
+    const Device device("");
+    PelEyeLutDesc desc = pelEyeLutDescDefaults();
+    for (const float radius : {0.05f, 1e-6f}) {
+        desc.irisRadius = radius;
+        EXPECT_FALSE(finishes(device, desc, "iris of " + std::to_string(radius)));
+        EXPECT_NE(std::string(pelGetErrorMessage()).find("PelEyeLutDesc.irisRadius"), std::string::npos)
+            << pelGetErrorMessage();
+    }
+    Shader shader(device);
+    shader.setMaterial(1, pelMaterialDefaults());
+    PelEye eye = pelEyeDefaults();
+    eye.irisRadius = 0.05f, eye.pupilRadius = 0.01f;
+    EXPECT_THROW(shader.setEye(1, eye), Error);
+    EXPECT_NE(std::string(pelGetErrorMessage()).find("PelEye.irisRadius"), std::string::npos);
+}
+
+// A long table is cancelled between its parts; blocking calls only.
+TEST(TableBounds, CausticTablesAreCancelled) {
+    const Device device("");
+    PelEyeLutDesc desc = pelEyeLutDescDefaults();
+    desc.irisRadius = 1;
+    struct Calls {
+        int count = 0, cancelAt = 0;
+    } calls;
+    device.setProgress(
+        [](void* user, double fraction, const char*) {
+            EXPECT_TRUE(fraction > 0 && fraction < 1) << fraction;
+            Calls& c = *static_cast<Calls*>(user);
+            return int(++c.count != c.cancelAt);
+        },
+        &calls);
+    const std::vector<float> whole = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
+    EXPECT_GT(calls.count, 2);
+    calls = {0, 2};
+    try {
+        Lut(device, desc);
+        FAIL() << "not cancelled";
+    } catch (const Error& e) {
+        EXPECT_EQ(e.code(), PEL_ERROR_CANCELLED);
+    }
+    EXPECT_EQ(calls.count, 2);
+    // In one part the texels are the same.
+    calls = {};
+    PelEvent made = nullptr;
+    const PelSubmit submit{nullptr, 0, &made};
+    const Lut lut(device, desc, &submit);
+    check(pelEventWait(made));
+    pelEventRelease(made);
+    EXPECT_EQ(calls.count, 0);
+    EXPECT_EQ(lut.read<float>(PEL_LUT_FLOAT), whole);
+}

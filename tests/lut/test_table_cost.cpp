@@ -1,0 +1,126 @@
+// What a table costs beside its arithmetic: buffers, launches, transfers, waits, and pages that the system maps anew.
+#include <gtest/gtest.h>
+
+#include <pellucid/pellucid.hpp>
+
+#include <functional>
+
+#include "cl/cl_spy.h"
+#include "test_size.h"
+#ifdef __linux__
+#include <sys/resource.h>
+#endif
+
+using namespace pellucid;
+
+namespace {
+
+constexpr uint32_t side = 512;
+constexpr uint64_t tableBytes = 16ull * (side + 1) * (side + 1);
+
+struct Kind {
+    const char* name;
+    std::function<Lut(const Device&, const PelSubmit*)> make;
+    uint64_t buffers, launches, maxBytes;  // of device memory
+};
+
+std::vector<Kind> kinds() {
+    static const Profile table = Profile::table({0, 1, 2, 4}, {9, 8, 7, 4, 3, 2, 1, .5f, .2f, 0, 0, 0});
+    const auto curvature = [](PelCurvatureForm form, const Profile& profile) {
+        PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+        desc.width = desc.height = side;
+        desc.form = form;
+        desc.profile = profile.get();
+        return [=](const Device& device, const PelSubmit* submit) { return Lut(device, desc, submit); };
+    };
+    const auto shadow = [](const Profile& profile) {
+        PelShadowLutDesc desc = pelShadowLutDescDefaults();
+        desc.width = desc.height = side;
+        desc.profile = profile.get();
+        return [=](const Device& device, const PelSubmit* submit) { return Lut(device, desc, submit); };
+    };
+    PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
+    specular.width = specular.height = side;
+    PelEyeLutDesc eye = pelEyeLutDescDefaults();
+    eye.width = 128, eye.height = 64, eye.depth = 32;
+    static const Profile skin = Profile::skin();
+    return {{"arc", curvature(PEL_FORM_ARC, skin), 5, 2, tableBytes * 3 / 2},
+            {"sphere", curvature(PEL_FORM_SPHERE, skin), 5, 2, tableBytes * 3 / 2},
+            {"shadow", shadow(skin), 2, 1, tableBytes + 4096},
+            {"specular", [=](const Device& d, const PelSubmit* s) { return Lut(d, specular, s); }, 1, 1,
+             tableBytes},
+            {"tabulated arc", curvature(PEL_FORM_ARC, table), 6, 2, tableBytes * 2},
+            {"tabulated sphere", curvature(PEL_FORM_SPHERE, table), 6, 2, tableBytes * 2},
+            {"tabulated shadow", shadow(table), 5, 2, tableBytes * 9 / 4},
+            {"caustic", [=](const Device& d, const PelSubmit* s) { return Lut(d, eye, s); }, 2, 2,
+             tableBytes * 3 / 2}};
+}
+
+// Page faults of this process, in which the system hands out pages of zeros.
+[[maybe_unused]] int64_t pageFaults() {
+#ifdef __linux__
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_minflt;
+#else
+    return 0;
+#endif
+}
+
+}  // namespace
+
+TEST(TableCost, Counters) {
+    const Device device("");
+    {
+        const auto before = spy::counts().buffersMade;
+        const Buffer probe(device, 16);
+        if (spy::counts().buffersMade == before)
+            GTEST_SKIP() << "another library stands before the spy (Oclgrind)";
+    }
+    for (const Kind& kind : kinds()) {
+        SCOPED_TRACE(kind.name);
+        kind.make(device, nullptr);  // builds the program
+        const PelDeviceStats stats = device.stats();
+        const spy::Counts before = spy::counts();
+        kind.make(device, nullptr);
+        const spy::Counts blocking = spy::counts();
+        EXPECT_EQ(blocking.buffersMade - before.buffersMade, kind.buffers);
+        EXPECT_EQ(blocking.launches - before.launches, kind.launches);
+        EXPECT_EQ(blocking.waits - before.waits, 1u);
+        EXPECT_EQ(blocking.transfers, before.transfers);
+        EXPECT_EQ(blocking.programs, before.programs);
+        const bool cleared = device.info().type != PEL_DEVICE_CPU && kind.name == std::string("caustic");
+        EXPECT_EQ(blocking.bytesFilled - before.bytesFilled, cleared ? tableBytes / 4 : 0);
+        const PelDeviceStats after = device.stats();
+        EXPECT_LE(after.bytesAllocated - stats.bytesAllocated, kind.maxBytes);
+        EXPECT_LE(after.bytesToDevice - stats.bytesToDevice, 1200u << 10);
+        EXPECT_EQ(after.bytesToHost, stats.bytesToHost);
+
+        PelEvent made = nullptr;
+        const PelSubmit submit{nullptr, 0, &made};
+        const uint64_t waits = spy::counts().waits;
+        const Lut lut = kind.make(device, &submit);
+        EXPECT_EQ(spy::counts().waits, waits) << "a call that returns an event does not wait";
+        check(pelEventWait(made));
+        pelEventRelease(made);
+    }
+}
+
+// Memory of tables is used again: mapped anew, its pages would take several times as long as the arithmetic.
+TEST(TableCost, PagesAreUsedAgain) {
+#if !defined(__linux__) || !defined(__GLIBC__)
+    GTEST_SKIP() << "pages are counted on Linux, and by glibc's allocator only";
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "the sanitizer's allocator keeps what is freed";
+#endif
+    const Device device("");
+    if (device.info().type != PEL_DEVICE_CPU || !device.info().sharedMemory || testsAreSmall())
+        GTEST_SKIP() << "the library allocates tables itself on CPUs only";
+    for (const Kind& kind : kinds()) {
+        for (int i = 0; i < 3; ++i) kind.make(device, nullptr);
+        constexpr int tables = 8;
+        const int64_t before = pageFaults();
+        for (int i = 0; i < tables; ++i) kind.make(device, nullptr);
+        EXPECT_LT(pageFaults() - before, int64_t(tables * kind.maxBytes / 4096 / 4)) << kind.name;
+    }
+}
