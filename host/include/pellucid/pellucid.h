@@ -575,7 +575,7 @@ typedef enum PelLutAxis {
 /* pelCurvatureLutDescDefaults() is the table that a material makes of its profile, pelCurvatureLutDescFaceWorks() that of FaceWorks. */
 typedef struct PelCurvatureLutDesc {
     uint32_t structSize;
-    uint32_t width;        /* texels along N.L from -1 to 1; 1 to 16384; default 64 */
+    uint32_t width;        /* texels along N.L from -1 to 1; 1 to 16384, at most 2^26 in all; default 64 */
     uint32_t height;       /* texels along curvature from 1/radiusMax to 1/radiusMin; default 64 */
     PelCurvatureForm form; /* default PEL_FORM_SPHERE */
     float diffusionRadius; /* length; stretches the profile, whose own radius is in PelProfileInfo; default 0: its own */
@@ -588,7 +588,7 @@ typedef struct PelCurvatureLutDesc {
 /* pelShadowLutDescDefaults() is the table that a material makes of its profile, pelShadowLutDescFaceWorks() that of FaceWorks. */
 typedef struct PelShadowLutDesc {
     uint32_t structSize;
-    uint32_t width;        /* texels along the wide-filtered shadow from 0 to 1; 1 to 16384; default 128 */
+    uint32_t width;        /* texels along the wide-filtered shadow from 0 to 1; 1 to 16384, at most 2^26 in all; default 128 */
     uint32_t height;       /* texels along 1/penumbra width, from widest to narrowest; default 32 */
     float diffusionRadius; /* length; default 0: the profile's own radius */
     float widthMin; /* length, narrowest penumbra; default 0: the width of a material's shadow filter, pelShadowFilterWidthOf() */
@@ -603,12 +603,12 @@ typedef struct PelShadowLutDesc {
 
 typedef struct PelSpecularLutDesc {
     uint32_t structSize;
-    uint32_t width;  /* texels along n.h from 0 to 1; 1 to 16384; typical 512 */
+    uint32_t width;  /* texels along n.h from 0 to 1; 1 to 16384, at most 2^26 in all; typical 512 */
     uint32_t height; /* texels along the roughness m from 0 to 1; typical 512 */
 } PelSpecularLutDesc;
 
 /* The caustic of a cornea: irradiance on the iris, of a beam of irradiance 1 across itself. Lengths are in any one unit: a table of
- * an eye twice as large is the same. Fields that PelEye has too are described there. */
+ * an eye twice as large is the same. Refused if it takes more than a few seconds. Fields of PelEye: see there. */
 typedef struct PelEyeLutDesc {
     uint32_t structSize;
     uint32_t width; /* texels across the iris in the direction of the light, from the far rim to the near one; 2 to 1024; 64 */
