@@ -1,7 +1,7 @@
 // Number fields of public structures against the table of their ranges.
 #pragma once
 #include "cl/error.h"
-#include "shared/field_ranges.h"
+#include "fields/field_ranges.h"
 
 namespace pel {
 
@@ -20,6 +20,15 @@ void checkRange(std::string_view structure, const char* field, const float (&val
 
 }  // namespace pel
 
-// For the lists of shared/field_ranges.h, where `structure` is a name and `fields` the object.
-#define PEL_CHECK_RANGE(field, least, most, special) \
-    checkRange(structure, #field, fields.field, {least, most, special});
+// For the lists of pellucid_fields.h, where `structure` is a name and `fields` the object.
+#define PEL_CHECK_RANGE(type, name, value, min, max, special, ...) \
+    PEL_CHECK_##type##_(name, min, max, special)
+#define PEL_CHECK_FLOAT_(name, min, max, special) \
+    checkRange(structure, #name, fields.name, {float(min), float(max), float(special)});
+#define PEL_CHECK_UINT_ PEL_CHECK_FLOAT_
+#define PEL_CHECK_COLOR_ PEL_CHECK_FLOAT_
+// Not checked where they are set.
+#define PEL_CHECK_FREE_(...)
+#define PEL_CHECK_FREE_UINT_(...)
+#define PEL_CHECK_VECTOR_(...)
+#define PEL_CHECK_MATRIX_(...)

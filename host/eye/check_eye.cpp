@@ -28,7 +28,7 @@ void checkFinite(const char* field, const float (&v)[3]) {
 PelEye resolvedEye(const PelEye& given) {
     const char* structure = "PelEye";
     const PelEye& fields = given;
-    PEL_EACH_EYE_RANGE(PEL_CHECK_RANGE)
+    PEL_EACH_EYE_FIELD(PEL_CHECK_RANGE)
     PelEye eye = given;
     if (eye.irisRadius == 0) eye.irisRadius = eye.limbusRadius;
     checkEyeLutWork(pelEyeLutDescOf(&eye), structure);
@@ -54,7 +54,7 @@ PelEye resolvedEye(const PelEye& given) {
 
 void checkEyeLutDesc(const PelEyeLutDesc& fields) {
     const char* structure = "PelEyeLutDesc";
-    PEL_EACH_EYE_LUT_RANGE(PEL_CHECK_RANGE)
+    PEL_EACH_EYE_LUT_FIELD(PEL_CHECK_RANGE)
     checkEyeLutWork(fields, structure);
 }
 

@@ -119,7 +119,7 @@ void TomlReader::rows(std::string_view key, float* values, size_t rows, size_t c
 void TomlReader::integer(std::string_view key, uint32_t& value, Range range) {
     const toml::node* node = find(key);
     if (!node) return;
-    const uint32_t low = uint32_t(range.least), high = range.most < 0x1p32f ? uint32_t(range.most) : UINT32_MAX;
+    const uint32_t low = uint32_t(range.min), high = range.max < 0x1p32f ? uint32_t(range.max) : UINT32_MAX;
     const std::string special =
                           std::isnan(range.special) ? "" : std::to_string(uint32_t(range.special)) + ", or ",
                       wanted = special + "a whole number from " + std::to_string(low) + " to " +

@@ -37,7 +37,7 @@ void checkOrder(const PelLutInfo& info) {
 
 void checkCurvatureDesc(const PelCurvatureLutDesc& fields) {
     const char* structure = "PelCurvatureLutDesc";
-    PEL_EACH_CURVATURE_LUT_RANGE(PEL_CHECK_RANGE)
+    PEL_EACH_CURVATURE_LUT_FIELD(PEL_CHECK_RANGE)
     if (fields.form < PEL_FORM_ARC || fields.form > PEL_FORM_PENNER_RING)
         invalidArgument(
             "PelCurvatureLutDesc.form is ", int(fields.form),
@@ -48,14 +48,14 @@ void checkCurvatureDesc(const PelCurvatureLutDesc& fields) {
 
 void checkShadowDesc(const PelShadowLutDesc& fields) {
     const char* structure = "PelShadowLutDesc";
-    PEL_EACH_SHADOW_LUT_RANGE(PEL_CHECK_RANGE)
+    PEL_EACH_SHADOW_LUT_FIELD(PEL_CHECK_RANGE)
     checkAxis(structure, fields.axis);
     checkTexels(structure, fields.width, fields.height);
 }
 
 void checkSpecularDesc(const PelSpecularLutDesc& fields) {
     const char* structure = "PelSpecularLutDesc";
-    PEL_EACH_SPECULAR_LUT_RANGE(PEL_CHECK_RANGE)
+    PEL_EACH_SPECULAR_LUT_FIELD(PEL_CHECK_RANGE)
     checkTexels(structure, fields.width, fields.height);
 }
 

@@ -107,7 +107,7 @@ void checkScatteredTexture(const ImageView& texture) {
 void checkMaterial(const PelMaterial& m) {
     const char* structure = "PelMaterial";
     const PelMaterial& fields = m;
-    PEL_EACH_MATERIAL_RANGE(PEL_CHECK_RANGE)
+    PEL_EACH_MATERIAL_FIELD(PEL_CHECK_RANGE)
     if (unsigned(m.specularModel) >= PEL_MODELS)
         invalidArgument("PelMaterial.specularModel is ", int(m.specularModel),
                         ", which is none of PelSpecularModel");
@@ -120,7 +120,8 @@ void checkMaterial(const PelMaterial& m) {
 void checkLight(const PelLight& l, uint32_t index) {
     const std::string name = text("PelLight ", index), &structure = name;
     const PelLight& fields = l;
-    PEL_EACH_LIGHT_RANGE(PEL_CHECK_RANGE)
+    PEL_EACH_LIGHT_FIELD(PEL_CHECK_RANGE)
+    PEL_EACH_SHADOW_MAP_FIELD(PEL_CHECK_RANGE)
     if (unsigned(l.shadowContent) >= PEL_CONTENTS)
         invalidArgument(name, ".shadowContent is ", int(l.shadowContent),
                         ", which is none of PelShadowContent");
@@ -136,12 +137,12 @@ void checkLight(const PelLight& l, uint32_t index) {
                             "); it must be of unit length");
     } else {
         checkFinite(name.c_str(), "position", l.position, 3);
-        PEL_EACH_PLACED_LIGHT_RANGE(PEL_CHECK_RANGE)
+        PEL_EACH_POSITIONAL_LIGHT_FIELD(PEL_CHECK_RANGE)
     }
     if (l.type == PEL_LIGHT_SPOT) {
         checkFinite(name.c_str(), "spotDirection", l.spotDirection, 3);
         if (!isUnit(l.spotDirection)) invalidArgument(name, ".spotDirection must be of unit length");
-        PEL_EACH_SPOT_RANGE(PEL_CHECK_RANGE)
+        PEL_EACH_SPOT_LIGHT_FIELD(PEL_CHECK_RANGE)
         if (l.spotCosInner < l.spotCosOuter)
             invalidArgument(name, ".spotCosInner is ", l.spotCosInner, "; it must be at least spotCosOuter, ",
                             l.spotCosOuter);
@@ -176,7 +177,7 @@ void checkOptions(const PelShaderOptions& options) {
     checkFinite("PelShaderOptions", "invalidColor", options.invalidColor, 3);
     const char* structure = "PelShaderOptions";
     const PelShaderOptions& fields = options;
-    PEL_EACH_OPTION_RANGE(PEL_CHECK_RANGE)
+    PEL_EACH_OPTION_FIELD(PEL_CHECK_RANGE)
     if (options.tileLists > PEL_TILES_NO_LIST)
         invalidArgument("PelShaderOptions.tileLists is ", int(options.tileLists),
                         ", which is none of PelTileLists");

@@ -63,8 +63,8 @@ def longer_header(include, to):
     if count < 10:
         raise SystemExit(f"{count} structures were made longer: broken")
     (to / "pellucid/pellucid.h").write_text(text.replace("#define PEL_VERSION_MINOR 1", "#define PEL_VERSION_MINOR 2"))
-    defaults = (include / "pellucid/pellucid_defaults.h").read_text(encoding="utf-8")
-    (to / "pellucid/pellucid_defaults.h").write_text(defaults)
+    for name in ("pellucid_defaults.h", "pellucid_fields.h"):
+        (to / "pellucid" / name).write_text((include / "pellucid" / name).read_text(encoding="utf-8"))
 
 
 def two_versions(include, library):

@@ -1,14 +1,14 @@
-// One table says which values a field may have (kernels/shared/field_ranges.h): the library and the scene file take and refuse the
-// same ones, at both ends of each range and beyond.
+// The library and the scene file accept and refuse the same values of each field (pellucid_fields.h), at both ends of its range
+// and beyond.
 #include <cmath>
 #include <limits>
 #include <type_traits>
 
+#include "fields/field_ranges.h"
 #include "io/file_error.h"
 #include "io/scene/scene_file.h"
 #include "io_files.h"
 #include "pellucid/pellucid.hpp"
-#include "shared/field_ranges.h"
 
 using namespace pellucid;
 
@@ -42,13 +42,13 @@ std::string said(float value) {
 template <class T>
 std::vector<float> tried(const pel::FieldRange& r) {
     const float inf = std::numeric_limits<float>::infinity();
-    std::vector<float> values{r.least, r.most};
+    std::vector<float> values{r.min, r.max};
     if (!std::isnan(r.special)) values.push_back(r.special);
     if (std::is_integral_v<T>) {
-        values.insert(values.end(), {r.least - 1, r.most + 1});
+        values.insert(values.end(), {r.min - 1, r.max + 1});
         std::erase_if(values, [](float v) { return v < 0; });
     } else {
-        values.insert(values.end(), {std::nextafter(r.least, -inf), std::nextafter(r.most, inf), -1, 0});
+        values.insert(values.end(), {std::nextafter(r.min, -inf), std::nextafter(r.max, inf), -1, 0});
         std::erase_if(values, [](float v) { return !std::isfinite(v); });
     }
     return values;
@@ -90,7 +90,7 @@ TEST(FieldRanges, LibraryAndSceneFileAgree) {
         "\"c\"]\nmaterial = [\"i\"]\n";
     const auto material = [&](const std::string& line) { return head + "[[material]]\nid = 1\n" + line; };
     ASSERT_TRUE(accepts([&] { io::parseScene("scene.toml", material("")); })) << "the scene around the field";
-#define CHECK(field, least, most, special)                             \
+#define CHECK(type, field, ...)                                        \
     expectSame<decltype(PelMaterial::field)>(                          \
         #field, pel::range::material::field,                           \
         [&](float value) {                                             \
@@ -100,7 +100,7 @@ TEST(FieldRanges, LibraryAndSceneFileAgree) {
             return accepts([&] { Shader(device).setMaterial(1, m); }); \
         },                                                             \
         material);
-    PEL_EACH_MATERIAL_RANGE(CHECK)
+    PEL_EACH_MATERIAL_FIELD(CHECK)
 #undef CHECK
     EXPECT_GT(fields, 20);
 }

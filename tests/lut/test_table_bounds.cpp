@@ -7,7 +7,7 @@
 #include <ctime>
 #include <type_traits>
 
-#include "shared/field_ranges.h"
+#include "fields/field_ranges.h"
 #include "test_size.h"
 
 using namespace pellucid;
@@ -30,20 +30,22 @@ struct Field {
     float ends[2];
 };
 
-#define PEL_FIELD(name, least, most, special) \
-    {#name, [](Desc& d, float v) { d.name = std::remove_cvref_t<decltype(d.name)>(v); }, {least, most}},
+#define PEL_FIELD(type, name, value, min, max, ...)                               \
+    {#name,                                                                       \
+     [](Desc& d, float v) { d.name = std::remove_cvref_t<decltype(d.name)>(v); }, \
+     {float(min), float(max)}},
 
 const auto curvatureFields = [] {
     using Desc = PelCurvatureLutDesc;
-    return std::vector<Field<Desc>>{PEL_EACH_CURVATURE_LUT_RANGE(PEL_FIELD)};
+    return std::vector<Field<Desc>>{PEL_EACH_CURVATURE_LUT_FIELD(PEL_FIELD)};
 }();
 const auto shadowFields = [] {
     using Desc = PelShadowLutDesc;
-    return std::vector<Field<Desc>>{PEL_EACH_SHADOW_LUT_RANGE(PEL_FIELD)};
+    return std::vector<Field<Desc>>{PEL_EACH_SHADOW_LUT_FIELD(PEL_FIELD)};
 }();
 const auto eyeFields = [] {
     using Desc = PelEyeLutDesc;
-    return std::vector<Field<Desc>>{PEL_EACH_EYE_LUT_RANGE(PEL_FIELD)};
+    return std::vector<Field<Desc>>{PEL_EACH_EYE_LUT_FIELD(PEL_FIELD)};
 }();
 
 // Returns false for a description that is refused.

@@ -777,8 +777,8 @@ typedef struct PelLight {
     float shadowDepthA; /* perspective: distance along the light = 1 / (A * z + B), from its projection matrix */
     float shadowDepthB;
     /* The wide shadow made from the shadow map, when PEL_LIGHT_WIDE_SHADOW is not set (docs/guide/shading.md, "Wide shadow"). */
-    uint32_t shadowFilterTexels; /* 0: none. Else the most texels across the filter that are read, 4 to 256; of a finer map
-                                    every 2nd, 3rd, ... row and column. Typical 48 */
+    uint32_t shadowFilterTexels; /* maximum number of texels across the filter, 4 to 256; of a finer map every 2nd, 3rd, ... row
+                                    and column is read. 0: materials of PEL_SCATTERING_PREINTEGRATED get no shadow from the map; 48 */
     /* The next three are -1 by default: from each material's profile (docs/guide/shading.md, "Materials"); without one 0.5 mm, 0.25
        and 0.5. */
     float shadowBias; /* length an occluder must stand before the surface to count */

@@ -4,10 +4,25 @@
 #define PELLUCID_DEFAULTS_H
 #include <string.h>
 
+#include "pellucid_fields.h"
+
 #define PEL_ZEROED_(Type, value)     \
     Type value;                      \
     memset(&value, 0, sizeof value); \
     value.structSize = (uint32_t)sizeof value
+
+/* The default of a row of pellucid_fields.h, for the structure `s`. */
+#define PEL_DEFAULT_(type, name, value, ...) PEL_DEFAULT_##type##_(name, value)
+#define PEL_DEFAULT_FLOAT_(name, value) s.name = value;
+#define PEL_DEFAULT_UINT_(name, value) s.name = value;
+#define PEL_DEFAULT_FREE_(name, value) s.name = value;
+#define PEL_DEFAULT_FREE_UINT_(name, value) s.name = value;
+#define PEL_DEFAULT_COLOR_(name, value) s.name[0] = s.name[1] = s.name[2] = value;
+#define PEL_DEFAULT_VECTOR_(name, xyz) PEL_DEFAULT_XYZ_(s.name, PEL_UNWRAPPED_ xyz)
+#define PEL_DEFAULT_XYZ_(...) PEL_DEFAULT_3_(__VA_ARGS__)
+#define PEL_DEFAULT_3_(field, x, y, z) field[0] = x, field[1] = y, field[2] = z;
+#define PEL_DEFAULT_MATRIX_(name, identity) s.name[0] = s.name[5] = s.name[10] = s.name[15] = 1;
+#define PEL_UNWRAPPED_(...) __VA_ARGS__
 
 /* clang-format off */
 static inline PelDeviceInfo pelDeviceInfoDefaults(void) { PEL_ZEROED_(PelDeviceInfo, s); return s; }
@@ -35,18 +50,14 @@ static inline PelScreenCurvatureParams pelScreenCurvatureParamsDefaults(void) {
 /* As a material makes them of its profile. What is 0 follows from the profile. */
 static inline PelCurvatureLutDesc pelCurvatureLutDescDefaults(void) {
     PEL_ZEROED_(PelCurvatureLutDesc, s);
-    s.width = 64;
-    s.height = 64;
+    PEL_EACH_CURVATURE_LUT_FIELD(PEL_DEFAULT_)
     s.form = PEL_FORM_SPHERE;
     s.axis = PEL_AXIS_ROOT;
     return s;
 }
 static inline PelShadowLutDesc pelShadowLutDescDefaults(void) {
     PEL_ZEROED_(PelShadowLutDesc, s);
-    s.width = 128;
-    s.height = 32;
-    s.sharpening = 10.0f;
-    s.closedEnds = 1;
+    PEL_EACH_SHADOW_LUT_FIELD(PEL_DEFAULT_)
     s.axis = PEL_AXIS_ROOT;
     return s;
 }
@@ -99,62 +110,36 @@ static inline PelShadowLutDesc pelShadowLutDescFilled(PelShadowLutDesc s, const 
 }
 static inline PelSpecularLutDesc pelSpecularLutDescDefaults(void) {
     PEL_ZEROED_(PelSpecularLutDesc, s);
-    s.width = 512;
-    s.height = 512;
+    PEL_EACH_SPECULAR_LUT_FIELD(PEL_DEFAULT_)
     return s;
 }
 static inline PelEye pelEyeDefaults(void) {
     PEL_ZEROED_(PelEye, s);
-    s.gaze[2] = 1.0f;
-    s.up[1] = 1.0f;
-    s.scleraRadius = 12.0f;
-    s.corneaRadius = 7.8f;
-    s.corneaConic = -0.26f;
-    s.limbusRadius = 6.0f;
-    s.limbusWidth = 1.0f;
-    s.limbusDarkening = 0.6f;
-    s.chamberDepth = 3.05f;
-    s.corneaIndex = 1.376f;
-    s.aqueousIndex = 1.336f;
-    s.pupilRadius = 2.0f;
-    s.texturePupil = 0.3f;
-    s.irisColor[0] = s.irisColor[1] = s.irisColor[2] = -1.0f;
-    s.tearRoughness = 0.03f;
-    s.wetLineRoughness = 0.2f;
-    s.tearIndex = 1.336f;
+    PEL_EACH_EYE_FIELD(PEL_DEFAULT_)
+    return s;
+}
+static inline PelEyeLutDesc pelEyeLutDescDefaults(void) {
+    PEL_ZEROED_(PelEyeLutDesc, s);
+    PEL_EACH_EYE_LUT_FIELD(PEL_DEFAULT_)
     return s;
 }
 /* The table that belongs to an eye. */
 static inline PelEyeLutDesc pelEyeLutDescOf(const PelEye* eye) {
-    PEL_ZEROED_(PelEyeLutDesc, s);
-    s.width = 64;
-    s.height = 64;
-    s.depth = 32;
-    s.scleraRadius = eye->scleraRadius;
-    s.corneaRadius = eye->corneaRadius;
-    s.corneaConic = eye->corneaConic;
-    s.limbusRadius = eye->limbusRadius;
-    s.chamberDepth = eye->chamberDepth;
-    s.corneaIndex = eye->corneaIndex;
-    s.aqueousIndex = eye->aqueousIndex;
-    s.irisRadius = eye->irisRadius;
-    s.irisConcavity = eye->irisConcavity;
-    s.millimetresPerUnit = 1.0f;
+    PelEyeLutDesc s = pelEyeLutDescDefaults();
+#define PEL_COPY_(type, name, ...) s.name = eye->name;
+    PEL_EACH_EYE_SHAPE_FIELD(PEL_COPY_)
+#undef PEL_COPY_
     s.profile = eye->irisProfile;
     return s;
 }
-static inline PelEyeLutDesc pelEyeLutDescDefaults(void) {
-    const PelEye eye = pelEyeDefaults();
-    return pelEyeLutDescOf(&eye);
-}
 static inline PelScatterParams pelScatterParamsDefaults(void) {
     PEL_ZEROED_(PelScatterParams, s);
-    s.targetError = 2e-3f;
-    s.white = 1.0f;
+    PEL_EACH_SCATTER_PARAM_FIELD(PEL_DEFAULT_)
     return s;
 }
 static inline PelScatterControls pelScatterControlsDefaults(void) {
     PEL_ZEROED_(PelScatterControls, s);
+    PEL_EACH_SCATTER_CONTROL_FIELD(PEL_DEFAULT_)
     s.scattering = PEL_SCATTERING_SCREEN;
     return s;
 }
@@ -179,35 +164,16 @@ static inline PelLutInfo pelLutInfoDefaults(void) {
 }
 static inline PelLight pelLightDefaults(void) {
     PEL_ZEROED_(PelLight, s);
-    s.toLight[2] = 1.0f;
-    s.spotDirection[2] = -1.0f;
-    s.spotCosInner = 0.9f;
-    s.spotCosOuter = 0.8f;
-    s.color[0] = s.color[1] = s.color[2] = 1.0f;
-    s.worldToShadow[0] = s.worldToShadow[5] = 1.0f;
-    s.worldToShadow[10] = s.worldToShadow[15] = 1.0f;
-    s.shadowDepthRange = 1.0f;
-    s.shadowBias = -1.0f;
-    s.shadowSoftness = -1.0f;
-    s.shadowConeSlope = -1.0f;
-    s.shadowMinDeviation = 0.25f;
-    s.shadowBleeding = 0.1f;
+    PEL_EACH_LIGHT_FIELD(PEL_DEFAULT_)
+    PEL_EACH_DIRECTIONAL_LIGHT_FIELD(PEL_DEFAULT_)
+    PEL_EACH_POSITIONAL_LIGHT_FIELD(PEL_DEFAULT_)
+    PEL_EACH_SPOT_LIGHT_FIELD(PEL_DEFAULT_)
+    PEL_EACH_SHADOW_MAP_FIELD(PEL_DEFAULT_)
     return s;
 }
 static inline PelMaterial pelMaterialDefaults(void) {
     PEL_ZEROED_(PelMaterial, s);
-    s.albedo[0] = s.albedo[1] = s.albedo[2] = 0.5f;
-    s.normalBlend[0] = s.normalBlend[1] = s.normalBlend[2] = -1.0f;
-    s.transmission = 1.0f;
-    s.deepScatterRadius = 6.0f;
-    s.deepScatterNormalOffset = 0.2f;
-    s.thicknessFilterRadius = 0.02f;
-    s.thicknessTaps = 32;
-    s.roughness = 0.3f;
-    s.f0 = 0.028f;
-    s.uvScale = 1.0f;
-    s.roughness2 = 0.15f;
-    s.lobeMix = 0.15f;
+    PEL_EACH_MATERIAL_FIELD(PEL_DEFAULT_)
     s.scattering = PEL_SCATTERING_AUTO;
     return s;
 }
@@ -221,8 +187,7 @@ static inline PelCamera pelCameraDefaults(void) {
 static inline PelShaderStats pelShaderStatsDefaults(void) { PEL_ZEROED_(PelShaderStats, s); return s; }
 static inline PelShaderOptions pelShaderOptionsDefaults(void) {
     PEL_ZEROED_(PelShaderOptions, s);
-    s.targetError = 2e-3f;
-    s.millimetresPerUnit = 1.0f;
+    PEL_EACH_OPTION_FIELD(PEL_DEFAULT_)
     return s;
 }
 static inline PelSurfaceIntegralDesc pelSurfaceIntegralDescDefaults(void) {
@@ -235,4 +200,15 @@ static inline PelWarmUp pelWarmUpDefaults(void) { PEL_ZEROED_(PelWarmUp, s); ret
 /* clang-format on */
 
 #undef PEL_ZEROED_
+#undef PEL_DEFAULT_
+#undef PEL_DEFAULT_FLOAT_
+#undef PEL_DEFAULT_UINT_
+#undef PEL_DEFAULT_FREE_
+#undef PEL_DEFAULT_FREE_UINT_
+#undef PEL_DEFAULT_COLOR_
+#undef PEL_DEFAULT_VECTOR_
+#undef PEL_DEFAULT_XYZ_
+#undef PEL_DEFAULT_3_
+#undef PEL_DEFAULT_MATRIX_
+#undef PEL_UNWRAPPED_
 #endif
