@@ -1,4 +1,4 @@
-// How work is cut into groups and items, by what a device is: one place for what was measured.
+// The sizes of work-groups and work-items by kind of device: the one place for what was measured.
 #pragma once
 #include <algorithm>
 
@@ -6,12 +6,13 @@
 
 namespace pel {
 
-// Where arithmetic is wide (lib/width.clh) kernels bring their own vectors: long work-items, one to a group. Elsewhere many short ones.
+// Kernels for devices of several lanes (lib/width.clh) have vectors of their own: few long work-items. Other devices run many
+// short ones.
 struct LaunchPolicy {
-    size_t group;         // work-items
+    size_t group;         // work-items of kernels that loop over tiles or columns
     size_t columns;       // of a table's row per work-item, where a texel is cheap
     size_t tableColumns;  // where each texel of it walks a tabulated profile
-    size_t texels;        // work-items of a group, where each makes one texel or a few cells
+    size_t texels;        // work-items of a group where each item is short: a texel, a node, a block of a map
 };
 
 inline LaunchPolicy launchPolicy(const Device& device) {

@@ -1,14 +1,14 @@
-// The ambient cube map, and the one that eyes reflect, in the form that the shading kernel reads (lib/shading/ambient_cube.clh), made from
-// the host's six faces once per execution.
+// The ambient cube map and the reflection cube map of eyes, in the form that the shading kernel reads
+// (lib/shading/ambient_cube.clh). Both are made from the caller's six faces in each execution.
 #include <algorithm>
 
+#include "core/launch_policy.h"
 #include "shading/launch_ranges.h"
 #include "shading/passes.h"
+#include "shading/scratch_image.h"
 
 namespace pel {
 namespace {
-
-constexpr size_t group = 16;
 
 uint32_t edgeOf(const ImageView& faces) {
     return std::min(faces.width, faces.height);
@@ -21,21 +21,15 @@ class CubeNodes final : public Pass {
     static bool needed(const ShaderPlan& plan) { return plan.state.*Faces && plan.features & Feature; }
 
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
-        const size_t across = edgeOf(plan.state.*Faces) + size_t(2),
-                     bytes = 18 * across * across * sizeof(float);
-        if (bytes != bytes_) {
-            bytes_ = 0;
-            nodes_ = cl::Memory();
-            nodes_ = device->allocate(bytes);
-            bytes_ = bytes;
-        }
-        plan.*Nodes = nodes_;
+        const size_t across = edgeOf(plan.state.*Faces) + size_t(2);
+        resize(nodes_, device, 18 * across * across * sizeof(float));
+        plan.*Nodes = nodes_->memory();
     }
-    size_t bytes() const override { return bytes_; }
+    size_t bytes() const override { return nodes_ ? nodes_->bytes() : 0; }
 
-    std::vector<cl::ProgramKey> programs(const Device&, const ShaderPlan& plan) const override {
+    std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
         return {{{"shading/ambient_cube.cl"},
-                 {{"PEL_GROUP", text(group)},
+                 {{"PEL_GROUP", text(launchPolicy(device).texels)},
                   {"PEL_WIDTH", "1"},
                   {"PEL_FORMAT_CUBE", text(formatCode(plan.state.*Faces, 1))}}}};
     }
@@ -50,13 +44,13 @@ class CubeNodes final : public Pass {
             .arg(cl_ulong(faces.byteOffset))
             .arg(cl_ulong(step))
             .arg(cl_ulong(faces.rowStride));
-        launch.arg(cl_ulong(faces.planeStride)).arg(cl_uint(faces.pixelStride)).arg(size).arg(nodes_);
-        work.launch(launch, {{size + size_t(2), 6 * (size + size_t(2)), 1}, {group, 1, 1}});
+        launch.arg(cl_ulong(faces.planeStride)).arg(cl_uint(faces.pixelStride)).arg(size).arg(nodes_->memory());
+        work.launch(launch,
+                    {{size + size_t(2), 6 * (size + size_t(2)), 1}, {launchPolicy(work.device).texels, 1, 1}});
     }
 
   private:
-    cl::Memory nodes_;
-    size_t bytes_ = 0;
+    Ref<Buffer> nodes_;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Lists of the tiles with a material, and of the tiles of each variant of the shading kernel.
 #include "shading/passes.h"
+#include "shading/scratch_image.h"
 #include "shading/shade_variants.h"
 #include "shading/shading_constants.h"
 
@@ -15,15 +16,13 @@ class ClassifyTiles final : public Pass {
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
         const size_t lists = plan.variants.size() > 1 ? 1 + plan.variants.size() : 1;
         const size_t bytes = (PEL_TILE_LISTS + lists * size_t(plan.listRows()) * plan.tilesX) * sizeof(cl_uint);
-        if (bytes != listBytes_) {
-            listBytes_ = 0;
-            lists_ = cl::Memory();
-            lists_ = device->allocate(bytes);
-            listBytes_ = bytes;
-        }
-        plan.tileLists = lists_;
+        resize(lists_, device, bytes);
+        resize(bandCounts_, device, plan.bandRows < plan.tileRows ? plan.tileRows * countBytes : 0);
+        plan.tileLists = lists_->memory();
     }
-    size_t bytes() const override { return listBytes_ + bandCountBytes_; }
+    size_t bytes() const override {
+        return (lists_ ? lists_->bytes() : 0) + (bandCounts_ ? bandCounts_->bytes() : 0);
+    }
 
     std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
         return {shadeKey(device, plan.state, plan.variants[0])};
@@ -39,7 +38,7 @@ class ClassifyTiles final : public Pass {
     void addStats(Device& device, const ShaderPlan& plan, uint64_t bands, PelShaderStats& stats) const override {
         if (!listsTiles(plan)) return;
         std::vector<cl_uint> counts(std::max<size_t>(bands, 1) * PEL_TILE_LISTS);
-        device.read(bands > 1 ? bandCounts_.get() : lists_.get(), 0, counts.size() * sizeof(cl_uint),
+        device.read((bands > 1 ? bandCounts_ : lists_)->memory().get(), 0, counts.size() * sizeof(cl_uint),
                     counts.data(), true);
         stats.tilesShaded = stats.tilesEye = 0;
         for (size_t i = 0; i < counts.size(); ++i) {
@@ -60,28 +59,22 @@ class ClassifyTiles final : public Pass {
         const ShaderPlan& plan = work.plan;
         if (!listsTiles(plan)) return;
         const bool listAll = plan.variants.size() == 1 || plan.scratch;
-        work.device.fill(lists_.get(), 0, countBytes, 0);
+        work.device.fill(lists_->memory().get(), 0, countBytes, 0);
         cl::Launch launch(program(), "classify_tiles");
         launch.arg(work.constants.frameMemory()).arg(work.constants.materials());
         launch.arg(plan.state.images[PEL_SLOT_MATERIAL].buffer->memory());
-        launch.arg(lists_).arg(cl_uint(plan.variants.size())).arg(cl_uint(listAll));
+        launch.arg(lists_->memory()).arg(cl_uint(plan.variants.size())).arg(cl_uint(listAll));
         work.launch(launch, classifyRange(work.device, work.tiles()));
     }
 
     // The next band starts counting again.
-    void keepCounts(PassWork& work) {
-        if (bandCountBytes_ < work.plan.tileRows * countBytes) {
-            bandCountBytes_ = 0;
-            bandCounts_ = work.device.allocate(work.plan.tileRows * countBytes);
-            bandCountBytes_ = work.plan.tileRows * countBytes;
-        }
-        cl::check(clEnqueueCopyBuffer(work.device.queue(), lists_.get(), bandCounts_.get(), 0,
-                                      work.band * countBytes, countBytes, 0, nullptr, nullptr),
+    void keepCounts(PassWork& work) const {
+        cl::check(clEnqueueCopyBuffer(work.device.queue(), lists_->memory().get(), bandCounts_->memory().get(),
+                                      0, work.band * countBytes, countBytes, 0, nullptr, nullptr),
                   "clEnqueueCopyBuffer");
     }
 
-    cl::Memory lists_, bandCounts_;  // the latter: the counts of the lists, band after band
-    size_t listBytes_ = 0, bandCountBytes_ = 0;
+    Ref<Buffer> lists_, bandCounts_;  // bandCounts_: the counts of the lists, one band after another
 };
 
 }  // namespace

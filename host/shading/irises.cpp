@@ -1,4 +1,5 @@
-// The irises of all eyes in one buffer, in the form that shading samples: beside kernels/eye/iris_texels.cl. Made by the first execution after a commit.
+// The irises of all eyes in one buffer, in the form that shading samples (kernels/eye/iris_texels.cl). The first execution
+// after a commit makes them.
 #include "shading/irises.h"
 
 #include <utility>
@@ -28,15 +29,10 @@ class Irises final : public Pass {
             if (material.eye) texels += texelsOf(irisTexels(*material.eye));
         if (texels > UINT32_MAX)
             fail(PEL_ERROR_UNSUPPORTED, "the irises of all eyes hold ", texels, " texels; 2^32 is the most");
-        if (texels * sizeof(cl_float4) != bytes_) {
-            bytes_ = 0;
-            texels_ = cl::Memory();
-            texels_ = device->allocate(texels * sizeof(cl_float4));
-            bytes_ = texels * sizeof(cl_float4);
-        }
-        plan.irises = texels_;
+        resize(texels_, device, texels * sizeof(cl_float4));
+        plan.irises = texels_->memory();
     }
-    size_t bytes() const override { return bytes_; }
+    size_t bytes() const override { return texels_ ? texels_->bytes() : 0; }
 
     std::vector<cl::ProgramKey> programs(const Device& device, const ShaderPlan& plan) const override {
         std::vector<cl::ProgramKey> keys;
@@ -66,7 +62,7 @@ class Irises final : public Pass {
             cl::Launch launch(program(eye), "iris_texels");
             launch.arg(memoryOf(image)).arg(cl_ulong(image.byteOffset)).arg(cl_ulong(image.rowStride));
             launch.arg(cl_ulong(image.planeStride)).arg(cl_uint(image.pixelStride)).arg(side);
-            launch.arg(cl_uint(material.eye->params.irisSeed)).arg(first).arg(texels_);
+            launch.arg(cl_uint(material.eye->params.irisSeed)).arg(first).arg(texels_->memory());
             const auto square = [&](size_t texels) {
                 return work.codeAlone ? cl::Range{{1, 1, 1}, {group, 1, 1}}
                                       : cl::Range{{texels, texels, 1}, {group, 1, 1}};
@@ -74,7 +70,7 @@ class Irises final : public Pass {
             work.launch(launch, square(side + size_t(1)));
             for (cl_uint level = 1; level < irisLevels(side); ++level) {
                 cl::Launch halve(program(eye), "iris_level");
-                halve.arg(side).arg(level).arg(first).arg(texels_);
+                halve.arg(side).arg(level).arg(first).arg(texels_->memory());
                 work.launch(halve, square((side >> level) + size_t(1)));
             }
             ++eye;
@@ -83,8 +79,7 @@ class Irises final : public Pass {
     }
 
   private:
-    cl::Memory texels_;
-    size_t bytes_ = 0;
+    Ref<Buffer> texels_;
     mutable bool pending_ = false;  // until the first execution after a commit
 };
 

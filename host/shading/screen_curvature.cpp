@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/launch_policy.h"
 #include "shading/check_settings.h"
 #include "shading/launch_ranges.h"
 #include "shading/shading_constants.h"
@@ -54,9 +55,11 @@ void screenCurvature(Device& device, const PelScreenCurvatureParams& params, con
     frame.position = describeImage(where);
     if (images.ids) frame.ids = describeImage(images.ids);
     frame.curvature = describeImage(images.curvature);
+    const size_t group = launchPolicy(device).texels;
     cl::Launch launch(
         device.programs().get("shading/screen_curvature.cl",
-                              {{"PEL_FORMAT_NORMAL", text(formatCode(images.normals, lanes))},
+                              {{"PEL_SCREEN_GROUP", text(group)},
+                               {"PEL_FORMAT_NORMAL", text(formatCode(images.normals, lanes))},
                                {"PEL_FORMAT_POSITION", text(formatCode(images.positions, lanes))},
                                {"PEL_FORMAT_DEPTH", text(formatCode(images.depth, lanes))},
                                {"PEL_FORMAT_IDS", text(formatCode(images.ids, lanes))},
@@ -67,7 +70,7 @@ void screenCurvature(Device& device, const PelScreenCurvatureParams& params, con
     launch.arg(memory).arg(images.normals.buffer->memory()).arg(where.buffer->memory());
     launch.arg(images.ids ? images.ids.buffer->memory() : cl::Memory()).arg(images.curvature.buffer->memory());
     const size_t across = (frame.width + lanes - 1) / lanes;
-    device.launch(launch, {{across * frame.height, 1, 1}, {PEL_SCREEN_GROUP, 1, 1}});
+    device.launch(launch, {{across * frame.height, 1, 1}, {group, 1, 1}});
 }
 
 }  // namespace pel

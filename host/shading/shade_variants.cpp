@@ -15,9 +15,8 @@
 namespace pel {
 namespace {
 
-// Tiles per work-item of the classification: runs on a CPU; one on a GPU, which has thousands of work-items.
+// Tiles that a work-item classifies on a device of several lanes. On others a work-group classifies one tile.
 uint32_t classifyRun(const Device& device) {
-    if (device.info().mathWidth == 1) return 1;
     // Long runs keep their order, which prefetchers follow; a few for each unit keep all units busy.
     return std::bit_floor(std::clamp(4096 / std::max(device.info().computeUnits, 1u), 64u, 2048u));
 }
@@ -81,15 +80,16 @@ cl::ProgramKey shadeKey(const Device& device, const ShaderState& state, uint32_t
     if (state.images[PEL_SLOT_MATERIAL]) key.files.push_back("shading/classify_tiles.cl");
     if (usesCells(state, features)) {
         key.files.push_back("shading/tap_cells.cl");
-        key.defines["PEL_CELLS_GROUP"] = std::to_string(cellsGroup);
+        key.defines["PEL_CELLS_GROUP"] = std::to_string(launchPolicy(device).texels);
         key.defines["PEL_CELLS_RUN"] = std::to_string(cellsRun(device));
     }
     return key;
 }
 
 cl::Range classifyRange(const Device& device, size_t tiles) {
-    const size_t run = classifyRun(device);
-    return {{(tiles + run - 1) / run, 1, 1}, {classifyGroup(device), 1, 1}};
+    const size_t group = classifyGroup(device), run = classifyRun(device);
+    const size_t items = device.info().mathWidth == 1 ? tiles * group : (tiles + run - 1) / run;
+    return {{items, 1, 1}, {group, 1, 1}};
 }
 
 std::vector<uint32_t> variantFeatures(const ShaderState& state, uint32_t features) {

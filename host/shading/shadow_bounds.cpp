@@ -1,6 +1,7 @@
 // Bounds of the blocks of shadow maps, which decide most wide shadows without reading texels.
 #include <algorithm>
 
+#include "core/launch_policy.h"
 #include "shading/features.h"
 #include "shading/passes.h"
 #include "shading/scratch_image.h"
@@ -62,7 +63,7 @@ class ShadowBounds final : public Pass {
                 .arg(filtered.constants)
                 .arg(cl_uint(map.cascade));
             launch.arg(memoryOf(*shadowCascade(light, map.cascade).map)).arg(bounds_->memory());
-            work.launch(launch, {{map.pairs, 1, 1}, {boundsGroup, 1, 1}});
+            work.launch(launch, {{map.pairs, 1, 1}, {launchPolicy(work.device).texels, 1, 1}});
         }
     }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/launch_policy.h"
 #include "shading/features.h"
 #include "shading/passes.h"
 #include "shading/scratch_image.h"
@@ -67,7 +68,7 @@ class TapCells final : public Pass {
                 one.arg(cl_uint(map.light)).arg(cl_uint(map.cascade)).arg(cl_uint(map.disk));
                 if (readsMap) one.arg(memoryOf(*shadowCascade(light, map.cascade).map));
                 one.arg(cells_->memory());
-                work.launch(one, {{size_t(items), 1, 1}, {cellsGroup, 1, 1}});
+                work.launch(one, {{size_t(items), 1, 1}, {launchPolicy(work.device).texels, 1, 1}});
             };
             launch("tap_samples", true,
                    (samplesAlong(map.cells.columns) + lanes - 1) / lanes * samplesAlong(map.cells.rows));

@@ -7,9 +7,6 @@
 
 namespace pel {
 
-// Work-items of a group of the kernel.
-constexpr size_t cellsGroup = 16;
-
 // Of one disk in one map.
 struct MapCells {
     uint32_t light, cascade, disk;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "core/launch_policy.h"
 #include "shading/features.h"
 #include "shading/launch_ranges.h"
 #include "shading/passes.h"
@@ -36,7 +37,7 @@ cl::ProgramKey wideShadowKey(const Device& device, const ShaderPlan& plan) {
     cl::ProgramKey key{{"shading/wide_shadow.cl"}, defines};
     if (!plan.boundedMaps.empty()) {
         key.files.push_back("shading/shadow_bounds.cl");
-        key.defines["PEL_BOUNDS_GROUP"] = text(boundsGroup);
+        key.defines["PEL_BOUNDS_GROUP"] = text(launchPolicy(device).texels);
     }
     return key;
 }

@@ -5,8 +5,6 @@
 
 namespace pel {
 
-constexpr size_t boundsGroup = 16;
-
 cl::ProgramKey wideShadowKey(const Device& device, const ShaderPlan& plan);
 
 }  // namespace pel

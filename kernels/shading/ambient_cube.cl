@@ -41,11 +41,9 @@ static inline float4 cubeSample(const Faces* f, uint face, float s, float t) {
     return mix(upper, lower, fy);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void ambient_cube(__global const uchar* image,
-                                                                                  ulong offset, ulong step,
-                                                                                  ulong row, ulong planeStep,
-                                                                                  uint pixel, uint size,
-                                                                                  __global float* nodes) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void ambient_cube(
+    __global const uchar* restrict image, ulong offset, ulong step, ulong row, ulong planeStep, uint pixel,
+    uint size, __global float* restrict nodes) {
     const uint i = get_global_id(0), across = size + 2, face = get_global_id(1) / across,
                j = get_global_id(1) % across;
     if (i >= across || face >= 6) return;

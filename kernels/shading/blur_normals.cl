@@ -1,5 +1,6 @@
-// Blurred normals from shading normals, on screen (docs/guide/shading.md, "Blurred normals"): a separable mean over the surface
-// within the material's diffusion radius, which stops at depth edges and at other materials.
+// Blurred normals from shading normals, on screen (docs/guide/shading.md, "Blurred normals"): a separable
+// mean over the surface within the material's diffusion radius, which stops at depth edges and at other
+// materials.
 //
 // Along one axis, first x, then y, the taps k = 1..PEL_BLUR_TAPS to each side are `step` pixels apart, so
 // that the last one is about one radius away on the surface: step = ceil(radius / (PEL_BLUR_TAPS s)), s being
@@ -7,10 +8,10 @@
 // in space. The walk ends at the border, at another material, beyond the radius, and at a depth edge: a step
 // more than PEL_BLUR_GAP times as long as the longest before it. Taps with NaN or Inf are skipped.
 //
-// Inputs: shading normals, positions or depth, material ids. Output: Nb of each pixel of a material without normal map;
-// NaN where the pixel's own normal or position is. One work-group: a run of tiles; one work-item: PEL_WIDTH pixels of a row
-// at a time, whose taps are PEL_WIDTH neighbours as long as they share a step, which is nearly always.
-// Launches: prepare_normals, blur_normals along x, blur_normals along y.
+// Inputs: shading normals, positions or depth, material ids. Output: Nb of each pixel of a material without
+// normal map; NaN where the pixel's own normal or position is. One work-group: a run of tiles; one work-item:
+// PEL_WIDTH pixels of a row at a time, whose taps are PEL_WIDTH neighbours as long as they share a step,
+// which is nearly always. Launches: prepare_normals, blur_normals along x, blur_normals along y.
 #include "lib/image/planes.clh"
 #include "lib/shading/tiles.clh"
 #include "shared/shade_passes.h"
@@ -27,9 +28,10 @@ static inline uintw ownIds(__global const PelShadeFrame* frame, __global uchar* 
 // tags: the id if normal and position are finite, its negative if not, 0 without a material. For every pixel,
 // since taps reach beyond the tiles of the list.
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void prepare_normals(
-    __global const PelShadeFrame* frame, __global const uint* list, __global uchar* material,
-    __global uchar* normal, __global uchar* position, __global uchar* depth, __global float* normals,
-    __global float* positions, __global float* tags, uint plane) {
+    __global const PelShadeFrame* restrict frame, __global const uint* restrict list,
+    __global uchar* restrict material, __global uchar* restrict normal, __global uchar* restrict position,
+    __global uchar* restrict depth, __global float* restrict normals, __global float* restrict positions,
+    __global float* restrict tags, uint plane) {
     if (PEL_FORMAT_MATERIAL && list[0] == 0) return;
     const uint groups = get_num_groups(0), group = get_group_id(0);
     const uint end = (uint)((ulong)frame->tiles * (group + 1) / groups);
@@ -167,9 +169,10 @@ static inline floatw blurRadius(__global const PelShadeMaterial* materials, uint
 
 // `from` and `to` differ. Along y, `to` holds the unblurred normals, which are kept where the mean vanishes.
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void blur_normals(
-    __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials,
-    __global const uint* list, __global uchar* material, __global const float* from,
-    __global const float* positions, __global const float* tags, __global float* to, uint plane, uint alongY) {
+    __global const PelShadeFrame* restrict frame, __global const PelShadeMaterial* restrict materials,
+    __global const uint* restrict list, __global uchar* restrict material,
+    __global const float* restrict from, __global const float* restrict positions,
+    __global const float* restrict tags, __global float* restrict to, uint plane, uint alongY) {
     const TileRun run = tileRun(frame, list);
     const Field field = {frame, from, positions, tags, plane, alongY != 0};
     for (uint i = run.begin; i < run.end; ++i) {

@@ -1,13 +1,52 @@
-// Which tiles hold a pixel of a material, and which variant of the shading kernel they need: compact lists of their numbers
-// (docs/guide/shading.md, "Tiles").
+// Which tiles hold a pixel of a material, and which variant of the shading kernel they need: compact lists of
+// their numbers (docs/guide/shading.md, "Tiles").
 //
 // Inputs: the material id image, PelShadeFrame.materialMask, PelShadeMaterial.variants. Output: lists of
-// tiles (shared/shade.h), in runs of PEL_CLASSIFY_RUN tiles that keep their order, since neighbours share
-// cache lines and pages; list 0 is left out if only the lists of the variants are needed. One work-item: one
-// run. Variants: PEL_FORMAT_MATERIAL; PEL_BIT_NO_SKIPPING lists every tile.
+// tiles (shared/shade.h); list 0 is left out if only the lists of the variants are needed. Variants:
+// PEL_FORMAT_MATERIAL; PEL_BIT_NO_SKIPPING lists every tile.
+//
+// One lane: a work-group is a tile, a work-item every PEL_CLASSIFY_GROUP-th pixel of it. Several lanes: a
+// work-item is a run of PEL_CLASSIFY_RUN tiles, which keep their order, since neighbours share cache lines
+// and pages.
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 #include "shared/shade.h"
+
+#if PEL_WIDTH == 1
+
+// Writes a tile's number to the list of all tiles and to that of its variant.
+static inline void listTile(__global const PelShadeFrame* frame, __global uint* lists, uint list, uint tile) {
+    lists[PEL_TILE_LISTS + (size_t)list * frame->listTiles + atomic_inc(&lists[list])] = tile;
+}
+
+__kernel __attribute__((reqd_work_group_size(PEL_CLASSIFY_GROUP, 1, 1))) void classify_tiles(
+    __global const PelShadeFrame* restrict frame, __global const PelShadeMaterial* restrict materials,
+    __global uchar* material, __global uint* lists, uint variants, uint listAll) {
+    __local uint found, able;  // whether a pixel has a material; variants with the features of all pixels
+    const uint item = get_local_id(0), group = get_group_id(0), all = (1u << variants) - 1u;
+    const uint tile = frame->firstTile + group;
+    const uint x0 = tile % frame->tilesX * PEL_TILE_WIDTH, y0 = tile / frame->tilesX * PEL_TILE_HEIGHT;
+    if (item == 0) found = PEL_FEATURES & PEL_BIT_NO_SKIPPING, able = all;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    uint some = 0, common = all;
+    for (uint pixel = item; pixel < PEL_TILE_PIXELS && group < frame->tiles; pixel += PEL_CLASSIFY_GROUP) {
+        const uint x = x0 + pixel % PEL_TILE_WIDTH, y = y0 + pixel / PEL_TILE_WIDTH;
+        if (x >= frame->width || y >= frame->height) continue;
+        const uint id =
+            loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[PEL_IMAGE_MATERIAL], x, y));
+        if (!hasMaterial(frame, id)) continue;
+        some = 1;
+        if (all != 1u) common &= materials[id].variants;
+    }
+    if (some) atomic_or(&found, 1u);
+    if (common != all) atomic_and(&able, common);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (item > 0 || group >= frame->tiles || !found) return;
+    if (listAll) listTile(frame, lists, 0, tile);
+    if (variants > 1u) listTile(frame, lists, 32u - clz(able), tile);
+}
+
+#else
 
 // Bits of the variants that have all features that the materials of the pixels of `left` need.
 static inline uint commonVariants(__global const PelShadeMaterial* materials, uintw id, maskw left) {
@@ -20,9 +59,9 @@ static inline uint commonVariants(__global const PelShadeMaterial* materials, ui
     return able;
 }
 
-// The id of a tile that has one alone, as nearly all have, by its bytes as they are: without a branch for each vector. ~0 for other tiles.
+// The id of a tile that has one alone, as nearly all have, by its bytes as they are: without a branch for
+// each vector. ~0 for other tiles.
 static inline uint onlyId(__global const PelShadeFrame* frame, __global uchar* material, uint x, uint y) {
-#if PEL_WIDTH > 1
     if (PEL_FORMAT_MATERIAL != PEL_FMT_R8_UINT || x + PEL_TILE_WIDTH > frame->width ||
         y + PEL_TILE_HEIGHT > frame->height)
         return ~0u;
@@ -36,9 +75,6 @@ static inline uint onlyId(__global const PelShadeFrame* frame, __global uchar* m
     }
     const ulong2 words = as_ulong2(differs);
     return words.x | words.y ? ~0u : (uint)id;
-#else
-    return ~0u;
-#endif
 }
 
 // 0: no pixel of a material; otherwise 1 + the last variant that has all features that its materials need
@@ -61,7 +97,8 @@ static inline uint classOfTile(__global const PelShadeFrame* frame, __global con
                 loadId(PEL_FORMAT_MATERIAL, imageSpan(material, &frame->images[PEL_IMAGE_MATERIAL], first, y));
             if (!anyw(id != known)) continue;  // nearly always
             const maskw has = hasMaterial(frame, id);
-            known = greatestId(id, (maskw)(-1));  // its variants are known now; in mixed vectors only those of this id
+            // its variants are known now; in mixed vectors only those of this id
+            known = greatestId(id, (maskw)(-1));
             if (!anyw(has)) continue;
             found = 1;
             if (able != 1u) able &= commonVariants(materials, id, has);
@@ -91,3 +128,5 @@ __kernel __attribute__((reqd_work_group_size(PEL_CLASSIFY_GROUP, 1, 1))) void cl
             if (list ? classes[i] == list : classes[i] != 0) lists[to++] = start + i;
     }
 }
+
+#endif

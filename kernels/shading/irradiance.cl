@@ -5,6 +5,7 @@
 // and light, ids. Output: planes of RGB, NaN where an input is. Pixels of materials that use the tables
 // (PEL_SCATTER_PREINTEGRATED) are not changed. One work-group: a run of tiles; one work-item: PEL_WIDTH
 // pixels of a row at a time. Variants: as shade.cl.
+#define IMAGES_RESTRICT restrict
 #include "lib/image/planes.clh"
 #include "lib/shading/tiles.clh"
 #include "shading/scene.clh"
@@ -56,7 +57,7 @@ static inline Vec3w arrivingLight(const Scene* scene, __global const PelShadeMat
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void make_irradiance(
-    SCENE_ARGUMENTS __global float* out, uint plane) {
+    SCENE_ARGUMENTS __global float* restrict out, uint plane) {
     const Scene scene = SCENE_VALUE;
     const TileRun run = tileRun(frame, list);
     uint lit = 0;

@@ -1,5 +1,5 @@
-// Blurred normals from a tangent-space normal map (section 6, "blurred-normal mip"): trilinear, at the level whose texels
-// are as long as the diffusion radius, but never sharper than the pixel's own level of detail.
+// Blurred normals from a tangent-space normal map (section 6, "blurred-normal mip"): trilinear, at the level
+// whose texels are as long as the diffusion radius, but never sharper than the pixel's own level of detail.
 //
 // Inputs: UV, their gradients (or none), tangents, geometric normals, ids, one material's map. Output: planes
 // of Nb for pixels of that material, and the geometric normal if PelNormalMap.fallback is set; NaN where an
@@ -42,10 +42,11 @@ static inline Vec3w mappedNormal(__global const PelShadeFrame* frame, __global c
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void normal_map(
-    __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials,
-    __global const uint* list, __global uchar* material, __global uchar* normal, __global uchar* uv,
-    __global uchar* gradient, __global uchar* tangent, __global const PelNormalMap* chain,
-    __global uchar* map, __global float* to, uint plane) {
+    __global const PelShadeFrame* restrict frame, __global const PelShadeMaterial* restrict materials,
+    __global const uint* restrict list, __global uchar* restrict material, __global uchar* restrict normal,
+    __global uchar* restrict uv, __global uchar* restrict gradient, __global uchar* restrict tangent,
+    __global const PelNormalMap* restrict chain, __global uchar* restrict map, __global float* restrict to,
+    uint plane) {
     const TileRun run = tileRun(frame, list);
     for (uint i = run.begin; i < run.end; ++i) {
         const uint2 origin = tileOrigin(frame, list, i);

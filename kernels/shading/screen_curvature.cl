@@ -96,8 +96,8 @@ inline ScreenPoint neighbour(const Pixel there, const Pixel here, maskw inside) 
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_SCREEN_GROUP, 1, 1))) void screen_curvature(
-    __global const ScreenCurvatureFrame* frame, __global uchar* normal, __global uchar* position,
-    __global uchar* ids, __global uchar* curvature) {
+    __global const ScreenCurvatureFrame* restrict frame, __global uchar* restrict normal,
+    __global uchar* restrict position, __global uchar* restrict ids, __global uchar* restrict curvature) {
     const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = get_global_id(0) / across;
     if (y >= frame->height) return;
     const uint x = vectorStart(get_global_id(0) % across * PEL_WIDTH, frame->width);

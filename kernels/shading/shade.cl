@@ -37,12 +37,11 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
     // Whether its diffuse light is the irradiance image: that of the lights and of the ambient light, already
     // scattered.
     const bool scattered = HAS(PEL_BIT_IRRADIANCE) && material->scattering != PEL_SCATTER_PREINTEGRATED;
-    if (HAS(PEL_BIT_COUNT)) {
-        counts->of[PEL_COUNT_SCATTERING + material->named] += countw(active);
-        if (material->named == PEL_SCATTER_AUTO)
-            counts->of[PEL_COUNT_CHOICE + material->scattering] += countw(active);
-    }
-    // Only inputs that its own material reads can make a pixel invalid, so other materials of the tile do not matter.
+    countMethod(counts, PEL_COUNT_SCATTERING, material->named, active);
+    if (material->named == PEL_SCATTER_AUTO)
+        countMethod(counts, PEL_COUNT_CHOICE, material->scattering, active);
+    // Only inputs that its own material reads can make a pixel invalid, so other materials of the tile do not
+    // matter.
     p->valid &= ((p->invalidBits & material->needs) == 0) | notw(active);
     Vec3w diffuse = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f)), specular = diffuse;
     parts->diffuse = parts->deepScatter = diffuse;
@@ -196,6 +195,5 @@ __kernel __attribute__((reqd_work_group_size(PEL_SHADE_GROUP, 1, 1))) void shade
             if (anyw(active)) shadePixels(&scene, first, y, id, active, &counts);
         }
     }
-    for (uint i = 0; i < PEL_COUNTERS; ++i)
-        if (isCounted(i) && counts.of[i]) atomic_add(&counters[i], counts.of[i]);
+    addCounts(&counts, counters);
 }

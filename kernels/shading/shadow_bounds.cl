@@ -1,10 +1,11 @@
 // Bounds of every block of a shadow map, for lib/shading/shadow_bounds.clh: the mean slope along x and y, and
 // the least and greatest depth minus the plane of that slope through 0 at the block's middle.
 //
-// Input: a map of depths, or of moments or exponentials of depths. Output: four planes of one float per block; depths are multiplied
-// by the sign with which they grow away from the light. Texels with NaN or Inf cast no shadow: they count as infinitely far,
-// and their block as level. One work-item: two blocks side by side. Nothing is written if so few tiles have a material that
-// reading the map would cost more than their filters.
+// Input: a map of depths, or of moments or exponentials of depths. Output: four planes of one float per
+// block; depths are multiplied by the sign with which they grow away from the light. Texels with NaN or Inf
+// cast no shadow: they count as infinitely far, and their block as level. One work-item: two blocks side by
+// side. Nothing is written if so few tiles have a material that reading the map would cost more than their
+// filters.
 #include "lib/shading/shadow_bounds.clh"
 
 // The texels of a row of two blocks; after its end the last texel again.
@@ -37,8 +38,8 @@ static inline float16 spread2(float first, float second) {
     return (float16)((float8)(first), (float8)(second));
 }
 
-// Slopes of a block from the sums of its columns, and of those its lower half less the upper one. The middles of a block's halves
-// lie half a block apart.
+// Slopes of a block from the sums of its columns, and of those its lower half less the upper one. The middles
+// of a block's halves lie half a block apart.
 static inline float2 blockSlopes(float8 columns, float8 downwards) {
     const float perSlope = 4.0f / (PEL_BOUNDS_BLOCK * PEL_BOUNDS_BLOCK * PEL_BOUNDS_BLOCK);
     const float2 slope =
@@ -54,8 +55,9 @@ static inline void storeBlock(__global float* to, uint plane, float8 least, floa
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_BOUNDS_GROUP, 1, 1))) void shadow_bounds(
-    __global const PelShadeFrame* frame, __global const uint* list, __global const PelWideShadow* cascades,
-    uint cascade, __global uchar* mapBuffer, __global float* bounds) {
+    __global const PelShadeFrame* restrict frame, __global const uint* restrict list,
+    __global const PelWideShadow* restrict cascades, uint cascade, __global uchar* restrict mapBuffer,
+    __global float* restrict bounds) {
     __global const PelWideShadow* light = cascades + cascade;
     __global const PelShadeImage* map = &light->map;
     const uint columns = boundsBlocks(map->width), plane = boundsPlane(map), pairs = (columns + 1) / 2,

@@ -5,8 +5,8 @@
 // Inputs: positions or depth, geometric normals, ids, the shadow map. Output: R32F, 0 to 1; pixels out of the
 // light's reach get 1. Of a light with cascades the finest map that holds a pixel's filter is read; of a
 // cube, all faces under it (lib/shading/cube_filter.clh). One work-group: a run of tiles; one work-item:
-// PEL_WIDTH pixels, whose filters it runs one after another, PEL_WIDTH texels at a time. Variants:
-// pixels: PEL_PIXELS_..., all of them, or first every second one and then those between (lib/shading/between.clh).
+// PEL_WIDTH pixels, whose filters it runs one after another, PEL_WIDTH texels at a time. Variants: pixels:
+// PEL_PIXELS_..., all of them, or first every second one and then those between (lib/shading/between.clh).
 // PEL_NORMAL_SLOT: the slot of the geometric normals; PEL_SHADOW_CONTENT: the content of texels; PEL_BOUNDS:
 // bounds of the maps' blocks exist, and filters that they decide read no texel.
 #include "lib/shading/between.clh"
@@ -22,8 +22,8 @@
 #define PEL_FLATTEST_COSINE 0.2f
 // With smaller filters texels would appear and disappear.
 #define PEL_LEAST_TEXELS 2.0f
-// Of sharp shadows: the same cosine, and the tolerance along the normal in texels. docs/guide/shading.md, "Irradiance per pixel", has
-// what others give.
+// Of sharp shadows: the same cosine, and the tolerance along the normal in texels. docs/guide/shading.md,
+// "Irradiance per pixel", has what others give.
 #define PEL_SHARP_FLATTEST 0.05f
 #define PEL_SHARP_TEXELS 0.5f
 
@@ -61,7 +61,7 @@ static inline Receiver receiverInMap(__global const PelWideShadow* light, Vec3w 
     return r;
 }
 
-// Whether depths round the receiver can be compared: it is before the light, near the map, and all values are
+// Whether depths around the receiver can be compared: it lies in front of the light and near the map, and all values are
 // finite.
 static inline maskw comparable(const Receiver* r, Vec3w p, Vec3w n) {
     // Far outside the map, where integers would overflow, everything is lit.
@@ -69,7 +69,7 @@ static inline maskw comparable(const Receiver* r, Vec3w p, Vec3w n) {
            finitew(r->zPerLength);
 }
 
-// Returns the lanes whose filter can be run; the others are behind the light, or no numbers.
+// Returns the lanes whose filter can be run. The other lanes lie behind the light or are not finite.
 static inline maskw makeFilters(__global const PelWideShadow* light, const FilterShape* shape, Vec3w p,
                                 Vec3w n, Filters* f) {
     const floatw width = shape->width;
@@ -121,8 +121,8 @@ static inline floatw sharpInMap(__global const PelWideShadow* light, __global co
     s.dzdy = dot3(n, loadUniform3(light->down)) * tilt * r.texelV * r.zPerLength;
     // The last bits of a float, at the largest depths here, are not shadow.
     const floatw least = (fabs(r.z) + 1.0f) * 4e-7f;
-    // How far before the tangent plane another depth may be and still be the receiver's own: what the surface is off its plane
-    // inside of the footprint, a mesh's facets among it, grows as texels do.
+    // How far before the tangent plane another depth may be and still be the receiver's own: what the surface
+    // is off its plane inside of the footprint, a mesh's facets among it, grows as texels do.
     const floatw tolerance =
         fmax(PEL_SHARP_TEXELS * fmax(r.texelU, r.texelV) * tilt * fabs(r.zPerLength), least);
     s.perTolerance = copysign(1.0f / tolerance, r.zPerLength);
@@ -169,11 +169,13 @@ static inline void loadSurface(__global const PelShadeFrame* frame, __global uch
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_shadow(
-    __global const PelShadeFrame* frame, __global const PelShadeMaterial* materials,
-    __global const PelShadeLight* lights, __global const uint* list, __global uint* counters,
-    __global uchar* material, __global uchar* normal, __global uchar* position, __global uchar* depth,
-    __global const PelWideShadow* wideShadow, uint lightIndex, __global uchar* map0, __global uchar* map1,
-    __global uchar* map2, __global uchar* map3, __global const float* bounds, __global uchar* out, uint pixels) {
+    __global const PelShadeFrame* restrict frame, __global const PelShadeMaterial* restrict materials,
+    __global const PelShadeLight* restrict lights, __global const uint* restrict list,
+    __global uint* counters, __global uchar* restrict material, __global uchar* restrict normal,
+    __global uchar* restrict position, __global uchar* restrict depth,
+    __global const PelWideShadow* restrict wideShadow, uint lightIndex, __global uchar* restrict map0,
+    __global uchar* restrict map1, __global uchar* restrict map2, __global uchar* restrict map3,
+    __global const float* restrict bounds, __global uchar* restrict out, uint pixels) {
     const TileRun run = tileRun(frame, list);
     const WideContent content = {wideShadow->perExponent, wideShadow->minDeviation * wideShadow->minDeviation,
                                  wideShadow->bleeding};
@@ -234,7 +236,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_PASS_GROUP, 1, 1))) void wide_s
                 if (PEL_FEATURES & PEL_BIT_COUNT) filtered += countw(left), texels += countw(left);
                 int wanted[PEL_WIDTH];
                 storew(left, 0, wanted);
-                for (int k = 0; k < PEL_WIDTH; ++k)  // unrolled, a compiler would copy the whole filter for each lane
+                // unrolled, a compiler would copy the whole filter for each lane
+                for (int k = 0; k < PEL_WIDTH; ++k)
                     if (wanted[k])
                         shown[k] = wideShadowInCube(PEL_FORMAT_SHADOW_MAP, map, wideShadow, &f, k, &content);
             } else {

@@ -4,10 +4,11 @@
 #include "shared/diffusion.h"
 
 typedef struct PelBlendMaterial {
-    float albedo[3];      // where there is no image of it
-    float before, after;  // powers of albedo that irradiance is multiplied by before it is scattered, and after
-    float through[3];     // share of the light on the other side
-    PelUint32 weighs;     // 1: the image of weights is not in the scattered light yet
+    float albedo[3];  // where there is no image of it
+    // powers of albedo that irradiance is multiplied by before it is scattered, and after
+    float before, after;
+    float through[3];  // share of the light on the other side
+    PelUint32 weighs;  // 1: the image of weights is not in the scattered light yet
 } PelBlendMaterial;
 
 typedef struct PelBlendFrame {

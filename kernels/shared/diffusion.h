@@ -22,7 +22,8 @@
 #define PEL_PLANE_SIZE 9  // length^2: the smaller of the squared steps to the next pixel; of a pixel
 #define PEL_PYRAMID_PLANES 10
 
-// What light flows in to the blocks of a level from it and from all coarser ones: as the surface's pyramid, from level 1 on.
+// What light flows in to the blocks of a level from it and from all coarser ones: as the surface's pyramid,
+// from level 1 on.
 #define PEL_SUM_LIGHT 0   // three planes: irradiance times mass
 #define PEL_SUM_MASS 3    // three: the share of the profile that was found
 #define PEL_SUM_CENTRE 6  // three: the share of what lies nearer, and was not looked for
@@ -31,7 +32,8 @@
 #define PEL_HIDDEN_PLANES \
     9  // three of light, three of mass, three of light from far away: what the camera does not see, for blocks of level 1
 
-// Words of tiles: these bits, levels << 8, weight of what is scattered << 24. 0: irradiance is right as it is.
+// Words of tiles: these bits, levels << 8, weight of what is scattered << 24. 0: irradiance is right as it
+// is.
 #define PEL_TILE_NEAR 1u            // single pixels are summed too, not only blocks
 #define PEL_LEAST_LEVELS 3u         // of tiles that scatter
 #define PEL_TILE_HIDDEN (1u << 16)  // light that the camera does not see may come in
@@ -42,16 +44,19 @@
 #define PEL_DIFFUSION_IDS 256
 #define PEL_MAX_IRRADIANCE 1e15f  // larger values count as invalid: sums over areas would overflow
 
-// A profile as three tables over the squared distance, four floats a node: R (1/length^2), the share of the light that stays within, and the
-// mean of R over a block of a ring at that distance. Nodes are equally spaced in the bits of a float, PEL_PROFILE_NODES to the octave. From the last node on R is 0 and the share 1.
+// A profile as three tables over the squared distance, four floats a node: R (1/length^2), the share of the
+// light that stays within, and the mean of R over a block of a ring at that distance. Nodes are equally
+// spaced in the bits of a float, PEL_PROFILE_NODES to the octave. From the last node on R is 0 and the share
+// 1.
 //
-// Behind the nodes R and the mean over a block stand once more, as sums of PEL_PROFILE_TERMS Gaussians, four floats a term: term i is
-// exp2(-widest 2^i d^2), so that each is the square of the one before it and a vector of distances needs no look-up.
+// Behind the nodes R and the mean over a block stand once more, as sums of PEL_PROFILE_TERMS Gaussians, four
+// floats a term: term i is exp2(-widest 2^i d^2), so that each is the square of the one before it and a
+// vector of distances needs no look-up.
 #define PEL_PROFILE_TERMS 16
 #define PEL_PROFILE_NODES 16
 #define PEL_PROFILE_NODE_BITS 19  // 23 bits of mantissa, less those of a node
-// Width of such blocks over their distance: the root of the mean square of all in a ring round a point, weighed by R that falls as
-// distance^-1.5.
+// Width of such blocks over their distance: the root of the mean square of all in a ring round a point,
+// weighed by R that falls as distance^-1.5.
 #define PEL_BLOCK_WIDTH 0.431
 typedef struct PelProfileTable {
     PelUint32 offset;  // of the first node, nodes

@@ -1,5 +1,6 @@
-// Constants of eyes (section 13 of the mathematics), with the same layout on host and device. An eye's own space: mm, the sclera's
-// centre at 0, the gaze along z, PelEye.up along y. Tables are made in units of the iris' radius.
+// Constants of eyes (section 13 of the mathematics), with the same layout on host and device. An eye's own
+// space: mm, the sclera's centre at 0, the gaze along z, PelEye.up along y. Tables are made in units of the
+// iris' radius.
 #ifndef PEL_SHARED_EYE
 #define PEL_SHARED_EYE
 #include "shared/scalars.h"
@@ -65,8 +66,8 @@ typedef struct PelEyeLutGrid {
 
 #define PEL_FIBRE_TEXELS 256  // along a side of an iris that is drawn
 
-// An iris' texels: the square itself, and below it, side by side, smaller and smaller ones, each with a copied column and row. Level l has
-// size >> l texels a side; all levels have rows of the same length.
+// An iris' texels: the square itself, and below it, side by side, smaller and smaller ones, each with a
+// copied column and row. Level l has size >> l texels a side; all levels have rows of the same length.
 #define PEL_IRIS_LEVELS 12
 static inline PelUint32 irisLevels(PelUint32 size) {
     PelUint32 levels = 1;

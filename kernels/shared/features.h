@@ -1,11 +1,12 @@
-// What a variant of the shading kernel is made of, beside the formats of images (shared/formats.h): feature bits
-// (PEL_FEATURES), a compile-time number. Numbers of the scene are arguments.
+// What a variant of the shading kernel is made of, beside the formats of images (shared/formats.h): feature
+// bits (PEL_FEATURES), a compile-time number. Numbers of the scene are arguments.
 #ifndef PEL_SHARED_FEATURES
 #define PEL_SHARED_FEATURES
 
 // clang-format off
-// PelFeature of the public header, each once: X(name, bit, kernel, material, key). kernel: 1 makes another variant of the shading kernel;
-// the passes before it do not. material: 1 is asked for by materials; the others hold for all of a frame.
+// PelFeature of the public header, each once: X(name, bit, kernel, material, key). kernel: 1 makes another
+// variant of the shading kernel; the passes before it do not. material: 1 is asked for by materials; the
+// others hold for all of a frame.
 #define PEL_EACH_FEATURE(X)                          \
     X(DIRECT_SCATTER, 0, 1, 1, "direct_scatter")     \
     X(SHADOW, 1, 1, 0, "shadow")                     \
@@ -41,7 +42,8 @@ enum {
     PEL_BIT_POSITIONAL = 0x10000,   // a point or spot light
     PEL_BIT_ACCUMULATE = 0x20000,   // add to the output
     PEL_BIT_NO_SKIPPING = 0x40000,  // evaluate every term of every pixel
-    PEL_BIT_COUNT = 0x80000,        // count pixels per feature; those of a material, and invalid ones, are counted without it
+    // count pixels per feature; those of a material, and invalid ones, are counted without it
+    PEL_BIT_COUNT = 0x80000,
     PEL_BIT_CUBE_ALONE = 0x100000,  // ambient light has no other part than the cube map
     PEL_BIT_ROTATE_TAPS = 0x200000, // thickness taps are turned from pixel to pixel
     PEL_BIT_TAP_CELLS = 0x400000,   // some thickness comes from cells of taps

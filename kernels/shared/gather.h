@@ -1,5 +1,5 @@
-// Constants of methods that gather irradiance by taps, laid out alike on host and device (docs/mathematics.md, section 10). Lengths
-// are in the caller's unit.
+// Constants of methods that gather irradiance by taps, laid out alike on host and device
+// (docs/mathematics.md, section 10). Lengths are in the caller's unit.
 #ifndef PEL_SHARED_GATHER
 #define PEL_SHARED_GATHER
 #include "shared/diffusion.h"

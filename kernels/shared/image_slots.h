@@ -13,34 +13,38 @@
 
 // clang-format off
 // X(name, number, role, content, components, key, words, bits)
-// role: SHADE is read by shade.cl, PASS by passes before it alone, OUTPUT is written, TARGET is written or added to.
-// content: what its pixels are, with the formats that they may have. components: how many names of channels a scene file gives.
-// key: in scene files; words: in messages. bits: PEL_BIT_... of the features that read it in shade.cl; depth is read where
-// there are no positions, and the geometric normal by these features and for a blurred one that is not there.
-#define PEL_EACH_IMAGE(X)                                                                                                      \
-    X(RADIANCE, 0, TARGET, COLOR_OUTPUT, 0, "radiance", "radiance", PEL_BITS_ALL_)                                             \
-    X(MATERIAL, 1, SHADE, ID, 1, "material", "material", PEL_BITS_ALL_)                                                        \
-    X(POSITION, 2, SHADE, COLOR, 3, "position", "position", PEL_BITS_POSITION_)                                                \
-    X(DEPTH, 3, SHADE, SCALAR, 1, "depth", "depth", PEL_BITS_POSITION_)                                                        \
-    X(NORMAL_GEOMETRIC, 4, SHADE, NORMAL, 3, "normal_geometric", "geometric normal", PEL_BIT_SHADOW_LUT | PEL_BIT_THICKNESS_TAPS | PEL_BIT_TRANSMISSION) \
-    X(NORMAL_SHADING, 5, SHADE, NORMAL, 3, "normal_shading", "shading normal", PEL_BITS_ALL_)                                  \
-    X(NORMAL_BLURRED, 6, SHADE, NORMAL, 3, "normal_blurred", "blurred normal", PEL_BITS_BLURRED_)                              \
-    X(CURVATURE, 7, SHADE, SCALAR, 1, "curvature", "curvature", PEL_BIT_DIRECT_SCATTER)                                        \
-    X(ALBEDO, 8, SHADE, COLOR, 3, "albedo", "albedo", PEL_BITS_ALL_)                                                           \
-    X(AMBIENT_OCCLUSION, 9, SHADE, SCALAR, 1, "ambient_occlusion", "ambient occlusion", PEL_BIT_AMBIENT)                       \
-    X(THICKNESS, 10, SHADE, SCALAR, 1, "thickness", "thickness", PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER | PEL_BIT_TRANSMISSION)               \
-    X(ROUGHNESS, 11, SHADE, SCALAR, 1, "roughness", "roughness", PEL_BIT_SPECULAR)                                             \
-    X(SPECULAR, 12, SHADE, SCALAR, 1, "specular", "specular", PEL_BIT_SPECULAR)                                                \
-    X(UV, 13, PASS, UV, 2, "uv", "UV", 0)                                                                                      \
-    X(UV_GRADIENT, 14, PASS, GRADIENT, 4, "uv_gradient", "UV gradient", 0)                                                     \
-    X(TANGENT, 15, PASS, NORMAL, 4, "tangent", "tangent", 0)                                                                   \
-    X(OUT_DIFFUSE, 16, OUTPUT, COLOR_OUTPUT, 0, "diffuse", "diffuse output", PEL_BITS_ALL_)                                    \
-    X(OUT_DEEP_SCATTER, 17, OUTPUT, COLOR_OUTPUT, 0, "deep_scatter", "deep scatter output", PEL_BITS_ALL_)                     \
-    X(OUT_SPECULAR, 18, OUTPUT, COLOR_OUTPUT, 0, "specular", "specular output", PEL_BITS_ALL_)                                 \
-    X(OUT_THICKNESS, 19, OUTPUT, SCALAR_OUTPUT, 0, "thickness", "thickness output", PEL_BITS_ALL_)                                \
-    X(IRRADIANCE, 20, SHADE, COLOR, 3, "irradiance", "irradiance", PEL_BIT_IRRADIANCE)                                         \
-    X(SCATTER_WEIGHT, 21, PASS, SCALAR, 2, "scatter_weight", "scatter weight", 0)                                              \
-    X(IRRADIANCE_BACK, 22, PASS, COLOR, 3, "irradiance_back", "back irradiance", 0)                                            \
+//   role        SHADE: read by shade.cl; PASS: read only by passes before it; OUTPUT: written; TARGET: written or added to
+//   content     the kind of pixels, which decides the formats that are accepted
+//   components  the number of channel names in a scene file
+//   key, words  the name in scene files and in messages
+//   bits        PEL_BIT_... of the features that read the image in shade.cl. Depth is read where there are no positions,
+//               and the geometric normal also in place of a missing blurred normal.
+#define PEL_EACH_IMAGE(X) \
+    X(RADIANCE, 0, TARGET, COLOR_OUTPUT, 0, "radiance", "radiance", PEL_BITS_ALL_) \
+    X(MATERIAL, 1, SHADE, ID, 1, "material", "material", PEL_BITS_ALL_) \
+    X(POSITION, 2, SHADE, COLOR, 3, "position", "position", PEL_BITS_POSITION_) \
+    X(DEPTH, 3, SHADE, SCALAR, 1, "depth", "depth", PEL_BITS_POSITION_) \
+    X(NORMAL_GEOMETRIC, 4, SHADE, NORMAL, 3, "normal_geometric", "geometric normal", \
+      PEL_BIT_SHADOW_LUT | PEL_BIT_THICKNESS_TAPS | PEL_BIT_TRANSMISSION) \
+    X(NORMAL_SHADING, 5, SHADE, NORMAL, 3, "normal_shading", "shading normal", PEL_BITS_ALL_) \
+    X(NORMAL_BLURRED, 6, SHADE, NORMAL, 3, "normal_blurred", "blurred normal", PEL_BITS_BLURRED_) \
+    X(CURVATURE, 7, SHADE, SCALAR, 1, "curvature", "curvature", PEL_BIT_DIRECT_SCATTER) \
+    X(ALBEDO, 8, SHADE, COLOR, 3, "albedo", "albedo", PEL_BITS_ALL_) \
+    X(AMBIENT_OCCLUSION, 9, SHADE, SCALAR, 1, "ambient_occlusion", "ambient occlusion", PEL_BIT_AMBIENT) \
+    X(THICKNESS, 10, SHADE, SCALAR, 1, "thickness", "thickness", \
+      PEL_BIT_DEEP_SCATTER | PEL_BIT_AMBIENT_SCATTER | PEL_BIT_TRANSMISSION) \
+    X(ROUGHNESS, 11, SHADE, SCALAR, 1, "roughness", "roughness", PEL_BIT_SPECULAR) \
+    X(SPECULAR, 12, SHADE, SCALAR, 1, "specular", "specular", PEL_BIT_SPECULAR) \
+    X(UV, 13, PASS, UV, 2, "uv", "UV", 0) \
+    X(UV_GRADIENT, 14, PASS, GRADIENT, 4, "uv_gradient", "UV gradient", 0) \
+    X(TANGENT, 15, PASS, NORMAL, 4, "tangent", "tangent", 0) \
+    X(OUT_DIFFUSE, 16, OUTPUT, COLOR_OUTPUT, 0, "diffuse", "diffuse output", PEL_BITS_ALL_) \
+    X(OUT_DEEP_SCATTER, 17, OUTPUT, COLOR_OUTPUT, 0, "deep_scatter", "deep scatter output", PEL_BITS_ALL_) \
+    X(OUT_SPECULAR, 18, OUTPUT, COLOR_OUTPUT, 0, "specular", "specular output", PEL_BITS_ALL_) \
+    X(OUT_THICKNESS, 19, OUTPUT, SCALAR_OUTPUT, 0, "thickness", "thickness output", PEL_BITS_ALL_) \
+    X(IRRADIANCE, 20, SHADE, COLOR, 3, "irradiance", "irradiance", PEL_BIT_IRRADIANCE) \
+    X(SCATTER_WEIGHT, 21, PASS, SCALAR, 2, "scatter_weight", "scatter weight", 0) \
+    X(IRRADIANCE_BACK, 22, PASS, COLOR, 3, "irradiance_back", "back irradiance", 0) \
     X(WETNESS, 23, SHADE, SCALAR, 1, "wetness", "wetness", PEL_BIT_EYE)
 // clang-format on
 

@@ -1,12 +1,13 @@
-// Constants of sums over the texels of shadow maps, laid out alike on host and device (docs/mathematics.md, section 10, "Light space").
-// Lengths are in the caller's unit, positions from PelDiffusionFrame.origin.
+// Constants of sums over the texels of shadow maps, laid out alike on host and device (docs/mathematics.md,
+// section 10, "Light space"). Lengths are in the caller's unit, positions from PelDiffusionFrame.origin.
 #ifndef PEL_SHARED_LIGHT_SPACE
 #define PEL_SHARED_LIGHT_SPACE
 #include "shared/diffusion.h"
 
-// The lit surface as a pyramid of blocks of 2^l x 2^l texels. A block of level 1 and on is two points: a map that shows a near surface
-// beside a far one has none in between. A level is rows of planes, as those of the screen are: row y of plane p begins at
-// offset + ((y + PEL_PYRAMID_ROWS) planes + p) stride + PEL_PYRAMID_GUARD. Blocks without flux hold nothing else.
+// The lit surface as a pyramid of blocks of 2^l x 2^l texels. A block of level 1 and on is two points: a map
+// that shows a near surface beside a far one has none in between. A level is rows of planes, as those of the
+// screen are: row y of plane p begins at offset + ((y + PEL_PYRAMID_ROWS) planes + p) stride +
+// PEL_PYRAMID_GUARD. Blocks without flux hold nothing else.
 #define PEL_LIGHT_LEVELS 12
 #define PEL_LIGHT_MAPS 24   // of all lights of a frame: cascades and faces of cubes one by one
 #define PEL_LIGHT_FLUX 0    // length^2: irradiance dA, over the light's colour
@@ -18,8 +19,8 @@
 // Planes of one point.
 #define PEL_LIGHT_PLANES(hidden) ((hidden) ? 5u : 6u)
 
-// A byte tells of each cell of so many texels along a side whether some have flux. Where none had it the frame before either, the pyramid
-// below the cell's own level holds zeros, and nothing is done.
+// A byte tells of each cell of so many texels along a side whether some have flux. Where none had it the
+// frame before either, the pyramid below the cell's own level holds zeros, and nothing is done.
 #define PEL_LIGHT_CELL 16
 
 #define PEL_SEEN_OTHER 255u  // of a texel: the camera sees something there that does not scatter

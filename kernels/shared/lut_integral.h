@@ -13,7 +13,8 @@ typedef struct LutGaussian {
     float blue;
 } LutGaussian;
 
-// A row's record, in float4: E, F at node 0, ... E, F at the last node, back, front, scale of E (lut/curvature_lut.cl).
+// A row's record, in float4: E, F at node 0, ... E, F at the last node, back, front, scale of E
+// (lut/curvature_lut.cl).
 #define PEL_CURVATURE_RECORD(nodes) (2 * (nodes) + 5)
 
 // A node of the angular mesh, at angle (pi/2) (j/N)^4 behind the terminator, j = 0 ... N.
@@ -59,8 +60,8 @@ typedef struct ShadowLutParams {
 
 // --- tabulated profiles (kernels/lut/tabulated_*.cl) ---
 
-// The line spread of a table and its integrals, within the cut, at distances end (i / PEL_TAIL_CELLS)^2, i = 0 ...
-// PEL_TAIL_CELLS: PEL_TAIL_VALUES float4 (R, G, B, 0) each.
+// The line spread of a table and its integrals, within the cut, at distances end (i / PEL_TAIL_CELLS)^2, i =
+// 0 ... PEL_TAIL_CELLS: PEL_TAIL_VALUES float4 (R, G, B, 0) each.
 #define PEL_TAIL_CELLS 512
 #define PEL_TAIL_SPREAD 0  // P
 #define PEL_TAIL_MASS 1    // integral of P beyond
@@ -69,15 +70,15 @@ typedef struct ShadowLutParams {
 #define PEL_TAIL_THIRD 4   // ... of (t - s)^3 / 6 P
 #define PEL_TAIL_VALUES 5
 
-// A profile's density along the surface (P, or R for the rings) and its integrals from 0 on, at `cells` + 1 distances that are spread
-// in the same way: PEL_SUM_VALUES float4 (R, G, B, 0) each.
+// A profile's density along the surface (P, or R for the rings) and its integrals from 0 on, at `cells` + 1
+// distances that are spread in the same way: PEL_SUM_VALUES float4 (R, G, B, 0) each.
 #define PEL_SUM_DENSITY 0
 #define PEL_SUM_MASS 1    // integral of the density
 #define PEL_SUM_MOMENT 2  // integral of that
 #define PEL_SUM_VALUES 3
 
-// A weight w of the density on an interval of the mesh as the best linear function of the distance x, in radii of the circle,
-// from the interval's nearer end: at + slope x.
+// A weight w of the density on an interval of the mesh as the best linear function of the distance x, in
+// radii of the circle, from the interval's nearer end: at + slope x.
 typedef struct TableWeight {
     float at;
     float slope;
@@ -86,8 +87,10 @@ typedef struct TableWeight {
 // What an interval of the mesh does with the density on one side of the shaded point.
 typedef struct TableSide {
     float distance;  // of the node at the interval's smaller angle, in radii
-    float antipodal;  // 1: the moment of the mass comes from the density at both ends, for the ends are too near to one another for
-        // differences of sums in float; 2: the mass, too, and weights are for the angle instead
+    // 1: the moment of the mass comes from the density at both ends, for the ends are too near to one another
+    // for
+    float antipodal;
+    // differences of sums in float; 2: the mass, too, and weights are for the angle instead
     TableWeight toE;    // sin of the angle from that node on
     TableWeight toF;    // its cos
     TableWeight light;  // cos of the angle from the shaded point on
@@ -140,7 +143,8 @@ typedef struct TabulatedShadowLutParams {
 #define PEL_RAMP_SAMPLES(nodes) ((nodes) + 1 + 2 * PEL_RAMP_PARTS + PEL_RAMP_TOGETHER)
 #define PEL_RAMP_RECORD(nodes) (2 * ((nodes) + 1))
 
-// What a sample of a function and its slope, per interval, add to its mean under the ramp, and to that of its slope, per half width.
+// What a sample of a function and its slope, per interval, add to its mean under the ramp, and to that of its
+// slope, per half width.
 typedef struct RampWeight {
     float value;
     float slope;

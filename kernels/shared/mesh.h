@@ -32,9 +32,10 @@
 // none.
 #define PEL_MESH_NO_RUN 0xffffffffu
 
-// The quadric estimator reads the two-ring of a slot as a list of points: its neighbours, then theirs (docs/mathematics.md, section
-// 5, says which, and how often). The lists lie as those of the one-rings do, with slices of PEL_POINT_LANES slots and no flags:
-// starts[i] is the first row of slice i. rounds[slot]: the number of neighbours, and flags.
+// The quadric estimator reads the two-ring of a slot as a list of points: its neighbours, then theirs
+// (docs/mathematics.md, section 5, says which, and how often). The lists lie as those of the one-rings do,
+// with slices of PEL_POINT_LANES slots and no flags: starts[i] is the first row of slice i. rounds[slot]: the
+// number of neighbours, and flags.
 #define PEL_POINT_LANES 16
 #define PEL_MESH_ROUND 0x80000000u   // the neighbours are one closed walk of more than two
 #define PEL_MESH_BORDER 0x40000000u  // an edge at the slot has one triangle

@@ -3,8 +3,6 @@
 #define PEL_SHARED_SCREEN
 #include "shared/shade.h"
 
-#define PEL_SCREEN_GROUP 16  // work-items in a work-group, each of PEL_WIDTH pixels
-
 typedef struct ScreenCurvatureFrame {
     PelUint32 width;  // pixels
     PelUint32 height;

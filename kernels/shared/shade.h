@@ -40,7 +40,8 @@ typedef struct PelShadeFrame {
     PelUint32 width;  // pixels
     PelUint32 height;
     PelUint32 tilesX;  // tiles in a row
-    PelUint32 tiles;  // that this launch takes, from firstTile on; all of them unless the frame is shaded in bands
+    // that this launch takes, from firstTile on; all of them unless the frame is shaded in bands
+    PelUint32 tiles;
     PelUint32 firstTile;
     PelUint32 scratchRow;  // pixel row at which the images that passes make begin
     PelUint32 listTiles;   // room in each list of tiles
@@ -48,8 +49,8 @@ typedef struct PelShadeFrame {
     PelUint32 materialMask[PEL_MATERIALS / 32];  // bit i: id i has a material
     float cameraPosition[3];                     // length, world
     float inverseViewProjection[16];             // clip to world
-    // Irradiance / pi as a polynomial of the normal: 1, y, z, x, xy, yz, 3z^2 - 1, xz, x^2 - y^2; the basis' factors
-    // and the constant term are folded in.
+    // Irradiance / pi as a polynomial of the normal: 1, y, z, x, xy, yz, 3z^2 - 1, xz, x^2 - y^2; the basis'
+    // factors and the constant term are folded in.
     float ambient[9][3];
     float invalidColor[3];     // radiance of a pixel with NaN or Inf input
     PelUint32 cubeSize;        // texels along an edge of the ambient cube map; 0: none
@@ -69,7 +70,8 @@ typedef struct PelShadeMaterial {
     float normalBlend[3];  // how far Nb replaces N, per channel
     PelShadeLut curvature;
     PelShadeLut shadow;
-    float penumbraPerCosine;  // 1 / shadowFilterWidth, 1/length: reciprocal penumbra width = sat(Ng.L) times this
+    // 1 / shadowFilterWidth, 1/length: reciprocal penumbra width = sat(Ng.L) times this
+    float penumbraPerCosine;
     float specularSharpening;  // 0.9 k: specular's shadow is smoothstep(w 0.9k + (1 - 0.9k) / 2); 0: plain w
     float deepScatterColor[3];
     float deepScatterFalloff;       // -log2(e) / (2 radius^2), 1/length^2: transmittance = exp2(falloff t^2)
@@ -106,7 +108,8 @@ typedef struct PelShadeMaterial {
 
 #define PEL_CASCADES 4   // of one light, at most
 #define PEL_TAP_DISKS 4  // disks of thickness taps that materials share, at most
-// Nodes of a grid of tap cells along the radius of its disk: coarser ones err more than the taps do (docs/design-notes.md).
+// Nodes of a grid of tap cells along the radius of its disk: coarser ones err more than the taps do
+// (docs/design-notes.md).
 #define PEL_CELLS_PER_RADIUS 4
 #define PEL_NODE_TAPS 32        // whatever the material asks for, since they cost next to nothing
 #define PEL_SAMPLES_PER_CELL 2  // samples of the map from node to node
@@ -114,8 +117,8 @@ typedef struct PelShadeMaterial {
 #define PEL_TAP_SAMPLES(nodes) \
     (((nodes)-1) * PEL_SAMPLES_PER_CELL + 1 + 2 * PEL_CELLS_PER_RADIUS * PEL_SAMPLES_PER_CELL)
 
-// What the taps of one disk read in one map, at the nodes of a grid (lib/shading/tap_cells.clh). Nodes begin a radius before the
-// map and end a radius behind it.
+// What the taps of one disk read in one map, at the nodes of a grid (lib/shading/tap_cells.clh). Nodes begin
+// a radius before the map and end a radius behind it.
 typedef struct PelTapCells {
     PelUint32 columns, rows;    // nodes; 0: no cells, pixels take taps of their own
     PelUint32 offset, samples;  // floats, to the first node's lengths and to the first sample

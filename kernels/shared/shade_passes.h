@@ -8,7 +8,8 @@
 #define PEL_BLUR_STEP_MAX \
     64  // pixels from tap to tap: a close-up is blurred over no more than 384 pixels to each side
 #define PEL_BLUR_GAP 3  // a step this many times longer than the one before is a depth edge
-// Values before the first and after the last pixel of a scratch plane: the farthest tap and a vector, so that no load is cut.
+// Values before the first and after the last pixel of a scratch plane: the farthest tap and a vector, so that
+// no load is cut.
 #define PEL_PLANE_GUARD (PEL_BLUR_TAPS * PEL_BLUR_STEP_MAX + 16)
 #define PEL_MAP_LEVELS 16  // of a normal map
 

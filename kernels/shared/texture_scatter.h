@@ -1,4 +1,5 @@
-// Constants of scattering in texture space, laid out alike on host and device (docs/mathematics.md, section 7).
+// Constants of scattering in texture space, laid out alike on host and device (docs/mathematics.md, section
+// 7).
 #ifndef PEL_SHARED_TEXTURE_SCATTER
 #define PEL_SHARED_TEXTURE_SCATTER
 #include "shared/shade.h"
