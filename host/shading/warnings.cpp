@@ -57,12 +57,26 @@ std::string withoutEffect(const ShaderMaterial& material) {
 
 }  // namespace
 
-std::string warningsOf(const ShaderState&, const ShaderState& state, uint32_t features) {
+std::string warningsOf(const ShaderState& given, const ShaderState& state, uint32_t features) {
     std::string all;
     const auto warn = [&](auto&&... parts) { all += (all.empty() ? "" : "\n") + text(parts...); };
     const bool map = std::any_of(state.lights.begin(), state.lights.end(),
                                  [](const ShaderLight& l) { return bool(l.images[PEL_LIGHT_SHADOW_MAP]); });
     const bool thickness = bool(state.images[PEL_SLOT_THICKNESS]);
+    if (const auto tables =
+            std::ranges::find_if(state.materials, [](auto& m) { return !readsIrradiance(m.second); });
+        tables != state.materials.end())
+        for (size_t i = 0; i < given.lights.size(); ++i) {
+            const ShaderLight& light = given.lights[i];
+            const bool unshadowed = light.images[PEL_LIGHT_SHADOW_MAP] && !light.images[PEL_LIGHT_WIDE_SHADOW] &&
+                                    light.params.shadowFilterTexels == 0;
+            // A map that serves thickness alone is no mistake, unless other materials get a shadow from it.
+            if (unshadowed && (!(features & PEL_FEATURE_THICKNESS_TAPS) || features & PEL_FEATURE_MAKE_IRRADIANCE))
+                warn("material ", tables->first,
+                     " scatters by \"preintegrated\" and gets no shadow from the map of "
+                     "light ",
+                     i, ", whose shadowFilterTexels is 0; 4 to 256 would be right, 48 is the default");
+        }
     for (const auto& [id, material] : state.materials) {
         const PelMaterial& m = material.params;
         if (!isBlackColor(m.deepScatterColor) && !state.lights.empty() && !thickness && !(map && m.thicknessTaps))

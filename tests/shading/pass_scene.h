@@ -5,8 +5,8 @@
 
 namespace shade_test {
 
-// A relief seen from above: waves, a cliff that rises 30 at x = 60 % of the width, two materials (1 and 2, split along a
-// slanted line) and a hole; normals turned at random. `pixel` is the distance between pixels.
+// A relief seen from above: waves, a cliff that rises 30 at x = 60 % of the width, two materials (1 and 2,
+// split along a slanted line) and a hole; normals turned at random. `pixel` is the distance between pixels.
 inline Frame reliefFrame(uint32_t seed, uint32_t width, uint32_t height, float pixel) {
     Random random(seed);
     Frame f;

@@ -52,9 +52,10 @@ struct Image {
     Vec3 vec(size_t pixel) const { return {at(pixel, 0), at(pixel, 1), at(pixel, 2)}; }
 };
 
-// Leaves nothing of its filter to a profile, whose numbers an oracle takes as they are.
+// With explicit filter parameters, as an oracle takes them, and no wide shadow from a shadow map.
 inline PelLight plainLight() {
     PelLight l = pelLightDefaults();
+    l.shadowFilterTexels = 0;
     l.shadowBias = 0.5f, l.shadowSoftness = 0.25f, l.shadowConeSlope = 0.5f;
     return l;
 }
@@ -66,11 +67,19 @@ inline PelShaderOptions exactOptions() {
     return o;
 }
 
+// A shadow map of any shape, or one of a light's cascades.
+struct MapImage {
+    PelLightSlot slot;
+    uint32_t width, height, components;
+    std::vector<float> values;
+};
+
 struct Light {
     PelLight params = plainLight();
     Image wide;  // empty: none
     uint32_t mapSize = 0;
-    Image map;
+    Image map;                   // a square shadow map, or
+    std::vector<MapImage> maps;  // all maps
 };
 
 struct Frame {
@@ -85,6 +94,25 @@ struct Frame {
     bool curvatureLut = true, shadowLut = true;
     size_t pixels() const { return size_t(width) * height; }
 };
+
+// The pixels [x, x + width) x [y, y + height) of a frame as a frame of their own.
+inline Frame cropped(const Frame& f, uint32_t x, uint32_t y, uint32_t width, uint32_t height) {
+    Frame part = f;
+    part.width = width, part.height = height;
+    const auto crop = [&](Image& image) {
+        if (image.values.empty()) return;
+        const uint32_t n = image.components;
+        std::vector<float> values;
+        for (uint32_t row = y; row < y + height; ++row) {
+            const auto from = image.values.begin() + ptrdiff_t((size_t(row) * f.width + x) * n);
+            values.insert(values.end(), from, from + ptrdiff_t(width * n));
+        }
+        image.values = std::move(values);
+    };
+    for (Image& image : part.slots) crop(image);
+    for (Light& light : part.lights) crop(light.wide);
+    return part;
+}
 
 class Random {
   public:

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdio>
 #include <fstream>
+#include <functional>
 
 #include "shade_frame.h"
 
@@ -55,16 +56,38 @@ inline void setFrame(const pellucid::Device& device, pellucid::Shader& shader, c
             shader.set(
                 i, PEL_LIGHT_SHADOW_MAP,
                 pellucid::imageDesc(upload(device, light.map), PEL_FORMAT_R32F, light.mapSize, light.mapSize));
+        for (const MapImage& map : light.maps)
+            shader.set(i, map.slot,
+                       pellucid::imageDesc(pellucid::Buffer(device, map.values), floatFormats[map.components],
+                                           map.width, map.height));
     }
 }
 
-// RGB float32 over zeros. `stats`, if given, is filled.
+// Takes back all that setFrame sets.
+inline void clearFrame(pellucid::Shader& shader) {
+    for (int slot = 0; slot < PEL_SLOT_COUNT; ++slot) shader.clear(PelImageSlot(slot));
+    for (uint32_t id = 1; id < 256; ++id)
+        pellucid::check(pelShaderSetMaterial(shader.get(), id, nullptr, nullptr, nullptr));
+    shader.clearAmbientCube().set(std::vector<PelLight>());
+}
+
+// An image of zeros that the shader writes: three float32 components, or one.
+inline pellucid::Buffer setTarget(const pellucid::Device& device, pellucid::Shader& shader, const Frame& f,
+                                  PelImageSlot slot = PEL_SLOT_RADIANCE) {
+    const uint32_t components = slot == PEL_SLOT_OUT_THICKNESS ? 1 : 3;
+    pellucid::Buffer target(device, f.pixels() * components * sizeof(float));
+    shader.set(slot, pellucid::imageDesc(target, floatFormats[components], f.width, f.height));
+    return target;
+}
+
+// RGB float32 over zeros. `stats`, if given, is filled; `change` sets more on the shader before its commit.
 inline std::vector<float> shade(const pellucid::Device& device, const Frame& f, const Tables& tables,
-                                PelShaderStats* stats = nullptr) {
+                                PelShaderStats* stats = nullptr,
+                                const std::function<void(pellucid::Shader&)>& change = {}) {
     pellucid::Shader shader(device);
     setFrame(device, shader, f, tables);
-    const pellucid::Buffer target(device, f.pixels() * 3 * sizeof(float));
-    shader.set(PEL_SLOT_RADIANCE, pellucid::imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+    const pellucid::Buffer target = setTarget(device, shader, f);
+    if (change) change(shader);
     shader.commit().execute();
     if (stats) *stats = shader.stats();
     return target.readAll<float>();

@@ -1,4 +1,5 @@
-// Frames lit through shadow maps of every form, and what the shader makes of them: wide shadow and thickness per pixel.
+// Frames lit through shadow maps of every form, and what the shader makes of them: wide shadow and thickness
+// per pixel.
 #pragma once
 #include <functional>
 
@@ -7,15 +8,6 @@
 
 namespace shade_test {
 
-struct MapImage {
-    PelLightSlot slot;
-    uint32_t width, height, components;
-    std::vector<float> values;
-};
-struct FormLight {
-    PelLight params = plainLight();
-    std::vector<MapImage> maps;
-};
 struct Seen {
     std::vector<float> wide, thickness;  // of the first light
     PelShaderStats stats = pelShaderStatsDefaults();
@@ -42,12 +34,13 @@ inline reference::Matrix4 matrixOf(const float (&m)[16]) {
     return out;
 }
 
-// Adds black lights with tiny maps of all forms, so that every test runs the same program, the one with all forms.
-inline std::vector<FormLight> withAllForms(std::vector<FormLight> lights) {
+// Adds black lights with tiny maps of all forms, so that every test runs the same program, the one with all
+// forms.
+inline std::vector<Light> withAllForms(std::vector<Light> lights) {
     const PelLight like = lights[0].params;  // whose place changes as others join
     const float e = like.shadowContent == PEL_SHADOW_CONTENT_EXPONENTIAL ? like.shadowExponent : 0;
-    const uint32_t components = lights[0].maps[0].components;
-    FormLight cube, cascade;
+    const uint32_t components = lights[0].maps.empty() ? 1 : lights[0].maps[0].components;
+    Light cube, cascade;
     cube.params.type = PEL_LIGHT_POINT;
     cube.params.range = 1e-3f;
     cube.params.shadowProjection = PEL_SHADOW_CUBE_RADIAL;
@@ -55,7 +48,7 @@ inline std::vector<FormLight> withAllForms(std::vector<FormLight> lights) {
     cascade.params.shadowCascades = 1;
     cascade.params.shadowDepthRange = 300;
     cascade.maps = {{PEL_LIGHT_SHADOW_MAP, 2, 2, components, std::vector<float>(4 * components, 0.5f)}};
-    for (FormLight* l : {&cube, &cascade}) {
+    for (Light* l : {&cube, &cascade}) {
         std::fill_n(l->params.color, 3, 0.0f);
         l->params.shadowFilterTexels = 4;
         l->params.shadowContent = like.shadowContent;
@@ -65,11 +58,31 @@ inline std::vector<FormLight> withAllForms(std::vector<FormLight> lights) {
     return lights;
 }
 
-inline Seen shadeForms(Frame f, std::vector<FormLight> lights, bool atlas = false) {
-    using pellucid::Buffer;
-    using pellucid::imageDesc;
-    lights = withAllForms(std::move(lights));
-    const PelLight& first = lights[0].params;
+// Puts the maps of the first light side by side into one buffer.
+inline void setAtlas(pellucid::Shader& shader, const std::vector<MapImage>& maps) {
+    uint32_t row = 0, offset = 0;  // floats
+    for (const MapImage& m : maps) row += m.width * m.components;
+    std::vector<float> all(size_t(row) * maps[0].height);
+    for (const MapImage& m : maps) {
+        const size_t length = m.width * m.components;
+        for (uint32_t y = 0; y < m.height; ++y)
+            std::copy_n(&m.values[y * length], length, &all[size_t(y) * row + offset]);
+        offset += uint32_t(length);
+    }
+    const pellucid::Buffer shared(device(), all);
+    offset = 0;
+    for (const MapImage& m : maps) {
+        PelImageDesc desc =
+            pellucid::imageDesc(shared, floatFormats[m.components], m.width, m.height, offset * sizeof(float));
+        desc.rowStride = row * sizeof(float);
+        shader.set(0, m.slot, desc);
+        offset += m.width * m.components;
+    }
+}
+
+inline Seen shadeForms(Frame f, std::vector<Light> lights, bool atlas = false) {
+    f.lights = withAllForms(std::move(lights));
+    const PelLight& first = f.lights[0].params;
     std::vector<double> strength(f.pixels(), 1);
     for (size_t i = 0; i < f.pixels(); ++i) {
         Vec3 toLight = vectorOf(first.toLight);
@@ -80,47 +93,13 @@ inline Seen shadeForms(Frame f, std::vector<FormLight> lights, bool atlas = fals
         }
         for (int c = 0; c < 3; ++c) f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i + c] = float(toLight[c]);
     }
-    f.lights.clear();
-    pellucid::Shader shader(device());
-    setFrame(device(), shader, f, tables());
-    std::vector<PelLight> params;
-    for (const FormLight& l : lights) params.push_back(l.params);
-    shader.set(params);
-    std::vector<float> all;  // an atlas: the maps side by side in one buffer
-    uint32_t row = 0;
-    if (atlas)
-        for (const MapImage& m : lights[0].maps) row += m.width * m.components * 4;
-    Buffer shared = atlas ? Buffer(device(), std::vector<float>(row / 4 * lights[0].maps[0].height)) : Buffer();
-    std::vector<Buffer> buffers;
-    for (uint32_t i = 0; i < lights.size(); ++i) {
-        uint32_t offset = 0;
-        for (const MapImage& m : lights[i].maps) {
-            PelImageDesc desc;
-            if (atlas && i == 0) {
-                desc = imageDesc(shared, floatFormats[m.components], m.width, m.height, offset);
-                desc.rowStride = row;
-                float* to;
-                pellucid::check(pelBufferMap(shared.get(), reinterpret_cast<void**>(&to)));
-                for (uint32_t y = 0; y < m.height; ++y)
-                    std::copy_n(&m.values[y * m.width * m.components], m.width * m.components,
-                                to + (offset + y * row) / 4);
-                pellucid::check(pelBufferUnmap(shared.get()));
-                offset += m.width * m.components * 4;
-            } else {
-                buffers.emplace_back(device(), m.values);
-                desc = imageDesc(buffers.back(), floatFormats[m.components], m.width, m.height);
-            }
-            shader.set(i, m.slot, desc);
-        }
-    }
-    const Buffer radiance(device(), f.pixels() * 12), diffuse(device(), f.pixels() * 12),
-        thickness(device(), f.pixels() * 4);
-    shader.set(PEL_SLOT_RADIANCE, imageDesc(radiance, PEL_FORMAT_RGB32F, f.width, f.height));
-    shader.set(PEL_SLOT_OUT_DIFFUSE, imageDesc(diffuse, PEL_FORMAT_RGB32F, f.width, f.height));
-    shader.set(PEL_SLOT_OUT_THICKNESS, imageDesc(thickness, PEL_FORMAT_R32F, f.width, f.height));
-    shader.commit().execute();
     Seen seen;
-    seen.stats = shader.stats();
+    pellucid::Buffer diffuse, thickness;
+    shade(device(), f, tables(), &seen.stats, [&](pellucid::Shader& shader) {
+        if (atlas) setAtlas(shader, f.lights[0].maps);
+        diffuse = setTarget(device(), shader, f, PEL_SLOT_OUT_DIFFUSE);
+        thickness = setTarget(device(), shader, f, PEL_SLOT_OUT_THICKNESS);
+    });
     seen.thickness = thickness.readAll<float>();
     const auto light = diffuse.readAll<float>();
     for (size_t i = 0; i < f.pixels(); ++i)
@@ -161,7 +140,7 @@ inline Turn turnTo(Vec3 to, Vec3 axis) {
 }
 
 struct CubeLight {
-    FormLight light;
+    Light light;
     reference::CubeShadowMap map;
     Turn turn;
     Vec3 position;
@@ -209,7 +188,7 @@ inline CubeLight cubeLight(uint32_t size, bool radial, Turn turn, Vec3 position,
 
 // Maps of these extents about one axis, each with its own size, shifted a little against each other.
 struct CascadeLight {
-    FormLight light;
+    Light light;
     std::vector<MapLight> maps;
 };
 inline CascadeLight cascadeLight(const std::vector<double>& extents, bool reversed = false,
@@ -245,7 +224,7 @@ inline CascadeLight cascadeLight(const std::vector<double>& extents, bool revers
 // --- moments and exponentials ---
 
 struct ContentLight {
-    FormLight light;
+    Light light;
     MapLight from;               // its depths
     reference::ShadowMap first;  // what the texels hold
     std::vector<double> second;
@@ -258,7 +237,7 @@ inline ContentLight contentLight(PelShadowContent content, bool perspective, boo
     out.from = mapLight(size, perspective, reversed, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 2 * size);
     auto& view = out.from.view;
     auto& depth = out.from.map.depth;
-    FormLight& l = out.light;
+    Light& l = out.light;
     l.params = out.from.light.params;
     if (reversed && !perspective) {  // from 1 at the light to 0
         l.params.worldToShadow[11] += 1;

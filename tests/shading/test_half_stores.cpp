@@ -1,4 +1,5 @@
-// Colours written as halves: every half, and what lies between two of them, rounds to the nearest, at a tie to the even one.
+// Colours written as halves: every half, and what lies between two of them, rounds to the nearest, at a tie
+// to the even one.
 #include <gtest/gtest.h>
 
 #include "diffusion/scatter_scene.h"

@@ -1,5 +1,5 @@
-// The disks of thickness taps (bench/shading/generate_disks.py): centred, as wide as the disk, evenly spread, and better than random
-// points at what they are for: how much of the disk lies on one side of an edge.
+// The disks of thickness taps (bench/shading/generate_disks.py): centred, as wide as the disk, evenly spread,
+// and better than random points at what they are for: how much of the disk lies on one side of an edge.
 #include <gtest/gtest.h>
 
 #include <numbers>

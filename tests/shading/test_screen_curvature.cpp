@@ -248,7 +248,8 @@ TEST(ScreenCurvature, FromDepthAsFromPositions) {
 }
 
 TEST(ScreenCurvature, SeparatesObjectsThatTouch) {
-    // Two half planes that meet at an angle and belong to two objects. Without ids the fold counts as curvature.
+    // Two half planes that meet at an angle and belong to two objects. Without ids the fold counts as
+    // curvature.
     GBuffer g(20, 10);
     for (size_t i = 0; i < g.ids.size(); ++i) {
         const double x = double(i % 20) - 10;
@@ -282,8 +283,8 @@ TEST(ScreenCurvature, NamesWhatIsWrong) {
     const PelImageDesc other = imageDesc(b, PEL_FORMAT_RGB32F, 8, 7), over = imageDesc(b, PEL_FORMAT_R32F, 8, 8);
     EXPECT_NE(message(nullptr, &three, &other, nullptr, &one).find("one size"), std::string::npos);
     EXPECT_NE(message(nullptr, &three, &three, nullptr, &over).find("overlaps"), std::string::npos);
-    // An output that is a component of its own between others does not overlap. One that is a component of the normal does, and so does
-    // the same memory through another buffer.
+    // An output that is a component of its own between others does not overlap. One that is a component of
+    // the normal does, and so does the same memory through another buffer.
     const Buffer both(device(), 8 * 8 * 16);
     PelImageDesc four = imageDesc(both, PEL_FORMAT_RGB32F, 8, 8), part = imageDesc(both, PEL_FORMAT_R32F, 8, 8);
     four.pixelStride = part.pixelStride = 16;

@@ -186,11 +186,6 @@ TEST(Shade, BackgroundIsLeftAlone) {
     EXPECT_EQ(shader.stats().tilesShaded, 1u);
 }
 
-TEST(Shade, TwoRunsAreTheSameToTheBit) {
-    const Frame f = randomFrame(5, 333, 111, 4);
-    EXPECT_EQ(shade(device(), f, tables()), shade(device(), f, tables()));
-}
-
 TEST(Shade, EveryWidthAndHeight) {
     for (const auto& [width, height] : std::vector<std::pair<uint32_t, uint32_t>>{
              {1, 1}, {1, 9}, {7, 1}, {8, 2}, {9, 3}, {15, 17}, {16, 16}, {17, 33}, {31, 5}}) {

@@ -10,7 +10,8 @@ using pellucid::Shader;
 
 namespace {
 
-// Blurred normals of one material, a normal map for the other, two wide shadows to filter; lit by both lights.
+// Blurred normals of one material, a normal map for the other, two wide shadows to filter; lit by both
+// lights.
 Frame passesFrame(uint32_t seed, uint32_t width, uint32_t height) {
     Frame f = reliefFrame(seed, width, height, 0.4f);
     for (const bool perspective : {false, true})
@@ -42,8 +43,7 @@ Result run(const Frame& f, uint64_t budget, bool normalMap = false) {
         shader.set(PEL_SLOT_UV, imageDesc(Buffer(device(), uv), PEL_FORMAT_RG32F, f.width, f.height));
         shader.set(PEL_SLOT_TANGENT, imageDesc(Buffer(device(), tangent), PEL_FORMAT_RGB32F, f.width, f.height));
     }
-    const Buffer target(device(), f.pixels() * 12);
-    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+    const auto target = setTarget(device(), shader, f);
     shader.commit().execute();
     Result result{target.readAll<float>(), shader.stats()};
     if (f.options.accumulate) return result;
@@ -75,7 +75,8 @@ TEST(ShadeBands, WideShadowsOfEveryBudget) {
     }
 }
 
-// The blur reads up to 384 rows to each side: the frame is taller than that, and seen from far enough for wide steps.
+// The blur reads up to 384 rows to each side: the frame is taller than that, and seen from far enough for
+// wide steps.
 TEST(ShadeBands, BlurredNormalsAndMapsWithTheirHalo) {
     Frame f = passesFrame(2, 70, 1000);
     for (size_t i = 0; i < f.pixels(); ++i)
@@ -111,8 +112,7 @@ TEST(ShadeBands, ABudgetThatIsTooSmallSaysWhatWouldDo) {
     f.options.scratchBudget = 1000;
     Shader shader(device());
     setFrame(device(), shader, f, tables());
-    const Buffer target(device(), f.pixels() * 12);
-    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+    const auto target = setTarget(device(), shader, f);
     try {
         shader.commit();
         FAIL() << "it fitted";
@@ -146,8 +146,7 @@ TEST(ShadeBands, TellProgressAndStop) {
     f.options.scratchBudget = 64 * 8 * 8;
     Shader shader(own);
     setFrame(own, shader, f, ownTables);
-    const Buffer target(own, f.pixels() * 12);
-    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+    const auto target = setTarget(own, shader, f);
     shader.commit().execute();
     const auto right = target.readAll<float>();
     const auto callback = [](void* user, double fraction, const char*) {

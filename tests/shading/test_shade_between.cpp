@@ -1,4 +1,5 @@
-// Wide shadows and blurred normals at every second pixel, with interpolation between them, against the same at every pixel.
+// Wide shadows and blurred normals at every second pixel, with interpolation between them, against the same
+// at every pixel.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -57,34 +58,6 @@ TEST(BetweenPixels, WideShadowsAreThoseOfEveryPixel) {
         filtered += double(some.pixelsWideShadow), all += double(every.pixelsWideShadow);
     }
     EXPECT_LT(filtered, 0.5 * all) << "most pixels are interpolated";
-}
-
-TEST(BetweenPixels, SkippingRunsAndBandsChangeNoBit) {
-    for (uint32_t seed = 0; seed < 6; ++seed) {
-        Frame f = interpolated(
-            shadowed(seed, mapLight(seed, seed % 2, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 97).light,
-                     201 - seed % 2, 75));
-        f.options.blurNormals = seed % 3 != 0;
-        if (seed % 2) {  // a spot that misses part of the frame
-            PelLight& l = f.lights[0].params;
-            l.type = PEL_LIGHT_SPOT;
-            const auto view = mapLight(seed, true, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 97).view;
-            for (int c = 0; c < 3; ++c)
-                l.position[c] = float(view.origin[c]), l.spotDirection[c] = -l.toLight[c];
-            l.spotCosInner = 0.998f, l.spotCosOuter = 0.995f;
-            for (float& c : l.color) c = 20000;
-        }
-        const auto first = shade(device(), f, tables());
-        EXPECT_EQ(first, shade(device(), f, tables())) << seed;
-        f.options.disableSkipping = 1;
-        EXPECT_EQ(first, shade(device(), f, tables())) << seed;
-        f.options.disableSkipping = 0;
-        f.options.scratchBudget = 230 * 4 * 14;
-        if (f.options.blurNormals) continue;  // its halo is the whole frame
-        PelShaderStats stats = pelShaderStatsDefaults();
-        EXPECT_EQ(first, shade(device(), f, tables(), &stats)) << seed;
-        EXPECT_GT(stats.bands, 3u);
-    }
 }
 
 TEST(BetweenPixels, NothingIsTakenAcrossADepthEdgeOrAMaterial) {

@@ -105,8 +105,7 @@ TEST_P(ShadeCounts, AnExecutionStartsAtZero) {
     const Frame f = countedFrame(5, 70, 33);
     pellucid::Shader shader(device);
     setFrame(device, shader, f, tables);
-    const pellucid::Buffer target(device, f.pixels() * 12);
-    shader.set(PEL_SLOT_RADIANCE, pellucid::imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+    const auto target = setTarget(device, shader, f);
     shader.commit().execute();
     const PelShaderStats first = shader.stats();
     shader.execute();

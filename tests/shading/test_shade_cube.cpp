@@ -1,4 +1,5 @@
-// Ambient light from a cube map: against the oracle, against what it stands for, at its edges, and with bad texels.
+// Ambient light from a cube map: against the oracle, against what it stands for, at its edges, and with bad
+// texels.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -118,7 +119,8 @@ TEST(ShadeCube, AddsToHarmonicsAndComesThrough) {
 }
 
 TEST(ShadeCube, KernelsThatDoLessGiveTheSameBits) {
-    // One material lets ambient light through and shines, the others do neither: tiles of those alone get a kernel of their own.
+    // One material lets ambient light through and shines, the others do neither: tiles of those alone get a
+    // kernel of their own.
     Frame f = randomFrame(8, 400, 24, 1);
     f.cube = randomCube(8, 7);
     f.slots[PEL_SLOT_THICKNESS] = f.slots[PEL_SLOT_AMBIENT_OCCLUSION];
@@ -206,7 +208,8 @@ TEST(ShadeCube, OfASkyItIsNearerThanHarmonics) {
 }
 
 TEST(ShadeCube, HasNoSeams) {
-    // Pairs of directions on both sides of each of the twelve edges, along its whole length. White noise would show any step.
+    // Pairs of directions on both sides of each of the twelve edges, along its whole length. White noise
+    // would show any step.
     Random random(9);
     std::vector<Vec3> normals;
     for (int i = 0; i < 4000; ++i) {
@@ -285,8 +288,7 @@ TEST(ShadeCube, AZeroNormalGetsNothing) {
 std::vector<float> shadeCube(const Frame& f, const PelImageDesc& faces) {
     Shader shader(device());
     setFrame(device(), shader, f, tables());
-    const Buffer target(device(), f.pixels() * 12);
-    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+    const auto target = setTarget(device(), shader, f);
     shader.setAmbientCube(faces).commit().execute();
     return target.readAll<float>();
 }

@@ -18,8 +18,8 @@ double linear(double s) {
     return s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
 }
 
-// FaceWorks' 20,000 pixels as a frame. Its light has another direction in each; ours has one, +z: `turned` gives vectors in a
-// frame of the pixel's own in which that is so.
+// FaceWorks' 20,000 pixels as a frame. Its light has another direction in each; ours has one, +z: `turned`
+// gives vectors in a frame of the pixel's own in which that is so.
 class ShadeFaceWorks : public testing::Test {
   protected:
     void SetUp() override {

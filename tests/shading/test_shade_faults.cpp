@@ -1,8 +1,8 @@
-// Every allocation of a shader fails, alone or with all that come after it: an error each time, or less memory at a time, and
-// nothing broken after it.
+// Every allocation of a shader fails, alone or with all that come after it: an error each time, or less
+// memory at a time, and nothing broken after it.
 //
-// This program defines operator new and OpenCL calls itself, which are linked before the others: they count calls of the library, and let
-// one of them fail.
+// This program defines operator new and OpenCL calls itself, which are linked before the others: they count
+// calls of the library, and let one of them fail.
 #include <CL/cl.h>
 #include <dlfcn.h>
 #include <gtest/gtest.h>

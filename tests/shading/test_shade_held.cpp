@@ -1,4 +1,5 @@
-// Frames, tables and passes that are submitted behind an event that their caller sets later: calls return, and give the same.
+// Frames, tables and passes that are submitted behind an event that their caller sets later: calls return,
+// and give the same.
 #include "diffusion/lit_ball.h"
 #include "held_queue.h"
 #include "pass_scene.h"
@@ -13,7 +14,8 @@ const Device& own() {
     return shade_test::device();
 }
 
-// Commits and executes twice behind the event, with `change` between; the second frame is that of a shader that never waited.
+// Commits and executes twice behind the event, with `change` between; the second frame is that of a shader
+// that never waited.
 template <class Make, class Change>
 void expectFrames(const char* what, size_t floats, const Make& make, const Change& change) {
     const Buffer held(own(), floats * sizeof(float)), plain(own(), floats * sizeof(float));

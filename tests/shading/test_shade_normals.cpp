@@ -65,18 +65,6 @@ TEST(BlurNormals, OffCostsNothingAndAnImageGoesFirst) {
     EXPECT_EQ(given.scratchBytes, off.scratchBytes);
 }
 
-TEST(BlurNormals, SkippingAndRunsChangeNoBit) {
-    for (uint32_t seed = 0; seed < 4; ++seed) {
-        Frame f = reliefFrame(seed, 133 + 40 * seed, 41, 0.4f);
-        showBlurredNormal(f);
-        f.options.blurNormals = 1;
-        const auto first = shade(device(), f, tables());
-        EXPECT_EQ(first, shade(device(), f, tables()));
-        f.options.disableSkipping = 1;
-        EXPECT_EQ(first, shade(device(), f, tables()));
-    }
-}
-
 // A plane whose normals wave along x: the blur's response is the Fourier transform of its kernel.
 TEST(BlurNormals, DampsWavesAsItsKernelDoes) {
     for (const double wavelength : {4.0, 6.0, 12.0}) {

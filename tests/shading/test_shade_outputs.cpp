@@ -76,20 +76,6 @@ TEST(ShadeOutputs, EachMatchesTheOracleAndRadianceStaysWhatItIs) {
     }
 }
 
-TEST(ShadeOutputs, SkippingChangesNoBit) {
-    for (uint32_t seed : {4u, 6u}) {  // with taps: one kernel to compile for both
-        Frame f = partsFrame(seed);
-        const Shaded with = shadeParts(f);
-        f.options.disableSkipping = 1;
-        const Shaded without = shadeParts(f);
-        EXPECT_EQ(with.radiance, without.radiance);
-        EXPECT_EQ(with.diffuse, without.diffuse);
-        EXPECT_EQ(with.deepScatter, without.deepScatter);
-        EXPECT_EQ(with.specular, without.specular);
-        EXPECT_EQ(with.thickness, without.thickness);
-    }
-}
-
 TEST(ShadeOutputs, ThicknessThatNothingMeasuresIsZero) {
     Frame f = partsFrame(2);
     for (auto& light : f.lights) light.mapSize = 0, light.map.values.clear();
@@ -173,7 +159,8 @@ TEST(ReferenceGgx, IsReciprocalAndLosesWhatMaskingTakes) {
         const double s = std::sqrt(1 - cosine * cosine);
         return Vec3{s * std::cos(angle), s * std::sin(angle), cosine};
     };
-    // What one bounce leaves, by another method: the mean of G2 (V.H) / ((N.V) (N.H)) over half vectors drawn from D cos.
+    // What one bounce leaves, by another method: the mean of G2 (V.H) / ((N.V) (N.H)) over half vectors drawn
+    // from D cos.
     for (const auto& [a, left] : {std::pair{0.1, 0.9867}, {0.3, 0.8678}, {0.8, 0.4441}}) {
         const Vec3 l = direction(0.7, 0.3), v = direction(0.4, 2.1);
         EXPECT_NEAR(ggxLobe(n, l, v, a), ggxLobe(n, v, l, a), tolerance::oracleExact);

@@ -105,8 +105,8 @@ TEST(ShadeStats, NothingIsSentOrBuiltTwice) {
     Frame f = randomFrame(5, 120, 60, 1);
     Shader shader(device());
     setFrame(device(), shader, f, tables());
-    const Buffer target(device(), f.pixels() * 12);
-    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height)).commit().execute();
+    const auto target = setTarget(device(), shader, f);
+    shader.commit().execute();
     PelShaderStats stats = shader.stats();
     EXPECT_GT(stats.bytesUploaded, 0u);
     EXPECT_EQ(stats.launches, 2u);

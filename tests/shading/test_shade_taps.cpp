@@ -1,4 +1,5 @@
-// Thickness taps on a disk that is rotated from pixel to pixel: against the oracle, and what the rotation may change.
+// Thickness taps on a disk that is rotated from pixel to pixel: against the oracle, and what the rotation may
+// change.
 #include <gtest/gtest.h>
 
 #include "shade_scene.h"
@@ -69,36 +70,14 @@ TEST(ShadeTaps, TurningDependsOnThePlaceAlone) {
 
     // A part of the frame in a frame of its own, at the same columns and rows, gives the same bits.
     f.options.rotateTaps = 1;
-    Frame left = f;
-    left.width = 33;
-    for (Image& image : left.slots) {
-        if (image.values.empty()) continue;
-        std::vector<float> values;
-        for (size_t y = 0; y < f.height; ++y)
-            values.insert(values.end(), &image.values[y * f.width * image.components],
-                          &image.values[(y * f.width + left.width) * image.components]);
-        image.values = values;
-    }
-    for (Light& light : left.lights) light.wide.values.resize(left.pixels());
+    const Frame left = cropped(f, 0, 0, 33, f.height);
     const auto part = measure(left);
     for (size_t i = 0; i < left.pixels(); ++i) EXPECT_EQ(part[i], turned[i / 33 * f.width + i % 33]) << i;
 }
 
-TEST(ShadeTaps, BandsOfRowsTurnAsTheWholeFrameDoes) {
-    Frame f = tapFrame(26, 64, 24);
-    for (Light& light : f.lights) {  // a pass with scratch memory, so that there are bands
-        light.wide = {};
-        light.params.shadowFilterTexels = 8;
-    }
-    const auto whole = shade(device(), f, tables());
-    f.options.scratchBudget = 64 * 8 * 8;  // eight rows
-    PelShaderStats stats = pelShaderStatsDefaults();
-    EXPECT_EQ(shade(device(), f, tables(), &stats), whole);
-    EXPECT_GT(stats.bands, 1u);
-}
-
 TEST(ShadeTaps, TheAnglesFillTheCircle) {
-    // Any 4 x 4 pixels: the largest gap between angles is far below that of random ones (about 76 degrees of 16).
+    // Any 4 x 4 pixels: the largest gap between angles is far below that of random ones (about 76 degrees of
+    // 16).
     const reference::Vec2 tap{1, 0};
     for (uint32_t x0 : {0u, 1u, 777u, 16380u})
         for (uint32_t y0 : {0u, 5u, 16380u}) {

@@ -1,4 +1,5 @@
-// Shaders used from several threads, on one device and on several; and objects that outlive the caller's device.
+// Shaders used from several threads, on one device and on several; and objects that outlive the caller's
+// device.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -19,8 +20,7 @@ void shadeOften(const Device& device, const Tables& tables, const Frame& f, cons
     for (int i = 0; i < 3; ++i) {
         Shader shader(device);
         setFrame(device, shader, f, tables);
-        const Buffer target(device, f.pixels() * 12);
-        shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+        const auto target = setTarget(device, shader, f);
         shader.commit();
         for (int k = 0; k < 4; ++k) {
             shader.execute();

@@ -1,6 +1,8 @@
-// Variants of the shading kernel: few, equal for shaders that mean the same; and tiles shaded by those with less in them.
+// Variants of the shading kernel: few, equal for shaders that mean the same; and tiles shaded by those with
+// less in them.
 //
-// This program defines clBuildProgram itself, which is linked before libOpenCL's: it counts programs without compiling them.
+// This program defines clBuildProgram itself, which is linked before libOpenCL's: it counts programs without
+// compiling them.
 #include <CL/cl.h>
 #include <dlfcn.h>
 #include <gtest/gtest.h>
@@ -32,7 +34,8 @@ cl_int clBuildProgram(cl_program program, cl_uint count, const cl_device_id* dev
 
 namespace {
 
-// Programs that commits of these frames build on a device that has none. Frames are 16 x 1: the least that is read in vectors.
+// Programs that commits of these frames build on a device that has none. Frames are 16 x 1: the least that is
+// read in vectors.
 uint32_t programsOf(const std::vector<Frame>& frames) {
     const Device own("");
     PelLutInfo curvature = pelLutInfoDefaults(), shadow = curvature;
@@ -43,8 +46,7 @@ uint32_t programsOf(const std::vector<Frame>& frames) {
     for (const Frame& f : frames) {
         Shader shader(own);
         setFrame(own, shader, f, tables);
-        const Buffer target(own, f.pixels() * 12);
-        shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+        const auto target = setTarget(own, shader, f);
         shader.commit();
     }
     pretend = false;
@@ -57,8 +59,8 @@ Frame small(uint32_t lights = 1) {
     return randomFrame(1, 16, 1, lights);
 }
 
-// All scenes of a host with one kind of G-buffer: each combination of what may be there or not, with other numbers, lights and
-// materials for each.
+// All scenes of a host with one kind of G-buffer: each combination of what may be there or not, with other
+// numbers, lights and materials for each.
 TEST(ShadeVariants, FewAreReached) {
     std::vector<Frame> frames;
     for (int choice = 0; choice < 2 * 3 * 2 * 4 * 3 * 2; ++choice)
@@ -92,8 +94,8 @@ TEST(ShadeVariants, FewAreReached) {
         }
     const uint32_t programs = programsOf(frames);
     std::printf("%zu scenes, %u programs\n", frames.size(), programs);
-    // Curvature 2 x shadow 3 x ambient 2 x deep scatter 3 x specular 3 x positional 2, and ambient scatter where there is
-    // ambient light: another 2 x 3 x 3 x 2.
+    // Curvature 2 x shadow 3 x ambient 2 x deep scatter 3 x specular 3 x positional 2, and ambient scatter
+    // where there is ambient light: another 2 x 3 x 3 x 2.
     EXPECT_EQ(frames.size(), 1152u);
     EXPECT_LE(programs, 252u);
     EXPECT_GE(programs, 200u) << "they are not all the same either";
@@ -157,8 +159,8 @@ TEST(ShadeVariants, EqualMeaningIsOneProgram) {
 
 // --- tiles by variant ---
 
-// Skin (1), a material without tables or deep scatter (2), and one that is not even shiny (7), in runs that share tiles here
-// and there; pixels with NaN in every input.
+// Skin (1), a material without tables or deep scatter (2), and one that is not even shiny (7), in runs that
+// share tiles here and there; pixels with NaN in every input.
 Frame mixedFrame(uint32_t seed) {
     Frame f = randomFrame(seed, 700, 40, 2);
     for (float& c : f.materials[2].deepScatterColor) c = 0;
@@ -186,8 +188,7 @@ std::vector<float> shadeMixed(const Frame& f, PelShaderStats& stats) {
     Shader shader(device());
     setFrame(device(), shader, f, tables());
     for (const uint32_t id : {2u, 7u}) shader.setMaterial(id, f.materials.at(id));
-    const Buffer target(device(), f.pixels() * 12);
-    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
+    const auto target = setTarget(device(), shader, f);
     shader.commit().execute();
     stats = shader.stats();
     return target.readAll<float>();

@@ -58,8 +58,8 @@ TEST(WideShadow, MatchesTheOracle) {
             }
 }
 
-// A straight edge high over a plane gives w = (1 + q sqrt(2 - q^2)) / 2 at q from -1 to 1 across it: the profile by which
-// the shadow table reads its columns.
+// A straight edge high over a plane gives w = (1 + q sqrt(2 - q^2)) / 2 at q from -1 to 1 across it: the
+// profile by which the shadow table reads its columns.
 TEST(WideShadow, AStraightEdgeHasTheTablesProfile) {
     MapLight from = mapLight(1, false, false, {0, 0, 1}, {24, 10, 0}, 64, 640);
     const Vec3 edge = from.view.right;
@@ -85,6 +85,36 @@ TEST(WideShadow, AStraightEdgeHasTheTablesProfile) {
     }
 }
 
+// Pre-integrated materials are shadowed by a map whatever the light says of its filter, unless it turns the
+// filter off.
+TEST(WideShadow, ALightWithAShadowMapCastsAShadowByDefault) {
+    MapLight from = mapLight(3, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61);
+    from.light.params.shadowFilterTexels = pelLightDefaults().shadowFilterTexels;
+    const auto warningsOf = [](const Frame& f) {
+        pellucid::Shader s(device());
+        setFrame(device(), s, f, tables());
+        const auto target = setTarget(device(), s, f);
+        return s.commit().warnings();
+    };
+    for (const bool besideScreen : {false, true}) {
+        Frame f = litRelief(from);
+        if (besideScreen) f.materials[2].scattering = PEL_SCATTERING_NONE;
+        const auto darkPixels = [&] {
+            const auto shown = shade(device(), f, tables());
+            size_t dark = 0;
+            for (size_t i = 0; i < f.pixels(); ++i)
+                dark += f.slots[PEL_SLOT_MATERIAL].at(i) == 1 && shown[3 * i] < 0.5f;
+            return dark;
+        };
+        EXPECT_GT(darkPixels(), f.pixels() / 50);
+        EXPECT_EQ(warningsOf(f).find("no shadow"), std::string::npos);
+        f.lights[0].params.shadowFilterTexels = 0;
+        EXPECT_EQ(darkPixels(), 0u);
+        EXPECT_NE(warningsOf(f).find("gets no shadow from the map of light 0"), std::string::npos)
+            << warningsOf(f);
+    }
+}
+
 TEST(WideShadow, OffCostsNothingAndAnImageGoesFirst) {
     const MapLight from = mapLight(3, false, false, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61);
     Frame f = litRelief(from);
@@ -105,33 +135,6 @@ TEST(WideShadow, OffCostsNothingAndAnImageGoesFirst) {
     f.lights[0].wide.values.assign(f.pixels(), 0.5f);
     EXPECT_EQ(shade(device(), f, tables(), &given)[3 * (f.pixels() - 1)], 0.5f);
     EXPECT_EQ(given.launches, off.launches);
-}
-
-TEST(WideShadow, SkippingAndRunsChangeNoBit) {
-    for (uint32_t seed = 0; seed < 6; ++seed) {
-        const MapLight from = mapLight(seed, seed % 2, seed % 3 == 0, {0.5, 0.2, 0.9}, {24, 10, 5}, 70, 97);
-        Frame f = litRelief(from, seed);
-        f.options.countPixels = 1;
-        f.options.blurNormals = seed % 2;
-        PelLight& l = f.lights[0].params;
-        if (seed % 2) {  // a spot that misses part of the frame, and a second light
-            l.type = PEL_LIGHT_SPOT;
-            for (int c = 0; c < 3; ++c)
-                l.position[c] = float(from.view.origin[c]), l.spotDirection[c] = -l.toLight[c];
-            l.spotCosInner = 0.998f, l.spotCosOuter = 0.995f;
-            for (float& c : l.color) c = 20000;
-            f.lights.push_back(mapLight(seed + 9, false, false, {-0.5, 0.2, 0.9}, {24, 10, 5}, 70, 61).light);
-        }
-        PelShaderStats with = pelShaderStatsDefaults(), without = with;
-        const auto first = shade(device(), f, tables(), &with);
-        EXPECT_EQ(first, shade(device(), f, tables()));
-        f.options.disableSkipping = 1;
-        EXPECT_EQ(first, shade(device(), f, tables(), &without)) << seed;
-        if (seed % 2) {
-            EXPECT_LT(with.pixelsWideShadow, without.pixelsWideShadow) << "pixels outside the cone";
-        }
-        EXPECT_EQ(without.pixelsShadowTexels, without.pixelsWideShadow);
-    }
 }
 
 // Filters that the bounds of the map's blocks decide read no texel, and come out as if they had.

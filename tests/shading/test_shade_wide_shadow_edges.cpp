@@ -163,7 +163,8 @@ TEST(WideShadowEdges, TexelsAreReadAcrossTheEdgeAlone) {
             ++skin;
             const Vec3 offset = f.slots[PEL_SLOT_POSITION].vec(i) - from.view.origin;
             const double x = reference::dot(from.view.right, offset) / from.view.extent * 128 + 63.5;
-            const double radius = std::max(0.5 * f.materials[id].shadowFilterWidth, 2.0);  // texels, at least two
+            // texels, at least two
+            const double radius = std::max(0.5 * f.materials[id].shadowFilterWidth, 2.0);
             across += x - radius <= 63 && x + radius >= 64;
             doubtful += std::abs(x - radius - 63) < 1e-3 || std::abs(x + radius - 64) < 1e-3;
         }

@@ -13,7 +13,8 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-// Leaves out pixels near the line where another cascade is taken; `taken`: those that the others take, -1 where none.
+// Leaves out pixels near the line where another cascade is taken; `taken`: those that the others take, -1
+// where none.
 Worst worstCascade(const Frame& f, const CascadeLight& from, const Seen& seen, std::vector<int>* taken = nullptr) {
     const auto matrices = matricesOf(from);
     const double perUv = 1 / reference::uvPerLength(matrices[0], 0);
@@ -53,7 +54,7 @@ TEST(ShadowCascades, OneIsTheParallelMapToTheBit) {
     const Frame f = formFrame();
     for (const bool reversed : {false, true}) {
         const CascadeLight one = cascadeLight({70}, reversed);
-        FormLight plain = one.light;
+        Light plain = one.light;
         plain.params.shadowCascades = 0;
         const Seen as = shadeForms(f, {one.light}), is = shadeForms(f, {plain});
         EXPECT_EQ(as.wide, is.wide);
@@ -107,18 +108,18 @@ TEST(ShadowCascades, WhatIsRefused) {
         expectError(code, {word}, [&] { shadeForms(formFrame(1, 9, 3), {from.light}); });
     };
     const auto invalid = PEL_ERROR_INVALID_ARGUMENT;
-    refused(invalid, "shadowCascades is 5", [](FormLight& l) { l.params.shadowCascades = 5; });
-    refused(invalid, "cascade 2 is not set", [](FormLight& l) { l.params.shadowCascades = 3; });
-    refused(invalid, "directional", [](FormLight& l) { l.params.type = PEL_LIGHT_SPOT; });
-    refused(invalid, "directional", [](FormLight& l) { l.params.shadowProjection = PEL_SHADOW_PERSPECTIVE; });
+    refused(invalid, "shadowCascades is 5", [](Light& l) { l.params.shadowCascades = 5; });
+    refused(invalid, "cascade 2 is not set", [](Light& l) { l.params.shadowCascades = 3; });
+    refused(invalid, "directional", [](Light& l) { l.params.type = PEL_LIGHT_SPOT; });
+    refused(invalid, "directional", [](Light& l) { l.params.shadowProjection = PEL_SHADOW_PERSPECTIVE; });
     refused(invalid, "cascadeToShadow[0] is singular",
-            [](FormLight& l) { std::fill_n(l.params.cascadeToShadow[0], 4, 0.0f); });
+            [](Light& l) { std::fill_n(l.params.cascadeToShadow[0], 4, 0.0f); });
     refused(invalid, "worldToShadow is singular",
-            [](FormLight& l) { std::fill_n(l.params.worldToShadow, 16, 0.0f); });
-    refused(invalid, "cascadeToShadow[0]", [](FormLight& l) { l.params.cascadeToShadow[0][3] = nan; });
-    refused(invalid, "cascadeDepthRange[0] is 0", [](FormLight& l) { l.params.cascadeDepthRange[0] = 0; });
-    refused(invalid, "one sign", [](FormLight& l) { l.params.cascadeDepthRange[0] *= -1; });
-    refused(PEL_ERROR_UNSUPPORTED, "cascade has format", [](FormLight& l) {
+            [](Light& l) { std::fill_n(l.params.worldToShadow, 16, 0.0f); });
+    refused(invalid, "cascadeToShadow[0]", [](Light& l) { l.params.cascadeToShadow[0][3] = nan; });
+    refused(invalid, "cascadeDepthRange[0] is 0", [](Light& l) { l.params.cascadeDepthRange[0] = 0; });
+    refused(invalid, "one sign", [](Light& l) { l.params.cascadeDepthRange[0] *= -1; });
+    refused(PEL_ERROR_UNSUPPORTED, "cascade has format", [](Light& l) {
         l.maps[1].components = 2;
         l.maps[1].values.resize(2 * l.maps[1].values.size());
     });
@@ -130,11 +131,11 @@ TEST(ShadowCascades, MapsMayBeginInsideTheirBuffer) {
     CascadeLight two = cascadeLight({70, 70}, false, 97, true);
     const Seen alone = shadeForms(f, {two.light});
     EXPECT_EQ(alone.thickness, shadeForms(f, {two.light}, true).thickness);
-    FormLight second = two.light;  // the second of the atlas as a plain map
+    Light second = two.light;  // the second of the atlas as a plain map
     second.params.shadowCascades = 0;
     std::copy_n(two.light.params.cascadeToShadow[0], 16, second.params.worldToShadow);
     std::swap(second.maps[0].slot, second.maps[1].slot);
-    FormLight plain = second;
+    Light plain = second;
     plain.maps = {second.maps[1]};
     EXPECT_EQ(shadeForms(f, {plain}).thickness, shadeForms(f, {second}, true).thickness);
 }

@@ -87,7 +87,7 @@ TEST(ShadowContent, CubesAndCascadesHoldThemToo) {
         const CubeLight cube = cubeLight(256, radial, turnTo({0, 0, -1}, {-1, 1, 1}), lamp, shelf);
         const Seen depth = shadeForms(f, {cube.light});
         for (const auto content : {PEL_SHADOW_CONTENT_MOMENTS, PEL_SHADOW_CONTENT_EXPONENTIAL}) {
-            FormLight other = cube.light;
+            Light other = cube.light;
             other.params.shadowContent = content;
             other.params.shadowExponent = 80;
             MapImage& map = other.maps[0];
@@ -138,11 +138,11 @@ TEST(ShadowContent, BadTexels) {
 TEST(ShadowContent, WhatIsRefused) {
     const auto refused = [&](PelError code, PelShadowContent content, const char* word, auto change) {
         ContentLight from = contentLight(content, false, false, 31);
-        std::vector<FormLight> lights{from.light};
+        std::vector<Light> lights{from.light};
         change(lights);
         expectError(code, {word}, [&] { shadeForms(formFrame(1, 9, 3), lights); });
     };
-    using Lights = std::vector<FormLight>;
+    using Lights = std::vector<Light>;
     const auto invalid = PEL_ERROR_INVALID_ARGUMENT;
     refused(invalid, PEL_SHADOW_CONTENT_EXPONENTIAL, "two components", [](Lights& l) {
         l[0].params.shadowContent = PEL_SHADOW_CONTENT_MOMENTS, l[0].params.shadowExponent = 1;

@@ -1,4 +1,5 @@
-// Cube shadow maps of point lights: thickness and wide shadow against the oracle, against a perspective map, and turned.
+// Cube shadow maps of point lights: thickness and wide shadow against the oracle, against a perspective map,
+// and turned.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -42,7 +43,8 @@ TEST(ShadowCube, MatchesTheOracle) {
             }
 }
 
-// A ball over open ground: where the light looks along the axis of a face, that face alone is a perspective map.
+// A ball over open ground: where the light looks along the axis of a face, that face alone is a perspective
+// map.
 double ballOverGround(Vec3 d, int) {
     const Vec3 centre = Vec3{24, 10, 30} - lamp;
     const double radius = 8, along = reference::dot(d, centre), d2 = reference::dot(d, d),
@@ -54,7 +56,7 @@ double ballOverGround(Vec3 d, int) {
 TEST(ShadowCube, EqualsAPerspectiveMapAlongTheAxis) {
     const uint32_t size = 512;
     const CubeLight cube = cubeLight(size, false, turnTo(down, {0, 0, 1}), lamp, ballOverGround);
-    FormLight face = cube.light;
+    Light face = cube.light;
     face.params.shadowProjection = PEL_SHADOW_PERSPECTIVE;
     face.maps[0].height = size;
     face.maps[0].values.assign(cube.map.depth.begin() + 4 * size * size,
@@ -157,21 +159,21 @@ TEST(ShadowCube, WhatIsRefused) {
         change(from.light);
         expectError(PEL_ERROR_INVALID_ARGUMENT, {word}, [&] { shadeForms(formFrame(1, 9, 3), {from.light}); });
     };
-    refused("16 x 96", [](FormLight& l) { l.maps[0].height = 95; });
-    refused("directional", [](FormLight& l) { l.params.type = PEL_LIGHT_DIRECTIONAL; });
-    refused("shadowDepthA is 0", [](FormLight& l) { l.params.shadowDepthA = 0; });
-    refused("shadowDepthRange", [](FormLight& l) {
+    refused("16 x 96", [](Light& l) { l.maps[0].height = 95; });
+    refused("directional", [](Light& l) { l.params.type = PEL_LIGHT_DIRECTIONAL; });
+    refused("shadowDepthA is 0", [](Light& l) { l.params.shadowDepthA = 0; });
+    refused("shadowDepthRange", [](Light& l) {
         l.params.shadowProjection = PEL_SHADOW_CUBE_RADIAL;
         l.params.shadowDepthRange = -1;
     });
-    refused("origin", [](FormLight& l) { l.params.worldToShadow[3] += 1; });
-    refused("rotation", [](FormLight& l) {
+    refused("origin", [](Light& l) { l.params.worldToShadow[3] += 1; });
+    refused("rotation", [](Light& l) {
         for (int c = 0; c < 4; ++c) l.params.worldToShadow[c] *= 2;
     });
-    refused("rotation", [](FormLight& l) { std::fill_n(l.params.worldToShadow, 16, 0.0f); });
-    refused("finite", [](FormLight& l) { l.params.worldToShadow[5] = nan; });
-    refused("PelShadowProjection", [](FormLight& l) { l.params.shadowProjection = PelShadowProjection(4); });
-    refused("cascades", [](FormLight& l) { l.params.shadowCascades = 1; });
+    refused("rotation", [](Light& l) { std::fill_n(l.params.worldToShadow, 16, 0.0f); });
+    refused("finite", [](Light& l) { l.params.worldToShadow[5] = nan; });
+    refused("PelShadowProjection", [](Light& l) { l.params.shadowProjection = PelShadowProjection(4); });
+    refused("cascades", [](Light& l) { l.params.shadowCascades = 1; });
 }
 
 }  // namespace

@@ -232,7 +232,8 @@ TEST(SharpShadow, EdgesOfRoundBodiesAreNearer) {
     EXPECT_LT(rms, tolerance::sharpRoundEdge);
 }
 
-// The pass is its definition, on a map of discs and noise, where shadows, edges and texels at the tolerance are all there.
+// The pass is its definition, on a map of discs and noise, where shadows, edges and texels at the tolerance
+// are all there.
 TEST(SharpShadow, IsItsDefinition) {
     for (bool perspective : {false, true})
         for (bool reversed : {false, true}) {
@@ -254,7 +255,8 @@ TEST(SharpShadow, IsItsDefinition) {
                     reference::sharpShadow(s.light.map, s.light.view, s.points[i], s.normals[i]);
                 partly += truth > 0.01 && truth < 0.99;
                 const double error = std::abs(e[i] - truth * std::max(cosine(s, i), 0.0));
-                // Rounding may turn a decision: whether a texel is dark, whether steps are those of a round body.
+                // Rounding may turn a decision: whether a texel is dark, whether steps are those of a round
+                // body.
                 turned += error > tolerance::sharpShadow;
                 if (error <= tolerance::sharpShadow) worst = std::max(worst, error);
             }
@@ -275,7 +277,8 @@ TEST(SharpShadow, FacetsThrowNoneOnThemselves) {
                 reference::normalized(Vec3{0.08 * std::cos(double(i)), 0.08 * std::sin(double(i)), 1});
         const std::vector<float> e = lit(s);
         for (size_t i = 0; i < e.size(); ++i)
-            EXPECT_NEAR(e[i], cosine(s, i), 2e-3) << "cosine " << c;  // the flattest are just beyond the tolerance
+            // the flattest are just beyond the tolerance
+            EXPECT_NEAR(e[i], cosine(s, i), 2e-3) << "cosine " << c;
     }
 }
 

@@ -1,5 +1,5 @@
-// Thickness interpolated between nodes of a grid in the shadow map, against a disk of very many taps and against the taps of
-// each pixel.
+// Thickness interpolated between nodes of a grid in the shadow map, against a disk of very many taps and
+// against the taps of each pixel.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -34,13 +34,8 @@ Frame cellFrame(uint32_t seed, uint32_t width = 360, uint32_t height = 250) {
     return f;
 }
 
-// Bodies under a parallel or perspective map that is smaller than the frame: some pixels lie beyond its border.
-FormLight lightOf(const MapLight& from) {
-    FormLight light;
-    light.params = from.light.params;
-    light.maps = {{PEL_LIGHT_SHADOW_MAP, from.light.mapSize, from.light.mapSize, 1, from.light.map.values}};
-    return light;
-}
+// Bodies under a parallel or perspective map that is smaller than the frame: some pixels lie beyond its
+// border.
 MapLight bumps(uint32_t seed, bool perspective, uint32_t size = 256) {
     return mapLight(seed, perspective, false, {0.3, 0.2, 0.9}, {60, 45, 5}, 120, size);
 }
@@ -92,7 +87,7 @@ TEST(TapCells, AreNearerToAFineDiskThanTheTapsAre) {
         const Frame f = cellFrame(seed);
         const Errors errors = errorsOf(f, truthOf(from));
         ASSERT_GT(errors.truth.size(), sized(1000u, 20u));
-        const auto taps = shadeForms(f, {lightOf(from)}), cells = shadeForms(interpolated(f), {lightOf(from)});
+        const auto taps = shadeForms(f, {from.light}), cells = shadeForms(interpolated(f), {from.light});
         EXPECT_EQ(cellLaunches(cells, taps), 4u) << "of its map and of the one of a black light";
         EXPECT_LT(errors.of(cells.thickness), errors.of(taps.thickness)) << seed;
         EXPECT_GT(errors.of(taps.thickness), 0.02) << "a map that taps get right tells nothing";
@@ -100,7 +95,8 @@ TEST(TapCells, AreNearerToAFineDiskThanTheTapsAre) {
 }
 
 TEST(TapCells, OfASlantedPlaneAreExact) {
-    // A plane's mean over a disk is its middle, so what is left is where samples lie off the taps, and rounding.
+    // A plane's mean over a disk is its middle, so what is left is where samples lie off the taps, and
+    // rounding.
     for (const bool reversed : {false, true}) {
         MapLight from = mapLight(1, false, reversed, {0, 0, 1}, {60, 45, 5}, 220, 128);
         const double sign = reversed ? -1 : 1;
@@ -109,26 +105,8 @@ TEST(TapCells, OfASlantedPlaneAreExact) {
         from.map.depth.assign(from.light.map.values.begin(), from.light.map.values.end());
         const Frame f = cellFrame(2);
         const Errors errors = errorsOf(f, truthOf(from));
-        EXPECT_LE(errors.of(shadeForms(interpolated(f), {lightOf(from)}).thickness), tolerance::cellsOfPlane);
+        EXPECT_LE(errors.of(shadeForms(interpolated(f), {from.light}).thickness), tolerance::cellsOfPlane);
         EXPECT_GT(errors.truth[errors.truth.size() / 2].second, 10);
-    }
-}
-
-TEST(TapCells, SkippingRunsListsAndBandsChangeNoBit) {
-    for (uint32_t seed = 0; seed < 4; ++seed) {
-        Frame f = interpolated(cellFrame(seed));
-        const FormLight light = lightOf(bumps(seed, seed & 1));
-        const auto first = shadeForms(f, {light}).thickness;
-        EXPECT_EQ(first, shadeForms(f, {light}).thickness);
-        for (const PelTileLists lists : {PEL_TILES_NO_LIST, PEL_TILES_PER_VARIANT}) {
-            f.options.tileLists = lists;
-            EXPECT_EQ(first, shadeForms(f, {light}).thickness) << seed << ", lists " << lists;
-        }
-        f.options.tileLists = PEL_TILES_ONE_LIST;
-        f.options.scratchBudget = uint64_t(f.width) * 12 * 12;
-        const Seen bands = shadeForms(f, {light});
-        EXPECT_EQ(first, bands.thickness) << seed;
-        EXPECT_GT(bands.stats.bands, 3u);
     }
 }
 
@@ -138,7 +116,7 @@ TEST(TapCells, EachDiskHasItsOwn) {
     f.materials[2].thicknessTaps = 8;
     const MapLight from = bumps(3, false);
     const Errors errors = errorsOf(f, truthOf(from));
-    const auto taps = shadeForms(f, {lightOf(from)}), cells = shadeForms(interpolated(f), {lightOf(from)});
+    const auto taps = shadeForms(f, {from.light}), cells = shadeForms(interpolated(f), {from.light});
     EXPECT_EQ(cellLaunches(cells, taps), 8u);
     EXPECT_LT(errors.of(cells.thickness), errors.of(taps.thickness));
     // More disks than have cells: the rest takes taps of its own.
@@ -148,7 +126,7 @@ TEST(TapCells, EachDiskHasItsOwn) {
     }
     for (size_t i = 0; i < f.pixels(); ++i)
         f.slots[PEL_SLOT_MATERIAL].values[i] = float(1 + i % f.width * 8 / f.width);
-    const auto own = shadeForms(f, {lightOf(from)}), some = shadeForms(interpolated(f), {lightOf(from)});
+    const auto own = shadeForms(f, {from.light}), some = shadeForms(interpolated(f), {from.light});
     size_t same = 0, other = 0;
     for (size_t i = 0; i < f.pixels(); ++i)
         (f.slots[PEL_SLOT_MATERIAL].at(i) > 4 ? same : other) += own.thickness[i] == some.thickness[i];
@@ -168,7 +146,7 @@ TEST(TapCells, CascadesHaveThemToo) {
 }
 
 TEST(TapCells, AreNotUsedWhereTapsAreAskedForOrNodesWouldBeMany) {
-    const FormLight light = lightOf(bumps(1, false));
+    const Light light = bumps(1, false).light;
     Frame f = cellFrame(1);
     f.options.rotateTaps = 1;
     EXPECT_EQ(shadeForms(f, {light}).thickness, shadeForms(interpolated(f), {light}).thickness);
@@ -181,7 +159,7 @@ TEST(TapCells, AreNotUsedWhereTapsAreAskedForOrNodesWouldBeMany) {
 
 // A viewer makes small pictures while something moves: it must not wait for a compiler then.
 TEST(TapCells, AnotherSizeOfTheFrameNeedsNoOtherProgram) {
-    const FormLight light = lightOf(bumps(1, false));
+    const Light light = bumps(1, false).light;
     const Frame large = interpolated(cellFrame(1));
     Frame small = interpolated(formFrame(1));
     for (auto& [id, m] : small.materials) m = large.materials.at(id);
@@ -194,7 +172,7 @@ TEST(TapCells, AnotherSizeOfTheFrameNeedsNoOtherProgram) {
 
 TEST(TapCells, BadTexelsAreNoThicknessAndBadPixelsStayAlone) {
     const MapLight from = bumps(5, false);
-    FormLight light = lightOf(from);
+    Light light = from.light;
     Frame f = interpolated(cellFrame(5));
     const auto before = shadeForms(f, {light}).thickness;
     const size_t bad = f.pixels() / 2 + 31;
@@ -209,7 +187,7 @@ TEST(TapCells, BadTexelsAreNoThicknessAndBadPixelsStayAlone) {
     }
     f = interpolated(cellFrame(5));
     for (const float value : {nan, infinity}) {
-        for (size_t i = 0; i < light.maps[0].values.size(); i += 2) light.maps[0].values[i] = value;
+        for (size_t i = 0; i < light.map.values.size(); i += 2) light.map.values[i] = value;
         const auto holes = shadeForms(f, {light}).thickness;
         double sum = 0, all = 0;
         for (size_t i = 0; i < f.pixels(); ++i) {
@@ -218,7 +196,7 @@ TEST(TapCells, BadTexelsAreNoThicknessAndBadPixelsStayAlone) {
             sum += holes[i], all += before[i];
         }
         EXPECT_LT(sum, 0.1 * all) << "each tap reads a bad texel beside a good one";
-        for (float& v : light.maps[0].values) v = value;
+        for (float& v : light.map.values) v = value;
         for (const float t : shadeForms(f, {light}).thickness) ASSERT_NEAR(t, 0, 1e-4);
     }
 }
@@ -226,7 +204,7 @@ TEST(TapCells, BadTexelsAreNoThicknessAndBadPixelsStayAlone) {
 TEST(TapCells, AtAnyScaleOfLengths) {
     for (const float scale : {1e-5f, 1e5f}) {
         const MapLight from = bumps(4, false);
-        FormLight light = lightOf(from);
+        Light light = from.light;
         Frame f = interpolated(cellFrame(4));
         const auto usual = shadeForms(f, {light}).thickness;
         for (float& p : f.slots[PEL_SLOT_POSITION].values) p *= scale;
