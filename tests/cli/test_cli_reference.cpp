@@ -1,5 +1,6 @@
 // `pellucid reference` and `pellucid compare` as their users run them: a ball whose reference has a closed
 // form.
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -7,6 +8,7 @@
 #include "io/image/image_file.h"
 #include "io/image/npy_read.h"
 #include "io/scene/scene_file.h"
+#include "reference/random_walk.h"
 #include "reference/surface_integral.h"
 #include "sample/mesh.h"
 #include "test_size.h"
@@ -135,6 +137,104 @@ TEST_F(CliReference, TheMaterialsProfileUnlessAnotherIsNamed) {
         return read(path("v.npy"));
     };
     EXPECT_TRUE(values("marble.toml", {}) == values("s.toml", {"--profile", "marble"}));
+}
+
+TEST_F(CliReference, WalkWritesHalvesForCompare) {
+    write("burley.toml", "kind = \"burley\"\ndistance = [1, 0.5, 0.25]\n");
+    std::vector<std::string> command{"reference",
+                                     path("ball.off"),
+                                     "--scene",
+                                     path("s.toml"),
+                                     "--gbuffer",
+                                     path("g.exr"),
+                                     "--walk",
+                                     "--profile",
+                                     path("burley.toml"),
+                                     "--reflectance",
+                                     "0.8",
+                                     "0.8",
+                                     "0.8",
+                                     "--samples",
+                                     "24",
+                                     "--json",
+                                     "-o",
+                                     path("w.exr")};
+    const Result result = run(command, "OMP_NUM_THREADS=3");
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const auto medium = result.json()["media"][0];
+    EXPECT_NEAR(medium["mean_free_path"][1].get<double>(), 1.087 * 0.5, 0.01);
+    EXPECT_NEAR(medium["single_scattering_albedo"][2].get<double>(), 0.99055, 1e-4);
+    const Image out = pellucid::io::readImage(path("w.exr"));
+    const reference::WalkResult walked =
+        reference::walkBall({1.087, 0.99055}, radius, 20, sized(100000, 2000), 3);
+    double square = 0, difference = 0;
+    int count = 0;
+    for (size_t i = 0; i < out.pixelCount(); ++i) {
+        const float first = out.channel("First.R").pixels[i], second = out.channel("Second.R").pixels[i];
+        EXPECT_NEAR(out.channel("R").pixels[i], (first + second) / 2, 1e-5);
+        EXPECT_NEAR(out.channel("R").pixels[i], 0.5 * out.channel("Surface.R").pixels[i], 1e-5) << "albedo";
+        if (gbuffer_.channel("Id.X").pixels[i] == 0) continue;
+        const double cosine = gbuffer_.channel("P.X").pixels[i] / radius;
+        const double expected = 0.5 / 0.8 * walked.radiance[size_t(std::min(19.0, 10 * (cosine + 1)))];
+        square += (first - expected) * (second - expected), difference += std::pow(first - second, 2), ++count;
+        EXPECT_NEAR(out.channel("MeanCurvature").pixels[i], 1 / radius, testsAreSmall() ? 0.05 : 0.002);
+        EXPECT_NEAR(out.channel("Thickness").pixels[i], 2 * radius, testsAreSmall() ? 1 : 0.1);
+    }
+    EXPECT_LT(square / count, testsAreSmall() ? 0.1 : 2e-3) << "within the bins of 0.1";
+    EXPECT_GT(difference / count, 1e-5) << "halves are independent";
+    command.back() = path("again.exr");
+    ASSERT_EQ(run(command, "OMP_NUM_THREADS=1").exitCode, 0);
+    EXPECT_TRUE(read(path("w.exr")) == read(path("again.exr"))) << "one thread and three";
+    // A medium of almost no reach is thick and flat everywhere.
+    const auto report = run({"compare", path("w.exr"), path("w.exr"), "--gbuffer", path("g.exr"), "--scene",
+                             path("s.toml"), "--json"})
+                            .json();
+    EXPECT_EQ(report["subsets"]["hollows"]["pixels"].get<size_t>(), 0u);
+    EXPECT_EQ(report["subsets"]["thin"]["pixels"].get<size_t>(), 0u);
+    EXPECT_GT(report["all"]["noise"][0].get<double>(), 0);
+}
+
+TEST_F(CliReference, WalkOfTheVerticesAndBodies) {
+    write("burley.toml", "kind = \"burley\"\ndistance = [1, 0.5, 0.25]\n");
+    const char* faces[] = {"f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n", "f 5 7 6\nf 5 6 8\nf 6 7 8\nf 7 5 8\n"};
+    std::string obj;
+    for (const char* x : {"0", "9"})
+        for (const char* yz : {" 0 0", " 5 0", " 0 5", " 5 5"}) obj += std::string("v ") + x + yz + "\n";
+    obj += "v 0 0 0\n";
+    write("two.obj", obj + "g one\n" + faces[0] + "g two\n" + faces[1]);
+    const auto walked = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> command{
+            "reference",         path("two.obj"), "--scene", path("s.toml"), "--walk",     "--profile",
+            path("burley.toml"), "--samples",     "4",       "-o",           path("v.npy")};
+        command.insert(command.end(), more.begin(), more.end());
+        return command;
+    };
+    ASSERT_EQ(run(walked({"--part", "1=one", "--part", "2=two"})).exitCode, 0);
+    const auto values = pellucid::io::readNpy(path("v.npy"));
+    EXPECT_EQ(values.shape, (std::vector<size_t>{2, 9, 3}));
+    std::filesystem::remove(path("v.npy"));
+    expectRefused(walked({"--part", "one", "--part", "two"}), 2, "ID=GROUP");
+    expectRefused(walked({"--part", "1=three"}), 3, "has no part 'three'");
+    expectRefused(walked({"--part", "7=one"}), 3, "has the id 1");
+    expectRefused(walked({"--profile", "skin"}), 3, "has no known medium");
+    expectRefused(walked({"--reflectance", "0.5", "1", "0.5"}), 3, "--reflectance");
+    expectRefused(walked({"--noise", "0.1"}), 2, "--samples");
+    expectRefused(
+        {"reference", path("two.obj"), "--scene", path("s.toml"), "-o", path("v.npy"), "--noise", "1"}, 2,
+        "--walk");
+}
+
+TEST_F(CliReference, InterruptEndsAWalk) {
+    write("burley.toml", "kind = \"burley\"\ndistance = [1, 0.5, 0.25]\n");
+    const std::string line = std::string("timeout -s INT 2 ") + PELLUCID_COMMAND + " reference " +
+                             path("ball.off") + " --scene " + path("s.toml") + " --gbuffer " + path("g.exr") +
+                             " --profile " + path("burley.toml") + " --walk --samples 65536 -o " +
+                             path("w.exr") + " 2>" + path("err.txt");
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_NE(std::system(line.c_str()), 0);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30)) << "of many minutes";
+    EXPECT_TRUE(contains(read(path("err.txt")), "interrupted"));
+    EXPECT_FALSE(std::filesystem::exists(path("w.exr")));
 }
 
 TEST_F(CliReference, WrongUseIsRefused) {
