@@ -30,7 +30,8 @@ struct HeadPose {
     Vec3 front{0, -1, 0};  // unit, across up, where the nose points
 };
 
-// The pose of a mesh by its up axis: 'y' (it looks to +z, as most OBJ files), else 'z' (it looks to -y, as most scans).
+// The pose of a mesh by its up axis: 'y' (it looks to +z, as most OBJ files), else 'z' (it looks to -y, as
+// most scans).
 HeadPose poseWithUp(char axis);
 
 // Unit vector away from the head: azimuth 0 is the front, 90 its left ear (on the right of a frontal

@@ -53,7 +53,7 @@ Sample sampleLight(const SurfaceLight& light, const Place& place) {
         s.direction = normalize(delta);
         if (light.range > 0 && s.distance > light.range) return s;
         s.strength = 1 / std::max(s.distance * s.distance, 1e-12);
-        if (light.type == SurfaceLight::Type::Spot) {
+        if (light.type == SurfaceLight::Type::SpotLight) {
             const double t = std::clamp((-dot(s.direction, light.spotDirection) - light.spotCosOuter) /
                                             (light.spotCosInner - light.spotCosOuter),
                                         0.0, 1.0);

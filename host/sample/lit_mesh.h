@@ -12,7 +12,7 @@ namespace pellucid::sample {
 
 // A light of PelLight with hard shadows: a point light or a directional one.
 struct SurfaceLight {
-    enum class Type { Directional, Point, Spot };
+    enum class Type { Directional, Point, SpotLight };
     Type type = Type::Directional;
     Vec3 toLight{0, 0, 1};         // unit; directional
     Vec3 position;                 // point, spot
@@ -62,7 +62,8 @@ struct LitMesh {
 struct LitMeshOptions {
     double coarsest = INFINITY;  // length; longer edges are split whatever the light
     double finest = 0;           // length; shorter edges are not
-    double deviation = 0.003;  // of the brightest: how far the middle of an edge may be off the mean of its ends
+    // Part of the brightest irradiance by which the middle of an edge may differ from the mean of its ends.
+    double deviation = 0.003;
     size_t mostTriangles = 40'000'000;
     uint32_t material = 0;  // only triangles of this id give light; 0: all
 };

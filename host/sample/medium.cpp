@@ -12,8 +12,8 @@ struct Fit {
     double F, c, b;
     std::array<double, 5> polynomial;
 };
-// F, c and b of the first: van de Hulst, Multiple Light Scattering, 1980, for isotropic scattering. All others
-// are least squares over walks of half-spaces with 12 and 11 albedos from 0.3 to 0.9995.
+// F, c and b of the first: van de Hulst, Multiple Light Scattering, 1980, for isotropic scattering. All
+// others are least squares over walks of half-spaces with 12 and 11 albedos from 0.3 to 0.9995.
 constexpr Fit indexMatched{1, 0.139, 1.17, {0.6663, 4.7276, -4.9721, 7.2062, -3.3091}};
 constexpr Fit fresnel{0.92964, 0.43956, 3.74894, {0.3441, 3.6519, -1.9133, 5.3307, 0}};
 

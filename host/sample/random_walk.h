@@ -15,8 +15,8 @@ namespace pellucid::sample {
 // The triangles of a scene that enclose one medium. The scene must outlive it.
 class WalkBody {
   public:
-    // `material`: only triangles of this id enclose the medium, all others just cast shadows; 0: all triangles.
-    // Throws std::invalid_argument if the scene has no such triangle.
+    // `material`: only triangles of this id enclose the medium, all others just cast shadows; 0: all
+    // triangles. Throws std::invalid_argument if the scene has no such triangle.
     WalkBody(const Scene& scene, uint32_t material);
 
     const Scene& lit() const { return lit_; }                  // the whole scene, for shadows

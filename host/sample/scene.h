@@ -40,8 +40,8 @@ class Scene {
     // Embree's single precision, for rays by the million. May be called from several threads.
     Hit firstHit(const Ray& ray, double within, Vec3& normal) const;
 
-    // The point of the mesh next to `p`, no further than `within` away. Weights and distance as for rays. May be called from
-    // several threads.
+    // The point of the mesh next to `p`, no further than `within` away. Weights and distance as for rays. May
+    // be called from several threads.
     Hit nearest(Vec3 p, double within = INFINITY) const;
 
   private:

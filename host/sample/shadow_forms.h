@@ -4,8 +4,8 @@
 
 namespace pellucid::sample {
 
-// Six square faces, +x -x +y -y +z -z, one below the other, each laid out as OpenGL has it. Distance along the axis of a face =
-// 1 / (depthA * z + depthB).
+// Six square faces, +x -x +y -y +z -z, one below the other, each laid out as OpenGL has it. Distance along
+// the axis of a face = 1 / (depthA * z + depthB).
 struct CubeShadowMap {
     int size = 0;              // texels a side of a face
     std::vector<float> depth;  // 6 * size * size, z in [0, 1]; 1 where nothing was hit

@@ -22,7 +22,8 @@ struct ShadowMap {
     int size = 0;              // texels a side; row 0 at v = 0
     std::vector<float> depth;  // size * size, z in [0, 1]; 1 where nothing was hit
     ShadowProjection projection = ShadowProjection::Parallel;
-    Matrix4 worldToUvz;  // world to homogeneous (u, v, z); texel centres at ((x + 1/2) / size, (y + 1/2) / size)
+    // World to homogeneous (u, v, z); texel centres at ((x + 1/2) / size, (y + 1/2) / size)
+    Matrix4 worldToUvz;
     Vec3 right, down, forward;  // unit, world: along +u, along +v, away from the light
     double extent = 0;          // mm that the map spans a side; perspective: at distance 1 mm
     // Parallel: distance = nearDistance + z * depthRange, from the plane through the origin across the light.

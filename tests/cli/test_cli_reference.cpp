@@ -18,6 +18,9 @@ namespace {
 
 using pellucid::io::Image;
 
+constexpr char burley[] =
+    "name = \"burley\"\nsource = \"test\"\nkind = \"burley\"\nunit = \"mm\"\ndistance = [1, 0.5, 0.25]\n";
+
 class CliReference : public CommandTest {
   protected:
     static constexpr int side = 16;
@@ -140,7 +143,7 @@ TEST_F(CliReference, TheMaterialsProfileUnlessAnotherIsNamed) {
 }
 
 TEST_F(CliReference, WalkWritesHalvesForCompare) {
-    write("burley.toml", "kind = \"burley\"\ndistance = [1, 0.5, 0.25]\n");
+    write("burley.toml", burley);
     std::vector<std::string> command{"reference",
                                      path("ball.off"),
                                      "--scene",
@@ -195,28 +198,37 @@ TEST_F(CliReference, WalkWritesHalvesForCompare) {
 }
 
 TEST_F(CliReference, WalkOfTheVerticesAndBodies) {
-    write("burley.toml", "kind = \"burley\"\ndistance = [1, 0.5, 0.25]\n");
+    write("burley.toml", burley);
     const char* faces[] = {"f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n", "f 5 7 6\nf 5 6 8\nf 6 7 8\nf 7 5 8\n"};
+    // Two tetrahedra beside each other.
     std::string obj;
-    for (const char* x : {"0", "9"})
-        for (const char* yz : {" 0 0", " 5 0", " 0 5", " 5 5"}) obj += std::string("v ") + x + yz + "\n";
-    obj += "v 0 0 0\n";
+    for (const char* corner : {"0 0 0", "0 5 0", "0 0 5", "3 1 1", "9 0 0", "9 5 0", "9 0 5", "12 1 1"})
+        obj += std::string("v ") + corner + "\n";
     write("two.obj", obj + "g one\n" + faces[0] + "g two\n" + faces[1]);
-    const auto walked = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> command{
-            "reference",         path("two.obj"), "--scene", path("s.toml"), "--walk",     "--profile",
-            path("burley.toml"), "--samples",     "4",       "-o",           path("v.npy")};
+    const auto walked = [&](const std::vector<std::string>& more,
+                            const std::string& profile = "burley.toml") {
+        std::vector<std::string> command{"reference",
+                                         path("two.obj"),
+                                         "--scene",
+                                         path("s.toml"),
+                                         "--walk",
+                                         "--profile",
+                                         profile == "skin" ? profile : path(profile),
+                                         "-o",
+                                         path("v.npy"),
+                                         "--samples",
+                                         "4"};
         command.insert(command.end(), more.begin(), more.end());
         return command;
     };
     ASSERT_EQ(run(walked({"--part", "1=one", "--part", "2=two"})).exitCode, 0);
     const auto values = pellucid::io::readNpy(path("v.npy"));
-    EXPECT_EQ(values.shape, (std::vector<size_t>{2, 9, 3}));
+    EXPECT_EQ(values.shape, (std::vector<size_t>{2, 8, 3}));
     std::filesystem::remove(path("v.npy"));
     expectRefused(walked({"--part", "one", "--part", "two"}), 2, "ID=GROUP");
     expectRefused(walked({"--part", "1=three"}), 3, "has no part 'three'");
     expectRefused(walked({"--part", "7=one"}), 3, "has the id 1");
-    expectRefused(walked({"--profile", "skin"}), 3, "has no known medium");
+    expectRefused(walked({}, "skin"), 3, "has no known medium");
     expectRefused(walked({"--reflectance", "0.5", "1", "0.5"}), 3, "--reflectance");
     expectRefused(walked({"--noise", "0.1"}), 2, "--samples");
     expectRefused(
@@ -225,7 +237,7 @@ TEST_F(CliReference, WalkOfTheVerticesAndBodies) {
 }
 
 TEST_F(CliReference, InterruptEndsAWalk) {
-    write("burley.toml", "kind = \"burley\"\ndistance = [1, 0.5, 0.25]\n");
+    write("burley.toml", burley);
     const std::string line = std::string("timeout -s INT 2 ") + PELLUCID_COMMAND + " reference " +
                              path("ball.off") + " --scene " + path("s.toml") + " --gbuffer " + path("g.exr") +
                              " --profile " + path("burley.toml") + " --walk --samples 65536 -o " +

@@ -28,8 +28,9 @@ Rgb onFace(const CubeMap& cube, int face, double s, double t) {
                mix(texel(cube, face, x0, y1), texel(cube, face, x1, y1), x - x0), y - y0);
 }
 
-// Light at a point of the cube's surface on an edge or corner: the mean of all faces that have it. On an edge, texels half a
-// texel inside stand for a point that lies further out by 1 / (1 - 1/2n) once they are averaged.
+// Light at a point of the cube's surface on an edge or corner: the mean of all faces that have it. On an
+// edge, texels half a texel inside stand for a point that lies further out by 1 / (1 - 1/2n) once they are
+// averaged.
 Rgb onEdge(const CubeMap& cube, Vec3 point) {
     int meeting = 0;
     for (int c = 0; c < 3; ++c) meeting += std::abs(std::abs(point[c]) - 1) < 1e-12;

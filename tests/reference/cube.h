@@ -1,5 +1,5 @@
-// An irradiance cube map, in double precision: bilinear between the texels' centres of a face; on edges and corners of the cube
-// the mean of the faces that meet there.
+// An irradiance cube map, in double precision: bilinear between the texels' centres of a face; on edges and
+// corners of the cube the mean of the faces that meet there.
 #pragma once
 
 #include <vector>
@@ -20,7 +20,8 @@ struct CubeFace {
 };
 extern const CubeFace cubeFaces[6];
 
-// The direction of point (s, t) of a face, -1 to 1, s to the right and t down, as OpenGL and Direct3D have it; not unit.
+// The direction of point (s, t) of a face, -1 to 1, s to the right and t down, as OpenGL and Direct3D have
+// it; not unit.
 Vec3 cubeDirection(int face, double s, double t);
 // Light along a direction; texels below 0 count as 0. The zero vector gives 0.
 Rgb sampleCube(const CubeMap& cube, Vec3 direction);

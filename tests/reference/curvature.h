@@ -25,10 +25,11 @@ std::vector<double> edgeCurvature(const Mesh& mesh);
 // values, so that an interior edge counts twice and a border edge once. A vertex in no triangle becomes 0.
 std::vector<double> smoothed(const Mesh& mesh, std::vector<double> values, int passes);
 
-// The heat equation on the surface until a point has spread over a standard deviation of `radius` (docs/guide/curvature.md,
-// "Smoothing"; kernels/mesh/curvature_diffuse.cl): cotangents over Voronoi areas or, by area, those that
-// are positive, over a third of the triangles' areas. `stages`: what the library may spend, which bounds how fast a vertex evens out.
-// A triangle has no plane at a corner of which the squared sine is at most this.
+// The heat equation on the surface until a point has spread over a standard deviation of `radius`
+// (docs/guide/curvature.md, "Smoothing"; kernels/mesh/curvature_diffuse.cl): cotangents over Voronoi areas
+// or, by area, those that are positive, over a third of the triangles' areas. `stages`: what the library may
+// spend, which bounds how fast a vertex evens out. A triangle has no plane at a corner of which the squared
+// sine is at most this.
 constexpr double flatTriangle = 1e-10;
 struct RadiusSmoothing {
     double radius = 0;  // length

@@ -66,7 +66,8 @@ std::map<int, int> twoRing(const std::vector<Neighbourhood>& all, int vertex) {
     return counts;
 }
 
-// The points of the two-ring and, as often as they come up, the rings of these, if those have at most 36 neighbours.
+// The points of the two-ring and, as often as they come up, the rings of these, if those have at most 36
+// neighbours.
 std::map<int, int> threeRing(const std::vector<Neighbourhood>& all, int vertex, const std::map<int, int>& two) {
     std::map<int, int> counts = two;
     for (const auto& [point, count] : two)
@@ -220,8 +221,9 @@ double distinct(const std::array<std::array<double, 9>, 9>& a) {
                     determinant(a, 0, 9) / (five * determinant(a, 5, 9)));
 }
 
-// Of the quadratic and cubic terms the one that the points tell least of, beside the ones before it: what it adds to the sum of
-// squares, of which `added` times its share is the ridge's, in parts of the ridge inside of a mesh.
+// Of the quadratic and cubic terms the one that the points tell least of, beside the ones before it: what it
+// adds to the sum of squares, of which `added` times its share is the ridge's, in parts of the ridge inside
+// of a mesh.
 double leastTold(std::array<std::array<double, 9>, 9> a, double total, bool border) {
     double least = 1e30;
     for (size_t i = 0; i < 9; ++i) {
@@ -239,7 +241,8 @@ struct Fit {
     double told = 0;
     double distinct = 0;
     double noise =
-        0;  // error of H for an error 1 of every height and of the vertex's own, times the square of the reach
+        // error of H for an error 1 of every height and of the vertex's own, times the square of the reach
+        0;
     int points = 0;
 };
 
@@ -291,8 +294,9 @@ Fit fitTo(const Mesh& mesh, const std::map<int, int>& points, const Chart& chart
     return fit;
 }
 
-// Whether float rounding of positions, which moves heights by 2^-25 (root mean square) of what the position has along the normal,
-// moves H by too much. What is far from one of the thresholds decides however near another one is.
+// Whether float rounding of positions, which moves heights by 2^-25 (root mean square) of what the position
+// has along the normal, moves H by too much. What is far from one of the thresholds decides however near
+// another one is.
 bool isNoisy(const Fit& fit, const Chart& chart, Vec3 at, double& margin) {
     const Vec3 n = chart.frame.n;
     const double noise =

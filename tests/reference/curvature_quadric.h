@@ -15,8 +15,9 @@ struct QuadricCurvature : PrincipalCurvatures {
     bool low = false;                      // the points do not tell all terms apart even so
     bool border = false;
     int points = 0;  // distinct vertices that tell about this one
-    // How near the nearest yes-or-no decision (replace the normal, leave a point out, fit once more) came to its threshold,
-    // relative: where it is as small as float rounding, single precision may decide the other way.
+    // How near the nearest yes-or-no decision (replace the normal, leave a point out, fit once more) came to
+    // its threshold, relative: where it is as small as float rounding, single precision may decide the other
+    // way.
     double margin = 1, lowMargin = 1;  // the latter of `low`, on which nothing else depends
 };
 

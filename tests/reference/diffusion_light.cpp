@@ -58,8 +58,8 @@ Vec3 pointAt(const LightDepths& map, const MappedLight& light, double u, double 
     return meet(rows, constants);
 }
 
-// The area that a beam through 1 in u and 1 in v has across the light, where it shines on `p`; by a unit of strength: of
-// directional light it is an area, of others a solid angle.
+// The area that a beam through 1 in u and 1 in v has across the light, where it shines on `p`; by a unit of
+// strength: of directional light it is an area, of others a solid angle.
 double beam(const LightDepths& map, const MappedLight& light, Vec3 p) {
     if (map.face >= 0) {
         const Vec3 d = p - light.position;

@@ -1,5 +1,6 @@
-// Light that scatters from the texels of shadow maps (section 10 of the mathematics, "Light space" and "Near and far") in double
-// precision: every pixel sums over every texel of every map, and near it over every pixel.
+// Light that scatters from the texels of shadow maps (section 10 of the mathematics, "Light space" and "Near
+// and far") in double precision: every pixel sums over every texel of every map, and near it over every
+// pixel.
 #pragma once
 
 #include <vector>
@@ -40,7 +41,8 @@ struct LitTexel {
 };
 std::vector<LitTexel> litTexels(const MappedLight& light);
 
-// All of a picture's pixels, by the profile within its reach (scatterReach), which is then the whole. `picture.camera` is not looked at.
+// All of a picture's pixels, by the profile within its reach (scatterReach), which is then the whole.
+// `picture.camera` is not looked at.
 std::vector<Rgb> scatterFromLights(const ScatterPicture& picture, const std::vector<MappedLight>& lights,
                                    const Profile& profile);
 

@@ -13,8 +13,9 @@ struct ScatterPicture {
     int width = 0, height = 0;
     std::vector<Vec3> positions;  // length
     std::vector<Rgb> irradiance;
-    std::vector<int> ids;        // 0 is background
-    std::optional<Vec3> camera;  // surface seen at less than a quarter of its area counts as if it were a quarter
+    std::vector<int> ids;  // 0 is background
+    // surface seen at less than a quarter of its area counts as if it were a quarter
+    std::optional<Vec3> camera;
     size_t at(int x, int y) const { return size_t(y) * width + x; }
 };
 

@@ -1,4 +1,5 @@
-// What scattering in texture space approximates: a sum over the surface under the texels, in double precision.
+// What scattering in texture space approximates: a sum over the surface under the texels, in double
+// precision.
 #pragma once
 
 #include <vector>

@@ -51,7 +51,8 @@ double meetIris(const Eye& eye, Vec3 o, Vec3 d) {
     // irisHeight(r) - z = 0 along the ray: a quadratic.
     const double g = eye.concavity / (eye.iris * eye.iris), a = g * (d.x * d.x + d.y * d.y);
     const double b = 2 * g * (o.x * d.x + o.y * d.y) - d.z;
-    const double c = g * (o.x * o.x + o.y * o.y) + eye.irisZ() - eye.concavity - o.z;  // below 0 above the iris
+    // below 0 above the iris
+    const double c = g * (o.x * o.x + o.y * o.y) + eye.irisZ() - eye.concavity - o.z;
     if (a < 1e-14) return b > 0 ? -c / b : 1e30;
     return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
 }
@@ -178,7 +179,8 @@ Vec2 irisTexture(const Eye& eye, const EyeHit& hit) {
 
 namespace {
 
-// Carries one photon from the cornea to the iris; calls land(x, y, weight, bounces) each time a part of it gets there.
+// Carries one photon from the cornea to the iris; calls land(x, y, weight, bounces) each time a part of it
+// gets there.
 template <class Land>
 void carry(const Eye& eye, Vec3 p, Vec3 d, double weight, const Land& land) {
     for (int bounce = 0; bounce < 12 && weight > 1e-7; ++bounce) {

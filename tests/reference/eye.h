@@ -1,4 +1,5 @@
-// An eye, traced in double precision (section 13 of the mathematics). Space: mm, the sclera's centre at 0, the gaze along z, y up.
+// An eye, traced in double precision (section 13 of the mathematics). Space: mm, the sclera's centre at 0,
+// the gaze along z, y up.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +23,11 @@ struct Eye {
     double irisHeight(double r) const;
 };
 
-// The light's angle to the gaze beyond which none enters: where the rim's own horizon, or the sclera's, hides it.
+// The light's angle to the gaze beyond which none enters: where the rim's own horizon, or the sclera's, hides
+// it.
 double largestAngle(const Eye& eye);
-// Share of light that an interface from index `from` to index `to` reflects; 1 beyond the critical angle. Fresnel's equations,
-// the mean of both polarisations.
+// Share of light that an interface from index `from` to index `to` reflects; 1 beyond the critical angle.
+// Fresnel's equations, the mean of both polarisations.
 double fresnel(double cosine, double from, double to);
 // Through the cornea, from air to the aqueous: both of its sides, without what goes to and fro between them.
 double corneaTransmittance(const Eye& eye, double cosineInAir);
@@ -49,9 +51,10 @@ double irisVisible(const Eye& eye, const EyeHit& hit);
 // Where its albedo is in the square texture, in [0, 1].
 Vec2 irisTexture(const Eye& eye, const EyeHit& hit);
 
-// Irradiance on the iris of a beam of irradiance 1, whose light comes from angle `angle` to the gaze at the side of +x. One slice:
-// width x height texels over x from -iris to iris and |y| from 0 to iris; per area of the iris' surface. By photons: they start
-// at jittered places of a grid on the cornea, are refracted, and reflected inside until nothing is left.
+// Irradiance on the iris of a beam of irradiance 1, whose light comes from angle `angle` to the gaze at the
+// side of +x. One slice: width x height texels over x from -iris to iris and |y| from 0 to iris; per area of
+// the iris' surface. By photons: they start at jittered places of a grid on the cornea, are refracted, and
+// reflected inside until nothing is left.
 struct Caustic {
     int width = 0, height = 0;
     std::vector<double> texels;
@@ -63,7 +66,8 @@ Caustic tracePhotons(const Eye& eye, double angle, int width, int height, uint64
 // The same by starting anywhere: the flux that enters the cornea and ends within the iris' rim.
 double fluxOnIris(const Eye& eye, double angle, int steps);
 
-// Irradiance on the iris at a distance from its axis under light that is the same from everywhere, against that of the open air.
+// Irradiance on the iris at a distance from its axis under light that is the same from everywhere, against
+// that of the open air.
 double ambientOnIris(const Eye& eye, double r, int steps);
 
 // pi N.L times the BRDF of the tear film's single GGX lobe with Fresnel's equations.

@@ -14,7 +14,8 @@ double sine(double u) {
 
 Rgb arc(const Profile& profile, double u, double r, double cut) {
     const double reach = std::min(pi * r, cut), sinTheta = sine(u);
-    auto lit = [&](double x) { return max0(u * std::cos(x) + sinTheta * std::sin(x)); };  // max0(cos(theta - x))
+    // max0(cos(theta - x))
+    auto lit = [&](double x) { return max0(u * std::cos(x) + sinTheta * std::sin(x)); };
     // Both sides of the shaded point folded onto s > 0. A logarithm at s = 0 is tamed by s = t³.
     const bool cubic = profile.singularAtZero();
     auto integrand = [&](double t) {
@@ -67,7 +68,8 @@ Rgb ring(const Profile& profile, double u, double r, double halfAngle) {
         norm[c] = 2 * integrate<double>([&](double x) { return kernel(x)[c]; },
                                         panelPoints(0, halfAngle, borders), 0, 1e-13);
     const double sinTheta = sine(u), rise = std::asin(u);
-    auto lit = [&](double x) { return max0(u * std::cos(x) - sinTheta * std::sin(x)); };  // max0(cos(theta + x))
+    // max0(cos(theta + x))
+    auto lit = [&](double x) { return max0(u * std::cos(x) - sinTheta * std::sin(x)); };
     auto integrand = [&](double x) {
         const Rgb k = kernel(x);
         return (lit(x) + lit(-x)) * Rgb{k.x / norm.x, k.y / norm.y, k.z / norm.z};

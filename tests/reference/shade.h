@@ -80,8 +80,8 @@ Vec3 shadowCoordinates(const Matrix4& worldToShadow, Vec3 position, Vec3 normal,
 // as any.
 double thickness(const ShadowMap& map, Vec3 uvDepth, const std::vector<Vec2>& taps, double filterRadius,
                  const DepthDecoding& decoding, MapFilter filter);
-// The taps of the pixel in that column and row, turned by 2 pi (column a + row b), a and b the powers -1 and -2 of the plastic
-// number 1.3247 (the R2 sequence), each rounded to 32 bits.
+// The taps of the pixel in that column and row, turned by 2 pi (column a + row b), a and b the powers -1 and
+// -2 of the plastic number 1.3247 (the R2 sequence), each rounded to 32 bits.
 std::vector<Vec2> turnedTaps(std::vector<Vec2> taps, uint32_t column, uint32_t row);
 double deepScatter(double thickness, double radius, Vec3 blurred, Vec3 toLight);
 

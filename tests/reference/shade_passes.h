@@ -1,5 +1,5 @@
-// The images that the shading pass makes itself when its caller has none (docs/guide/shading.md, "Blurred normals", "Wide
-// shadow"): the definitions, in double precision, pixel by pixel.
+// The images that the shading pass makes itself when its caller has none (docs/guide/shading.md, "Blurred
+// normals", "Wide shadow"): the definitions, in double precision, pixel by pixel.
 #pragma once
 
 #include <optional>
@@ -18,8 +18,9 @@ struct SurfacePixels {
     std::vector<double> radii;  // length, by id
 };
 
-// Per pixel with an id; none where the pixel's normal or position is no number. `doubtful`, if given, is set for pixels
-// whose answer hangs on a decision (how many pixels from tap to tap, where an edge begins) that rounding could turn.
+// Per pixel with an id; none where the pixel's normal or position is NaN or Inf. `doubtful`, if given, is set
+// for pixels whose answer hangs on a decision (how many pixels from tap to tap, where an edge begins) that
+// rounding could turn.
 std::vector<std::optional<Vec3>> blurredNormals(const SurfacePixels& surface,
                                                 std::vector<bool>* doubtful = nullptr);
 
@@ -38,7 +39,8 @@ Vec3 fromTangentSpace(Vec3 texel, Vec3 tangent, Vec3 normal, double side);
 
 // --- the wide shadow ---
 
-// A light by its axes: texel (i, j) looks along forward (parallel) or along forward + right (u - 1/2) extent + ...
+// A light by its axes: texel (i, j) looks along forward (parallel) or along forward + right (u - 1/2) extent
+// + ...
 struct ShadowView {
     Vec3 right, down, forward;  // unit, orthogonal
     Vec3 origin;                // parallel: any point whose u, v are 1/2 and z is 0; perspective: the light

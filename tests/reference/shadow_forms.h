@@ -1,5 +1,5 @@
-// Shadow maps of other forms than one plain depth map (docs/guide/shading.md, "Forms of shadow map"): the definitions, in double
-// precision, texel by texel.
+// Shadow maps of other forms than one plain depth map (docs/guide/shading.md, "Forms of shadow map"): the
+// definitions, in double precision, texel by texel.
 #pragma once
 
 #include "reference/shade_passes.h"
@@ -8,19 +8,20 @@ namespace reference {
 
 // --- cubes ---
 
-// Six faces of size * size texels, +x -x +y -y +z -z. Depth along the axis of a face by `decoding`, or, radial,
-// decoding.range * depth from the light.
+// Six faces of size * size texels, +x -x +y -y +z -z. Depth along the axis of a face by `decoding`, or,
+// radial, decoding.range * depth from the light.
 struct CubeShadowMap {
     int size = 0;
     std::vector<double> depth;  // one face after the other, row by row
     bool radial = false;
     DepthDecoding decoding;
-    // Where the light sees something first along a direction of any length, as a multiple of it: the texel that it meets, and
-    // bilinear (of 1 / distance along the axis of its face, or of the distance).
+    // Where the light sees something first along a direction of any length, as a multiple of it: the texel
+    // that it meets, and bilinear (of 1 / distance along the axis of its face, or of the distance).
     double nearestReach(Vec3 direction) const;
     double bilinearReach(Vec3 direction) const;
 };
-// The direction through the centre of texel (column, row) of a face, which may lie beyond it; 1 along its axis.
+// The direction through the centre of texel (column, row) of a face, which may lie beyond it; 1 along its
+// axis.
 Vec3 shadowCubeDirection(int face, double column, double row, int size);
 int shadowCubeFace(Vec3 direction);
 
@@ -30,7 +31,8 @@ double cubeWideShadow(const CubeShadowMap& map, Vec3 point, Vec3 normal, const W
 
 // --- cascades ---
 
-// The finest of these matrices' maps that holds a point with all within a radius (length) of it, -1 if none does.
+// The finest of these matrices' maps that holds a point with all within a radius (length) of it, -1 if none
+// does.
 int cascadeOf(const std::vector<Matrix4>& worldToShadow, Vec3 position, double radius);
 // How far u (row 0) or v (row 1) goes per length.
 double uvPerLength(const Matrix4& worldToShadow, int row);

@@ -124,7 +124,7 @@ TEST(LitMesh, LightsAndLimits) {
     EXPECT_EQ(atPole(light), 0);
     light.range = 101;
     EXPECT_NEAR(atPole(light), 1, tolerance::sampleFacetNormal);
-    light.type = sample::SurfaceLight::Type::Spot;
+    light.type = sample::SurfaceLight::Type::SpotLight;
     const double inner = light.spotCosInner, outer = light.spotCosOuter;
     for (double cosine : {inner, 0.75 * inner + 0.25 * outer, (inner + outer) / 2, outer}) {
         light.spotDirection = {std::sqrt(1 - cosine * cosine), 0, -cosine};

@@ -1,5 +1,5 @@
-// Light that walks through the volume of a mesh, against the naive walk of the oracle in double precision, and
-// against walks made outside of this project (PELLUCID_RULER_DIR).
+// Light that walks through the volume of a mesh, against the naive walk of the oracle in double precision,
+// and against walks made outside of this project (PELLUCID_RULER_DIR).
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -24,7 +24,7 @@ namespace {
 constexpr std::array<double, 3> white{1, 1, 1};
 // Of facets against a ball, and of tabulated walks with noise of their own: 0.5 to 1.5e-3 measured.
 constexpr double ballError = 2.5e-3;
-// Of a head, where the two programs know the irradiance at a shadow's edge differently.
+// Of a head, whose shadows have edges that the two programs place a little differently.
 constexpr double headError = 4e-3, headBias = 1e-3;
 // 0.0024 of the fit of the medium, and three standard errors of 38,000 walks.
 constexpr double reflectanceError = 6e-3;
@@ -53,8 +53,8 @@ double cosineAt(const sample::Scene& scene, const sample::SurfacePoint& point) {
     return p.z / length(p);
 }
 
-// Squared differences to `expected` without noise: the mean of the product of both halves' differences, and its
-// standard error.
+// Squared differences to `expected` without noise: the mean of the product of both halves' differences, and
+// its standard error.
 struct Error {
     double mean = 0, uncertainty = 0;
 };
@@ -281,9 +281,9 @@ pellucid::io::PartedMesh subdividedHead(const std::filesystem::path& folder) {
 }  // namespace
 
 TEST(WalkLight, HeadEqualsAnotherProgramsWalk) {
-    const char *rulers = std::getenv("PELLUCID_RULER_DIR"), *gbuffers = std::getenv("PELLUCID_GBUFFER_DIR"),
+    const char *walks = std::getenv("PELLUCID_RULER_DIR"), *gbuffers = std::getenv("PELLUCID_GBUFFER_DIR"),
                *oracle = std::getenv("PELLUCID_ORACLE_DIR");
-    if (!rulers || !gbuffers || !oracle)
+    if (!walks || !gbuffers || !oracle)
         GTEST_SKIP() << "PELLUCID_RULER_DIR, PELLUCID_GBUFFER_DIR and PELLUCID_ORACLE_DIR are needed";
     const pellucid::io::PartedMesh head = subdividedHead(oracle);
     ASSERT_EQ(head.mesh.triangleCount(), 2u * 141472);
@@ -301,7 +301,7 @@ TEST(WalkLight, HeadEqualsAnotherProgramsWalk) {
                  {"head_side_x4_walk_f32.npy", 4, {0.7990018725, -0.4494385421, 0.3995009363}},
                  {"head_back_x4_walk_f32.npy", 4, {0.55, 0.75, 0.36}}};
     for (const auto& c : cases) {
-        const auto theirs = npy::read<float>(std::filesystem::path(rulers) / c.file);
+        const auto theirs = npy::read<float>(std::filesystem::path(walks) / c.file);
         ASSERT_EQ(theirs.shape, (std::vector<size_t>{6000, 10}));
         std::vector<float> from;
         std::vector<const float*> rows;
@@ -323,7 +323,8 @@ TEST(WalkLight, HeadEqualsAnotherProgramsWalk) {
                                                       {0.8, 0.8, 0.8}, sample::Boundary::IndexMatched);
         const sample::WalkedLight light = walkLight(body, lighting, points, m, {uint32_t(sized(64, 4))});
         for (size_t channel = 0; channel < 3; ++channel) {
-            // Both programs have two halves, so that the product of their differences has no noise in the mean.
+            // Both programs have two halves, so that the product of their differences has no noise in the
+            // mean.
             double sum = 0, square = 0, bias = 0;
             for (size_t i = 0; i < rows.size(); ++i) {
                 const double e = light.first[3 * i + channel] - rows[i][4 + 2 * channel],

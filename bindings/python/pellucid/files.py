@@ -5,6 +5,9 @@ libopenexr-dev, libopenimageio-dev).
 """
 from __future__ import annotations
 
+import subprocess
+import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional
@@ -13,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _native
+from ._command import program
 from .profile import Profile
 
 try:
@@ -102,6 +106,58 @@ def load_profile(path: Any) -> Profile:
 def read_image(path: Any) -> dict[str, NDArray[np.float32]]:
     """The channels of an EXR, PNG, JPEG, TGA or BMP file by their full names, (height, width) each; integers come as 0 to 1."""
     return dict(_files.read_image(str(path))[0])
+
+
+def reference(mesh: Any, scene: Any, gbuffer: Any, *, walk: bool = False, samples: int = 64, noise: Optional[float] = None, seed: int = 1,
+              reflectance: Optional[Sequence[float]] = None, boundary: str = "index-matched", profile: Any = None,
+              subdivide: int = 0, parts: Sequence[str] = ()) -> dict[str, NDArray[np.float32]]:
+    """What a picture should be, by the command `pellucid reference` (docs/guide/reference.md). Ctrl-C cancels it.
+
+    Parameters
+    ----------
+    mesh, scene, gbuffer : str or path
+        Files, as for the command.
+    walk : bool
+        A random walk through the volume, instead of the surface integral.
+    samples, noise, seed, reflectance, boundary
+        Of the walk. `noise`, if given, determines the number of samples.
+    profile : str or path, optional
+        Instead of the material's.
+    parts : sequence of str
+        Groups of an OBJ file that scatter.
+
+    Returns
+    -------
+    dict
+        Layers by name, (height, width) each: "R", "Surface.R", "Irradiance.R", and of a walk "First.R", "Second.R",
+        "MeanFreePath.R", "MeanCurvature", "Thickness".
+
+    Raises
+    ------
+    FileError
+        With the message of the command.
+    FileNotFoundError
+        The package was built without the command.
+    """
+    if not program().exists():
+        raise FileNotFoundError(f"{program()}: the package was built without the command")
+    with tempfile.TemporaryDirectory() as folder:
+        out = str(Path(folder) / "reference.exr")
+        command = [str(program()), "reference", str(mesh), "--scene", str(scene), "--gbuffer", str(gbuffer), "-o", out,
+                   "--subdivide", str(subdivide)]
+        if profile is not None:
+            command += ["--profile", str(profile)]
+        for part in parts:
+            command += ["--part", part]
+        if walk:
+            command += ["--walk", "--seed", str(seed), "--boundary", boundary]
+            command += ["--samples", str(samples)] if noise is None else ["--noise", str(noise)]
+            if reflectance is not None:
+                command += ["--reflectance", *(str(float(value)) for value in reflectance)]
+        result = subprocess.run(command, capture_output=True, text=True, check=False)
+        if result.returncode != 0:
+            raise FileError(result.stderr.strip())
+        return read_image(out)
 
 
 def write_image(path: Any, image: ArrayLike, *, exposure: float = 1.0, shoulder: float = 0.8, curve: str = "soft",

@@ -2,6 +2,8 @@
 import numpy as np
 import pytest
 
+from pellucid._command import program
+
 files = pytest.importorskip("pellucid.files", reason="this build reads no files")
 
 
@@ -89,3 +91,26 @@ def test_seams_of_texture_coordinates_are_kept(tmp_path):
     assert sorted(mesh.uvs[seam, 0].round(3).tolist()) == pytest.approx([0.4, 0.4, 0.6, 0.6])
     assert np.allclose(mesh.normals, [0, 0, 1])
     assert files.load_mesh(path, subdivide=1).uvs is None
+
+
+def test_reference_by_a_random_walk(tmp_path):
+    if not program().exists():
+        pytest.skip("this build has no program")
+    side = 50  # of a cube whose top is seen, in mean free paths about
+    corners = [(x, y, z) for z in (-side, 0) for y in (-side, side) for x in (-side, side)]
+    quads = [(4, 5, 7, 6), (0, 2, 3, 1), (0, 1, 5, 4), (1, 3, 7, 5), (3, 2, 6, 7), (2, 0, 4, 6)]
+    triangles = [(a, b, c) for a, b, c, _ in quads] + [(a, c, d) for a, _, c, d in quads]
+    (tmp_path / "cube.off").write_text(f"OFF\n8 {len(triangles)} 0\n" + "\n".join(" ".join(map(str, c)) for c in corners) + "\n"
+                                       + "\n".join("3 " + " ".join(map(str, t)) for t in triangles) + "\n")
+    (tmp_path / "burley.toml").write_text('name = "b"\nsource = "test"\nunit = "mm"\nkind = "burley"\ndistance = [1, 0.5, 0.25]\n')
+    (tmp_path / "scene.toml").write_text('version = 2\n[channels]\nposition = ["X", "Y", "Z"]\n[ambient]\nconstant = [1, 1, 1]\n'
+                                         '[[material]]\nid = 1\nprofile = "burley.toml"\n')
+    files.write_image(tmp_path / "g.exr", np.zeros((4, 5, 3), np.float32), channels=["X", "Y", "Z"])
+    inputs = tmp_path / "cube.off", tmp_path / "scene.toml", tmp_path / "g.exr"
+    layers = files.reference(*inputs, walk=True, samples=64, reflectance=[0.8, 0.5, 0.3])
+    assert layers["First.R"].shape == (4, 5)
+    for channel in "RGB":
+        assert np.allclose(layers[f"Surface.{channel}"].mean(), 1, atol=0.05)
+    assert layers["Thickness"][0, 0] == pytest.approx(side, rel=1e-3)
+    with pytest.raises(files.FileError, match="no known medium"):
+        files.reference(*inputs, walk=True, profile="skin")
