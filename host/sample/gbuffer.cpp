@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "sample/trace.h"
 #include "sample/waves.h"
 
 namespace pellucid::sample {
@@ -52,16 +53,10 @@ class Renderer {
         if (options.detail.enabled) detail_.emplace(options.detail);
     }
 
-    void row(const Scene& scene, int y) {
-        Ray rays[Scene::packetSize];
-        Hit hits[Scene::packetSize];
-        for (int x0 = 0; x0 < out_.width; x0 += Scene::packetSize) {
-            const int count = std::min(Scene::packetSize, out_.width - x0);
-            for (int i = 0; i < count; ++i) rays[i] = view_.ray(x0 + i, y);
-            scene.intersect(rays, hits, count);
-            for (int i = 0; i < count; ++i)
-                if (hits[i].triangle != Hit::none) pixel(x0 + i, y, rays[i], hits[i]);
-        }
+    void render(const Scene& scene) {
+        traceRays(
+            scene, out_.width, out_.height, [&](int x, int y) { return view_.ray(x, y); },
+            [&](int x, int y, const Ray& ray, const Hit& hit) { pixel(x, y, ray, hit); });
     }
 
   private:
@@ -185,9 +180,7 @@ GBuffer renderGBuffer(const Scene& scene, const Camera& camera, int width, int h
     out.material.assign(size_t(width) * size_t(height), 0);
     if (out.material.empty()) return out;
 
-    Renderer renderer(scene, camera, options, out);
-#pragma omp parallel for schedule(dynamic, 4)
-    for (int y = 0; y < height; ++y) renderer.row(scene, y);
+    Renderer(scene, camera, options, out).render(scene);
     return out;
 }
 

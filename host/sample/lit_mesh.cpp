@@ -194,49 +194,26 @@ std::vector<SurfacePoint> nearestPoints(const Scene& scene, std::span<const floa
     return places;
 }
 
-void irradianceOfPacket(const Scene& scene, const Lighting& lighting, const SurfacePoint* points, int count,
-                        float* out) {
+std::array<double, 3> irradianceAt(const Scene& scene, const Lighting& lighting, const SurfacePoint& point) {
     const Vec3 extent = scene.bounds().high - scene.bounds().low;
-    const double lift = scene.bounds().empty() ? 0 : liftPart * std::max({extent.x, extent.y, extent.z});
-    Place places[Scene::packetSize];
-    std::array<double, 3> sums[Scene::packetSize]{};
-    for (int i = 0; i < count; ++i) {
-        places[i] = placeOf(scene.mesh(), points[i], lift);
-        if (lighting.ambient) sums[i] = lighting.ambient(places[i].normal);
-    }
+    const Place place = placeOf(scene.mesh(), point, liftPart * std::max({extent.x, extent.y, extent.z}));
+    std::array<double, 3> sum{};
+    if (lighting.ambient) sum = lighting.ambient(place.normal);
     for (const SurfaceLight& light : lighting.lights) {
-        Ray rays[Scene::packetSize];
-        Hit hits[Scene::packetSize];
-        Sample samples[Scene::packetSize];
-        int who[Scene::packetSize], towards = 0;
-        for (int i = 0; i < count; ++i) {
-            samples[i] = sampleLight(light, places[i]);
-            if (!(samples[i].strength > 0)) continue;
-            rays[towards] = {places[i].origin, samples[i].direction};
-            who[towards++] = i;
-        }
-        if (towards == 0) continue;
-        scene.intersect(rays, hits, towards);
-        for (int k = 0; k < towards; ++k) {
-            const int i = who[k];
-            if (hits[k].triangle != Hit::none && hits[k].distance < samples[i].distance) continue;
-            for (int c = 0; c < 3; ++c) sums[i][c] += samples[i].strength * light.color[c];
-        }
+        const Sample sample = sampleLight(light, place);
+        if (!(sample.strength > 0) || scene.occluded({place.origin, sample.direction}, sample.distance))
+            continue;
+        for (int c = 0; c < 3; ++c) sum[c] += sample.strength * light.color[c];
     }
-    for (int i = 0; i < count; ++i)
-        for (int c = 0; c < 3; ++c) out[3 * i + c] = float(sums[i][c]);
+    return sum;
 }
 
 std::vector<float> irradianceAt(const Scene& scene, const Lighting& lighting,
                                 std::span<const SurfacePoint> points) {
     std::vector<float> result(3 * points.size());
-    const auto packets = int64_t((points.size() + Scene::packetSize - 1) / Scene::packetSize);
-#pragma omp parallel for schedule(dynamic, 64)
-    for (int64_t i = 0; i < packets; ++i) {
-        const size_t first = size_t(i) * Scene::packetSize,
-                     count = std::min(size_t(Scene::packetSize), points.size() - first);
-        irradianceOfPacket(scene, lighting, &points[first], int(count), &result[3 * first]);
-    }
+#pragma omp parallel for schedule(dynamic, 1024)
+    for (size_t i = 0; i < points.size(); ++i)
+        std::ranges::copy(irradianceAt(scene, lighting, points[i]), &result[3 * i]);
     return result;
 }
 

@@ -49,9 +49,8 @@ std::vector<SurfacePoint> nearestPoints(const Scene& scene, std::span<const floa
 std::vector<float> irradianceAt(const Scene& scene, const Lighting& lighting,
                                 std::span<const SurfacePoint> points);
 
-// The same for up to Scene::packetSize points on the calling thread; `out` takes RGB for each.
-void irradianceOfPacket(const Scene& scene, const Lighting& lighting, const SurfacePoint* points, int count,
-                        float* out);
+// The same for one point, on the calling thread.
+std::array<double, 3> irradianceAt(const Scene& scene, const Lighting& lighting, const SurfacePoint& point);
 
 struct LitMesh {
     std::vector<float> positions;     // xyz of each corner: three corners per triangle, none shared

@@ -129,18 +129,10 @@ class Walker {
         Random random(seed);
         const std::array<double, 3> shift{random.next(), random.next(), random.next()};
         double sum = 0;
-        SurfacePoint exits[Scene::packetSize];
-        double weights[Scene::packetSize];
-        int found = 0;
-        for (uint32_t i = 0; i < samples; ++i) {
-            weights[found] = walk(start, channel, spread(i, shift), random, exits[found], lost);
-            found += weights[found] > 0;
-            if (found < Scene::packetSize && i + 1 < samples) continue;
-            float light[3 * Scene::packetSize];
-            if (found > 0) irradianceOfPacket(body_.lit(), lighting_, exits, found, light);
-            for (int k = 0; k < found; ++k) sum += weights[k] * light[3 * k + channel];
-            found = 0;
-            if (progress.stopped()) break;
+        for (uint32_t i = 0; i < samples && !progress.stopped(); ++i) {
+            SurfacePoint exit;
+            const double weight = walk(start, channel, spread(i, shift), random, exit, lost);
+            if (weight > 0) sum += weight * irradianceAt(body_.lit(), lighting_, exit)[channel];
         }
         return sum / samples;
     }

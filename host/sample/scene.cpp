@@ -66,49 +66,21 @@ Scene::Scene(const MeshView& view)
 
 Scene::~Scene() = default;
 
-void Scene::intersect(const Ray* rays, Hit* hits, int count) const {
-    alignas(64) int valid[packetSize];
-    alignas(64) RTCRayHit16 packet;
-    for (int i = 0; i < packetSize; ++i) {
-        valid[i] = i < count ? -1 : 0;
-        const Ray& ray = rays[std::min(i, count - 1)];
-        packet.ray.org_x[i] = float(ray.origin.x);
-        packet.ray.org_y[i] = float(ray.origin.y);
-        packet.ray.org_z[i] = float(ray.origin.z);
-        packet.ray.dir_x[i] = float(ray.direction.x);
-        packet.ray.dir_y[i] = float(ray.direction.y);
-        packet.ray.dir_z[i] = float(ray.direction.z);
-        packet.ray.tnear[i] = 0;
-        packet.ray.tfar[i] = INFINITY;
-        packet.ray.time[i] = 0;
-        packet.ray.mask[i] = ~0u;
-        packet.ray.flags[i] = 0;
-        packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-        packet.hit.primID[i] = RTC_INVALID_GEOMETRY_ID;
-        packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    }
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect16(valid, device_->scene, &context, &packet);
-    for (int i = 0; i < count; ++i) {
-        hits[i] = {};
-        if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-        hits[i].triangle = packet.hit.primID[i];
-        hits[i].distance = packet.ray.tfar[i];
-        hits[i].weights[1] = packet.hit.u[i];
-        hits[i].weights[2] = packet.hit.v[i];
-        refine(rays[i], hits[i]);
-    }
+namespace {
+
+RTCRay rayOf(const Ray& ray, double within) {
+    RTCRay r{};
+    r.org_x = float(ray.origin.x), r.org_y = float(ray.origin.y), r.org_z = float(ray.origin.z);
+    r.dir_x = float(ray.direction.x), r.dir_y = float(ray.direction.y), r.dir_z = float(ray.direction.z);
+    r.tfar = float(within);
+    r.mask = ~0u;
+    return r;
 }
 
+}  // namespace
+
 Hit Scene::firstHit(const Ray& ray, double within, Vec3& normal) const {
-    RTCRayHit query{};
-    query.ray.org_x = float(ray.origin.x), query.ray.dir_x = float(ray.direction.x);
-    query.ray.org_y = float(ray.origin.y), query.ray.dir_y = float(ray.direction.y);
-    query.ray.org_z = float(ray.origin.z), query.ray.dir_z = float(ray.direction.z);
-    query.ray.tfar = float(within);
-    query.ray.mask = ~0u;
+    RTCRayHit query{rayOf(ray, within), {}};
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -122,6 +94,21 @@ Hit Scene::firstHit(const Ray& ray, double within, Vec3& normal) const {
     hit.weights[0] = std::max(0.0, 1 - hit.weights[1] - hit.weights[2]);
     normal = normalize(Vec3{query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z});
     return hit;
+}
+
+Hit Scene::intersect(const Ray& ray) const {
+    Vec3 normal;
+    Hit hit = firstHit(ray, INFINITY, normal);
+    if (hit.triangle != Hit::none) refine(ray, hit);
+    return hit;
+}
+
+bool Scene::occluded(const Ray& ray, double within) const {
+    RTCRay query = rayOf(ray, within);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(device_->scene, &context, &query);
+    return query.tfar < 0;
 }
 
 namespace {

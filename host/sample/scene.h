@@ -21,8 +21,6 @@ struct Hit {
 
 class Scene {
   public:
-    static constexpr int packetSize = 16;
-
     // Copies the mesh. Throws std::invalid_argument as checkMesh does, std::runtime_error when Embree fails.
     explicit Scene(const MeshView& mesh);
     ~Scene();
@@ -32,16 +30,18 @@ class Scene {
     const Mesh& mesh() const { return mesh_; }
     const Bounds& bounds() const { return bounds_; }
 
-    // First hits of up to packetSize rays. Embree finds the triangle in single precision, watertight; place
-    // on the triangle and distance are then solved in double. May be called from several threads.
-    void intersect(const Ray* rays, Hit* hits, int count) const;
+    // All queries may be called from several threads.
 
-    // The first hit of a single ray no further than `within`, and the unit normal of that triangle. All is in
-    // Embree's single precision, for rays by the million. May be called from several threads.
+    // The first hit. Embree finds the triangle in single precision, watertight; the place on the triangle and
+    // the distance are then solved in double precision.
+    Hit intersect(const Ray& ray) const;
+    // The same no further than `within`, and the unit normal of the triangle. All is in single precision, for
+    // rays by the million.
     Hit firstHit(const Ray& ray, double within, Vec3& normal) const;
+    // Whether anything is hit before `within`.
+    bool occluded(const Ray& ray, double within) const;
 
-    // The point of the mesh next to `p`, no further than `within` away. Weights and distance as for rays. May
-    // be called from several threads.
+    // The point of the mesh next to `p`, no further than `within` away. Weights and distance as for rays.
     Hit nearest(Vec3 p, double within = INFINITY) const;
 
   private:

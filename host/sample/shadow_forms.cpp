@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "sample/trace.h"
+
 namespace pellucid::sample {
 namespace {
 
@@ -10,23 +12,6 @@ namespace {
 constexpr Vec3 faces[6][3] = {{{1, 0, 0}, {0, 0, -1}, {0, -1, 0}}, {{-1, 0, 0}, {0, 0, 1}, {0, -1, 0}},
                               {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},   {{0, -1, 0}, {1, 0, 0}, {0, 0, -1}},
                               {{0, 0, 1}, {1, 0, 0}, {0, -1, 0}},  {{0, 0, -1}, {-1, 0, 0}, {0, -1, 0}}};
-
-// rayAt(x, y) for rows of texels; put(x, y, ray, hit) for those that met something.
-template <class RayAt, class Put>
-void traceRows(const Scene& scene, int width, int height, RayAt rayAt, Put put) {
-#pragma omp parallel for schedule(dynamic, 8)
-    for (int y = 0; y < height; ++y) {
-        Ray rays[Scene::packetSize];
-        Hit hits[Scene::packetSize];
-        for (int x0 = 0; x0 < width; x0 += Scene::packetSize) {
-            const int count = std::min(Scene::packetSize, width - x0);
-            for (int i = 0; i < count; ++i) rays[i] = rayAt(x0 + i, y);
-            scene.intersect(rays, hits, count);
-            for (int i = 0; i < count; ++i)
-                if (hits[i].triangle != Hit::none) put(x0 + i, y, rays[i], hits[i]);
-        }
-    }
-}
 
 }  // namespace
 
@@ -50,7 +35,7 @@ CubeShadowMap renderCubeShadowMap(const Scene& scene, Vec3 light, int size) {
     const double nearPlane = std::clamp(0.99 * length(gap) / std::sqrt(3.0), 1e-3 * farPlane, 0.9 * farPlane);
     map.depthA = -(farPlane - nearPlane) / (nearPlane * farPlane);
     map.depthB = 1 / nearPlane;
-    traceRows(
+    traceRays(
         scene, size, 6 * size,
         [&](int x, int y) {
             const auto& [axis, u, v] = faces[y / size];
@@ -78,7 +63,7 @@ std::vector<ShadowMap> renderCascades(const Scene& scene, const DirectionalLight
         map.worldToUvz = Matrix4::fromRows(map.right * (1 / extent), 0.5 - u / extent, map.down * (1 / extent),
                                            0.5 - v / extent, map.forward * (1 / map.depthRange),
                                            -map.nearDistance / map.depthRange);
-        traceRows(
+        traceRays(
             scene, size, size,
             [&](int x, int y) {
                 return Ray{map.right * (u + ((x + 0.5) / size - 0.5) * extent) +

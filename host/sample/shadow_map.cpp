@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "sample/trace.h"
+
 namespace pellucid::sample {
 
 namespace {
@@ -23,23 +25,15 @@ ShadowMap emptyMap(ShadowProjection projection, Vec3 forward, int size) {
     return map;
 }
 
-// rayAt(u, v) starts on the near side; zAt(hit, ray) is what the map stores.
+// rayAt(u, v) starts on the near side; zAt(ray, hit) is the depth that the map stores.
 template <class RayAt, class ZAt>
 void trace(const Scene& scene, ShadowMap& map, RayAt rayAt, ZAt zAt) {
-#pragma omp parallel for schedule(dynamic, 8)
-    for (int y = 0; y < map.size; ++y) {
-        Ray rays[Scene::packetSize];
-        Hit hits[Scene::packetSize];
-        for (int x0 = 0; x0 < map.size; x0 += Scene::packetSize) {
-            const int count = std::min(Scene::packetSize, map.size - x0);
-            for (int i = 0; i < count; ++i) rays[i] = rayAt((x0 + i + 0.5) / map.size, (y + 0.5) / map.size);
-            scene.intersect(rays, hits, count);
-            for (int i = 0; i < count; ++i)
-                if (hits[i].triangle != Hit::none)
-                    map.depth[size_t(y) * size_t(map.size) + size_t(x0 + i)] =
-                        float(std::clamp(zAt(rays[i], hits[i]), 0.0, 1.0));
-        }
-    }
+    traceRays(
+        scene, map.size, map.size,
+        [&](int x, int y) { return rayAt((x + 0.5) / map.size, (y + 0.5) / map.size); },
+        [&](int x, int y, const Ray& ray, const Hit& hit) {
+            map.depth[size_t(y) * size_t(map.size) + size_t(x)] = float(std::clamp(zAt(ray, hit), 0.0, 1.0));
+        });
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ struct Neighbourhood {
     bool border = false, closed = false;
 };
 
-// From nothing but the triangles that have the vertex as a corner.
+// Made only from the triangles that have the vertex as a corner.
 std::vector<Neighbourhood> neighbourhoods(const Mesh& mesh) {
     std::vector<Neighbourhood> all(mesh.positions.size());
     for (const Triangle& t : mesh.triangles)
@@ -45,7 +45,7 @@ std::set<int> nearOf(const Neighbourhood& n, int vertex) {
     return near;
 }
 
-// How often each vertex counts in the fit at `vertex`.
+// The weight of each vertex in the fit at `vertex`.
 std::map<int, int> twoRing(const std::vector<Neighbourhood>& all, int vertex) {
     std::map<int, int> counts;
     for (int b : all[vertex].ring) {
@@ -86,12 +86,12 @@ Frame frameOf(Vec3 n) {
     return {{1 + s * n.x * n.x * a, s * n.x * n.y * a, -s * n.x}, {n.x * n.y * a, s + n.y * n.y * a, -n.y}, n};
 }
 
-// What the one-ring says about the coordinates of the fit.
+// The coordinates of the fit, from the one-ring.
 struct Chart {
     Frame frame;
     double reach = 0;
     double slopeU = 0, slopeV = 0;  // taken off the heights
-    double bend = 0;
+    double flatness = 0;
     double xu = 0, yu = 0, yv = 0;  // coordinates x = xu u, y = yu u + yv v; u, v in units of twice the reach
     double steepness = 0, slope2 = 0;
     double unit = 0, round = 1, farthest2 = 4;
@@ -131,7 +131,7 @@ Chart chartOf(const Mesh& mesh, const std::set<int>& ring, int vertex, Vec3 norm
     chart.slopeU = part * su;
     chart.slopeV = part * sv;
     chart.steepness = nn / (uu + vv);
-    chart.bend = 1 / (1 + std::pow(chart.steepness / 0.04, 2));
+    chart.flatness = 1 / (1 + std::pow(chart.steepness / 0.04, 2));
     chart.unit = 2 * chart.reach;
     chart.thin = uu < nn || vv - uv * uv / uu < nn;
     shape(chart, uu, uv, vv, replaced ? nn : 0, std::sqrt(0.5));
@@ -213,18 +213,17 @@ double determinant(std::array<std::array<double, 9>, 9> a, size_t first, size_t 
     return product;
 }
 
-// How well the points tell quadratic terms from linear ones and cubic terms from all lower ones: 1, as if
-// these were not there; 0, not at all.
+// How well the points separate quadratic terms from linear ones, and cubic terms from all lower ones: from 0,
+// not at all, to 1, as if the lower terms were absent.
 double distinct(const std::array<std::array<double, 9>, 9>& a) {
     const double five = determinant(a, 0, 5);
     return std::min(five / (determinant(a, 0, 2) * determinant(a, 2, 5)),
                     determinant(a, 0, 9) / (five * determinant(a, 5, 9)));
 }
 
-// Of the quadratic and cubic terms the one that the points tell least of, beside the ones before it: what it
-// adds to the sum of squares, of which `added` times its share is the ridge's, in parts of the ridge inside
-// of a mesh.
-double leastTold(std::array<std::array<double, 9>, 9> a, double total, bool border) {
+// The smallest contribution of a quadratic or cubic term to the sum of squares, given the terms before it, in
+// units of the ridge that is used inside of a mesh. The ridge itself is subtracted.
+double smallestTerm(std::array<std::array<double, 9>, 9> a, double total, bool border) {
     double least = 1e30;
     for (size_t i = 0; i < 9; ++i) {
         const double ridge = i < 5 ? 1e-7 : 1e-5, added = i >= 5 && border ? 1e-3 : ridge;
@@ -240,9 +239,8 @@ struct Fit {
     std::array<double, 9> solution{};
     double told = 0;
     double distinct = 0;
-    double noise =
-        // error of H for an error 1 of every height and of the vertex's own, times the square of the reach
-        0;
+    // Error of H, times the square of the reach, for an error of 1 of each height and of the vertex.
+    double noise = 0;
     int points = 0;
 };
 
@@ -260,7 +258,7 @@ Fit fitTo(const Mesh& mesh, const std::map<int, int>& points, const Chart& chart
         nearer(margin, x * x + y * y, chart.farthest2);
         if (!(x * x + y * y <= chart.farthest2)) continue;
         const double q = dot(p, chart.frame.n) - chart.slopeU * u - chart.slopeV * v;
-        const double r2 = u * u + v * v, bent = r2 + chart.bend * q * q;
+        const double r2 = u * u + v * v, bent = r2 + chart.flatness * q * q;
         const double z = bent > 0 ? q * r2 / bent : 0;
         const double weight = 1 / (0.05 * chart.round + dot(p, p));
         const double terms[9] = {
@@ -279,7 +277,7 @@ Fit fitTo(const Mesh& mesh, const std::map<int, int>& points, const Chart& chart
     for (int i = 0; i < 9; ++i) matrix[i][i] += total * often[i] * (i < 5 ? 1e-7 : border ? 1e-3 : 1e-5);
     if (!(total > 0)) return fit;
     fit.distinct = distinct(matrix);
-    fit.told = leastTold(matrix, total, border);
+    fit.told = smallestTerm(matrix, total, border);
     fit.solution = solve(matrix, right);
     // Of the error of heights, what the sum of squares leaves to H.
     std::array<double, 9> trace{};

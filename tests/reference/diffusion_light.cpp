@@ -10,18 +10,21 @@
 namespace reference {
 namespace {
 
-constexpr double noNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Constants of the definition.
-constexpr double ownWindow = 2, ownCosine = 0.4;       // quarters of a texel
-constexpr double shownWindow = 1, shownCosine = 0.35;  // texels
-constexpr double leastCosine = 0.1;                    // to the light
-constexpr double stepOverTexel = 2;                    // of squares
-constexpr double massOff = 0.1;  // of what pixels show; nothing of it counts from three times that on
-constexpr double agree = 0.02;   // of light that falls straight in: no difference; one from twice that on
-constexpr double nearlyPlane = 0.03;  // of the mass; not at all from twice that on
-constexpr double longestSlope = 10;   // of a texel's surface, over its area across the light
-constexpr double pointsWithin = 3;    // lengths of a texel
+constexpr double ownWindow = 2, ownCosine = 0.4;       // width in quarters of a texel; smallest cosine
+constexpr double shownWindow = 1, shownCosine = 0.35;  // width in texels; smallest cosine
+constexpr double leastCosine = 0.1;                    // smallest cosine to the light
+constexpr double stepOverTexel = 2;                    // weight of the squared step between pixels
+// Deviation of the accumulated weight of the pixels from its window; three times as much: pixels do not count.
+constexpr double weightOff = 0.1;
+// Difference that does not matter, relative to light at normal incidence; twice as much matters fully.
+constexpr double agree = 0.02;
+// Relative deviation of the weight from that of a plane that is corrected; twice as much is not.
+constexpr double nearlyPlane = 0.03;
+constexpr double longestSlope = 10;  // largest area of a texel's surface over its area across the light
+constexpr double pointsWithin = 3;   // nearer than this many lengths, a texel is several points
 constexpr int pointsAcross = 4;
 
 Vec3 rowOf(const Matrix4& m, int r) {
@@ -125,7 +128,7 @@ Steps stepsAt(const ScatterPicture& p, int x, int y) {
     const auto place = [&](int u, int v) {
         const bool there =
             u >= 0 && v >= 0 && u < p.width && v < p.height && p.ids[p.at(u, v)] == p.ids[p.at(x, y)];
-        return there ? p.positions[p.at(u, v)] : Vec3{noNumber, noNumber, noNumber};
+        return there ? p.positions[p.at(u, v)] : Vec3{nan, nan, nan};
     };
     const Vec3 here = p.positions[p.at(x, y)];
     const auto finite = [](Vec3 v) { return std::isfinite(length(v)) ? v : Vec3{}; };
@@ -168,18 +171,18 @@ Rgb shareOfWindow(const Cut& profile, double rho) {
     return sum / steps;
 }
 
-// What light with this mass is to be multiplied by.
-double planeLike(double mass, double plane) {
-    if (!(mass > 0.1 * plane)) return 1;
-    const double off = mass / plane - 1, trust = saturate(2 - std::abs(off) / nearlyPlane);
+// The factor that corrects light with this accumulated weight for the weight of a plane.
+double planeLike(double weight, double plane) {
+    if (!(weight > 0.1 * plane)) return 1;
+    const double off = weight / plane - 1, trust = saturate(2 - std::abs(off) / nearlyPlane);
     return (1 + off * (1 - trust)) / (1 + off);
 }
 
-// How much the mean of the pixels counts instead of the texels, of one channel.
-double trustInPixels(double byPixels, double byTexels, double mass, double window, double cosine,
+// Blend weight of the pixels' mean against the texels, for one channel.
+double trustInPixels(double byPixels, double byTexels, double weight, double window, double cosine,
                      double texel, double step) {
     const double finer = texel * texel / (texel * texel + stepOverTexel * step * step),
-                 whole = saturate(1.5 - std::abs(mass / window - 1) / (2 * massOff)),
+                 whole = saturate(1.5 - std::abs(weight / window - 1) / (2 * weightOff)),
                  most = std::max(byPixels, byTexels),
                  apart = most > 0 ? std::abs(byPixels - byTexels) * cosine / most : 0;
     return std::max(saturate(2 - apart / agree), finer * whole);
@@ -255,7 +258,7 @@ std::vector<Rgb> scatterFromLights(const ScatterPicture& p, const std::vector<Ma
                       lit = p.irradiance[i];
             Rgb far, between, asPlane;
             for (size_t k = 0; k < lights.size(); ++k) {
-                Rgb beyond, light, mass;
+                Rgb beyond, light, weight;
                 for (const LitTexel& t : texels[k]) {
                     if (!(t.flux > 0)) continue;
                     const Vec3 d = t.position - here;
@@ -270,13 +273,13 @@ std::vector<Rgb> scatterFromLights(const ScatterPicture& p, const std::vector<Ma
                             const Rgb density = profile.radial(distance) / (n * n);
                             beyond = beyond + (1 - g) * t.flux * density;
                             light = light + ring * t.flux * density;
-                            mass = mass + ring * t.extent * density;
+                            weight = weight + ring * t.extent * density;
                         }
                 }
                 far = far + lights[k].color * beyond;
                 between = between + lights[k].color * light;
                 for (int c = 0; c < 3; ++c)
-                    asPlane[c] += lights[k].color[c] * light[c] * planeLike(mass[c], within[c] - withinOwn[c]);
+                    asPlane[c] += lights[k].color[c] * light[c] * planeLike(weight[c], within[c] - withinOwn[c]);
             }
             // Near: the mean of what pixels show.
             const Rgb self = profile.within(std::sqrt(areas[i] / std::numbers::pi));
