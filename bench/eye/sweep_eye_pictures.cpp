@@ -1,7 +1,5 @@
 // Draws docs/figures/eye_pupils.png, eye_caustic.png, eye_limbus.png and eye_tracer.png:
 //   sweep_eye_pictures FOLDER
-// or eye_cycles.png beside the picture of blender_witness.py:
-//   sweep_eye_pictures FOLDER WITNESS.exr
 #include <cstdio>
 #include <stdexcept>
 
@@ -107,49 +105,11 @@ void tracer(const std::string& folder) {
            {"difference x 10", developed(difference)}});
 }
 
-// Against the picture of blender_witness.py, which has glass of one index, no border and no film of tears.
-void witness(const std::string& folder, const std::string& file) {
-    const io::Image image = io::readImage(file);
-    EyeScene scene;
-    scene.size = image.width;
-    scene.unit = 1;
-    for (float& c : scene.eye.center) c = 0;
-    scene.eye.gaze[0] = scene.eye.gaze[1] = 0;
-    scene.eye.corneaIndex = scene.eye.aqueousIndex = 1.336f;
-    scene.eye.limbusWidth = scene.eye.limbusDarkening = 0;
-    scene.eye.tearIndex = 1;
-    for (float& c : scene.sclera.albedo) c = 0.8f;
-    scene.camera = {26, 10, 58};
-    scene.addLight({0.8, 0.3, 0.5}, {1, 1, 1});
-    scene.textureSize = 8;
-    scene.texture.assign(3 * 64, 0.5f);
-    const EyePicture picture(scene);
-    const std::vector<float> is = picture.shade(),
-                             should = image.interleaved(std::vector<std::string>{"R", "G", "B"});
-    double sum[2] = {}, counts[2] = {};
-    std::vector<float> difference;
-    for (size_t i = 0; i < is.size(); ++i) {
-        const reference::EyeHit& hit = picture.pixels[i / 3].hit;
-        difference.push_back(std::abs(is[i] - should[i]) * 5);
-        // The sun's mirror image is brighter than anything lit by it, and the model leaves views past the iris to its rim.
-        if (!picture.pixels[i / 3].shown || should[i] > 1.2f) continue;
-        sum[hit.cornea] += (is[i] - should[i]) * double(is[i] - should[i]), counts[hit.cornea] += 1;
-    }
-    std::printf("Cycles: RMSE through the cornea %.4f, on the sclera %.4f\n", std::sqrt(sum[1] / counts[1]),
-                std::sqrt(sum[0] / counts[0]));
-    const auto shown = [&](const std::vector<float>& rgb) {
-        return io::Picture(scene.size, scene.size, io::toSrgb8(rgb));
-    };
-    write(folder, "eye_cycles.png",
-          {{"this library", shown(is)}, {"Cycles", shown(should)}, {"difference x 5", shown(difference)}});
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
     try {
-        if (argc != 2 && argc != 3) throw std::invalid_argument("sweep_eye_pictures FOLDER [WITNESS.exr]");
-        if (argc == 3) return witness(argv[1], argv[2]), 0;
+        if (argc != 2) throw std::invalid_argument("sweep_eye_pictures FOLDER");
         pupils(argv[1]);
         caustic(argv[1]);
         limbus(argv[1]);

@@ -1,4 +1,4 @@
-#include "baseline_curvature.h"
+#include "baselines.h"
 
 #include <algorithm>
 #include <cmath>

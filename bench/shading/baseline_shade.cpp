@@ -1,10 +1,31 @@
-#include "baseline_shade.h"
+#include "baselines.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace baseline {
 namespace {
+
+using pellucid::bench::FrameImages;
+constexpr int tableSize = 512;
+constexpr float sharpening = 9;  // of the shadow of specular light
+
+// Numbers of a frame that are the same for all pixels.
+struct ShadeSettings {
+    const ShadeInput& in;
+    float ambient[9][3];                    // polynomial of the normal
+    float rowsCurvature[2], rowsShadow[2];  // row in [0, 1] = scale * value + bias
+
+    explicit ShadeSettings(const ShadeInput& input) : in(input) {
+        const PelAmbient& a = in.frame.ambient;
+        const float one = 0.48860251f, two = 1.09254843f;
+        const float factors[9] = {0.28209479f, one, one, one, two, two, 0.31539157f, two, 0.5f * two};
+        for (int i = 0; i < 9; ++i)
+            for (int c = 0; c < 3; ++c) ambient[i][c] = factors[i] * a.sh[i][c] + (i ? 0 : a.constant[c]);
+        rowsCurvature[0] = 1 / (1 - 0.01f), rowsCurvature[1] = -0.01f / (1 - 0.01f);
+        rowsShadow[0] = 1 / (1 / 8.0f - 0.01f), rowsShadow[1] = -0.01f / (1 / 8.0f - 0.01f);
+    }
+};
 
 struct V {
     float x, y, z;
@@ -40,16 +61,17 @@ V from(const float (&v)[3]) {
     return {v[0], v[1], v[2]};
 }
 
-V sample(const ShadeTable& t, float s, float v) {
-    const float x = std::clamp(s * t.width - 0.5f, 0.0f, t.width - 1.0f);
-    const float y = std::clamp(v * t.height - 0.5f, 0.0f, t.height - 1.0f);
-    const int x0 = int(x), y0 = int(y), x1 = std::min(x0 + 1, t.width - 1), y1 = std::min(y0 + 1, t.height - 1);
-    const auto texel = [&](int i, int j) { return load(t.texels, size_t(j) * t.width + i); };
+V sample(const std::vector<float>& texels, float s, float v) {
+    const float x = std::clamp(s * tableSize - 0.5f, 0.0f, tableSize - 1.0f);
+    const float y = std::clamp(v * tableSize - 0.5f, 0.0f, tableSize - 1.0f);
+    const int x0 = int(x), y0 = int(y), x1 = std::min(x0 + 1, tableSize - 1),
+              y1 = std::min(y0 + 1, tableSize - 1);
+    const auto texel = [&](int i, int j) { return load(texels, size_t(j) * tableSize + i); };
     return mix(mix(texel(x0, y0), texel(x1, y0), x - x0), mix(texel(x0, y1), texel(x1, y1), x - x0), y - y0);
 }
 
-float depthAt(const ShadeFrame& f, float u, float v) {
-    const int n = f.mapSize;
+float depthAt(const FrameImages& f, float u, float v) {
+    const int n = int(f.mapSize);
     const float x = std::clamp(u * n - 0.5f, 0.0f, n - 1.0f), y = std::clamp(v * n - 0.5f, 0.0f, n - 1.0f);
     const int x0 = int(x), y0 = int(y), x1 = std::min(x0 + 1, n - 1), y1 = std::min(y0 + 1, n - 1);
     const float* m = f.map.data();
@@ -65,53 +87,57 @@ float irradiance(const ShadeSettings& s, V n, int c) {
                               a[8][c] * (n.x * n.x - n.y * n.y));
 }
 
-float thickness(const ShadeFrame& f, const ShadeSettings& s, V p, V ng) {
-    p = p - s.normalOffset * ng;
-    const float* m = s.worldToShadow;
+float thickness(const ShadeInput& in, V p, V ng) {
+    p = p - in.material.deepScatterNormalOffset * ng;
+    const float* m = in.frame.light.worldToShadow;
     float h[4];
     for (int r = 0; r < 4; ++r)
         h[r] = m[4 * r] * p.x + m[4 * r + 1] * p.y + m[4 * r + 2] * p.z + m[4 * r + 3];
+    const float radius = in.material.thicknessFilterRadius;
     float sum = 0;
-    for (int i = 0; i < s.taps; ++i)
-        sum += std::max(0.0f, (h[2] / h[3] - depthAt(f, h[0] / h[3] + s.filterRadius * s.disk[2 * i],
-                                                     h[1] / h[3] + s.filterRadius * s.disk[2 * i + 1])) *
-                                  s.depthRange);
-    return sum / s.taps;
+    for (size_t i = 0; i < in.disk.size(); i += 2)
+        sum += std::max(0.0f, (h[2] / h[3] - depthAt(in.frame, h[0] / h[3] + radius * in.disk[i],
+                                                     h[1] / h[3] + radius * in.disk[i + 1])) *
+                                  in.frame.light.shadowDepthRange);
+    return 2 * sum / float(in.disk.size());
 }
 
-V shadePixel(const ShadeFrame& f, const ShadeSettings& s, const ShadeTable& curvature,
-             const ShadeTable& shadow, bool skipping, size_t i) {
-    const V l = from(s.toLight), ng = load(f.geometric, i), n = load(f.shading, i), nb = load(f.blurred, i);
-    const V p = load(f.position, i), albedo = load(f.albedo, i);
-    const float bl = dot(nb, l), nl = dot(n, l), w = f.wide[i];
-    const V d = sample(curvature, 0.5f * bl + 0.5f, s.rowsCurvature[0] * f.curvature[i] + s.rowsCurvature[1]);
+V shadePixel(const ShadeSettings& s, bool skipping, size_t i) {
+    const FrameImages& f = s.in.frame;
+    const PelMaterial& m = s.in.material;
+    const V l = from(f.light.toLight), color = from(f.light.color), ng = load(f.geometric, i),
+            n = load(f.shading, i), nb = load(f.blurred, i), p = load(f.position, i),
+            albedo = load(f.albedo, i);
+    const float bl = dot(nb, l), nl = dot(n, l), w = f.wideShadow[i];
+    const V d =
+        sample(s.in.curvatureTable, 0.5f * bl + 0.5f, s.rowsCurvature[0] * f.curvature[i] + s.rowsCurvature[1]);
     const float away = sat(1 - bl) * sat(1 - bl), lambert = std::max(bl, 0.0f);
     const V direct{sat(d.x - lambert + sat(bl)),
                    sat(d.y - lambert + sat(dot(l, normalize(mix(n, nb, 0.3f + 0.7f * away))))),
                    sat(d.z - lambert + sat(dot(l, normalize(mix(n, nb, away)))))};
-    const V t = sample(shadow, w, s.rowsShadow[0] * sat(dot(ng, l)) * s.penumbraPerCosine + s.rowsShadow[1]);
+    const V t =
+        sample(s.in.shadowTable, w, s.rowsShadow[0] * sat(dot(ng, l)) / m.shadowFilterWidth + s.rowsShadow[1]);
     const V between = normalize(mix(n, nb, 0.3f));
     V diffuse{irradiance(s, nb, 0), irradiance(s, between, 1), irradiance(s, n, 2)};
     V lit = direct * t;
     const float back = sat(0.3f - bl);
-    if (s.taps && (back > 0 || !skipping)) {
-        const float thick = thickness(f, s, p, ng);
-        lit = lit + (std::exp(-thick * thick / (2 * s.deepScatterRadius * s.deepScatterRadius)) * back) *
-                        from(s.deepScatter);
+    if (!s.in.disk.empty() && (back > 0 || !skipping)) {
+        const float thick = thickness(s.in, p, ng);
+        lit = lit + (std::exp(-thick * thick / (2 * m.deepScatterRadius * m.deepScatterRadius)) * back) *
+                        from(m.deepScatterColor);
     }
-    diffuse = diffuse + from(s.light) * lit;
+    diffuse = diffuse + color * lit;
     V result = albedo * diffuse;
     if (nl > 0 || !skipping) {
-        const V v = normalize(from(s.camera) - p), h = l + v, unit = normalize(h);
-        const float nh = dot(n, unit), m2 = s.roughness * s.roughness;
+        const V v = normalize(from(f.camera.position) - p), h = l + v, unit = normalize(h);
+        const float nh = dot(n, unit), m2 = m.roughness * m.roughness;
         if (nh > 0) {
             const float tan2 = (1 - nh * nh) / (nh * nh);
             const float lobe = std::exp(-tan2 / m2) / (m2 * nh * nh * nh * nh);
-            const float fresnel = s.f0 + (1 - s.f0) * std::pow(1 - dot(v, unit), 5.0f);
-            const float k = sat(w * s.sharpening + 0.5f * (1 - s.sharpening));
-            result =
-                result + (k * k * (3 - 2 * k) * s.specular * std::max(nl, 0.0f) * lobe * fresnel / dot(h, h)) *
-                             from(s.light);
+            const float fresnel = m.f0 + (1 - m.f0) * std::pow(1 - dot(v, unit), 5.0f);
+            const float k = sat(w * sharpening + 0.5f * (1 - sharpening));
+            result = result +
+                     (k * k * (3 - 2 * k) * m.specular * std::max(nl, 0.0f) * lobe * fresnel / dot(h, h)) * color;
         }
     }
     return result;
@@ -119,18 +145,19 @@ V shadePixel(const ShadeFrame& f, const ShadeSettings& s, const ShadeTable& curv
 
 }  // namespace
 
-void shadeOpenMp(const ShadeFrame& f, const ShadeSettings& s, const ShadeTable& curvature,
-                 const ShadeTable& shadow, Effort effort, std::vector<float>& out) {
+void shadeOpenMp(const ShadeInput& input, Effort effort, std::vector<float>& radiance) {
+    const ShadeSettings settings(input);
     const bool skipping = effort == Effort::Skipping;
+    const int width = int(input.frame.width), height = int(input.frame.height);
 #pragma omp parallel for schedule(dynamic, 8)
-    for (int y = 0; y < f.height; ++y)
-        for (int x = 0; x < f.width; ++x) {
-            const size_t i = size_t(y) * f.width + x;
-            if (!f.id[i]) continue;
-            const V color = shadePixel(f, s, curvature, shadow, skipping, i);
-            out[3 * i] = color.x;
-            out[3 * i + 1] = color.y;
-            out[3 * i + 2] = color.z;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const size_t i = size_t(y) * width + x;
+            if (!input.frame.id[i]) continue;
+            const V color = shadePixel(settings, skipping, i);
+            radiance[3 * i] = color.x;
+            radiance[3 * i + 1] = color.y;
+            radiance[3 * i + 2] = color.z;
         }
 }
 

@@ -1,279 +1,210 @@
-// The shading pass: against the scalar C++ loop and the straight OpenCL port, by feature, coverage and number
-// of lights.
+// The shading pass against the scalar C++ loop, by feature, coverage, size, lights and tile lists.
 //
-// Frames: `full` is a screen of folded skin, `head` a 1280 x 720 view of a ball that covers as much as the
-// demo's head, `key` and `backlit` the two views of the demo, from where `pellucid demo` left them (out/demo, or
-// PELLUCID_DEMO_DIR). `lit` is what a renderer without scattering shades there: Lambert with a plain shadow, ambient and
-// specular; `plain` leaves out the shadow and the ambient light too. `packed`: the images in compact formats, 24 bytes a
-// pixel read and 8 written, instead of float32.
-#include <benchmark/benchmark.h>
-
-#include <pellucid/pellucid.hpp>
-
+// Frames: `full` is a screen of folded skin, `demo_key` and `demo_backlit` are the views that `pellucid demo` left in
+// out/demo or PELLUCID_DEMO_DIR. `lit` is what a renderer without scattering shades there: Lambert with a plain shadow,
+// ambient and specular light; `plain` leaves out the shadow and the ambient light too.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <map>
 #include <memory>
 
+#include "baselines.h"
+#include "benchmarks.h"
 #include "demo_files.h"
-#include "pack_images.h"
-#include "shade_frames.h"
+#include "io/image/image_file.h"
+#include "io/scene/scene_file.h"
 
 using namespace pellucid;
-using baseline::Effort;
-using baseline::ShadeFrame;
-using namespace frames;
+using namespace pellucid::bench;
 
+namespace benchmarks {
 namespace {
 
-const Device& device() {
-    static const Device device("");
-    return device;
+const std::string demoViews[] = {"key", "backlit"};
+
+// A view as `pellucid demo` wrote it. The demo's skin takes transmission from its profile; taps need deep scatter by a
+// colour, which FrameSettings gives.
+FrameImages demoView(const std::string& view) {
+    const io::SceneFile file = io::readScene(demo::directory() + "/" + view + ".toml");
+    const io::Image g = io::readImage(demo::directory() + "/" + view + "_gbuffer.exr");
+    const auto take = [&](PelImageSlot slot) { return g.interleaved(file.channels[slot]); };
+    FrameImages f;
+    f.width = uint32_t(g.width), f.height = uint32_t(g.height);
+    f.position = take(PEL_SLOT_POSITION), f.geometric = take(PEL_SLOT_NORMAL_GEOMETRIC);
+    f.shading = take(PEL_SLOT_NORMAL_SHADING), f.blurred = take(PEL_SLOT_NORMAL_BLURRED);
+    f.curvature = take(PEL_SLOT_CURVATURE), f.albedo = take(PEL_SLOT_ALBEDO);
+    for (const float id : take(PEL_SLOT_MATERIAL)) f.id.push_back(id == 1.0f);
+    f.wideShadow = g.interleaved(std::vector{file.lights.at(0).wideShadow});
+    const io::Image map = io::readImage(file.lights[0].shadowMapFile);
+    f.map = map.interleaved(std::vector{file.lights[0].shadowMapChannel});
+    f.mapSize = uint32_t(map.width);
+    f.light = file.lights[0].light;
+    f.material = file.materials.at(0).material;
+    f.ambient = file.ambient;
+    f.camera = file.camera;
+    return f;
 }
 
-enum View { full, head, key, backlit };
-
-// view, taps, coverage in percent; taps and coverage of the demo's views are as they are.
-Scene& scene(View view, int taps, int coverage = 100) {
-    static std::map<std::tuple<int, int, int>, std::unique_ptr<Scene>> scenes;
-    auto& slot = scenes[{view, taps, coverage}];
-    if (slot) return *slot;
-    if (view == full) {
-        slot = makeScene(device(), foldedSkin(1920, 1080, coverage / 100.0), taps);
-        describeCamera(*slot, 0.1f, 12);
-    } else if (view == head) {
-        slot = makeScene(device(), ball(1280, 720), taps);
-        describeCamera(*slot, 110 / (0.45f * 720), 110);
-    } else
-        slot = readDemoView(device(), demo::directory(), view == key ? "key" : "backlit");
+// `name`: a view of the demo, or the width of a screen of folded skin.
+const Frame& frame(const std::string& name) {
+    static std::map<std::string, std::unique_ptr<Frame>> frames;
+    std::unique_ptr<Frame>& slot = frames[name];
+    if (!slot) {
+        const auto width = uint32_t(std::atoi(name.c_str()));
+        slot = std::make_unique<Frame>(device(), width ? foldedSkin(width, width * 9 / 16) : demoView(name));
+    }
     return *slot;
 }
 
-struct Prepared {
-    Shader shader;
-    Buffer target;
-};
-
-enum class Terms { scattering, lit, plain };
-enum class Storage { float32, packed };
-enum class Given { all, noBlurredNormal, noWideShadow };  // what the host does not give, the library makes
-
-Prepared prepare(const Scene& s, uint32_t lights, Terms terms, Storage storage = Storage::float32,
-                 Given given = Given::all, uint32_t filterTexels = 48, uint32_t everyPixel = 0) {
-    const auto w = uint32_t(s.frame.width), h = uint32_t(s.frame.height);
-    const bool packed = storage == Storage::packed;
-    Prepared p{Shader(device()), Buffer(device(), size_t(w) * h * 12)};
-    const auto set = [&](PelImageSlot slot, const auto& image, PelFormat format) {
-        p.shader.set(slot, imageDesc(Buffer(device(), image), format, w, h));
+Run library(const std::string& name, const FrameSettings& settings) {
+    return [=](benchmark::State& state) {
+        const Shader shader = frame(name).shader(settings);
+        time(state, [&] { shader.execute(); });
+        state.counters["tiles"] = double(shader.stats().tilesShaded);
     };
-    const auto setNormal = [&](PelImageSlot slot, const std::vector<float>& image) {
-        packed ? set(slot, packing::octahedral(image), PEL_FORMAT_OCT16X2_SNORM)
-               : set(slot, image, PEL_FORMAT_RGB32F);
+}
+
+// The same settings against a filter of all texels at every pixel: root mean square of radiance over pixels of skin.
+Run wideShadow(const std::string& view, FrameSettings settings) {
+    return [=](benchmark::State& state) {
+        const Frame& f = frame(view);
+        const Shader shader = f.shader(settings);
+        time(state, [&] { shader.execute(); });
+        const std::vector<float> shown = f.target().readAll<float>();
+        FrameSettings exact = settings;
+        exact.filterTexels = 256, exact.everyPixel = true;
+        f.shader(exact).execute();
+        const std::vector<float> wanted = f.target().readAll<float>();
+        double sum = 0, count = 0;
+        for (size_t i = 0; i < shown.size(); ++i)
+            if (f.images().id[i / 3] == 1) sum += std::pow(double(shown[i]) - wanted[i], 2), count += 1;
+        state.counters["radiance_rms"] = std::sqrt(sum / count);
     };
-    p.shader.set(PEL_SLOT_RADIANCE, imageDesc(p.target, packed ? PEL_FORMAT_RGBA16F : PEL_FORMAT_RGB32F, w, h));
-    set(PEL_SLOT_MATERIAL, s.frame.id, PEL_FORMAT_R8_UINT);
-    setNormal(PEL_SLOT_NORMAL_SHADING, s.frame.shading);
-    if (packed) {
-        set(PEL_SLOT_DEPTH, packing::depths(s.frame.position, s.camera, s.frame.width, s.frame.height),
-            PEL_FORMAT_R32F);
-        set(PEL_SLOT_ALBEDO, packing::srgb8(s.frame.albedo), PEL_FORMAT_RGBA8_SRGB);
-    } else {
-        set(PEL_SLOT_POSITION, s.frame.position, PEL_FORMAT_RGB32F);
-        set(PEL_SLOT_ALBEDO, s.frame.albedo, PEL_FORMAT_RGB32F);
+}
+
+// x and y of the library's disk of taps.
+std::vector<float> readDisk(uint32_t taps) {
+    std::ifstream file(PELLUCID_SOURCE_DIR "/kernels/lib/shading/poisson_disk.clh");
+    const std::string start = "pelDisk" + std::to_string(taps) + "[";
+    std::vector<float> disk;
+    for (std::string line; std::getline(file, line);)
+        if (line.find(start) != std::string::npos)
+            while (std::getline(file, line) && line[0] != '}') {
+                for (size_t at = 0; (at = line.find("(float2)(", at)) != std::string::npos; ++at) {
+                    float x = 0, y = 0;
+                    std::sscanf(line.c_str() + at, "(float2)(%ff, %ff)", &x, &y);
+                    disk.insert(disk.end(), {x, y});
+                }
+            }
+    if (disk.size() != 2 * size_t(taps))
+        throw std::runtime_error("no disk of this many taps in poisson_disk.clh");
+    return disk;
+}
+
+// The scalar loop, and its largest difference from the library with taps of each pixel's own.
+Run openMp(const std::string& name, uint32_t taps, baseline::Effort effort) {
+    return [=](benchmark::State& state) {
+        const Frame& f = frame(name);
+        const FrameSettings settings{.taps = taps, .everyPixel = true};
+        const std::vector<float> curvature = f.curvatureLut().read<float>(PEL_LUT_FLOAT),
+                                 shadow = f.shadowLut().read<float>(PEL_LUT_FLOAT);
+        const baseline::ShadeInput input{f.images(), f.material(settings), curvature, shadow,
+                                         taps ? readDisk(taps) : std::vector<float>()};
+        std::vector<float> radiance(f.images().position.size());
+        for (auto _ : state) baseline::shadeOpenMp(input, effort, radiance);
+        f.shader(settings).execute();
+        const std::vector<float> ours = f.target().readAll<float>();
+        float worst = 0;
+        for (size_t i = 0; i < ours.size(); ++i) worst = std::max(worst, std::abs(ours[i] - radiance[i]));
+        state.counters["max_difference"] = worst;
+    };
+}
+
+void addOpenMp(const std::string& title, const std::string& name, uint32_t taps) {
+    add("openMp/" + title, openMp(name, taps, baseline::Effort::Straight));
+    add("openMp/" + title + "_skipping", openMp(name, taps, baseline::Effort::Skipping));
+}
+
+// Surface terms of a screen, by its width and its lights.
+Run pixels(uint32_t width, uint32_t lights) {
+    return [=](benchmark::State& state) {
+        const Frame f(device(), foldedSkin(width, width * 9 / 16));
+        const Shader shader = f.shader({.lights = lights});
+        time(state, [&] { shader.execute(); });
+        // Per pixel: four vectors and the result, albedo, an id, curvature, a wide shadow of each light.
+        countCopies(state, double(width) * (width * 9 / 16) * (6 * 12 + 1 + 4 + 4 * lights));
+    };
+}
+
+// Discs on a grid, so that tiles of every kind lie side by side; `share` of the area is `inside`, the rest `outside`.
+std::vector<uint8_t> discs(double share, uint8_t inside, uint8_t outside) {
+    std::vector<uint8_t> ids;
+    const double cell = 540, radius = share >= 1 ? cell : cell * std::sqrt(share / M_PI);
+    for (uint32_t y = 0; y < 1080; ++y)
+        for (uint32_t x = 0; x < 1920; ++x)
+            ids.push_back(std::hypot(std::fmod(x, cell) - cell / 2, std::fmod(y, cell) - cell / 2) < radius
+                              ? inside
+                              : outside);
+    return ids;
+}
+
+void addTiles() {
+    for (const int percent : {0, 10, 50, 90, 100}) {
+        const std::string share = "/" + std::to_string(percent) + "_percent";
+        const auto settings = [&](uint32_t taps, uint8_t outside, PelTileLists lists) {
+            return FrameSettings{.taps = taps, .ids = discs(percent / 100.0, 1, outside), .tileLists = lists};
+        };
+        add("mixed/per_variant" + share + "_skin", library("1920", settings(32, 2, PEL_TILES_PER_VARIANT)));
+        add("mixed/one_list" + share + "_skin", library("1920", settings(32, 2, PEL_TILES_ONE_LIST)));
+        add("coverage/compacted_list" + share, library("1920", settings(0, 0, PEL_TILES_ONE_LIST)));
+        add("coverage/early_out" + share, library("1920", settings(0, 0, PEL_TILES_NO_LIST)));
     }
-    std::vector<PelLight> all(lights, s.light);
-    for (uint32_t i = 1; i < lights; ++i) std::swap(all[i].toLight[i % 3], all[i].toLight[(i + 1) % 3]);
-    if (given == Given::noWideShadow) all[0].shadowFilterTexels = filterTexels;
-    p.shader.set(all).set(s.camera);
-    if (terms != Terms::plain) {
-        p.shader.set(s.ambient);
-        const Buffer wide =
-            packed ? Buffer(device(), packing::unorm8(s.frame.wide)) : Buffer(device(), s.frame.wide);
-        for (uint32_t i = 0; i < lights; ++i)
-            p.shader.set(i, PEL_LIGHT_WIDE_SHADOW,
-                         imageDesc(wide, packed ? PEL_FORMAT_R8_UNORM : PEL_FORMAT_R32F, w, h));
+}
+
+void addDemoViews() {
+    for (const std::string& view : demoViews) {
+        const std::string name = "demo_" + view;
+        add("library/" + name, library(view, {.taps = 32}));
+        add("library/" + name + "_lit", library(view, {.terms = Terms::lit}));
+        add("library/" + name + "_plain", library(view, {.terms = Terms::plain}));
+        add("library/" + name + "_blur", library(view, {.taps = 32, .blurNormals = true}));
+        for (const bool every : {true, false})
+            for (const uint32_t texels : {256, 48, 24, 16, 12, 8})
+                add("wideShadow/" + name + "/texels:" + std::to_string(texels) + (every ? "/every_pixel" : ""),
+                    wideShadow(view, {.taps = 32, .filterTexels = texels, .everyPixel = every}));
+        addOpenMp(name, view, 32);
     }
-    PelMaterial material = s.material;
-    if (terms != Terms::scattering) {
-        std::fill_n(material.deepScatterColor, 3, 0.0f);
-        p.shader.setMaterial(1, material);
-    } else {
-        setNormal(PEL_SLOT_NORMAL_GEOMETRIC, s.frame.geometric);
-        setNormal(PEL_SLOT_NORMAL_BLURRED, s.frame.blurred);
-        packed ? set(PEL_SLOT_CURVATURE, packing::halves(s.frame.curvature), PEL_FORMAT_R16F)
-               : set(PEL_SLOT_CURVATURE, s.frame.curvature, PEL_FORMAT_R32F);
-        p.shader.setMaterial(1, material, s.curvatureLut, s.shadowLut);
-        const Buffer map(device(), s.frame.map);
-        const auto size = uint32_t(s.frame.mapSize);
-        for (uint32_t i = 0; i < lights; ++i)
-            p.shader.set(i, PEL_LIGHT_SHADOW_MAP, imageDesc(map, PEL_FORMAT_R32F, size, size));
-    }
-    if (given == Given::noBlurredNormal) {
-        p.shader.clear(PEL_SLOT_NORMAL_BLURRED);
-    }
-    PelShaderOptions options = pelShaderOptionsDefaults();
-    options.blurNormals = given == Given::noBlurredNormal;
-    options.everyPixel = everyPixel;
-    p.shader.set(options);
-    if (given == Given::noWideShadow)
-        check(pelShaderSetLightImage(p.shader.get(), 0, PEL_LIGHT_WIDE_SHADOW, nullptr));
-    p.shader.commit().execute();
-    return p;
 }
-
-// As the baselines compute it: each pixel by taps of its own.
-Prepared prepareExact(const Scene& s) {
-    return prepare(s, 1, Terms::scattering, Storage::float32, Given::all, 48, 1);
-}
-
-void perPixel(benchmark::State& state, const ShadeFrame& f) {
-    const double pixels = double(std::count(f.id.begin(), f.id.end(), 1));
-    state.counters["ns_per_skin_pixel"] = benchmark::Counter(
-        pixels * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
-}
-
-// Largest difference in brightness between the library and a baseline: they must compute the same.
-void compare(benchmark::State& state, const Prepared& p, const std::vector<float>& other) {
-    const auto ours = p.target.readAll<float>();
-    float worst = 0;
-    for (size_t i = 0; i < ours.size(); ++i) worst = std::max(worst, std::fabs(ours[i] - other[i]));
-    state.counters["max_difference"] = worst;
-}
-
-void library(benchmark::State& state, View view, int taps, int coverage, uint32_t lights, Terms terms,
-             Storage storage = Storage::float32, Given given = Given::all) {
-    const Scene& s = scene(view, taps, coverage);
-    const Prepared p = prepare(s, lights, terms, storage, given);
-    for (auto _ : state) p.shader.execute();
-    perPixel(state, s.frame);
-}
-
-// The wide shadow filtered from the shadow map by at most so many texels across, and how far radiance is from that by all texels: root
-// mean square over pixels of skin.
-void wideShadow(benchmark::State& state, View view, uint32_t filterTexels, uint32_t everyPixel) {
-    const Scene& s = scene(view, 32);
-    const Prepared p =
-        prepare(s, 1, Terms::scattering, Storage::float32, Given::noWideShadow, filterTexels, everyPixel);
-    for (auto _ : state) p.shader.execute();
-    constexpr uint32_t allTexels = 256;
-    const auto exact = prepare(s, 1, Terms::scattering, Storage::float32, Given::noWideShadow, allTexels, 1)
-                           .target.readAll<float>();
-    const auto shown = p.target.readAll<float>();
-    double sum = 0, count = 0;
-    for (size_t i = 0; i < shown.size(); ++i)
-        if (s.frame.id[i / 3] == 1) sum += std::pow(double(shown[i]) - exact[i], 2), count += 1;
-    state.counters["radiance_rms"] = std::sqrt(sum / count);
-    perPixel(state, s.frame);
-    PelShaderOptions options = pelShaderOptionsDefaults();
-    options.everyPixel = everyPixel;
-    options.countPixels = 1;
-    Shader counting = p.shader;
-    counting.set(options).commit().execute();
-    const PelShaderStats stats = counting.stats();
-    state.counters["filtered"] = double(stats.pixelsWideShadow) / double(stats.pixelsShaded);
-    state.counters["read"] = double(stats.pixelsShadowTexels) / double(stats.pixelsShaded);
-}
-
-// Ambient light from a cube map of `size` texels along an edge in place of harmonics.
-void libraryCube(benchmark::State& state, View view, uint32_t size) {
-    const Scene& s = scene(view, 0);
-    Prepared p = prepare(s, 1, Terms::scattering);
-    std::vector<float> texels(size_t(18) * size * size);
-    for (size_t i = 0; i < texels.size(); ++i) texels[i] = 0.5f + 0.3f * std::sin(float(i % 1000));
-    p.shader.set(pelAmbientDefaults());
-    p.shader.setAmbientCube(imageDesc(Buffer(device(), texels), PEL_FORMAT_RGB32F, size, 6 * size)).commit();
-    for (auto _ : state) p.shader.execute();
-    perPixel(state, s.frame);
-}
-
-void openMp(benchmark::State& state, View view, int taps, Effort effort) {
-    Scene& s = scene(view, taps);
-    for (auto _ : state) baseline::shadeOpenMp(s.frame, s.settings, s.curvature, s.shadow, effort, s.out);
-    compare(state, prepareExact(s), s.out);
-    perPixel(state, s.frame);
-}
-
-void port(benchmark::State& state, View view, int taps) {
-    const Scene& s = scene(view, taps);
-    void *context, *id, *queue;
-    check(pelDeviceGetCl(device().get(), &context, &id, &queue));
-    baseline::ShadePort naive(context, id, queue, s.frame, s.settings, s.curvature, s.shadow);
-    naive.run();
-    for (auto _ : state) naive.run();
-    compare(state, prepareExact(s), naive.result());
-    perPixel(state, s.frame);
-}
-
-#define CASE(function, name, ...) \
-    BENCHMARK_CAPTURE(function, name, __VA_ARGS__)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime()
-
-#define OPEN_MP(name, ...)                             \
-    CASE(openMp, name, __VA_ARGS__, Effort::Straight); \
-    CASE(openMp, name##_skipping, __VA_ARGS__, Effort::Skipping)
-
-CASE(library, full_surface, full, 0, 100, 1u, Terms::scattering);
-CASE(libraryCube, full_surface_32, full, 32u);
-CASE(port, full_surface, full, 0);
-OPEN_MP(full_surface, full, 0);
-CASE(library, full_32taps, full, 32, 100, 1u, Terms::scattering);
-CASE(port, full_32taps, full, 32);
-OPEN_MP(full_32taps, full, 32);
-CASE(library, full_lit, full, 0, 100, 1u, Terms::lit);
-CASE(library, full_plain, full, 0, 100, 1u, Terms::plain);
-CASE(library, full_surface_packed, full, 0, 100, 1u, Terms::scattering, Storage::packed);
-CASE(library, full_32taps_packed, full, 32, 100, 1u, Terms::scattering, Storage::packed);
-CASE(library, full_lit_packed, full, 0, 100, 1u, Terms::lit, Storage::packed);
-CASE(library, full_coverage10, full, 32, 10, 1u, Terms::scattering);
-CASE(library, full_coverage0, full, 32, 0, 1u, Terms::scattering);
-CASE(library, full_32taps_4lights, full, 32, 100, 4u, Terms::scattering);
-CASE(library, full_surface_4lights, full, 0, 100, 4u, Terms::scattering);
-CASE(library, head_plain, head, 0, 100, 1u, Terms::plain);
-CASE(library, head_lit, head, 0, 100, 1u, Terms::lit);
-CASE(library, head_surface, head, 0, 100, 1u, Terms::scattering);
-CASE(library, head_8taps, head, 8, 100, 1u, Terms::scattering);
-CASE(library, head_32taps, head, 32, 100, 1u, Terms::scattering);
-OPEN_MP(head_32taps, head, 32);
-CASE(port, head_32taps, head, 32);
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    if (std::ifstream(demo::directory() + "/key.toml")) {
-        const auto add = [](const std::string& name, auto function, auto... arguments) {
-            benchmark::RegisterBenchmark(name.c_str(),
-                                         [=](benchmark::State& state) { function(state, arguments...); })
-                ->Unit(benchmark::kMillisecond)
-                ->MeasureProcessCPUTime()
-                ->UseRealTime();
-        };
-        const auto shadeLibrary = [](benchmark::State& state, auto... arguments) {
-            library(state, arguments...);
-        };
-        for (const View view : {key, backlit}) {
-            const std::string name = view == key ? "demo_key" : "demo_backlit";
-            add("library/" + name, shadeLibrary, view, 32, 100, 1u, Terms::scattering);
-            add("library/" + name + "_lit", shadeLibrary, view, 32, 100, 1u, Terms::lit);
-            add("library/" + name + "_plain", shadeLibrary, view, 32, 100, 1u, Terms::plain);
-            add("library/" + name + "_packed", shadeLibrary, view, 32, 100, 1u, Terms::scattering,
-                Storage::packed);
-            add("library/" + name + "_lit_packed", shadeLibrary, view, 32, 100, 1u, Terms::lit, Storage::packed);
-            add("library/" + name + "_blur", shadeLibrary, view, 32, 100, 1u, Terms::scattering,
-                Storage::float32, Given::noBlurredNormal);
-            for (const uint32_t every : {1, 0})
-                for (const uint32_t texels : {256, 48, 24, 16, 12, 8})
-                    add("wideShadow/" + name + "/texels:" + std::to_string(texels) + (every ? "/every_pixel" : ""),
-                        wideShadow, view, texels, every);
-            add("openMp/" + name, openMp, view, 32, Effort::Straight);
-            add("openMp/" + name + "_skipping", openMp, view, 32, Effort::Skipping);
-            add("port/" + name, port, view, 32);
-        }
-    } else {
-        std::fprintf(stderr, "no demo views in %s: run ./run demo first to have them measured\n",
-                     demo::directory().c_str());
-    }
-    benchmark::Initialize(&argc, argv);
-    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-    benchmark::RunSpecifiedBenchmarks();
-    return 0;
+void addShading() {
+    const struct {
+        const char* name;
+        FrameSettings settings;
+    } features[] = {{"full_surface", {}},
+                    {"full_32taps", {.taps = 32}},
+                    {"full_lit", {.terms = Terms::lit}},
+                    {"full_plain", {.terms = Terms::plain}},
+                    {"full_coverage10", {.taps = 32, .ids = discs(0.1, 1, 0)}},
+                    {"full_coverage0", {.taps = 32, .ids = discs(0, 1, 0)}},
+                    {"full_32taps_4lights", {.taps = 32, .lights = 4}},
+                    {"full_surface_4lights", {.lights = 4}}};
+    for (const auto& [name, settings] : features)
+        add(std::string("library/") + name, library("1920", settings));
+    addOpenMp("full_surface", "1920", 0);
+    addOpenMp("full_32taps", "1920", 32);
+    addTiles();
+    for (const uint32_t width : {1280, 1920, 3840, 7680})
+        add("pixels/width:" + std::to_string(width) + "/lights:1", pixels(width, 1));
+    for (const uint32_t lights : {2, 4, 16, 64})
+        add("pixels/width:1280/lights:" + std::to_string(lights), pixels(1280, lights));
+    if (std::ifstream(demo::directory() + "/key.toml"))
+        addDemoViews();
+    else
+        std::fprintf(stderr, "no demo views in %s: ./run demo makes them\n", demo::directory().c_str());
 }
+
+}  // namespace benchmarks

@@ -74,7 +74,7 @@ int main(int argc, char** argv) try {
     Json records = Json::array();
     bool within = true;
     for (const auto& some : {tableOperations(), profileOperations(), meshOperations(), smoothingOperations(),
-                             screenOperations(), normalOperations(), shadingOperations(), formOperations()})
+                             screenOperations(), shadingOperations()})
         for (const Operation& o : some) {
             if (o.header.name.find(only) == std::string::npos) continue;
             if (list) {

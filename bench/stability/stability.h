@@ -143,7 +143,5 @@ std::vector<Operation> meshOperations();
 std::vector<Operation> smoothingOperations();
 std::vector<Operation> screenOperations();
 std::vector<Operation> shadingOperations();
-std::vector<Operation> formOperations();
-std::vector<Operation> normalOperations();
 
 }  // namespace stability

@@ -177,16 +177,15 @@ void runBatch(const Arguments& arguments) {
 
 }  // namespace
 
-void addBatch(CLI::App& app) {
-    CLI::App* batch =
-        app.add_subcommand("batch", "Make the look-up tables of a manifest that are not there yet");
+void addBatch(Command& app) {
+    Command* batch = app.addCommand("batch", "Make the look-up tables of a manifest that are not there yet");
     auto a = std::make_shared<Arguments>();
-    batch->add_option("manifest", a->manifest, "TOML: [[lut]] and [[grid]] (docs/guide/batch.md)")->required();
-    batch->add_option("-o,--output", a->folder, "folder for the files; made if need be")->required();
-    batch->add_option("--device", a->devices, "device; several share the work")->allow_extra_args(false);
-    batch->add_option("-j,--jobs", a->jobs, "tables in flight (default: four per core and device)")
+    batch->addOption("manifest", a->manifest, "TOML: [[lut]] and [[grid]] (docs/guide/batch.md)")->required();
+    batch->addOption("-o,--output", a->folder, "folder for the files; made if need be")->required();
+    batch->addOption("--device", a->devices, "device; several share the work")->typeName(deviceWord)->oneEach();
+    batch->addOption("-j,--jobs", a->jobs, "tables in flight (default: four per core and device)")
         ->check(inRange(1, 256));
-    batch->add_flag("--json", a->json, "one JSON object on stdout");
+    batch->addFlag("--json", a->json, "one JSON object on stdout");
     batch->callback([a] { runBatch(*a); });
 }
 

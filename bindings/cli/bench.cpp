@@ -6,13 +6,13 @@
 #include <filesystem>
 #include <iostream>
 
-#include "bench/compare.h"
-#include "bench/measure.h"
-#include "bench/page.h"
 #include "command.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/input_file.h"
+#include "measure/compare.h"
+#include "measure/measure.h"
+#include "measure/page.h"
 #include "system/process.h"
 
 namespace pellucid::cli {
@@ -145,7 +145,9 @@ void measure(const Arguments& a) {
     std::printf("%s\n%s\n", jsonPath.c_str(), htmlPath.c_str());
 }
 
-Json readReport(const std::string& path) {
+// A report, or the folder that `pellucid bench -o` wrote it into.
+Json readReport(std::string path) {
+    if (std::filesystem::is_directory(path)) path += "/bench.json";
     Json report = bench::parseReport(io::readWholeFile(path, io::textLimit));
     if (report.is_discarded()) throw InputError(path + ": not a report of `pellucid bench` (its bench.json)");
     return report;
@@ -161,50 +163,54 @@ void compare(const Arguments& a) {
     }
     const auto number = [&](const char* key) { return result.at(key).get<int>(); };
     if (number("same") + number("faster") + number("slower") + number("less_accurate") + number("fails") == 0)
-        throw InputError("nothing to compare: no operation of one size on one device is in both " + a.before +
-                         " and " + a.after);
+        throw InputError("nothing to compare in " + a.before + " and " + a.after + ": " +
+                         (number("other_size") > 0
+                              ? "all operations have other sizes; was one of the reports made with --quick?"
+                              : "no operation was measured on one device in both"));
     if (a.json)
         printJson(result);
     else
         std::cout << bench::describeComparison(result) << std::flush;
-    if (number("slower") + number("less_accurate") + number("fails") > 0) throw CLI::RuntimeError(exitWorse);
+    if (number("slower") + number("less_accurate") + number("fails") > 0) throw ExitWith(exitWorse);
 }
 
 }  // namespace
 
-void addBench(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("bench", "Measure every operation: time, share of the device's limits, error");
+void addBench(Command& app) {
+    Command* command =
+        app.addCommand("bench", "Measure every operation: time, share of the device's limits, error");
     auto a = std::make_shared<Arguments>();
-    command->add_option("-o,--output", a->output, "folder for bench.json and bench.html");
+    command->addOption("-o,--output", a->output, "folder for bench.json and bench.html");
     command
-        ->add_option("--device", a->devices,
-                     "number, name or type; may be given several times (default: all but simulators)")
-        ->allow_extra_args(false);
+        ->addOption("--device", a->devices,
+                    "number, name or type; may be given several times (default: all but simulators)")
+        ->typeName(deviceWord)
+        ->oneEach();
     command
-        ->add_option("--only", a->only,
-                     "part of an operation's name; may be given several times (default: all)")
-        ->allow_extra_args(false);
-    command->add_flag("--quick", a->quick, "small sizes and few repetitions: some seconds");
+        ->addOption("--only", a->only,
+                    "part of an operation's name; may be given several times (default: all)")
+        ->typeName("NAME")
+        ->oneEach();
+    command->addFlag("--quick", a->quick, "small sizes and few repetitions: some seconds");
     command
-        ->add_option("--limit", a->limitSeconds,
-                     "seconds that an operation may take to be prepared, and again to be measured, before it "
-                     "is given up (120; "
-                     "with --quick 60)")
+        ->addOption("--limit", a->limitSeconds,
+                    "seconds that an operation may take to be prepared, and again to be measured, before it "
+                    "is given up (120; "
+                    "with --quick 60)")
         ->check(isPositive());
-    command->add_flag("--events", a->events)->group("");
-    command->add_option("--without", a->without)->allow_extra_args(false)->group("");
-    command->add_flag("--json", a->json, "print one JSON object on standard output");
-    command->add_flag("--first-use", a->firstUse,
-                      "time from nothing to the first table and frame, in this process alone");
-    CLI::App* two = command->add_subcommand(
+    command->addFlag("--events", a->events, "")->hidden();
+    command->addOption("--without", a->without, "")->oneEach()->hidden();
+    command->addFlag("--json", a->json, "print one JSON object on standard output");
+    command->addFlag("--first-use", a->firstUse,
+                     "time from nothing to the first table and frame, in this process alone");
+    Command* two = command->addCommand(
         "compare", "Two reports: what became slower, less accurate or fails (exit code 1), what faster");
-    two->add_option("old", a->before, "bench.json")->required();
-    two->add_option("new", a->after, "bench.json")->required();
-    two->add_flag("--json", a->json, "print one JSON object on standard output");
+    two->addOption("old", a->before, "bench.json, or the folder that -o wrote it into")->required();
+    two->addOption("new", a->after, "the same of the other run, or of another device")->required();
+    two->addFlag("--json", a->json, "print one JSON object on standard output");
     two->callback([a] { compare(*a); });
     command->callback([a, two] {
-        if (!two->parsed()) measure(*a);
+        if (!two->isUsed()) measure(*a);
     });
 }
 

@@ -90,12 +90,14 @@ std::string jsonText(const nlohmann::ordered_json& value, int indent) {
     return value.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-void addRunOptions(CLI::App& command, Run::Options& options) {
-    command.add_option("--device", options.device,
-                       "OpenCL device: number, name or type (default: PELLUCID_DEVICE, best GPU, CPU)");
-    command.add_flag("--json", options.json, "print one JSON object on standard output");
-    command.add_flag("--strict", options.strict,
-                     "what would be a warning is an error: exit code 3, and nothing is written");
+void addRunOptions(Command& command, Run::Options& options) {
+    command
+        .addOption("--device", options.device,
+                   "OpenCL device: number, name or type (default: PELLUCID_DEVICE, best GPU, CPU)")
+        ->typeName(deviceWord);
+    command.addFlag("--json", options.json, "print one JSON object on standard output");
+    command.addFlag("--strict", options.strict,
+                    "what would be a warning is an error: exit code 3, and nothing is written");
 }
 
 void parseSize(const std::string& text, uint32_t& width, uint32_t& height) {

@@ -1,12 +1,12 @@
 // What every subcommand of `pellucid` shares: the device, the report, progress, exit codes.
 #pragma once
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <pellucid/pellucid.hpp>
 #include <stdexcept>
 #include <string>
 
+#include "options.h"
 #include "values.h"
 
 namespace pellucid::cli {
@@ -22,6 +22,12 @@ class UsageError : public std::runtime_error {
 // A bad input file found by the library: the message names the file.
 class InputError : public std::runtime_error {
     using runtime_error::runtime_error;
+};
+
+// Ends the command with this code and without a message.
+struct ExitWith : std::runtime_error {
+    explicit ExitWith(ExitCode c) : std::runtime_error(""), code(c) {}
+    ExitCode code;
 };
 
 // One run of a subcommand: opens the device, shows progress on stderr, prints the report on stdout at the
@@ -67,28 +73,28 @@ void printJson(const nlohmann::ordered_json& report);
 std::string jsonText(const nlohmann::ordered_json& value, int indent = 2);
 
 // Adds --device, --json and --strict.
-void addRunOptions(CLI::App& command, Run::Options& options);
+void addRunOptions(Command& command, Run::Options& options);
 
 // "WxH" to two numbers; throws UsageError.
 void parseSize(const std::string& text, uint32_t& width, uint32_t& height);
 
 // Each file of this folder adds one subcommand.
-void addDevices(CLI::App& app);
-void addCurvature(CLI::App& app);
-void addLut(CLI::App& app);
-void addProfile(CLI::App& app);
-void addBatch(CLI::App& app);
-void addShade(CLI::App& app);
-void addReference(CLI::App& app);
-void addImport(CLI::App& app);
-void addCompare(CLI::App& app);
-void addWarmUp(CLI::App& app);
-void addDemo(CLI::App& app);
-void addBench(CLI::App& app);
-void addView(CLI::App& app);  // and gallery
-void addDescribe(CLI::App& app);
+void addDevices(Command& app);
+void addCurvature(Command& app);
+void addLut(Command& app);
+void addProfile(Command& app);
+void addBatch(Command& app);
+void addShade(Command& app);
+void addReference(Command& app);
+void addImport(Command& app);
+void addCompare(Command& app);
+void addWarmUp(Command& app);
+void addDemo(Command& app);
+void addBench(Command& app);
+void addView(Command& app);  // and gallery
+void addDescribe(Command& app, const CLI::App& parser);
 
-// After CLI::ExtrasError: which words are not expected, and what may have been meant.
-std::string unknownOptions(const CLI::App& app);
+// Names of types (Option::typeName) for which shells complete values. A text without a name of its own is a path.
+constexpr const char *deviceWord = "DEVICE", *profileWord = "PROFILE";
 
 }  // namespace pellucid::cli

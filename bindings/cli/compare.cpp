@@ -79,10 +79,14 @@ Rgb readRgb(const std::string& path, const std::string& layer, float scale) {
     return out;
 }
 
+// The shape of an NPY array has the height first, so "8 x 9" would be ambiguous.
+std::string sizeText(const auto& picture) {
+    return std::to_string(picture.width) + " wide and " + std::to_string(picture.height) + " high";
+}
+
 void requireSameSize(const std::string& pathA, const Rgb& a, const std::string& pathB, const Rgb& b) {
     if (a.width == b.width && a.height == b.height) return;
-    throw InputError(pathA + " is " + std::to_string(a.width) + " x " + std::to_string(a.height) + ", " +
-                     pathB + " is " + std::to_string(b.width) + " x " + std::to_string(b.height) +
+    throw InputError(pathA + " is " + sizeText(a) + ", " + pathB + " is " + sizeText(b) +
                      "; only pictures of the same size can be compared");
 }
 
@@ -91,9 +95,7 @@ std::vector<uint8_t> subsets(const Arguments& a, const Rgb& one, const Rgb& two,
     const io::SceneFile scene = io::readScene(a.scene);
     const io::Image gbuffer = io::readImage(a.gbuffer);
     if (gbuffer.width != one.width || gbuffer.height != one.height)
-        throw io::FileError(a.gbuffer, "is " + std::to_string(gbuffer.width) + " x " +
-                                           std::to_string(gbuffer.height) + ", the pictures are " +
-                                           std::to_string(one.width) + " x " + std::to_string(one.height));
+        throw io::FileError(a.gbuffer, "is " + sizeText(gbuffer) + ", the pictures are " + sizeText(one));
     if (scene.channels[PEL_SLOT_POSITION].empty())
         throw io::FileError(a.scene, "[channels] position is missing; sub-sets need it");
     if (a.light >= scene.lights.size())
@@ -243,41 +245,42 @@ void run(const Arguments& a) {
     else
         std::fprintf(stderr, "pellucid: the RMSE is %.6g over %zu pixels, more than --max-rmse %.6g allows\n",
                      all.rmseAll, all.pixels, double(a.maxRmse));
-    throw CLI::RuntimeError(exitWorse);
+    throw ExitWith(exitWorse);
 }
 
 }  // namespace
 
-void addCompare(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("compare", "How far two pictures are apart: RMSE, PSNR, P99, CIEDE2000");
+void addCompare(Command& app) {
+    Command* command =
+        app.addCommand("compare", "How far two pictures are apart: RMSE, PSNR, P99, CIEDE2000");
     auto a = std::make_shared<Arguments>();
-    command->add_option("a", a->a, "EXR, NPY, or an 8-bit picture, which is decoded from sRGB")->required();
-    command->add_option("b", a->b, "reference to compare A with")->required();
-    command->add_option(
+    command->addOption("a", a->a, "EXR, NPY, or an 8-bit picture, which is decoded from sRGB")->required();
+    command->addOption("b", a->b, "reference to compare A with")->required();
+    command->addOption(
         "--second-half", a->secondHalf,
         "if B is noisy: an independent estimate with the same noise, which is then left out of "
         "the RMSE (default: the layer Second of B, beside First)");
-    command->add_option("--layer-a", a->channelsA, "layer of A: its .R, .G and .B instead of R, G, B");
-    command->add_option("--layer-b", a->channelsB, "layer of B, such as Surface");
-    command->add_option("--scale-a", a->scaleA, "multiplies A")->capture_default_str();
-    command->add_option("--scale-b", a->scaleB, "multiplies B, such as by an albedo")->capture_default_str();
-    command->add_option(
+    command->addOption("--layer-a", a->channelsA, "layer of A: its .R, .G and .B instead of R, G, B")
+        ->typeName("NAME");
+    command->addOption("--layer-b", a->channelsB, "layer of B, such as Surface")->typeName("NAME");
+    command->addOption("--scale-a", a->scaleA, "multiplies A")->showDefault();
+    command->addOption("--scale-b", a->scaleB, "multiplies B, such as by an albedo")->showDefault();
+    command->addOption(
         "--gbuffer", a->gbuffer,
         "multi-layer EXR: only pixels of a material count; errors are given for each sub-set of them");
-    command->add_option("--scene", a->scene, "its scene file (TOML)");
-    command->add_option("--light", a->light, "number of the light that sub-sets go by")->capture_default_str();
+    command->addOption("--scene", a->scene, "its scene file (TOML)");
+    command->addOption("--light", a->light, "number of the light that sub-sets go by")->showDefault();
     command
-        ->add_option("--unit-mm", a->unit, "millimetres per unit of positions (default: the scene's unit_mm)")
+        ->addOption("--unit-mm", a->unit, "millimetres per unit of positions (default: the scene's unit_mm)")
         ->check(isPositive());
-    command->add_option("--picture", a->picture,
-                        "PNG to write: both pictures, and their difference in colours");
-    command->add_option("--exposure", a->exposure, "multiplies both pictures in it")->capture_default_str();
+    command->addOption("--picture", a->picture,
+                       "PNG to write: both pictures, and their difference in colours");
+    command->addOption("--exposure", a->exposure, "multiplies both pictures in it")->showDefault();
     command
-        ->add_option("--max-rmse", a->maxRmse,
-                     "exit with 1 if the RMSE over all channels is larger, or a value is NaN or Inf")
+        ->addOption("--max-rmse", a->maxRmse,
+                    "exit with 1 if the RMSE over all channels is larger, or a value is NaN or Inf")
         ->check(isNotNegative());
-    command->add_flag("--json", a->json, "print one JSON object on standard output");
+    command->addFlag("--json", a->json, "print one JSON object on standard output");
     command->callback([a] { run(*a); });
 }
 

@@ -34,7 +34,7 @@ MeshWeldChoice weldChoice(const std::string& text) {
     if (text == "none") return {PEL_WELD_NONE, 0};
     if (text == "exact") return {PEL_WELD_EXACT, 0};
     float tolerance = 0;
-    if (!CLI::detail::lexical_cast(text, tolerance) || !(tolerance > 0))
+    if (!readNumber(text, tolerance) || !(tolerance > 0))
         throw UsageError("--weld " + text + ": none, exact, or a tolerance above 0 (a length) is needed");
     return {PEL_WELD_TOLERANCE, tolerance};
 }
@@ -108,53 +108,54 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void addCurvature(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("curvature", "Curvature at each vertex of a mesh");
+void addCurvature(Command& app) {
+    Command* command = app.addCommand("curvature", "Curvature at each vertex of a mesh");
     auto a = std::make_shared<Arguments>();
-    command->add_option("mesh", a->mesh, "OFF, OBJ, PLY or STL file")->required();
+    command->addOption("mesh", a->mesh, "OFF, OBJ, PLY or STL file")->required();
     command
-        ->add_option("-o,--output", a->output,
-                     "file to write: .npy (one float32 per vertex) or .ply (with colours)")
+        ->addOption("-o,--output", a->output,
+                    "file to write: .npy (one float32 per vertex) or .ply (with colours)")
         ->required();
-    command->add_option("--estimator", a->estimator, "how curvature is estimated")
+    command->addOption("--estimator", a->estimator, "how curvature is estimated")
         ->check(isOneOf(io::estimators))
-        ->capture_default_str();
-    command->add_option("--quantity", a->quantity, "what is made of the principal curvatures")
+        ->showDefault();
+    command->addOption("--quantity", a->quantity, "what is made of the principal curvatures")
         ->check(isOneOf(io::quantities))
-        ->capture_default_str();
-    command->add_option("--weld", a->weld, "vertices at one place are one: none, exact, or within a length")
-        ->capture_default_str();
-    command->add_flag("--orient", a->orient, "turns triangles that face another way than their neighbours");
+        ->showDefault();
+    command->addOption("--weld", a->weld, "vertices at one place are one: none, exact, or within a length")
+        ->typeName("none|exact|LENGTH")
+        ->showDefault();
+    command->addFlag("--orient", a->orient, "turns triangles that face another way than their neighbours");
     command
-        ->add_option("--smooth-radius", a->params.smoothingRadius,
-                     "smooths to a radius in the mesh's unit of length, whatever its density")
+        ->addOption("--smooth-radius", a->params.smoothingRadius,
+                    "smooths to a radius in the mesh's unit of length, whatever its density")
         ->check(isNotNegative());
     command
-        ->add_option("--smooth-crease", a->creaseDegrees,
-                     "with --smooth-radius: degrees between normals that stop it")
+        ->addOption("--smooth-crease", a->creaseDegrees,
+                    "with --smooth-radius: degrees between normals that stop it")
         ->check(inRange(0.0, 180.0));
     command
-        ->add_option("--smooth-weights", a->smoothingWeights,
-                     "with --smooth-radius: how neighbours are weighed")
+        ->addOption("--smooth-weights", a->smoothingWeights,
+                    "with --smooth-radius: how neighbours are weighed")
         ->check(isOneOf(io::smoothingWeights))
-        ->capture_default_str();
-    command->add_option("--picture", a->picture,
-                        "PNG to write as well: the mesh coloured by the values, with a colour bar");
+        ->showDefault();
+    command->addOption("--picture", a->picture,
+                       "PNG to write as well: the mesh coloured by the values, with a colour bar");
     command
-        ->add_option("--range", a->range,
-                     "LOW HIGH: what the colours of --picture and of a .ply stand for, so that several "
-                     "compare; default: "
-                     "from the values, the sharpest places left out")
+        ->addOption("--range", a->range,
+                    "LOW HIGH: what the colours of --picture and of a .ply stand for, so that several "
+                    "compare; default: "
+                    "from the values, the sharpest places left out")
         ->expected(2);
     command
-        ->add_option("--up", a->up,
-                     "of the picture: the mesh's up axis, z (it looks to -y) or y (it looks to +z)")
+        ->addOption("--up", a->up,
+                    "of the picture: the mesh's up axis, z (it looks to -y) or y (it looks to +z)")
         ->check(isOneOf({"y", "z"}))
-        ->capture_default_str();
-    command->add_option("--smooth", a->params.smoothingPasses, "smoothing passes")
-        ->capture_default_str()
+        ->showDefault();
+    command->addOption("--smooth", a->params.smoothingPasses, "smoothing passes")
+        ->showDefault()
         ->check(inRange(0, 1000));
-    command->add_option("--scale", a->params.scale, "multiplies the result")->capture_default_str();
+    command->addOption("--scale", a->params.scale, "multiplies the result")->showDefault();
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });
 }

@@ -48,7 +48,7 @@ struct Arguments {
     uint32_t smoothing = 2;
     std::optional<int> subdivide;
     float height = headHeight;
-    bool orient = false, reference = true;
+    bool orient = false, noReference = false;
 };
 
 // Most OBJ files have y up, most scans in the other formats z.
@@ -160,7 +160,7 @@ ShadedView shadeView(Run& run, Stages& stages, io::LutStore& luts, const sample:
     shaded.complete = shadeAs(run, stages, luts, view, "auto", scenes[2]);
     stages.measure(view.name + ": pictures at twice the size", 4 * pixels, "pixels", 0,
                    [&] { shaded.fine = finePictures(run, luts, scene, head, request); });
-    if (a.reference) {
+    if (!a.noReference) {
         io::SceneFrame smooth(run.device(), view.gbuffer, smoothAndDull(view.scene), luts, view.shadowMaps);
         smooth.shade();
         stages.measure(view.name + ": reference", pixels / (referenceStride * referenceStride), "pixels", 0, [&] {
@@ -244,35 +244,35 @@ void run(Arguments a) {
 
 }  // namespace
 
-void addDemo(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "demo", "The whole chain on a mesh: curvature, tables, G-buffer, shading, pictures");
+void addDemo(Command& app) {
+    Command* command =
+        app.addCommand("demo", "The whole chain on a mesh: curvature, tables, G-buffer, shading, pictures");
     auto a = std::make_shared<Arguments>();
-    command->add_option(
+    command->addOption(
         "mesh", a->mesh,
         "OFF, OBJ, PLY or STL file (default: a head that comes with pellucid, or $PELLUCID_DEMO_MESH)");
-    command->add_option("-o,--output", a->output, "folder for the pictures")->capture_default_str();
-    command->add_flag("--orient", a->orient,
-                      "of a mesh: turns triangles that face another way than their neighbours");
-    command->add_option("--size", a->size, "pixels, WxH")->capture_default_str();
-    command->add_option("--height", a->height, "mm that the mesh is scaled to, along its up axis")
+    command->addOption("-o,--output", a->output, "folder for the pictures")->showDefault();
+    command->addFlag("--orient", a->orient,
+                     "of a mesh: turns triangles that face another way than their neighbours");
+    command->addOption("--size", a->size, "pixels, WxH")->typeName("SIZE")->showDefault();
+    command->addOption("--height", a->height, "mm that the mesh is scaled to, along its up axis")
         ->check(isPositive())
-        ->capture_default_str();
+        ->showDefault();
     command
-        ->add_option("--up", a->up,
-                     "the mesh's up axis: z (it looks to -y), y (it looks to +z), or auto: y for OBJ files")
+        ->addOption("--up", a->up,
+                    "the mesh's up axis: z (it looks to -y), y (it looks to +z), or auto: y for OBJ files")
         ->check(isOneOf({"auto", "y", "z"}))
-        ->capture_default_str();
+        ->showDefault();
     command
-        ->add_option("--subdivide", a->subdivide,
-                     "levels of subdivision (default: 2 for the heads that come with pellucid, 1 for other "
-                     "meshes that allow it)")
+        ->addOption("--subdivide", a->subdivide,
+                    "levels of subdivision (default: 2 for the heads that come with pellucid, 1 for other "
+                    "meshes that allow it)")
         ->check(inRange(0, 4));
-    command->add_option("--smooth", a->smoothing, "smoothing passes of the curvature")
+    command->addOption("--smooth", a->smoothing, "smoothing passes of the curvature")
         ->check(inRange(0, 1000))
-        ->capture_default_str();
-    command->add_flag("!--no-reference", a->reference,
-                      "leave the surface integral out, which takes longer than all the rest");
+        ->showDefault();
+    command->addFlag("--no-reference", a->noReference,
+                     "leave the surface integral out, which takes longer than all the rest");
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });
 }

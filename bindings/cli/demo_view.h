@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "head/demo_head.h"
+#include "demo/demo_head.h"
 #include "io/scene/scene_frame.h"
 #include "sample/camera.h"
 #include "sample/scene.h"

@@ -1,10 +1,54 @@
-// pellucid describe: every subcommand and option as one JSON object, from the parsers themselves. Manual pages, completions for shells and
-// the tables of docs/guide/command-line.md are made from it (packaging/command_pages).
-#include "command.h"
+// pellucid describe: every subcommand and option as one JSON object, from the parsers themselves. Manual pages,
+// completions for shells and the tables of docs/guide/command-line.md are made from it (packaging/command_pages).
+// --help shows options in the same words.
+#include "command_help.h"
 #include "io/spelling.h"
 
 namespace pellucid::cli {
 namespace {
+
+// The value of an option as the help shows it.
+struct OptionValue {
+    std::string word;                      // "N", "PATH", "y|z"; "" for a flag
+    std::string range;                     // "0 to 1000", or ""
+    std::vector<std::string> completions;  // that a shell offers
+    bool path = false;                     // a shell offers files as well
+};
+
+OptionValue valueOf(const CLI::Option& option) {
+    OptionValue value;
+    if (option.get_type_size_max() == 0) return value;
+    // CLI11 puts the description of the check behind the name of the type: "INT:0 to 1000", "TEXT:{y,z}".
+    const std::string type = option.get_type_name(),
+                      check = type.substr(std::min(type.find(':') + 1, type.size()));
+    value.word = type.substr(0, type.find(':'));
+    if (check.starts_with("{")) {
+        value.completions = CLI::detail::split(check.substr(1, check.size() - 2), ',');
+        value.word = CLI::detail::join(value.completions, "|");
+        return value;
+    }
+    if (value.word != type) value.range = check;
+    if (value.word == "INT" || value.word == "UINT") value.word = "N";
+    if (value.word == "FLOAT") value.word = "NUMBER";
+    if (value.word == "TEXT") value.word = "PATH", value.path = true;
+    if (value.word == deviceWord) value.completions = {"cpu", "gpu", "accelerator"};
+    if (value.word == profileWord) value.completions = Profile::libraryNames(), value.path = true;
+    if (option.get_expected_max() > 1 || option.get_type_size_max() > 1) value.word += "...";
+    return value;
+}
+
+class HelpFormatter : public CLI::Formatter {
+    std::string make_option_opts(const CLI::Option* option) const override {
+        const OptionValue value = valueOf(*option);
+        const std::string standard = option->get_default_str();
+        std::string notes = value.range;
+        const auto add = [&notes](const std::string& note) { notes += (notes.empty() ? "" : "; ") + note; };
+        if (option->get_required()) add("required");
+        if (!standard.empty() && !option->get_required()) add("default: " + standard);
+        const std::string word = value.word.empty() || option->get_positional() ? "" : " " + value.word;
+        return notes.empty() ? word : word + " (" + notes + ")";
+    }
+};
 
 nlohmann::ordered_json described(const CLI::Option& option) {
     nlohmann::ordered_json json;
@@ -13,17 +57,11 @@ nlohmann::ordered_json described(const CLI::Option& option) {
     for (const std::string& name : option.get_lnames()) json["names"].push_back("--" + name);
     if (option.get_positional()) json["positional"] = option.get_name(true, false);
     json["help"] = option.get_description();
-    // What a value is, and the values that there are: "TEXT:{edge,tensor}", or "ENUM:value in {soft->0,none->1} OR {0,1}".
-    std::string type = option.get_type_name();
-    if (const size_t open = type.find('{'), close = type.find('}'); open < close && close != std::string::npos) {
-        std::istringstream choices(type.substr(open + 1, close - open - 1));
-        for (std::string choice; std::getline(choices, choice, ',');)
-            json["choices"].push_back(choice.substr(0, choice.find("->")));
-        type.resize(std::min(type.find(':'), open));
-    }
-    json["value"] = option.get_expected_max() > 0 && option.get_type_size_max() > 0;
-    json["type"] = type;
-    json["several"] = option.get_expected_max() > 1 || option.get_type_size_max() > 1;
+    const OptionValue value = valueOf(option);
+    json["value"] = value.word;
+    json["range"] = value.range;
+    json["completions"] = value.completions;
+    json["path"] = value.path;
     json["required"] = option.get_required();
     json["default"] = option.get_default_str();
     return json;
@@ -45,10 +83,14 @@ nlohmann::ordered_json described(const CLI::App& app) {
 
 }  // namespace
 
-void addDescribe(CLI::App& app) {
-    app.add_subcommand("describe", "every subcommand and option, as JSON")->callback([&app] {
-        printJson(described(app));
+void addDescribe(Command& app, const CLI::App& parser) {
+    app.addCommand("describe", "every subcommand and option, as JSON")->callback([&parser] {
+        printJson(described(parser));
     });
+}
+
+std::shared_ptr<CLI::FormatterBase> helpFormatter() {
+    return std::make_shared<HelpFormatter>();
 }
 
 std::string unknownOptions(const CLI::App& app) {

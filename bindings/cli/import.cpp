@@ -103,35 +103,37 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void addImport(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("import", "Take over a glTF scene: mesh, materials, lights, G-buffer");
+void addImport(Command& app) {
+    Command* command = app.addCommand("import", "Take over a glTF scene: mesh, materials, lights, G-buffer");
     auto a = std::make_shared<Arguments>();
-    command->add_option("scene", a->file, "glTF 2.0: .glb or .gltf")->required();
+    command->addOption("scene", a->file, "glTF 2.0: .glb or .gltf")->required();
     command
-        ->add_option("-o,--output", a->output, "folder for scene.toml, mesh.obj, gbuffer.exr; made if need be")
+        ->addOption("-o,--output", a->output, "folder for scene.toml, mesh.obj, gbuffer.exr; made if need be")
         ->required();
     command
-        ->add_option("--profile", a->profiles,
-                     "PROFILE of all materials, or MATERIAL=PROFILE of one, in place of what the file says")
-        ->allow_extra_args(false);
-    command->add_option("--unit-mm", a->unitMm, "millimetres per unit; glTF's unit is the metre")
+        ->addOption("--profile", a->profiles,
+                    "PROFILE of all materials, or MATERIAL=PROFILE of one, in place of what the file says")
+        ->typeName(profileWord)
+        ->oneEach();
+    command->addOption("--unit-mm", a->unitMm, "millimetres per unit; glTF's unit is the metre")
         ->check(inRange(1e-6, 1e9))
-        ->capture_default_str();
-    command->add_option("--size", a->size,
-                        "pixels of the G-buffer, WxH (default: 1024 wide, the camera's shape)");
+        ->showDefault();
     command
-        ->add_option("--camera", a->camera,
-                     "number of the camera, from 0 on; first, or none to frame everything")
-        ->capture_default_str();
+        ->addOption("--size", a->size, "pixels of the G-buffer, WxH (default: 1024 wide, the camera's shape)")
+        ->typeName("SIZE");
     command
-        ->add_option("--lights", a->lights,
-                     "factor of the lights' brightness in lux and candela (default: chosen by how bright the "
-                     "scene becomes)")
+        ->addOption("--camera", a->camera,
+                    "number of the camera, from 0 on; first, or none to frame everything")
+        ->typeName("CAMERA")
+        ->showDefault();
+    command
+        ->addOption("--lights", a->lights,
+                    "factor of the lights' brightness in lux and candela (default: chosen by how bright the "
+                    "scene becomes)")
         ->check(inRange(1e-9, 1e9));
-    command->add_option("--smooth", a->smoothing, "smoothing passes of the curvature")
+    command->addOption("--smooth", a->smoothing, "smoothing passes of the curvature")
         ->check(inRange(0, 1000))
-        ->capture_default_str();
+        ->showDefault();
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });
 }

@@ -1,10 +1,12 @@
 // The `pellucid` command. Exit codes: 0 done, 2 wrong use, 3 bad input file, 4 no device or device failure.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
 
-#include "command.h"
+#include "command_help.h"
 #include "io/file_error.h"
+#include "io/input_file.h"
 #include "io/spelling.h"
 #include "system/process.h"
 
@@ -47,31 +49,23 @@ int finish(int code) {
 int main(int argc, char** argv) {
     if (!pel::system::prepareStreams()) return exitWrongUse;
     CLI::App app("Subsurface scattering for deferred renderers on OpenCL", "pellucid");
+    app.formatter(helpFormatter());  // before the subcommands, which inherit it
     app.require_subcommand(1);
     app.set_version_flag("--version", std::to_string(PEL_VERSION_MAJOR) + "." + std::to_string(PEL_VERSION_MINOR) +
                                           "." + std::to_string(PEL_VERSION_PATCH));
-    addDevices(app);
-    addCurvature(app);
-    addLut(app);
-    addProfile(app);
-    addBatch(app);
-    addShade(app);
-    addReference(app);
-    addImport(app);
-    addCompare(app);
-    addWarmUp(app);
-    addDemo(app);
-    addBench(app);
-    addView(app);
-    addDescribe(app);
+    Command root(app);
+    for (const auto add : {addDevices, addCurvature, addLut, addProfile, addBatch, addShade, addReference,
+                           addImport, addCompare, addWarmUp, addDemo, addBench, addView})
+        add(root);
+    addDescribe(root, app);
     try {
         checkSubcommand(app, argc, argv);
         app.parse(argc, argv);
         return finish(exitDone);
     } catch (const CLI::Success& e) {
         return finish(app.exit(e));  // --help and --version
-    } catch (const CLI::RuntimeError& e) {
-        return finish(e.get_exit_code());  // a subcommand's own
+    } catch (const ExitWith& e) {
+        return finish(e.code);
     } catch (const CLI::ExtrasError&) {
         return fail(exitWrongUse, unknownOptions(app).c_str());
     } catch (const CLI::ParseError& e) {
@@ -83,6 +77,12 @@ int main(int argc, char** argv) {
         return fail(exitWrongUse, e.what());
     } catch (const InputError& e) {
         return fail(exitBadInput, e.what());
+    } catch (const io::ExtensionError& e) {
+        // A name in a scene file or manifest is bad input.
+        const bool isArgument = std::any_of(argv + 1, argv + argc, [&](const std::string& argument) {
+            return argument == e.file() || argument.ends_with("=" + e.file());
+        });
+        return fail(isArgument ? exitWrongUse : exitBadInput, e.what());
     } catch (const io::FileError& e) {
         return fail(exitBadInput, e.what());
     } catch (const Error& e) {

@@ -5,9 +5,9 @@
 
 namespace pellucid::cli {
 
-void addReference(CLI::App&) {}
-void addDemo(CLI::App&) {}
-void addBench(CLI::App&) {}
+void addReference(Command&) {}
+void addDemo(Command&) {}
+void addBench(Command&) {}
 
 bool canDraw() {
     return false;

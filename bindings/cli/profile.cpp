@@ -156,25 +156,27 @@ void fit(const Arguments& a) {
 
 }  // namespace
 
-void addProfile(CLI::App& app) {
-    CLI::App* profile =
-        app.add_subcommand("profile", "Diffusion profiles: what materials there are and how they scatter");
-    profile->require_subcommand(1);
+void addProfile(Command& app) {
+    Command* profile =
+        app.addCommand("profile", "Diffusion profiles: what materials there are and how they scatter");
+    profile->requireCommand();
     auto a = std::make_shared<Arguments>();
     auto add = [&](const char* name, const char* what, void (*run)(const Arguments&), bool named) {
-        CLI::App* command = profile->add_subcommand(name, what);
+        Command* command = profile->addCommand(name, what);
         if (named)
-            command->add_option("name", a->name, "a material of the library or a .toml file")->required();
-        command->add_flag("--json", a->json, "one JSON object on stdout");
+            command->addOption("name", a->name, "a material of the library or a .toml file")
+                ->typeName(profileWord)
+                ->required();
+        command->addFlag("--json", a->json, "one JSON object on stdout");
         command->callback([a, run] { run(*a); });
         return command;
     };
     add("list", "The library of materials", list, false);
     add("show", "Widths, normal blend factors and values of one profile", show, true);
-    add("plot", "Draws R and P", plot, true)->add_option("-o,--output", a->output, ".png to write")->required();
-    CLI::App* fitting = add("fit", "The best sum of K Gaussians", fit, true);
-    fitting->add_option("--gaussians", a->gaussians, "how many")->check(inRange(1, 12))->capture_default_str();
-    fitting->add_option("-o,--output", a->output, "profile file (.toml) to write");
+    add("plot", "Draws R and P", plot, true)->addOption("-o,--output", a->output, ".png to write")->required();
+    Command* fitting = add("fit", "The best sum of K Gaussians", fit, true);
+    fitting->addOption("--gaussians", a->gaussians, "how many")->check(inRange(1, 12))->showDefault();
+    fitting->addOption("-o,--output", a->output, "profile file (.toml) to write");
 }
 
 }  // namespace pellucid::cli

@@ -317,62 +317,65 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void addReference(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
+void addReference(Command& app) {
+    Command* command = app.addCommand(
         "reference",
         "What a picture should be: the surface integral over the mesh, or a random walk in its volume, with "
         "ray-traced shadows");
     auto a = std::make_shared<Arguments>();
-    command->add_option("mesh", a->mesh, "OFF, OBJ, PLY or STL file, in the unit of the scene")->required();
+    command->addOption("mesh", a->mesh, "OFF, OBJ, PLY or STL file, in the unit of the scene")->required();
     command
-        ->add_option("--scene", a->scene,
-                     "scene file (TOML), as for shade: lights, materials, which channel is what")
+        ->addOption("--scene", a->scene,
+                    "scene file (TOML), as for shade: lights, materials, which channel is what")
         ->required();
-    command->add_option(
+    command->addOption(
         "--gbuffer", a->gbuffer,
         "multi-layer EXR whose visible positions are evaluated; without it, the mesh's vertices are");
     command
-        ->add_option("-o,--output", a->output,
-                     "EXR to write: radiance R, G, B, and the layers Surface (without albedo) and "
-                     "Irradiance; or NPY: Surface per vertex, (n, 3); of a walk both halves, (2, n, 3)")
+        ->addOption("-o,--output", a->output,
+                    "EXR to write: radiance R, G, B, and the layers Surface (without albedo) and "
+                    "Irradiance; or NPY: Surface per vertex, (n, 3); of a walk both halves, (2, n, 3)")
         ->required();
-    command->add_option("--profile", a->profile,
-                        "material of the library or profile file (default: that of the material's curvature "
-                        "table, else skin)");
     command
-        ->add_option("--diffusion-radius", a->diffusionRadius,
-                     "scales the profile to this radius, mm; 0: its own")
+        ->addOption("--profile", a->profile,
+                    "material of the library or profile file (default: that of the material's curvature "
+                    "table, else skin)")
+        ->typeName(profileWord);
+    command
+        ->addOption("--diffusion-radius", a->diffusionRadius,
+                    "scales the profile to this radius, mm; 0: its own")
         ->check(isNotNegative())
-        ->capture_default_str();
+        ->showDefault();
     command
-        ->add_option("--unit-mm", a->unit, "millimetres per unit of positions (default: the scene's unit_mm)")
+        ->addOption("--unit-mm", a->unit, "millimetres per unit of positions (default: the scene's unit_mm)")
         ->check(isPositive());
     command
-        ->add_option("--cut", a->cut,
-                     "mm per channel where the profile ends, as in renderers that cut it off; 0: nowhere")
+        ->addOption("--cut", a->cut,
+                    "mm per channel where the profile ends, as in renderers that cut it off; 0: nowhere")
         ->expected(3);
     command
-        ->add_option("--subdivide", a->subdivide,
-                     "levels of subdivision, done first: Catmull-Clark of OBJ files, Loop of others")
+        ->addOption("--subdivide", a->subdivide,
+                    "levels of subdivision, done first: Catmull-Clark of OBJ files, Loop of others")
         ->check(inRange(0, 6))
-        ->capture_default_str();
+        ->showDefault();
     command
-        ->add_option("--part", a->parts,
-                     "group of an OBJ file that scatters, all others just cast shadows; or, several times, "
-                     "ID=GROUP: the body of the material with that id")
-        ->allow_extra_args(false);
+        ->addOption("--part", a->parts,
+                    "group of an OBJ file that scatters, all others just cast shadows; or, several times, "
+                    "ID=GROUP: the body of the material with that id")
+        ->typeName("NAME")
+        ->oneEach();
     command
-        ->add_option("--finest", a->finest,
-                     "length to which triangles are split at the edges of shadows (default: a quarter of the "
-                     "narrowest channel's width)")
+        ->addOption("--finest", a->finest,
+                    "length to which triangles are split at the edges of shadows (default: a quarter of the "
+                    "narrowest channel's width)")
         ->check(isNotNegative());
     command
-        ->add_option("--coarsest", a->coarsest,
-                     "length above which they are split anywhere (default: the widest channel's width)")
+        ->addOption("--coarsest", a->coarsest,
+                    "length above which they are split anywhere (default: the widest channel's width)")
         ->check(isNotNegative());
-    command->add_option("--tolerance", a->tolerance, "bound of the error of far light, part of the brightest")
+    command->addOption("--tolerance", a->tolerance, "bound of the error of far light, part of the brightest")
         ->check(inRange(1e-7, 1.0))
-        ->capture_default_str();
+        ->showDefault();
     addWalkOptions(*command, a->walk);
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });

@@ -219,35 +219,33 @@ void run(const Arguments& a) {
 
 }  // namespace
 
-void addShade(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("shade", "Shade a G-buffer");
+void addShade(Command& app) {
+    Command* command = app.addCommand("shade", "Shade a G-buffer");
     auto a = std::make_shared<Arguments>();
-    command->add_option("gbuffer", a->gbuffer, "multi-layer EXR")->required();
-    command->add_option("--scene", a->scene, "scene file (TOML): lights, materials, which channel is what")->required();
+    command->addOption("gbuffer", a->gbuffer, "multi-layer EXR")->required();
+    command->addOption("--scene", a->scene, "scene file (TOML): lights, materials, which channel is what")->required();
     command
-        ->add_option(
+        ->addOption(
             "-o,--output", a->output,
             "file to write: .exr for radiance R, G, B; .png, .jpg, .bmp or .tga for a picture to look at")
         ->required();
-    command->add_option("--picture", a->picture, "picture to write beside an .exr");
+    command->addOption("--picture", a->picture, "picture to write beside an .exr");
     addToneOptions(*command, a->tone);
-    command->add_option("--show", a->show, "what the picture shows, side by side (default: final)")
-        ->delimiter(',')
-        ->allow_extra_args(false)
+    command->addOption("--show", a->show, "what the picture shows, side by side (default: final)")
+        ->separatedBy(',')
         ->check(isOneOf(showableParts()));
     command
-        ->add_option("--outputs", a->parts,
-                     "parts of the picture to write beside it, as OUT_diffuse.exr and so on")
-        ->delimiter(',')
-        ->allow_extra_args(false)
+        ->addOption("--outputs", a->parts,
+                    "parts of the picture to write beside it, as OUT_diffuse.exr and so on")
+        ->separatedBy(',')
         ->check(isOneOf({"diffuse", "deep_scatter", "specular", "thickness", "all"}));
-    command->add_flag("--stats", a->stats, "count tiles and pixels per feature");
+    command->addFlag("--stats", a->stats, "count tiles and pixels per feature");
     command
-        ->add_option("--scratch-mib", a->scratchMib,
-                     "most MiB for blurred normals and filtered shadows; larger frames are shaded in bands. "
-                     "0: no limit")
+        ->addOption("--scratch-mib", a->scratchMib,
+                    "most MiB for blurred normals and filtered shadows; larger frames are shaded in bands. "
+                    "0: no limit")
         ->check(inRange(0, 1 << 30))
-        ->capture_default_str();
+        ->showDefault();
     addRunOptions(*command, a->run);
     command->callback([a] { run(*a); });
 }

@@ -44,19 +44,16 @@ void writeShadePicture(const std::string& path, const io::Image& gbuffer, const 
     io::writeImage8(path, whole.width, whole.height, 3, whole.rgb);
 }
 
-void addToneOptions(CLI::App& command, io::ToneMap& tone) {
-    command.add_option("--exposure", tone.exposure, "of pictures: multiplies radiance")
-        ->check(isPositive())
-        ->capture_default_str();
+void addToneOptions(Command& command, io::ToneMap& tone) {
+    command.addOption("--exposure", tone.exposure, "of pictures: multiplies radiance")->check(isPositive())->showDefault();
     command
-        .add_option_function<std::string>(
+        .addOptionOf(
             "--tonemap",
             [&tone](const std::string& curve) { tone.curve = chosen<io::ToneCurve>(io::toneCurves, curve); },
             "of pictures: soft (true to radiance up to 0.8, then a shoulder), none (cut at 1), "
             "filmic or agx-like "
             "(default: soft)")
-        ->check(isOneOf(io::toneCurves).description(""))
-        ->option_text("CURVE");
+        ->check(isOneOf(io::toneCurves));
 }
 
 }  // namespace pellucid::cli

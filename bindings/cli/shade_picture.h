@@ -20,6 +20,6 @@ void writeShadePicture(const std::string& path, const io::Image& gbuffer, const 
                        const std::vector<std::string>& parts, const io::ToneMap& tone);
 
 // --exposure and --tonemap.
-void addToneOptions(CLI::App& command, io::ToneMap& tone);
+void addToneOptions(Command& command, io::ToneMap& tone);
 
 }  // namespace pellucid::cli

@@ -22,22 +22,24 @@ void Stages::add(const std::string& name, double wallMilliseconds, double device
     // Blank instead of 0 if a stage has no such value.
     s.device > 0 ? std::fprintf(stderr, " %10.2f", s.device) : std::fprintf(stderr, " %10s", "");
     s.bytes > 0 ? std::fprintf(stderr, " %8.1f", double(s.bytes) * 1e-6) : std::fprintf(stderr, " %8s", "");
-    if (count > 0)
-        std::fprintf(stderr, " %8.1f  %llu %s", s.perSecond(double(count)) * 1e-6,
-                     static_cast<unsigned long long>(count), unit);
+    if (count > 0) {
+        const double rate = s.perSecond();
+        std::isnan(rate) ? std::fprintf(stderr, " %8s", "") : std::fprintf(stderr, " %8.1f", rate * 1e-6);
+        std::fprintf(stderr, "  %llu %s", static_cast<unsigned long long>(count), unit);
+    }
     std::fputs("\n", stderr);
 }
 
 nlohmann::ordered_json Stages::json() const {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const Stage& s : stages_)
-        list.push_back({{"stage", s.name},
-                        {"wall_ms", s.wall},
-                        {"device_ms", s.device},
-                        {"unit", s.unit},
-                        {"count", s.count},
-                        {"bytes", s.bytes},
-                        {"per_second", s.perSecond(double(s.count))}});
+    for (const Stage& s : stages_) {
+        nlohmann::ordered_json& entry = list.emplace_back(
+            nlohmann::ordered_json{{"stage", s.name}, {"wall_ms", s.wall}, {"device_ms", s.device}});
+        if (s.bytes > 0) entry["bytes"] = s.bytes;
+        if (s.count == 0) continue;
+        entry[s.unit] = s.count;
+        if (const double rate = s.perSecond(); !std::isnan(rate)) entry[s.unit + "_per_second"] = rate;
+    }
     return list;
 }
 

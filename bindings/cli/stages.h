@@ -2,6 +2,7 @@
 // items.
 #pragma once
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -59,9 +60,11 @@ class Stages {
         std::string name, unit;
         double wall, device;  // ms
         uint64_t count, bytes;
-        // Per second of device time if there is any, otherwise of wall time.
-        double perSecond(double what) const {
-            return what * 1000 / std::max(device > 0 ? device : wall, 1e-6);
+        // Items per second of device time if there is any, otherwise of wall time. NaN where the clock is too coarse.
+        double perSecond() const {
+            constexpr double shortest = 1e-3;  // ms
+            const double time = device > 0 ? device : wall;
+            return time >= shortest ? double(count) * 1000 / time : NAN;
         }
     };
     const Run& run_;

@@ -1,5 +1,7 @@
 #include "values.h"
 
+#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <functional>
 #include <sstream>
@@ -11,61 +13,67 @@ namespace {
 
 // `fits` says of a number whether it is one of `what`.
 template <class Number>
-CLI::Validator numbers(const std::string& what, const std::string& description, std::function<bool(Number)> fits) {
-    return CLI::Validator(
-        [what, fits](std::string& given) {
-            Number number{};
-            const bool read = CLI::detail::lexical_cast(given, number);
-            return read && fits(number) ? std::string() : "'" + given + "' is not " + what;
-        },
-        description);
+Check numbers(const std::string& what, const std::string& description, std::function<bool(Number)> fits) {
+    return {[what, fits](std::string& given) {
+                Number number{};
+                const char *begin = given.data() + given.starts_with('+'), *end = given.data() + given.size();
+                const auto [at, error] = std::from_chars(begin, end, number);
+                const bool read = error == std::errc() && at == end;
+                return read && fits(number) ? std::string() : "'" + given + "' is not " + what;
+            },
+            description};
 }
 
 template <class Number>
-CLI::Validator range(const std::string& kind, Number low, Number high) {
+Check range(const std::string& kind, Number low, Number high) {
     std::ostringstream what;
     what << "a " << kind << " from " << low << " to " << high;
-    return numbers<Number>(what.str(), CLI::Range(low, high).get_description(),
-                           [=](Number n) { return n >= low && n <= high; });
+    std::ostringstream description;
+    description << low << " to " << high;
+    return numbers<Number>(what.str(), description.str(), [=](Number n) { return n >= low && n <= high; });
 }
 
 }  // namespace
 
-CLI::Validator isOneOf(std::vector<std::string> names) {
-    const std::string description = CLI::IsMember(names).get_description();
-    return CLI::Validator(
-        [names = std::move(names)](std::string& given) {
-            const std::string small = CLI::detail::to_lower(given);
-            if (std::find(names.begin(), names.end(), small) != names.end()) {
-                given = small;
-                return std::string();
-            }
-            const std::string nearest = io::nearestWord(small, names);
-            return "there is no '" + given + "'; " +
-                   (nearest.empty() ? "" : "did you mean " + nearest + "? ") + "there are " +
-                   CLI::detail::join(names, ", ");
-        },
-        description);
+Check isOneOf(std::vector<std::string> names) {
+    std::string list, description;
+    for (const std::string& name : names) {
+        list += (list.empty() ? "" : ", ") + name;
+        description += (description.empty() ? "{" : ",") + name;
+    }
+    return {[names = std::move(names), list](std::string& given) {
+                std::string small = given;
+                std::ranges::transform(small, small.begin(),
+                                       [](unsigned char c) { return char(std::tolower(c)); });
+                if (std::ranges::find(names, small) != names.end()) {
+                    given = small;
+                    return std::string();
+                }
+                const std::string nearest = io::nearestWord(small, names);
+                return "there is no '" + given + "'; " +
+                       (nearest.empty() ? "" : "did you mean " + nearest + "? ") + "there are " + list;
+            },
+            description + "}"};
 }
 
-CLI::Validator isOneOf(std::span<const std::string_view> names, const std::vector<std::string>& more) {
+Check isOneOf(std::span<const std::string_view> names, const std::vector<std::string>& more) {
     std::vector<std::string> all(names.begin(), names.end());
     all.insert(all.end(), more.begin(), more.end());
     return isOneOf(std::move(all));
 }
 
-CLI::Validator inRange(int low, int high) {
+Check inRange(int low, int high) {
     return range("whole number", low, high);
 }
-CLI::Validator inRange(double low, double high) {
+Check inRange(double low, double high) {
     return range("number", low, high);
 }
 
-CLI::Validator isPositive() {
-    return numbers<double>("a number above 0", "POSITIVE", [](double n) { return std::isfinite(n) && n > 0; });
+Check isPositive() {
+    return numbers<double>("a number above 0", "above 0", [](double n) { return std::isfinite(n) && n > 0; });
 }
-CLI::Validator isNotNegative() {
-    return numbers<double>("a number from 0 on", "NONNEGATIVE",
+Check isNotNegative() {
+    return numbers<double>("a number from 0 on", "from 0 on",
                            [](double n) { return std::isfinite(n) && n >= 0; });
 }
 

@@ -27,16 +27,14 @@ void start(const char* module, const std::vector<std::string>& arguments) {
                      "; PELLUCID_PYTHON names the Python that has the package");
 }
 
-void add(CLI::App& app, const char* name, const char* module, const char* what) {
-    CLI::App* command = app.add_subcommand(name, what);
-    command->prefix_command();  // its options are the module's
-    command->set_help_flag();
-    command->callback([command, module] { start(module, command->remaining()); });
+void add(Command& app, const char* name, const char* module, const char* what) {
+    Command* command = app.addCommand(name, what);
+    command->passOn([module](const std::vector<std::string>& arguments) { start(module, arguments); });
 }
 
 }  // namespace
 
-void addView(CLI::App& app) {
+void addView(Command& app) {
     add(app, "view", "pellucid.view", "A look-dev viewer in the browser (needs the Python package)");
     add(app, "gallery", "pellucid.view.gallery",
         "Pictures of materials, methods, lights and mistakes (needs the Python package)");

@@ -57,7 +57,7 @@ std::string requireExtension(const std::string& path, std::initializer_list<std:
     if (std::find(known.begin(), known.end(), extension) != known.end()) return extension;
     std::string list;
     for (std::string_view k : known) list.append(list.empty() ? "." : ", .").append(k);
-    throw FileError(
+    throw ExtensionError(
         path, (extension.empty() ? "has no extension" : "has the unknown extension '." + extension + "'") +
                   "; known here: " + list);
 }

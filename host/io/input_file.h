@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "io/file_error.h"
+
 namespace pellucid::io {
 
 // Most bytes that one input may have, on the disk and again as floats in memory: PELLUCID_INPUT_LIMIT_MIB,
@@ -36,7 +38,13 @@ std::string otherThanFile(const std::string& path);
 // The extension in lower case, without the dot; "" if there is none.
 std::string extensionOf(const std::string& path);
 
-// Throws FileError unless the extension of `path` is one of `known`; the message lists them. Returns the
+// The name of a file has an extension that stands for no format. The command calls it wrong use where the name is one
+// of its arguments, whether for input or output.
+class ExtensionError : public FileError {
+    using FileError::FileError;
+};
+
+// Throws ExtensionError unless the extension of `path` is one of `known`; the message lists them. Returns the
 // extension.
 std::string requireExtension(const std::string& path, std::initializer_list<std::string_view> known);
 

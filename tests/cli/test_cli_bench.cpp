@@ -1,9 +1,9 @@
 // `pellucid bench`: a report with times, shares and errors, its page, and verdicts on two reports.
 #include <cmath>
 
-#include "bench/compare.h"
-#include "bench/page.h"
 #include "cli_run.h"
+#include "measure/compare.h"
+#include "measure/page.h"
 #include "tolerances.h"
 
 using Json = nlohmann::ordered_json;
@@ -154,14 +154,57 @@ TEST_F(BenchCommand, VerdictsSurviveNoise) {
     EXPECT_TRUE(contains(failing.out, "1 fail,")) << failing.out;
     EXPECT_EQ(run({"bench", "compare", path("broken.json"), path("broken.json")}).exitCode, 3)
         << "it fails as before: nothing to compare";
-    Json elsewhere = Json::parse(report(10, 0.01, 1e-6));
-    elsewhere["devices"][0]["name"] = "another";
-    expectRefused({"bench", "compare", path("old.json"), write("elsewhere.json", elsewhere.dump())}, 3,
-                  "nothing to compare");
     write("new.json", report(12, 0.01, 1e-6));
     const Result text = run({"bench", "compare", path("old.json"), path("new.json")});
     EXPECT_EQ(text.exitCode, 1);
     EXPECT_TRUE(contains(text.out, "1 slower"));
+}
+
+// Reports of another size, of another device, of several devices; folders in place of their bench.json.
+TEST_F(BenchCommand, ComparesOnlyWhatIsComparable) {
+    const auto edited = [](const std::function<void(Json&)>& edit) {
+        Json json = Json::parse(report(10, 0.01, 1e-6));
+        edit(json["devices"]);
+        return json;
+    };
+    const auto compared = [](const Json& before, const Json& after) {
+        return pellucid::bench::compareReports(before, after);
+    };
+    const Json base = edited([](Json&) {});
+    // Another extent with the same number of texels, and another number.
+    for (const Json& other : {edited([](Json& d) { d[0]["operations"][0]["what"] = "10x10, skin"; }),
+                              edited([](Json& d) { d[0]["operations"][0]["items"] = 400; })}) {
+        Json worse = other;
+        worse["devices"][0]["operations"][0]["error_max"] = 1;
+        const Json result = compared(base, worse);
+        EXPECT_EQ(result["devices"][0]["operations"][0]["verdict"], "other size");
+        EXPECT_EQ(result["other_size"], 1);
+        EXPECT_EQ(result["less_accurate"], 0);
+        expectRefused({"bench", "compare", write("a.json", base.dump()), write("b.json", worse.dump())}, 3,
+                      "all operations have other sizes");
+    }
+    // Two devices, one in each report. Their bandwidths differ, which is no noise.
+    const Json other = edited([](Json& d) {
+        d[0]["name"] = "E", d[0]["copy_bytes_per_second"] = 4e10;
+        d[0]["operations"][0]["median_ms"] = 5;
+    });
+    Json result = compared(base, other);
+    EXPECT_EQ(result["devices"][0]["old_name"], "D");
+    EXPECT_EQ(result["devices"][0]["operations"][0]["verdict"], "faster");
+    // Equal devices in turn; a device that only one report has.
+    const Json twins = edited([](Json& d) { d.push_back(d[0]), d[1]["operations"][0]["median_ms"] = 20; });
+    result = compared(twins, twins);
+    EXPECT_EQ(result["same"], 2);
+    result = compared(twins, base);
+    EXPECT_EQ(result["same"], 1);
+    EXPECT_EQ(result["devices"][1]["only"], "old");
+    std::filesystem::create_directories(path("old"));
+    std::filesystem::create_directories(path("new"));
+    write("old/bench.json", base.dump());
+    write("new/bench.json", other.dump());
+    const Result text = run({"bench", "compare", path("old"), path("new")});
+    EXPECT_EQ(text.exitCode, 0) << text.err;
+    EXPECT_TRUE(contains(text.out, "E, compared with another device: D")) << text.out;
 }
 
 // The page of a report: which device, how many frames a second, at what error, before all else; and no mark-up from names.

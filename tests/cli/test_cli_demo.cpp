@@ -5,6 +5,7 @@
 
 #include "cli_run.h"
 #include "io/image/image_file.h"
+#include "io/scene/scene_file.h"
 
 using namespace pellucid;
 
@@ -61,6 +62,24 @@ TEST_F(Demo, PicturesAreThoseThatShadeMakesOfItsGBuffer) {
             for (float v : a) light += v;
         }
         EXPECT_GT(light, 0);
+    }
+    // Every number of a stage is a number, with its unit in the key.
+    for (const auto& stage : report.at("stages"))
+        for (const auto& [key, value] : stage.items()) {
+            ASSERT_EQ(value.is_string(), key == "stage") << stage;
+            if (key == "stage") continue;
+            EXPECT_TRUE(key.ends_with("_ms") || key == "bytes" || stage.contains(key.substr(0, key.find("_per"))))
+                << key;
+            if (key.ends_with("_per_second")) EXPECT_LT(value.get<double>(), 1e11) << stage;
+        }
+    // The scenes of which bench/roofline counts instructions can be made of the demo's, and can be read.
+    ASSERT_EQ(
+        std::system(("python3 '" PELLUCID_SOURCE_DIR "/bench/roofline' --scenes '" + path("demo") + "'").c_str()),
+        0);
+    for (const std::string scene : {"surface", "taps", "wide", "blur"}) {
+        const io::SceneFile read = io::readScene(path("demo/" + scene + ".toml"));
+        EXPECT_EQ(read.lights.size(), 1u) << scene;
+        EXPECT_EQ(read.materials.at(0).material.scattering, PEL_SCATTERING_PREINTEGRATED) << scene;
     }
     // Auto's distance from the reference, which the sheet shows: once more by the commands, for skin without gloss and pores.
     std::string dull;

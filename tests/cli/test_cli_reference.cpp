@@ -353,6 +353,6 @@ TEST_F(CliReference, CompareRefuses) {
     expectRefused({"compare", path("a.npy"), path("a.npy"), "--gbuffer", path("g.exr")}, 2, "go together");
     expectRefused(
         {"compare", path("a.npy"), path("a.npy"), "--gbuffer", path("g.exr"), "--scene", path("s.toml")}, 3,
-        "the pictures are 2 x 2");
+        "the pictures are 2 wide and 2 high");
     expectRefused({"compare", path("a.npy"), path("a.npy"), "--picture", path("d.jpg")}, 2, "d.jpg");
 }

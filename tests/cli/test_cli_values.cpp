@@ -1,8 +1,4 @@
 // What the command says to a value that an option does not take: of every option of every subcommand.
-#include <pellucid/pellucid.hpp>
-#include <regex>
-#include <sstream>
-
 #include "cli_run.h"
 
 using CliValues = CommandTest;
@@ -15,51 +11,44 @@ struct Option {
     std::vector<std::string> words;  // that it takes; empty: numbers
 };
 
-// Names of subcommands from their parent's help.
-std::vector<std::string> subcommands(const std::string& help) {
-    std::vector<std::string> names;
-    const size_t from = help.find("Subcommands:");
-    std::istringstream lines(from == std::string::npos ? "" : help.substr(from));
-    std::string line;
-    for (std::getline(lines, line); std::getline(lines, line);)
-        if (std::smatch match; std::regex_search(line, match, std::regex("^  ([a-z][a-z-]*)")))
-            names.push_back(match[1]);
-    return names;
+// Options of a subcommand, as `pellucid describe` gives them, and of those below it.
+void collect(const nlohmann::json& app, const std::vector<std::string>& command, std::vector<Option>& options) {
+    for (const auto& option : app.at("options")) {
+        const std::string value = option.at("value"),
+                          name = option.at("names").empty() ? "" : option["names"].back();
+        const bool isChoice = !option.at("completions").empty() && contains(value, "|");
+        if (!name.empty() && isChoice) options.push_back({command, name, option["completions"]});
+        if (!name.empty() && option.at("range") != "") options.push_back({command, name, {}});
+    }
+    for (const auto& sub : app.at("subcommands")) {
+        std::vector<std::string> words = command;
+        words.push_back(sub.at("name"));
+        collect(sub, words, options);
+    }
 }
 
 }  // namespace
 
+// --help shows the words of `pellucid describe`, and nothing of CLI11's own notation.
+TEST_F(CliValues, HelpIsReadable) {
+    for (const std::vector<std::string>& command :
+         std::vector<std::vector<std::string>>{{"demo"}, {"lut", "curvature"}, {"bench"}, {"shade"}}) {
+        std::vector<std::string> words = command;
+        words.push_back("--help");
+        const std::string help = run(words).out;
+        for (const char* notation : {"{", "INT", "FLOAT", "TEXT", "REQUIRED", "NONNEGATIVE", "]="})
+            EXPECT_FALSE(contains(help, notation)) << command[0] << ": " << notation << "\n" << help;
+    }
+    const std::string help = run({"demo", "--help"}).out;
+    for (const char* line :
+         {"--smooth N (0 to 1000; default: 2)", "--device DEVICE", "--up auto|y|z (default: auto)",
+          "--size SIZE (default: 1280x720)", "-o,--output PATH", "  --no-reference  "})
+        EXPECT_TRUE(contains(help, line)) << line << "\n" << help;
+}
+
 TEST_F(CliValues, EveryOptionNamesWhatItTakes) {
     std::vector<Option> options;
-    std::vector<std::vector<std::string>> waiting{{}};
-    while (!waiting.empty()) {
-        const std::vector<std::string> command = waiting.back();
-        waiting.pop_back();
-        if (!command.empty() && (command[0] == "view" || command[0] == "gallery"))
-            continue;  // the Python package's
-        std::vector<std::string> asked = command;
-        asked.push_back("--help");
-        const std::string help = run(asked).out;
-        for (const std::string& name : subcommands(help)) {
-            waiting.push_back(command);
-            waiting.back().push_back(name);
-        }
-        std::istringstream lines(help);
-        for (std::string line; std::getline(lines, line);) {
-            std::smatch match;
-            if (!std::regex_search(line, match, std::regex("^  (?:-[a-z],)?(--[a-z-]+) (.*)"))) continue;
-            const std::string name = match[1], takes = match[2];
-            if (std::regex_search(takes, match, std::regex(R"(^TEXT:\{([^}]*)\})"))) {
-                options.push_back({command, name, {}});
-                std::istringstream words(match[1]);
-                for (std::string word; std::getline(words, word, ',');) options.back().words.push_back(word);
-            } else if (std::regex_search(takes, std::regex("^(INT|UINT|FLOAT):"))) {
-                options.push_back({command, name, {}});
-            } else if (name == "--tonemap") {
-                options.push_back({command, name, {"soft", "none", "filmic", "agx-like"}});
-            }
-        }
-    }
+    collect(run({"describe"}).json(), {}, options);
     ASSERT_GT(options.size(), 30u);
     for (const Option& option : options) {
         std::string said = option.name;
@@ -79,6 +68,31 @@ TEST_F(CliValues, EveryOptionNamesWhatItTakes) {
             for (const std::string& word : option.words)
                 EXPECT_TRUE(contains(result.err, word)) << result.err;
         }
+    }
+}
+
+// The name of a file whose extension stands for no format is wrong use in every argument, and bad input in a file.
+TEST_F(CliValues, AnUnknownExtensionIsWrongUseEverywhere) {
+    const std::string gbuffer = path("g.exr"), scene = path("s.toml"), bad = path("a.foo");
+    write("a.foo", "");
+    write("s.toml", "version = 2\n");
+    for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+             {"curvature", bad, "-o", path("o.npy")},
+             {"curvature", path("m.ply"), "-o", bad},
+             {"curvature", path("m.ply"), "-o", path("o.npy"), "--picture", bad},
+             {"lut", "shadow", "-o", bad},
+             {"lut", "shadow", "--output=" + bad},
+             {"profile", "plot", "skin", "-o", bad},
+             {"profile", "fit", "skin", "-o", bad},
+             {"shade", gbuffer, "--scene", scene, "-o", bad},
+             {"shade", gbuffer, "--scene", scene, "-o", path("o.exr"), "--picture", bad},
+             {"demo", bad, "-o", path("out")},
+             {"import", bad, "-o", path("out")},
+             {"reference", bad, "--scene", scene, "-o", path("o.npy")},
+             {"reference", path("m.ply"), "--scene", scene, "-o", bad}}) {
+        const Result result = run(arguments);
+        EXPECT_EQ(result.exitCode, 2) << arguments[0] << " " << arguments[1] << ": " << result.err;
+        EXPECT_TRUE(contains(result.err, "a.foo: has the unknown extension '.foo'; known here: ")) << result.err;
     }
 }
 

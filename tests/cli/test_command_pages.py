@@ -42,6 +42,13 @@ class CommandPages(unittest.TestCase):
         self.assertEqual(self.completed("curvature", "m.ply", "--smooth-weights", "a"), ["area"])
         self.assertEqual(self.completed("shade", "g.exr", "--show", "spec"), ["specular"])
         self.assertNotIn("--smooth", self.completed("shade", "--s"))
+        # Files are offered where an option takes one, and nowhere else. The folder here is `share`.
+        self.assertEqual(self.completed("shade", "g.exr", "--scene", "sh"), ["share"])
+        self.assertEqual(self.completed("shade", "g.exr", "--device", ""), ["cpu", "gpu", "accelerator"])
+        self.assertEqual(self.completed("lut", "shadow", "--profile", "skin-d"), ["skin-dark"])
+        self.assertIn("share", self.completed("lut", "shadow", "--profile", ""))
+        for words in (("demo", "--size"), ("demo", "--height"), ("bench", "--only"), ("demo", "--subdivide")):
+            self.assertEqual(self.completed(*words, ""), [], words)
 
     def test_other_shells_can_read_theirs(self):
         for shell, file in (("zsh", "zsh/site-functions/_pellucid"), ("fish", "fish/vendor_completions.d/pellucid.fish")):

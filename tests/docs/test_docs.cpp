@@ -52,6 +52,7 @@ TEST(Docs, NamedFilesExist) {
     const std::set<std::string> hosts = {"device.cl", "buffer.cl", "event.cl"};  // attributes of Python objects
     int files = 0;
     for (const auto& page : pages::all()) {
+        if (page.filename() == "CHANGELOG.md") continue;  // history may name files that are gone
         const std::string text = pages::withoutBlocks(pages::contents(page));
         for (std::sregex_iterator it(text.begin(), text.end(), span), end; it != end; ++it) {
             const std::string code = (*it)[1];

@@ -41,20 +41,20 @@ const std::map<std::string, std::set<std::string>> allowed = {
       "host/lut", "host/eye", "host/shading", "host/diffusion"}},
     {"host/io", {"host/fields", "kernels/shared", "host/include/pellucid", "host/system"}},
     {"host/sample", {"host/include/pellucid"}},
-    {"bindings/bench", {"host/include/pellucid", "tests/reference"}},
-    {"bindings/head", {"host/io", "host/sample"}},
+    {"bench/measure", {"host/include/pellucid", "tests/reference"}},
+    {"apps/demo", {"host/io", "host/sample"}},
     {"bindings/cli",
-     {"host/fields", "host/include/pellucid", "host/system", "host/io", "host/sample", "bindings/bench",
-      "bindings/head"}},
-    {"bindings/python", {"host/fields", "host/include/pellucid", "host/io", "bindings/head"}},
+     {"host/fields", "host/include/pellucid", "host/system", "host/io", "host/sample", "bench/measure",
+      "apps/demo"}},
+    {"bindings/python", {"host/fields", "host/include/pellucid", "host/io", "apps/demo"}},
     {"examples", {"host/include/pellucid"}},
     {"bench",
-     {"kernels/shared", "kernels/lib", "host/include/pellucid", "host/io", "host/sample", "bindings/head",
-      "tests/reference", "tests"}},
+     {"kernels/shared", "kernels/lib", "host/include/pellucid", "host/io", "host/sample", "apps/demo",
+      "bench/measure", "tests/reference", "tests"}},
     // host/cl: the files of compiled programs, which no call of the library shows.
     {"tests",
-     {"host/fields", "kernels/shared", "host/include/pellucid", "host/cl", "host/io", "host/sample",
-      "bindings/bench", "tests/reference"}},
+     {"host/fields", "kernels/shared", "host/include/pellucid", "host/cl", "host/system", "host/io",
+      "host/sample", "bench/measure", "tests/reference"}},
     {"tests/reference", {}},
     {"tests/windows", {"host/io", "host/system", "tests"}},
 };
@@ -71,7 +71,7 @@ std::string layerOf(const fs::path& relative) {
 // Where an include lands inside the project, or "" for headers from elsewhere.
 std::string resolve(const fs::path& from, const std::string& included) {
     for (const fs::path& base : {from.parent_path(), root / "host", root / "kernels", root / "host/include",
-                                 root / "tests", root / "bindings", root / "bench"}) {
+                                 root / "tests", root / "apps", root / "bench"}) {
         std::error_code error;
         if (fs::exists(base / included, error))
             return layerOf(fs::relative(fs::canonical(base / included), root));
@@ -84,7 +84,7 @@ std::string resolve(const fs::path& from, const std::string& included) {
 TEST(IncludeRule, EveryIncludeGoesOneWay) {
     const std::regex directive(R"(^\s*#\s*include\s*["<]([^">]+)[">])");
     size_t files = 0, checked = 0;
-    for (const char* top : {"kernels", "host", "bindings", "examples", "bench", "tests"}) {
+    for (const char* top : {"kernels", "host", "bindings", "apps", "examples", "bench", "tests"}) {
         for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
             static const std::set<std::string> endings{".h", ".hpp", ".c", ".cpp", ".cl", ".clh"};
             if (!entry.is_regular_file() || !endings.contains(entry.path().extension())) continue;
@@ -110,14 +110,14 @@ TEST(IncludeRule, EveryIncludeGoesOneWay) {
     EXPECT_GT(checked, 10u);
 }
 
-// What differs between systems is in folders of their names; all else is the same code everywhere. bindings/bench and the native module
+// What differs between systems is in folders of their names; all else is the same code everywhere. bench/measure and the native module
 // of Python are for POSIX systems (docs/guide/install.md).
 TEST(IncludeRule, OneSystemAloneHasFoldersOfItsOwn) {
     const std::regex header(
         R"(^\s*#\s*include\s*<(windows\.h|io\.h|process\.h|unistd\.h|fcntl\.h|dlfcn\.h|elf\.h|pwd\.h|poll\.h|sys/[^>]*)>)");
     const std::regex use(R"(\b(v?fork|dlopen|dlsym|dladdr|LoadLibrary[AW]?)\(|"/proc/)");
     size_t apart = 0;
-    for (const char* top : {"host", "bindings/cli", "bindings/head"})
+    for (const char* top : {"host", "bindings/cli", "apps/demo"})
         for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
             if (!entry.is_regular_file() ||
                 !std::set<std::string>{".h", ".cpp"}.contains(entry.path().extension()))

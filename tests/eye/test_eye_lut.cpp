@@ -20,7 +20,7 @@ std::vector<float> tableOf(const PelEyeLutDesc& desc) {
     return Lut(Device(""), desc).read<float>(PEL_LUT_FLOAT);
 }
 
-// Some slices. 10^8 photons for a table leave noise of 1.2 % of its mean, so that each slice has more: bench/eye/sweep_eye.cpp has all.
+// Some slices. 10^8 photons for a whole table leave noise of 1.2 % of its mean, so each slice takes more photons.
 LutError errorOf(const PelEye& eye, std::initializer_list<uint32_t> slices, uint64_t photons) {
     const PelEyeLutDesc desc = descOf(eye);
     const std::vector<float> texels = tableOf(desc);

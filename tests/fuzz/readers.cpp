@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bench/compare.h"
+#include "measure/compare.h"
 #include "fuzz/reader_parts.h"
 #include "io/file_error.h"
 #include "io/input_file.h"

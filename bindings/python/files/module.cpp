@@ -8,7 +8,7 @@
 
 #include "arrays.h"
 #include "gltf.h"
-#include "head/demo_head.h"
+#include "demo/demo_head.h"
 #include "io/file_error.h"
 #include "io/image/image_file.h"
 #include "io/image/image_format.h"

@@ -87,9 +87,9 @@ class Scene {
                 throw py::value_error("channel " + name + " must have the shape (height, width)");
             const int height = int(pixels.shape(0)), width = int(pixels.shape(1));
             if (!image.channels.empty() && (height != image.height || width != image.width))
-                throw py::value_error("channel " + name + " is " + std::to_string(width) + " x " +
-                                      std::to_string(height) + ", others are " + std::to_string(image.width) +
-                                      " x " + std::to_string(image.height));
+                throw py::value_error("channel " + name + " has the shape (" + std::to_string(height) + ", " +
+                                      std::to_string(width) + "), others have (" +
+                                      std::to_string(image.height) + ", " + std::to_string(image.width) + ")");
             image.height = height, image.width = width;
             image.channels.push_back(
                 {name, io::ChannelType::Float, {pixels.data(), pixels.data() + pixels.size()}});

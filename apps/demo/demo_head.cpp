@@ -1,4 +1,4 @@
-#include "head/demo_head.h"
+#include "demo/demo_head.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <vector>
 
 #include "case.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double leastChange = 0.05;  // share below which nothing counts
+constexpr double minChange = 0.05;    // share below which no change counts
 constexpr double standardErrors = 4;  // of the difference
 constexpr double errorGrowth = 1.5, errorStep = 1e-7;
 
@@ -27,16 +28,20 @@ double value(const Json& e, const char* key) {
     return found != e.end() && found->is_number() ? found->get<double>() : NAN;
 }
 
+// The verdict on one operation; times and errors go to `out`.
 std::string compareOne(Json& out, const Json& before, const Json& after, double machine) {
     if (after.contains("failed")) return before.contains("failed") ? "not compared" : "fails";
     const double ratio = value(after, "median_ms") / value(before, "median_ms");
-    // A failure before, or a report without times.
+    // The old run failed, or one of the reports has no times.
     if (before.contains("failed") || !(ratio > 0) || std::isinf(ratio)) return "not compared";
-    const double noise =
-        std::max({std::log1p(leastChange),
-                  standardErrors * std::hypot(relativeError(before), relativeError(after)), machine});
     out["old_ms"] = value(before, "median_ms");
     out["new_ms"] = value(after, "median_ms");
+    // Neither the times nor the errors of two sizes can be compared.
+    for (const char* key : {"items", "what"})
+        if (before.value(key, Json()) != after.value(key, Json())) return "other size";
+    const double noise =
+        std::max({std::log1p(minChange),
+                  standardErrors * std::hypot(relativeError(before), relativeError(after)), machine});
     out["ratio"] = ratio;
     out["noise"] = std::expm1(noise);
     const double oldError = value(before, "error_max"), newError = value(after, "error_max");
@@ -45,8 +50,42 @@ std::string compareOne(Json& out, const Json& before, const Json& after, double 
         out["new_error"] = after["error_max"];
         if (!(newError <= std::max(errorGrowth * oldError, oldError + errorStep))) return "less accurate";
     }
-    if (before.value("items", 0.0) != after.value("items", 0.0)) return "other size";
     return std::log(ratio) > noise ? "slower" : std::log(ratio) < -noise ? "faster" : "same";
+}
+
+// A device of the new report and the device of the old report that it is compared with. One of the two is null for a
+// device that only one report has.
+struct DevicePair {
+    const Json *before, *after;
+    bool sameDevice() const {
+        return before->at("name") == after->at("name") && before->at("platform") == after->at("platform");
+    }
+};
+
+// Pairs devices of the same name and platform; of several equal devices the first with the first, and so on. If one
+// device is left over in each report, the two are compared although they differ.
+std::vector<DevicePair> pairDevices(const Json& before, const Json& after) {
+    std::vector<DevicePair> pairs;
+    std::vector<const Json*> left;
+    for (const Json& device : before.at("devices")) left.push_back(&device);
+    for (const Json& device : after.at("devices")) {
+        DevicePair pair{nullptr, &device};
+        const auto same = std::ranges::find_if(left, [&](const Json* old) {
+            return DevicePair{old, &device}.sameDevice();
+        });
+        if (same != left.end()) {
+            pair.before = *same;
+            left.erase(same);
+        }
+        pairs.push_back(pair);
+    }
+    const auto isNew = [](const DevicePair& pair) { return !pair.before; };
+    if (left.size() == 1 && std::ranges::count_if(pairs, isNew) == 1) {
+        std::ranges::find_if(pairs, isNew)->before = left[0];
+        return pairs;
+    }
+    for (const Json* old : left) pairs.push_back({old, nullptr});
+    return pairs;
 }
 
 }  // namespace
@@ -68,33 +107,33 @@ nlohmann::ordered_json parseReport(const std::string& text) {
 }
 
 Json compareReports(const Json& before, const Json& after) {
-    Json result = {{"devices", Json::array()}, {"same", 0},  {"faster", 0},      {"slower", 0},
-                   {"less_accurate", 0},       {"fails", 0}, {"not_compared", 0}};
+    Json result = {{"devices", Json::array()}, {"same", 0},  {"faster", 0},     {"slower", 0},
+                   {"less_accurate", 0},       {"fails", 0}, {"other_size", 0}, {"not_compared", 0}};
     const auto count = [&result](std::string verdict) {
         std::replace(verdict.begin(), verdict.end(), ' ', '_');
         if (!result.contains(verdict)) verdict = "not_compared";
         result[verdict] = result[verdict].get<int>() + 1;
     };
-    for (const Json& device : after.at("devices")) {
-        const Json* old = nullptr;
-        for (const Json& d : before.at("devices"))
-            if (d.at("name") == device.at("name") && d.at("platform") == device.at("platform")) old = &d;
-        Json entry = {{"name", device.at("name")}, {"operations", Json::array()}};
-        if (!old) {
-            entry["only"] = "new";
+    for (const DevicePair& pair : pairDevices(before, after)) {
+        Json entry = {{"name", (pair.after ? pair.after : pair.before)->at("name")},
+                      {"operations", Json::array()}};
+        if (!pair.before || !pair.after) {
+            entry["only"] = pair.after ? "new" : "old";
             result["devices"].push_back(entry);
             continue;
         }
+        if (!pair.sameDevice()) entry["old_name"] = pair.before->at("name");
         std::map<std::string, const Json*> byName;
-        for (const Json& e : old->at("operations")) byName[e.at("name")] = &e;
-        // How much the machine itself changed since then.
+        for (const Json& e : pair.before->at("operations")) byName[e.at("name")] = &e;
+        // A change of the device's own speed between two runs adds to the noise of all its operations.
         double machine = 0;
         for (const char* key : {"copy_bytes_per_second", "operations_per_second"}) {
-            const double ratio = value(device, key) / value(*old, key);
-            if (std::isfinite(ratio) && ratio > 0) machine = std::max(machine, std::abs(std::log(ratio)));
+            const double ratio = value(*pair.after, key) / value(*pair.before, key);
+            if (pair.sameDevice() && std::isfinite(ratio) && ratio > 0)
+                machine = std::max(machine, std::abs(std::log(ratio)));
             entry[key] = ratio;
         }
-        for (const Json& e : device.at("operations")) {
+        for (const Json& e : pair.after->at("operations")) {
             const std::string name = e.at("name");
             if (e.at("group") == "device") continue;
             Json one = {{"name", name}};
@@ -122,12 +161,15 @@ std::string describeComparison(const Json& comparison) {
         text += buffer;
     };
     for (const Json& device : comparison.at("devices")) {
-        text += device.at("name").get<std::string>() + "\n";
+        text += device.at("name").get<std::string>();
+        if (device.contains("old_name"))
+            text += ", compared with another device: " + device["old_name"].get<std::string>();
+        text += "\n";
         if (device.contains("only")) {
-            text += "  in the new report only\n";
+            text += "  only in the " + device["only"].get<std::string>() + " report\n";
             continue;
         }
-        line("  the machine itself: copies x %.2f, arithmetic x %.2f\n",
+        line("  the device itself: copies x %.2f, arithmetic x %.2f\n",
              value(device, "copy_bytes_per_second"), value(device, "operations_per_second"));
         line("  %-28s %10s %10s %8s %8s  %s\n", "operation", "old ms", "new ms", "new/old", "noise",
              "verdict");
@@ -142,8 +184,9 @@ std::string describeComparison(const Json& comparison) {
         }
     }
     const auto number = [&](const char* key) { return comparison.at(key).get<int>(); };
-    line("%d same, %d faster, %d slower, %d less accurate, %d fail, %d not compared\n", number("same"),
-         number("faster"), number("slower"), number("less_accurate"), number("fails"), number("not_compared"));
+    line("%d same, %d faster, %d slower, %d less accurate, %d fail, %d of another size, %d not compared\n",
+         number("same"), number("faster"), number("slower"), number("less_accurate"), number("fails"),
+         number("other_size"), number("not_compared"));
     return text;
 }
 
