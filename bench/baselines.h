@@ -1,4 +1,5 @@
-// Plain C++ loops that speed claims are measured against, as a user would first write them. No checks of their input.
+// Plain C++ loops that speed claims are measured against, as a user would first write them. No checks of
+// their input.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -7,8 +8,8 @@
 
 namespace baseline {
 
-// Edge curvature as a loop over triangles on one thread, the way FaceWorks defines and orders it. positions, normals:
-// 3 floats per vertex. `scratch` is reused between calls, so that memory is not part of the time.
+// Edge curvature as a loop over triangles on one thread, the way FaceWorks defines and orders it. positions,
+// normals: 3 floats per vertex. `scratch` is reused between calls, so that memory is not part of the time.
 struct CurvatureScratch {
     std::vector<float> low, high, weight;
 };
@@ -28,8 +29,9 @@ void sampledCurvatureLut(const std::vector<LutGaussian>& profile, int width, int
 void sampledShadowLut(const std::vector<LutGaussian>& profile, int width, int height, float widthMin,
                       float widthMax, float sharpening, int samples, std::vector<float>& texels);
 
-// The shading pass as a scalar loop with OpenMP: one material of FaceWorks, one directional light with a parallel shadow
-// map, tables of 512 x 512 RGB texels. `disk`: x and y of the taps; without taps there is no deep scatter.
+// The shading pass as a scalar loop with OpenMP: one material of FaceWorks, one directional light with a
+// parallel shadow map, tables of 512 x 512 RGB texels. `disk`: x and y of the taps; without taps there is no
+// deep scatter.
 struct ShadeInput {
     const pellucid::bench::FrameImages& frame;
     PelMaterial material;

@@ -1,5 +1,6 @@
-// Times of the library against other implementations, by size, by feature and by thread. bench/performance_page runs this
-// program and keeps the results; `pellucid bench` measures a device with less.
+// Times of the library against other implementations, by size, by feature and by thread.
+// bench/performance_page runs this program and keeps the results; `pellucid bench` measures a device with
+// less.
 //     benchmarks [--benchmark_filter=REGEX] [--benchmark_...]
 #include "benchmarks.h"
 

@@ -3,9 +3,12 @@
 
     python3 bench/diffusion/fit_bands.py
 
-What is fitted is the whole sum on planes, seen from the front and at an angle (pixels two and three times as long as wide), for Burley's profile and Gaussians of a third of a pixel to 8 pixels. Pictures are
-shadow edges, disks, noise, and smooth light whose second difference is the same everywhere: of these the sum must get the second moment of the profile right. Errors are differences from an exact
-convolution, over what scattering changes. Weights are 0 or more, so that no light becomes negative. NumPy and SciPy are needed; it takes two minutes.
+What is fitted is the whole sum on planes, seen from the front and at an angle (pixels two and three times as
+long as wide), for Burley's profile and Gaussians of a third of a pixel to 8 pixels. Pictures are shadow
+edges, disks, noise, and smooth light whose second difference is the same everywhere: of these the sum must
+get the second moment of the profile right. Errors are differences from an exact convolution, over what
+scattering changes. Weights are 0 or more, so that no light becomes negative. NumPy and SciPy are needed; it
+takes two minutes.
 """
 
 import numpy as np
@@ -17,7 +20,7 @@ SIDE, LEVELS = 512, 7
 RINGS = (1, 2, 4, 5)  # squared distances of blocks in a band
 OFFSETS = {s: [(j, i) for j in range(-2, 3) for i in range(-2, 3) if i * i + j * j == s] for s in RINGS}
 INSIDE = slice(112, -112, 6)
-MASS = 5  # how much a plane's mass counts that is not 1: less would be taken for surface that is hidden
+WEIGHT_ERROR = 5  # factor of the error of a plane's total weight: below 1 it would pass for occluded surface
 
 
 def burley(b):
@@ -110,7 +113,7 @@ class Case:
         self.long = long
         kernel = exact_kernel(density, long)
         middle = (SIDE // 2, SIDE // 2)
-        self.masses = np.array([b[middle] for b in sums(np.ones((SIDE, SIDE)), density, long)])
+        self.weights = np.array([b[middle] for b in sums(np.ones((SIDE, SIDE)), density, long)])
         self.pictures = []
         for e in pictures():
             scattered = fftconvolve(e, kernel, mode="same")[INSIDE, INSIDE].ravel()
@@ -123,12 +126,12 @@ class Case:
         minor, major = own_area / np.pi, own_area / np.pi * self.long**2
         own = self.share(np.sqrt(2 * minor * major / (minor + major)))
         centre = share_of_blocks(self.share, self.long, 4 * inside)
-        mass = centre + blocks @ self.masses[4:]
+        weight = centre + blocks @ self.weights[4:]
         for e, scattered, brought, scale in self.pictures:
-            near = brought[:, :4] @ pixels / (pixels @ self.masses[:4])
-            found = (own * e + (centre - own) * near + brought[:, 4:] @ blocks) / mass
+            near = brought[:, :4] @ pixels / (pixels @ self.weights[:4])
+            found = (own * e + (centre - own) * near + brought[:, 4:] @ blocks) / weight
             yield (found - scattered) * scale / (2 if self.long > 2 else 1)
-        yield [MASS / self.long * (mass - 1)]
+        yield [WEIGHT_ERROR / self.long * (weight - 1)]
 
 
 def main():

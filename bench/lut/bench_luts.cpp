@@ -1,5 +1,5 @@
-// Look-up tables: the device against the sampled loop on one thread, and many tables one after another. The time of a
-// table is the device's, from OpenCL's profiling.
+// Look-up tables: the device against the sampled loop on one thread, and many tables one after another. The
+// time of a table is the device's, from OpenCL's profiling.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

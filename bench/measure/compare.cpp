@@ -53,8 +53,8 @@ std::string compareOne(Json& out, const Json& before, const Json& after, double 
     return std::log(ratio) > noise ? "slower" : std::log(ratio) < -noise ? "faster" : "same";
 }
 
-// A device of the new report and the device of the old report that it is compared with. One of the two is null for a
-// device that only one report has.
+// A device of the new report and the device of the old report that it is compared with. One of the two is
+// null for a device that only one report has.
 struct DevicePair {
     const Json *before, *after;
     bool sameDevice() const {
@@ -62,8 +62,8 @@ struct DevicePair {
     }
 };
 
-// Pairs devices of the same name and platform; of several equal devices the first with the first, and so on. If one
-// device is left over in each report, the two are compared although they differ.
+// Pairs devices of the same name and platform; of several equal devices the first with the first, and so on.
+// If one device is left over in each report, the two are compared although they differ.
 std::vector<DevicePair> pairDevices(const Json& before, const Json& after) {
     std::vector<DevicePair> pairs;
     std::vector<const Json*> left;

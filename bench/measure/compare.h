@@ -9,15 +9,15 @@ namespace pellucid::bench {
 // discarded (is_discarded()).
 nlohmann::ordered_json parseReport(const std::string& text);
 
-// {"devices": [{"name", "operations": [{"name", "old_ms", "new_ms", "ratio", "noise", "verdict"}]}], "slower",
-// "faster", "less_accurate", ...}. Verdicts: "same", "faster", "slower", "less accurate", "fails", "other size",
-// "only old", "only new", "not compared". Devices are paired by name and platform. If one device is left over in
-// each report, the two are compared, and "old_name" is the name of the old one.
+// {"devices": [{"name", "operations": [{"name", "old_ms", "new_ms", "ratio", "noise", "verdict"}]}],
+// "slower", "faster", "less_accurate", ...}. Verdicts: "same", "faster", "slower", "less accurate", "fails",
+// "other size", "only old", "only new", "not compared". Devices are paired by name and platform. If one
+// device is left over in each report, the two are compared, and "old_name" is the name of the old one.
 //
-// ratio = new / old median. A change counts when |ln ratio| is beyond `noise` = max(5 %, 4 standard errors, change of
-// the device's own copies and arithmetic between the two reports). The standard error of a median is
-// 1.2533 sigma / sqrt(samples); sigma is 1.4826 times the median absolute deviation [Rousseeuw and Croux 1993]. An
-// error counts as grown when it is more than 1.5 times the old one and 1e-7 above it.
+// ratio = new / old median. A change counts when |ln ratio| is beyond `noise` = max(5 %, 4 standard errors,
+// change of the device's own copies and arithmetic between the two reports). The standard error of a median
+// is 1.2533 sigma / sqrt(samples); sigma is 1.4826 times the median absolute deviation [Rousseeuw and Croux
+// 1993]. An error counts as grown when it is more than 1.5 times the old one and 1e-7 above it.
 nlohmann::ordered_json compareReports(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after);
 
 // A table for people.

@@ -11,13 +11,16 @@ namespace pellucid::bench {
 namespace {
 
 constexpr const char* source = R"(
-__kernel void copy4(__global const float4* a, __global float4* b) { b[get_global_id(0)] = a[get_global_id(0)]; }
-__kernel void copy16(__global const float16* a, __global float16* b) { b[get_global_id(0)] = a[get_global_id(0)]; }
+#define COPY(T, name) \
+    __kernel void name(__global const T* a, __global T* b) { b[get_global_id(0)] = a[get_global_id(0)]; }
+COPY(float4, copy4)
+COPY(float16, copy16)
 #define STEP(x) x = mad(x, a, b);
 #define ALL STEP(c0) STEP(c1) STEP(c2) STEP(c3) STEP(c4) STEP(c5) STEP(c6) STEP(c7)
 #define CHAINS(T, name)                                                        \
     __kernel void name(__global float* out, float a, float b) {                \
-        T c0 = (T)(a + 1e-3f * get_global_id(0)), c1 = c0 + 1, c2 = c0 + 2, c3 = c0 + 3, c4 = c0 + 4, c5 = c0 + 5, c6 = c0 + 6, c7 = c0 + 7; \
+        T c0 = (T)(a + 1e-3f * get_global_id(0)), c1 = c0 + 1, c2 = c0 + 2;    \
+        T c3 = c0 + 3, c4 = c0 + 4, c5 = c0 + 5, c6 = c0 + 6, c7 = c0 + 7;     \
         for (int i = 0; i < 256; ++i) { ALL ALL }                              \
         T s = c0 + c1 + c2 + c3 + c4 + c5 + c6 + c7;                           \
         out[get_global_id(0)] = SUM_##T(s);                                    \

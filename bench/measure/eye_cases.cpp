@@ -1,5 +1,5 @@
-// Eyes: the table of a cornea's caustics against the flux that enters it, and a frame that shows an eye against the tracer of
-// tests/reference, with the same table.
+// Eyes: the table of a cornea's caustics against the flux that enters it, and a frame that shows an eye
+// against the tracer of tests/reference, with the same table.
 #include <random>
 
 #include "case.h"

@@ -20,8 +20,9 @@ struct FrameImages {
     PelCamera camera = pelCameraDefaults();
 };
 
-// A screen of folded skin, 10 pixels per mm, under one directional light. `mapRelief` is the relief of the shadow map as
-// part of its depth range: 0 for one plane at `flatMapDepth`, so that the thickness needs no taps.
+// A screen of folded skin, 10 pixels per mm, under one directional light. `mapRelief` is the relief of the
+// shadow map as part of its depth range: 0 for one plane at `flatMapDepth`, so that the thickness needs no
+// taps.
 constexpr float flatMapDepth = 0.45f;
 FrameImages foldedSkin(uint32_t width, uint32_t height, float mapRelief = 0.05f);
 

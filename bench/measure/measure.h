@@ -25,13 +25,15 @@ struct Request {
     std::function<bool()> cancelled;
 };
 
-// {"name", "platform", "version", "driver", ..., "first_use", "warm_start", and what measureCases() gives}. Everything but the
-// description happens in other processes, so that a driver that hangs or crashes costs the case that it was at.
+// {"name", "platform", "version", "driver", ..., "first_use", "warm_start", and what measureCases() gives}.
+// Everything but the description happens in other processes, so that a driver that hangs or crashes costs the
+// case that it was at.
 nlohmann::ordered_json measureDevice(const Request& request);
 
-// In this process: {"copy_bytes_per_second", "operations_per_second" (null: not known), "operations": [{"name", "group", "what",
-// "items", "unit", "runs", "median_ms", "mad_ms", "device_ms", "bytes", "bandwidth_share", "operations", "arithmetic_share",
-// "error_max", "error_rms", "truth"} or {..., "failed": message}]}
+// In this process: {"copy_bytes_per_second", "operations_per_second" (null: not known), "operations":
+// [{"name", "group", "what", "items", "unit", "runs", "median_ms", "mad_ms", "device_ms", "bytes",
+// "bandwidth_share", "operations", "arithmetic_share", "error_max", "error_rms", "truth"} or {..., "failed":
+// message}]}
 nlohmann::ordered_json measureCases(const Request& request);
 
 // What a process pays once: {"device_ms", "table_ms", "shade_ms", "total_ms"} from nothing to the first table

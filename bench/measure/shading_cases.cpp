@@ -1,4 +1,5 @@
-// The pass over a screen of folded skin, by what is switched on, against the sum of section 6 in double precision.
+// The pass over a screen of folded skin, by what is switched on, against the sum of section 6 in double
+// precision.
 #include <random>
 
 #include "case.h"
@@ -129,10 +130,11 @@ std::vector<Factory> shadingCases(const Device& device, Size size) {
                      std::to_string(coverage) + " % skin";
             c.items = all;
             c.unit = "pixels";
-            // Id; position, shading normal, albedo and result; two more normals, curvature and the wide shadows.
+            // Id; position, shading normal, albedo and result; two more normals, curvature and the wide
+            // shadows.
             c.bytes = all + covered * (4 * 12 + (scattering ? 2 * 12 + 4 + 4 * settings.lights : 0));
-            // Per light: four cosines, two table look-ups, specular with its half vector; thickness and its taps. Per
-            // pixel: normals and nine harmonics of three of them.
+            // Per light: four cosines, two table look-ups, specular with its half vector; thickness and its
+            // taps. Per pixel: normals and nine harmonics of three of them.
             const double perLight = scattering ? 150.0 + (settings.taps ? 40 + 23.0 * settings.taps : 0) : 60;
             c.operations = covered * (settings.lights * perLight + (scattering ? 200 : 15));
             c.run = [=] { pass->shader.execute(); };

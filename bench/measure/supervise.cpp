@@ -85,7 +85,7 @@ Json measureCasesApart(const Request& request) {
         const std::string name = outcome.at.at("begin");
         if (request.progress) request.progress(name + ": " + outcome.why);
         lost.push_back({{"name", name}, {"group", outcome.at.at("group")}, {"failed", outcome.why}});
-        // The process did not reach any case, or reached one that it was told to leave out.
+        // The process did not reach any case, or reached one that was left out.
         if (name == "start" || !without.insert(name).second)
             return {{"copy_bytes_per_second", Json()}, {"operations_per_second", Json()}, {"operations", lost}};
     }

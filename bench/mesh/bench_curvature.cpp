@@ -1,5 +1,5 @@
-// Curvature of tori with 2:1 rings: the device against a plain loop, by order and number of vertices, and the analysis of
-// a topology.
+// Curvature of tori with 2:1 rings: the device against a plain loop, by order and number of vertices, and the
+// analysis of a topology.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -15,8 +15,8 @@ using namespace pellucid;
 namespace benchmarks {
 namespace {
 
-// shuffled: neighbours in space lie far apart in memory. irregular: each cell is cut along either diagonal, so that
-// vertices have four to eight neighbours.
+// shuffled: neighbours in space lie far apart in memory. irregular: each cell is cut along either diagonal,
+// so that vertices have four to eight neighbours.
 enum Order { ordered = 0, shuffled = 1, irregular = 2 };
 
 fixture::Mesh makeMesh(uint32_t vertices, Order order) {
@@ -127,7 +127,8 @@ void addByOrder(uint32_t vertices, Order order) {
         });
 }
 
-// The default estimator and two passes, as in a frame of a deforming head: of all vertices, and of a part that moved.
+// The default estimator and two passes, as in a frame of a deforming head: of all vertices, and of a part
+// that moved.
 void addMoving() {
     constexpr uint32_t vertices = 100000;
     addCase("deformingFrame", vertices, ordered, "",

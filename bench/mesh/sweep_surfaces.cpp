@@ -1,8 +1,9 @@
-// Error of every curvature estimator on every surface whose curvature is known, as rows of docs/guide/curvature.md:
-// tessellations of about 20,000 vertices, exact normals; "noisy": the irregular one with noise of 2 % of an edge, normals
-// from the mesh, smoothed over three edges, by cotangents and by areas. RMS error of mean curvature in percent of the RMS
-// curvedness of the truth (which does not vanish on a saddle), away from borders; of a plane times its side. Behind the
-// slash: the border itself and its ring. Then two tables of spheres: of any size, and away from the origin.
+// Error of every curvature estimator on every surface whose curvature is known, as rows of
+// docs/guide/curvature.md: tessellations of about 20,000 vertices, exact normals; "noisy": the irregular one
+// with noise of 2 % of an edge, normals from the mesh, smoothed over three edges, by cotangents and by areas.
+// RMS error of mean curvature in percent of the RMS curvedness of the truth (which does not vanish on a
+// saddle), away from borders; of a plane times its side. Behind the slash: the border itself and its ring.
+// Then two tables of spheres: of any size, and away from the origin.
 //   sweep_surfaces [CELLS]   of a grid's side, default 140
 #include <pellucid/pellucid.hpp>
 
@@ -99,7 +100,8 @@ void measure(const reference::AnalyticMesh& truth, bool plane, Noise noise, PelC
 
 constexpr PelCurvatureEstimator estimators[] = {PEL_CURVATURE_EDGE, PEL_CURVATURE_TENSOR, PEL_CURVATURE_QUADRIC};
 
-// Relative RMS errors of an irregular sphere of that radius, moved by `distance` along all three axes; normals are exact.
+// Relative RMS errors of an irregular sphere of that radius, moved by `distance` along all three axes;
+// normals are exact.
 void measureSphere(double radius, double distance, int cells) {
     reference::AnalyticMesh sphere =
         tessellate(reference::sphereSurface(radius), cells, cells, Tessellation::irregular);

@@ -1,8 +1,8 @@
 // The shading pass against the scalar C++ loop, by feature, coverage, size, lights and tile lists.
 //
-// Frames: `full` is a screen of folded skin, `demo_key` and `demo_backlit` are the views that `pellucid demo` left in
-// out/demo or PELLUCID_DEMO_DIR. `lit` is what a renderer without scattering shades there: Lambert with a plain shadow,
-// ambient and specular light; `plain` leaves out the shadow and the ambient light too.
+// Frames: `full` is a screen of folded skin, `demo_key` and `demo_backlit` are the views that `pellucid demo`
+// left in out/demo or PELLUCID_DEMO_DIR. `lit` is what a renderer without scattering shades there: Lambert
+// with a plain shadow, ambient and specular light; `plain` leaves out the shadow and the ambient light too.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -24,8 +24,8 @@ namespace {
 
 const std::string demoViews[] = {"key", "backlit"};
 
-// A view as `pellucid demo` wrote it. The demo's skin takes transmission from its profile; taps need deep scatter by a
-// colour, which FrameSettings gives.
+// A view as `pellucid demo` wrote it. The demo's skin takes transmission from its profile; taps need deep
+// scatter by a colour, which FrameSettings gives.
 FrameImages demoView(const std::string& view) {
     const io::SceneFile file = io::readScene(demo::directory() + "/" + view + ".toml");
     const io::Image g = io::readImage(demo::directory() + "/" + view + "_gbuffer.exr");
@@ -66,7 +66,8 @@ Run library(const std::string& name, const FrameSettings& settings) {
     };
 }
 
-// The same settings against a filter of all texels at every pixel: root mean square of radiance over pixels of skin.
+// The same settings against a filter of all texels at every pixel: root mean square of radiance over pixels
+// of skin.
 Run wideShadow(const std::string& view, FrameSettings settings) {
     return [=](benchmark::State& state) {
         const Frame& f = frame(view);
@@ -138,7 +139,8 @@ Run pixels(uint32_t width, uint32_t lights) {
     };
 }
 
-// Discs on a grid, so that tiles of every kind lie side by side; `share` of the area is `inside`, the rest `outside`.
+// Discs on a grid, so that tiles of every kind lie side by side; `share` of the area is `inside`, the rest
+// `outside`.
 std::vector<uint8_t> discs(double share, uint8_t inside, uint8_t outside) {
     std::vector<uint8_t> ids;
     const double cell = 540, radius = share >= 1 ? cell : cell * std::sqrt(share / M_PI);

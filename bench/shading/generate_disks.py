@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Writes kernels/lib/shading/poisson_disk.clh: disks of 8, 16 and 32 taps for the thickness term.
 
-Best-candidate points [Mitchell 1991] relaxed towards the centroids of their cells [Lloyd 1982], stopped early so that
-no rings form, then moved so that their mean is the centre. Taps are ordered farthest first, so that the
-first eight already cover the disk. The same run writes the same bytes. Usage: generate_disks.py > FILE
+Best-candidate points [Mitchell 1991] relaxed towards the centroids of their cells [Lloyd 1982], stopped early
+so that no rings form, then moved so that their mean is the centre. Taps are ordered farthest first, so that
+the first eight already cover the disk. The same run writes the same bytes. Usage: generate_disks.py > FILE
 """
+
 import math
 import random
 
@@ -66,7 +67,11 @@ def disk(count):
 
 
 def main():
-    print("""// Taps of the thickness term: points of the unit disk, evenly spread, none near another, their mean in the centre.
+    print(
+        "// Taps of the thickness term: points of the unit disk, evenly spread, none near another, "
+        "their mean in the centre."
+    )
+    print("""\
 // Written by bench/shading/generate_disks.py, which says how: do not edit.
 #ifndef PEL_LIB_POISSON_DISK
 #define PEL_LIB_POISSON_DISK

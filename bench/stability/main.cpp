@@ -1,6 +1,6 @@
 // Searches the inputs of every operation for the worst error against the double-precision oracle of the
-// tests, on one device, and writes what it found as JSON; bench/stability/write_page makes docs/stability.md of
-// such records. Ends with 1 where an error is beyond its limit.
+// tests, on one device, and writes what it found as JSON; bench/stability/write_page makes docs/stability.md
+// of such records. Ends with 1 where an error is beyond its limit.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <fstream>

@@ -94,7 +94,8 @@ void addBench(Command& app);
 void addView(Command& app);  // and gallery
 void addDescribe(Command& app, const CLI::App& parser);
 
-// Names of types (Option::typeName) for which shells complete values. A text without a name of its own is a path.
+// Names of types (Option::typeName) for which shells complete values. A text without a name of its own is a
+// path.
 constexpr const char *deviceWord = "DEVICE", *profileWord = "PROFILE";
 
 }  // namespace pellucid::cli

@@ -12,7 +12,8 @@ namespace {
 constexpr int viewWidth = 900, viewHeight = 1000;
 constexpr io::Srgb8 background{20, 20, 20};
 
-// Darkened a little where the surface turns away, so that its shape can be read. Rendered `supersampling` times as wide and high.
+// Darkened a little where the surface turns away, so that its shape can be read. Rendered `supersampling`
+// times as wide and high.
 io::Picture curvatureView(const sample::Scene& scene, const sample::HeadPose& pose,
                           const sample::Framing& framing, int width, int height, int supersampling, float low,
                           float high) {

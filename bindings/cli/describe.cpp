@@ -1,6 +1,6 @@
-// pellucid describe: every subcommand and option as one JSON object, from the parsers themselves. Manual pages,
-// completions for shells and the tables of docs/guide/command-line.md are made from it (packaging/command_pages).
-// --help shows options in the same words.
+// pellucid describe: every subcommand and option as one JSON object, from the parsers themselves. Manual
+// pages, completions for shells and the tables of docs/guide/command-line.md are made from it
+// (packaging/command_pages). --help shows options in the same words.
 #include "command_help.h"
 #include "io/spelling.h"
 

@@ -16,7 +16,8 @@ struct ImportView {
 
 // Whether this build has the renderer.
 bool canDraw();
-// Renders into `folder`: gbuffer.exr, and shadow maps of directional and spot lights; writes the scene's channels, camera and lights.
+// Renders into `folder`: gbuffer.exr, and shadow maps of directional and spot lights; writes the scene's
+// channels, camera and lights.
 void drawImport(Run& run, const std::string& folder, io::ImportedGltf& imported, const ImportView& view);
 
 }  // namespace pellucid::cli

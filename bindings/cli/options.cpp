@@ -65,6 +65,7 @@ VALUE_TYPE(int)
 VALUE_TYPE(uint32_t)
 VALUE_TYPE(uint64_t)
 VALUE_TYPE(std::optional<int>)
+VALUE_TYPE(std::optional<double>)
 VALUE_TYPE(std::vector<std::string>)
 VALUE_TYPE(std::vector<float>)
 

@@ -12,8 +12,8 @@ class Option;
 
 namespace pellucid::cli {
 
-// Checks a value, which it may rewrite. `test` returns "" or what is wrong; `description` is shown in the help: a range,
-// "0 to 1000", or words, "{y,z}".
+// Checks a value, which it may rewrite. `test` returns "" or what is wrong; `description` is shown in the
+// help: a range, "0 to 1000", or words, "{y,z}".
 struct Check {
     std::function<std::string(std::string&)> test;
     std::string description;

@@ -47,8 +47,9 @@ struct Inputs {
     std::optional<io::SceneFrame> frame;
 };
 
-// Reads what the scene names into the device's memory. A second thread prepares the frame meanwhile. Its errors are dropped: where there is
-// no frame, the pictures are read again and it is made with them, and reports them.
+// Reads what the scene names into the device's memory. A second thread prepares the frame meanwhile. Its
+// errors are dropped: where there is no frame, the pictures are read again and it is made with them, and
+// reports them.
 Inputs frameOf(const std::string& gbuffer, const Device& device, const io::SceneFile& scene,
                io::LutStore& luts, const PelShaderOptions& options, const std::vector<PelImageSlot>& outputs) {
     Inputs inputs;

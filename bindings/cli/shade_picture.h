@@ -14,8 +14,8 @@ std::vector<std::string> showableParts();
 // The slot of a part; PEL_SLOT_RADIANCE of "final".
 PelImageSlot slotOfPart(const std::string& part);
 
-// The parts side by side, labelled where there is more than one, lengths as colours with a bar. `frame` was shaded with their
-// slots as outputs.
+// The parts side by side, labelled where there is more than one, lengths as colours with a bar. `frame` was
+// shaded with their slots as outputs.
 void writeShadePicture(const std::string& path, const io::Image& gbuffer, const io::SceneFrame& frame,
                        const std::vector<std::string>& parts, const io::ToneMap& tone);
 

@@ -28,8 +28,8 @@ class Stages {
     }
     // Says on a terminal what is being done, until its line comes.
     static void begin(const std::string& name);
-    // The same for work whose kernels may have to be compiled: it is done twice, the second time is the stage's, and what the first
-    // took longer belongs to the time of preparation.
+    // The same for work whose kernels may have to be compiled: it is done twice, the second time is the
+    // stage's, and what the first took longer belongs to the time of preparation.
     template <class Work>
     void measureWarm(const std::string& name, uint64_t count, const char* unit, uint64_t bytes, Work&& work) {
         const double first = milliseconds(work);
@@ -60,7 +60,8 @@ class Stages {
         std::string name, unit;
         double wall, device;  // ms
         uint64_t count, bytes;
-        // Items per second of device time if there is any, otherwise of wall time. NaN where the clock is too coarse.
+        // Items per second of device time if there is any, otherwise of wall time. NaN where the clock is too
+        // coarse.
         double perSecond() const {
             constexpr double shortest = 1e-3;  // ms
             const double time = device > 0 ? device : wall;

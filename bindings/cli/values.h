@@ -1,5 +1,6 @@
-// Checks of option values. CLI11's own checks answer a wrong value with lists of names and numbers, let NaN pass, and
-// print the largest double in full. The description of a check is its range, "0 to 1000", or its words, "{y,z}".
+// Checks of option values. CLI11's own checks answer a wrong value with lists of names and numbers, let NaN
+// pass, and print the largest double in full. The description of a check is its range, "0 to 1000", or its
+// words, "{y,z}".
 #pragma once
 #include <algorithm>
 #include <span>

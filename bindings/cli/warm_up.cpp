@@ -17,7 +17,8 @@ struct Arguments {
 };
 
 void run(const Arguments& a) {
-    // Binaries as well: a process loads one in a fraction of the time that PoCL takes to find a program in its own cache.
+    // Binaries as well: a process loads one in a fraction of the time that PoCL takes to find a program in
+    // its own cache.
     if (!std::getenv("PELLUCID_CACHE")) pel::system::setVariable("PELLUCID_CACHE", "on");
     Run run(a.run);
     const auto stats = [&] {

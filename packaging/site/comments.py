@@ -1,7 +1,10 @@
-"""Doxygen's filter: ordinary comments of a header become documentation, so that the header itself stays free of marks.
+"""Doxygen's filter: ordinary comments of a header become documentation, so that the header itself stays free
+of marks.
 
-A comment on lines of its own describes what follows, one behind code what stands before it. A heading (/* ---- Words ---- */) stays out.
+A comment on lines of its own describes what follows, one behind code what stands before it. A heading (/*
+---- Words ---- */) stays out.
 """
+
 import re
 import sys
 
@@ -23,11 +26,12 @@ def marked(text: str) -> str:
 
     def block(match: re.Match) -> str:
         start = text.rfind("\n", 0, match.start()) + 1
-        behind = text[start:match.start()].strip()
+        behind = text[start : match.start()].strip()
         if HEADING.search(match.group(0)) or "SPDX" in match.group(0):
             return match.group(0)
         # The first comment of a file is about the file.
         return ("/**<" if behind else "/** @file\n *" if match.start() == 0 else "/**") + match.group(0)[2:]
+
     if text.startswith("///"):
         text = "/// @file\n" + text
     return re.sub(r"/\*(?![*<]).*?\*/", block, text, flags=re.S)

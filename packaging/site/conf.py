@@ -1,4 +1,5 @@
 """Sphinx: the guides, as they stand in the tree, with search. `build` gives the staged tree as source."""
+
 project = "Pellucid"
 author = "The Pellucid developers"
 copyright = "The Pellucid developers, Apache-2.0"

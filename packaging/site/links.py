@@ -1,4 +1,6 @@
-"""Links and anchors of a site on disk: what leads nowhere, and what must be fetched from elsewhere to read a page."""
+"""Links and anchors of a site on disk: what leads nowhere, and what must be fetched from elsewhere to read a
+page."""
+
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
@@ -26,7 +28,10 @@ class Page(HTMLParser):
 
 
 def faults(site: Path) -> list[str]:
-    pages = {path: Page(path.read_text(encoding="utf-8", errors="replace")) for path in sorted(site.rglob("*.html"))}
+    pages = {
+        path: Page(path.read_text(encoding="utf-8", errors="replace"))
+        for path in sorted(site.rglob("*.html"))
+    }
     found = []
     for path, page in pages.items():
         where = path.relative_to(site)
@@ -41,6 +46,10 @@ def faults(site: Path) -> list[str]:
                 target = target / "index.html"
             if not target.is_relative_to(site) or not target.exists():
                 found.append(f"{where} links to {link}, which is not there")
-            elif parts.fragment and target in pages and unquote(parts.fragment) not in pages[target].anchors | {"top"}:
+            elif (
+                parts.fragment
+                and target in pages
+                and unquote(parts.fragment) not in pages[target].anchors | {"top"}
+            ):
                 found.append(f"{where} links to {link}, which has no such anchor")
     return found

@@ -207,7 +207,8 @@ TEST_F(BenchCommand, ComparesOnlyWhatIsComparable) {
     EXPECT_TRUE(contains(text.out, "E, compared with another device: D")) << text.out;
 }
 
-// The page of a report: which device, how many frames a second, at what error, before all else; and no mark-up from names.
+// The page of a report: which device, how many frames a second, at what error, before all else; and no
+// mark-up from names.
 TEST_F(BenchCommand, ThePageAnswersItsQuestionFirst) {
     Json made = Json::parse(report(20, 0.01, 3e-6, 1e10, "shade-surface"));
     made["devices"][0]["name"] = "<D&'\">";

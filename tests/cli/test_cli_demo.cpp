@@ -81,7 +81,8 @@ TEST_F(Demo, PicturesAreThoseThatShadeMakesOfItsGBuffer) {
         EXPECT_EQ(read.lights.size(), 1u) << scene;
         EXPECT_EQ(read.materials.at(0).material.scattering, PEL_SCATTERING_PREINTEGRATED) << scene;
     }
-    // Auto's distance from the reference, which the sheet shows: once more by the commands, for skin without gloss and pores.
+    // Auto's distance from the reference, which the sheet shows: once more by the commands, for skin without
+    // gloss and pores.
     std::string dull;
     std::istringstream lines(read(path("demo/key.toml")));
     for (std::string line; std::getline(lines, line);) {

@@ -1,5 +1,5 @@
-// The demo's pictures look as they did when somebody last looked at them. After a change that is meant to be seen, look at them at full
-// size and keep the new ones: PELLUCID_KEEP_PICTURES=1 test_cli_demo_pictures.
+// The demo's pictures look as they did when somebody last looked at them. After a change that is meant to be
+// seen, look at them at full size and keep the new ones: PELLUCID_KEEP_PICTURES=1 test_cli_demo_pictures.
 #include <cstdlib>
 
 #include "cli_run.h"
@@ -13,8 +13,8 @@ TEST_F(DemoPictures, AreThoseThatSomebodyLookedAt) {
     const Result demo = run({"demo", "-o", path("demo"), "--size", "192x108", "--no-reference"});
     ASSERT_EQ(demo.exitCode, 0) << demo.err;
     const char* keep = std::getenv("PELLUCID_KEEP_PICTURES");
-    // 0.0003 is one bit in each 170th value, which other roundings may change; a backdrop or a sky that is a tenth off is more. Labels of
-    // the sheet are drawn by another library.
+    // 0.0003 is one bit in each 170th value, which other roundings may change; a backdrop or a sky that is a
+    // tenth off is more. Labels of the sheet are drawn by another library.
     for (const auto& [name, most] : {std::pair{"key.png", "0.0003"},
                                      {"backlit.png", "0.0003"},
                                      {"backlit_parts.png", "0.0003"},

@@ -40,7 +40,8 @@ class Files : public CommandTest {
 
 }  // namespace
 
-// Some 250 libraries come with OpenImageIO; the command starts without them. tests/outside checks that they are found.
+// Some 250 libraries come with OpenImageIO; the command starts without them. tests/outside checks that they
+// are found.
 TEST_F(Files, PicturesAreAModuleOfTheirOwn) {
     const std::string libraries = run({"--version"}, "LD_TRACE_LOADED_OBJECTS=1").out;
     EXPECT_TRUE(contains(libraries, "libpellucid.so"));

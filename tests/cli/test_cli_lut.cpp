@@ -68,7 +68,8 @@ TEST_F(CliLut, LutFilesHoldTheLibrarysTexels) {
     EXPECT_EQ(io::readImage(path("h.exr")).channels[0].type, io::ChannelType::Half);
 }
 
-// Without more, the tables that a material makes of its profile; by a preset those of FaceWorks; and what is asked for by itself counts.
+// Without more, the tables that a material makes of its profile; by a preset those of FaceWorks; and what is
+// asked for by itself counts.
 TEST_F(CliLut, TablesAreAMaterialsUnlessAPresetSaysOtherwise) {
     const Device device("");
     const auto info = [&](std::vector<std::string> arguments) {

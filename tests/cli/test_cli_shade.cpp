@@ -1,4 +1,5 @@
-// `pellucid shade` and `pellucid warm-up`: G-buffer and scene file in, pictures out; what is wrong with either.
+// `pellucid shade` and `pellucid warm-up`: G-buffer and scene file in, pictures out; what is wrong with
+// either.
 #include "cli_shade.h"
 #include "tolerances.h"
 
@@ -257,7 +258,8 @@ TEST_F(Shade, ProgramsAreBuiltAheadForTheDriversCache) {
 }
 
 TEST_F(Shade, AWarmUpOfALargeFrameThatScattersLeavesNothingToCompile) {
-    // More vectors of pixels, and of texels of the shadow map, than the ranges for which PoCL compiles a kernel by itself.
+    // More vectors of pixels, and of texels of the shadow map, than the ranges for which PoCL compiles a
+    // kernel by itself.
     const auto grid = [](int columns, int rows, const std::vector<std::string>& names, auto value) {
         io::Image image;
         image.width = columns, image.height = rows;

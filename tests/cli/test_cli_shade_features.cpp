@@ -190,7 +190,8 @@ TEST_F(Shade, AnAmbientCubeIsReadFromAFile) {
     expectRefused(command("cube.toml"), 3, "six square faces");
 }
 
-// A shelf in the left half of a cube's lowest face shades the left half of a floor; a cube of another shape is named.
+// A shelf in the left half of a cube's lowest face shades the left half of a floor; a cube of another shape
+// is named.
 TEST_F(Shade, ACubeShadowMapFromTheSceneFile) {
     std::vector<float> positions, up;
     for (int i = 0; i < width * height; ++i) {

@@ -93,12 +93,13 @@ TEST_F(ShadeProfile, ADistanceIsNoDeviceDepth) {
     EXPECT_NE(warnings_.find("depth channel reaches 250"), std::string::npos) << warnings_;
 }
 
-// Distances below 1, as a scene in metres has them, would be places that are much too near or too far apart; so would the right depth of a
-// scene whose unit is wrong.
+// Distances below 1, as a scene in metres has them, would be places that are much too near or too far apart;
+// so would the right depth of a scene whose unit is wrong.
 TEST_F(ShadeProfile, DepthThatGivesNoLikelySizeIsSaid) {
     scene_.materials[0].profile = "skin";
     scene_.channels[PEL_SLOT_DEPTH] = {"D.Z"};
-    // A camera at the origin that looks along z, with 90 degrees of view: near plane at 0.1 m, far plane at 100 m.
+    // A camera at the origin that looks along z, with 90 degrees of view: near plane at 0.1 m, far plane at
+    // 100 m.
     const float near = 0.1f, far = 100;
     std::fill(scene_.camera.inverseViewProjection, scene_.camera.inverseViewProjection + 16, 0.0f);
     float* m = scene_.camera.inverseViewProjection;

@@ -71,7 +71,8 @@ TEST_F(CliValues, EveryOptionNamesWhatItTakes) {
     }
 }
 
-// The name of a file whose extension stands for no format is wrong use in every argument, and bad input in a file.
+// The name of a file whose extension stands for no format is wrong use in every argument, and bad input in a
+// file.
 TEST_F(CliValues, AnUnknownExtensionIsWrongUseEverywhere) {
     const std::string gbuffer = path("g.exr"), scene = path("s.toml"), bad = path("a.foo");
     write("a.foo", "");

@@ -1,7 +1,9 @@
-"""Manual pages and completions are made from the command itself, and the guide's tables are what it says today.
+"""Manual pages and completions are made from the command itself, and the guide's tables are what it says
+today.
 
-    test_command_pages.py COMMAND
+test_command_pages.py COMMAND
 """
+
 import shutil
 import subprocess
 import sys
@@ -27,9 +29,18 @@ class CommandPages(unittest.TestCase):
 
     def completed(self, *words):
         """What bash offers for the last word."""
-        script = ('source "$1"; shift; COMP_WORDS=(pellucid "$@"); COMP_CWORD=$#; _pellucid; printf "%s\\n" "${COMPREPLY[@]}"')
+        script = (
+            'source "$1"; shift; COMP_WORDS=(pellucid "$@"); COMP_CWORD=$#; _pellucid; '
+            'printf "%s\\n" "${COMPREPLY[@]}"'
+        )
         file = self.out / "share/bash-completion/completions/pellucid"
-        out = subprocess.run(["bash", "-c", script, "bash", file, *words], check=True, capture_output=True, text=True, cwd=self.out)
+        out = subprocess.run(
+            ["bash", "-c", script, "bash", file, *words],
+            check=True,
+            capture_output=True,
+            text=True,
+            cwd=self.out,
+        )
         return out.stdout.split()
 
     def test_the_guide_is_up_to_date(self):
@@ -51,7 +62,10 @@ class CommandPages(unittest.TestCase):
             self.assertEqual(self.completed(*words, ""), [], words)
 
     def test_other_shells_can_read_theirs(self):
-        for shell, file in (("zsh", "zsh/site-functions/_pellucid"), ("fish", "fish/vendor_completions.d/pellucid.fish")):
+        for shell, file in (
+            ("zsh", "zsh/site-functions/_pellucid"),
+            ("fish", "fish/vendor_completions.d/pellucid.fish"),
+        ):
             path = self.out / "share" / file
             self.assertIn("smooth-weights", path.read_text())
             if shutil.which(shell):
@@ -64,7 +78,11 @@ class CommandPages(unittest.TestCase):
         shade = (self.out / "share/man/man1/pellucid-shade.1").read_text()
         self.assertIn("scene file (TOML)", shade)
         if shutil.which("groff"):
-            read = subprocess.run(["groff", "-man", "-ww", "-z", *(self.out / "share/man/man1").iterdir()], capture_output=True, text=True)
+            read = subprocess.run(
+                ["groff", "-man", "-ww", "-z", *(self.out / "share/man/man1").iterdir()],
+                capture_output=True,
+                text=True,
+            )
             self.assertEqual((read.returncode, read.stderr), (0, ""))
 
 
