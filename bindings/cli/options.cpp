@@ -34,6 +34,14 @@ Option* Option::expected(int values) {
     option_->expected(values);
     return this;
 }
+Option* Option::excludes(const Option* other) {
+    option_->excludes(other->option_);
+    return this;
+}
+Option* Option::needs(const Option* other) {
+    option_->needs(other->option_);
+    return this;
+}
 Option* Option::hidden() {
     option_->group("");
     return this;
@@ -68,6 +76,7 @@ VALUE_TYPE(std::optional<int>)
 VALUE_TYPE(std::optional<double>)
 VALUE_TYPE(std::vector<std::string>)
 VALUE_TYPE(std::vector<float>)
+VALUE_TYPE(std::vector<double>)
 
 Option* Command::addOptionOf(const std::string& names, std::function<void(const std::string&)> take,
                              const std::string& help) {

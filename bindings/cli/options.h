@@ -29,6 +29,8 @@ class Option {
     Option* oneEach();  // of several values, each is given by the option's name
     Option* separatedBy(char delimiter);
     Option* expected(int values);
+    Option* excludes(const Option* other);
+    Option* needs(const Option* other);
     Option* hidden();
     bool given() const;
 

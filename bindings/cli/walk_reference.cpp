@@ -6,35 +6,37 @@
 
 namespace pellucid::cli {
 
-void addWalkOptions(CLI::App& command, WalkArguments& walk) {
-    CLI::Option* enabled = command.add_flag(
+void addWalkOptions(Command& command, WalkArguments& walk) {
+    Option* enabled = command.addFlag(
         "--walk", walk.enabled,
         "trace light through the volume (random walk) instead of integrating the profile over the "
         "surface; writes two independent halves, First and Second");
-    CLI::Option* samples = command.add_option("--samples", walk.samples, "walks per pixel, channel and half")
-                               ->check(inRange(1, int(sample::maxWalkSamples)))
-                               ->capture_default_str();
+    Option* samples = command.addOption("--samples", walk.samples, "walks per pixel, channel and half")
+                          ->check(inRange(1, int(sample::maxWalkSamples)))
+                          ->showDefault()
+                          ->needs(enabled);
     command
-        .add_option("--noise", walk.noise,
-                    "instead of --samples: the standard error that a pixel shall have, such as 2e-3")
+        .addOption("--noise", walk.noise,
+                   "instead of --samples: the standard error that a pixel shall have, such as 2e-3")
         ->check(isPositive())
-        ->excludes(samples);
-    command.add_option("--seed", walk.seed, "of the random numbers; the same seed gives the same result")
-        ->capture_default_str();
+        ->excludes(samples)
+        ->needs(enabled);
+    command.addOption("--seed", walk.seed, "of the random numbers; the same seed gives the same result")
+        ->showDefault()
+        ->needs(enabled);
     command
-        .add_option(
-            "--reflectance", walk.reflectance,
-            "share of light that a large plane of the medium reflects, per channel (default: the mean "
-            "albedo of the material's pixels, or the albedo of the material)")
+        .addOption("--reflectance", walk.reflectance,
+                   "share of light that a large plane of the medium reflects, per channel (default: the mean "
+                   "albedo of the material's pixels, or the albedo of the material)")
         ->expected(3)
-        ->check(inRange(0.0, 1.0));
+        ->check(inRange(0.0, 1.0))
+        ->needs(enabled);
     command
-        .add_option("--boundary", walk.boundary,
-                    "index-matched, or fresnel: a smooth surface of a refractive index of 1.4")
+        .addOption("--boundary", walk.boundary,
+                   "index-matched, or fresnel: a smooth surface of a refractive index of 1.4")
         ->check(isOneOf({"index-matched", "fresnel"}))
-        ->capture_default_str();
-    for (const char* option : {"--samples", "--noise", "--seed", "--reflectance", "--boundary"})
-        command.get_option(option)->needs(enabled);
+        ->showDefault()
+        ->needs(enabled);
 }
 
 sample::Medium mediumOf(const WalkArguments& walk, const Profile& profile, double scale,

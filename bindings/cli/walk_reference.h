@@ -20,7 +20,7 @@ struct WalkArguments {
     std::string boundary = "index-matched";
 };
 
-void addWalkOptions(CLI::App& command, WalkArguments& walk);
+void addWalkOptions(Command& command, WalkArguments& walk);
 
 using RgbValues = std::array<double, 3>;
 
