@@ -205,15 +205,19 @@ void run(Arguments a) {
 
     io::LutStore luts(run.device());
     const io::SceneFile standard = standardLuts();
-    const uint64_t texels = 512 * 512;
     Lut curvatureLut, shadowLut;
-    // A store of its own, which has nothing yet.
-    stages.measureWarm("curvature LUT", texels, "texels", texels * 16, [&] {
-        curvatureLut = io::LutStore(run.device()).get(standard, standard.luts[0].name, PEL_LUT_CURVATURE);
-    });
-    stages.measureWarm("shadow LUT", texels, "texels", texels * 16, [&] {
-        shadowLut = io::LutStore(run.device()).get(standard, standard.luts[1].name, PEL_LUT_SHADOW);
-    });
+    const auto makeTable = [&](const char* title, size_t index, Lut& lut) {
+        const io::SceneLut& table = standard.luts[index];
+        const bool isShadow = table.info.kind == PEL_LUT_SHADOW;
+        const uint64_t texels = isShadow ? uint64_t(table.info.shadow.width) * table.info.shadow.height
+                                         : uint64_t(table.info.curvature.width) * table.info.curvature.height;
+        // An empty store, so that the table is made.
+        stages.measureWarm(title, texels, "texels", texels * 16, [&] {
+            lut = io::LutStore(run.device()).get(standard, table.name, table.info.kind);
+        });
+    };
+    makeTable("curvature LUT", 0, curvatureLut);
+    makeTable("shadow LUT", 1, shadowLut);
 
     const sample::Scene scene(sample::MeshView{mesh.positions, mesh.normals, mesh.uvs, curvature.values,
                                                mesh.triangles, head.materials});

@@ -76,7 +76,8 @@ TEST_F(CliValues, EveryOptionNamesWhatItTakes) {
 TEST_F(CliValues, AnUnknownExtensionIsWrongUseEverywhere) {
     const std::string gbuffer = path("g.exr"), scene = path("s.toml"), bad = path("a.foo");
     write("a.foo", "");
-    write("s.toml", "version = 2\n");
+    write("s.toml",
+          "version = 2\n[channels]\nnormal_shading = [\"N.X\", \"N.Y\", \"N.Z\"]\n[[material]]\nid = 1\n");
     for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
              {"curvature", bad, "-o", path("o.npy")},
              {"curvature", path("m.ply"), "-o", bad},
