@@ -76,7 +76,8 @@ std::vector<PelLight> Frame::lights(const FrameSettings& settings) const {
     std::vector<PelLight> lights(settings.lights, images_.light);
     for (uint32_t i = 1; i < settings.lights; ++i)
         std::swap(lights[i].toLight[i % 3], lights[i].toLight[(i + 1) % 3]);
-    if (settings.filterTexels && !lights.empty()) lights[0].shadowFilterTexels = settings.filterTexels;
+    for (PelLight& light : lights) light.shadowFilterTexels = 0;
+    if (!lights.empty()) lights[0].shadowFilterTexels = settings.filterTexels;
     return lights;
 }
 
