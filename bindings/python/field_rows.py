@@ -1,28 +1,37 @@
 """Reads the rows of pellucid_fields.h."""
+
 from __future__ import annotations
 
 import re
 from pathlib import Path
 from typing import NamedTuple
 
-CONSTANTS = {"PEL_TINY": 1e-6, "PEL_HUGE": 1e18, "PEL_ABOVE_0": 1.401298464e-45, "PEL_FINITE": 3.402823466e38}
-ROW = re.compile(r'X\((?P<kind>\w+), (?P<name>\w+), (?P<default>\([^)]*\)|[^,]+), (?P<min>[^,]+), (?P<max>[^,]+), '
-                 r'(?P<special>[^,]+), "(?P<unit>[^"]*)", "(?P<key>\w+)", '
-                 r'(?:PEL_NO_SLIDER|PEL_SLIDER\((?P<slider>[^)]*)\)), (?P<words>"(?:[^"\\]|\\.)*"(?: "(?:[^"\\]|\\.)*")*)\)'
-                 r"|PEL_EACH_(?P<list>\w+)_FIELD\(X\)")
+CONSTANTS = {
+    "PEL_TINY": 1e-6,
+    "PEL_HUGE": 1e18,
+    "PEL_ABOVE_0": 1.401298464e-45,
+    "PEL_FINITE": 3.402823466e38,
+}
+ROW = re.compile(
+    r"X\((?P<kind>\w+), (?P<name>\w+), (?P<default>\([^)]*\)|[^,]+), (?P<min>[^,]+), (?P<max>[^,]+), "
+    r'(?P<special>[^,]+), "(?P<unit>[^"]*)", "(?P<key>\w+)", '
+    r"(?:PEL_NO_SLIDER|PEL_SLIDER\((?P<slider>[^)]*)\)), "
+    r'(?P<words>"(?:[^"\\]|\\.)*"(?: "(?:[^"\\]|\\.)*")*)\)'
+    r"|PEL_EACH_(?P<list>\w+)_FIELD\(X\)"
+)
 
 
 class Row(NamedTuple):
     """A field: its range, and what files, pages and sliders show of it."""
 
-    kind: str                                 # FLOAT, UINT, COLOR, FREE, FREE_UINT, VECTOR or MATRIX
-    name: str                                 # in C
+    kind: str  # FLOAT, UINT, COLOR, FREE, FREE_UINT, VECTOR or MATRIX
+    name: str  # in C
     default: float | tuple[float, ...] | None  # None: the identity matrix
     min: float
     max: float
     special: float | None
     unit: str
-    key: str                                  # in files
+    key: str  # in files
     slider: tuple[str, float, float, float] | None  # label, min, max, step
     words: str
 
@@ -46,7 +55,18 @@ def row(m: re.Match[str]) -> Row:
         slider = (label, low, high, step)
     words = "".join(re.findall(r'"((?:[^"\\]|\\.)*)"', m["words"])).replace('\\"', '"')
     special = None if m["special"] == "PEL_NONE" else number(m["special"])
-    return Row(m["kind"], m["name"], default, number(m["min"]), number(m["max"]), special, m["unit"], m["key"], slider, words)
+    return Row(
+        m["kind"],
+        m["name"],
+        default,
+        number(m["min"]),
+        number(m["max"]),
+        special,
+        m["unit"],
+        m["key"],
+        slider,
+        words,
+    )
 
 
 def parse(path: str | Path) -> dict[str, list[Row]]:
@@ -59,12 +79,12 @@ def parse(path: str | Path) -> dict[str, list[Row]]:
         if name not in lists:
             body, found, end = re.sub(r"\s+", " ", bodies[name]).strip(), [], 0
             for m in ROW.finditer(body):
-                if body[end:m.start()].strip():
+                if body[end : m.start()].strip():
                     break
                 found += rows_of(m["list"]) if m["list"] else [row(m)]
                 end = m.end()
             if body[end:].strip():
-                raise SystemExit(f"{path}: PEL_EACH_{name}_FIELD: not understood: {body[end:end + 80]}")
+                raise SystemExit(f"{path}: PEL_EACH_{name}_FIELD: not understood: {body[end : end + 80]}")
             lists[name] = found
         return lists[name]
 

@@ -12,6 +12,8 @@ import sys
 import textwrap
 from pathlib import Path
 
+import field_rows
+
 SCALARS = {
     "uint32_t": ("np.uint32", "int"), "uint64_t": ("np.uint64", "int"), "int32_t": ("np.int32", "int"),
     "int": ("np.intc", "int"), "float": ("np.float32", "float"), "double": ("np.float64", "float"),
@@ -172,6 +174,14 @@ def python_module(enums, structs):
     return "\n".join(out) + "\n"
 
 
+def sliders(rows):
+    """The sliders of fields that have one, by the name of their key in files."""
+    found = {row.key: row.slider for list_of_rows in rows.values() for row in list_of_rows if row.slider}
+    entries = "".join(f'    "{key}": {slider!r},\n' for key, slider in found.items())
+    return (f"\nSLIDERS: dict[str, tuple[str, float, float, float]] = {{\n{entries}}}\n"
+            '"""Label, minimum, maximum and step of the viewer\'s slider for a field."""\n')
+
+
 def native_table(structs):
     out = ["// Written by generate_types.py: do not edit.", "static const StructInfo structInfos[] = {"]
     for name, (_, fields) in structs.items():
@@ -189,7 +199,8 @@ def main(header, out_py, out_inc):
     if len(enums) < 8 or "PelMaterial" not in structs:
         raise SystemExit(f"{header}: {len(enums)} enumerations and {len(structs)} structures understood: "
                          "too few, this program is broken")
-    Path(out_py).write_text(python_module(enums, structs), encoding="utf-8")
+    rows = field_rows.parse(Path(header).with_name("pellucid_fields.h"))
+    Path(out_py).write_text(python_module(enums, structs) + sliders(rows), encoding="utf-8")
     Path(out_inc).write_text(native_table(structs), encoding="utf-8")
 
 

@@ -38,9 +38,8 @@ class SceneMaterialsPanel(Panel):
                 f"dense options-dense data-pel=profile-{id}").classes("w-full")
             self.select("Scattering", {s.name.lower(): s.name.capitalize() for s in Scattering}, "scattering",
                         owner=material, marker=f"scattering-{id}")
-            for label, field, high, step in (("Specular", "specular", 1, 0.01), ("Roughness", "roughness", 1, 0.01),
-                                             ("f0", "f0", 0.2, 0.002), ("Transmission", "transmission", 2, 0.05)):
-                self.slider(label, material, field, 0.05 if field == "roughness" else 0, high, step, f"{field}-{id}")
+            for key in ("specular", "roughness", "f0", "transmission"):
+                self.field(key, material, marker=f"{key}-{id}")
 
 
 class SceneLightsPanel(Panel):

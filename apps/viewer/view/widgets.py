@@ -9,6 +9,7 @@ import numpy as np
 from nicegui import events, ui
 
 from .. import files
+from .._types import SLIDERS
 from .look import Look
 
 if TYPE_CHECKING:
@@ -96,6 +97,11 @@ class Panel:
                 owner, attribute, backward=lambda v: f"{v if index is None else v[index]:.4g}")
             ui.slider(min=low, max=high, step=step, value=value(), on_change=change).props(
                 f"dense data-pel=slider-{marker}")
+
+    def field(self, key: str, owner: Any = None, attribute: str = "", marker: str = "") -> None:
+        """The slider of a field of the library."""
+        label, low, high, step = SLIDERS[key]
+        self.slider(label, self.look if owner is None else owner, attribute or key, low, high, step, marker)
 
     def channels(self, names: tuple[str, ...], attribute: str, low: float, high: float, step: float,
                  then: Callable[[], None] = lambda: None) -> None:
