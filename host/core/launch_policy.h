@@ -6,8 +6,8 @@
 
 namespace pel {
 
-// Kernels for devices of several lanes (lib/width.clh) have vectors of their own: few long work-items. Other devices run many
-// short ones.
+// Kernels for devices of several lanes (lib/width.clh) have vectors of their own: few long work-items. Other
+// devices run many short ones.
 struct LaunchPolicy {
     size_t group;         // work-items of kernels that loop over tiles or columns
     size_t columns;       // of a table's row per work-item, where a texel is cheap
@@ -19,7 +19,8 @@ inline LaunchPolicy launchPolicy(const Device& device) {
     return device.info().mathWidth > 1 ? LaunchPolicy{1, 256, 64, 16} : LaunchPolicy{64, 1, 1, 64};
 }
 
-// Groups that share `tiles` among them: enough of them to keep every compute unit busy to the end, and no more.
+// Groups that share `tiles` among them: enough of them to keep every compute unit busy to the end, and no
+// more.
 inline size_t groupsFor(const Device& device, size_t tiles) {
     return std::min<size_t>(tiles, 64 * size_t(device.info().computeUnits));
 }

@@ -1,5 +1,5 @@
-// Ranges of the number fields of pellucid.h, from the rows of pellucid_fields.h: the library checks fields where they are set, and
-// readers of files accept the same values.
+// Ranges of the number fields of pellucid.h, from the rows of pellucid_fields.h: the library checks fields
+// where they are set, and readers of files accept the same values.
 #pragma once
 #include <pellucid/pellucid_fields.h>
 

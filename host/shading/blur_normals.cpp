@@ -47,10 +47,11 @@ class BlurNormals final : public Pass {
     void enqueueAround(PassWork& work) override {
         const auto& images = work.plan.state.images;
         cl::Launch launch(program(), "prepare_normals");
-        launch.arg(work.constants.frameMemory()).arg(work.plan.tileLists).arg(memoryOf(images[PEL_SLOT_MATERIAL]));
-        launch.arg(memoryOf(images[PEL_SLOT_NORMAL_SHADING]));
-        launch.arg(memoryOf(images[PEL_SLOT_POSITION])).arg(memoryOf(images[PEL_SLOT_DEPTH]));
-        launch.arg(normals_.memory()).arg(positions_->memory()).arg(tags_->memory()).arg(cl_uint(work.plan.scratchPlane));
+        launch.arg(work.constants.frameMemory()).arg(work.plan.tileLists);
+        for (PelImageSlot slot : {PEL_SLOT_MATERIAL, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_POSITION, PEL_SLOT_DEPTH})
+            launch.arg(memoryOf(images[slot]));
+        launch.arg(normals_.memory()).arg(positions_->memory()).arg(tags_->memory());
+        launch.arg(cl_uint(work.plan.scratchPlane));
         work.launch(launch, tileRange(work.device, work.tiles()));
         blur(work, false);
     }

@@ -23,9 +23,9 @@ const char* perPixel(const ShaderState& state, const PelMaterial& m) {
 
 // Whether every light's shadow is sharp where irradiance is made, or can be made so.
 bool shadowsAreSharp(const ShaderState& state) {
-    const bool wanted = std::ranges::any_of(state.materials, [](const auto& m) {  // by materials that keep to tables
-        return !isAuto(m.second) && !readsIrradiance(m.second);
-    });
+    // by materials that keep to tables
+    const bool wanted = std::ranges::any_of(
+        state.materials, [](const auto& m) { return !isAuto(m.second) && !readsIrradiance(m.second); });
     return std::ranges::all_of(state.lights, [&](const ShaderLight& light) {
         return !light.images[PEL_LIGHT_WIDE_SHADOW] || (light.images[PEL_LIGHT_SHADOW_MAP] && !wanted);
     });

@@ -4,19 +4,20 @@
 
 namespace pel {
 
-// Of the disk in place of the whole profile, where a material asks for what sums over blocks cannot do.
+// Taps of the disk that replaces the whole profile for materials with settings that sums over blocks do not
+// support.
 constexpr uint32_t diskTapsForBlocks = 64;
 
-// PelFeature bits of what is bound and not zero. Throws if something needed is missing or does not match.
+// The PelFeature bits of a state. Throws if a required input is missing or does not match.
 uint32_t deriveFeatures(const ShaderState& state);
-// The features that a material asks for by itself, if their other inputs exist.
+// The features that one material needs, as far as their other inputs exist.
 uint32_t materialNeeds(const ShaderState& state, const ShaderMaterial& material);
 // The features of the forms that a light's shadow map has.
 uint32_t formFeatures(const PelLight& light);
 
 // Whether a light's shadow image is made from its shadow map.
 bool filtersShadow(const ShaderState& state, const ShaderLight& light);
-// Whether some material takes what is made of a light's map as a wide shadow; all others take sharp ones.
+// Whether some material takes a wide shadow from the map of the light; all others take sharp shadows.
 bool filtersWide(const ShaderState& state, const ShaderLight& light);
 // Whether a material's diffuse light comes from irradiance per pixel.
 inline bool readsIrradiance(const ShaderMaterial& material) {

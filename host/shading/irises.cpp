@@ -1,5 +1,5 @@
-// The irises of all eyes in one buffer, in the form that shading samples (kernels/eye/iris_texels.cl). The first execution
-// after a commit makes them.
+// The irises of all eyes in one buffer, in the form that shading samples (kernels/eye/iris_texels.cl). The
+// first execution after a commit makes them.
 #include "shading/irises.h"
 
 #include <utility>

@@ -10,8 +10,8 @@
 namespace pel {
 namespace {
 
-// How far before a surface an occluder counts, in standard deviations of the widest line spread: docs/guide/shading.md, "Materials", has
-// what others give. Softness and slope are no lengths.
+// How far before a surface an occluder counts, in standard deviations of the widest line spread:
+// docs/guide/shading.md, "Materials", has what others give. Softness and slope are no lengths.
 constexpr double biasWidths = 0.1;
 constexpr float softness = 0.1f, coneSlope = 0.8f;
 // Without a profile, mm.
@@ -108,9 +108,8 @@ void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const 
     for (int c = 0; c < 3; ++c) {
         if (m.curvatureGain != 0 && !(info.meanFreePath[c] > 0))
             invalidArgument(
-                "PelMaterial.curvatureGain is ", m.curvatureGain, ", and ",
-                profile ? "its profile knows no mean free path: burley from mean free paths, and dipole do"
-                        : "it has no profile, whose mean free path it needs",
+                "PelMaterial.curvatureGain is ", m.curvatureGain,
+                ", and ", profile ? "its profile has no mean free path; those of burley from mean free paths and of dipole have one" : "it has no profile, whose mean free path it needs",
                 "; 0 would be right");
         material.gain[c] = float(m.curvatureGain * reflectionGain * info.meanFreePath[c] / unit);
     }

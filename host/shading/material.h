@@ -8,8 +8,8 @@
 
 namespace pel {
 
-// The tables of profiles, each made when it is first wanted and kept as long as a material has its profile: setting the same material
-// again costs nothing.
+// The tables of profiles, each made when it is first wanted and kept as long as a material has its profile:
+// setting the same material again costs nothing.
 class ProfileTables {
   public:
     struct Tables {
@@ -37,8 +37,8 @@ void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const 
 // Gives the materials that are shaded by tables, and brought none, those of their profiles.
 void withTables(ShaderState& state, const Ref<Device>& device, ProfileTables& tables);
 
-// Sentences, one a line, about what is set without effect or is unlikely (pelShaderGetWarnings). `given`: as the caller
-// set it, `state`: with what auto came to.
+// Sentences, one a line, about what is set without effect or is unlikely (pelShaderGetWarnings). `given`: as
+// the caller set it, `state`: with what auto came to.
 std::string warningsOf(const ShaderState& given, const ShaderState& state, uint32_t features);
 
 }  // namespace pel

@@ -1,6 +1,6 @@
-// A pass of shading: the host side of one kernel file. The shader keeps the passes of a list in order and
-// asks each needed pass the same questions. Passes know of each other only through the plan, so other folders
-// may add theirs: the list comes from host/api/shading_passes.cpp.
+// A pass of shading: the host side of one kernel file. The shader keeps the needed passes of a list in order
+// and calls the same functions of each. Passes exchange data only through the plan, so other folders may add
+// passes: the list comes from host/api/shading_passes.cpp.
 #pragma once
 #include <memory>
 

@@ -27,7 +27,8 @@ ImageView scratchImage(const Ref<Buffer>& buffer, const ImageView& frame, PelFor
 }
 
 void moveImage(Device& device, cl_mem memory, size_t at, const ImageView& view, uint32_t row) {
-    const uint64_t offset = view.byteOffset - uint64_t(row) * view.rowStride;  // may wrap round, as addresses do
+    // may wrap round, as addresses do
+    const uint64_t offset = view.byteOffset - uint64_t(row) * view.rowStride;
     device.fill(memory, at, 4, uint32_t(offset));
     device.fill(memory, at + 4, 4, uint32_t(offset >> 32));
 }

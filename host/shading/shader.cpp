@@ -186,8 +186,8 @@ void Shader::addWarmUpJobs(std::vector<std::function<void()>>& jobs) {
     });
     for (const cl::ProgramKey& key : keys)
         jobs.push_back([device = device_, key] { device->programs().get(key); });
-    // A job for each pass, for drivers compile kernels when they are launched first. Whichever job comes next launches the next pass: passes
-    // read what those before them made.
+    // A job for each pass, for drivers compile kernels when they are launched first. Whichever job comes next
+    // launches the next pass: passes read what those before them made.
     struct Launches {
         std::mutex alone;
         std::vector<Pass*> passes;

@@ -41,8 +41,8 @@ class Shader final : public Object {
     PelShaderStats stats();
     // Warnings of the last commit, one sentence a line.
     const std::string& warnings() const { return warnings_; }
-    // Jobs for a warm-up: they build what a commit would, and launch each kernel on no tile. Tables of eyes and profiles are made here, and
-    // kept. Throws what a commit would.
+    // Jobs for a warm-up: they build what a commit would, and launch each kernel on no tile. Tables of eyes
+    // and profiles are made here, and kept. Throws what a commit would.
     void addWarmUpJobs(std::vector<std::function<void()>>& jobs);
     Device& device() const { return *device_; }
 

@@ -46,7 +46,8 @@ struct ShaderPlan {
     std::vector<BoundedMap> boundedMaps;
     cl::Memory bounds;
 
-    // Whether passes may compute every second pixel and interpolate the others. Not in frames narrower than a few vectors.
+    // Whether passes may compute every second pixel and interpolate the others. Not in frames narrower than a
+    // few vectors.
     bool interpolates() const {
         return !state.options.everyPixel && state.images[PEL_SLOT_RADIANCE].width >= 64;
     }

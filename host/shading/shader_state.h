@@ -32,7 +32,8 @@ struct ShaderMaterial {
     PelMaterial given;  // by the caller, with
     Ref<Profile> profile;
     Ref<Lut> givenCurvatureLut, givenShadowLut;
-    PelMaterial params;  // with what it leaves to defaults filled in (shading/material.h, choose_method.h), as are
+    // with what it leaves to defaults filled in (shading/material.h, choose_method.h), as are
+    PelMaterial params;
     Ref<Lut> curvatureLut, shadowLut, transmission;
     float through[3];  // share of the light on a sheet's other side
     float gain[3];     // length: direct light times 1 + gain * curvature

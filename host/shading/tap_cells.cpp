@@ -13,9 +13,11 @@
 namespace pel {
 namespace {
 
-// A node costs a third of what a pixel does that takes taps, and of a frame of a head a twentieth to a fifth does.
+// A node costs a third of what a pixel does that takes taps, and of a frame of a head a twentieth to a fifth
+// does.
 constexpr uint64_t pixelsPerNode = 8;
-// All cells together, per pixel of the frame: lights with several maps and materials with several disks come to much memory.
+// All cells together, per pixel of the frame: lights with several maps and materials with several disks come
+// to much memory.
 constexpr uint64_t floatsPerPixel = 16;
 
 bool hasDisk(const ShaderState& state, const ShaderMaterial& material) {

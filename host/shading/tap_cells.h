@@ -23,10 +23,12 @@ std::vector<float> tapDisks(const ShaderState& state);
 uint32_t tapDiskOf(const std::vector<float>& disks, const ShaderState& state, const ShaderMaterial& material);
 // How much of one of a light's maps a length in the first of them covers, along u (0) or v (1).
 float tapScale(const ShaderLight& light, uint32_t cascade, int axis);
-// Whether frames of some size have cells. Kernels differ by this alone: another size of the frame shall need no other program.
+// Whether frames of some size have cells. Kernels differ by this alone: another size of the frame shall need
+// no other program.
 bool mayHaveCells(const ShaderState& state);
-// Empty if pixels take taps of their own: because the caller wants that, or because the frame has too few pixels for
-// the nodes of such a disk. Depends on nothing that an execution finds out, so that bands and skipping change no bit.
+// Empty if pixels take taps of their own: because the caller wants that, or because the frame has too few
+// pixels for the nodes of such a disk. Depends on nothing that an execution finds out, so that bands and
+// skipping change no bit.
 std::vector<MapCells> mapCells(const ShaderState& state);
 
 }  // namespace pel

@@ -30,7 +30,8 @@ MapLengths lengthsOf(const PelLight& l, const ImageView& map) {
     return lengths;
 }
 
-// What is lit and of skin is no smaller than a fingertip: a map that spans less than two reaches of the light holds no such body.
+// What is lit and of skin is no smaller than a fingertip: a map that spans less than two reaches of the light
+// holds no such body.
 constexpr double leastReaches = 2;
 
 bool isBlackColor(const float (&c)[3]) {
@@ -71,11 +72,12 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
             const bool unshadowed = light.images[PEL_LIGHT_SHADOW_MAP] && !light.images[PEL_LIGHT_WIDE_SHADOW] &&
                                     light.params.shadowFilterTexels == 0;
             // A map that serves thickness alone is no mistake, unless other materials get a shadow from it.
-            if (unshadowed && (!(features & PEL_FEATURE_THICKNESS_TAPS) || features & PEL_FEATURE_MAKE_IRRADIANCE))
+            const bool useful =
+                (features & PEL_FEATURE_THICKNESS_TAPS) && !(features & PEL_FEATURE_MAKE_IRRADIANCE);
+            if (unshadowed && !useful)
                 warn("material ", tables->first,
-                     " scatters by \"preintegrated\" and gets no shadow from the map of "
-                     "light ",
-                     i, ", whose shadowFilterTexels is 0; 4 to 256 would be right, 48 is the default");
+                     " scatters by \"preintegrated\" and gets no shadow from the map ", "of light ", i,
+                     ", whose shadowFilterTexels is 0; 4 to 256 would be right, 48 is the default");
         }
     for (const auto& [id, material] : state.materials) {
         const PelMaterial& m = material.params;
@@ -91,7 +93,7 @@ std::string warningsOf(const ShaderState& given, const ShaderState& state, uint3
                  scatteringName(m.scattering), "\" (docs/guide/methods.md, \"Controls\")");
         if (m.scattering == PEL_SCATTERING_LIGHT && !lightIsMapped(state))
             warn("material ", id,
-                 " asks for PelMaterial.scattering light, and shadow maps do not hold all light: what lights "
+                 " scatters by \"light\", and shadow maps do not hold all light: what lights "
                  "without a map "
                  "and ambient light give is summed over the screen, as by screen; a shadow map for every "
                  "light and no "

@@ -61,8 +61,8 @@ static inline Receiver receiverInMap(__global const PelWideShadow* light, Vec3w 
     return r;
 }
 
-// Whether depths around the receiver can be compared: it lies in front of the light and near the map, and all values are
-// finite.
+// Whether depths around the receiver can be compared: it lies in front of the light and near the map, and all
+// values are finite.
 static inline maskw comparable(const Receiver* r, Vec3w p, Vec3w n) {
     // Far outside the map, where integers would overflow, everything is lit.
     return (r->w > 0.0f) & finite3(p) & finite3(n) & (fabs(r->x) < 1e6f) & (fabs(r->y) < 1e6f) &

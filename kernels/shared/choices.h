@@ -1,4 +1,4 @@
-// Choices among a few, each once: pellucid.h's enumerations are checked against these lists (host/core/choices.cpp).
+// The enumerations of pellucid.h, which is checked against these lists (host/core/choices.cpp).
 // X(name, number, key); keys are those of files and of the command.
 #ifndef PEL_SHARED_CHOICES
 #define PEL_SHARED_CHOICES

@@ -13,12 +13,13 @@
 
 // clang-format off
 // X(name, number, role, content, components, key, words, bits)
-//   role        SHADE: read by shade.cl; PASS: read only by passes before it; OUTPUT: written; TARGET: written or added to
+//   role        SHADE: read by shade.cl; PASS: read only by passes before it; OUTPUT: written; TARGET: written
+//               or added to
 //   content     the kind of pixels, which decides the formats that are accepted
 //   components  the number of channel names in a scene file
 //   key, words  the name in scene files and in messages
-//   bits        PEL_BIT_... of the features that read the image in shade.cl. Depth is read where there are no positions,
-//               and the geometric normal also in place of a missing blurred normal.
+//   bits        PEL_BIT_... of the features that read the image in shade.cl. Depth is read where there are no
+//               positions, and the geometric normal also in place of a missing blurred normal.
 #define PEL_EACH_IMAGE(X) \
     X(RADIANCE, 0, TARGET, COLOR_OUTPUT, 0, "radiance", "radiance", PEL_BITS_ALL_) \
     X(MATERIAL, 1, SHADE, ID, 1, "material", "material", PEL_BITS_ALL_) \

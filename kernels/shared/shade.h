@@ -96,7 +96,7 @@ typedef struct PelShadeMaterial {
     float transmissionPerLength;  // 1 / the thickness at its end, 1/length
     float transmissionShare;
     float gain[3];         // length: direct light times 1 + gain * curvature; all 0: none
-    PelUint32 needs;       // PEL_BIT_...: features that this material asks for
+    PelUint32 needs;       // PEL_BIT_...: features of this material
     PelUint32 scattering;  // PelScattering, what auto came to in its place
     PelUint32 named;       // the same as the caller named it
     float albedoAfter;     // power of albedo that scattered irradiance is multiplied by
@@ -108,10 +108,10 @@ typedef struct PelShadeMaterial {
 
 #define PEL_CASCADES 4   // of one light, at most
 #define PEL_TAP_DISKS 4  // disks of thickness taps that materials share, at most
-// Nodes of a grid of tap cells along the radius of its disk: coarser ones err more than the taps do
+// Nodes of an occluder-depth grid along the radius of its disk: a coarser grid errs more than the taps do
 // (docs/design-notes.md).
 #define PEL_CELLS_PER_RADIUS 4
-#define PEL_NODE_TAPS 32        // whatever the material asks for, since they cost next to nothing
+#define PEL_NODE_TAPS 32        // for every material, since they cost next to nothing
 #define PEL_SAMPLES_PER_CELL 2  // samples of the map from node to node
 // Samples along an axis with so many nodes: a radius more on either side.
 #define PEL_TAP_SAMPLES(nodes) \

@@ -2,10 +2,11 @@
  *
  *     X(type, name, default, min, max, special, unit, key, slider, words)
  *
- * type     FLOAT, UINT or COLOR (3 floats): every component lies between min and max or equals `special`, a value with a
- *          meaning of its own; the library checks it where the field is set, readers of files where they read it.
- *          FREE (a float), FREE_UINT, VECTOR (3 floats) and MATRIX (16): any finite value; the code that reads the field
- *          checks it.
+ * type     FLOAT, UINT or COLOR (3 floats): every component lies between min and max or equals `special`, a
+ *          value with a meaning of its own. The library checks it where the field is set, readers of files where
+ *          they read it.
+ *          FREE (a float), FREE_UINT, VECTOR (3 floats) and MATRIX (16): any finite value; the code that reads
+ *          the field checks it.
  * default  one value for all components; VECTOR: (x, y, z); MATRIX: PEL_IDENTITY
  * min, max, special   constants of host/fields/field_ranges.h, or numbers
  * unit     of lengths: "mm", or "length" for the unit of the caller's positions; "" for others
@@ -13,9 +14,10 @@
  * slider   of the viewer: PEL_SLIDER(label, min, max, step), or PEL_NO_SLIDER
  * words    for the tables of docs/guide, which docs/field_tables writes
  *
- * From these rows follow the defaults (pellucid_defaults.h), the checks and their messages (host/fields/field_ranges.h), the
- * keys of scene files (host/io/scene/scene_keys.h), the viewer's sliders and the tables of the guide. A new field is its
- * documented declaration in pellucid.h, a row here and the code that reads it. */
+ * From these rows follow the defaults (pellucid_defaults.h), the checks and their messages
+ * (host/fields/field_ranges.h), the keys of scene files (host/io/scene/scene_keys.h), the sliders of the viewer
+ * and the tables of the guide. A new field is its documented declaration in pellucid.h, a row here, and the code
+ * that reads it. */
 #ifndef PELLUCID_FIELDS_H
 #define PELLUCID_FIELDS_H
 /* clang-format off */
@@ -29,25 +31,30 @@
       "RGB: how far the blurred normal replaces the shading normal; -1: the profile's, else 1, 0.3, 0") \
     X(FLOAT, shadowFilterWidth, 0, PEL_TINY, PEL_HUGE, 0, "length", "shadow_filter_width", PEL_NO_SLIDER, \
       "penumbra of the wide shadow where the surface faces the light; 0: from the profile, else 8 mm") \
-    X(FLOAT, transmission, 1, 0, PEL_HUGE, PEL_NONE, "", "transmission", PEL_SLIDER("Transmission", 0, 2, 0.05), \
+    X(FLOAT, transmission, 1, 0, PEL_HUGE, PEL_NONE, "", "transmission", PEL_SLIDER("Transmission", 0, \
+      2, 0.05), \
       "share of the light that the profile lets through thin parts; a `deep_scatter_color` replaces it") \
     X(FLOAT, curvatureGain, 0, 0, PEL_HUGE, PEL_NONE, "", "curvature_gain", PEL_NO_SLIDER, \
       "direct light times 1 + gain × 1.38 × mean free path × curvature") \
     X(COLOR, deepScatterColor, 0, 0, PEL_HUGE, PEL_NONE, "", "deep_scatter_color", PEL_NO_SLIDER, \
       "RGB; 0: no deep scatter") \
-    X(FLOAT, deepScatterRadius, 6, PEL_TINY, PEL_HUGE, PEL_NONE, "length", "deep_scatter_radius", PEL_NO_SLIDER, \
+    X(FLOAT, deepScatterRadius, 6, PEL_TINY, PEL_HUGE, PEL_NONE, "length", "deep_scatter_radius", \
+      PEL_NO_SLIDER, \
       "standard deviation of the transmission through thickness") \
-    X(FLOAT, deepScatterNormalOffset, 0.2f, -PEL_HUGE, PEL_HUGE, PEL_NONE, "length", "deep_scatter_normal_offset", \
+    X(FLOAT, deepScatterNormalOffset, 0.2f, -PEL_HUGE, PEL_HUGE, PEL_NONE, "length", \
+      "deep_scatter_normal_offset", \
       PEL_NO_SLIDER, "inwards (below 0 outwards), before thickness is measured") \
     X(FLOAT, deepScatterAmbient, 0, 0, PEL_HUGE, PEL_NONE, "", "deep_scatter_ambient", PEL_NO_SLIDER, \
-      "share of ambient light that comes through from behind; needs a `thickness` channel, measured along the inward normal") \
+      "share of ambient light that comes through from behind; needs a `thickness` channel, measured " \
+      "along the inward normal") \
     X(FLOAT, thicknessFilterRadius, 0.02f, 0, 1, PEL_NONE, "", "thickness_filter_radius", PEL_NO_SLIDER, \
       "of the disk of taps, in UV of the shadow map") \
     X(UINT, thicknessTaps, 32, 8, 32, 0, "", "thickness_taps", PEL_NO_SLIDER, \
       "8, 16 or 32; 0: thickness is not measured") \
     X(FLOAT, specular, 0, 0, PEL_HUGE, PEL_NONE, "", "specular", PEL_SLIDER("Specular", 0, 1, 0.01), \
       "ρ_s; 0: no specular light") \
-    X(FLOAT, roughness, 0.3f, 0, PEL_HUGE, PEL_NONE, "", "roughness", PEL_SLIDER("Roughness", 0.05, 1, 0.01), \
+    X(FLOAT, roughness, 0.3f, 0, PEL_HUGE, PEL_NONE, "", "roughness", PEL_SLIDER("Roughness", 0.05, 1, \
+      0.01), \
       "m of Beckmann, or of the first lobe of GGX") \
     X(FLOAT, roughness2, 0.15f, 0, PEL_HUGE, PEL_NONE, "", "roughness2", \
       PEL_SLIDER("Second roughness", 0.05, 1, 0.01), "of the second lobe of GGX") \
@@ -83,7 +90,8 @@
     X(FLOAT, range, 0, 0, PEL_HUGE, PEL_NONE, "length", "range", PEL_NO_SLIDER, \
       "point, spot: there is no light beyond; 0: no limit")
 #define PEL_EACH_SPOT_LIGHT_FIELD(X) \
-    X(VECTOR, spotDirection, (0, 0, -1), -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "spot_direction", PEL_NO_SLIDER, \
+    X(VECTOR, spotDirection, (0, 0, -1), -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "spot_direction", \
+      PEL_NO_SLIDER, \
       "spot: the direction of its axis; files: made unit") \
     X(FLOAT, spotCosInner, 0.9f, -1, 1, PEL_NONE, "", "spot_cos_inner", PEL_NO_SLIDER, \
       "cosine of the angle up to which a spot is fully bright") \
@@ -92,22 +100,29 @@
 
 /* Of PelLight: its shadow map. */
 #define PEL_EACH_SHADOW_MAP_FIELD(X) \
-    X(MATRIX, worldToShadow, PEL_IDENTITY, -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "world_to_shadow", PEL_NO_SLIDER, \
-      "world to homogeneous (u, v, z): u, v in [0, 1] over the image, row 0 at v = 0; z as in the image. Cubes: world to " \
+    X(MATRIX, worldToShadow, PEL_IDENTITY, -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "world_to_shadow", \
+      PEL_NO_SLIDER, \
+      "world to homogeneous (u, v, z): u, v in [0, 1] over the image, row 0 at v = 0; z as in the " \
+      "image. Cubes: world to " \
       "the space of the cube, the light at the origin") \
     X(FREE, shadowDepthRange, 1, -PEL_FINITE, PEL_FINITE, PEL_NONE, "length", "depth_range", PEL_NO_SLIDER, \
-      "parallel: what z from 0 to 1 spans; negative if z decreases away from the light. `\"cube-radial\"`: distance from the " \
+      "parallel: what z from 0 to 1 spans; negative if z decreases away from the light. `\"cube-" \
+      "radial\"`: distance from the " \
       "light at z = 1") \
     X(FREE, shadowDepthA, 0, -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "depth_a", PEL_NO_SLIDER, \
-      "perspective, and cubes along the axis of a face: distance along the light = 1 / (a z + b), from the projection matrix") \
-    X(FREE, shadowDepthB, 0, -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "depth_b", PEL_NO_SLIDER, "b of the same") \
+      "perspective, and cubes along the axis of a face: distance along the light = 1 / (a z + b), " \
+      "from the projection matrix") \
+    X(FREE, shadowDepthB, 0, -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "depth_b", PEL_NO_SLIDER, \
+      "b of the same") \
     X(UINT, shadowFilterTexels, 48, 4, 256, 0, "", "filter_texels", PEL_NO_SLIDER, \
-      "without `wide_shadow`: the wide shadow is filtered from this map with at most so many texels across; 0: materials of " \
+      "without `wide_shadow`: the wide shadow is filtered from this map with at most so many texels " \
+      "across; 0: materials of " \
       "\"preintegrated\" get no shadow from it") \
     X(FLOAT, shadowBias, -1, 0, PEL_HUGE, -1, "length", "bias", PEL_NO_SLIDER, \
       "an occluder must stand this far before the surface to count; -1: from the profile, else 0.5 mm") \
     X(FLOAT, shadowSoftness, -1, 1e-3f, PEL_HUGE, -1, "", "softness", PEL_NO_SLIDER, \
-      "times `shadow_filter_width`: how much further before it counts in full; -1: from the profile, else 0.25") \
+      "times `shadow_filter_width`: how much further before it counts in full; -1: from the profile, " \
+      "else 0.25") \
     X(FLOAT, shadowConeSlope, -1, 0, PEL_HUGE, -1, "", "cone_slope", PEL_NO_SLIDER, \
       "growth of the bias by sideways distance; -1: from the profile, else 0.5") \
     X(FREE, shadowExponent, 0, -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "exponent", PEL_NO_SLIDER, \
@@ -120,7 +135,8 @@
       "directional, parallel: number of maps, this one the finest; 0: one map that is no cascade")
 
 #define PEL_EACH_OPTION_FIELD(X) \
-    X(FLOAT, targetError, 2e-3f, 0, 1, PEL_NONE, "", "target_error", PEL_SLIDER("Target error", 0.0005, 0.02, 0.0005), \
+    X(FLOAT, targetError, 2e-3f, 0, 1, PEL_NONE, "", "target_error", PEL_SLIDER("Target error", 0.0005, \
+      0.02, 0.0005), \
       "what methods that leave out small contributions may be off, as a share of white") \
     X(FLOAT, millimetresPerUnit, 1, PEL_TINY, PEL_HUGE, PEL_NONE, "mm", "unit_mm", PEL_NO_SLIDER, \
       "of a unit of positions") \
@@ -136,7 +152,8 @@
 #define PEL_EACH_SCATTER_PARAM_FIELD(X) \
     X(FLOAT, targetError, 2e-3f, 0, PEL_FINITE, PEL_NONE, "", "target_error", PEL_NO_SLIDER, \
       "share of `white` that the result may be off") \
-    X(FLOAT, white, 1, PEL_ABOVE_0, PEL_FINITE, PEL_NONE, "", "white", PEL_NO_SLIDER, "irradiance that counts as white")
+    X(FLOAT, white, 1, PEL_ABOVE_0, PEL_FINITE, PEL_NONE, "", "white", PEL_NO_SLIDER, \
+      "irradiance that counts as white")
 
 #define PEL_EACH_CURVATURE_LUT_FIELD(X) \
     X(UINT, width, 64, 1, 16384, PEL_NONE, "", "width", PEL_NO_SLIDER, "texels") \
@@ -176,13 +193,16 @@
     X(FLOAT, limbusRadius, 6, PEL_TINY, PEL_HUGE, PEL_NONE, "mm", "limbus_radius", PEL_NO_SLIDER, \
       "of the circle in which cornea and sclera meet") \
     X(FLOAT, chamberDepth, 3.05f, PEL_TINY, PEL_HUGE, PEL_NONE, "mm", "chamber_depth", \
-      PEL_SLIDER("Chamber depth, mm", 2.7, 4.5, 0.05), "from the apex of the cornea to the plane of the iris' rim") \
+      PEL_SLIDER("Chamber depth, mm", 2.7, 4.5, 0.05), \
+      "from the apex of the cornea to the plane of the iris' rim") \
     X(FLOAT, corneaIndex, 1.376f, 1, 3, PEL_NONE, "", "cornea_index", PEL_NO_SLIDER, "refractive index") \
     X(FLOAT, aqueousIndex, 1.336f, 1, 3, PEL_NONE, "", "aqueous_index", PEL_NO_SLIDER, \
       "refractive index behind the cornea") \
-    X(FLOAT, irisRadius, 0, PEL_TINY, PEL_HUGE, 0, "mm", "iris_radius", PEL_NO_SLIDER, "0: that of the limbus") \
+    X(FLOAT, irisRadius, 0, PEL_TINY, PEL_HUGE, 0, "mm", "iris_radius", PEL_NO_SLIDER, \
+      "0: that of the limbus") \
     X(FLOAT, irisConcavity, 0, 0, PEL_HUGE, PEL_NONE, "mm", "iris_concavity", \
-      PEL_SLIDER("Iris concavity, mm", 0, 1, 0.05), "how much deeper than its rim the centre of the iris lies")
+      PEL_SLIDER("Iris concavity, mm", 0, 1, 0.05), \
+      "how much deeper than its rim the centre of the iris lies")
 
 #define PEL_EACH_EYE_FIELD(X) \
     X(VECTOR, center, (0, 0, 0), -PEL_FINITE, PEL_FINITE, PEL_NONE, "length", "center", PEL_NO_SLIDER, \
@@ -192,17 +212,21 @@
     X(VECTOR, up, (0, 1, 0), -PEL_FINITE, PEL_FINITE, PEL_NONE, "", "up", PEL_NO_SLIDER, \
       "where the top of the texture is, not along `gaze`") \
     PEL_EACH_EYE_SHAPE_FIELD(X) \
-    X(FLOAT, limbusWidth, 1, 0, PEL_HUGE, PEL_NONE, "mm", "limbus_width", PEL_SLIDER("Limbus width, mm", 0.1, 3, 0.05), \
+    X(FLOAT, limbusWidth, 1, 0, PEL_HUGE, PEL_NONE, "mm", "limbus_width", PEL_SLIDER("Limbus width, \
+      mm", 0.1, 3, 0.05), \
       "of the soft border between cornea and sclera") \
     X(FLOAT, limbusDarkening, 0.6f, 0, 1, PEL_NONE, "", "limbus_darkening", \
       PEL_SLIDER("Limbus darkening", 0, 1, 0.01), "share of the light that the rim of the iris absorbs") \
-    X(FLOAT, pupilRadius, 2, 0, PEL_HUGE, PEL_NONE, "mm", "pupil_radius", PEL_SLIDER("Pupil radius, mm", 0.5, 4, 0.1), \
+    X(FLOAT, pupilRadius, 2, 0, PEL_HUGE, PEL_NONE, "mm", "pupil_radius", PEL_SLIDER("Pupil radius, \
+      mm", 0.5, 4, 0.1), \
       "less than that of the iris") \
     X(FLOAT, texturePupil, 0.3f, 0, 0.95f, PEL_NONE, "", "texture_pupil", PEL_NO_SLIDER, \
       "radius of the pupil in the texture, as a share of its rim's") \
     X(COLOR, irisColor, -1, 0, PEL_HUGE, -1, "", "iris_color", PEL_NO_SLIDER, \
-      "RGB: multiplies the texture, or colours the fibres that are drawn without one; -1: 1, or 0.22, 0.12, 0.06") \
-    X(FREE_UINT, irisSeed, 0, 0, PEL_FINITE, PEL_NONE, "", "iris_seed", PEL_SLIDER("Fibre pattern", 0, 20, 1), \
+      "RGB: multiplies the texture, or colours the fibres that are drawn without one; -1: 1, or 0.22," \
+      " 0.12, 0.06") \
+    X(FREE_UINT, irisSeed, 0, 0, PEL_FINITE, PEL_NONE, "", "iris_seed", PEL_SLIDER("Fibre pattern", 0, \
+      20, 1), \
       "each number gives another pattern of fibres") \
     X(FLOAT, tearRoughness, 0.03f, 1e-3f, 1, PEL_NONE, "", "tear_roughness", \
       PEL_SLIDER("Tear roughness", 0.005, 0.3, 0.005), "GGX's alpha of the film of tears") \
