@@ -29,7 +29,6 @@ class Launch {
 
     Launch& arg(cl_mem memory) { return raw(&memory, sizeof memory); }
     Launch& arg(const Memory& memory) { return arg(memory.get()); }
-    Launch& local(size_t bytes) { return raw(nullptr, bytes); }
     // Numbers and structures of kernels/shared, passed by value.
     template <class T>
     requires std::is_trivially_copyable_v<T> &&(!std::is_pointer_v<T>)Launch& arg(const T& value) {
