@@ -2,7 +2,7 @@
 // surface integral.
 //
 //   sweep_error_time make SCENE SCALE FILE [PIXELS] [HEAD.obj]   renders a scene and makes its references
-//   sweep_error_time measure FILE [REPEATS] [PICTURES] [METHOD]  prints a line of JSON per measurement, of all methods or of one
+//   sweep_error_time measure FILE [REPEATS] [PICTURES] [METHOD]  prints JSON lines of all methods, or of one
 //
 // SCENE is side, ear or sphere; SCALE multiplies the profile's radius; a picture has PIXELS a side, 512. Into
 // the folder PICTURES, if given, go pictures of one setting of each method, raw floats. Times are of all

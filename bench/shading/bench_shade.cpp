@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <memory>
 
 #include "baselines.h"
 #include "benchmarks.h"
-#include "demo_files.h"
 #include "io/image/image_file.h"
 #include "io/scene/scene_file.h"
 
@@ -24,11 +24,17 @@ namespace {
 
 const std::string demoViews[] = {"key", "backlit"};
 
+// Where `pellucid demo` left its views.
+std::string demoFolder() {
+    const char* named = std::getenv("PELLUCID_DEMO_DIR");
+    return named && *named ? named : PELLUCID_SOURCE_DIR "/out/demo";
+}
+
 // A view as `pellucid demo` wrote it. The demo's skin takes transmission from its profile; taps need deep
 // scatter by a colour, which FrameSettings gives.
 FrameImages demoView(const std::string& view) {
-    const io::SceneFile file = io::readScene(demo::directory() + "/" + view + ".toml");
-    const io::Image g = io::readImage(demo::directory() + "/" + view + "_gbuffer.exr");
+    const io::SceneFile file = io::readScene(demoFolder() + "/" + view + ".toml");
+    const io::Image g = io::readImage(demoFolder() + "/" + view + "_gbuffer.exr");
     const auto take = [&](PelImageSlot slot) { return g.interleaved(file.channels[slot]); };
     FrameImages f;
     f.width = uint32_t(g.width), f.height = uint32_t(g.height);
@@ -203,10 +209,10 @@ void addShading() {
         add("pixels/width:" + std::to_string(width) + "/lights:1", pixels(width, 1));
     for (const uint32_t lights : {2, 4, 16, 64})
         add("pixels/width:1280/lights:" + std::to_string(lights), pixels(1280, lights));
-    if (std::ifstream(demo::directory() + "/key.toml"))
+    if (std::ifstream(demoFolder() + "/key.toml"))
         addDemoViews();
     else
-        std::fprintf(stderr, "no demo views in %s: ./run demo makes them\n", demo::directory().c_str());
+        std::fprintf(stderr, "no demo views in %s: ./run demo makes them\n", demoFolder().c_str());
 }
 
 }  // namespace benchmarks

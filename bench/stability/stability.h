@@ -128,7 +128,7 @@ void inParallel(size_t count, const std::function<void(size_t)>& body);
 
 struct Found {
     double drawn = 0, worst = 0;  // of the points drawn blindly; of all
-    double inherent = 0;  // change of the oracle at the worst point when its inputs move by a unit in the last place
+    double inherent = 0;          // change of the oracle at the worst point if its inputs move by one ulp
     size_t points = 0;
     bool stopped = false;  // by the cap on time
     std::string where;

@@ -24,7 +24,7 @@ std::string standardHead() {
     if (named && *named) return named;
     std::error_code error;
     const std::filesystem::path bin = std::filesystem::path(pel::system::programFile()).parent_path();
-    for (const char* folder : {"../share/pellucid/heads", "../../../data/heads"}) {  // installed; build/PRESET/bin
+    for (const char* folder : {"../share/pellucid/heads", "../../../data/heads"}) {  // installed, or built
         const std::filesystem::path head = bin / folder / "head_female.obj";
         if (std::filesystem::exists(head, error)) return head.lexically_normal().string();
     }

@@ -25,7 +25,7 @@ io::Picture developed(const DemoView& view, std::vector<float> radiance) {
 
 namespace {
 
-constexpr int sheetShrink = referenceStride;  // the sheet shows pictures at half size, so that they fit a screen
+constexpr int sheetShrink = referenceStride;  // of pictures, so that the sheet fits a screen
 constexpr int lutSize = 200;                  // pixels a side on the sheet
 
 // The table as a picture, nearest texel, with values as linear radiance.

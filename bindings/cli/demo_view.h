@@ -35,7 +35,7 @@ struct DemoViewRequest {
     uint32_t width = 1280, height = 720;
 };
 
-// A scene of nothing but the two tables that the views use, curvature and shadow.
+// A scene with only the two tables that the views use, curvature and shadow.
 io::SceneFile standardLuts();
 
 // Renders with the stand-in host.

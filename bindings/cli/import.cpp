@@ -1,4 +1,5 @@
-// pellucid import: a glTF scene as a mesh, a scene file and, where the build has the sample renderer, a G-buffer.
+// pellucid import: a glTF scene as a mesh, a scene file and, where the build has the sample renderer, a
+// G-buffer.
 #include <charconv>
 #include <filesystem>
 #include <stdexcept>

@@ -1,4 +1,5 @@
-// pellucid reference: the true picture, by the surface integral over the mesh or by a random walk in its volume.
+// pellucid reference: the true picture, by the surface integral over the mesh or by a random walk in its
+// volume.
 #include <algorithm>
 #include <cmath>
 

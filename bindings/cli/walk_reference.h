@@ -1,5 +1,5 @@
-// The random walk of `pellucid reference --walk`: its options, the medium of a material, and what is measured on
-// the mesh beside the light.
+// The random walk of `pellucid reference --walk`: its options, the medium of a material, and what is measured
+// on the mesh beside the light.
 #pragma once
 #include <array>
 #include <string>

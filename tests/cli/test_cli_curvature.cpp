@@ -53,7 +53,7 @@ TEST_F(CliCurvature, CurvatureQuantitiesWeldAndPicture) {
         EXPECT_EQ(run(arguments).exitCode, 0);
         std::ifstream file(path("r.ply"), std::ios::binary);
         const std::string bytes{std::istreambuf_iterator<char>(file), {}};
-        const size_t vertices = bytes.find("end_header\n") + 11, stride = 31;  // position, normal, quality, colour
+        const size_t vertices = bytes.find("end_header\n") + 11, stride = 31;  // bytes of a vertex
         std::string colors;
         for (size_t v = 0; v < 12; ++v) colors += bytes.substr(vertices + v * stride + 28, 3);
         return colors;

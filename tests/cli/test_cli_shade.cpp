@@ -86,11 +86,11 @@ TEST_F(Shade, InvalidPixelsAreCountedAndWarnedOf) {
     const float bad[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()};
     for (const bool all : {true, false})
         for (const float value : bad) {
-            io::Image spoilt = gbuffer_;
-            std::vector<float>& normals = spoilt.channels[0].pixels;
+            io::Image damaged = gbuffer_;
+            std::vector<float>& normals = damaged.channels[0].pixels;
             for (size_t i = 0; i < normals.size(); ++i)
                 if (all || i % width == 3) normals[i] = value;
-            io::writeExr(path("bad.exr"), spoilt);
+            io::writeExr(path("bad.exr"), damaged);
             std::vector<std::string> arguments = command("s.toml", "bad.exr");
             arguments.push_back("--strict");
             const std::string message =
