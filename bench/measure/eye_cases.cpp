@@ -107,7 +107,7 @@ struct EyeFrame {
         shader.commit();
     }
 
-    // Irradiance on the iris by the table, between texels and slices as section 13 says.
+    // Irradiance on the iris, interpolated between the table's texels and slices (section 13).
     double onIris(const std::vector<float>& texels, const reference::Eye& eye, double x, double y) const {
         const auto between = [](double at, double last, uint32_t& first) {
             at = std::clamp(at, 0.0, last);

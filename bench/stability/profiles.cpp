@@ -70,7 +70,7 @@ Source measuredTable(const Point& p) {
             text("%.0f distances up to %.3g mm", count, d.back())};
 }
 
-// The name of the profile before what the table says of itself.
+// Puts the name of the profile before the description of the table.
 template <class Table>
 class OfSource : public Table {
   public:

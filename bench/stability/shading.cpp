@@ -10,7 +10,7 @@ reference::Vec3 vector(const float (&v)[3]) {
     return {v[0], v[1], v[2]};
 }
 
-// `axis` turned by an angle, towards the side that `around` (0 to 1, a full turn) says.
+// `axis` turned by an angle; `around`, 0 to 1 for a full turn, is the azimuth of the turn.
 reference::Vec3 turned(reference::Vec3 axis, double angle, double around) {
     const reference::Vec3 side = reference::normalized(reference::cross(axis, std::abs(axis.x) < 0.7
                                                                                   ? reference::Vec3{1, 0, 0}
@@ -96,7 +96,7 @@ const Frame& base() {
         f.cube.size = 9;
         for (int i = 0; i < 6 * 9 * 9; ++i)
             f.cube.texels.push_back({dice.uniform(), dice.uniform(), dice.uniform()});
-        diskTaps(8), diskTaps(16), diskTaps(32);  // read once, before threads ask
+        diskTaps(8), diskTaps(16), diskTaps(32);  // cached before threads read them
         return f;
     }();
     return frame;

@@ -77,7 +77,8 @@ struct Operation {
     std::optional<Axis> axis;
 };
 
-// One launch for one point, whose answer has many values. A truth of NaN is left out: it hangs on a decision.
+// One launch for one point, whose answer has many values. A truth of NaN is left out: there the
+// result depends on a threshold.
 class Case {
   public:
     virtual ~Case() = default;

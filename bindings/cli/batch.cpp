@@ -1,5 +1,5 @@
-// pellucid batch: makes the look-up tables of a manifest that are not there yet. A file is named by what was
-// asked for, holds a check sum, and appears complete or not at all.
+// pellucid batch: makes the look-up tables of a manifest that are not there yet. The name of a file follows
+// from the request; a file holds a check sum, and appears complete or not at all.
 #include <algorithm>
 #include <atomic>
 #include <csignal>

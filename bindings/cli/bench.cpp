@@ -25,12 +25,12 @@ struct Arguments {
     std::string output, before, after;
     double limitSeconds = 0;  // 0: depends on `quick`
     bool quick = false, json = false, firstUse = false;
-    bool events = false;  // a process of this command's own: tells what it does, line by line
+    bool events = false;  // in a child process: prints what it does, one JSON object a line
 };
 
 std::atomic<bool> stopped{false};
 
-// Numbers of the devices to measure: those asked for, or all but simulators.
+// Numbers of the devices to measure: those of --device, or all but simulators.
 std::vector<std::string> chosenDevices(const Arguments& a) {
     if (!a.devices.empty()) return a.devices;
     std::vector<std::string> chosen;
@@ -40,7 +40,7 @@ std::vector<std::string> chosenDevices(const Arguments& a) {
         else
             chosen.push_back(std::to_string(d.index));
     }
-    if (chosen.empty()) chosen.push_back("");  // the library says what is missing
+    if (chosen.empty()) chosen.push_back("");  // opening it gives the library's message
     return chosen;
 }
 

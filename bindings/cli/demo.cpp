@@ -72,7 +72,7 @@ DemoHead loadMeshAsHead(Run& run, const Arguments& a) {
         try {
             io::loopSubdivide(mesh, levels);
         } catch (const io::FileError& e) {
-            if (a.subdivide) throw;  // asked for by name
+            if (a.subdivide) throw;  // --subdivide was given
             run.warn(std::string("shown without subdivision: ") + e.what());
         }
     }

@@ -21,7 +21,7 @@ double timed(Work&& work) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-// Adds an image's planes as channels "NAME.X" and so on, and tells the scene that they feed `slot`.
+// Adds an image's planes as channels "NAME.X" and so on, and names them in the scene for `slot`.
 void addChannels(DemoView& view, const std::string& name, const std::string& components, const float* planes,
                  PelImageSlot slot) {
     std::vector<std::string>& names = view.scene.channels[slot];
@@ -47,7 +47,7 @@ PelMaterial glossy(float specular, float roughness) {
 
 PelMaterial skin() {
     PelMaterial m = pelMaterialDefaults();
-    // What the library would choose; the sample host's own filter wants to know it.
+    // The library's own choice, which the sample host's filter needs as well.
     const PelProfileInfo info = Profile::named(profileName).info();
     m.shadowFilterWidth = 3 * std::max({info.width[0], info.width[1], info.width[2]});
     m.specular = 0.35f;

@@ -11,7 +11,7 @@
 namespace pellucid::cli {
 namespace {
 
-// `fits` says of a number whether it is one of `what`.
+// `fits`: whether a number is allowed; `what` describes the allowed numbers.
 template <class Number>
 Check numbers(const std::string& what, const std::string& description, std::function<bool(Number)> fits) {
     return {[what, fits](std::string& given) {

@@ -86,8 +86,7 @@ TEST_F(Cli, UnwritableOutputsAreRefusedBeforeWork) {
     expectRefused({"lut", "shadow", "-o", path("d.npy")}, 2, "is a folder");
 }
 
-// The viewer is the Python package's: what starts it hands its arguments over unread, and says what is
-// missing.
+// The viewer is part of the Python package: the command passes all arguments on, and names what is missing.
 TEST_F(Cli, ViewStartsThePython) {
     const std::string python = write("python", "#!/bin/sh\nprintf '%s\\n' \"$@\" | tail -n +7\n");
     std::filesystem::permissions(python, std::filesystem::perms::owner_all);
@@ -104,8 +103,7 @@ TEST_F(Cli, ViewStartsThePython) {
     unsetenv("PELLUCID_PYTHON");
 }
 
-// Every subcommand that has --device, by `describe`, asks for that device: none ignores it, and none is
-// forgotten here.
+// Every subcommand that has --device, by `describe`, opens that device.
 TEST_F(Cli, EveryDeviceOptionIsHeard) {
     const std::string mesh = icosahedron(), manifest = write("m.toml", "[[lut]]\nsize = 8\n"),
                       out = path("out");

@@ -152,8 +152,8 @@ TEST_F(BatchCommand, NamesFilesAndWritesAnIndexOfThem) {
         1);
 }
 
-// A manifest of version 1 means FaceWorks' tables where it says nothing, one of version 2 those that a
-// material makes of its profile.
+// By default a manifest of version 1 makes FaceWorks' tables, one of version 2 those that a material makes of
+// its profile.
 TEST_F(BatchCommand, TablesBeginAsTheVersionOrThePresetSays) {
     const auto made = [&](const std::string& text) {
         const Result result = run({"batch", manifest(text), "-o", path("out"), "--json"});

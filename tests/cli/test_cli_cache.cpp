@@ -16,7 +16,7 @@ namespace {
 
 class ProgramsOnDisk : public CommandTest {
   protected:
-    // Builds the programs of tables and says what became of them.
+    // Builds the programs of tables; returns the report.
     nlohmann::json warmUp(const std::string& environment) const {
         const Result result = run({"warm-up", "--luts", "--threads", "1", "--json"}, environment);
         EXPECT_EQ(result.exitCode, 0) << result.err;

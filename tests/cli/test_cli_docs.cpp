@@ -1,4 +1,4 @@
-// Every command that the pages show is one that `pellucid` knows, with these options.
+// Every command and option that the pages show exists.
 #include <cctype>
 #include <map>
 #include <regex>
@@ -69,7 +69,7 @@ TEST_F(CliDocs, CommandsAndOptionsExist) {
                 if (!std::regex_search(word, std::regex("^--?[a-z]"))) continue;
                 word = word.substr(0, word.find_first_of("|="));
                 ++options;
-                bool known = false;  // by one of those meant: the page of each says which
+                bool known = false;  // to one of the subcommands that may be meant
                 for (const auto& subcommands : meant) {
                     known |= names(subcommands).contains(word);
                     for (const char* kind : {"curvature", "shadow", "specular"})

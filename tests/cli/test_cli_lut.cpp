@@ -68,8 +68,8 @@ TEST_F(CliLut, LutFilesHoldTheLibrarysTexels) {
     EXPECT_EQ(io::readImage(path("h.exr")).channels[0].type, io::ChannelType::Half);
 }
 
-// Without more, the tables that a material makes of its profile; by a preset those of FaceWorks; and what is
-// asked for by itself counts.
+// The default tables are those that a material makes of its profile, --preset faceworks makes those of
+// FaceWorks; an option of its own takes precedence.
 TEST_F(CliLut, TablesAreAMaterialsUnlessAPresetSaysOtherwise) {
     const Device device("");
     const auto info = [&](std::vector<std::string> arguments) {
@@ -111,7 +111,7 @@ TEST_F(CliLut, TablesAreAMaterialsUnlessAPresetSaysOtherwise) {
     expectRefused({"lut", "shadow", "--preset", "unity", "-o", path("p.exr")}, 2, "faceworks");
 }
 
-// A .png that no encoding was asked for is there to be looked at, and the report says so.
+// A .png without --encoding is a picture to look at, as the report states.
 TEST_F(CliLut, ATableAsAPictureHasTheTablesValues) {
     const Result result = run({"lut", "shadow", "--size", "16x8", "-o", path("look.png"), "--json"});
     ASSERT_EQ(result.exitCode, 0) << result.err;

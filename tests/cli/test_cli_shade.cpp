@@ -159,7 +159,7 @@ TEST_F(Shade, BadFilesAreRefused) {
     scene_.materials[0].curvatureLut = "t";
     io::writeScene(path("lut.toml"), scene_);
     expectRefused(command("lut.toml"), 3, "pellucid:format");
-    // A look-up table, but not the one that is asked for.
+    // A look-up table of another kind than the scene names.
     ASSERT_EQ(run({"lut", "shadow", "-o", path("t.exr"), "--size", "8x8"}).exitCode, 0);
     scene_.luts[0].file = "t.exr";
     io::writeScene(path("lut.toml"), scene_);

@@ -1,4 +1,4 @@
-// `pellucid shade`: what a scene file asks for beside plain light.
+// `pellucid shade`: features of scene files other than plain light.
 #include "cli_shade.h"
 #include "tolerances.h"
 
@@ -43,7 +43,7 @@ TEST_F(Shade, TablesOfMaterialsAndProfileFiles) {
 }
 
 TEST_F(Shade, CurvatureFromThePictureItself) {
-    // A ball of radius 4 seen from the front: its picture says 0.25 everywhere, as a channel of 0.25 does.
+    // A ball of radius 4 seen from the front: the curvature measured on the screen is 0.25 everywhere.
     const int side = 24;
     const float radius = 4, pixel = 0.2f;
     io::Image ball;

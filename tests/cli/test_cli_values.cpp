@@ -1,4 +1,4 @@
-// What the command says to a value that an option does not take: of every option of every subcommand.
+// Messages about wrong values, for every option of every subcommand.
 #include "cli_run.h"
 
 using CliValues = CommandTest;
