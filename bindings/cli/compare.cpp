@@ -127,8 +127,8 @@ std::vector<uint8_t> subsets(const Arguments& a, const Rgb& one, const Rgb& two,
     else if (!light.wideShadow.empty())
         visible = gbuffer.interleaved(std::vector<std::string>{light.wideShadow});
     return io::subsetsOf({one.width, one.height, positions, normals, toLight, visible, mask,
-                          1 / (a.unit > 0 ? a.unit : scene.unitMm), two.meanCurvature, two.thickness,
-                          two.meanFreePath});
+                          1 / (a.unit > 0 ? a.unit : scene.options.millimetresPerUnit), two.meanCurvature,
+                          two.thickness, two.meanFreePath});
 }
 
 nlohmann::ordered_json toJson(const io::ImageDifference& d) {

@@ -10,8 +10,8 @@
 #include "demo_view.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
-#include "io/scene/scene_programs.h"
 #include "mesh_curvature.h"
+#include "scene/scene_programs.h"
 #include "stages.h"
 #include "system/process.h"
 

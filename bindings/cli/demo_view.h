@@ -3,9 +3,9 @@
 #include <string>
 
 #include "demo/demo_head.h"
-#include "io/scene/scene_frame.h"
 #include "sample/camera.h"
 #include "sample/scene.h"
+#include "scene/scene_frame.h"
 
 namespace pellucid::cli {
 

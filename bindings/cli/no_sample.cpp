@@ -1,18 +1,12 @@
 // What stands in the place of commands and pictures that need the sample renderer, in a build without it.
 #include "command.h"
 #include "curvature_picture.h"
-#include "import_view.h"
 
 namespace pellucid::cli {
 
 void addReference(Command&) {}
 void addDemo(Command&) {}
 void addBench(Command&) {}
-
-bool canDraw() {
-    return false;
-}
-void drawImport(Run&, const std::string&, io::ImportedGltf&, const ImportView&) {}
 
 void writeCurvaturePicture(const std::string&, const io::MeshData&, const std::vector<float>&, float, float,
                            char, const std::string&) {

@@ -8,7 +8,7 @@
 #include "io/image/picture.h"
 #include "io/input_file.h"
 #include "io/lut/profile_file.h"
-#include "io/lut/profile_fit.h"
+#include "profile_fit/profile_fit.h"
 
 namespace pellucid::cli {
 namespace {

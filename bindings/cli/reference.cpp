@@ -9,8 +9,8 @@
 #include "io/image/image_file.h"
 #include "io/input_file.h"
 #include "io/lut/profile_file.h"
-#include "io/scene/scene_frame.h"
 #include "sample/surface_light.h"
+#include "scene/scene_frame.h"
 #include "surface_reference.h"
 #include "walk_reference.h"
 
@@ -29,7 +29,7 @@ struct Arguments {
 };
 
 float unitOf(const Arguments& a, const io::SceneFile& scene) {
-    return a.unit > 0 ? a.unit : scene.unitMm;
+    return a.unit > 0 ? a.unit : scene.options.millimetresPerUnit;
 }
 
 // How one material scatters.

@@ -9,9 +9,9 @@
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/input_file.h"
-#include "io/scene/scene_frame.h"
 #include "io/scene/scene_keys.h"
-#include "io/scene/scene_programs.h"
+#include "scene/scene_frame.h"
+#include "scene/scene_programs.h"
 #include "shade_picture.h"
 
 namespace pellucid::cli {

@@ -5,7 +5,7 @@
 
 #include "command.h"
 #include "io/image/tone_map.h"
-#include "io/scene/scene_frame.h"
+#include "scene/scene_frame.h"
 
 namespace pellucid::cli {
 

@@ -1,4 +1,4 @@
-// What somebody who mistyped a word may have meant.
+// Suggests the correct spelling of a mistyped word.
 #pragma once
 #include <span>
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace pellucid::io {
 
-// The nearest of `known`; "" if none is near: more than one edit, and one for every three letters, away.
+// The nearest of `known`, or "" if the nearest is more than 1 + length / 3 edits away.
 std::string nearestWord(std::string_view given, std::span<const std::string> known);
 
 }  // namespace pellucid::io

@@ -1,5 +1,13 @@
 #include "io/toml_reader.h"
 
+// Damaged text breaks some of toml++'s assertions, which NDEBUG has the compiler take for granted; the
+// checks behind them say what is wrong with the text.
+#pragma push_macro("NDEBUG")
+#undef NDEBUG
+#define TOML_ASSERT(expr) static_cast<void>(0)
+#include <toml++/toml.h>
+#pragma pop_macro("NDEBUG")
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -25,23 +33,80 @@ std::string inQuotes(std::string_view text) {
     return out;
 }
 
+const toml::table& nodesOf(const TomlTable& table) {
+    return reinterpret_cast<const toml::table&>(table);
+}
+
+const TomlTable* opaque(const toml::table* table) {
+    return reinterpret_cast<const TomlTable*>(table);
+}
+
 }  // namespace
 
-toml::table parseToml(const std::string& file, const std::string& text) {
+struct TomlReader::Nodes {
+    // Marks the key as known.
+    static const toml::node* find(TomlReader& reader, std::string_view key) {
+        reader.known_.emplace_back(key);
+        return nodesOf(reader.table_).get(key);
+    }
+
+    // The value of `key` if it is there; it must be an array of `count` elements of `wanted`.
+    static const toml::array* array(TomlReader& reader, std::string_view key, size_t count,
+                                    const std::string& wanted, const char* elements) {
+        const toml::node* node = find(reader, key);
+        if (!node) return nullptr;
+        if (!node->is_array()) reader.fail(key, "is " + typeName(*node) + "; " + wanted + " would be right");
+        if (node->as_array()->size() != count)
+            reader.fail(key, "has " + std::to_string(node->as_array()->size()) + " " + elements + "; " +
+                                 wanted + " would be right" + (count == 16 ? " (a matrix, row by row)" : ""));
+        return node->as_array();
+    }
+
+    // Each element of an array that is not empty, or a single value; `use` reads one.
+    template <class Use>
+    static void each(TomlReader& reader, std::string_view key, Use&& use) {
+        const toml::node* node = find(reader, key);
+        if (!node) return;
+        if (!node->is_array()) return use(*node);
+        if (node->as_array()->empty()) reader.fail(key, "is empty; at least one value would be right");
+        for (const toml::node& entry : *node->as_array()) use(entry);
+    }
+
+    static float toFloat(const TomlReader& reader, std::string_view key, const toml::node& node, Range range) {
+        if (!node.is_number()) reader.fail(key, "is " + typeName(node) + "; a number would be right");
+        const auto value = static_cast<float>(node.is_integer() ? static_cast<double>(node.as_integer()->get())
+                                                                : node.as_floating_point()->get());
+        if (range.holds(value)) return value;
+        std::ostringstream text;
+        text << "is " << value << "; it must be " << describe(range);
+        reader.fail(key, text.str());
+    }
+};
+
+std::shared_ptr<const TomlTable> parseToml(const std::string& file, const std::string& text) {
     if (text.size() > textLimit)
         throw FileError(
             file, "has " + std::to_string(text.size()) + " bytes; TOML may have " + std::to_string(textLimit));
     checkTomlDepth(file, text);
     try {
-        return toml::parse(text, file);
+        const auto root = std::make_shared<const toml::table>(toml::parse(text, file));
+        return {root, opaque(root.get())};
     } catch (const toml::parse_error& error) {
         throw FileError(file, "is not TOML: " + std::string(error.description()),
                         static_cast<int>(error.source().begin.line));
     }
 }
 
+int TomlReader::line() const {
+    return static_cast<int>(nodesOf(table_).source().begin.line);
+}
+
+bool TomlReader::has(std::string_view key) const {
+    return nodesOf(table_).contains(key);
+}
+
 int TomlReader::lineOf(std::string_view key) const {
-    for (const auto& [k, node] : table_) {
+    for (const auto& [k, node] : nodesOf(table_)) {
         if (k.str() == key) return static_cast<int>(k.source().begin.line);
     }
     return line();
@@ -51,25 +116,8 @@ void TomlReader::fail(std::string_view key, const std::string& message) const {
     throw FileError(file_, inQuotes(key) + " in " + where_ + " " + message, lineOf(key));
 }
 
-const toml::node* TomlReader::find(std::string_view key) {
-    known_.emplace_back(key);
-    return table_.get(key);
-}
-
-float TomlReader::toFloat(std::string_view key, const toml::node& node, Range range) const {
-    if (!node.is_number()) fail(key, "is " + typeName(node) + "; a number would be right");
-    const auto value = static_cast<float>(node.is_integer() ? static_cast<double>(node.as_integer()->get())
-                                                            : node.as_floating_point()->get());
-    if (!range.holds(value)) {
-        std::ostringstream text;
-        text << "is " << value << "; it must be " << describe(range);
-        fail(key, text.str());
-    }
-    return value;
-}
-
 int64_t TomlReader::version(int64_t known) {
-    const toml::node* node = find("version");
+    const toml::node* node = Nodes::find(*this, "version");
     if (!node) return 1;
     const std::string versions = known == 1 ? "1" : "1 to " + std::to_string(known);
     if (!node->is_integer()) fail("version", "is " + typeName(*node) + "; " + versions + " would be right");
@@ -82,42 +130,30 @@ int64_t TomlReader::version(int64_t known) {
 }
 
 void TomlReader::number(std::string_view key, float& value, Range range) {
-    if (const toml::node* node = find(key)) value = toFloat(key, *node, range);
+    if (const toml::node* node = Nodes::find(*this, key)) value = Nodes::toFloat(*this, key, *node, range);
 }
 
 void TomlReader::numbers(std::string_view key, float* values, size_t count, Range range) {
-    const toml::node* node = find(key);
-    if (!node) return;
-    const std::string wanted = "an array of " + std::to_string(count) + " numbers";
-    if (!node->is_array()) fail(key, "is " + typeName(*node) + "; " + wanted + " would be right");
-    const toml::array& array = *node->as_array();
-    if (array.size() != count) {
-        fail(key, "has " + std::to_string(array.size()) + " values; " + wanted + " would be right" +
-                      (count == 16 ? " (a matrix, row by row)" : ""));
-    }
-    for (size_t i = 0; i < count; ++i) values[i] = toFloat(key, array[i], range);
+    const toml::array* array =
+        Nodes::array(*this, key, count, "an array of " + std::to_string(count) + " numbers", "values");
+    for (size_t i = 0; array && i < count; ++i) values[i] = Nodes::toFloat(*this, key, (*array)[i], range);
 }
 
 void TomlReader::rows(std::string_view key, float* values, size_t rows, size_t columns) {
-    const toml::node* node = find(key);
-    if (!node) return;
     const std::string wanted = std::to_string(rows) + " arrays of " + std::to_string(columns) + " numbers";
-    if (!node->is_array()) fail(key, "is " + typeName(*node) + "; " + wanted + " would be right");
-    const toml::array& array = *node->as_array();
-    if (array.size() != rows)
-        fail(key, "has " + std::to_string(array.size()) + " rows; " + wanted + " would be right");
-    for (size_t r = 0; r < rows; ++r) {
-        if (!array[r].is_array() || array[r].as_array()->size() != columns) {
+    const toml::array* array = Nodes::array(*this, key, rows, wanted, "rows");
+    for (size_t r = 0; array && r < rows; ++r) {
+        const toml::array* row = (*array)[r].as_array();
+        if (!row || row->size() != columns)
             fail(key, "has a row " + std::to_string(r) + " (counted from 0) that is not an array of " +
                           std::to_string(columns) + "; " + wanted + " would be right");
-        }
         for (size_t c = 0; c < columns; ++c)
-            values[r * columns + c] = toFloat(key, (*array[r].as_array())[c], range::any);
+            values[r * columns + c] = Nodes::toFloat(*this, key, (*row)[c], range::any);
     }
 }
 
 void TomlReader::integer(std::string_view key, uint32_t& value, Range range) {
-    const toml::node* node = find(key);
+    const toml::node* node = Nodes::find(*this, key);
     if (!node) return;
     const uint32_t low = uint32_t(range.min), high = range.max < 0x1p32f ? uint32_t(range.max) : UINT32_MAX;
     const std::string special =
@@ -132,14 +168,14 @@ void TomlReader::integer(std::string_view key, uint32_t& value, Range range) {
 }
 
 void TomlReader::text(std::string_view key, std::string& value) {
-    const toml::node* node = find(key);
+    const toml::node* node = Nodes::find(*this, key);
     if (!node) return;
     if (!node->is_string()) fail(key, "is " + typeName(*node) + "; a string in quotes would be right");
     value = node->as_string()->get();
 }
 
 void TomlReader::texts(std::string_view key, std::vector<std::string>& values, size_t most, size_t least) {
-    const toml::node* node = find(key);
+    const toml::node* node = Nodes::find(*this, key);
     if (!node) return;
     const std::string wanted = most == 1      ? std::string("one channel name")
                                : least < most ? "an array of " + std::to_string(least) + " to " +
@@ -162,7 +198,7 @@ void TomlReader::texts(std::string_view key, std::vector<std::string>& values, s
 
 void TomlReader::choiceIndex(std::string_view key, uint32_t& index, std::span<const std::string_view> names) {
     if (!has(key)) {
-        find(key);
+        Nodes::find(*this, key);
         return;
     }
     std::string given, list;
@@ -177,11 +213,11 @@ void TomlReader::choiceIndex(std::string_view key, uint32_t& index, std::span<co
     fail(key, "is " + inQuotes(given) + "; one of " + list + " would be right");
 }
 
-const toml::table* TomlReader::subTable(std::string_view key) {
-    const toml::node* node = find(key);
+const TomlTable* TomlReader::subTable(std::string_view key) {
+    const toml::node* node = Nodes::find(*this, key);
     if (!node) return nullptr;
     if (!node->is_table()) fail(key, "is " + typeName(*node) + "; a table would be right");
-    return node->as_table();
+    return opaque(node->as_table());
 }
 
 std::string TomlReader::innerName(std::string_view key) const {
@@ -195,30 +231,20 @@ std::string TomlReader::innerName(std::string_view key) const {
 }
 
 void TomlReader::list(std::string_view key, std::vector<std::string>& values) {
-    const toml::node* node = find(key);
-    if (!node) return;
-    values.clear();
-    const auto add = [&](const toml::node& entry) {
+    std::vector<std::string> found;
+    Nodes::each(*this, key, [&](const toml::node& entry) {
         if (!entry.is_string())
             fail(key, "holds " + typeName(entry) + "; a string or an array of strings would be right");
-        values.push_back(entry.as_string()->get());
-    };
-    if (node->is_array())
-        for (const toml::node& entry : *node->as_array()) add(entry);
-    else
-        add(*node);
-    if (values.empty()) fail(key, "is empty; at least one value would be right");
+        found.push_back(entry.as_string()->get());
+    });
+    if (!found.empty()) values = std::move(found);
 }
 
 void TomlReader::list(std::string_view key, std::vector<float>& values, Range range) {
-    const toml::node* node = find(key);
-    if (!node) return;
-    values.clear();
-    if (node->is_array())
-        for (const toml::node& entry : *node->as_array()) values.push_back(toFloat(key, entry, range));
-    else
-        values.push_back(toFloat(key, *node, range));
-    if (values.empty()) fail(key, "is empty; at least one value would be right");
+    std::vector<float> found;
+    Nodes::each(*this, key,
+                [&](const toml::node& entry) { found.push_back(Nodes::toFloat(*this, key, entry, range)); });
+    if (!found.empty()) values = std::move(found);
 }
 
 void TomlReader::tables(std::string_view key, const std::function<void(TomlReader&)>& function) {
@@ -227,14 +253,14 @@ void TomlReader::tables(std::string_view key, const std::function<void(TomlReade
 
 void TomlReader::tablesApart(std::string_view key, const std::function<void(TomlReader&)>& function,
                              const std::function<void(const FileError&)>& failed) {
-    const toml::node* node = find(key);
+    const toml::node* node = Nodes::find(*this, key);
     if (!node) return;
     const std::string name = "[[" + std::string(key) + "]]";
     if (!node->is_array())
         fail(key, "is " + typeName(*node) + "; tables that start with " + name + " would be right");
     for (const toml::node& entry : *node->as_array()) {
         if (!entry.is_table()) fail(key, "holds " + typeName(entry) + "; tables " + name + " would be right");
-        TomlReader reader(file_, *entry.as_table(), name);
+        TomlReader reader(file_, *opaque(entry.as_table()), name);
         try {
             function(reader);
             reader.finish();
@@ -245,7 +271,7 @@ void TomlReader::tablesApart(std::string_view key, const std::function<void(Toml
 }
 
 void TomlReader::finish() const {
-    for (const auto& [key, node] : table_) {
+    for (const auto& [key, node] : nodesOf(table_)) {
         const std::string_view given = key.str();
         if (std::find(known_.begin(), known_.end(), given) != known_.end()) continue;
         const std::string nearest = nearestWord(given, known_);

@@ -1,37 +1,36 @@
-// Reads one TOML table key by key. Keys that nobody asked for are errors.
+// Reads one TOML table key by key; a key that was not read is an error. toml++ is included by
+// toml_reader.cpp alone, because its header takes seconds to compile.
 #pragma once
-
-// Damaged text breaks some of toml++'s assertions, which NDEBUG has the compiler take for granted; the checks behind them say what
-// is wrong with the text.
-#pragma push_macro("NDEBUG")
-#undef NDEBUG
-#define TOML_ASSERT(expr) static_cast<void>(0)
-#include <toml++/toml.h>
-#pragma pop_macro("NDEBUG")
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "io/file_error.h"
-#include "io/scene/scene_keys.h"
+#include "fields/field_ranges.h"
 
 namespace pellucid::io {
+
+using Range = pel::FieldRange;
+namespace range = pel::range;
+
+struct TomlTable;  // an opaque toml::table
 
 // Throws FileError with the line if keys have more than 16 parts or brackets nest more than 16 deep.
 void checkTomlDepth(const std::string& file, std::string_view text);
 
 // Parses the text of `file`. Throws FileError with the line if it is not TOML, nests too deep, or has more
 // than textLimit bytes.
-toml::table parseToml(const std::string& file, const std::string& text);
+std::shared_ptr<const TomlTable> parseToml(const std::string& file, const std::string& text);
 
 class TomlReader {
   public:
     // `where` names the table in messages: "[[light]]", or "the scene" for the whole file.
-    TomlReader(std::string file, const toml::table& table, std::string where)
+    TomlReader(std::string file, const TomlTable& table, std::string where)
         : file_(std::move(file)), table_(table), where_(std::move(where)) {}
 
     void number(std::string_view key, float& value, Range range);
@@ -54,7 +53,7 @@ class TomlReader {
     }
     template <class Function>
     void table(std::string_view key, bool, Function&& function) {
-        if (const toml::table* inner = subTable(key)) {
+        if (const TomlTable* inner = subTable(key)) {
             TomlReader reader(file_, *inner, innerName(key));
             function(reader);
             reader.finish();
@@ -68,24 +67,23 @@ class TomlReader {
     void tablesApart(std::string_view key, const std::function<void(TomlReader&)>& function,
                      const std::function<void(const FileError&)>& failed);
 
-    // The rule of every format here: `version` may be left out and is 1 then; a later one than this program knows is an error.
+    // `version` may be left out and is 1 then; a later version than `known` is an error.
     int64_t version(int64_t known = 1);
 
-    void finish() const;  // throws FileError for the first key that nobody asked for
-    int line() const { return static_cast<int>(table_.source().begin.line); }
+    void finish() const;  // throws FileError for the first key that was not read
+    int line() const;
     int lineOf(std::string_view key) const;
-    bool has(std::string_view key) const { return table_.contains(key); }
+    bool has(std::string_view key) const;
     [[noreturn]] void fail(std::string_view key, const std::string& message) const;
 
   private:
-    const toml::node* find(std::string_view key);  // marks the key as known
-    float toFloat(std::string_view key, const toml::node& node, Range range) const;
+    struct Nodes;  // helpers that use the types of toml++
     void choiceIndex(std::string_view key, uint32_t& index, std::span<const std::string_view> names);
-    const toml::table* subTable(std::string_view key);
+    const TomlTable* subTable(std::string_view key);
     std::string innerName(std::string_view key) const;
 
     std::string file_;
-    const toml::table& table_;
+    const TomlTable& table_;
     std::string where_;
     std::vector<std::string> known_;
 };

@@ -34,7 +34,7 @@ class CliEye : public shade_files::Shade {
         io::writeExr(path("g.exr"), gbuffer_);
         scene_.channels[PEL_SLOT_POSITION] = {"P.X", "P.Y", "P.Z"};
         scene_.channels[PEL_SLOT_ALBEDO].clear();
-        scene_.unitMm = 10;
+        scene_.options.millimetresPerUnit = 10;
         scene_.camera.position[2] = 40;
         scene_.eyes.resize(1);
         io::writeScene(path("s.toml"), scene_);

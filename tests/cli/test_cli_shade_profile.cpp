@@ -61,7 +61,7 @@ TEST_F(ShadeProfile, SizesThatCannotBeTheProfilesAreSaid) {
     addSphere(90);
     scene_.materials[0].profile = "skin";
     for (const auto& [unit, likely] : {std::pair{1.0f, true}, {0.1f, false}, {100.0f, false}}) {
-        scene_.unitMm = unit;
+        scene_.options.millimetresPerUnit = unit;
         io::writeScene(path("s.toml"), scene_);
         shaded("s.toml");
         EXPECT_EQ(warnings_.find("unit_mm") == std::string::npos, likely) << unit << ": " << warnings_;
@@ -110,7 +110,7 @@ TEST_F(ShadeProfile, DepthThatGivesNoLikelySizeIsSaid) {
         io::Image gbuffer = gbuffer_;
         gbuffer.addInterleaved(std::vector<std::string>{"D.Z"}, std::vector<float>(gbuffer.pixelCount(), value));
         io::writeExr(path("g.exr"), gbuffer);
-        scene_.unitMm = unit;
+        scene_.options.millimetresPerUnit = unit;
         io::writeScene(path("s.toml"), scene_);
         shaded("s.toml");
         return warnings_;
@@ -162,7 +162,7 @@ TEST_F(ShadeProfile, MethodsAndTheirControls) {
     differs("taps");
     m.scattering = PEL_SCATTERING_SCREEN;
     differs("disk");
-    scene_.frameIndex = 7;
+    scene_.options.frameIndex = 7;
     differs("frame");
     m.thinThickness = 0.2f;
     scene_.channels[PEL_SLOT_IRRADIANCE_BACK] = {"B.R", "B.G", "B.B"};

@@ -180,7 +180,8 @@ int main(int argc, char** argv) {
     const Options o = optionsOf(argc, argv);
     ::setenv("PELLUCID_INPUT_LIMIT_MIB", "64", 1);
 #ifndef __SANITIZE_ADDRESS__
-    const rlimit memory{rlim_t{6} << 30, rlim_t{6} << 30};  // address space: what takes more gets std::bad_alloc
+    // Address space: what takes more gets std::bad_alloc
+    const rlimit memory{rlim_t{6} << 30, rlim_t{6} << 30};
     ::setrlimit(RLIMIT_AS, &memory);
 #endif
     auto& place =

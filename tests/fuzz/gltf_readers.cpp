@@ -1,9 +1,9 @@
 #include <nlohmann/json.hpp>
 
 #include "fuzz/reader_parts.h"
-#include "io/gltf/gltf_file.h"
-#include "io/gltf/gltf_import.h"
-#include "io/gltf_bytes.h"
+#include "gltf/gltf_file.h"
+#include "gltf/gltf_import.h"
+#include "gltf/tests/gltf_bytes.h"
 #include "io/lut/profile_file.h"
 
 namespace fuzz {

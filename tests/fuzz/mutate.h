@@ -27,8 +27,8 @@ class Random {
 // pieces left out, doubled, taken from another file, words of the format, and digits.
 std::string mutant(Random& random, const std::vector<std::string>& files, const std::vector<std::string>& words);
 
-// Changes one to eight values of a JSON document, which stays well-formed: numbers become special ones, elements and
-// members are repeated, erased or replaced by others of the document, texts by one of `words`.
+// Changes one to eight values of a JSON document, which stays well-formed: numbers become special ones,
+// elements and members are repeated, erased or replaced by others of the document, texts by one of `words`.
 void mutateJson(Random& random, nlohmann::json& document, const std::vector<std::string>& words);
 
 }  // namespace fuzz

@@ -2,11 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "batch/batch_manifest.h"
 #include "measure/compare.h"
 #include "fuzz/reader_parts.h"
 #include "io/file_error.h"
 #include "io/input_file.h"
-#include "io/lut/batch_manifest.h"
 #include "io/lut/profile_file.h"
 #include "io/scene/scene_file.h"
 
@@ -58,7 +58,7 @@ io::SceneFile scene() {
     s.eyes.resize(1);
     s.eyes[0].irisTexture = "iris.png";
     s.eyes[0].irisProfile = "skin";
-    s.targetError = 0.5f;
+    s.options.targetError = 0.5f;
     s.luts.resize(1);
     s.luts[0].name = "skin";
     return s;

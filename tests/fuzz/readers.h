@@ -16,7 +16,8 @@ struct Reader {
     // Makes check sums right again, so that damage comes past them; none where there are no sums.
     std::function<std::string(std::string bytes)> mend;
     std::vector<std::string> words;  // to put in
-    // Makes an input that is damaged inside a structure that stays whole; none: every input is a mutant of bytes.
+    // Makes an input that is damaged inside a structure that stays whole; none: every input is a mutant of
+    // bytes.
     std::function<std::string(Random&)> structured = {};
 };
 

@@ -11,7 +11,8 @@
 #include <fstream>
 #include <string>
 
-// A tmpfs of so many KiB, which only this program and its children see. It ends with the program. Mounting needs root.
+// A tmpfs of so many KiB, which only this program and its children see. It ends with the program. Mounting
+// needs root.
 class SmallDisk {
   public:
     explicit SmallDisk(size_t kibibytes) {

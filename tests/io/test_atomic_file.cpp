@@ -1,5 +1,5 @@
-// host/io/atomic_file.h and input_file.h: files that appear whole or not at all, under temporary names that nobody can
-// foresee; what is no regular file; limits.
+// host/io/atomic_file.h and input_file.h: files that appear whole or not at all, under temporary names that
+// nobody can foresee; what is no regular file; limits.
 //
 // This program defines calls to the disk itself, which are linked before the C library's and fail on demand.
 #include <dlfcn.h>

@@ -1,5 +1,5 @@
-// The two ways of reading OpenEXR files give the same values: scan lines without compression, with RLE and with ZIP by the C library, all
-// others by the C++ one. Values may go anywhere.
+// The two ways of reading OpenEXR files give the same values: scan lines without compression, with RLE and
+// with ZIP by the C library, all others by the C++ one. Values may go anywhere.
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 

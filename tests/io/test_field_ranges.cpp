@@ -1,5 +1,5 @@
-// The library and the scene file accept and refuse the same values of each field (pellucid_fields.h), at both ends of its range
-// and beyond.
+// The library and the scene file accept and refuse the same values of each field (pellucid_fields.h), at both
+// ends of its range and beyond.
 #include <cmath>
 #include <limits>
 #include <type_traits>

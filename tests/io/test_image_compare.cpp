@@ -128,7 +128,8 @@ TEST(CompareImages, NoiseOfTwoHalvesIsNotInTheError) {
     for (size_t i = 0; i < count; ++i) first.push_back(normal(random)), second.push_back(normal(random));
     const io::ImageDifference d = io::compareImages(a, first, {}, nullptr, second);
     for (size_t c = 0; c < 3; ++c) {
-        // The squared error has a standard deviation of noise^2 / sqrt(pixels) = 5e-5, four of which are allowed.
+        // The squared error has a standard deviation of noise^2 / sqrt(pixels) = 5e-5, four of which are
+        // allowed.
         EXPECT_NEAR(d.rmse[c] * d.rmse[c], difference * difference, 2e-4);
         EXPECT_NEAR(d.noise[c], noise / std::sqrt(2), 0.002);
         EXPECT_NEAR(d.mean[c], difference, 0.002);
@@ -217,7 +218,8 @@ TEST_F(NpyRead, DamagedFilesAreRefused) {
     EXPECT_THROW(io::readNpy(path("none.npy")), io::FileError);
 }
 
-// The corners of sRGB and its greys, as published for its matrix and the white D65 (B. Lindbloom, CIE colour calculator).
+// The corners of sRGB and its greys, as published for its matrix and the white D65 (B. Lindbloom, CIE
+// colour calculator).
 TEST(ColorDifference, LabOfKnownColours) {
     const std::pair<std::array<double, 3>, pellucid::io::Lab> known[] = {
         {{1, 0, 0}, {53.2408, 80.0925, 67.2032}},

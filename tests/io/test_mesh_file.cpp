@@ -1,4 +1,5 @@
-// host/io/mesh/mesh_file.h: what is loaded, what is refused and with which message. PLY: test_mesh_file_ply.cpp.
+// host/io/mesh/mesh_file.h: what is loaded, what is refused and with which message. PLY:
+// test_mesh_file_ply.cpp.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -203,7 +204,8 @@ TEST_F(MeshFile, LoopTakesManyNeighbours) {
     for (int i = 0; i < n; ++i) fan << "3 0 " << 1 + i << ' ' << 1 + (i + 1) % n << '\n';
     MeshData mesh = loadMesh(write("fan.off", fan.str()));
     loopSubdivide(mesh, 1);
-    const double beta = (40 - std::pow(3 + 2 * std::cos(2 * M_PI / n), 2)) / 64;  // Loop's weight of the neighbours
+    // Loop's weight of the neighbours
+    const double beta = (40 - std::pow(3 + 2 * std::cos(2 * M_PI / n), 2)) / 64;
     EXPECT_FLOAT_EQ(mesh.positions[2], static_cast<float>(1 - beta));
 }
 

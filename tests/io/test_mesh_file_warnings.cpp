@@ -54,7 +54,8 @@ TEST_F(MeshWarnings, PolygonsCountOnce) {
 }
 
 TEST_F(MeshWarnings, TrianglesThatFaceAnotherWayThanTheirNeighboursAreToldOrTurned) {
-    // A tetrahedron, outwards; its second triangle turned round; and that in vertices of their own, as STL has them.
+    // A tetrahedron, outwards; its second triangle turned round; and that in vertices of their own, as STL
+    // has them.
     const auto off = [](const std::string& second) {
         return "OFF\n4 4 0\n" + four + "3 0 2 1\n3 " + second + "\n3 1 2 3\n3 0 3 2\n";
     };
@@ -73,7 +74,8 @@ TEST_F(MeshWarnings, TrianglesThatFaceAnotherWayThanTheirNeighboursAreToldOrTurn
     EXPECT_EQ((std::vector<uint32_t>(mesh.triangles.begin() + 3, mesh.triangles.begin() + 6)),
               (std::vector<uint32_t>{0, 1, 3}));
     computeNormals(mesh);
-    EXPECT_LT(mesh.normals[0] + mesh.normals[1] + mesh.normals[2], -1);  // of the corner at the origin: outwards
+    // Of the corner at the origin: outwards
+    EXPECT_LT(mesh.normals[0] + mesh.normals[1] + mesh.normals[2], -1);
     const auto facet = [](const char* a, const char* b, const char* c) {
         return std::string("facet normal 0 0 0\nouter loop\nvertex ") + a + "\nvertex " + b + "\nvertex " +
                c + "\nendloop\nendfacet\n";

@@ -66,8 +66,8 @@ TEST(ToneMap, CurvesRiseFromBlackToWhite) {
     }
 }
 
-// Figures of the sources: Hable's page maps its white, 11.2 after twice the exposure, to 1; middle grey gets half the code
-// values of AgX.
+// Figures of the sources: Hable's page maps its white, 11.2 after twice the exposure, to 1; middle grey
+// gets half the code values of AgX.
 TEST(ToneMap, CurvesHitTheirSourcesPoints) {
     ToneMap map;
     map.curve = ToneCurve::filmic;
@@ -75,7 +75,8 @@ TEST(ToneMap, CurvesHitTheirSourcesPoints) {
     EXPECT_LT(toSrgb8(std::vector<float>{4.0f}, map)[0], 255);
     map.curve = ToneCurve::agxLike;
     EXPECT_NEAR(toSrgb8(std::vector<float>{0.18f, 0.18f, 0.18f}, map)[0], 127.5, 0.6);
-    EXPECT_EQ(toSrgb8(std::vector<float>{0.18f * 90.6f, 0.18f * 90.6f, 0.18f * 90.6f}, map)[0], 255);  // 6.5 stops above
+    // 6.5 stops above
+    EXPECT_EQ(toSrgb8(std::vector<float>{0.18f * 90.6f, 0.18f * 90.6f, 0.18f * 90.6f}, map)[0], 255);
     // A saturated light turns paler the brighter it is.
     const auto dim = toSrgb8(std::vector<float>{0.2f, 0, 0}, map),
                bright = toSrgb8(std::vector<float>{20, 0, 0}, map);

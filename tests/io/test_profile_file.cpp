@@ -6,7 +6,7 @@
 
 #include "io/file_error.h"
 #include "io/lut/profile_file.h"
-#include "io/lut/profile_fit.h"
+#include "profile_fit/profile_fit.h"
 #include "tolerances.h"
 
 using namespace pellucid;
@@ -99,7 +99,8 @@ TEST(ProfileFit, MoreGaussiansFitBetter) {
     EXPECT_THROW(io::fitGaussians(marble, 0), std::invalid_argument);
 }
 
-// What is printed is what the saved file gives: weights of 1 in each channel, and the error of the profile that loading makes.
+// What is printed is what the saved file gives: weights of 1 in each channel, and the error of the profile
+// that loading makes.
 TEST(ProfileFit, TheSavedFileHasThePrintedError) {
     for (const char* name : {"marble", "skin", "skin-burley", "ketchup"})
         for (int count : {1, 2, 3, 6}) {

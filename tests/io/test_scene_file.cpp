@@ -87,7 +87,7 @@ TEST_F(SceneFileTest, DefaultsOfAMaterialStayDefaults) {
     EXPECT_EQ(again.materials[0].material.normalBlend[0], -1);
     EXPECT_EQ(again.materials[0].material.shadowFilterWidth, 0);
     EXPECT_EQ(again.materials[0].material.diffusionRadius, 0);
-    EXPECT_EQ(again.unitMm, 1);
+    EXPECT_EQ(again.options.millimetresPerUnit, 1);
 }
 
 TEST_F(SceneFileTest, WrittenIsRead) {
@@ -106,10 +106,10 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     scene.lights[1].light.type = PEL_LIGHT_SPOT;
     scene.lights[1].shadowMapFile.clear();
     scene.lights[0].shadowMapChannel = "odd \"name\" \\ here";
-    scene.blurNormals = 1;
-    scene.rotateTaps = 1;
-    scene.everyPixel = 1;
-    scene.frameIndex = 12;
+    scene.options.blurNormals = 1;
+    scene.options.rotateTaps = 1;
+    scene.options.everyPixel = 1;
+    scene.options.frameIndex = 12;
     scene.channels[PEL_SLOT_SCATTER_WEIGHT] = {"Mask.V"};
     scene.channels[PEL_SLOT_IRRADIANCE_BACK] = {"B.R", "B.G", "B.B"};
     PelMaterial& scattering = scene.materials[0].material;
@@ -131,7 +131,7 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     scene.materials[0].material.curvatureGain = 1;
     scene.materials[0].profile = path("of/mine.toml");
     scene.materials[0].preset = ScenePreset::faceworks;
-    scene.unitMm = 10;
+    scene.options.millimetresPerUnit = 10;
     scene.luts[1].info.shadow.closedEnds = 1;
     scene.luts[1].info.shadow.axis = PEL_AXIS_ROOT;
     scene.lights[0].light.shadowFilterTexels = 48;
@@ -165,9 +165,9 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     writeScene(path("out.toml"), scene);
     const SceneFile again = readScene(path("out.toml"));
     EXPECT_EQ(again.channels, scene.channels);
-    EXPECT_EQ(again.blurNormals, 1u);
-    EXPECT_EQ(again.rotateTaps, 1u);
-    EXPECT_EQ(again.everyPixel, 1u);
+    EXPECT_EQ(again.options.blurNormals, 1u);
+    EXPECT_EQ(again.options.rotateTaps, 1u);
+    EXPECT_EQ(again.options.everyPixel, 1u);
     EXPECT_EQ(again.ambientCube, scene.ambientCube);
     EXPECT_EQ(again.outputs, scene.outputs);
     EXPECT_EQ(again.materials[0].normalMap, scene.materials[0].normalMap);
@@ -190,7 +190,7 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     EXPECT_EQ(again.materials[0].curvatureLut, "skin");
     EXPECT_EQ(again.materials[0].profile, scene.materials[0].profile);
     EXPECT_EQ(again.materials[0].preset, ScenePreset::faceworks);
-    EXPECT_EQ(again.unitMm, 10);
+    EXPECT_EQ(again.options.millimetresPerUnit, 10);
     ASSERT_EQ(again.eyes.size(), 1u);
     EXPECT_TRUE(same(again.eyes[0].eye, eye));
     ASSERT_EQ(again.luts.size(), 2u);
@@ -240,7 +240,8 @@ TEST_F(SceneFileTest, WrongTypesAndValuesNameLineKeyAndWhatIsRight) {
     EXPECT_TRUE(contains(errorOf("[[material]]", "[material]"), "[[material]]"));
 }
 
-// Scenes of version 1 begin with FaceWorks' tables, later ones with those that a material makes; a preset says which whatever the version.
+// Scenes of version 1 begin with FaceWorks' tables, later ones with those that a material makes; a preset
+// says which whatever the version.
 TEST_F(SceneFileTest, TablesBeginAsTheVersionOrThePresetSays) {
     const auto tables = [&](const std::string& head, const std::string& keys) {
         return readScene(

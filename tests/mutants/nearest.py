@@ -48,7 +48,7 @@ class Tests:
     def __init__(self, place):
         self.place, self.file = place, WORK / "tests.json"
         self.measured = json.loads(self.file.read_text()) if self.file.exists() else {}
-        programs = {p.stem: p for p in TREE.glob("tests/*/test_*.cpp")}
+        programs = {p.stem: p for folder in ("tests/*", "apps/*/tests") for p in TREE.glob(f"{folder}/test_*.cpp")}
         scripts = {str(p.relative_to(TREE)): p for folder in ("bindings/python", "apps/*")
                    for p in TREE.glob(f"{folder}/tests/test_*.py")}
         self.programs, self.scripts = sorted(programs), sorted(scripts)
@@ -97,7 +97,7 @@ class Tests:
                 near *= SAME_SUBJECT
             return -near / (1 + self.measured.get(name, {}).get("seconds", 10) / 20) ** 0.5, name
 
-        return sorted(self.scripts if fault.path.startswith(("bindings/python", "apps")) else self.programs, key=distance)
+        return sorted(self.scripts if fault.path.startswith("bindings/python") or fault.path.endswith(".py") else self.programs, key=distance)
 
     def weighed(self, words):
         """{word: weight}, of length 1: rare words count most, and the tenth of a kind little more than the first."""

@@ -29,8 +29,9 @@ from nearest import Tests
 from workplace import PASSED, TREE, WORK, Workplace, say
 
 EQUIVALENT = Path(__file__).with_name("equivalent.txt")
-SOURCES = ["kernels/**/*.cl", "kernels/**/*.clh", "kernels/**/*.h", "host/**/*.cpp", "host/**/*.h", "bindings/cli/*.cpp",
-           "bindings/python/pellucid/**/*.py", "apps/viewer/view/*.py", "apps/batch/batch/*.py", "bindings/python/native/*.cpp"]
+SOURCES = ["kernels/**/*.cl", "kernels/**/*.clh", "kernels/**/*.h", "host/**/*.cpp", "host/**/*.h", "apps/*/*.cpp",
+           "bindings/cli/*.cpp", "bindings/python/pellucid/**/*.py", "apps/viewer/view/*.py", "apps/batch/batch/*.py",
+           "bindings/python/native/*.cpp"]
 # Declarations that every program is built from: tests/abi has their values.
 LEFT_OUT = {"host/include/pellucid/pellucid.h"}
 OTHER_SYSTEMS = re.compile("/windows/")  # not compiled here
@@ -40,7 +41,7 @@ GOAL = 0.92
 def judge(place, tests, fault, count):
     """(verdict, reason)."""
     original = (TREE / fault.path).read_text()
-    python, kernel = fault.path.startswith(("bindings/python", "apps")), fault.path.startswith("kernels")
+    python, kernel = fault.path.startswith("bindings/python") or fault.path.endswith(".py"), fault.path.startswith("kernels")
     log, names = WORK / "test.log", tests.choose(fault, count)
     compiled = set((WORK / "pocl").glob("*/*"))
     place.apply(fault, original)

@@ -40,7 +40,7 @@ TEST_F(CommandTest, TheAddOnRendersSkinTeethAnEyeAndJade) {
     EXPECT_FALSE(contains(report["log"].get<std::string>(), "Fra:")) << "Blender's own lines are kept out";
 
     const io::SceneFile scene = io::readScene(out + "/kept/scene.toml");
-    EXPECT_FLOAT_EQ(scene.unitMm, 10);
+    EXPECT_FLOAT_EQ(scene.options.millimetresPerUnit, 10);
     ASSERT_EQ(scene.materials.size(), 4u);  // by name: Eye.L, Face, Stone, Teeth
     ASSERT_EQ(scene.eyes.size(), 1u);
     EXPECT_EQ(scene.eyes[0].material, 1u);

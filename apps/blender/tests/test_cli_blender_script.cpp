@@ -80,7 +80,7 @@ TEST_F(BlenderScript, ABlendFileGivesBlendersLambertPicture) {
         io::SceneFile scene = io::readScene(folder + "/scene.toml");
         ASSERT_EQ(scene.lights.size(), 1u);
         ASSERT_EQ(scene.materials.size(), 2u);
-        EXPECT_FLOAT_EQ(scene.unitMm, 10) << "a unit is a centimetre there";
+        EXPECT_FLOAT_EQ(scene.options.millimetresPerUnit, 10) << "a unit is a centimetre there";
         EXPECT_FLOAT_EQ(scene.materials[0].material.deepScatterNormalOffset, 0.02f);
         EXPECT_FLOAT_EQ(scene.materials[0].material.deepScatterRadius, 0.5f) << "a custom property counts";
         // The world: radiance 0.5 + 0.5 (0.6 x + 0.8 z) in red. Irradiance / pi keeps the first order by two

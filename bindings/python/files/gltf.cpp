@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "arrays.h"
+#include "gltf/gltf_import.h"
 #include "io/file_error.h"
-#include "io/gltf/gltf_import.h"
 #include "io/input_file.h"
 #include "io/lut/profile_file.h"
 

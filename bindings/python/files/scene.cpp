@@ -12,7 +12,7 @@
 
 #include "arrays.h"
 #include "io/scene/scene_keys.h"
-#include "io/scene/scene_programs.h"
+#include "scene/scene_programs.h"
 
 namespace pellucid::python {
 namespace {
@@ -181,13 +181,7 @@ class Scene {
         for (size_t i = 0; i < lights.size(); ++i) scene.lights[i].light = structOf<PelLight>(lights[i]);
         scene.ambient = structOf<PelAmbient>(ambient);
         scene.camera = structOf<PelCamera>(camera);
-        const auto o = structOf<PelShaderOptions>(options);
-        scene.blurNormals = o.blurNormals;
-        scene.rotateTaps = o.rotateTaps;
-        scene.everyPixel = o.everyPixel;
-        scene.frameIndex = o.frameIndex;
-        scene.targetError = o.targetError;
-        scene.unitMm = o.millimetresPerUnit;
+        scene.options = structOf<PelShaderOptions>(options);
         return scene;
     }
     void take(io::Image image) {

@@ -2,10 +2,10 @@
 #include "progress.h"
 
 #ifdef PELLUCID_BATCH
+#include "batch/batch_entry.h"
+#include "batch/batch_index.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
-#include "io/lut/batch_entry.h"
-#include "io/lut/batch_index.h"
 #include "io/lut/lut_exr.h"
 
 namespace pel::python {

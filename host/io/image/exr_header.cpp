@@ -78,8 +78,8 @@ class Check {
                 part.tile = Window{numberAt<uint32_t>(a->value, 0), numberAt<uint32_t>(a->value, 4)};
             } else if (a->name == "compression") {
                 need("compression", 1);
-                constexpr int rows[] = {1,  1,  1,  16, 32, 16,
-                                        32, 32, 32, 256};  // none, RLE, ZIPS, ZIP, PIZ, PXR24, B44(A), DWAA, DWAB
+                // None, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
+                constexpr int rows[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
                 const auto method = uint8_t(a->value[0]);
                 if (method >= std::size(rows))
                     damaged("its compression " + std::to_string(method) + " is not known");

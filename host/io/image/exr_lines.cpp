@@ -21,7 +21,8 @@ void spread(const uint8_t* from, size_t count, float* to, size_t stride) {
     }
 }
 
-// Values of the wanted channels as floats at their places. In a chunk rows follow each other, in each row the channels.
+// Values of the wanted channels as floats at their places. In a chunk rows follow each other, in each row
+// the channels.
 exr_result_t unpack(exr_decode_pipeline_t* decode) {
     const auto* at = static_cast<const uint8_t*>(decode->unpacked_buffer);
     for (int32_t row = 0; row < decode->chunk.height; ++row)
@@ -142,7 +143,8 @@ void ExrLines::read(int part, int begin, int end, size_t width, const std::vecto
         }
         if (first) {
             file_->check(exr_decoding_choose_default_routines(file_->context, part, &decode));
-            // The library's own fails where not all channels are wanted. None where values are read straight to their places.
+            // The library's own fails where not all channels are wanted. None where values are read
+            // straight to their places.
             if (decode.unpack_and_convert_fn) decode.unpack_and_convert_fn = unpack;
         }
         file_->check(exr_decoding_run(file_->context, part, &decode));

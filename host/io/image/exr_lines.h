@@ -1,5 +1,5 @@
-// Scan lines of OpenEXR files by OpenEXR's C library, which takes a third of the time of the C++ one for the methods of compression that lose
-// nothing and are quick: none, RLE and ZIP.
+// Scan lines of OpenEXR files by OpenEXR's C library, which takes a third of the time of the C++ one for
+// the methods of compression that lose nothing and are quick: none, RLE and ZIP.
 #pragma once
 #include <memory>
 #include <string>
@@ -21,8 +21,8 @@ class ExrLines {
         float* first;
         size_t pixelStride, rowStride;  // floats
     };
-    // Rows of `width` values from `begin` to before `end`, in the coordinates of the file; both lie between chunks. The part has scan lines
-    // without compression, or RLE or ZIP. May be called by several threads.
+    // Rows of `width` values from `begin` to before `end`, in the coordinates of the file; both lie between
+    // chunks. The part has scan lines without compression, or RLE or ZIP. May be called by several threads.
     void read(int part, int begin, int end, size_t width, const std::vector<Target>& targets) const;
 
   private:

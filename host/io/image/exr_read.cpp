@@ -1,5 +1,5 @@
-// OpenEXR files in. Bands of rows are decoded side by side, each by a reader of its own over the same bytes: no pool of threads that
-// a forked process would miss.
+// OpenEXR files in. Bands of rows are decoded side by side, each by a reader of its own over the same
+// bytes: no pool of threads that a forked process would miss.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfCompressionAttribute.h>
 #include <OpenEXR/ImfFloatAttribute.h>
@@ -137,7 +137,8 @@ bool isDirect(const Imath::Box2i& data, const Imath::Box2i& display) {
            data.max.y <= display.max.y;
 }
 
-// Rows from `begin` to before `end` of a part to the places of its channels, one for each channel of the image.
+// Rows from `begin` to before `end` of a part to the places of its channels, one for each channel of the
+// image.
 void readLines(const ExrLines& lines, int part, const PartPlan& plan, const std::vector<Place>& places,
                int top, int begin, int end) {
     const auto width = size_t(plan.data.max.x - plan.data.min.x + 1);
@@ -203,8 +204,8 @@ struct Band {
     int part, begin, end;
 };
 
-// Runs worker(next) on every processor; next() gives one number below `count` after another to whoever asks. What one throws ends
-// all and is thrown here.
+// Runs worker(next) on every processor; next() gives one number below `count` after another to whoever
+// asks. What one throws ends all and is thrown here.
 template <class Worker>
 void onProcessors(size_t count, const Worker& worker) {
     std::atomic<size_t> next{0};

@@ -1,4 +1,5 @@
-// OpenEXR files out: one part of scan lines, encoded in memory, so that disk errors can only happen in one place.
+// OpenEXR files out: one part of scan lines, encoded in memory, so that disk errors can only happen in one
+// place.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFloatVectorAttribute.h>

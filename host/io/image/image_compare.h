@@ -48,7 +48,8 @@ struct SubsetInputs {
     std::span<const float> positions;  // xyz per pixel
     std::span<const float> normals;    // unit xyz per pixel
     std::span<const float> toLight;    // unit xyz per pixel
-    std::span<const float> visible;  // 1 lit, 0 in a cast shadow; any value where N.L <= 0. Empty: penumbrae are unknown
+    // 1 lit, 0 in a cast shadow; any value where N.L <= 0. Empty: penumbrae are unknown
+    std::span<const float> visible;
     std::span<const uint8_t> covered;  // 0: background
     float reach = 1;  // length, 1 mm: how far from the edge of a cast shadow its penumbra goes
     // These three are known together, or all empty.

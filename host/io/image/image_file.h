@@ -37,7 +37,8 @@ struct Image {
     const Channel& channel(const std::string& name) const;
     bool has(const std::string& name) const;  // channel() would find exactly one
 
-    // Those channels interleaved: names.size() * width * height values. Throws std::logic_error for one whose pixels were not read.
+    // Those channels interleaved: names.size() * width * height values. Throws std::logic_error for one
+    // whose pixels were not read.
     std::vector<float> interleaved(std::span<const std::string> names) const;
     void interleave(std::span<const std::string> names, float* values) const;
 
@@ -49,19 +50,21 @@ struct Image {
 };
 
 // Reads all parts and channels of an .exr, .png, .jpg, .tga or .bmp file at full precision (8- and 16-bit
-// integers become 0 to 1, those of 32 bits in EXR keep their values; colours are not multiplied by alpha). Each part is placed by its data window in the
-// display window: pixels outside its data window are 0, pixels outside the display window are dropped.
-// `check` sees size, attributes and channel names before any pixel is read, and throws if the image is not
-// the wanted one. Throws FileError: missing, broken or deep file, another format, parts with different
-// display windows, more than `limit` bytes of pixels as floats.
+// integers become 0 to 1, those of 32 bits in EXR keep their values; colours are not multiplied by alpha).
+// Each part is placed by its data window in the display window: pixels outside its data window are 0,
+// pixels outside the display window are dropped. `check` sees size, attributes and channel names before any
+// pixel is read, and throws if the image is not the wanted one. Throws FileError: missing, broken or deep
+// file, another format, parts with different display windows, more than `limit` bytes of pixels as floats.
 Image readImage(const std::string& path, const std::function<void(const Image&)>& check = {},
                 uint64_t limit = inputLimit());
-// The same from the bytes of a file; `path` is for messages and names the format. `names`: as of readChannels.
+// The same from the bytes of a file; `path` is for messages and names the format. `names`: as of
+// readChannels.
 Image decodeImage(const std::string& path, std::string bytes,
                   const std::function<void(const Image&)>& check = {}, uint64_t limit = inputLimit(),
                   const std::vector<std::string>* names = nullptr);
-// Reads the pixels of those channels alone, where that is faster (EXR). The image lists all channels of the file; the others have
-// no pixels. Names are those of Image::channel(); one that fits no channel, or several, is no error here.
+// Reads the pixels of those channels alone, where that is faster (EXR). The image lists all channels of the
+// file; the others have no pixels. Names are those of Image::channel(); one that fits no channel, or
+// several, is no error here.
 Image readChannels(const std::string& path, const std::vector<std::string>& names);
 
 // Where a channel's values go: that of pixel i to first[i * stride]. nullptr: it is not wanted.
@@ -74,12 +77,14 @@ using PlaceChannels = std::function<std::vector<Place>(Image&)>;
 // Reads channels straight to where they are wanted. The image that is returned has no pixels.
 Image readChannelsTo(const std::string& path, const PlaceChannels& places);
 
-// Writes a single-part scan-line EXR, each channel in its own type; float32 values keep their bits. ZIP compression makes files
-// small; RLE, which is quick to read, a third larger where much is background, and hardly small elsewhere.
+// Writes a single-part scan-line EXR, each channel in its own type; float32 values keep their bits. ZIP
+// compression makes files small; RLE, which is quick to read, a third larger where much is background, and
+// hardly small elsewhere.
 enum class ExrCompression { Zip, Rle };
 void writeExr(const std::string& path, const Image& image, ExrCompression compression = ExrCompression::Zip);
 
-// Whether writeImage8 writes files of this extension; the second throws FileError where it does not, and returns the extension.
+// Whether writeImage8 writes files of this extension; the second throws FileError where it does not, and
+// returns the extension.
 bool isPicture(const std::string& path);
 std::string requirePicture(const std::string& path);
 

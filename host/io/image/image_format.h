@@ -8,7 +8,8 @@ namespace pellucid::io {
 
 struct ImageFormat {
     const char* reader;  // OpenImageIO's name for it
-    std::string bytes;  // of the file, without what pictures do not need: text, colour profiles, thumbnails, EXIF
+    // Of the file, without what pictures do not need: text, colour profiles, thumbnails, EXIF
+    std::string bytes;
 };
 
 // Takes the bytes of a file. Throws FileError if its extension or its content belongs to another format, or

@@ -1,6 +1,7 @@
-// What OpenImageIO does for us: PNG, JPEG, TGA and BMP files, and text in pictures. It brings some 250 shared libraries, which take
-// a quarter of a second to load. So the code that calls it is a module of its own (host/io/image/pictures), which is loaded when such
-// a file or a label is first needed; programs that read and write EXR and NPY files never load it.
+// What OpenImageIO does for us: PNG, JPEG, TGA and BMP files, and text in pictures. It brings some 250
+// shared libraries, which take a quarter of a second to load. So the code that calls it is a module of its
+// own (host/io/image/pictures), which is loaded when such a file or a label is first needed; programs that
+// read and write EXR and NPY files never load it.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -30,7 +31,8 @@ struct PictureLibrary {
 // PNG files alone, by libpng; other files are a FileError.
 extern const PictureLibrary pngPictures;
 
-// Loads the module the first time; in builds without OpenImageIO it is pngPictures. Throws FileError, which names `path`, if it cannot be loaded.
+// Loads the module the first time; in builds without OpenImageIO it is pngPictures. Throws FileError, which
+// names `path`, if it cannot be loaded.
 const PictureLibrary& pictureLibrary(const std::string& path);
 
 }  // namespace pellucid::io

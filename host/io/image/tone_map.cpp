@@ -27,8 +27,8 @@ float filmic(float x) {
     return float(std::min(1.0, curve(2.0 * std::min(double(x), 1e6)) / curve(11.2)));
 }
 
-// The code value of a colour: AgX's range of -10 to 6.5 stops about middle grey, and a sigmoid of slope 2 through it that
-// takes the ends to 0 and 1. Middle grey gets half of the code values.
+// The code value of a colour: AgX's range of -10 to 6.5 stops about middle grey, and a sigmoid of slope 2
+// through it that takes the ends to 0 and 1. Middle grey gets half of the code values.
 float stops(float x) {
     constexpr double low = 10, high = 6.5, pivot = low / (low + high), slope = 2, power = 1.5;
     const double t = (std::log2(std::max(double(x), 1e-10) / 0.18) + low) / (low + high);
@@ -39,8 +39,8 @@ float stops(float x) {
     return float(0.5 + std::copysign(u / std::pow(1 + std::pow(u / scale, power), 1 / power), from));
 }
 
-// Share of grey that is mixed into a colour before the curve, and what takes the differences of colour between dim and bright
-// back after it, chosen by eye.
+// Share of grey that is mixed into a colour before the curve, and what takes the differences of colour
+// between dim and bright back after it, chosen by eye.
 constexpr float inset = 0.1f, punch = 1.4f;
 
 }  // namespace

@@ -11,8 +11,8 @@ enum class ToneCurve {
     soft,    // displayed values are proportional to radiance up to the shoulder, and approach 1 above it
     none,    // proportional to 1, cut there
     filmic,  // a toe and a long shoulder, per channel [Hable, Filmic Tonemapping Operators, 2010]
-    agxLike  // an S over stops, after colours were drawn towards grey: bright ones lose their colour, as on film
-             // [after Sobotka's AgX, 2022]
+    // A sigmoid over stops, after bright colours were mixed with grey as on film [after Sobotka's AgX, 2022]
+    agxLike
 };
 constexpr std::string_view toneCurves[] = {"soft", "none", "filmic", "agx-like"};  // ToneCurve
 

@@ -15,7 +15,8 @@ struct Mode {
     bool transformed;        // the other end points are stored as differences from the first
     uint8_t bits;            // of an end point
     uint8_t stored[3];       // bits of the other end points as stored, red, green, blue
-    std::string_view layout;  // where each bit goes, in the notation of the specification: end points w, x, y, z
+    // Where each bit goes, in the notation of the specification: end points w, x, y, z
+    std::string_view layout;
 };
 
 inline constexpr int modeCount = 14, partitionCount = 32;

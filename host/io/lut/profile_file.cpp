@@ -1,5 +1,6 @@
 #include "io/lut/profile_file.h"
 
+#include "io/choice_keys.h"
 #include "io/file_error.h"
 #include "io/input_file.h"
 #include "io/toml_reader.h"
@@ -9,7 +10,8 @@ namespace {
 
 constexpr std::string_view units[] = {"mm", "cm", "m", "um"};
 constexpr float millimetres[] = {1, 10, 1000, 0.001f};
-constexpr std::string_view fits[] = {"searchlight", "diffuse-transmission", "diffuse-mean-free-path"};  // PelBurleyFit
+// PelBurleyFit
+constexpr std::string_view fits[] = {"searchlight", "diffuse-transmission", "diffuse-mean-free-path"};
 
 void need(const TomlReader& reader, const char* key, std::string_view kind) {
     if (!reader.has(key))
@@ -99,8 +101,8 @@ Profile shapeOf(TomlReader& reader, PelProfileKind kind, float unit) {
 }  // namespace
 
 ProfileFile parseProfile(const std::string& file, const std::string& text) {
-    const toml::table root = parseToml(file, text);
-    TomlReader reader(file, root, "the profile");
+    const auto root = parseToml(file, text);
+    TomlReader reader(file, *root, "the profile");
     ProfileFile result;
     reader.version();
     for (const char* key : {"name", "kind", "source"})

@@ -13,8 +13,9 @@ struct MeshData {
     std::vector<float> normals;       // unit xyz per vertex, or empty
     std::vector<float> uvs;           // u, v per vertex, or empty
     std::vector<uint32_t> triangles;  // three indices each; polygons become fans round their first corner
-    std::vector<uint32_t> splitFrom;  // vertices beyond the file's own, made at UV seams: which one each copies
-    size_t trianglesTurned = 0;       // by MeshLoadOptions.orient
+    // Vertices beyond the file's own, made at UV seams: which one each copies
+    std::vector<uint32_t> splitFrom;
+    size_t trianglesTurned = 0;         // by MeshLoadOptions.orient
     std::vector<std::string> warnings;  // what was left out or repaired, one sentence each
     std::string source;                 // the file, for messages
 
@@ -27,8 +28,8 @@ struct MeshLoadOptions {
     // of the file's own vertices (see splitFrom), so that a renderer can use them. False: UVs that differ are
     // not loaded, since their average is useless, and the vertices are exactly the file's.
     bool splitUvSeams = false;
-    // Turns triangles that face another way than their neighbours (pelMeshOrient, by the file's normals if it has some). False:
-    // they stay, with a warning.
+    // Turns triangles that face another way than their neighbours (pelMeshOrient, by the file's normals if
+    // it has some). False: they stay, with a warning.
     bool orient = false;
 };
 
@@ -39,12 +40,13 @@ MeshData loadMesh(const std::string& path, const MeshLoadOptions& options = {});
 // The same from the bytes of a file; `path` is for messages and names the format.
 MeshData decodeMesh(const std::string& path, const std::string& text, const MeshLoadOptions& options = {});
 
-// Gives each vertex texture coordinates, from u, v of each corner of `triangles`: one whose corners differ is copied, as by
-// MeshLoadOptions.splitUvSeams.
+// Gives each vertex texture coordinates, from u, v of each corner of `triangles`: one whose corners differ
+// is copied, as by MeshLoadOptions.splitUvSeams.
 void splitAtSeams(MeshData& mesh, std::span<const float> cornerUvs);
 
-// Unit normals: face normals weighted with the corner's angle, summed over all vertices at the same position,
-// so that seams do not show; where they face opposite ways they cancel out. Vertices of no triangle get (0, 0, 1).
+// Unit normals: face normals weighted with the corner's angle, summed over all vertices at the same
+// position, so that seams do not show; where they face opposite ways they cancel out. Vertices of no
+// triangle get (0, 0, 1).
 void computeNormals(MeshData& mesh);
 
 // `levels` times four triangles from one, with OpenMesh's Loop scheme; UVs are interpolated linearly, normals

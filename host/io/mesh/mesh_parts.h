@@ -18,15 +18,16 @@ struct PartedMesh {
 
 // Reads an OBJ file with its groups ("g NAME"; faces before the first are in a part ""). Each part is
 // subdivided `levels` times by Catmull-Clark, so that its polygons become 4^levels quads or more, and cut
-// into triangles. Texture coordinates are interpolated linearly in each face. Parts share no vertices afterwards. Throws FileError as loadMesh does, and for a part that
-// is not manifold.
+// into triangles. Texture coordinates are interpolated linearly in each face. Parts share no vertices
+// afterwards. Throws FileError as loadMesh does, and for a part that is not manifold.
 PartedMesh loadParts(const std::string& path, int levels);
 // The same from the bytes of a file; `path` is for messages.
 PartedMesh decodeParts(const std::string& path, const std::string& text, int levels);
 
-// Removes what is below a plane, where dot(normal, p) < offset, cuts the triangles that cross it, and closes
-// each hole of the cut part with triangles of a new part called `cap`, whose normals face down the plane and whose UVs are 0. The
-// cut must be one closed, star-shaped curve, as that of a neck is; an open curve is not closed.
+// Removes what is below a plane, where dot(normal, p) < offset, cuts the triangles that cross it, and
+// closes each hole of the cut part with triangles of a new part called `cap`, whose normals face down the
+// plane and whose UVs are 0. The cut must be one closed, star-shaped curve, as that of a neck is; an open
+// curve is not closed.
 void cutAndClose(PartedMesh& mesh, const std::string& part, const float (&normal)[3], float offset,
                  const std::string& cap);
 

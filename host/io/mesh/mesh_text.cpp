@@ -26,7 +26,8 @@ std::string outOfRange(long long index, long long first, size_t count, std::stri
            std::to_string(static_cast<long long>(count) - 1 + first) + " would be right";
 }
 
-// Ends a face of the corners behind the last one; false, and nothing of it is kept, where a vertex comes twice.
+// Ends a face of the corners behind the last one; false, and nothing of it is kept, where a vertex comes
+// twice.
 bool endFace(RawMesh& mesh) {
     const auto first = mesh.corners.begin() + mesh.faceStart.back();
     std::vector<int64_t> sorted(first, mesh.corners.end());

@@ -1,6 +1,6 @@
-// Strict readers of mesh files: each number must be present and finite, each index in range. Every vertex and face is kept, whether or
-// not they make a manifold. Lenient readers take "nan" for the end of the file, skip a broken vertex and so shift all later indices, and
-// take trailing face colours for faces.
+// Strict readers of mesh files: each number must be present and finite, each index in range. Every vertex
+// and face is kept, whether or not they make a manifold. Lenient readers take "nan" for the end of the
+// file, skip a broken vertex and so shift all later indices, and take trailing face colours for faces.
 #pragma once
 #include <cstddef>
 #include <cstdint>

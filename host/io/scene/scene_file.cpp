@@ -152,17 +152,12 @@ SceneFile readScene(const std::string& path) {
 }
 
 SceneFile parseScene(const std::string& path, const std::string& text) {
-    const toml::table root = parseToml(path, text);
+    const auto root = parseToml(path, text);
     SceneFile scene;
     scene.source = path;
-    TomlReader reader(path, root, "the scene");
+    TomlReader reader(path, *root, "the scene");
     const LutPreset preset = presetOfVersion(reader.version(lutPresetVersions));
-    reader.integer("blur_normals", scene.blurNormals, {0, 1});
-    reader.integer("rotate_taps", scene.rotateTaps, {0, 1});
-    reader.integer("every_pixel", scene.everyPixel, {0, 1});
-    reader.integer("frame_index", scene.frameIndex, range::notNegative);
-    reader.number("target_error", scene.targetError, range::options::targetError);
-    reader.number("unit_mm", scene.unitMm, range::options::millimetresPerUnit);
+    optionKeys(reader, scene);
     reader.table("camera", true, [&](TomlReader& r) { cameraKeys(r, scene.camera); });
     reader.table("ambient", true, [&](TomlReader& r) { ambientKeys(r, scene); });
     reader.table("outputs", true, [&](TomlReader& r) { outputFileKeys(r, scene); });
@@ -175,7 +170,6 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
         scene.materials.push_back(std::move(material));
     });
     reader.tables("eye", [&](TomlReader& r) { readEye(r, scene); });
-    reader.text("reflection_cube", scene.reflectionCube);
     reader.tables("light", [&](TomlReader& r) { readLight(r, scene); });
     if (!reader.has("channels"))
         reader.fail("channels", "is missing; it says which channels of the G-buffer are what");
@@ -188,30 +182,23 @@ SceneFile parseScene(const std::string& path, const std::string& text) {
     reader.finish();
 
     const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-    for (SceneLut& l : scene.luts) {
-        if (!l.file.empty()) l.file = (folder / l.file).string();
-        if (l.profile.ends_with(".toml")) l.profile = (folder / l.profile).string();
-    }
-    for (SceneMaterial& m : scene.materials) {
-        if (m.profile.ends_with(".toml")) m.profile = (folder / m.profile).string();
-        if (!m.scatteredTexture.empty()) m.scatteredTexture = (folder / m.scatteredTexture).string();
-        if (!m.normalMap.empty()) m.normalMap = (folder / m.normalMap).string();
-    }
-    for (SceneEye& e : scene.eyes) {
-        for (std::string* file : {&e.irisTexture, &e.caustics})
-            if (!file->empty()) *file = (folder / *file).string();
-        if (e.irisProfile.ends_with(".toml")) e.irisProfile = (folder / e.irisProfile).string();
-    }
-    if (!scene.reflectionCube.empty()) scene.reflectionCube = (folder / scene.reflectionCube).string();
-    if (!scene.ambientCube.empty()) scene.ambientCube = (folder / scene.ambientCube).string();
-    for (std::string& output : scene.outputs) {
-        if (!output.empty()) output = (folder / output).string();
-    }
+    const auto besideScene = [&](std::string& file) {
+        if (!file.empty()) file = (folder / file).string();
+    };
+    const auto profileBesideScene = [&](std::string& profile) {
+        if (profile.ends_with(".toml")) besideScene(profile);
+    };
+    for (SceneLut& l : scene.luts) besideScene(l.file), profileBesideScene(l.profile);
+    for (SceneMaterial& m : scene.materials)
+        profileBesideScene(m.profile), besideScene(m.scatteredTexture), besideScene(m.normalMap);
+    for (SceneEye& e : scene.eyes)
+        besideScene(e.irisTexture), besideScene(e.caustics), profileBesideScene(e.irisProfile);
     for (SceneLight& l : scene.lights) {
-        if (!l.shadowMapFile.empty()) l.shadowMapFile = (folder / l.shadowMapFile).string();
-        for (SceneCascade& c : l.cascades)
-            if (!c.file.empty()) c.file = (folder / c.file).string();
+        besideScene(l.shadowMapFile);
+        for (SceneCascade& c : l.cascades) besideScene(c.file);
     }
+    besideScene(scene.reflectionCube), besideScene(scene.ambientCube);
+    for (std::string& output : scene.outputs) besideScene(output);
     return scene;
 }
 

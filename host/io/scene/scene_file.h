@@ -18,7 +18,7 @@ struct SceneLut {
     std::string name;                                   // materials refer to it
     PelLutInfo info = presetInfo(LutPreset::material);  // kind; and what to integrate if `file` is empty
     std::string file;                                   // a float or half EXR written by `pellucid lut`
-    std::vector<std::string> expected;                  // keys beside `file`: what the file must say too
+    std::vector<std::string> expected;                  // keys that the file must confirm
     std::string profile;                                // a material's name or a profile file; "": skin
     int line = 0;                                       // of the scene file; 0: made by a program
 };
@@ -29,9 +29,11 @@ enum class ScenePreset { none, faceworks };
 struct SceneMaterial {
     uint32_t id = 1;  // value in the material channel, 1 to 255
     PelMaterial material = pelMaterialDefaults();
-    std::string curvatureLut;  // name of a SceneLut; "": the profile's; without a profile no direct scattering
-    std::string shadowLut;     // name of a SceneLut; "": the profile's; without a profile a plain shadow
-    std::string profile;  // a material's name or a profile file: what is left to defaults follows from it; "": none
+    // Name of a SceneLut; "": the profile's; without a profile no direct scattering
+    std::string curvatureLut;
+    std::string shadowLut;  // name of a SceneLut; "": the profile's; without a profile a plain shadow
+    // A material's name or a profile file: what is left to defaults follows from it; "": none
+    std::string profile;
     ScenePreset preset = ScenePreset::none;
     std::string scatteredTexture;  // image of light that was scattered in texture space, linear; "": none
     std::string normalMap;  // image of tangent-space normals, x, y, z from 0 to 1 as in 8-bit files; "": none
@@ -61,22 +63,21 @@ struct SceneLight {
     std::string shadowMapFile;     // image of depths seen from the light; "": no thickness from this light
     std::string shadowMapChannel;  // its channel; "": the only one
     std::string secondChannel;     // of second moments; "": none
-    std::array<SceneCascade, 3> cascades;  // PEL_LIGHT_CASCADE_1 to 3, as many as PelLight.shadowCascades needs
+    // PEL_LIGHT_CASCADE_1 to 3, as many as PelLight.shadowCascades needs
+    std::array<SceneCascade, 3> cascades;
     int line = 0;
 };
 
 struct SceneFile {
-    std::string source;                                             // the file, for messages
-    std::array<std::vector<std::string>, PEL_SLOT_COUNT> channels;  // of the G-buffer per image slot; empty: slot not set
-    uint32_t blurNormals = 0;                                       // PelShaderOptions.blurNormals
-    uint32_t rotateTaps = 0;                                        // PelShaderOptions.rotateTaps
-    uint32_t everyPixel = 0;                                        // PelShaderOptions.everyPixel
-    uint32_t frameIndex = 0;                                        // PelShaderOptions.frameIndex
-    float targetError = pelShaderOptionsDefaults().targetError;  // PelShaderOptions.targetError
-    float unitMm = 1;                                            // PelShaderOptions.millimetresPerUnit
+    std::string source;  // the file, for messages
+    // Of the G-buffer per image slot; empty: slot not set
+    std::array<std::vector<std::string>, PEL_SLOT_COUNT> channels;
+    PelShaderOptions options = pelShaderOptionsDefaults();  // scenes set the fields in optionKeys() of scene_keys.h
     std::string reflectionCube;  // image of the surroundings that eyes reflect, as ambientCube; "": none
-    std::string ambientCube;  // image of an irradiance cube map, six faces below or beside one another; "": none
-    std::array<std::string, PEL_SLOT_COUNT> outputs;  // EXR files to write per output slot beside radiance; "": none
+    // Image of an irradiance cube map, six faces below or beside one another; "": none
+    std::string ambientCube;
+    // EXR files to write per output slot beside radiance; "": none
+    std::array<std::string, PEL_SLOT_COUNT> outputs;
     PelCamera camera = pelCameraDefaults();
     PelAmbient ambient = pelAmbientDefaults();
     std::vector<SceneLight> lights;

@@ -1,4 +1,4 @@
-// The keys of a scene file, once: reader and writer both walk these lists. A visitor has
+// The keys of a scene file, listed once for reader and writer. A visitor has
 //   number(key, float&, Range)   numbers(key, float*, count, Range)   rows(key, float*, rows, columns)
 //   integer(key, uint32_t&, Range)   text(key, string&)   texts(key, vector<string>&, most, least)
 //   choice(key, enum&, names)   table(key, isPresent, function)
@@ -52,7 +52,8 @@ void outputFileKeys(Visitor& v, Scene& scene) {
 template <class Visitor, class Scene>
 void channelKeys(Visitor& v, Scene& scene) {
     for (const SlotKey& k : slotKeys) {
-        const size_t least = k.slot == PEL_SLOT_SCATTER_WEIGHT ? 1 : k.components;  // its radius may be left out
+        // The radius in its second channel is optional.
+        const size_t least = k.slot == PEL_SLOT_SCATTER_WEIGHT ? 1 : k.components;
         v.texts(k.key, scene.channels[k.slot], k.components, least);
     }
 }
@@ -125,6 +126,17 @@ void materialKeys(Visitor& v, Material& m) {
     v.choice("specular_model", m.material.specularModel, specularModels);
     v.choice("scattering", m.material.scattering, scatterings);
     v.text("scattered_texture", m.scatteredTexture);
+}
+
+template <class Visitor, class Scene>
+void optionKeys(Visitor& v, Scene& s) {
+    v.integer("blur_normals", s.options.blurNormals, {0, 1});
+    v.integer("rotate_taps", s.options.rotateTaps, {0, 1});
+    v.integer("every_pixel", s.options.everyPixel, {0, 1});
+    v.integer("frame_index", s.options.frameIndex, range::notNegative);
+    v.number("target_error", s.options.targetError, range::options::targetError);
+    v.number("unit_mm", s.options.millimetresPerUnit, range::options::millimetresPerUnit);
+    v.text("reflection_cube", s.reflectionCube);
 }
 
 template <class Visitor, class Eye>

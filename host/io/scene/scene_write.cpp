@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <span>
+#include <sstream>
 
 #include "io/atomic_file.h"
 #include "io/scene/scene_file.h"
@@ -83,15 +84,15 @@ class TomlWriter {
 std::string sceneText(const SceneFile& scene) {
     std::string out =
         "# A scene of `pellucid shade`. Lengths are in the unit of the G-buffer's positions.\nversion = 2\n";
-    if (scene.blurNormals) TomlWriter(out).integer("blur_normals", scene.blurNormals, {0, 1});
-    if (scene.rotateTaps) TomlWriter(out).integer("rotate_taps", scene.rotateTaps, {0, 1});
-    if (scene.everyPixel) TomlWriter(out).integer("every_pixel", scene.everyPixel, {0, 1});
-    if (scene.frameIndex) TomlWriter(out).integer("frame_index", scene.frameIndex, range::notNegative);
-    if (scene.targetError != pelShaderOptionsDefaults().targetError)
-        TomlWriter(out).number("target_error", scene.targetError, range::options::targetError);
-    if (scene.unitMm != 1)
-        TomlWriter(out).number("unit_mm", scene.unitMm, range::options::millimetresPerUnit);
-    if (!scene.reflectionCube.empty()) TomlWriter(out).text("reflection_cube", scene.reflectionCube);
+    // Options that are not the defaults.
+    std::string options, defaults;
+    TomlWriter optionWriter(options), defaultWriter(defaults);
+    optionKeys(optionWriter, scene);
+    const SceneFile standard;
+    optionKeys(defaultWriter, standard);
+    std::istringstream lines(options);
+    for (std::string line; std::getline(lines, line);)
+        if (("\n" + defaults).find("\n" + line + "\n") == std::string::npos) out += line + "\n";
     const auto table = [&](const std::string& header, const std::string& name, auto&& function) {
         out += "\n" + header + "\n";
         TomlWriter writer(out, name);

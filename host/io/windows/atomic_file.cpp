@@ -27,8 +27,8 @@ const std::string& machineTag() {
 
 namespace {
 
-// Seconds after which a temporary file of another machine counts as abandoned. One of this machine that a program has open cannot be
-// removed: Windows keeps it.
+// Seconds after which a temporary file of another machine counts as abandoned. One of this machine that a
+// program has open cannot be removed: Windows keeps it.
 constexpr auto ownAge = std::chrono::seconds(60), foreignAge = std::chrono::seconds(86400);
 
 std::string lastError() {

@@ -1,4 +1,5 @@
-// PNG files by libpng: what builds without OpenImageIO read and write of pictures (PELLUCID_PICTURES=PNG). Labels are left out.
+// PNG files by libpng: what builds without OpenImageIO read and write of pictures (PELLUCID_PICTURES=PNG).
+// Labels are left out.
 #include <png.h>
 
 #include <csetjmp>
@@ -18,7 +19,8 @@ struct Source {
     size_t left;
 };
 
-// libpng leaves a function at an error by longjmp, to which destructors are unknown: what has one lives in the callers.
+// libpng leaves a function at an error by longjmp, to which destructors are unknown: what has one lives in
+// the callers.
 struct Reader {
     png_structp png = nullptr;
     png_infop info = nullptr;

@@ -1,0 +1,334 @@
+#include "batch/batch_manifest.h"
+
+#include <filesystem>
+#include <iomanip>
+#include <map>
+#include <optional>
+#include <sstream>
+
+#include "io/content_hash.h"
+#include "io/file_error.h"
+#include "io/input_file.h"
+#include "io/lut/lut_describe.h"
+#include "io/lut/lut_preset.h"
+#include "io/lut/profile_file.h"
+#include "io/shortest.h"
+#include "io/toml_reader.h"
+
+namespace pellucid::io {
+namespace {
+
+// In memory an entry takes about a kilobyte.
+constexpr size_t mostEntries = 1'000'000, mostProfileBytes = size_t{64} << 20;
+
+constexpr std::string_view encodingNames[] = {"float", "half"};  // PelLutEncoding
+
+struct Size {
+    uint32_t width, height;  // texels
+    std::string text() const {
+        return width == height ? std::to_string(width) : std::to_string(width) + "x" + std::to_string(height);
+    }
+};
+
+// What a [[lut]] or [[grid]] table contains; a grid has several values in some lists.
+struct Request {
+    std::string name;  // of the file; in a grid with {key} in it, such as "{profile}-{size}"
+    PelLutKind kind = PEL_LUT_CURVATURE;
+    std::vector<std::string> profiles{"skin"}, forms, axes, encodings{"half"};
+    std::vector<float> radii{0};  // diffusion radii, mm; 0: the profile's own
+    std::vector<Size> sizes;
+    PelCurvatureLutDesc curvature;
+    PelShadowLutDesc shadow;
+};
+
+template <size_t N>
+uint32_t indexOf(const TomlReader& reader, const char* key, const std::string& value,
+                 const std::string_view (&names)[N]) {
+    std::string known;
+    for (size_t i = 0; i < N; ++i) {
+        if (names[i] == value) return uint32_t(i);
+        known.append(i ? ", " : "").append(names[i]);
+    }
+    reader.fail(key, "holds '" + value + "'; one of " + known + " would be right");
+}
+
+Request readRequest(TomlReader& reader, LutPreset preset) {
+    Request r;
+    reader.choice("kind", r.kind, lutKinds);
+    // A shadow table of version 1 was linear whatever its axis.
+    const bool ownAxis = r.kind == PEL_LUT_SHADOW && preset == LutPreset::faceworks && !reader.has("preset");
+    reader.choice("preset", preset, lutPresets);
+    r.curvature = presetCurvature(preset);
+    r.shadow = presetShadow(preset);
+    const bool isShadow = r.kind == PEL_LUT_SHADOW;
+    r.forms = {std::string(curvatureForms[r.curvature.form])};
+    r.axes = {std::string(lutAxes[isShadow ? r.shadow.axis : r.curvature.axis])};
+    if (r.kind == PEL_LUT_EYE)
+        reader.fail("kind", "is 'eye', of which a batch makes none; `pellucid lut eye` does");
+    reader.text("name", r.name);
+    if (r.name.empty() && reader.has("name"))
+        reader.fail("name", "is empty; leave it out for a name by content");
+    reader.list("profile", r.profiles);
+    reader.list("form", r.forms);
+    if (isShadow) r.forms = {""};
+    std::vector<std::string> axes = r.axes;
+    reader.list("axis", axes);
+    if (!ownAxis) r.axes = axes;
+    reader.list("encoding", r.encodings);
+    reader.list("diffusion_radius", r.radii, range::positive);
+    std::vector<float> sides;
+    reader.list("size", sides, range::atLeastOne);
+    for (float side : sides) {
+        if (side > 16384 || side != float(uint32_t(side)))
+            reader.fail("size", "holds a side that is not a whole number from 1 to 16384");
+        r.sizes.push_back({uint32_t(side), uint32_t(side)});
+    }
+    const PelSpecularLutDesc specular = pelSpecularLutDescDefaults();
+    if (!reader.has("size"))
+        r.sizes = {isShadow                      ? Size{r.shadow.width, r.shadow.height}
+                   : r.kind == PEL_LUT_CURVATURE ? Size{r.curvature.width, r.curvature.height}
+                                                 : Size{specular.width, specular.height}};
+    reader.number("radius_min", r.curvature.radiusMin, range::curvatureLut::radiusMin);
+    reader.number("radius_max", r.curvature.radiusMax, range::curvatureLut::radiusMax);
+    reader.number("width_min", r.shadow.widthMin, range::shadowLut::widthMin);
+    reader.number("width_max", r.shadow.widthMax, range::shadowLut::widthMax);
+    reader.number("sharpening", r.shadow.sharpening, range::atLeastOne);
+    reader.integer("closed_ends", r.shadow.closedEnds, range::shadowLut::closedEnds);
+    const auto reversed = [](float least, float most) { return most != 0 && least > most; };
+    if (reversed(r.curvature.radiusMin, r.curvature.radiusMax))
+        reader.fail("radius_min", "is greater than radius_max");
+    if (reversed(r.shadow.widthMin, r.shadow.widthMax)) reader.fail("width_min", "is greater than width_max");
+    return r;
+}
+
+// Floats by their bits, so that equal keys mean equal requests.
+struct Key {
+    std::ostringstream out;
+    Key() {
+        out.imbue(std::locale::classic());
+        out << std::hexfloat;
+    }
+    template <class T>
+    Key& operator()(const char* name, const T& value) {
+        out << name << '=' << value << ';';
+        return *this;
+    }
+};
+
+class Expansion {
+  public:
+    // `folder`: where profile files are; if empty, the manifest has them already.
+    Expansion(BatchManifest& manifest, std::optional<std::filesystem::path> folder)
+        : manifest_(manifest), folder_(std::move(folder)) {}
+
+    void add(TomlReader& reader, LutPreset preset) {
+        const Request r = readRequest(reader, preset);
+        reader.finish();  // an unknown key makes the entry an error before any table is taken from it
+        refuseTooMany(reader, r);
+        for (const std::string& encoding : r.encodings)
+            for (const Size& size : r.sizes) {
+                if (r.kind == PEL_LUT_SPECULAR) {
+                    addOne(reader, r, encoding, size, "", "", "", 0);
+                    continue;
+                }
+                for (const std::string& profile : r.profiles)
+                    for (float radius : r.radii)
+                        for (const std::string& form : r.forms)
+                            for (const std::string& axis : r.axes)
+                                addOne(reader, r, encoding, size, profile, form, axis, radius);
+            }
+    }
+
+  private:
+    // A profile and its part of the key: its numbers, not only its name, since a changed file is another
+    // request.
+    struct Known {
+        Profile profile;
+        std::string key;
+    };
+
+    // Before anything is expanded: five short lists can ask for more tables than fit in memory.
+    void refuseTooMany(const TomlReader& reader, const Request& r) {
+        double asked = double(r.encodings.size()) * double(r.sizes.size());
+        if (r.kind != PEL_LUT_SPECULAR) asked *= double(r.profiles.size()) * double(r.radii.size());
+        if (r.kind != PEL_LUT_SPECULAR) asked *= double(r.forms.size()) * double(r.axes.size());
+        asked_ += asked;
+        if (asked_ <= double(mostEntries)) return;
+        asked_ -= asked;
+        std::ostringstream text;
+        text.imbue(std::locale::classic());
+        text << "asks for " << std::fixed << std::setprecision(0) << asked
+             << " tables, and a manifest may ask for " << mostEntries << " in all; split it";
+        reader.fail("size", text.str());
+    }
+
+    const Known& profile(const TomlReader& reader, const std::string& name) {
+        auto [at, fresh] = known_.try_emplace(name);
+        if (fresh) try {
+                Profile& p = at->second.profile = load(name);
+                const PelProfileInfo info = p.info();
+                Key key;
+                key("profile", info.name)("radius", info.radius);
+                std::vector<double> distances;
+                for (double f : {0.01, 0.03, 0.1, 0.3, 0.7, 1.0, 1.5, 2.0, 3.0})
+                    distances.push_back(f * info.radius);
+                for (double value : p.radial(distances)) key("R", float(value));
+                at->second.key = key.out.str();
+            } catch (const FileError& e) {
+                known_.erase(at);
+                reader.fail("profile", std::string("is refused: ") + e.what());
+            }
+        return at->second;
+    }
+
+    Profile load(const std::string& name) {
+        if (extensionOf(name) != "toml") return findProfile(name).profile;
+        if (folder_) {
+            std::string text = readWholeFile((*folder_ / name).string(), textLimit);
+            profileBytes_ += text.size();
+            if (profileBytes_ > mostProfileBytes)
+                throw FileError(name, "makes the profile files of this manifest more than " +
+                                          std::to_string(mostProfileBytes) + " bytes; split the manifest");
+            manifest_.profiles[name] = std::move(text);
+        }
+        const auto at = manifest_.profiles.find(name);
+        if (at == manifest_.profiles.end()) throw FileError(name, "was not sent along with the manifest");
+        return parseProfile(name, at->second).profile;
+    }
+
+    void addOne(const TomlReader& reader, const Request& r, const std::string& encoding, const Size& size,
+                const std::string& profileName, const std::string& form, const std::string& axis, float radius) {
+        BatchEntry entry{pelLutInfoDefaults(), {}, {}, {}, {}, {}, reader.line()};
+        entry.info.kind = r.kind;
+        entry.encoding = PelLutEncoding(indexOf(reader, "encoding", encoding, encodingNames));
+        Key key;
+        key("kind", lutKinds[r.kind])("version", pelVersion())("encoding", encoding)("size", size.text());
+        if (r.kind != PEL_LUT_SPECULAR) {
+            const Known& known = profile(reader, profileName);
+            entry.profile = known.profile;
+            key.out << known.key;
+            key("diffusion_radius", radius);
+        }
+        if (r.kind == PEL_LUT_CURVATURE) {
+            PelCurvatureLutDesc& desc = entry.info.curvature = r.curvature;
+            desc.width = size.width, desc.height = size.height;
+            desc.form = PelCurvatureForm(indexOf(reader, "form", form, curvatureForms));
+            desc.axis = PelLutAxis(indexOf(reader, "axis", axis, lutAxes));
+            desc.diffusionRadius = radius;
+            desc.profile = entry.profile.get();
+            key("form", form)("axis", axis)("radius_min", desc.radiusMin)("radius_max", desc.radiusMax);
+        } else if (r.kind == PEL_LUT_SHADOW) {
+            PelShadowLutDesc& desc = entry.info.shadow = r.shadow;
+            desc.width = size.width, desc.height = size.height;
+            desc.axis = PelLutAxis(indexOf(reader, "axis", axis, lutAxes));
+            desc.diffusionRadius = radius;
+            desc.profile = entry.profile.get();
+            key("width_min", desc.widthMin)("width_max", desc.widthMax)("sharpening", desc.sharpening);
+            // Only where they are not as in version 1, whose files keep their names.
+            if (desc.axis != PEL_AXIS_LINEAR) key("axis", axis);
+            if (desc.closedEnds) key("closed_ends", 1);
+        } else {
+            entry.info.specular.width = size.width, entry.info.specular.height = size.height;
+        }
+        entry.key = key.out.str();
+        if (r.name.empty()) {
+            entry.file = std::string(lutKinds[r.kind]) + "-" + hexDigits(contentHash(entry.key)) + ".exr";
+        } else {
+            entry.name = namedBy(reader, r,
+                                 {{"kind", std::string(lutKinds[r.kind])},
+                                  {"profile", std::filesystem::path(profileName).stem().string()},
+                                  {"form", form},
+                                  {"axis", axis},
+                                  {"size", size.text()},
+                                  {"encoding", encoding},
+                                  {"diffusion_radius", radius > 0 ? shortest(radius) : "own"}});
+            entry.file = entry.name + ".exr";
+        }
+        const auto [other, fresh] = files_.try_emplace(entry.file, manifest_.entries.size());
+        if (fresh) {
+            manifest_.entries.push_back(std::move(entry));
+            return;
+        }
+        const BatchEntry& first = manifest_.entries[other->second];
+        if (first.key != entry.key)
+            reader.fail("name", "gives two tables the file " + entry.file +
+                                    (first.line == entry.line
+                                         ? "; put what differs into it, such as {size}"
+                                         : "; the one of line " + std::to_string(first.line) + " has it"));
+        ++manifest_.duplicates;
+    }
+
+    // r.name with each {key} replaced by its value.
+    static std::string namedBy(const TomlReader& reader, const Request& r,
+                               const std::map<std::string, std::string>& values) {
+        std::string name;
+        for (size_t at = 0; at < r.name.size();) {
+            const size_t open = std::min(r.name.find('{', at), r.name.size());
+            name.append(r.name, at, open - at);
+            if (open == r.name.size()) break;
+            const size_t close = r.name.find('}', open);
+            const auto value = close == std::string::npos
+                                   ? values.end()
+                                   : values.find(r.name.substr(open + 1, close - open - 1));
+            if (value == values.end()) {
+                std::string known;
+                for (const auto& [key, unused] : values) known += (known.empty() ? "{" : ", {") + key + "}";
+                reader.fail("name", "holds '" + r.name.substr(open, close - open + 1) + "'; one of " + known +
+                                        " would be right");
+            }
+            name += value->second;
+            at = close + 1;
+        }
+        constexpr std::string_view allowed =
+            "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.+";
+        const size_t wrong = name.find_first_not_of(allowed);
+        if (wrong != std::string::npos || name.empty() || name[0] == '.' || name[0] == '-' || name.size() > 200)
+            reader.fail("name", "is '" + name +
+                                    "'; up to 200 letters of A to Z, digits and - _ . +, not "
+                                    "beginning with . or -, are possible");
+        return name;
+    }
+
+    BatchManifest& manifest_;
+    std::optional<std::filesystem::path> folder_;
+    std::map<std::string, Known> known_;
+    std::map<std::string, size_t> files_;  // to the entry
+    double asked_ = 0;                     // tables, including repeated ones
+    size_t profileBytes_ = 0;
+};
+
+BatchManifest expanded(const std::string& path, BatchManifest manifest,
+                       std::optional<std::filesystem::path> folder) {
+    const auto root = parseToml(path, manifest.text);
+    Expansion expansion(manifest, std::move(folder));
+    TomlReader reader(path, *root, "the manifest");
+    const LutPreset preset = presetOfVersion(reader.version(lutPresetVersions));
+    for (const char* name : {"lut", "grid"})
+        reader.tablesApart(
+            name, [&](TomlReader& entry) { expansion.add(entry, preset); },
+            [&](const FileError& e) {
+                manifest.errors.push_back({e.line(), e.what()});
+            });
+    reader.finish();
+    if (manifest.entries.empty() && manifest.errors.empty())
+        throw FileError(path, "lists no tables; [[lut]] and [[grid]] would be right");
+    return manifest;
+}
+
+}  // namespace
+
+BatchManifest readManifest(const std::string& path) {
+    BatchManifest manifest;
+    manifest.text = readWholeFile(path, textLimit);
+    return expanded(path, std::move(manifest), std::filesystem::path(path).parent_path());
+}
+
+BatchManifest parseManifest(const std::string& path, const std::string& text,
+                            const std::map<std::string, std::string>& profiles) {
+    BatchManifest manifest;
+    manifest.text = text;
+    manifest.profiles = profiles;
+    return expanded(path, std::move(manifest), {});
+}
+
+}  // namespace pellucid::io

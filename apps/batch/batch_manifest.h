@@ -1,0 +1,43 @@
+// The manifest of `pellucid batch`: TOML that lists look-up tables one by one and as grids. Keys:
+// docs/guide/batch.md.
+#pragma once
+#include <map>
+#include <pellucid/pellucid.hpp>
+#include <string>
+#include <vector>
+
+namespace pellucid::io {
+
+// One table to make.
+struct BatchEntry {
+    PelLutInfo info;          // kind and description; profile handles are those of `profile`
+    Profile profile;          // empty for specular tables
+    PelLutEncoding encoding;  // float or half
+    std::string key;          // everything that determines the texels, as text
+    std::string name;         // given by the manifest; may be empty
+    std::string file;         // name.exr, or kind and hash of the key: equal requests have equal names
+    int line;                 // of the manifest
+};
+
+struct BatchError {
+    int line;
+    std::string message;
+};
+
+struct BatchManifest {
+    std::vector<BatchEntry> entries;              // in order, each file once
+    std::vector<BatchError> errors;               // wrong entries; the others are valid
+    size_t duplicates = 0;                        // left out because an earlier entry is the same
+    std::string text;                             // of the manifest
+    std::map<std::string, std::string> profiles;  // text of each profile file that is named
+};
+
+// Throws FileError if the file is not a manifest. Wrong entries are returned as errors. Profile files are
+// found relative to the manifest.
+BatchManifest readManifest(const std::string& path);
+
+// The same without reading any file: `path` is for messages, `profiles` as in BatchManifest.
+BatchManifest parseManifest(const std::string& path, const std::string& text,
+                            const std::map<std::string, std::string>& profiles);
+
+}  // namespace pellucid::io

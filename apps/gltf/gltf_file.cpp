@@ -1,0 +1,338 @@
+#include "gltf/gltf_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "gltf/gltf_materials.h"
+#include "io/input_file.h"
+
+namespace pellucid::io {
+namespace {
+
+// Row-major, multiplies column vectors.
+using Matrix = std::array<double, 16>;
+constexpr size_t mostMaterials = 255;    // ids of a material channel
+constexpr double mostCoordinate = 1e30;  // metres, of a node or its axes
+constexpr Matrix identity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+Matrix product(const Matrix& a, const Matrix& b) {
+    Matrix c{};
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j)
+            for (int k = 0; k < 4; ++k) c[size_t(4 * i + j)] += a[size_t(4 * i + k)] * b[size_t(4 * k + j)];
+    return c;
+}
+
+Triple point(const Matrix& m, const Triple& p) {
+    return {m[0] * p[0] + m[1] * p[1] + m[2] * p[2] + m[3], m[4] * p[0] + m[5] * p[1] + m[6] * p[2] + m[7],
+            m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
+}
+
+// Of the matrix of cofactors of its upper left part: what turns normals, mirrored parts included.
+Triple turned(const Matrix& m, const Triple& n) {
+    return {(m[5] * m[10] - m[6] * m[9]) * n[0] + (m[6] * m[8] - m[4] * m[10]) * n[1] +
+                (m[4] * m[9] - m[5] * m[8]) * n[2],
+            (m[2] * m[9] - m[1] * m[10]) * n[0] + (m[0] * m[10] - m[2] * m[8]) * n[1] +
+                (m[1] * m[8] - m[0] * m[9]) * n[2],
+            (m[1] * m[6] - m[2] * m[5]) * n[0] + (m[2] * m[4] - m[0] * m[6]) * n[1] +
+                (m[0] * m[5] - m[1] * m[4]) * n[2]};
+}
+
+double determinant(const Matrix& m) {
+    return m[0] * (m[5] * m[10] - m[6] * m[9]) - m[1] * (m[4] * m[10] - m[6] * m[8]) +
+           m[2] * (m[4] * m[9] - m[5] * m[8]);
+}
+
+Triple unit(const Triple& v, const Triple& otherwise) {
+    const double length = std::hypot(v[0], v[1], v[2]);
+    if (!(length > 1e-30) || !std::isfinite(length)) return otherwise;
+    return {v[0] / length, v[1] / length, v[2] / length};
+}
+
+Matrix localOf(const GltfValue& node) {
+    Matrix m = identity;
+    if (node.has("matrix")) {  // column by column
+        Matrix columns{};
+        node.numbers("matrix", columns.data(), 16, -1e12, 1e12);
+        for (size_t i = 0; i < 4; ++i)
+            for (size_t j = 0; j < 4; ++j) m[4 * i + j] = columns[4 * j + i];
+        return m;
+    }
+    double t[3] = {0, 0, 0}, q[4] = {0, 0, 0, 1}, s[3] = {1, 1, 1};
+    node.numbers("translation", t, 3, -1e12, 1e12);
+    node.numbers("rotation", q, 4, -2, 2);
+    node.numbers("scale", s, 3, -1e12, 1e12);
+    const double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], f = norm > 0 ? 2 / norm : 0;
+    const double x = q[0], y = q[1], z = q[2], w = q[3];
+    const double r[9] = {1 - f * (y * y + z * z), f * (x * y - z * w),     f * (x * z + y * w),
+                         f * (x * y + z * w),     1 - f * (x * x + z * z), f * (y * z - x * w),
+                         f * (x * z - y * w),     f * (y * z + x * w),     1 - f * (x * x + y * y)};
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 3; ++j) m[4 * i + j] = r[3 * i + j] * s[j];
+        m[4 * i + 3] = t[i];
+    }
+    return m;
+}
+
+class Builder {
+  public:
+    explicit Builder(const GltfDocument& document) : document_(document), root_(document.root()) {}
+
+    GltfScene build() {
+        scene_.mesh.source = document_.path();
+        entered_.resize(root_.count("nodes"));
+        for (const size_t node : roots()) enter(node, identity, 0);
+        if (scene_.mesh.triangles.empty()) throw FileError(document_.path(), "has no triangles in its scene");
+        MeshData& mesh = scene_.mesh;
+        if (!uvsEverywhere_) mesh.uvs.clear();
+        if (!normalsEverywhere_) {
+            mesh.normals.clear();
+            computeNormals(mesh);
+        }
+        for (const std::string& w : warnings_) mesh.warnings.push_back(w);
+        return std::move(scene_);
+    }
+
+  private:
+    std::vector<size_t> roots() const {
+        std::vector<size_t> found;
+        if (root_.count("scenes")) {
+            const size_t index =
+                root_.has("scene") ? root_.reference("scene", "scenes", root_.count("scenes")) : 0;
+            const GltfValue scene = root_["scenes"][index];
+            for (size_t i = 0; i < scene.count("nodes"); ++i) found.push_back(nodeIndex(scene["nodes"][i]));
+            return found;
+        }
+        // Without a scene: all that is below nothing.
+        std::vector<bool> below(root_.count("nodes"));
+        for (size_t n = 0; n < below.size(); ++n) {
+            const GltfValue node = root_["nodes"][n];
+            for (size_t i = 0; i < node.count("children"); ++i) below[nodeIndex(node["children"][i])] = true;
+        }
+        for (size_t n = 0; n < below.size(); ++n)
+            if (!below[n]) found.push_back(n);
+        return found;
+    }
+
+    size_t nodeIndex(const GltfValue& value) const {
+        const uint64_t index = value.whole(uint64_t{1} << 53);
+        if (index >= root_.count("nodes"))
+            value.fail("is " + std::to_string(index) + "; there are " + std::to_string(root_.count("nodes")) +
+                       " nodes");
+        return size_t(index);
+    }
+
+    void enter(size_t index, const Matrix& above, int depth) {
+        const GltfValue node = root_["nodes"][index];
+        if (depth > 500) node.fail("is more than 500 nodes deep");
+        if (entered_[index]) node.fail("is a child of two nodes, or of itself");
+        entered_[index] = true;
+        const Matrix m = product(above, localOf(node));
+        for (const double x : m)
+            if (!(std::abs(x) <= mostCoordinate)) node.fail("is placed or scaled beyond what a float holds");
+        if (node.has("mesh")) {
+            if (node.has("skin")) warn("skins are left out: meshes are in their rest pose");
+            for (const Part& part : partsOf(node.reference("mesh", "meshes", root_.count("meshes"))))
+                place(part, m);
+        }
+        if (node.has("camera"))
+            addCamera(root_["cameras"][node.reference("camera", "cameras", root_.count("cameras"))], m);
+        if (node.hasExtension("KHR_lights_punctual")) {
+            const GltfValue all = root_["extensions"]["KHR_lights_punctual"];
+            GltfLight light = readGltfLight(
+                all["lights"][node.extension("KHR_lights_punctual").reference("light", "lights", all.count("lights"))]);
+            light.position = point(m, {0, 0, 0});
+            light.forward = unit({-m[2], -m[6], -m[10]}, {0, 0, -1});
+            scene_.lights.push_back(light);
+        }
+        for (size_t i = 0; i < node.count("children"); ++i)
+            enter(nodeIndex(node["children"][i]), m, depth + 1);
+    }
+
+    void addCamera(const GltfValue& camera, const Matrix& m) {
+        if (!camera.has("perspective")) return warn("orthographic cameras are left out");
+        const GltfValue p = camera["perspective"];
+        GltfCamera c;
+        c.verticalFov = p["yfov"].number(1e-3, 3.14);
+        c.aspect = p.number("aspectRatio", 0, 1e-3, 1e3);
+        c.position = point(m, {0, 0, 0});
+        c.forward = unit({-m[2], -m[6], -m[10]}, {0, 0, -1});
+        c.up = unit({m[1], m[5], m[9]}, {0, 1, 0});
+        // Sheared axes can coincide; any other direction will do then.
+        if (std::abs(c.up[0] * c.forward[0] + c.up[1] * c.forward[1] + c.up[2] * c.forward[2]) > 0.999999)
+            c.up = std::abs(c.forward[1]) < 0.9 ? Triple{0, 1, 0} : Triple{0, 0, 1};
+        scene_.cameras.push_back(c);
+    }
+
+    // A primitive that holds triangles, before any node places it.
+    struct Part {
+        GltfValue primitive;
+        std::vector<float> positions, normals, uvs;  // normals and uvs may be empty
+        std::vector<uint32_t> triangles;             // never empty
+        uint32_t material;
+    };
+
+    // Three indices per triangle [glTF 2.0, 3.7.2.1].
+    std::vector<uint32_t> trianglesOf(const GltfValue& primitive, uint64_t mode, size_t vertices) const {
+        std::vector<uint32_t> list;
+        if (primitive.has("indices")) {
+            list = document_.indices(primitive, "indices");
+        } else {
+            list.resize(vertices);
+            for (size_t i = 0; i < vertices; ++i) list[i] = uint32_t(i);
+        }
+        for (size_t i = 0; i < list.size(); ++i)
+            if (list[i] >= vertices)
+                primitive.fail("has index " + std::to_string(list[i]) + " at place " + std::to_string(i) +
+                               ", and " + std::to_string(vertices) + " vertices");
+        if (mode == 4) {
+            if (list.size() % 3)
+                primitive.fail("has " + std::to_string(list.size()) + " indices, which is no multiple of 3");
+            return list;
+        }
+        std::vector<uint32_t> triangles;
+        for (size_t i = 2; i < list.size(); ++i) {
+            const bool fan = mode == 6, odd = i % 2 == 1;
+            const uint32_t a = fan ? list[0] : list[odd ? i - 1 : i - 2],
+                           b = fan ? list[i - 1] : list[odd ? i - 2 : i - 1];
+            triangles.insert(triangles.end(), {a, b, list[i]});
+        }
+        return triangles;
+    }
+
+    // The parts of a mesh, decoded once however many nodes place it.
+    const std::vector<Part>& partsOf(size_t mesh) {
+        const auto [found, fresh] = parts_.try_emplace(mesh);
+        if (!fresh) return found->second;
+        const GltfValue primitives = root_["meshes"][mesh]["primitives"];
+        for (size_t i = 0; i < primitives.size(); ++i) {
+            const GltfValue primitive = primitives[i];
+            const uint64_t mode = primitive.whole("mode", 4, 6);
+            if (mode < 4) {
+                warn("points and lines are left out");
+                continue;
+            }
+            if (primitive.hasExtension("KHR_draco_mesh_compression"))
+                primitive.fail("is compressed by Draco: write the scene uncompressed");
+            if (primitive.has("targets")) warn("morph targets are left out: meshes are in their rest pose");
+            const GltfValue attributes = primitive["attributes"];
+            Part part{primitive, document_.floats(attributes, "POSITION", 3), {}, {}, {}, 0};
+            const size_t vertices = part.positions.size() / 3;
+            checkSceneSize(primitive, vertices, 0);
+            part.triangles = trianglesOf(primitive, mode, vertices);
+            if (part.triangles.empty()) continue;
+            if (attributes.has("NORMAL")) part.normals = sized(attributes, "NORMAL", 3, vertices);
+            if (attributes.has("TEXCOORD_0")) part.uvs = sized(attributes, "TEXCOORD_0", 2, vertices);
+            part.material = materialIndex(primitive);
+            found->second.push_back(std::move(part));
+        }
+        return found->second;
+    }
+
+    void checkSceneSize(const GltfValue& primitive, size_t vertices, size_t indices) const {
+        const double bytes = double(scene_.mesh.vertexCount() + vertices) * 32 +
+                             double(scene_.mesh.triangles.size() + indices) * 8;
+        if (bytes > double(inputLimit()))
+            primitive.fail("makes the scene too large: " + tooLarge(bytes, inputLimit()));
+    }
+
+    // Adds a part to the scene's mesh, transformed by the node's matrix.
+    void place(const Part& part, const Matrix& m) {
+        const std::vector<float>&positions = part.positions, &normals = part.normals, &uvs = part.uvs;
+        const size_t vertices = positions.size() / 3, first = scene_.mesh.vertexCount();
+        checkSceneSize(part.primitive, vertices, part.triangles.size());
+        MeshData& mesh = scene_.mesh;
+        bool bad = normals.empty();
+        for (size_t v = 0; v < vertices; ++v) {
+            const Triple p = point(m, {positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]});
+            for (const double x : p) {
+                if (!std::isfinite(float(x)))
+                    part.primitive["attributes"]["POSITION"].fail("has vertex " + std::to_string(v) +
+                                                                  " at a place that is not finite");
+                mesh.positions.push_back(float(x));
+            }
+            Triple n{0, 0, 1};
+            if (!normals.empty()) {
+                const Triple t =
+                    unit(turned(m, {normals[3 * v], normals[3 * v + 1], normals[3 * v + 2]}), {0, 0, 0});
+                bad |= t == Triple{0, 0, 0};
+                n = t == Triple{0, 0, 0} ? n : t;
+            }
+            for (const double x : n) mesh.normals.push_back(float(x));
+            for (size_t c = 0; c < 2; ++c) {
+                const float u = uvs.empty() ? 0 : uvs[2 * v + c];
+                mesh.uvs.push_back(std::isfinite(u) ? u : 0);
+            }
+        }
+        if (bad && !normals.empty())
+            warn("some normals are zero or not finite: all are made from the triangles");
+        normalsEverywhere_ &= !bad;
+        uvsEverywhere_ &= !uvs.empty();
+        const bool mirrored = determinant(m) < 0;
+        for (size_t i = 0; i < part.triangles.size(); i += 3)
+            for (const size_t k : {size_t{0}, size_t{mirrored ? 2u : 1u}, size_t{mirrored ? 1u : 2u}})
+                mesh.triangles.push_back(uint32_t(first + part.triangles[i + k]));
+        scene_.materialOf.insert(scene_.materialOf.end(), part.triangles.size() / 3, part.material);
+    }
+
+    std::vector<float> sized(const GltfValue& attributes, const char* key, size_t components,
+                             size_t vertices) const {
+        std::vector<float> values = document_.floats(attributes, key, components);
+        if (values.size() != vertices * components)
+            attributes[key].fail("has " + std::to_string(values.size() / components) +
+                                 " elements, POSITION " + std::to_string(vertices));
+        return values;
+    }
+
+    uint32_t materialIndex(const GltfValue& primitive) {
+        const size_t count = root_.count("materials");
+        const size_t index =
+            primitive.has("material") ? primitive.reference("material", "materials", count) : count;
+        const auto [at, fresh] = known_.try_emplace(index, uint32_t(scene_.materials.size()));
+        if (!fresh) return at->second;
+        if (scene_.materials.size() == mostMaterials)
+            throw FileError(document_.path(),
+                            "uses more than " + std::to_string(mostMaterials) + " materials");
+        GltfMaterial m;
+        if (index < count) m = readGltfMaterial(document_, root_["materials"][index], warnings_);
+        if (m.name.empty()) m.name = index < count ? "material_" + std::to_string(index) : "default";
+        if (m.baseColorImage >= 0) {
+            const auto [image, unread] = images_.try_emplace(m.baseColorImage, int(scene_.images.size()));
+            if (unread) scene_.images.push_back(document_.image(size_t(m.baseColorImage)));
+            m.baseColorImage = image->second;
+        }
+        scene_.materials.push_back(std::move(m));
+        return at->second;
+    }
+
+    void warn(const std::string& text) {
+        if (std::ranges::find(warnings_, text) == warnings_.end()) warnings_.push_back(text);
+    }
+
+    const GltfDocument& document_;
+    const GltfValue root_;
+    GltfScene scene_;
+    std::vector<bool> entered_;
+    std::map<size_t, std::vector<Part>> parts_;  // by mesh
+    std::map<size_t, uint32_t> known_;
+    std::map<int, int> images_;
+    std::vector<std::string> warnings_;
+    bool normalsEverywhere_ = true, uvsEverywhere_ = true;
+};
+
+}  // namespace
+
+GltfScene decodeGltf(const std::string& path, const std::string& bytes, const GltfResource& resource) {
+    const GltfDocument document(path, bytes, resource);
+    return Builder(document).build();
+}
+
+GltfScene readGltf(const std::string& path) {
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    return decodeGltf(path, readWholeFile(path),
+                      [&](const std::string& relative) { return readWholeFile((folder / relative).string()); });
+}
+
+}  // namespace pellucid::io

@@ -1,0 +1,187 @@
+#include "gltf/gltf_import.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <stdexcept>
+
+#include "gltf/gltf_exposure.h"
+#include "io/atomic_file.h"
+#include "io/file_error.h"
+#include "io/input_file.h"
+#include "io/lut/profile_file.h"
+#include "io/shortest.h"
+
+namespace pellucid::io {
+namespace {
+
+constexpr size_t mostLights = 64;
+
+// Profiles by the names of materials.
+std::map<std::string, std::string> profilesOf(const std::vector<std::string>& words,
+                                              const std::vector<GltfMaterial>& materials) {
+    std::map<std::string, std::string> chosen;
+    std::string known;
+    for (const GltfMaterial& m : materials) known += (known.empty() ? "" : ", ") + m.name;
+    for (const std::string& word : words) {
+        const size_t at = word.rfind('=');
+        const std::string profile = at == std::string::npos ? word : word.substr(at + 1);
+        findProfile(profile);  // or an error that lists them
+        bool found = at == std::string::npos;
+        for (const GltfMaterial& m : materials)
+            if (at == std::string::npos || m.name == word.substr(0, at))
+                chosen[m.name] = profile, found = true;
+        if (!found)
+            throw std::invalid_argument("profile " + word + ": there is no such material; there are " + known);
+    }
+    return chosen;
+}
+
+// A lamp and a little sky for scenes that have no light.
+void addLamp(SceneFile& scene) {
+    SceneLight lamp;
+    lamp.light = directionalLight({0.5f, 0.6f, 0.62f}, {1, 1, 1});
+    scene.lights.push_back(lamp);
+    for (float& c : scene.ambient.constant) c = 0.08f;
+}
+
+void addMaterials(ImportedGltf& made, const std::vector<std::string>& words) {
+    const std::vector<GltfMaterial>& materials = made.gltf.materials;
+    const auto profiles = profilesOf(words, materials);
+    made.names = plainNames(materials);
+    for (size_t i = 0; i < materials.size(); ++i) {
+        const auto given = profiles.find(materials[i].name);
+        std::string profile = given == profiles.end() ? "" : given->second;
+        if (extensionOf(profile) == "toml") profile = std::filesystem::absolute(profile).string();
+        made.looks.push_back(lookOf(materials[i], made.names[i], uint32_t(i + 1), profile));
+        made.scene.materials.push_back(made.looks.back().material);
+    }
+}
+
+void warn(GltfScene& gltf, const std::string& text) {
+    gltf.mesh.warnings.push_back(text);
+}
+
+void toMillimetres(GltfScene& gltf, double unitMm) {
+    for (float& p : gltf.mesh.positions) {
+        p = float(p * unitMm);
+        if (!std::isfinite(p))
+            throw FileError(gltf.mesh.source, "has vertices too far away for a float, in mm");
+    }
+    for (GltfCamera& camera : gltf.cameras)
+        for (double& p : camera.position) p *= unitMm;
+    for (GltfLight& light : gltf.lights) {
+        for (double& p : light.position) p *= unitMm;
+        light.range *= unitMm;
+    }
+}
+
+// Rays start at the camera in single precision: from far away they would miss a small scene, or hit noise.
+void dropDistantCameras(GltfScene& gltf) {
+    constexpr double most = 1e5;  // of the scene's size
+    Triple low{INFINITY, INFINITY, INFINITY}, high{-INFINITY, -INFINITY, -INFINITY};
+    for (size_t i = 0; i < gltf.mesh.positions.size(); ++i) {
+        const double p = gltf.mesh.positions[i];
+        low[i % 3] = std::min(low[i % 3], p), high[i % 3] = std::max(high[i % 3], p);
+    }
+    const double size = std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]);
+    const size_t dropped = std::erase_if(gltf.cameras, [&](const GltfCamera& camera) {
+        Triple away;
+        for (size_t c = 0; c < 3; ++c) away[c] = camera.position[c] - (low[c] + high[c]) / 2;
+        return !(std::hypot(away[0], away[1], away[2]) <= most * size);
+    });
+    if (dropped)
+        warn(gltf, std::to_string(dropped) +
+                       " cameras are left out: their distance is over 100,000 times the size of the scene");
+}
+
+void addLights(ImportedGltf& made, const GltfImportOptions& options) {
+    std::vector<GltfLight>& lights = made.gltf.lights;
+    if (lights.size() > mostLights) {
+        warn(made.gltf, "the scene has " + std::to_string(lights.size()) + " lights; the first " +
+                            std::to_string(mostLights) + " are taken");
+        lights.resize(mostLights);
+    }
+    const size_t dropped = std::erase_if(lights, [](const GltfLight& light) {
+        return std::ranges::any_of(light.position, [](double p) { return !(std::abs(p) <= 1e30); });
+    });
+    if (dropped)
+        warn(made.gltf, std::to_string(dropped) + " lights are left out: they are too far away for a float");
+    made.lampAdded = lights.empty();
+    made.lightFactor = 1;
+    if (made.lampAdded) return addLamp(made.scene);
+    made.lightFactor = options.lights ? *options.lights : chosenLightFactor(made);
+    for (const GltfLight& light : lights) made.scene.lights.push_back(sceneLight(light, made.lightFactor));
+    if (const double share = clippedShare(made); share > 0.1)
+        warn(made.gltf, "the lights are too bright: an estimated " + std::to_string(int(100 * share)) +
+                            " % of the lit surface is brighter than white");
+}
+
+// OBJ with a part per material; texture coordinates the other way up than glTF's.
+void writeObj(const std::string& folder, const ImportedGltf& made) {
+    const MeshData& mesh = made.gltf.mesh;
+    std::string obj = "mtllib mesh.mtl\n", mtl;
+    const auto line = [&](const char* word, const float* values, size_t count) {
+        obj += word;
+        for (size_t i = 0; i < count; ++i) (obj += ' ') += shortest(values[i]);
+        obj += '\n';
+    };
+    for (size_t v = 0; v < mesh.vertexCount(); ++v) line("v", &mesh.positions[3 * v], 3);
+    for (size_t v = 0; v < mesh.uvs.size() / 2; ++v) {
+        const float uv[2] = {mesh.uvs[2 * v], 1 - mesh.uvs[2 * v + 1]};
+        line("vt", uv, 2);
+    }
+    for (size_t v = 0; v < mesh.vertexCount(); ++v) line("vn", &mesh.normals[3 * v], 3);
+    std::vector<std::vector<size_t>> parts(made.names.size());
+    for (size_t t = 0; t < mesh.triangleCount(); ++t) parts[made.gltf.materialOf[t]].push_back(t);
+    for (size_t m = 0; m < parts.size(); ++m) {
+        obj += "g " + made.names[m] + "\nusemtl " + made.names[m] + "\n";
+        for (const size_t t : parts[m]) {
+            obj += 'f';
+            for (size_t k = 0; k < 3; ++k) {
+                const std::string at = std::to_string(mesh.triangles[3 * t + k] + 1);
+                obj += " " + at + "/" + (mesh.uvs.empty() ? "" : at) + "/" + at;
+            }
+            obj += '\n';
+        }
+        mtl += "newmtl " + made.names[m] + "\nKd";
+        for (const double c : made.looks[m].albedo) mtl += " " + shortest(float(c));
+        mtl += "\n";
+    }
+    writeWholeFile(folder + "/mesh.obj", obj);
+    writeWholeFile(folder + "/mesh.mtl", mtl);
+}
+
+}  // namespace
+
+ImportedGltf importGltf(const std::string& path, const GltfImportOptions& options) {
+    return importScene(readGltf(path), options);
+}
+
+ImportedGltf importScene(GltfScene scene, const GltfImportOptions& options) {
+    ImportedGltf made;
+    made.gltf = std::move(scene);
+    addMaterials(made, options.profiles);
+    toMillimetres(made.gltf, options.unitMm);
+    dropDistantCameras(made.gltf);
+    addLights(made, options);
+    if (!made.gltf.cameras.empty())
+        std::ranges::copy(made.gltf.cameras[0].position, made.scene.camera.position);
+    // What a G-buffer of the mesh is expected to have.
+    made.scene.channels[PEL_SLOT_NORMAL_SHADING] = {"Normal.X", "Normal.Y", "Normal.Z"};
+    made.scene.channels[PEL_SLOT_POSITION] = {"Position.X", "Position.Y", "Position.Z"};
+    made.scene.channels[PEL_SLOT_CURVATURE] = {"Curvature.V"};
+    made.scene.channels[PEL_SLOT_MATERIAL] = {"Material.I"};
+    return made;
+}
+
+void writeImported(const std::string& folder, const ImportedGltf& made) {
+    for (size_t i = 0; i < made.looks.size(); ++i)
+        if (!made.looks[i].profileText.empty())
+            writeWholeFile(folder + "/" + made.names[i] + ".toml", made.looks[i].profileText);
+    writeObj(folder, made);
+    writeScene(folder + "/scene.toml", made.scene);
+}
+
+}  // namespace pellucid::io

@@ -1,0 +1,38 @@
+// Imports a glTF file as a scene of this library, for `pellucid import` and Python's load_gltf.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gltf/gltf_scene.h"
+
+namespace pellucid::io {
+
+struct GltfImportOptions {
+    // PROFILE of all materials, or MATERIAL=PROFILE of one, in place of what the file says
+    std::vector<std::string> profiles;
+    double unitMm = 1000;  // millimetres per unit; glTF's unit is the metre
+    // Factor of the lights' brightness; none: chosen so that the picture is well exposed
+    std::optional<double> lights;
+};
+
+struct ImportedGltf {
+    GltfScene gltf;  // positions, cameras and lights in mm; warnings include those of the import
+    std::vector<std::string> names;  // of materials, usable as file names
+    std::vector<GltfLook> looks;     // of each material
+    // Materials from 1 on in the file's order; lights, or one lamp; the first camera's place
+    SceneFile scene;
+    bool lampAdded = false;  // the file has no light
+    double lightFactor = 1;  // what the lights of the file were multiplied by
+};
+
+// Throws FileError as readGltf does, std::invalid_argument for a material in `profiles` that the file does
+// not have.
+ImportedGltf importGltf(const std::string& path, const GltfImportOptions& options = {});
+// The same of a scene that was read already.
+ImportedGltf importScene(GltfScene scene, const GltfImportOptions& options = {});
+
+// Writes scene.toml, mesh.obj with mesh.mtl, and NAME.toml of each profile into `folder`, which exists.
+void writeImported(const std::string& folder, const ImportedGltf& imported);
+
+}  // namespace pellucid::io

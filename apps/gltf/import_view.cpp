@@ -1,0 +1,185 @@
+#include "gltf/import_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "io/file_error.h"
+#include "io/image/image_file.h"
+#include "sample/gbuffer.h"
+#include "sample/shadow_map.h"
+
+namespace pellucid::cli {
+namespace {
+
+constexpr int shadowMapSize = 1024;
+
+sample::Vec3 vec(const io::Triple& t) {
+    return {t[0], t[1], t[2]};
+}
+
+// Texels in linear light.
+struct Texture {
+    int width = 0, height = 0;
+    std::vector<float> rgb;
+
+    // Bilinear, repeated; row 0 is at v = 0 [glTF 2.0, 3.8.3].
+    std::array<float, 3> at(double u, double v) const {
+        const double x = (u - std::floor(u)) * width - 0.5, y = (v - std::floor(v)) * height - 0.5;
+        const double fx = x - std::floor(x), fy = y - std::floor(y);
+        const auto wrapped = [](double at, int size) { return (int(std::floor(at)) % size + size) % size; };
+        const int x0 = wrapped(x, width), x1 = (x0 + 1) % width, y0 = wrapped(y, height), y1 = (y0 + 1) % height;
+        const auto texel = [&](int tx, int ty, int c) {
+            return double(rgb[3 * (size_t(ty) * size_t(width) + size_t(tx)) + size_t(c)]);
+        };
+        std::array<float, 3> out{};
+        for (int c = 0; c < 3; ++c)
+            out[size_t(c)] = float((1 - fy) * ((1 - fx) * texel(x0, y0, c) + fx * texel(x1, y0, c)) +
+                                   fy * ((1 - fx) * texel(x0, y1, c) + fx * texel(x1, y1, c)));
+        return out;
+    }
+};
+
+Texture textureOf(const io::GltfImage& image) {
+    io::Image picture = io::decodeImage(image.name, image.bytes);
+    Texture t;
+    t.width = picture.width, t.height = picture.height;
+    const bool grey = picture.channels.size() < 3;
+    t.rgb.resize(3 * picture.pixelCount());
+    for (size_t i = 0; i < picture.pixelCount(); ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            const float v = picture.channels[grey ? 0 : c].pixels[i];
+            // IEC 61966-2-1
+            t.rgb[3 * i + c] = v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f);
+        }
+    return t;
+}
+
+sample::Camera cameraOf(const io::GltfCamera* given, const sample::Scene& scene, double aspect) {
+    if (!given) return sample::frameHead(scene.bounds(), sample::poseWithUp('y'), {20, 8}, aspect);
+    const io::GltfCamera& c = *given;
+    sample::Camera camera;
+    camera.eye = vec(c.position);
+    // As far away as the origin, so that their difference keeps the direction.
+    camera.target = camera.eye + vec(c.forward) * std::max(length(camera.eye), 1.0);
+    camera.up = vec(c.up);
+    camera.verticalFov = c.verticalFov * 180 / std::numbers::pi;
+    double near = INFINITY, far = 0;
+    for (int i = 0; i < 8; ++i) {
+        const double depth = dot(scene.bounds().corner(i) - camera.eye, camera.forward());
+        near = std::min(near, depth), far = std::max(far, depth);
+    }
+    camera.farPlane = std::max(far * 1.01, 1e-3);
+    camera.nearPlane = std::clamp(near * 0.99, 1e-4 * camera.farPlane, 0.5 * camera.farPlane);
+    return camera;
+}
+
+void addChannels(io::Image& image, io::SceneFile& scene, PelImageSlot slot, const std::string& name,
+                 const std::string& components, const std::vector<float>& planes) {
+    const size_t pixels = image.pixelCount();
+    scene.channels[slot].clear();
+    for (size_t c = 0; c < components.size(); ++c) {
+        scene.channels[slot].push_back(name + "." + components[c]);
+        const auto from = planes.begin() + std::ptrdiff_t(c * pixels);
+        image.channels.push_back(
+            {scene.channels[slot].back(), io::ChannelType::Float, {from, from + std::ptrdiff_t(pixels)}});
+    }
+}
+
+// Multiplies the albedo of pixels whose material has a texture, one texture after another to save memory.
+void applyTextures(Run& run, const io::GltfScene& v, sample::GBuffer& g) {
+    const size_t pixels = g.material.size();
+    for (size_t i = 0; i < v.images.size() && !g.uv.data.empty(); ++i) {
+        if (v.images[i].bytes.empty()) {
+            run.warn(v.images[i].name + " is neither PNG nor JPEG, and left out");
+            continue;
+        }
+        Texture texture;
+        try {
+            texture = textureOf(v.images[i]);
+        } catch (const io::FileError& e) {
+            run.warn(std::string(e.what()) + "; the texture is left out");
+            continue;
+        }
+        for (size_t p = 0; p < pixels; ++p) {
+            if (!g.material[p] || v.materials[g.material[p] - 1].baseColorImage != int(i)) continue;
+            const auto color = texture.at(g.uv.data[p], g.uv.data[pixels + p]);
+            for (size_t c = 0; c < 3; ++c) g.albedo.data[c * pixels + p] *= color[c];
+        }
+    }
+}
+
+void addShadowMap(const std::string& folder, const sample::Scene& scene, size_t number, io::SceneLight& light) {
+    PelLight& p = light.light;
+    sample::ShadowMap map;
+    if (p.type == PEL_LIGHT_DIRECTIONAL) {
+        map = sample::renderShadowMap(
+            scene, sample::DirectionalLight{{p.toLight[0], p.toLight[1], p.toLight[2]}}, shadowMapSize);
+        p.shadowProjection = PEL_SHADOW_PARALLEL;
+        p.shadowDepthRange = float(map.depthRange);
+    } else if (p.type == PEL_LIGHT_SPOT) {
+        const sample::SpotLight spot{{p.position[0], p.position[1], p.position[2]},
+                                     {p.spotDirection[0], p.spotDirection[1], p.spotDirection[2]},
+                                     std::min(std::acos(double(p.spotCosOuter)) * 180 / std::numbers::pi, 80.0)};
+        map = sample::renderShadowMap(scene, spot, shadowMapSize);
+        p.shadowProjection = PEL_SHADOW_PERSPECTIVE;
+        p.shadowDepthA = float(map.depthA), p.shadowDepthB = float(map.depthB);
+    } else {
+        return;
+    }
+    std::ranges::copy(map.worldToUvz.toFloats(), p.worldToShadow);
+    p.shadowFilterTexels = 64;
+    light.shadowMapFile = "light_" + std::to_string(number + 1) + "_shadowmap.exr";
+    light.shadowMapChannel = "Z";
+    io::Image depth;
+    depth.width = depth.height = map.size;
+    depth.channels.push_back({"Z", io::ChannelType::Float, map.depth});
+    io::writeExr(folder + "/" + light.shadowMapFile, depth);
+}
+
+}  // namespace
+
+bool canDraw() {
+    return true;
+}
+
+void drawImport(Run& run, const std::string& folder, io::ImportedGltf& imported, const ImportView& v) {
+    const io::GltfScene& gltf = imported.gltf;
+    io::SceneFile& scene = imported.scene;
+    std::vector<uint32_t> ids;  // per triangle
+    for (const uint32_t m : gltf.materialOf) ids.push_back(m + 1);
+    const sample::Scene mesh(sample::MeshView{gltf.mesh.positions, gltf.mesh.normals, gltf.mesh.uvs,
+                                              v.curvature, gltf.mesh.triangles, ids});
+    sample::GBufferOptions options;
+    options.detail.enabled = false;
+    for (const io::GltfLook& look : imported.looks)
+        options.looks.push_back({sample::Look::Kind::Plain,
+                                 {float(look.albedo[0]), float(look.albedo[1]), float(look.albedo[2])}});
+    const double aspect = double(v.width) / v.height;
+    const sample::Camera camera =
+        cameraOf(v.camera < 0 ? nullptr : &gltf.cameras[size_t(v.camera)], mesh, aspect);
+    sample::GBuffer g = sample::renderGBuffer(mesh, camera, int(v.width), int(v.height), options);
+    applyTextures(run, gltf, g);
+    io::Image image;
+    image.width = int(v.width), image.height = int(v.height);
+    addChannels(image, scene, PEL_SLOT_POSITION, "Position", "XYZ", g.position.data);
+    addChannels(image, scene, PEL_SLOT_NORMAL_SHADING, "Normal", "XYZ", g.geometricNormal.data);
+    addChannels(image, scene, PEL_SLOT_CURVATURE, "Curvature", "V", g.curvature.data);
+    addChannels(image, scene, PEL_SLOT_ALBEDO, "Albedo", "RGB", g.albedo.data);
+    addChannels(image, scene, PEL_SLOT_MATERIAL, "Material", "I", {g.material.begin(), g.material.end()});
+    size_t covered = 0;
+    for (const uint32_t id : g.material) covered += id != 0;
+    run.report["pixels_covered"] = covered;
+    if (!covered)
+        run.warn(
+            "nothing of the scene is in the picture: choose another --camera, or --camera none to see all of "
+            "it");
+    io::writeExr(folder + "/gbuffer.exr", image);
+    const sample::Vec3 eye = camera.eye;
+    scene.camera.position[0] = float(eye.x), scene.camera.position[1] = float(eye.y),
+    scene.camera.position[2] = float(eye.z);
+    std::ranges::copy(camera.inverseViewProjection(aspect).toFloats(), scene.camera.inverseViewProjection);
+    for (size_t i = 0; i < scene.lights.size(); ++i) addShadowMap(folder, mesh, i, scene.lights[i]);
+}
+
+}  // namespace pellucid::cli

@@ -1,0 +1,214 @@
+// pellucid import: glTF files made here and samples of Debian's assimp-testmodels, to the picture.
+#include <cmath>
+
+#include "cli/cli_run.h"
+#include "gltf/tests/gltf_bytes.h"
+#include "io/image/image_file.h"
+#include "io/lut/profile_file.h"
+#include "io/mesh/mesh_file.h"
+#include "io/scene/scene_file.h"
+
+using namespace pellucid;
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path samples = "/usr/share/assimp/models/glTF2";
+
+class Import : public CommandTest {
+  protected:
+    std::string out(const std::string& name = "") const {
+        return path("out") + (name.empty() ? "" : "/" + name);
+    }
+    static bool draws() { return fs::exists(fs::path(PELLUCID_BINARY_DIR) / "host/libpellucid_sample.a"); }
+    Result shaded() const {
+        return run(
+            {"shade", out("gbuffer.exr"), "--scene", out("scene.toml"), "-o", out("radiance.exr"), "--json"});
+    }
+    // The mean of R, G and B where there is a material.
+    std::vector<double> mean() const {
+        const io::Image picture = io::readImage(out("radiance.exr")), g = io::readImage(out("gbuffer.exr"));
+        const std::vector<float>& ids = g.channel("Material.I").pixels;
+        std::vector<double> sum(4);
+        for (size_t i = 0; i < ids.size(); ++i) {
+            if (ids[i] == 0) continue;
+            for (size_t c = 0; c < 3; ++c) sum[c] += picture.channel(std::string(1, "RGB"[c])).pixels[i];
+            ++sum[3];
+        }
+        for (size_t c = 0; c < 3; ++c) sum[c] /= sum[3];
+        return sum;
+    }
+};
+
+// A ball of 2 cm, of one material.
+std::string ball(const std::string& material, const std::string& more = "") {
+    constexpr int rings = 24, segments = 48;
+    std::vector<float> positions;
+    std::vector<uint32_t> indices;
+    for (int r = 0; r <= rings; ++r)
+        for (int s = 0; s <= segments; ++s) {
+            const double a = M_PI * r / rings, b = 2 * M_PI * s / segments;
+            for (const double x : {std::sin(a) * std::sin(b), std::cos(a), std::sin(a) * std::cos(b)})
+                positions.push_back(float(0.02 * x));
+        }
+    for (uint32_t r = 0; r < rings; ++r)
+        for (uint32_t s = 0; s < segments; ++s) {
+            const uint32_t at = r * (segments + 1) + s, below = at + segments + 1;
+            for (const uint32_t i : {at, below, at + 1, at + 1, below, below + 1}) indices.push_back(i);
+        }
+    const std::string p = gltf::bytesOf(positions), i = gltf::bytesOf(indices);
+    const std::string json =
+        R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],)"
+        R"("materials":[)" +
+        material + R"(],"buffers":[{"byteLength":)" + std::to_string(p.size() + i.size()) +
+        R"(}],"bufferViews":[{"buffer":0,"byteLength":)" + std::to_string(p.size()) +
+        R"(},{"buffer":0,"byteOffset":)" + std::to_string(p.size()) + R"(,"byteLength":)" +
+        std::to_string(i.size()) + R"(}],"accessors":[{"bufferView":0,"componentType":5126,"count":)" +
+        std::to_string(positions.size() / 3) +
+        R"(,"type":"VEC3"},{"bufferView":1,"componentType":5125,"count":)" + std::to_string(indices.size()) +
+        R"(,"type":"SCALAR"}])" + more + "}";
+    return gltf::glb(json, p + i);
+}
+
+const char* const wax =
+    R"({"name":"Candle wax","pbrMetallicRoughness":{"baseColorFactor":[0.9,0.8,0.7,1],"metallicFactor":0,"roughnessFactor":0.6},"extensions":{
+        "KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":1},
+        "KHR_materials_volume":{"thicknessFactor":0.02,"attenuationDistance":0.0015,"attenuationColor":[0.4,0.3,0.1]},
+        "KHR_materials_volume_scatter":{"multiscatterColor":[0.95,0.8,0.5]}}})";
+
+}  // namespace
+
+TEST_F(Import, ABallOfWaxBecomesAPicture) {
+    const Result result =
+        run({"import", write("wax.glb", ball(wax)), "-o", out(), "--size", "96x96", "--json"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    const nlohmann::json report = result.json();
+    expectReport(report);
+    EXPECT_EQ(report["materials"][0]["name"], "Candle wax");
+    EXPECT_EQ(report["materials"][0]["taken_for"], "volume");
+    EXPECT_EQ(report["materials"][0]["profile"], "Candle_wax.toml");
+    const io::MeshData mesh = io::loadMesh(out("mesh.obj"));
+    EXPECT_EQ(mesh.triangleCount(), size_t(2 * 24 * 48));
+    float largest = 0;
+    for (const float x : mesh.positions) largest = std::max(largest, x);
+    EXPECT_NEAR(largest, 20, 1e-4);  // mm
+    const io::SceneFile scene = io::readScene(out("scene.toml"));
+    ASSERT_EQ(scene.materials.size(), 1u);
+    EXPECT_EQ(scene.materials[0].profile, out("Candle_wax.toml"));
+    const PelProfileInfo info = io::findProfile(out("Candle_wax.toml")).profile.info();
+    EXPECT_GT(info.width[0], info.width[2]);
+    EXPECT_EQ(scene.lights.size(), 1u);  // that was added
+    if (!draws()) GTEST_SKIP() << "this build has no renderer";
+    ASSERT_EQ(shaded().exitCode, 0);
+    const std::vector<double> color = mean();
+    EXPECT_GT(color[3], 96 * 96 / 3);
+    EXPECT_GT(color[0], 0.15);
+    EXPECT_GT(color[0], 1.3 * color[2]);
+    // The curvature that was measured is that of the ball.
+    const io::Image g = io::readImage(out("gbuffer.exr"));
+    const float middle = g.channel("Curvature.V").pixels[48 * 96 + 48];
+    EXPECT_NEAR(middle, 1 / 20.0, 0.003);
+}
+
+TEST_F(Import, LightsCamerasAndProfilesOfOnesOwn) {
+    const std::string more =
+        R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.01,"aspectRatio":1.5}}],
+           "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","intensity":3.1415927},{"type":"spot","intensity":0.02},{"type":"point","intensity":0.001}]}})";
+    std::string file = ball(R"({"name":"Head","pbrMetallicRoughness":{"metallicFactor":0}})", more);
+    const std::string from = R"("nodes":[{"mesh":0}])",
+                      to = R"("nodes":[{"mesh":0,"children":[1,2,3,4]},{"camera":0,"translation":[0,0,0.12]},{"extensions":{"KHR_lights_punctual":{"light":0}}},)"
+                           R"({"extensions":{"KHR_lights_punctual":{"light":1}},"translation":[0,0,0.1]},{"extensions":{"KHR_lights_punctual":{"light":2}},"translation":[0.1,0,0.1]}])";
+    const uint32_t length =
+        uint32_t(uint8_t(file[12])) | uint32_t(uint8_t(file[13])) << 8 | uint32_t(uint8_t(file[14])) << 16;
+    std::string json = file.substr(20, length);
+    json.replace(json.find(from), from.size(), to);
+    file = gltf::glb(json, file.substr(28 + length));
+    const Result result = run({"import", write("head.glb", file), "-o", out(), "--profile", "Head=skin",
+                               "--lights", "1", "--json"});
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(result.json()["materials"][0]["profile"], "skin");
+    EXPECT_EQ(result.json()["lights"], 3);
+    const io::SceneFile scene = io::readScene(out("scene.toml"));
+    EXPECT_EQ(scene.lights[1].light.type, PEL_LIGHT_SPOT);
+    EXPECT_NEAR(scene.lights[0].light.color[0], 1, 1e-5);
+    if (draws()) {
+        EXPECT_EQ(scene.camera.position[2], 120);
+        EXPECT_FALSE(scene.lights[0].shadowMapFile.empty());
+        EXPECT_FALSE(scene.lights[1].shadowMapFile.empty());
+        ASSERT_EQ(shaded().exitCode, 0);
+        EXPECT_GT(mean()[0], 0.2);
+        const io::Image g = io::readImage(out("gbuffer.exr"));
+        EXPECT_EQ(g.width, 1024);
+        EXPECT_EQ(g.height, 682);
+    }
+    expectRefused({"import", path("head.glb"), "-o", out(), "--profile", "Neck=skin"}, 2, "there are Head");
+    expectRefused({"import", path("head.glb"), "-o", out(), "--profile", "granite"}, 3, "granite");
+    expectRefused({"import", path("head.glb"), "-o", out(), "--camera", "7"}, 2, "the scene has 1");
+}
+
+// Each camera is drawn, or left out with a warning; what is written can be shaded.
+TEST_F(Import, CamerasFarAwayAndBentOutOfShape) {
+    for (const char* place :
+         {R"("translation":[0,0,1e12])", R"("translation":[1e30,0,0])", R"("translation":[0,0,5],"scale":[0,0,0])",
+          R"("matrix":[1,0,0,0, 0,0,1,0, 0,0,1,0, 0,0,3,1])", R"("translation":[0.5,0.5,99000])"}) {
+        const std::string nodes = std::string(R"([{"mesh":0,"children":[1]},{"camera":0,)") + place + "}]";
+        const std::string file = gltf::square(
+            "", nodes, R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1}}])");
+        const Result result =
+            run({"import", write("far.glb", file), "-o", out(), "--size", "32x32", "--json"});
+        ASSERT_EQ(result.exitCode, 0) << place << result.err;
+        EXPECT_NO_THROW(io::readScene(out("scene.toml"))) << place;
+        if (draws()) EXPECT_EQ(shaded().exitCode, 0) << place;
+    }
+}
+
+TEST_F(Import, RefusesWhatIsWrong) {
+    expectRefused({"import", path("none.glb"), "-o", out()}, 3, "none.glb");
+    expectRefused({"import", write("a.glb", "glTF"), "-o", out()}, 3, "a.glb: ends within the header");
+    expectRefused({"import", write("a.obj", "v 0 0 0"), "-o", out()}, 2, "a.obj");
+    expectRefused({"import", write("b.gltf", gltf::squareJson("", R"([{"mesh":0}])", "", R"(,"uri":"none.bin")")),
+                   "-o", out()},
+                  3, "none.bin");
+}
+
+// What assimp's tests keep: good files become pictures, bad ones a message; nothing crashes.
+TEST_F(Import, SamplesOfOtherPeople) {
+    if (!fs::exists(samples)) GTEST_SKIP() << "Debian's assimp-testmodels is not installed";
+    const std::map<std::string, std::vector<std::string>> bad = {
+        // what the message says
+        {"BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb", {"not finite"}},
+        {"IncorrectVertexArrays/Cube.gltf", {"accessors", "meshes"}},
+        {"IndexOutOfRange/IndexOutOfRange.gltf", {"index"}},
+        {"IndexOutOfRange/AllIndicesOutOfRange.gltf", {"index"}},
+        {"MissingBin/BoxTextured.gltf", {"BoxTextured0.bin"}},
+        {"RecursiveNodes/RecursiveNodes.gltf", {"nodes["}},
+        {"TestNoRootNode/SceneWithoutNodes.gltf", {"no triangles"}},
+        {"draco/2CylinderEngine.gltf", {"KHR_draco_mesh_compression"}}};
+    size_t good = 0, refused = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(samples)) {
+        const std::string extension = entry.path().extension().string();
+        if (extension != ".gltf" && extension != ".glb") continue;
+        const std::string name = fs::relative(entry.path(), samples).string();
+        fs::remove_all(out());
+        const Result result = run({"import", entry.path().string(), "-o", out(), "--size", "48x48", "--json"});
+        const auto known = bad.find(name);
+        if (result.exitCode == 3) {
+            ++refused;
+            EXPECT_TRUE(contains(result.err, entry.path().filename().string())) << name << "\n" << result.err;
+            bool said = known == bad.end();
+            if (known != bad.end())
+                for (const std::string& word : known->second) said |= contains(result.err, word);
+            EXPECT_TRUE(said) << name << ": " << result.err;
+            EXPECT_FALSE(fs::exists(out("scene.toml"))) << name;
+            continue;
+        }
+        ASSERT_EQ(result.exitCode, 0) << name << "\n" << result.err;
+        EXPECT_EQ(known, bad.end()) << name << " was taken";
+        ++good;
+        EXPECT_NO_THROW(io::readScene(out("scene.toml"))) << name;
+        EXPECT_NO_THROW(io::loadMesh(out("mesh.obj"))) << name;
+        if (draws() && good % 6 == 1) EXPECT_EQ(shaded().exitCode, 0) << name;
+    }
+    EXPECT_GT(good, 12u);
+    EXPECT_GE(refused, bad.size());
+}

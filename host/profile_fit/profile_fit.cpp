@@ -1,0 +1,203 @@
+#include "profile_fit/profile_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "profile_fit/simplex_weights.h"
+
+namespace pellucid::io {
+namespace {
+
+constexpr size_t sampleCount = 400;
+constexpr int candidates = 96;  // variances tried for a new Gaussian
+
+// The line spread at logarithmic steps; root of the weight times a value, so that sums of squares are
+// integrals over s.
+struct Samples {
+    std::vector<double> at, root;
+    std::vector<double> value[3];  // of a channel, times root, of norm 1
+    double norm[3] = {};           // root of int P^2 ds
+};
+
+Samples sampled(const Profile& profile) {
+    Samples s;
+    const double radius = profile.info().radius, first = 1e-3 * radius, last = 15 * radius;
+    const double step = std::log(last / first) / (sampleCount - 1);
+    for (size_t i = 0; i < sampleCount; ++i) {
+        s.at.push_back(first * std::exp(double(i) * step));
+        s.root.push_back(std::sqrt(s.at.back() * step));
+    }
+    const std::vector<double> P = profile.lineSpread(s.at);
+    for (int c = 0; c < 3; ++c) {
+        for (size_t i = 0; i < sampleCount; ++i) s.value[c].push_back(s.root[i] * P[3 * i + size_t(c)]);
+        double squares = 0;
+        for (double v : s.value[c]) squares += v * v;
+        s.norm[c] = std::sqrt(squares);
+        for (double& v : s.value[c]) v /= s.norm[c];
+    }
+    return s;
+}
+
+struct Mixture {
+    std::vector<double> logVariance;
+    std::vector<double> weights[3];
+    double squares = 0;  // sum over the channels of the squared relative error
+};
+
+// The Gaussians as columns, in the units of a channel's samples.
+Columns columnsOf(const Samples& s, const std::vector<double>& logVariance, int channel) {
+    Columns a{sampleCount, logVariance.size(), std::vector<double>(sampleCount * logVariance.size())};
+    for (size_t g = 0; g < logVariance.size(); ++g) {
+        const double variance = std::exp(logVariance[g]);
+        const double peak = 1 / std::sqrt(2 * std::numbers::pi * variance) / s.norm[channel];
+        for (size_t i = 0; i < sampleCount; ++i)
+            a.column(g)[i] = s.root[i] * peak * std::exp(-s.at[i] * s.at[i] / (2 * variance));
+    }
+    return a;
+}
+
+Mixture weighted(const Samples& s, std::vector<double> logVariance) {
+    Mixture m{std::move(logVariance), {}, 0};
+    for (int c = 0; c < 3; ++c) {
+        const Columns a = columnsOf(s, m.logVariance, c);
+        m.weights[c] = simplexWeights(a, s.value[c]);
+        m.squares += squaredResidual(a, m.weights[c], s.value[c]);
+    }
+    return m;
+}
+
+// One step of Levenberg and Marquardt over all variances and those weights that are not 0; the sum of weights
+// is kept. Returns the new variances.
+std::vector<double> stepOf(const Samples& s, const Mixture& m, double damping) {
+    const size_t n = m.logVariance.size();
+    std::vector<size_t> free[3];
+    size_t unknowns = n;
+    for (int c = 0; c < 3; ++c) {
+        for (size_t g = 0; g < n; ++g)
+            if (m.weights[c][g] > 0) free[c].push_back(g);
+        unknowns += free[c].size() - 1;
+    }
+    const size_t rows = 3 * sampleCount + n;
+    Columns jacobian{rows, unknowns, std::vector<double>(rows * unknowns)};
+    std::vector<double> target(rows, 0.0);
+    // The weights' columns first: those of the variances then hold only what weights cannot do
+    size_t next = 0;
+    const size_t firstVariance = unknowns - n;
+    for (size_t c = 0; c < 3; ++c) {
+        const Columns a = columnsOf(s, m.logVariance, int(c));
+        const size_t last = free[c].back();
+        for (size_t f = 0; f + 1 < free[c].size(); ++f, ++next)
+            for (size_t i = 0; i < sampleCount; ++i)
+                jacobian.column(next)[c * sampleCount + i] = a.column(free[c][f])[i] - a.column(last)[i];
+        for (size_t i = 0; i < sampleCount; ++i) {
+            double r = s.value[c][i];
+            for (size_t g = 0; g < n; ++g) {
+                const double part = m.weights[c][g] * a.column(g)[i],
+                             x = s.at[i] * s.at[i] / std::exp(m.logVariance[g]);
+                r -= part;
+                jacobian.column(firstVariance + g)[c * sampleCount + i] = part * 0.5 * (x - 1);
+            }
+            target[c * sampleCount + i] = r;
+        }
+    }
+    for (size_t g = 0; g < n; ++g) {
+        double squares = 0;
+        for (size_t i = 0; i < 3 * sampleCount; ++i)
+            squares += jacobian.column(firstVariance + g)[i] * jacobian.column(firstVariance + g)[i];
+        jacobian.column(firstVariance + g)[3 * sampleCount + g] = std::sqrt(damping * (squares + 1e-12));
+    }
+    const std::vector<double> x = leastSquares(jacobian, target);
+    std::vector<double> moved = m.logVariance;
+    for (size_t g = 0; g < n; ++g) moved[g] += std::clamp(x[firstVariance + g], -1.0, 1.0);
+    return moved;
+}
+
+Mixture downhill(const Samples& s, Mixture m) {
+    double damping = 1e-3;
+    for (int round = 0; round < 200 && damping < 1e8 && m.squares > 1e-26; ++round) {
+        Mixture moved = weighted(s, stepOf(s, m, damping));
+        const bool better = moved.squares < m.squares;
+        const bool little = better && moved.squares > m.squares * (1 - 1e-7) && damping <= 1e-3;
+        damping = better ? std::max(damping * 0.1, 1e-15) : damping * 10;
+        if (better) m = std::move(moved);
+        if (little) break;
+    }
+    return m;
+}
+
+// Adds one Gaussian where it helps most.
+Mixture joined(const Samples& s, const std::vector<double>& logVariance, double narrowest, double widest) {
+    Mixture best;
+    for (int i = 0; i < candidates; ++i) {
+        std::vector<double> with = logVariance;
+        with.push_back(2 * std::log(narrowest) + 2 * std::log(widest / narrowest) * i / (candidates - 1));
+        Mixture m = weighted(s, std::move(with));
+        if (i == 0 || m.squares < best.squares) best = std::move(m);
+    }
+    return downhill(s, std::move(best));
+}
+
+}  // namespace
+
+ProfileFit fitGaussians(const Profile& profile, int count) {
+    if (count < 1 || count > 12)
+        throw std::invalid_argument("a fit has 1 to 12 Gaussians, not " + std::to_string(count));
+    const Samples samples = sampled(profile);
+    const PelProfileInfo info = profile.info();
+    const double widest = 4 * std::max({info.width[0], info.width[1], info.width[2]});
+    const double narrowest = 0.02 * std::min({info.width[0], info.width[1], info.width[2]});
+    Mixture best;
+    for (int n = 0; n < count; ++n) best = joined(samples, best.logVariance, narrowest, widest);
+    for (bool improved = true; improved && count > 1 && best.squares > 1e-20;) {
+        improved = false;
+        for (size_t g = 0; g < best.logVariance.size() && !improved; ++g) {
+            std::vector<double> without = best.logVariance;
+            without.erase(without.begin() + long(g));
+            Mixture other = joined(samples, without, narrowest, widest);
+            if (other.squares < best.squares * (1 - 1e-3)) {
+                best = std::move(other);
+                improved = true;
+            }
+        }
+    }
+    ProfileFit fit{};
+    for (size_t g = 0; g < best.logVariance.size(); ++g) {
+        PelGaussian gaussian{float(std::exp(best.logVariance[g])), {}};
+        for (int c = 0; c < 3; ++c) gaussian.weight[c] = float(best.weights[c][g]);
+        fit.gaussians.push_back(gaussian);
+    }
+    std::sort(fit.gaussians.begin(), fit.gaussians.end(),
+              [](const auto& a, const auto& b) { return a.variance < b.variance; });
+    const std::array<double, 3> error = fitError(profile, Profile::gaussians(fit.gaussians));
+    std::copy(error.begin(), error.end(), fit.error);
+    return fit;
+}
+
+std::array<double, 3> fitError(const Profile& profile, const Profile& fit) {
+    const Samples samples = sampled(profile);
+    const std::vector<double> P = fit.lineSpread(samples.at);
+    std::array<double, 3> error{};
+    for (size_t c = 0; c < 3; ++c) {
+        for (size_t i = 0; i < sampleCount; ++i) {
+            const double difference = samples.value[c][i] - samples.root[i] * P[3 * i + c] / samples.norm[c];
+            error[c] += difference * difference;
+        }
+        error[c] = std::sqrt(error[c]);
+    }
+    return error;
+}
+
+std::string profileText(const ProfileFit& fit, const std::string& name, const std::string& source) {
+    std::ostringstream out;
+    out.imbue(std::locale::classic());
+    out.precision(9);
+    out << "name = \"" << name << "\"\nkind = \"gaussians\"\nunit = \"mm\"\nsource = \"" << source << "\"\n";
+    for (const PelGaussian& g : fit.gaussians)
+        out << "[[gaussian]]\nvariance = " << std::showpoint << g.variance << "\nweight = [" << g.weight[0]
+            << ", " << g.weight[1] << ", " << g.weight[2] << "]\n";
+    return out.str();
+}
+
+}  // namespace pellucid::io

@@ -1,0 +1,376 @@
+#include "scene/scene_frame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "io/choice_keys.h"
+#include "io/file_error.h"
+#include "io/image/mip_chain.h"
+#include "io/lut/lut_file.h"
+#include "io/lut/profile_file.h"
+
+namespace pellucid::io {
+
+namespace {
+
+// Equal requests give equal bits, so that the description is the key. Its structures have no padding.
+bool sameTable(const SceneLut& a, const SceneLut& b) {
+    return a.file == b.file && a.expected == b.expected && a.profile == b.profile &&
+           std::memcmp(&a.info, &b.info, sizeof a.info) == 0;
+}
+
+Lut make(const Device& device, const SceneLut& request) {
+    if (!request.file.empty()) {
+        const Lut lut = readLut(device, request.file);
+        checkLutInfo(request.file, lut.info(), request.info, request.expected);
+        return lut;
+    }
+    const Profile profile = request.profile.empty() ? Profile() : findProfile(request.profile).profile;
+    PelLutInfo info = request.info;
+    info.curvature.profile = info.shadow.profile = profile.get();
+    return info.kind == PEL_LUT_CURVATURE ? Lut(device, info.curvature) : Lut(device, info.shadow);
+}
+
+// The scene asks for curvature from the picture itself; a channel of that name would be meant instead.
+bool isScreenCurvature(const Image& gbuffer, const SceneFile& scene) {
+    const std::vector<std::string>& channel = scene.channels[PEL_SLOT_CURVATURE];
+    if (channel != std::vector<std::string>{"screen"}) return false;
+    return std::none_of(gbuffer.channels.begin(), gbuffer.channels.end(),
+                        [](const auto& c) { return c.name == "screen"; });
+}
+
+// A shadow map with the pixels of these channels; without a name, of all.
+Image readMap(const std::string& file, const std::string& channel, const std::string& second) {
+    return channel.empty() ? readImage(file) : readChannels(file, {channel, second});
+}
+
+void clear(const Buffer& buffer) {
+    std::memset(buffer.map(), 0, buffer.bytes());
+    buffer.unmap();
+}
+
+// R, G and B, or the first three channels; `need` says what the image should have.
+std::vector<std::string> colorChannels(const std::string& file, const Image& image, const char* need) {
+    if (image.channels.size() < 3)
+        throw FileError(file, "has " + std::to_string(image.channels.size()) + " channels; " + need);
+    std::vector<std::string> names{"R", "G", "B"};
+    if (!(image.has("R") && image.has("G") && image.has("B")))
+        for (size_t c = 0; c < 3; ++c) names[c] = image.channels[c].name;
+    return names;
+}
+
+}  // namespace
+
+std::map<std::string, ShadowMapFile> shadowMapsOf(const SceneFile& scene) {
+    std::map<std::string, ShadowMapFile> files;
+    for (const SceneLight& light : scene.lights) {
+        if (light.shadowMapFile.empty()) continue;
+        const auto add = [&](const std::string& file, const std::string& channel, const std::string& second) {
+            ShadowMapFile& map = files[file.empty() ? light.shadowMapFile : file];
+            map.cube |= light.light.shadowProjection >= PEL_SHADOW_CUBE;
+            map.groups.insert(second.empty() ? ChannelGroup{channel} : ChannelGroup{channel, second});
+        };
+        add(light.shadowMapFile, light.shadowMapChannel, light.secondChannel);
+        for (uint32_t k = 0; k + 1 < light.light.shadowCascades; ++k)
+            add(light.cascades[k].file, light.cascades[k].channel, light.cascades[k].secondChannel);
+    }
+    return files;
+}
+
+ShadowMaps readShadowMaps(const SceneFile& scene) {
+    ShadowMaps maps;
+    for (const auto& [file, map] : shadowMapsOf(scene)) {
+        const std::set<std::string> names = namesOf(map.groups);
+        maps[file] = names.contains("") ? readImage(file) : readChannels(file, {names.begin(), names.end()});
+    }
+    return maps;
+}
+
+ShadowMaps readShadowMaps(const SceneFile& scene, DeviceImages& images) {
+    ShadowMaps maps;
+    for (const auto& [file, map] : shadowMapsOf(scene)) maps[file] = images.read(file, map.groups);
+    return maps;
+}
+
+Lut LutStore::faceworks(const Profile& profile, PelLutKind kind) {
+    PelCurvatureLutDesc curvature = pelCurvatureLutDescFaceWorks();
+    PelShadowLutDesc shadow = pelShadowLutDescFaceWorks();
+    curvature.profile = shadow.profile = profile.get();
+    const std::string name = profile.info().name;
+    for (const auto& [key, lut] : faceworks_)
+        if (key == std::pair(name, kind)) return lut;
+    faceworks_.emplace_back(std::pair(name, kind),
+                            kind == PEL_LUT_CURVATURE ? Lut(device_, curvature) : Lut(device_, shadow));
+    return faceworks_.back().second;
+}
+
+Lut LutStore::get(const SceneFile& scene, const std::string& name, PelLutKind kind) {
+    if (name.empty()) return {};
+    const SceneLut* request = scene.lut(name, kind);
+    if (!request) throw FileError(scene.source, "no look-up table of this kind is named \"" + name + "\"");
+    for (const auto& [known, lut] : luts_)
+        if (sameTable(known, *request)) return lut;
+    luts_.emplace_back(*request, make(device_, *request));
+    return luts_.back().second;
+}
+
+SceneFrame::SceneFrame(const Device& device, const Image& gbuffer, const SceneFile& scene, LutStore& luts,
+                       const ShadowMaps& shadowMaps, const PelShaderOptions& options,
+                       const std::vector<PelImageSlot>& outputs, bool buildOnly)
+    : device_(device), wanted_(outputs), shadowMaps_(&shadowMaps), shader_(device) {
+    setPictures(gbuffer, scene);
+    set(scene, luts, options);
+    shadowMaps_ = nullptr;
+    if (!buildOnly) {
+        shader_.commit();
+        return;
+    }
+    warmUpPrograms(device_, 0, {shader_});
+    gbuffer_ = nullptr;
+}
+
+void SceneFrame::show(const Image& gbuffer, const SceneFile& scene, const ShadowMaps& shadowMaps,
+                      const DeviceImages* images) {
+    shadowMaps_ = &shadowMaps;
+    deviceImages_ = images;
+    pictures_.clear();
+    maps_.clear();
+    setPictures(gbuffer, scene);
+    setLights(scene);
+    shader_.commit();
+    shadowMaps_ = nullptr;
+    deviceImages_ = nullptr;
+}
+
+void SceneFrame::setPictures(const Image& gbuffer, const SceneFile& scene) {
+    gbuffer_ = &gbuffer;
+    const auto width = uint32_t(gbuffer.width), height = uint32_t(gbuffer.height);
+    radiance_ = Buffer(device_, gbuffer.pixelCount() * 3 * sizeof(float));
+    shader_.set(PEL_SLOT_RADIANCE, imageDesc(radiance_, PEL_FORMAT_RGB32F, width, height));
+    for (PelImageSlot slot : wanted_) {
+        const bool length = slot == PEL_SLOT_OUT_THICKNESS;
+        const Buffer buffer(device_, gbuffer.pixelCount() * (length ? 1 : 3) * sizeof(float));
+        shader_.set(slot, imageDesc(buffer, length ? PEL_FORMAT_R32F : PEL_FORMAT_RGB32F, width, height));
+        outputs_[slot] = buffer;
+    }
+    for (size_t slot = 0; slot < scene.channels.size(); ++slot)
+        if (slot == PEL_SLOT_CURVATURE && isScreenCurvature(gbuffer, scene))
+            shader_.set(PEL_SLOT_CURVATURE, measureCurvature(scene));
+        else if (!scene.channels[slot].empty())
+            shader_.set(PelImageSlot(slot), upload(gbuffer, scene.channels[slot], pictures_));
+}
+
+uint64_t SceneFrame::inputBytes() const {
+    uint64_t bytes = 0;
+    for (const std::vector<Buffer>* buffers : {&pictures_, &files_})
+        for (const Buffer& b : *buffers) bytes += b.bytes();
+    return bytes;
+}
+
+PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options) {
+    const PelShaderOptions& own = scene.options;
+    options.blurNormals |= own.blurNormals;
+    options.rotateTaps |= own.rotateTaps;
+    options.everyPixel |= own.everyPixel;
+    options.targetError = own.targetError;
+    if (own.frameIndex) options.frameIndex = own.frameIndex;
+    options.millimetresPerUnit = own.millimetresPerUnit;
+    return options;
+}
+
+void SceneFrame::update(const SceneFile& scene, LutStore& luts, const PelShaderOptions& options) {
+    set(scene, luts, options);
+    shader_.commit();
+}
+
+void SceneFrame::set(const SceneFile& scene, LutStore& luts, const PelShaderOptions& options) {
+    shader_.set(withOptionsOf(scene, options));
+    // Pixels whose material goes are not written any more.
+    if (!materials_.empty()) {
+        clear(radiance_);
+        for (const auto& [slot, buffer] : outputs_) clear(buffer);
+    }
+    for (uint32_t id : materials_) check(pelShaderSetMaterial(shader_.get(), id, nullptr, nullptr, nullptr));
+    materials_.clear();
+    for (const SceneMaterial& m : scene.materials) setMaterial(scene, m, luts);
+    for (const SceneMaterial& m : scene.materials)
+        if (!m.normalMap.empty()) shader_.setNormalMap(m.id, normalMap(m.normalMap));
+    for (const SceneMaterial& m : scene.materials)
+        if (!m.scatteredTexture.empty())
+            shader_.setScatteredTexture(m.id,
+                                        colorImage(m.scatteredTexture, "a scattered texture needs three"));
+    setLights(scene);
+    shader_.set(scene.ambient);
+    for (const SceneEye& e : scene.eyes) setEye(scene, e);
+    if (scene.ambientCube.empty())
+        shader_.clearAmbientCube();
+    else
+        shader_.setAmbientCube(cubeImage(scene.ambientCube));
+    if (scene.reflectionCube.empty())
+        shader_.clearReflectionCube();
+    else
+        shader_.setReflectionCube(cubeImage(scene.reflectionCube));
+    shader_.set(scene.camera);
+}
+
+void SceneFrame::setLights(const SceneFile& scene) {
+    std::vector<PelLight> lights;
+    for (const SceneLight& l : scene.lights) lights.push_back(l.light);
+    shader_.set(lights);
+    for (uint32_t i = 0; i < scene.lights.size(); ++i) {
+        const SceneLight& l = scene.lights[i];
+        if (!l.wideShadow.empty()) {
+            PelImageDesc& wide = maps_[{"", l.wideShadow}];
+            if (!wide.buffer) wide = upload(*gbuffer_, {l.wideShadow}, pictures_);
+            shader_.set(i, PEL_LIGHT_WIDE_SHADOW, wide);
+        }
+        if (l.shadowMapFile.empty()) continue;
+        shader_.set(i, PEL_LIGHT_SHADOW_MAP, mapOf(l.shadowMapFile, l.shadowMapChannel, l.secondChannel));
+        for (uint32_t k = 0; k + 1 < l.light.shadowCascades; ++k) {
+            const SceneCascade& c = l.cascades[k];
+            shader_.set(i, PelLightSlot(PEL_LIGHT_CASCADE_1 + k),
+                        mapOf(c.file.empty() ? l.shadowMapFile : c.file, c.channel, c.secondChannel));
+        }
+    }
+}
+
+PelImageDesc SceneFrame::mapOf(const std::string& file, const std::string& channel, const std::string& second) {
+    const std::vector<std::string> key{file, channel, second};
+    if (const auto kept = maps_.find(key); kept != maps_.end()) return kept->second;
+    const Image* known = nullptr;
+    if (shadowMaps_)
+        if (const auto given = shadowMaps_->find(file); given != shadowMaps_->end()) known = &given->second;
+    const Image read = known ? Image() : readMap(file, channel, second);
+    const Image& map = known ? *known : read;
+    std::vector<std::string> channels{channel.empty() && map.channels.size() == 1 ? map.channels[0].name
+                                                                                  : channel};
+    if (!second.empty()) channels.push_back(second);
+    return maps_[key] = upload(map, channels, pictures_);
+}
+
+void SceneFrame::setMaterial(const SceneFile& scene, const SceneMaterial& m, LutStore& luts) {
+    PelMaterial material = m.material;
+    Lut curvature = luts.get(scene, m.curvatureLut, PEL_LUT_CURVATURE),
+        shadow = luts.get(scene, m.shadowLut, PEL_LUT_SHADOW);
+    Profile profile;
+    try {
+        if (!m.profile.empty()) profile = findProfile(m.profile).profile;
+    } catch (const FileError& e) {
+        throw FileError(scene.source,
+                        "the profile of material " + std::to_string(m.id) + " is refused: " + e.what(), m.line);
+    }
+    if (m.preset == ScenePreset::faceworks) {
+        if (!profile) profile = Profile::skin();
+        if (!curvature) curvature = luts.faceworks(profile, PEL_LUT_CURVATURE);
+        if (!shadow) shadow = luts.faceworks(profile, PEL_LUT_SHADOW);
+        if (material.scattering == PEL_SCATTERING_AUTO) material.scattering = PEL_SCATTERING_PREINTEGRATED;
+        if (material.diffusionRadius == 0)
+            material.diffusionRadius = profile.info().radius / scene.options.millimetresPerUnit;
+    } else if (profile) {
+        material.profile = profile.get();
+    }
+    shader_.setMaterial(m.id, material, curvature, shadow);
+    materials_.push_back(m.id);
+}
+
+void SceneFrame::setEye(const SceneFile& scene, const SceneEye& e) {
+    PelEye eye = e.eye;
+    Profile profile;
+    try {
+        if (!e.irisProfile.empty()) profile = findProfile(e.irisProfile).profile;
+        eye.irisProfile = profile.get();
+        shader_.setEye(e.material, eye, e.caustics.empty() ? Lut() : readLut(device_, e.caustics));
+    } catch (const Error& error) {
+        throw FileError(scene.source, error.what(), e.line);
+    }
+    if (!e.irisTexture.empty())
+        shader_.setIrisTexture(e.material, colorImage(e.irisTexture, "the texture of an iris needs three"));
+}
+
+PelImageDesc SceneFrame::cubeImage(const std::string& file) {
+    if (const auto kept = images_.find({file}); kept != images_.end()) return kept->second;
+    const Image image = readImage(file);
+    if (image.height != 6 * image.width && image.width != 6 * image.height)
+        throw FileError(
+            file,
+            "is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                "; a cube map is six square faces, one below the other (n x 6n) or side by side (6n x n)");
+    return images_[{file}] =
+               upload(image, colorChannels(file, image, "a cube map needs three: red, green, blue"), files_);
+}
+
+const std::vector<PelImageDesc>& SceneFrame::normalMap(const std::string& file) {
+    std::vector<PelImageDesc>& levels = normalMaps_[file];
+    if (!levels.empty()) return levels;
+    const Image image = readImage(file);
+    std::vector<float> normals =
+        image.interleaved(colorChannels(file, image, "a normal map needs three: x, y, z, from 0 to 1"));
+    for (float& v : normals) v = 2 * v - 1;
+    const MipChain chain = mipChain(image.width, image.height, std::move(normals));
+    files_.emplace_back(device_, chain.texels);
+    for (const MipLevel& level : chain.levels)
+        levels.push_back(imageDesc(files_.back(), PEL_FORMAT_RGB32F, uint32_t(level.width),
+                                   uint32_t(level.height), level.byteOffset));
+    return levels;
+}
+
+PelImageDesc SceneFrame::colorImage(const std::string& file, const char* need) {
+    if (const auto kept = images_.find({file}); kept != images_.end()) return kept->second;
+    const Image image = readImage(file);
+    return images_[{file}] = upload(image, colorChannels(file, image, need), files_);
+}
+
+PelImageDesc SceneFrame::measureCurvature(const SceneFile& scene) {
+    const auto image = [&](PelImageSlot slot) {
+        return scene.channels[slot].empty() ? pelImageDescDefaults()
+                                            : upload(*gbuffer_, scene.channels[slot], pictures_);
+    };
+    // The surface's own normals where there are: those of a normal map turn without the surface doing so.
+    const PelImageDesc normals =
+        image(scene.channels[PEL_SLOT_NORMAL_GEOMETRIC].empty() ? PEL_SLOT_NORMAL_SHADING
+                                                                : PEL_SLOT_NORMAL_GEOMETRIC);
+    const PelImageDesc positions = image(PEL_SLOT_POSITION), ids = image(PEL_SLOT_MATERIAL);
+    const PelImageDesc depth = positions.buffer ? pelImageDescDefaults() : image(PEL_SLOT_DEPTH);
+    if (!positions.buffer && !depth.buffer)
+        throw FileError(scene.source,
+                        "[channels] curvature = \"screen\" is measured from positions or depth; "
+                        "name their channels");
+    PelScreenCurvatureParams params = pelScreenCurvatureParamsDefaults();
+    std::copy_n(scene.camera.inverseViewProjection, 16, params.inverseViewProjection);
+    pictures_.emplace_back(device_, gbuffer_->pixelCount() * sizeof(float));
+    const PelImageDesc curvature =
+        imageDesc(pictures_.back(), PEL_FORMAT_R32F, uint32_t(gbuffer_->width), uint32_t(gbuffer_->height));
+    screenCurvature(device_, params, normals, positions.buffer ? &positions : nullptr,
+                    depth.buffer ? &depth : nullptr, ids.buffer ? &ids : nullptr, curvature);
+    return curvature;
+}
+
+PelImageDesc SceneFrame::upload(const Image& image, const std::vector<std::string>& channels,
+                                std::vector<Buffer>& to) {
+    if (deviceImages_)
+        if (const OwnedImage* known = deviceImages_->find(image, channels)) return **known;
+    for (const std::string& name : channels) image.channel(name);  // an error before memory is taken
+    const Buffer& buffer = to.emplace_back(device_, channels.size() * image.pixelCount() * sizeof(float));
+    image.interleave(channels, MappedBuffer(buffer).at());
+    return imageDesc(buffer, groupFormats[channels.size() - 1], uint32_t(image.width), uint32_t(image.height));
+}
+
+void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance) {
+    Image image;
+    image.width = width;
+    image.height = height;
+    image.addInterleaved(std::vector<std::string>{"R", "G", "B"}, radiance);
+    writeExr(path, image);
+}
+
+void writeThickness(const std::string& path, int width, int height, const std::vector<float>& lengths) {
+    Image image;
+    image.width = width;
+    image.height = height;
+    image.addInterleaved(std::vector<std::string>{"Thickness.V"}, lengths);
+    writeExr(path, image);
+}
+
+}  // namespace pellucid::io

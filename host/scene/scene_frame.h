@@ -1,0 +1,117 @@
+// Shades a G-buffer as described by a scene file, for `pellucid shade`, the demo and the Python package.
+#pragma once
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/image/image_file.h"
+#include "io/scene/scene_file.h"
+#include "pellucid/pellucid.hpp"
+#include "scene/device_images.h"
+
+namespace pellucid::io {
+
+// The look-up tables of scenes: each distinct one is read or integrated once.
+class LutStore {
+  public:
+    explicit LutStore(const Device& device) : device_(device) {}
+    // The name "" gives an empty handle.
+    Lut get(const SceneFile& scene, const std::string& name, PelLutKind kind);
+    // Made by the formulas of FaceWorks.
+    Lut faceworks(const Profile& profile, PelLutKind kind);
+
+  private:
+    Device device_;
+    std::vector<std::pair<SceneLut, Lut>> luts_;
+    std::vector<std::pair<std::pair<std::string, PelLutKind>, Lut>> faceworks_;  // by the profile's name
+};
+
+// Shadow maps by file, already in memory.
+using ShadowMaps = std::map<std::string, Image>;
+
+// The channels that a scene reads from the file of a shadow map.
+struct ShadowMapFile {
+    std::set<ChannelGroup> groups;  // {""}: a light names no channel
+    bool cube = false;
+};
+std::map<std::string, ShadowMapFile> shadowMapsOf(const SceneFile& scene);
+ShadowMaps readShadowMaps(const SceneFile& scene);
+// Reads into the device's memory; the returned images have no pixels.
+ShadowMaps readShadowMaps(const SceneFile& scene, DeviceImages& images);
+
+// `options` with the options of the scene added.
+PelShaderOptions withOptionsOf(const SceneFile& scene, PelShaderOptions options);
+
+class SceneFrame {
+  public:
+    // Uploads and sets the images of the scene and commits. `outputs`: slots to write besides radiance.
+    // `shadowMaps`: maps that are already in memory, by their names in the scene; others are read from files.
+    // The G-buffer must outlive the last update(). `buildOnly`: builds programs with progress instead of
+    // committing; show() must follow (scene_programs.h). Throws FileError if a channel is missing.
+    SceneFrame(const Device& device, const Image& gbuffer, const SceneFile& scene, LutStore& luts,
+               const ShadowMaps& shadowMaps = {}, const PelShaderOptions& options = pelShaderOptionsDefaults(),
+               const std::vector<PelImageSlot>& outputs = {}, bool buildOnly = false);
+
+    // Replaces the G-buffer and the shadow maps, and commits. Textures, cube maps and tables are kept.
+    // `images` holds pixels that were read into the device's memory.
+    void show(const Image& gbuffer, const SceneFile& scene, const ShadowMaps& shadowMaps = {},
+              const DeviceImages* images = nullptr);
+
+    // Sets materials, lights, ambient light, camera and options again. Files are not read a second time.
+    void update(const SceneFile& scene, LutStore& luts,
+                const PelShaderOptions& options = pelShaderOptionsDefaults());
+
+    void shade() { shader_.execute(); }
+    // RGB per pixel, interleaved; 0 where there is no material.
+    std::vector<float> radiance() const { return radiance_.readAll<float>(); }
+    // One of `outputs`: RGB interleaved, or a value per pixel of PEL_SLOT_OUT_THICKNESS.
+    std::vector<float> output(PelImageSlot slot) const { return outputs_.at(slot).readAll<float>(); }
+    PelShaderStats stats() const { return shader_.stats(); }
+    std::string warnings() const { return shader_.warnings(); }
+    // Material `id` with every default filled in.
+    PelMaterial material(uint32_t id) const { return shader_.material(id); }
+    uint64_t inputBytes() const;
+
+  private:
+    void setPictures(const Image& gbuffer, const SceneFile& scene);  // radiance, outputs, channels
+    // All but the channels
+    void set(const SceneFile& scene, LutStore& luts, const PelShaderOptions& options);
+    void setMaterial(const SceneFile& scene, const SceneMaterial& m, LutStore& luts);
+    void setLights(const SceneFile& scene);
+    // Images of files are kept by their names, wide shadows by their channels.
+    PelImageDesc mapOf(const std::string& file, const std::string& channel, const std::string& second);
+    const std::vector<PelImageDesc>& normalMap(const std::string& file);
+    PelImageDesc colorImage(const std::string& file, const char* need);
+    // Curvature from normals and positions or depth of the G-buffer (pelScreenCurvature).
+    PelImageDesc measureCurvature(const SceneFile& scene);
+    PelImageDesc cubeImage(const std::string& file);
+    void setEye(const SceneFile& scene, const SceneEye& e);
+    PelImageDesc upload(const Image& image, const std::vector<std::string>& channels, std::vector<Buffer>& to);
+
+    Device device_;
+    std::vector<PelImageSlot> wanted_;  // beside radiance
+    const Image* gbuffer_ = nullptr;
+    // While the constructor or show() runs.
+    const ShadowMaps* shadowMaps_ = nullptr;
+    const DeviceImages* deviceImages_ = nullptr;
+    Shader shader_;
+    Buffer radiance_;
+    std::vector<Buffer> pictures_, files_;  // of the G-buffer and shadow maps; of other files
+    std::map<PelImageSlot, Buffer> outputs_;
+    std::map<std::vector<std::string>, PelImageDesc> maps_, images_;  // of pictures_, of files_
+    std::map<std::string, std::vector<PelImageDesc>> normalMaps_;
+    std::vector<uint32_t> materials_;  // that are set
+};
+
+// Warnings about values that are probably wrong: depth that is not device depth, objects whose size does not
+// match their profile.
+std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene,
+                                  const DeviceImages* images = nullptr);
+
+// Writes RGB radiance as R, G, B of a float EXR, lengths as Thickness.V.
+void writeRadiance(const std::string& path, int width, int height, const std::vector<float>& radiance);
+void writeThickness(const std::string& path, int width, int height, const std::vector<float>& lengths);
+
+}  // namespace pellucid::io

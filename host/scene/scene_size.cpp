@@ -1,0 +1,107 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "io/lut/profile_file.h"
+#include "scene/scene_frame.h"
+
+namespace pellucid::io {
+namespace {
+
+std::string shown(float value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", double(value));
+    return text;
+}
+
+// use(values of a slot, pixel) at each pixel that may have a material.
+template <class Use>
+void eachPixel(const Image& gbuffer, const SceneFile& scene, const DeviceImages* images, PelImageSlot slot,
+               Use&& use) {
+    const PixelValues values(gbuffer, scene.channels[slot], images);
+    const size_t components = scene.channels[slot].size();
+    std::optional<PixelValues> ids;
+    if (!scene.channels[PEL_SLOT_MATERIAL].empty())
+        ids.emplace(gbuffer, scene.channels[PEL_SLOT_MATERIAL], images);
+    for (size_t i = 0; i < gbuffer.pixelCount(); ++i)
+        if (!ids || ids->at()[i] > 0) use(values.at() + i * components, i);
+}
+
+// Bounds of points. A point with NaN or Inf is left out.
+struct Extent {
+    double low[3], high[3];
+    bool any = false;
+    void add(const double (&p)[3]) {
+        if (!(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]))) return;
+        for (int c = 0; c < 3; ++c) {
+            low[c] = any ? std::min(low[c], p[c]) : p[c];
+            high[c] = any ? std::max(high[c], p[c]) : p[c];
+        }
+        any = true;
+    }
+    double size() const { return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
+};
+
+// What is seen, from positions or from device depth.
+Extent extentOf(const Image& gbuffer, const SceneFile& scene, const DeviceImages* images) {
+    Extent extent;
+    if (!scene.channels[PEL_SLOT_POSITION].empty()) {
+        eachPixel(gbuffer, scene, images, PEL_SLOT_POSITION, [&](const float* p, size_t) {
+            extent.add({double(p[0]), double(p[1]), double(p[2])});
+        });
+        return extent;
+    }
+    const float* m = scene.camera.inverseViewProjection;
+    eachPixel(gbuffer, scene, images, PEL_SLOT_DEPTH, [&](const float* depth, size_t i) {
+        const double clip[] = {(double(i % size_t(gbuffer.width)) + 0.5) * 2 / gbuffer.width - 1,
+                               1 - (double(i / size_t(gbuffer.width)) + 0.5) * 2 / gbuffer.height, depth[0], 1};
+        double p[4] = {};
+        for (int row = 0; row < 4; ++row)
+            for (int c = 0; c < 4; ++c) p[row] += double(m[4 * row + c]) * clip[c];
+        extent.add({p[0] / p[3], p[1] / p[3], p[2] / p[3]});
+    });
+    return extent;
+}
+
+}  // namespace
+
+std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene, const DeviceImages* images) {
+    std::vector<std::string> found;
+    const bool fromDepth = scene.channels[PEL_SLOT_POSITION].empty();
+    if (fromDepth && scene.channels[PEL_SLOT_DEPTH].empty()) return found;
+    if (fromDepth) {
+        float furthest = 0;  // beyond what device depth can be, on whichever side
+        eachPixel(gbuffer, scene, images, PEL_SLOT_DEPTH, [&](const float* v, size_t) {
+            if (std::isfinite(v[0]) && std::abs(v[0]) > std::abs(furthest)) furthest = v[0];
+        });
+        if (std::abs(furthest) > 1.001f) {
+            found.push_back(
+                "the depth channel reaches " + shown(furthest) + ", and device depth " +
+                (furthest > 0 ? "ends at 1" : "is -1 or more") +
+                ": it looks like a distance along the view; name a position channel, or write the depth "
+                "that the projection gives");
+            return found;
+        }
+    }
+    const Extent extent = extentOf(gbuffer, scene, images);
+    if (!extent.any) return found;
+    const auto size = float(extent.size() * scene.options.millimetresPerUnit);
+    for (const SceneMaterial& m : scene.materials) {
+        if (m.profile.empty()) continue;
+        const float reach = findProfile(m.profile).profile.info().reach;
+        // Seen whole, nothing of skin is smaller than a fingertip, nor larger than a few people.
+        if (size > 2.3f * reach && size < 500 * reach) continue;
+        found.push_back(
+            "what is seen is " + shown(size) +
+            " mm long with unit_mm = " + shown(scene.options.millimetresPerUnit) + ", and light reaches " +
+            shown(reach) + " mm far in the profile of material " + std::to_string(m.id) +
+            ": unit_mm says how many millimetres a unit of the positions is" +
+            (fromDepth ? ", or the depth is not what inverse_view_projection takes, such as a distance "
+                         "along the view"
+                       : ""));
+    }
+    return found;
+}
+
+}  // namespace pellucid::io

@@ -1,0 +1,130 @@
+// A frame that was prepared before its pictures came: the same bits, and nothing is read or made twice.
+#include "scene/scene_programs.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "io/io_files.h"
+
+using namespace pellucid;
+
+namespace {
+
+constexpr int width = 40, height = 24;
+
+io::Image pixels(const std::vector<std::string>& names, const std::function<float(size_t, int, int)>& value) {
+    io::Image image;
+    image.width = width, image.height = height;
+    for (size_t c = 0; c < names.size(); ++c) {
+        std::vector<float> values;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) values.push_back(value(c, x, y));
+        image.channels.push_back({names[c], io::ChannelType::Float, std::move(values)});
+    }
+    return image;
+}
+
+const std::vector<std::string> position{"P.X", "P.Y", "P.Z"}, normal{"N.X", "N.Y", "N.Z"},
+    tangent{"T.X", "T.Y", "T.Z"}, uv{"U.X", "U.Y"};
+
+// A ball of eyes and skin seen from the front.
+io::Image ball() {
+    const auto place = [](size_t c, int x, int y) {
+        const float p[] = {float(x) - 19.5f, 11.5f - float(y)};
+        return c < 2 ? p[c] : std::sqrt(std::max(0.0f, 900 - p[0] * p[0] - p[1] * p[1]));
+    };
+    io::Image all = pixels(position, place);
+    const auto add = [&](const std::vector<std::string>& names,
+                         const std::function<float(size_t, int, int)>& value) {
+        for (io::Channel& c : pixels(names, value).channels) all.channels.push_back(std::move(c));
+    };
+    add(normal, [&](size_t c, int x, int y) { return place(c, x, y) / 30; });
+    add(tangent, [](size_t c, int, int) { return c == 0 ? 1.0f : 0.0f; });
+    add(uv, [](size_t c, int x, int y) { return c == 0 ? float(x) / width : float(y) / height; });
+    add({"M.I"}, [](size_t, int x, int y) { return y == 0 ? 0.0f : x < 20 ? 1.0f : 2.0f; });
+    return all;
+}
+
+class SceneFrames : public FolderTest {
+  protected:
+    io::SceneFile scene() const {
+        io::SceneFile s;
+        s.source = "a scene";
+        s.channels[PEL_SLOT_POSITION] = position;
+        s.channels[PEL_SLOT_NORMAL_SHADING] = s.channels[PEL_SLOT_NORMAL_GEOMETRIC] = normal;
+        s.channels[PEL_SLOT_TANGENT] = tangent;
+        s.channels[PEL_SLOT_UV] = uv;
+        s.channels[PEL_SLOT_MATERIAL] = {"M.I"};
+        s.camera.position[2] = 100;
+        s.lights.resize(1);
+        s.lights[0].light.toLight[0] = 0.6f;
+        s.lights[0].light.toLight[2] = 0.8f;
+        s.lights[0].shadowMapFile = path("map.exr");
+        for (int i = 0; i < 4; ++i) s.lights[0].light.worldToShadow[5 * i] = i < 2 ? 0.02f : 1.0f;
+        s.lights[0].light.shadowDepthRange = 60;
+        s.materials.resize(2);
+        s.materials[0].id = 1;
+        s.materials[0].profile = "skin";
+        s.materials[0].normalMap = path("bumps.exr");
+        s.materials[1].id = 2;
+        s.eyes.resize(1);
+        s.eyes[0].material = 2;
+        s.eyes[0].irisTexture = path("iris.exr");
+        io::writeExr(path("map.exr"), pixels({"Z"}, [](size_t, int x, int) { return 0.01f * float(x); }));
+        io::writeExr(path("bumps.exr"), pixels({"R", "G", "B"}, [](size_t c, int x, int y) {
+                         return c == 2 ? 1.0f : 0.5f + 0.1f * std::sin(float(x + y));
+                     }));
+        io::Image iris =
+            pixels({"R", "G", "B"}, [](size_t c, int x, int y) { return float((x * y + int(c)) % 7) / 7; });
+        iris.height = iris.width = 24;
+        for (io::Channel& c : iris.channels) c.pixels.resize(iris.pixelCount());
+        io::writeExr(path("iris.exr"), iris);
+        return s;
+    }
+};
+
+TEST_F(SceneFrames, PreparedShadesTheSameBits) {
+    const Device device("");
+    const io::SceneFile s = scene();
+    const io::Image gbuffer = ball();
+    const std::vector<PelImageSlot> outputs{PEL_SLOT_OUT_SPECULAR};
+    io::LutStore luts(device), others(device);
+    io::SceneFrame whole(device, gbuffer, s, luts, {}, pelShaderOptionsDefaults(), outputs);
+    whole.shade();
+    io::SceneFrame prepared = io::prepareFrame(device, s, others, pelShaderOptionsDefaults(), outputs);
+    prepared.show(gbuffer, s);
+    prepared.shade();
+    EXPECT_EQ(prepared.radiance(), whole.radiance());
+    EXPECT_EQ(prepared.output(PEL_SLOT_OUT_SPECULAR), whole.output(PEL_SLOT_OUT_SPECULAR));
+    EXPECT_EQ(prepared.inputBytes(), whole.inputBytes()) << "nothing of the stand-in is held";
+    const std::vector<float> radiance = prepared.radiance();
+    EXPECT_GT(*std::ranges::max_element(radiance), 0.01f);
+
+    // Another picture in the same frame.
+    io::Image turned = gbuffer;
+    for (io::Channel& c : turned.channels)
+        if (c.name == "M.I")
+            for (float& id : c.pixels) id = id > 0 ? 3 - id : 0;
+    prepared.show(turned, s, {{path("map.exr"), pixels({"Z"}, [](size_t, int, int) { return 1.0f; })}});
+    prepared.shade();
+    EXPECT_NE(prepared.radiance(), whole.radiance());
+}
+
+TEST_F(SceneFrames, PreparedReadsAndMakesNothingTwice) {
+    const Device device("");
+    const io::SceneFile s = scene();
+    io::LutStore luts(device);
+    io::SceneFrame prepared = io::prepareFrame(device, s, luts);
+    std::filesystem::remove(path("bumps.exr"));
+    std::filesystem::remove(path("iris.exr"));
+    const PelDeviceStats before = device.stats();
+    const io::Image gbuffer = ball();
+    prepared.show(gbuffer, s);
+    EXPECT_EQ(device.stats().launches, before.launches) << "the table of the eye was there";
+    EXPECT_EQ(device.stats().programsBuilt, before.programsBuilt);
+    prepared.shade();
+    EXPECT_EQ(device.stats().programsBuilt, before.programsBuilt);
+}
+
+}  // namespace
