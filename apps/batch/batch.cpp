@@ -1,5 +1,5 @@
-// pellucid batch: makes the look-up tables of a manifest that are not there yet. The name of a file follows
-// from the request; a file holds a check sum, and appears complete or not at all.
+// pellucid batch: makes the look-up tables of a manifest that do not exist yet. The name of a file is a hash
+// of its parameters; a file contains a check sum and is written atomically.
 #include <algorithm>
 #include <atomic>
 #include <csignal>
@@ -47,7 +47,7 @@ class Display {
         const double now = seconds();
         if (now - start_ < 0.25 || (!last && now - spoken_ < (terminal_ ? 0.1 : 10)) || all_ == 0) return;
         spoken_ = now;
-        // The rate of the last ten seconds: files that were there already go by faster than those to make.
+        // The rate of the last ten seconds, because existing files are skipped quickly.
         past_.emplace_back(now, done);
         while (past_.size() > 2 && now - past_[1].first > 10) past_.pop_front();
         const double rate =

@@ -10,8 +10,8 @@ namespace pellucid::io {
 // The index of tables.toml is tables.index.json, so that several manifests can share a folder.
 std::string batchIndexName(const std::string& manifestPath);
 
-// The text of the index, one line per table. `there`: for each entry of the manifest, whether its file exists.
-// Keys: docs/guide/batch.md.
+// The text of the index, one line per table. `there`: for each entry of the manifest, whether its file
+// exists. Keys: docs/guide/batch.md.
 std::string batchIndex(const BatchManifest& manifest, const std::string& manifestPath,
                        const std::vector<bool>& there);
 

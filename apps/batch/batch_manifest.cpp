@@ -55,7 +55,7 @@ uint32_t indexOf(const TomlReader& reader, const char* key, const std::string& v
 Request readRequest(TomlReader& reader, LutPreset preset) {
     Request r;
     reader.choice("kind", r.kind, lutKinds);
-    // A shadow table of version 1 was linear whatever its axis.
+    // Version 1 ignored the axis of shadow tables.
     const bool ownAxis = r.kind == PEL_LUT_SHADOW && preset == LutPreset::faceworks && !reader.has("preset");
     reader.choice("preset", preset, lutPresets);
     r.curvature = presetCurvature(preset);
@@ -147,7 +147,7 @@ class Expansion {
         std::string key;
     };
 
-    // Before anything is expanded: five short lists can ask for more tables than fit in memory.
+    // Checked before expansion: the product of five short lists can exceed the memory.
     void refuseTooMany(const TomlReader& reader, const Request& r) {
         double asked = double(r.encodings.size()) * double(r.sizes.size());
         if (r.kind != PEL_LUT_SPECULAR) asked *= double(r.profiles.size()) * double(r.radii.size());
@@ -224,7 +224,7 @@ class Expansion {
             desc.diffusionRadius = radius;
             desc.profile = entry.profile.get();
             key("width_min", desc.widthMin)("width_max", desc.widthMax)("sharpening", desc.sharpening);
-            // Only where they are not as in version 1, whose files keep their names.
+            // Left out of the key at their values of version 1, so that older files keep their names.
             if (desc.axis != PEL_AXIS_LINEAR) key("axis", axis);
             if (desc.closedEnds) key("closed_ends", 1);
         } else {

@@ -98,7 +98,7 @@ void BatchRun::handle(const BatchEntry& entry, size_t device) {
     const std::string bytes = make(entry, device);
     AtomicFile file(path);
     file.write(bytes.data(), bytes.size());
-    // The folder is flushed once for all, in finish(): a name lost in a power cut is an entry to make again
+    // finish() flushes the folder once. A name that is lost in a power cut is an entry to make again.
     file.commit(false);
     if (exists) ++redone_;
     ++made_;

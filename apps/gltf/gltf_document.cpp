@@ -72,7 +72,7 @@ int hexDigit(char c) {
                                   : -1;
 }
 
-// A path below the scene's folder: a stranger's file must not have others read.
+// A path below the scene's folder. An untrusted file must not make the program read other files.
 std::string relativePath(const GltfValue& value, const std::string& uri) {
     std::string path;
     for (size_t i = 0; i < uri.size(); ++i) {
@@ -95,7 +95,7 @@ std::string relativePath(const GltfValue& value, const std::string& uri) {
     return path;
 }
 
-// Extensions without which the shape would be another one; the rest change the look at most.
+// Required extensions that can be ignored: without them the geometry is still correct.
 bool isKnown(const std::string& extension) {
     if (extension.starts_with("KHR_materials_") || extension.starts_with("KHR_lights_")) return true;
     for (const char* known : {"KHR_texture_transform", "KHR_mesh_quantization", "KHR_xmp_json_ld",
@@ -237,7 +237,7 @@ GltfDocument::Layout GltfDocument::layout(const GltfValue& accessor) const {
     return l;
 }
 
-// Elements of `owner`, which has bufferView and byteOffset: store(index, the bytes of one).
+// Calls store(index, bytes) for each element of `owner`, an object with bufferView and byteOffset.
 template <class Store>
 void GltfDocument::read(const GltfValue& owner, const Layout& l, Store&& store) const {
     const Span span = view(owner, "bufferView");
@@ -247,14 +247,14 @@ void GltfDocument::read(const GltfValue& owner, const Layout& l, Store&& store) 
     if (stride < element)
         owner.fail("has elements of " + std::to_string(element) + " bytes " + std::to_string(stride) +
                    " bytes apart");
-    // The count is below the limit of all input and the stride below 256: no product overflows.
+    // No overflow: the count is below inputLimit() and the stride below 256.
     const uint64_t end = offset + (l.count - 1) * stride + element;
     if (end > span.size)
         owner.fail("ends at byte " + std::to_string(end) + " of a view of " + std::to_string(span.size));
     for (uint64_t i = 0; i < l.count; ++i) store(i, span.data + offset + i * stride);
 }
 
-// The few elements that differ from the others.
+// The elements that a sparse accessor replaces.
 template <class Store>
 void GltfDocument::readSparse(const GltfValue& accessor, const Layout& l, Store&& store) const {
     if (!accessor.has("sparse")) return;
@@ -316,7 +316,7 @@ GltfImage GltfDocument::image(size_t index) const {
         found.bytes.assign(span.data, span.size);
     }
     spend(image, double(found.bytes.size()));
-    // By what they begin with, for what the file says is often wrong.
+    // The signature decides, because the MIME type in files is often wrong.
     const bool png = found.bytes.starts_with("\x89PNG\r\n"), jpeg = found.bytes.starts_with("\xff\xd8\xff");
     found.name = path_ + ": " + image.where() + (png ? ".png" : jpeg ? ".jpg" : "");
     if (!png && !jpeg) found.bytes.clear();

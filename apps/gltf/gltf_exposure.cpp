@@ -37,7 +37,7 @@ double reflected(const std::vector<SceneLight>& lights, const Triple& at, const 
     return std::ranges::max(sum);
 }
 
-// Triangles that any light reaches: a few thousand of them stand for all.
+// A sample of a few thousand triangles that light reaches.
 std::vector<LitArea> litSurface(const ImportedGltf& made, const std::vector<SceneLight>& lights) {
     const MeshData& mesh = made.gltf.mesh;
     std::vector<LitArea> lit;

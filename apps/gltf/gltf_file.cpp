@@ -30,7 +30,8 @@ Triple point(const Matrix& m, const Triple& p) {
             m[8] * p[0] + m[9] * p[1] + m[10] * p[2] + m[11]};
 }
 
-// Of the matrix of cofactors of its upper left part: what turns normals, mirrored parts included.
+// Transforms a normal by the cofactors of the upper left 3 x 3 matrix, which is also correct for mirrored
+// parts.
 Triple turned(const Matrix& m, const Triple& n) {
     return {(m[5] * m[10] - m[6] * m[9]) * n[0] + (m[6] * m[8] - m[4] * m[10]) * n[1] +
                 (m[4] * m[9] - m[5] * m[8]) * n[2],
@@ -105,7 +106,7 @@ class Builder {
             for (size_t i = 0; i < scene.count("nodes"); ++i) found.push_back(nodeIndex(scene["nodes"][i]));
             return found;
         }
-        // Without a scene: all that is below nothing.
+        // Without a scene, the roots are the nodes that are no child of another node.
         std::vector<bool> below(root_.count("nodes"));
         for (size_t n = 0; n < below.size(); ++n) {
             const GltfValue node = root_["nodes"][n];
@@ -166,7 +167,7 @@ class Builder {
         scene_.cameras.push_back(c);
     }
 
-    // A primitive that holds triangles, before any node places it.
+    // A primitive with triangles, in the coordinates of its mesh.
     struct Part {
         GltfValue primitive;
         std::vector<float> positions, normals, uvs;  // normals and uvs may be empty
@@ -202,7 +203,7 @@ class Builder {
         return triangles;
     }
 
-    // The parts of a mesh, decoded once however many nodes place it.
+    // The parts of a mesh, decoded once for all nodes that use it.
     const std::vector<Part>& partsOf(size_t mesh) {
         const auto [found, fresh] = parts_.try_emplace(mesh);
         if (!fresh) return found->second;

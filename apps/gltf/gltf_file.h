@@ -63,7 +63,8 @@ struct GltfScene {
     std::vector<GltfLight> lights;
 };
 
-// Reads a file that the scene names by a relative path without "..", "." or a scheme. Percent signs are decoded.
+// Reads a file that the scene names by a relative path without "..", "." or a scheme. Percent signs are
+// decoded.
 using GltfResource = std::function<std::string(const std::string& relative)>;
 
 // Throws FileError, whose message names the place in the file ("meshes[2].primitives[0].indices"): damaged,

@@ -38,7 +38,7 @@ std::map<std::string, std::string> profilesOf(const std::vector<std::string>& wo
     return chosen;
 }
 
-// A lamp and a little sky for scenes that have no light.
+// A directional light and weak ambient light for scenes without lights.
 void addLamp(SceneFile& scene) {
     SceneLight lamp;
     lamp.light = directionalLight({0.5f, 0.6f, 0.62f}, {1, 1, 1});
@@ -118,7 +118,7 @@ void addLights(ImportedGltf& made, const GltfImportOptions& options) {
                             " % of the lit surface is brighter than white");
 }
 
-// OBJ with a part per material; texture coordinates the other way up than glTF's.
+// An OBJ file with a group per material. Its v axis points up; that of glTF points down.
 void writeObj(const std::string& folder, const ImportedGltf& made) {
     const MeshData& mesh = made.gltf.mesh;
     std::string obj = "mtllib mesh.mtl\n", mtl;
@@ -168,7 +168,7 @@ ImportedGltf importScene(GltfScene scene, const GltfImportOptions& options) {
     addLights(made, options);
     if (!made.gltf.cameras.empty())
         std::ranges::copy(made.gltf.cameras[0].position, made.scene.camera.position);
-    // What a G-buffer of the mesh is expected to have.
+    // The channels that a G-buffer of the mesh should have.
     made.scene.channels[PEL_SLOT_NORMAL_SHADING] = {"Normal.X", "Normal.Y", "Normal.Z"};
     made.scene.channels[PEL_SLOT_POSITION] = {"Position.X", "Position.Y", "Position.Z"};
     made.scene.channels[PEL_SLOT_CURVATURE] = {"Curvature.V"};

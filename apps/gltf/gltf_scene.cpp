@@ -23,7 +23,7 @@ std::string profileFile(const std::string& name, const std::string& source, cons
            "\"\n" + keys;
 }
 
-// The b at which the share T of the light comes through a slab of thickness s: T = exp(-s/b) / 4 + 3
+// The width b for which a slab of thickness s transmits the fraction T of light: T = exp(-s/b) / 4 + 3
 // exp(-s/3b) / 4.
 double widthFor(double share, double thickness) {
     double low = 1e-4 * thickness, high = 1e4 * thickness;
@@ -35,14 +35,14 @@ double widthFor(double share, double thickness) {
     return std::sqrt(low * high);
 }
 
-// A medium by its extinction and the colour of a half-space.
+// A medium given by its extinction and the albedo of a half-space.
 void volume(const GltfMaterial& m, const std::string& name, GltfLook& look) {
     Triple path;
     for (size_t c = 0; c < 3; ++c) {
         const double left = std::clamp(m.attenuationColor[c], 1e-6, 1 - 1e-6),
                      extinction = -std::log(left) / (1000 * m.attenuationDistance),  // 1/mm
             albedo = singleScatterAlbedo((*m.multiscatterColor)[c], m.scatterAnisotropy);
-        // By similarity: as much of what is scattered forwards counts as not scattered.
+        // Similarity: the reduced mean free path of an isotropic medium that scatters alike.
         path[c] = std::clamp(1 / (extinction * std::max(1 - m.scatterAnisotropy * albedo, 1e-6)), 1e-5, 1e5);
     }
     look.how = "volume";
@@ -58,9 +58,9 @@ void volume(const GltfMaterial& m, const std::string& name, GltfLook& look) {
     }
 }
 
-// A wall that lets light through diffusely. The library adds T times the light of the other side before it
-// multiplies by the albedo: the albedo is what comes back, and T what goes through as a share of that, 0.98
-// at most.
+// A wall that transmits light diffusely. The library adds T times the irradiance of the other side and then
+// multiplies by the albedo. So the albedo is the reflected fraction, and T is the ratio of transmitted to
+// reflected light, at most 0.98.
 void thinSheet(const GltfMaterial& m, const std::string& name, GltfLook& look) {
     const double thickness = m.thickness > 0 ? 1000 * m.thickness : sheet;
     Triple width;
@@ -108,7 +108,8 @@ GltfLook lookOf(const GltfMaterial& m, const std::string& name, uint32_t id, con
         thinSheet(m, name, look);
     }
     if (!look.profileName.empty()) look.material.profile = name + ".toml";
-    // glTF's roughness is the root of GGX's width; its metals reflect their base colour, here by one number.
+    // The GGX width is the square of glTF's roughness. f0 is one number, so that a metal's base colour is
+    // averaged.
     const double ratio = m.ior > 0 ? (m.ior - 1) / (m.ior + 1) : 1,
                  metal = (m.baseColor[0] + m.baseColor[1] + m.baseColor[2]) / 3;
     p.specularModel = PEL_SPECULAR_GGX;
@@ -126,7 +127,8 @@ SceneLight sceneLight(const GltfLight& l, double brightness) {
     p.type = l.kind == GltfLight::Kind::Directional ? PEL_LIGHT_DIRECTIONAL
              : l.kind == GltfLight::Kind::Point     ? PEL_LIGHT_POINT
                                                     : PEL_LIGHT_SPOT;
-    // Lux, and candela: lux at one metre. PelLight wants irradiance / pi, of lamps at a millimetre.
+    // Lux, or candela, which is lux at one metre. PelLight.color is irradiance / pi, for lamps at one
+    // millimetre.
     const double at = l.kind == GltfLight::Kind::Directional ? 1 : 1e6;
     for (size_t c = 0; c < 3; ++c) {
         p.color[c] = float(std::min(l.color[c] * l.intensity * at * brightness / std::numbers::pi, 1e18));

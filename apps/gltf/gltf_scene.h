@@ -14,7 +14,8 @@ struct GltfLook {
     Triple albedo{};          // without the texture
     std::string profileName;  // of a profile made for it; "" if there is none
     std::string profileText;  // the profile file
-    // How the material was imported, for the report: "plain", "metal", "clear", "volume", "thin sheet", "profile"
+    // How the material was imported, for the report: "plain", "metal", "clear", "volume", "thin sheet",
+    // "profile"
     std::string how;
 };
 
@@ -28,7 +29,8 @@ SceneLight sceneLight(const GltfLight& light, double brightness);
 // Unique names of letters, digits, _ and -, for files and keys.
 std::vector<std::string> plainNames(const std::vector<GltfMaterial>& materials);
 
-// Single-scattering albedo of a medium whose half-space has this albedo [Kulla and Conty 2017, from van de Hulst].
+// Single-scattering albedo of a medium whose half-space has this albedo [Kulla and Conty 2017, from van de
+// Hulst].
 double singleScatterAlbedo(double multiscatter, double anisotropy);
 
 }  // namespace pellucid::io

@@ -60,7 +60,7 @@ sample::Camera cameraOf(const io::GltfCamera* given, const sample::Scene& scene,
     const io::GltfCamera& c = *given;
     sample::Camera camera;
     camera.eye = vec(c.position);
-    // As far away as the origin, so that their difference keeps the direction.
+    // At the scale of the position, so that the difference keeps the direction.
     camera.target = camera.eye + vec(c.forward) * std::max(length(camera.eye), 1.0);
     camera.up = vec(c.up);
     camera.verticalFov = c.verticalFov * 180 / std::numbers::pi;

@@ -12,8 +12,8 @@ namespace pellucid::io {
 
 class TextScan {
   public:
-    // `comment`: the character that begins a comment, or a line break if there are none. `linesBefore`: lines of
-    // the file before `text`.
+    // `comment`: the character that begins a comment, or a line break if there are none. `linesBefore`:
+    // lines of the file before `text`.
     TextScan(std::string path, std::string_view text, char comment = '#', int linesBefore = 0)
         : path_(std::move(path)), rest_(text), comment_(comment), line_(linesBefore) {}
 

@@ -8,7 +8,7 @@
 namespace pellucid::io {
 namespace {
 
-// Files of this program nest three deep.
+// The formats here nest three levels.
 constexpr int mostParts = 16, mostBrackets = 16;
 
 class Depth {

@@ -33,7 +33,7 @@ Lut make(const Device& device, const SceneLut& request) {
     return info.kind == PEL_LUT_CURVATURE ? Lut(device, info.curvature) : Lut(device, info.shadow);
 }
 
-// The scene asks for curvature from the picture itself; a channel of that name would be meant instead.
+// True if curvature is measured from the picture, unless the G-buffer has a channel called "screen".
 bool isScreenCurvature(const Image& gbuffer, const SceneFile& scene) {
     const std::vector<std::string>& channel = scene.channels[PEL_SLOT_CURVATURE];
     if (channel != std::vector<std::string>{"screen"}) return false;
@@ -187,7 +187,7 @@ void SceneFrame::update(const SceneFile& scene, LutStore& luts, const PelShaderO
 
 void SceneFrame::set(const SceneFile& scene, LutStore& luts, const PelShaderOptions& options) {
     shader_.set(withOptionsOf(scene, options));
-    // Pixels whose material goes are not written any more.
+    // Pixels whose material is removed are not written again.
     if (!materials_.empty()) {
         clear(radiance_);
         for (const auto& [slot, buffer] : outputs_) clear(buffer);
@@ -327,7 +327,7 @@ PelImageDesc SceneFrame::measureCurvature(const SceneFile& scene) {
         return scene.channels[slot].empty() ? pelImageDescDefaults()
                                             : upload(*gbuffer_, scene.channels[slot], pictures_);
     };
-    // The surface's own normals where there are: those of a normal map turn without the surface doing so.
+    // Geometric normals if there are any, because those of a normal map do not follow the surface.
     const PelImageDesc normals =
         image(scene.channels[PEL_SLOT_NORMAL_GEOMETRIC].empty() ? PEL_SLOT_NORMAL_SHADING
                                                                 : PEL_SLOT_NORMAL_GEOMETRIC);

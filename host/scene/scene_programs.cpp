@@ -5,7 +5,7 @@
 namespace pellucid::io {
 namespace {
 
-// A black image of the smallest size that is read as a frame's is, with these channels.
+// A black image with these channels, of the smallest size that the kernels treat like a frame.
 Image blank(const std::set<std::string>& channels, int height = 2) {
     Image image;
     image.width = 16;

@@ -43,7 +43,7 @@ struct Extent {
     double size() const { return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
 };
 
-// What is seen, from positions or from device depth.
+// The extent of the visible surface, from positions or from device depth.
 Extent extentOf(const Image& gbuffer, const SceneFile& scene, const DeviceImages* images) {
     Extent extent;
     if (!scene.channels[PEL_SLOT_POSITION].empty()) {
@@ -90,7 +90,7 @@ std::vector<std::string> unlikely(const Image& gbuffer, const SceneFile& scene, 
     for (const SceneMaterial& m : scene.materials) {
         if (m.profile.empty()) continue;
         const float reach = findProfile(m.profile).profile.info().reach;
-        // Seen whole, nothing of skin is smaller than a fingertip, nor larger than a few people.
+        // An object of skin is not smaller than a fingertip, nor larger than a few people.
         if (size > 2.3f * reach && size < 500 * reach) continue;
         found.push_back(
             "what is seen is " + shown(size) +

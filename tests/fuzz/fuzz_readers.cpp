@@ -1,9 +1,9 @@
 // fuzz_readers [--seconds S | --runs N] [--seed N] [--only READER] [--corpus FOLDER] [--keep FOLDER]
 //
-// Gives every reader of files damaged input: first what once broke one (FOLDER/READER/*), then mutants of
-// whole files, each of which follows from seed and number alone. A reader may refuse, by the error that it
-// promises; it may not crash, throw something else, run for long or take much memory. It works in a child,
-// which a fault ends and the next one goes on behind; inputs at fault are kept.
+// Gives damaged input to every reader of files: first inputs that once exposed a fault (FOLDER/READER/*),
+// then mutants of valid files, which are determined by the seed and their number. A reader may throw its
+// documented error. It must not crash, throw another error, run long or use much memory. Readers run in a
+// child process; if it dies, the input is kept and another child continues with the next one.
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -38,7 +38,7 @@ struct Options {
     std::string only, corpus, keep = "fuzz-faults";
 };
 
-// What parent and child share: where the child is, and how many inputs of each reader were read and refused.
+// Shared by parent and child: the child's position, and how many inputs of each reader were read and refused.
 struct Place {
     std::atomic<int> reader, count;
     std::atomic<uint64_t> input;
@@ -85,7 +85,7 @@ void work(const Options& o, Place& place, double end) {
     std::vector<std::vector<std::string>> corpora;
     for (const fuzz::Reader& r : readers) corpora.push_back(corpusOf(o, r.name));
     for (size_t k = 0; k < readers.size(); ++k) std::strncpy(place.names[k], readers[k].name.c_str(), 31);
-    constexpr uint64_t turn = 50;  // inputs of one reader at a time, so that all have had some at any moment
+    constexpr uint64_t turn = 50;  // inputs of one reader before the next reader
     for (bool more = true; more;) {
         more = false;
         for (size_t k = 0; k < readers.size(); ++k) {
@@ -115,7 +115,7 @@ void work(const Options& o, Place& place, double end) {
     }
 }
 
-// The input at which the child was, as a file.
+// Saves the input at which the child died.
 std::string keep(const Options& o, const Place& place) {
     const std::string name = o.keep + "/" + place.names[place.reader] + "-" + std::to_string(o.seed) + "-" +
                              std::to_string(place.input);
@@ -131,7 +131,7 @@ std::string keep(const Options& o, const Place& place) {
     return name;
 }
 
-// Waits for the child; kills it when it sits on one input. How it ended, as text; "" when all is well.
+// Waits for the child, and kills it if one input takes too long. Returns how it ended, or "" without a fault.
 std::string ending(pid_t child, Place& place) {
     uint64_t seen = ~uint64_t{0};
     int reader = -1, status = 0;

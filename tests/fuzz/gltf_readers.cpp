@@ -13,12 +13,20 @@ using namespace pellucid;
 // Scenes with everything that is read: nodes, sparse accessors, materials, cameras, lights, a texture.
 Reader gltfScenes(const Folder& folder) {
     const std::string nodes =
-        R"([{"mesh":0,"children":[1,2]},{"camera":0,"rotation":[0,0.6,0,0.8],"scale":[1,-1,2]},{"extensions":{"KHR_lights_punctual":{"light":0}},"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,1,2,3,1]}])";
+        R"([{"mesh":0,"children":[1,2]},{"camera":0,"rotation":[0,0.6,0,0.8],"scale":[1,-1,2]},)"
+        R"({"extensions":{"KHR_lights_punctual":{"light":0}},"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,1,2,3,1]}])";
     const std::string more =
-        R"(,"scene":0,"materials":[{"name":"a","pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0,1],"baseColorTexture":{"index":0}},"extensions":{"KHR_materials_ior":{"ior":1.4},)"
-        R"("KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":0.5},"KHR_materials_volume":{"thicknessFactor":1,"attenuationDistance":2,"attenuationColor":[0.5,0.5,0.5]},)"
-        R"("KHR_materials_volume_scatter":{"multiscatterColor":[0.5,0.5,0.5],"scatterAnisotropy":0.1}}}],"textures":[{"source":0}],"images":[{"bufferView":1,"mimeType":"image/png"}],)"
-        R"("cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}],"extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot","spot":{}}]}},"extensionsUsed":["KHR_materials_ior"])";
+        R"(,"scene":0,"materials":[{"name":"a","pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0,1],)"
+        R"("baseColorTexture":{"index":0}},"extensions":{"KHR_materials_ior":{"ior":1.4},)"
+        R"("KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":0.5},)"
+        R"("KHR_materials_volume":{"thicknessFactor":1,"attenuationDistance":2,"attenuationColor":[0.5,)"
+        R"(0.5,0.5]},)"
+        R"("KHR_materials_volume_scatter":{"multiscatterColor":[0.5,0.5,0.5],)"
+        R"("scatterAnisotropy":0.1}}}],"textures":[{"source":0}],"images":[{"bufferView":1,)"
+        R"("mimeType":"image/png"}],)"
+        R"("cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":0.1}}],)"
+        R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot","spot":{}}]}},)"
+        R"("extensionsUsed":["KHR_materials_ior"])";
     std::vector<std::string> seeds = {
         gltf::square(), gltf::square(",\"material\":0,\"mode\":5", nodes, more),
         gltf::squareJson("", nodes, more, R"(,"uri":"a.bin")"),

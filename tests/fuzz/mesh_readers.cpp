@@ -1,8 +1,10 @@
+#include <cmath>
 #include <cstring>
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
 #include "fuzz/reader_parts.h"
+#include "io/file_error.h"
 #include "io/mesh/mesh_file.h"
 #include "io/mesh/mesh_parts.h"
 
@@ -17,11 +19,21 @@ Reader mesh(const std::string& extension, std::vector<std::string> seeds, std::v
             std::move(seeds),
             [file = "m." + extension](const std::string& bytes) {
                 io::MeshData mesh = io::decodeMesh(file, bytes, {true});
+                if (!mesh.uvs.empty() && mesh.uvs.size() != 2 * mesh.vertexCount())
+                    throw std::logic_error("texture coordinates of another number of vertices");
                 if (mesh.normals.empty()) io::computeNormals(mesh);
+                for (const std::vector<float>* values : {&mesh.positions, &mesh.normals})
+                    for (float x : *values)
+                        if (!std::isfinite(x))
+                            throw std::logic_error("a position or normal that is not finite");
                 for (uint32_t t : mesh.triangles)
                     if (t >= mesh.vertexCount())
                         throw std::logic_error("a triangle of a vertex that there is not");
                 io::decodeMesh(file, bytes, {false});
+                try {
+                    io::loopSubdivide(mesh, 1);
+                } catch (const io::FileError&) {  // not manifold
+                }
             },
             {},
             std::move(words)};

@@ -102,27 +102,6 @@ TEST_F(MeshFilePly, BadPlyFilesSayWhere) {
     EXPECT_TRUE(contains(loadError("c.ply", whole.substr(0, whole.size() - 20)), "ends early"));
 }
 
-// A length of -1 in one byte is 255 to who does not look at its type, and all those values are there.
-TEST_F(MeshFilePly, LengthsOfPlyListsAreWholeAndNotNegative) {
-    const auto file = [&](const std::string& type, const std::string& length) {
-        const std::string header =
-            "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float "
-            "y\nproperty float z\n"
-            "element face 1\nproperty list " +
-            type + " int vertex_indices\nend_header\n";
-        const float positions[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-        return header + std::string(reinterpret_cast<const char*>(positions), sizeof positions) + length;
-    };
-    const int32_t triangle[3] = {0, 1, 2};
-    const std::string corners(reinterpret_cast<const char*>(triangle), sizeof triangle), many(4 * 255, '\0');
-    EXPECT_EQ(loadError("good.ply", file("int", std::string("\3\0\0\0", 4) + corners)), "");
-    EXPECT_TRUE(contains(loadError("negative.ply", file("char", "\xff" + many)), "negative length"));
-    EXPECT_TRUE(contains(loadError("short.ply", file("short", "\xff\xff" + std::string(4 * 65535, '\0'))),
-                         "negative length"));
-    EXPECT_TRUE(contains(loadError("float.ply", file("float", std::string(4, '\0'))),
-                         "float.ply:8: the lengths of a list are whole"));
-}
-
 // Lists of any type of length and value, in vertices and faces, before, between and after what is wanted.
 TEST_F(MeshFilePly, PlyListsOfEitherByteOrder) {
     const std::vector<std::string> lengths = {"char", "uchar", "short", "ushort", "int", "uint"},
@@ -170,25 +149,34 @@ TEST_F(MeshFilePly, PlyListsOfEitherByteOrder) {
             }
 }
 
-TEST_F(MeshFilePly, LengthsOfBigEndianPlyListsAreChecked) {
-    const auto file = [&](const std::string& type, const std::string& rest) {
-        PlyBytes out(true);
-        for (double x : {0, 0, 0, 1, 0, 0, 0, 1, 0}) out.add("float", x);
-        return "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float x\nproperty float "
-               "y\nproperty float z\n"
-               "element face 1\nproperty list " +
-               type + " int vertex_indices\nend_header\n" + out.bytes + rest;
-    };
-    const std::string corners = PlyBytes(true).add("int", 0).add("int", 1).add("int", 2).bytes;
-    EXPECT_EQ(loadError("good.ply", file("short", std::string("\0\3", 2) + corners)), "");
-    EXPECT_TRUE(
-        contains(loadError("swapped.ply", file("short", std::string("\3\0", 2) + corners)), "ends early"));
-    EXPECT_TRUE(
-        contains(loadError("negative.ply", file("int", "\xff\xff\xff\xff" + corners)), "negative length"));
-    EXPECT_TRUE(contains(
-        loadError("far.ply", file("short", std::string("\0\3", 2) +
-                                               PlyBytes(true).add("int", 0).add("int", 1).add("int", 3).bytes)),
-        "refers to vertex 3"));
-    const std::string whole = file("short", std::string("\0\3", 2) + corners);
-    EXPECT_TRUE(contains(loadError("cut.ply", whole.substr(0, whole.size() - 1)), "ends early"));
+// A length of -1 in one byte is 255 to a reader that ignores its type, and all those values are there.
+TEST_F(MeshFilePly, LengthsOfListsAreChecked) {
+    for (const bool big : {false, true}) {
+        SCOPED_TRACE(big);
+        const auto values = [&](const std::string& type, const std::vector<double>& all) {
+            PlyBytes out(big);
+            for (const double x : all) out.add(type, x);
+            return out.bytes;
+        };
+        const auto file = [&](const std::string& type, const std::string& rest) {
+            return std::string("ply\nformat binary_") + (big ? "big" : "little") +
+                   "_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                   "element face 1\nproperty list " +
+                   type + " int vertex_indices\nend_header\n" + values("float", {0, 0, 0, 1, 0, 0, 0, 1, 0}) +
+                   rest;
+        };
+        const std::string corners = values("int", {0, 1, 2}), many(4 * 65535, '\0');
+        const std::string whole = file("short", values("short", {3}) + corners);
+        EXPECT_EQ(loadError("good.ply", whole), "");
+        EXPECT_TRUE(contains(loadError("cut.ply", whole.substr(0, whole.size() - 1)), "ends early"));
+        EXPECT_TRUE(contains(loadError("swapped.ply", file("short", values("short", {0x300}) + corners)),
+                             "ends early"));
+        for (const char* type : {"char", "short", "int"})
+            EXPECT_TRUE(contains(loadError("negative.ply", file(type, values(type, {-1}) + many)),
+                                 "negative length"));
+        EXPECT_TRUE(contains(loadError("far.ply", file("short", values("short", {3}) + values("int", {0, 1, 3}))),
+                             "refers to vertex 3"));
+        EXPECT_TRUE(contains(loadError("float.ply", file("float", std::string(4, '\0'))),
+                             "float.ply:8: the lengths of a list are whole"));
+    }
 }

@@ -1,6 +1,7 @@
 // Meshes with nothing wrong, of more vertices than faces and the other way round, load without a warning from
 // every format.
 #include <array>
+#include <regex>
 
 #include "io/mesh/mesh_file.h"
 #include "io_files.h"
@@ -28,29 +29,28 @@ const std::string three = "0 0 0\n1 0 0\n0 1 0\n", four = three + "0 0 1\n";
 
 }  // namespace
 
-TEST_F(MeshWarnings, OneTriangle) {
-    expectSilent("a.off", "OFF\n3 1 0\n" + three + "3 0 1 2\n", 1);
-    expectSilent("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 1);
-    expectSilent("a.ply", ply(three, 3, "3 0 1 2\n", 1), 1);
+TEST_F(MeshWarnings, GoodFilesOfEveryFormatHaveNone) {
+    const std::string square = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+    const struct {
+        std::string vertices, faces, objFaces;
+        size_t vertexCount, faceCount, triangles;
+    } meshes[] = {{three, "3 0 1 2\n", "f 1 2 3\n", 3, 1, 1},
+                  {four, "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n", "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n", 4, 4, 4},
+                  {square, "4 0 1 2 3\n", "f 1 2 3 4\n", 4, 1, 2}};
+    for (const auto& m : meshes) {
+        expectSilent("a.off",
+                     "OFF\n" + std::to_string(m.vertexCount) + " " + std::to_string(m.faceCount) + " 0\n" +
+                         m.vertices + m.faces,
+                     m.triangles);
+        const std::string obj = "v " + std::regex_replace(m.vertices, std::regex("\n(?=.)"), "\nv ");
+        expectSilent("a.obj", obj + m.objFaces, m.triangles);
+        expectSilent("a.ply", ply(m.vertices, m.vertexCount, m.faces, m.faceCount), m.triangles);
+    }
     expectSilent(
         "a.stl",
         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
         "endfacet\nendsolid a\n",
         1);
-}
-
-TEST_F(MeshWarnings, AsManyFacesAsVertices) {
-    const std::string faces = "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
-    expectSilent("b.off", "OFF\n4 4 0\n" + four + faces, 4);
-    expectSilent("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n", 4);
-    expectSilent("b.ply", ply(four, 4, faces, 4), 4);
-}
-
-TEST_F(MeshWarnings, PolygonsCountOnce) {
-    const std::string square = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
-    expectSilent("c.off", "OFF\n4 1 0\n" + square + "4 0 1 2 3\n", 2);
-    expectSilent("c.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n", 2);
-    expectSilent("c.ply", ply(square, 4, "4 0 1 2 3\n", 1), 2);
 }
 
 TEST_F(MeshWarnings, TrianglesThatFaceAnotherWayThanTheirNeighboursAreToldOrTurned) {

@@ -164,37 +164,17 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     eye.irisSeed = 7;
     writeScene(path("out.toml"), scene);
     const SceneFile again = readScene(path("out.toml"));
+    // Texts have the shortest digits that identify a float, so equal texts are equal bits.
+    EXPECT_EQ(sceneText(again), sceneText(scene));
     EXPECT_EQ(again.channels, scene.channels);
-    EXPECT_EQ(again.options.blurNormals, 1u);
-    EXPECT_EQ(again.options.rotateTaps, 1u);
-    EXPECT_EQ(again.options.everyPixel, 1u);
-    EXPECT_EQ(again.ambientCube, scene.ambientCube);
     EXPECT_EQ(again.outputs, scene.outputs);
-    EXPECT_EQ(again.materials[0].normalMap, scene.materials[0].normalMap);
     const auto same = [](const auto& a, const auto& b) { return std::memcmp(&a, &b, sizeof a) == 0; };
-    EXPECT_TRUE(same(again.camera, scene.camera));
-    EXPECT_TRUE(same(again.ambient, scene.ambient));
-    ASSERT_EQ(again.lights.size(), 2u);
-    EXPECT_TRUE(same(again.lights[0].light, scene.lights[0].light));
-    EXPECT_TRUE(same(again.lights[1].light.position, scene.lights[1].light.position));
-    EXPECT_EQ(again.lights[1].light.type, PEL_LIGHT_SPOT);
+    EXPECT_TRUE(same(again.options, scene.options));
+    EXPECT_TRUE(same(again.lights.at(0).light, scene.lights[0].light));
     EXPECT_EQ(again.lights[0].shadowMapChannel, scene.lights[0].shadowMapChannel);
-    EXPECT_EQ(again.lights[0].wideShadow, scene.lights[0].wideShadow);
-    EXPECT_EQ(again.lights[0].secondChannel, "Z2");
-    EXPECT_EQ(again.lights[0].cascades[0].file, path("coarse.exr"));
-    EXPECT_EQ(again.lights[0].cascades[0].secondChannel, "A.Z2");
-    EXPECT_EQ(again.lights[0].cascades[1].file, "");
-    EXPECT_EQ(again.lights[0].cascades[1].channel, "B.Z");
-    ASSERT_EQ(again.materials.size(), 1u);
-    EXPECT_TRUE(same(again.materials[0].material, scene.materials[0].material));
-    EXPECT_EQ(again.materials[0].curvatureLut, "skin");
-    EXPECT_EQ(again.materials[0].profile, scene.materials[0].profile);
-    EXPECT_EQ(again.materials[0].preset, ScenePreset::faceworks);
-    EXPECT_EQ(again.options.millimetresPerUnit, 10);
-    ASSERT_EQ(again.eyes.size(), 1u);
-    EXPECT_TRUE(same(again.eyes[0].eye, eye));
-    ASSERT_EQ(again.luts.size(), 2u);
-    EXPECT_TRUE(same(again.luts[1].info.shadow, scene.luts[1].info.shadow));
+    EXPECT_TRUE(same(again.materials.at(0).material, scene.materials[0].material));
+    EXPECT_TRUE(same(again.eyes.at(0).eye, eye));
+    EXPECT_TRUE(same(again.luts.at(1).info.shadow, scene.luts[1].info.shadow));
 }
 
 TEST_F(SceneFileTest, UnknownKeysSuggestTheNearest) {

@@ -49,8 +49,10 @@ inline std::string squareJson(const std::string& primitive = "", const std::stri
     return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
            R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"indices":2)" +
            primitive + R"(}]}],"buffers":[{"byteLength":92)" + uri +
-           R"(}],"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":32},{"buffer":0,"byteOffset":80,"byteLength":12}],)" +
-           R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},{"bufferView":1,"componentType":5126,"count":4,"type":"VEC2"},)" +
+           R"(}],"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,)"
+           R"("byteLength":32},{"buffer":0,"byteOffset":80,"byteLength":12}],)" +
+           R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"},)"
+           R"({"bufferView":1,"componentType":5126,"count":4,"type":"VEC2"},)" +
            R"({"bufferView":2,"componentType":5123,"count":6,"type":"SCALAR"}])" + more + "}";
 }
 

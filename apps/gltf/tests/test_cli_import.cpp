@@ -58,7 +58,8 @@ std::string ball(const std::string& material, const std::string& more = "") {
         }
     const std::string p = gltf::bytesOf(positions), i = gltf::bytesOf(indices);
     const std::string json =
-        R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],)"
+        R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+        R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],)"
         R"("materials":[)" +
         material + R"(],"buffers":[{"byteLength":)" + std::to_string(p.size() + i.size()) +
         R"(}],"bufferViews":[{"buffer":0,"byteLength":)" + std::to_string(p.size()) +
@@ -70,10 +71,11 @@ std::string ball(const std::string& material, const std::string& more = "") {
     return gltf::glb(json, p + i);
 }
 
-const char* const wax =
-    R"({"name":"Candle wax","pbrMetallicRoughness":{"baseColorFactor":[0.9,0.8,0.7,1],"metallicFactor":0,"roughnessFactor":0.6},"extensions":{
+const char* const wax = R"({"name":"Candle wax","pbrMetallicRoughness":{"baseColorFactor":[0.9,0.8,0.7,1],)"
+                        R"("metallicFactor":0,"roughnessFactor":0.6},"extensions":{
         "KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":1},
-        "KHR_materials_volume":{"thicknessFactor":0.02,"attenuationDistance":0.0015,"attenuationColor":[0.4,0.3,0.1]},
+        "KHR_materials_volume":{"thicknessFactor":0.02,"attenuationDistance":0.0015,)"
+                        R"("attenuationColor":[0.4,0.3,0.1]},
         "KHR_materials_volume_scatter":{"multiscatterColor":[0.95,0.8,0.5]}}})";
 
 }  // namespace
@@ -113,11 +115,15 @@ TEST_F(Import, ABallOfWaxBecomesAPicture) {
 TEST_F(Import, LightsCamerasAndProfilesOfOnesOwn) {
     const std::string more =
         R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.01,"aspectRatio":1.5}}],
-           "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","intensity":3.1415927},{"type":"spot","intensity":0.02},{"type":"point","intensity":0.001}]}})";
+           "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","intensity":3.1415927},)"
+        R"({"type":"spot","intensity":0.02},{"type":"point","intensity":0.001}]}})";
     std::string file = ball(R"({"name":"Head","pbrMetallicRoughness":{"metallicFactor":0}})", more);
     const std::string from = R"("nodes":[{"mesh":0}])",
-                      to = R"("nodes":[{"mesh":0,"children":[1,2,3,4]},{"camera":0,"translation":[0,0,0.12]},{"extensions":{"KHR_lights_punctual":{"light":0}}},)"
-                           R"({"extensions":{"KHR_lights_punctual":{"light":1}},"translation":[0,0,0.1]},{"extensions":{"KHR_lights_punctual":{"light":2}},"translation":[0.1,0,0.1]}])";
+                      to = R"("nodes":[{"mesh":0,"children":[1,2,3,4]},{"camera":0,"translation":[0,0,)"
+                           R"(0.12]},{"extensions":{"KHR_lights_punctual":{"light":0}}},)"
+                           R"({"extensions":{"KHR_lights_punctual":{"light":1}},"translation":[0,0,)"
+                           R"(0.1]},{"extensions":{"KHR_lights_punctual":{"light":2}},)"
+                           R"("translation":[0.1,0,0.1]}])";
     const uint32_t length =
         uint32_t(uint8_t(file[12])) | uint32_t(uint8_t(file[13])) << 8 | uint32_t(uint8_t(file[14])) << 16;
     std::string json = file.substr(20, length);
@@ -149,7 +155,9 @@ TEST_F(Import, LightsCamerasAndProfilesOfOnesOwn) {
 // Each camera is drawn, or left out with a warning; what is written can be shaded.
 TEST_F(Import, CamerasFarAwayAndBentOutOfShape) {
     for (const char* place :
-         {R"("translation":[0,0,1e12])", R"("translation":[1e30,0,0])", R"("translation":[0,0,5],"scale":[0,0,0])",
+         {R"("translation":[0,0,1e12])", R"("translation":[1e30,0,0])",
+          R"("translation":[0,0,5],)"
+          R"("scale":[0,0,0])",
           R"("matrix":[1,0,0,0, 0,0,1,0, 0,0,1,0, 0,0,3,1])", R"("translation":[0.5,0.5,99000])"}) {
         const std::string nodes = std::string(R"([{"mesh":0,"children":[1]},{"camera":0,)") + place + "}]";
         const std::string file = gltf::square(
@@ -166,7 +174,10 @@ TEST_F(Import, RefusesWhatIsWrong) {
     expectRefused({"import", path("none.glb"), "-o", out()}, 3, "none.glb");
     expectRefused({"import", write("a.glb", "glTF"), "-o", out()}, 3, "a.glb: ends within the header");
     expectRefused({"import", write("a.obj", "v 0 0 0"), "-o", out()}, 2, "a.obj");
-    expectRefused({"import", write("b.gltf", gltf::squareJson("", R"([{"mesh":0}])", "", R"(,"uri":"none.bin")")),
+    expectRefused({"import",
+                   write("b.gltf", gltf::squareJson("", R"([{"mesh":0}])", "",
+                                                    R"(,)"
+                                                    R"("uri":"none.bin")")),
                    "-o", out()},
                   3, "none.bin");
 }

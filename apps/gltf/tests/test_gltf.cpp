@@ -90,8 +90,9 @@ TEST(Gltf, JsonWithABufferInTextOrInAFile) {
 }
 
 TEST(Gltf, NodesMoveTurnScaleAndMirror) {
-    const GltfScene s = decoded(square(
-        "", R"([{"children":[1,2],"translation":[10,0,0]},{"mesh":0,"rotation":[0,0,0.70710678,0.70710678],"scale":[2,1,1]},
+    const GltfScene s =
+        decoded(square("", R"([{"children":[1,2],"translation":[10,0,0]},{"mesh":0,"rotation":[0,0,0.70710678,)"
+                           R"(0.70710678],"scale":[2,1,1]},
                 {"mesh":0,"matrix":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,5,1]}])"));
     ASSERT_EQ(s.mesh.vertexCount(), 8u);
     EXPECT_NEAR(position(s, 1)[0], 10, 1e-6);  // (2, 0, 0) a quarter turn about z, moved
@@ -143,12 +144,14 @@ TEST(Gltf, StripsFansAndNoIndices) {
 TEST(Gltf, SparseAndNormalisedAccessors) {
     // Vertex 1 is moved to (7, 8, 9).
     const std::string extra = gltf::bytesOf<uint32_t>({1}) + gltf::bytesOf<float>({7, 8, 9});
-    std::string json = with(
-        squareJson(), R"("count":4,"type":"VEC3")",
-        R"("count":4,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":3,"componentType":5125},"values":{"bufferView":3,"byteOffset":4}})");
+    std::string json =
+        with(squareJson(), R"("count":4,"type":"VEC3")",
+             R"("count":4,"type":"VEC3","sparse":{"count":1,"indices":{"bufferView":3,"componentType":5125},)"
+             R"("values":{"bufferView":3,"byteOffset":4}})");
     json = with(json, R"("byteLength":92)", R"("byteLength":108)");
-    json =
-        with(json, R"("byteLength":12}])", R"("byteLength":12},{"buffer":0,"byteOffset":92,"byteLength":16}])");
+    json = with(json, R"("byteLength":12}])",
+                R"("byteLength":12},{"buffer":0,"byteOffset":92,)"
+                R"("byteLength":16}])");
     const GltfScene s = decoded(glb(json, squareBuffer() + extra));
     EXPECT_EQ(position(s, 1), (std::vector<float>{7, 8, 9}));
     EXPECT_EQ(position(s, 2), (std::vector<float>{1, 1, 0}));
@@ -171,9 +174,12 @@ TEST(Gltf, CamerasAndLights) {
         decoded(square("", R"([{"mesh":0,"children":[1,2,3]},{"camera":0,"translation":[0,0,5]},
                 {"extensions":{"KHR_lights_punctual":{"light":0}},"rotation":[-0.70710678,0,0,0.70710678]},
                 {"extensions":{"KHR_lights_punctual":{"light":1}},"translation":[0,2,0]}])",
-                       R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1,"aspectRatio":2}}],
-            "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","intensity":3,"color":[1,0.5,0]},
-            {"type":"spot","intensity":10,"range":4,"spot":{"innerConeAngle":0.2,"outerConeAngle":0.4}}]}})"));
+                       R"(,"cameras":[{"type":"perspective","perspective":{"yfov":0.5,"znear":0.1,)"
+                       R"("aspectRatio":2}}],
+            "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","intensity":3,)"
+                       R"("color":[1,0.5,0]},
+            {"type":"spot","intensity":10,"range":4,"spot":{"innerConeAngle":0.2,)"
+                       R"("outerConeAngle":0.4}}]}})"));
     ASSERT_EQ(s.cameras.size(), 1u);
     EXPECT_EQ(s.cameras[0].position, (Triple{0, 0, 5}));
     EXPECT_EQ(s.cameras[0].verticalFov, 0.5);
@@ -196,10 +202,14 @@ TEST(Gltf, MaterialsThatScatter) {
         EXPECT_EQ(s.materials.size(), 1u);
         return s.materials.at(0);
     };
-    const GltfMaterial wax = material(
-        R"({"name":"Wax","pbrMetallicRoughness":{"baseColorFactor":[0.8,0.7,0.6,1],"metallicFactor":0,"roughnessFactor":0.5},"extensions":{
-            "KHR_materials_ior":{"ior":1.4},"KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":1,"diffuseTransmissionColorFactor":[1,0.9,0.8]},
-            "KHR_materials_volume":{"thicknessFactor":0.02,"attenuationDistance":0.002,"attenuationColor":[0.5,0.25,0.1]},
+    const GltfMaterial wax =
+        material(R"({"name":"Wax","pbrMetallicRoughness":{"baseColorFactor":[0.8,0.7,0.6,1],"metallicFactor":0,)"
+                 R"("roughnessFactor":0.5},"extensions":{
+            "KHR_materials_ior":{"ior":1.4},)"
+                 R"("KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":1,)"
+                 R"("diffuseTransmissionColorFactor":[1,0.9,0.8]},
+            "KHR_materials_volume":{"thicknessFactor":0.02,"attenuationDistance":0.002,)"
+                 R"("attenuationColor":[0.5,0.25,0.1]},
             "KHR_materials_volume_scatter":{"multiscatterColor":[0.9,0.6,0.3],"scatterAnisotropy":0.5}}})");
     const GltfLook look = lookOf(wax, "Wax", 3, "");
     EXPECT_EQ(look.how, "volume");
@@ -224,7 +234,8 @@ TEST(Gltf, MaterialsThatScatter) {
 
     const GltfMaterial leaf = material(
         R"({"pbrMetallicRoughness":{"baseColorFactor":[0.3,0.5,0.2,1],"metallicFactor":0},"extensions":{
-            "KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":0.4,"diffuseTransmissionColorFactor":[0.2,0.6,0.1]}}})");
+            "KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":0.4,)"
+        R"("diffuseTransmissionColorFactor":[0.2,0.6,0.1]}}})");
     const GltfLook sheet = lookOf(leaf, "Leaf", 1, "");
     EXPECT_EQ(sheet.how, "thin sheet");
     EXPECT_GT(sheet.material.material.thinThickness, 0);
@@ -276,7 +287,9 @@ TEST(Gltf, WrongFilesSayWhatAndWhere) {
     expectSays(json2(R"([{"mesh":0}])", R"([{"mesh":0,"children":[1]},{"children":[2]},{"children":[1]}])"),
                {"nodes[1]"});
     expectSays(json2(R"([{"mesh":0}])", R"([{"mesh":0,"scale":[1,1]}])"), {"nodes[0].scale", "2 values"});
-    expectSays(errorOf(square("", R"([{"mesh":0}])", R"(,"extensionsRequired":["KHR_draco_mesh_compression"])")),
+    expectSays(errorOf(square("", R"([{"mesh":0}])",
+                              R"(,)"
+                              R"("extensionsRequired":["KHR_draco_mesh_compression"])")),
                {"extensionsRequired[0]", "KHR_draco"});
     std::string bad = squareBuffer();
     const float infinite = INFINITY;
@@ -343,7 +356,8 @@ TEST(Gltf, DecodedAccessorsCountTowardsTheLimitOfInput) {
 
 // Cameras and lights that no scene file can hold are left out with a warning; the rest is imported.
 TEST(Gltf, CamerasAndLightsAtInfinity) {
-    for (const char* place : {R"("translation":[0,0,1e12])", R"("translation":[1e9,0,0],"scale":[1,1,1e-9])"}) {
+    for (const char* place : {R"("translation":[0,0,1e12])", R"("translation":[1e9,0,0],"scale":[1,1,)"
+                                                             R"(1e-9])"}) {
         const ImportedGltf made = imported(nodesWith("\"camera\":0", place), "," + camera);
         EXPECT_TRUE(made.gltf.cameras.empty()) << place;
         EXPECT_TRUE(warns(made, "cameras are left out")) << place;
@@ -357,10 +371,10 @@ TEST(Gltf, CamerasAndLightsAtInfinity) {
         for (size_t i = 0; i < 3; ++i) cosine += c.up[i] * c.forward[i];
         EXPECT_LT(std::abs(cosine), 0.9) << place;
     }
-    EXPECT_NE(
-        errorOf(square("", R"([{"mesh":0,"scale":[1e12,1e12,1e12],"children":[1]},{"scale":[1e12,1e12,1e12],"children":[2]},{"scale":[1e12,1,1]}])"))
-            .find("nodes[2]"),
-        std::string::npos);
+    EXPECT_NE(errorOf(square("", R"([{"mesh":0,"scale":[1e12,1e12,1e12],"children":[1]},{"scale":[1e12,1e12,)"
+                                 R"(1e12],"children":[2]},{"scale":[1e12,1,1]}])"))
+                  .find("nodes[2]"),
+              std::string::npos);
 }
 
 // A lamp of 1 kW as Blender writes it would make everything white.
@@ -379,7 +393,8 @@ TEST(Gltf, LightsGetAFactorThatExposesTheScene) {
     const ImportedGltf literal = lit(lamp, 1);
     EXPECT_EQ(literal.lightFactor, 1);
     EXPECT_TRUE(warns(literal, "too bright"));
-    EXPECT_EQ(
-        lit(R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point","intensity":16}]}})").lightFactor,
-        1);
+    EXPECT_EQ(lit(R"("extensions":{"KHR_lights_punctual":{"lights":[{"type":"point",)"
+                  R"("intensity":16}]}})")
+                  .lightFactor,
+              1);
 }

@@ -21,8 +21,8 @@ void spread(const uint8_t* from, size_t count, float* to, size_t stride) {
     }
 }
 
-// Values of the wanted channels as floats at their places. In a chunk rows follow each other, in each row
-// the channels.
+// Copies the values of the wanted channels to their destinations as floats. A chunk is a sequence of rows, a
+// row a sequence of channels.
 exr_result_t unpack(exr_decode_pipeline_t* decode) {
     const auto* at = static_cast<const uint8_t*>(decode->unpacked_buffer);
     for (int32_t row = 0; row < decode->chunk.height; ++row)
@@ -107,7 +107,7 @@ void ExrLines::read(int part, int begin, int end, size_t width, const std::vecto
     file_->check(exr_get_compression(file_->context, part, &compression));
     int32_t rows = 1;
     file_->check(exr_get_scanlines_per_chunk(file_->context, part, &rows));
-    // Both libraries read the headers; of an attribute that comes twice each may take another.
+    // Both libraries read the headers, and may choose differently if an attribute occurs twice.
     const auto mustBe = [&](bool same) {
         if (!same)
             throw FileError(file_->path, "is damaged: its chunks are of another size than its picture");
@@ -143,8 +143,8 @@ void ExrLines::read(int part, int begin, int end, size_t width, const std::vecto
         }
         if (first) {
             file_->check(exr_decoding_choose_default_routines(file_->context, part, &decode));
-            // The library's own fails where not all channels are wanted. None where values are read
-            // straight to their places.
+            // OpenEXR's own unpacking fails if some channels are not wanted. Null if values are read directly
+            // to their destinations.
             if (decode.unpack_and_convert_fn) decode.unpack_and_convert_fn = unpack;
         }
         file_->check(exr_decoding_run(file_->context, part, &decode));

@@ -1,5 +1,5 @@
-// OpenEXR files in. Bands of rows are decoded side by side, each by a reader of its own over the same
-// bytes: no pool of threads that a forked process would miss.
+// Reads OpenEXR files. Bands of rows are decoded in parallel, each by its own reader over the same bytes: a
+// thread pool would be missing in a forked process.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfCompressionAttribute.h>
 #include <OpenEXR/ImfFloatAttribute.h>
@@ -54,7 +54,7 @@ class MemoryStream final : public Imf::IStream {
     uint64_t at_ = 0;
 };
 
-// What to read of a part.
+// How a part is read.
 struct PartPlan {
     Imath::Box2i data;
     int rows = 1;  // of a band: whole chunks, or whole tiles
@@ -62,7 +62,7 @@ struct PartPlan {
     std::vector<std::string> names;  // of its channels, in the order of the image
 };
 
-// Colours in the order in which people name them, channels otherwise by name; layer by layer.
+// Sorts by layer, then R, G, B, A in this order, then by name.
 void sortChannels(std::vector<std::string>& names) {
     const auto key = [](const std::string& name) {
         const size_t dot = name.rfind('.');
@@ -117,7 +117,7 @@ PartPlan planPart(Image& image, const Imf::Header& header, int part, bool severa
     sortChannels(plan.names);
     checkImageSize(image.source, plan.data.max.x - plan.data.min.x + 1, plan.data.max.y - plan.data.min.y + 1,
                    double(plan.names.size()), limit);
-    // A channel with its part's name, unless the file has one part only or the name says it already.
+    // Channels of multi-part files are prefixed with the name of their part, unless they have that prefix.
     const std::string prefix =
         severalParts && header.hasName() && !header.name().empty() ? header.name() + "." : "";
     for (const std::string& name : plan.names) {
@@ -131,14 +131,13 @@ PartPlan planPart(Image& image, const Imf::Header& header, int part, bool severa
     return plan;
 }
 
-// Whether rows of the file are rows of the picture.
+// Whether a stored row has the width and position of a row of the picture.
 bool isDirect(const Imath::Box2i& data, const Imath::Box2i& display) {
     return data.min.x == display.min.x && data.max.x == display.max.x && data.min.y >= display.min.y &&
            data.max.y <= display.max.y;
 }
 
-// Rows from `begin` to before `end` of a part to the places of its channels, one for each channel of the
-// image.
+// Reads the rows [begin, end) of a part to `places`, one per channel of the image.
 void readLines(const ExrLines& lines, int part, const PartPlan& plan, const std::vector<Place>& places,
                int top, int begin, int end) {
     const auto width = size_t(plan.data.max.x - plan.data.min.x + 1);
@@ -152,7 +151,7 @@ void readLines(const ExrLines& lines, int part, const PartPlan& plan, const std:
     if (!targets.empty()) lines.read(part, begin, end, width, targets);
 }
 
-// The same for any part.
+// Like readLines, for every kind of part.
 void readBand(const Image& image, Imf::MultiPartInputFile& file, int part, const PartPlan& plan,
               const std::vector<Place>& places, int begin, int end) {
     const Imath::Box2i &data = plan.data, display = file.header(part).displayWindow();
@@ -169,7 +168,7 @@ void readBand(const Image& image, Imf::MultiPartInputFile& file, int part, const
         const size_t stride = direct ? place.stride : 1;
         float* firstPixel =
             direct ? place.first + size_t(begin - display.min.y) * width * stride : bands.back().data();
-        // OpenEXR wants the place where the pixel (0, 0) of its coordinates would be, which may lie outside.
+        // OpenEXR takes the address of pixel (0, 0) in its coordinates, which may be outside of the buffer.
         const int64_t origin = (int64_t(begin) * int64_t(width) + data.min.x) * int64_t(stride * sizeof(float));
         char* base = reinterpret_cast<char*>(reinterpret_cast<uintptr_t>(firstPixel) - uintptr_t(origin));
         frame.insert(plan.names[c],
@@ -191,7 +190,7 @@ void readBand(const Image& image, Imf::MultiPartInputFile& file, int part, const
         }
 }
 
-// None for a file that this library refuses and the other one does not.
+// Null if the C library refuses the file; the C++ library then decides.
 std::unique_ptr<const ExrLines> linesOf(const std::string& path, const std::string& bytes) {
     try {
         return std::make_unique<const ExrLines>(path, bytes);
@@ -204,8 +203,8 @@ struct Band {
     int part, begin, end;
 };
 
-// Runs worker(next) on every processor; next() gives one number below `count` after another to whoever
-// asks. What one throws ends all and is thrown here.
+// Runs worker(next) on every processor. next() hands out the numbers below `count`. An exception stops all
+// workers and is rethrown.
 template <class Worker>
 void onProcessors(size_t count, const Worker& worker) {
     std::atomic<size_t> next{0};

@@ -1,5 +1,5 @@
-// OpenEXR files out: one part of scan lines, encoded in memory, so that disk errors can only happen in one
-// place.
+// Writes OpenEXR files of one part with scan lines. They are encoded in memory, so that only one place has to
+// handle disk errors.
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFloatVectorAttribute.h>
@@ -41,7 +41,7 @@ class MemoryOutput final : public Imf::OStream {
     size_t at_ = 0;
 };
 
-// OpenEXR's pool of threads, for the time of one file: a process that forks later must find none.
+// OpenEXR's thread pool exists while a file is written only, because it would be missing after a fork.
 class Threads {
   public:
     Threads() : lock_(mutex()) { Imf::setGlobalThreadCount(int(std::thread::hardware_concurrency())); }

@@ -145,7 +145,7 @@ ImageFormat imageFormat(const std::string& path, std::string bytes, uint64_t lim
         if (k.extension == extension) named = &k;
         if (!found && !k.beginning.empty() && bytes.starts_with(k.beginning)) found = &k;
     }
-    // A TGA may begin with any bytes, including the letters of another format: its own check decides.
+    // A TGA file has no signature, and may begin like another format: its header decides.
     if (!named->beginning.empty() && (!found || found->name != named->name))
         throw FileError(
             path, "is not " + std::string(named->name) + ", although its name says so: " +

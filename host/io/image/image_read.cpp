@@ -1,4 +1,4 @@
-// Reading of images: what imageFormat() accepted is decoded from memory.
+// Decodes images in memory after imageFormat() has checked them.
 #include <utility>
 
 #include "io/file_error.h"

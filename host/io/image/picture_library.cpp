@@ -24,9 +24,8 @@ struct Loaded {
 
 Loaded load() {
     Loaded loaded;
-    // Beside libpellucid or in its own folder there, wherever that was found: in a build, in an installed
-    // tree that may have been moved, in the Python package. By name alone, the program's own search path
-    // decides.
+    // First beside libpellucid, or in a folder there: in a build, an installed tree that may have been moved,
+    // or the Python package. Then by name, in the program's search path.
     const std::string beside = pel::system::folderOf(reinterpret_cast<const void*>(&pelVersion));
     for (const std::string& folder : {beside, beside + "pellucid/", std::string()}) {
         const std::string file = folder + PELLUCID_PICTURES;

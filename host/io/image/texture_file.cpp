@@ -64,8 +64,8 @@ void check(const Texture& t) {
                                     " bytes, not " + std::to_string(t.bytes.size()));
 }
 
-// What the bytes of a texel mean [Khronos Data Format Specification 1.3]: one basic block with four float
-// samples, or with one for the whole of a compressed block.
+// The data format descriptor [Khronos Data Format Specification 1.3]: one basic block with four float
+// samples, or with one sample for a compressed block.
 Bytes formatDescriptor(Texture::Format format) {
     const FormatFacts f = factsOf(format);
     const bool compressed = f.blockSide > 1;

@@ -215,7 +215,7 @@ class Search {
         return result;
     }
 
-    // Which end of a subset's line its anchor is nearer to must come first.
+    // The end point that is nearer to the anchor must come first, since the anchor's index has one bit less.
     void orient(Ends& ends, int subsets, int partition) const {
         for (int s = 0; s < subsets; ++s) {
             Vec &a = ends[size_t(2 * s)], &b = ends[size_t(2 * s + 1)];
@@ -269,7 +269,7 @@ class Search {
         if (found.cost < worst.cost) worst = found;
     }
 
-    // Steps of one in each end point, and of both ends of a line together, as long as they help.
+    // Steps of one in each end point, and in both end points of a line together, while the error decreases.
     void polish(Candidate& candidate) const {
         if (candidate.cost == never) return;
         const Mode& m = mode(candidate.block.mode);

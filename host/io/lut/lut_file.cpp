@@ -211,7 +211,7 @@ PelLutInfo lutInfoOf(const Image& image) {
         info.curvature.axis = PelLutAxis(indexOf(path, "pellucid:axis", needText("pellucid:axis"), lutAxes));
     }
     if (info.kind == PEL_LUT_SHADOW) {
-        // Files from before these options have neither.
+        // Older files lack these attributes.
         info.shadow.axis = PEL_AXIS_LINEAR;
         info.shadow.closedEnds = 0;
         if (image.attribute("pellucid:axis"))
@@ -240,7 +240,7 @@ PelLutInfo lutInfoOf(const Image& image) {
 
 LutTexels decodeLut(const std::string& path, std::string bytes) {
     LutTexels table;
-    // Memory for the channels, all channels interleaved, the device's copy, and one copy on the way there.
+    // Four copies exist: the channels, the interleaved texels, the device's buffer and a staging copy.
     const uint64_t limit = inputLimit() / 4;
     const Image image = decodeImage(
         path, std::move(bytes), [&](const Image& header) { table.info = lutInfoOf(header); }, limit);

@@ -115,7 +115,7 @@ void checkNormals(MeshData& mesh) {
                             " missing, zero or not finite");
 }
 
-// Neighbours that face opposite ways: turned, or told.
+// Reorients triangles that face another way than their neighbours, or adds a warning.
 void checkOrder(MeshData& mesh, bool orient) {
     PelMeshTopologyDesc desc = pelMeshTopologyDescDefaults();
     desc.numVertices = static_cast<uint32_t>(mesh.vertexCount());

@@ -77,8 +77,8 @@ Uv middle(const Uv& a, const Uv& b) {
     return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])};
 }
 
-// The corners of the faces after one level: quads round the middle of each face before it, each with one of
-// its corners, whose vertex keeps its number below `before`.
+// The corners after one level of subdivision. Each corner of a face becomes a quad with the face's centre;
+// the vertex of that corner keeps its number, which is below `before`.
 std::vector<FaceCorners> subdividedCorners(const PolyMesh& mesh, const std::vector<FaceCorners>& faces,
                                            int before) {
     std::map<std::vector<int>, const FaceCorners*> known;  // by their vertices in order of number

@@ -26,7 +26,7 @@ std::string outOfRange(long long index, long long first, size_t count, std::stri
            std::to_string(static_cast<long long>(count) - 1 + first) + " would be right";
 }
 
-// Ends a face of the corners behind the last one; false, and nothing of it is kept, where a vertex comes
+// Ends a face that consists of the corners since the last face. Drops it and returns false if a vertex occurs
 // twice.
 bool endFace(RawMesh& mesh) {
     const auto first = mesh.corners.begin() + mesh.faceStart.back();
@@ -41,7 +41,7 @@ bool endFace(RawMesh& mesh) {
     return true;
 }
 
-// An OBJ's lists: vertices, texture coordinates, normals. A face may name what comes later in the file.
+// The lists of an OBJ file: vertices, texture coordinates, normals. A face may refer to later elements.
 enum { V, VT, VN };
 constexpr const char* listNames[3] = {"vertex", "texture coordinate", "normal"};
 
@@ -73,7 +73,7 @@ struct ObjFace {
     int line;
 };
 
-// The faces of an OBJ, once all that they may name is known.
+// Resolves the faces of an OBJ file after all lists have been read.
 void assemble(const std::string& path, const std::vector<ObjFace>& faces, const std::vector<float>& uvs,
               const std::vector<float>& normals, RawMesh& mesh) {
     const size_t counts[3] = {mesh.positions.size() / 3, uvs.size() / 2, normals.size() / 3};
@@ -103,7 +103,7 @@ void assemble(const std::string& path, const std::vector<ObjFace>& faces, const 
     if (!mesh.cornerUvs.empty()) mesh.cornerUvs.resize(2 * mesh.corners.size(), 0.0f);
 }
 
-// Vertices of an STL, which has each once for every facet: the same position is the same vertex.
+// STL files repeat a vertex for every facet; equal positions become one vertex.
 class StlVertices {
   public:
     explicit StlVertices(RawMesh& mesh) : mesh_(mesh) {}
@@ -180,7 +180,7 @@ RawMesh readOff(const std::string& path, const std::string& text) {
         if (normals)
             for (size_t i = 3; i < 6; ++i) mesh.normals.push_back(scan.number(i, "normal"));
         if (uvs) {
-            // Colours come before them, in several ways.
+            // Colours of varying length precede the texture coordinates.
             const size_t count = scan.words().size();
             if (count < (normals ? 6u : 3u) + 2) scan.fail("the texture coordinates are missing");
             for (size_t i = count - 2; i < count; ++i)

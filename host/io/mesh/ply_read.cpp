@@ -1,5 +1,4 @@
-// PLY files [Turk 1994]: the header word by word, then every value that it announces. OpenMesh's reader fails
-// at lists in vertices, among others.
+// Reads PLY files [Turk 1994]. OpenMesh's reader fails, for example, at lists in vertices.
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -197,7 +196,7 @@ class BinaryBody {
     bool swap_;
 };
 
-// The same of a text: a line for each element.
+// The values of a text body, which has a line per element.
 class AsciiBody {
   public:
     AsciiBody(const std::string& path, const std::string& text, const Header& header)
@@ -241,7 +240,7 @@ class AsciiBody {
     size_t word_ = 0;
 };
 
-// What the values of a vertex are.
+// Names of the vertex properties that are used.
 constexpr std::string_view vertexNames[][3] = {
     {"x"}, {"y"}, {"z"}, {"nx"}, {"ny"}, {"nz"}, {"u", "s", "texture_u"}, {"v", "t", "texture_v"}};
 constexpr size_t firstNormal = 3, firstUv = 6, vertexValues = 8;

@@ -38,7 +38,7 @@ std::string kindOf(mode_t mode) {
     return "a device";
 }
 
-// Opens what is a regular file and tells its size.
+// Opens a regular file and returns its size.
 int opened(const std::string& path, uint64_t& bytes) {
     const std::string other = otherThanFile(path);
     if (other.empty()) {

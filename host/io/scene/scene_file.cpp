@@ -41,7 +41,8 @@ void readLut(TomlReader& reader, SceneFile& scene, PelLutKind kind, LutPreset pr
     scene.luts.push_back(std::move(lut));
 }
 
-// Makes a direction unit; one that is nearly so keeps its bits, so that scenes can be written and read again.
+// Normalises a direction. Nearly normalised directions keep their bits, so that a written scene reads back
+// equal.
 void makeUnit(TomlReader& reader, const char* key, float (&v)[3]) {
     const double length = std::hypot(double(v[0]), double(v[1]), double(v[2]));
     if (length == 0) reader.fail(key, "is (0, 0, 0); a direction is needed");
@@ -124,7 +125,7 @@ void checkReferences(const SceneFile& scene, const TomlReader& channels) {
     }
 }
 
-// Of eyes: their materials, and the inputs that they need.
+// Checks the materials of eyes and the inputs that eyes need.
 void checkEyes(const SceneFile& scene, const TomlReader& channels) {
     for (const SceneEye& eye : scene.eyes) {
         const auto isIts = [&](const SceneMaterial& m) { return m.id == eye.material; };

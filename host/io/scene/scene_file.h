@@ -72,7 +72,8 @@ struct SceneFile {
     std::string source;  // the file, for messages
     // Of the G-buffer per image slot; empty: slot not set
     std::array<std::vector<std::string>, PEL_SLOT_COUNT> channels;
-    PelShaderOptions options = pelShaderOptionsDefaults();  // scenes set the fields in optionKeys() of scene_keys.h
+    // Scenes set the fields in optionKeys() of scene_keys.h
+    PelShaderOptions options = pelShaderOptionsDefaults();
     std::string reflectionCube;  // image of the surroundings that eyes reflect, as ambientCube; "": none
     // Image of an irradiance cube map, six faces below or beside one another; "": none
     std::string ambientCube;

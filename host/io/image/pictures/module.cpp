@@ -51,7 +51,7 @@ void decode(Image& image, const ImageFormat& format, const std::function<void(co
     }
 }
 
-// In memory, so that disk errors can only happen in one place.
+// Encodes in memory, so that only one place has to handle disk errors.
 std::string encode(const std::string& path, int width, int height, int channels,
                    std::span<const uint8_t> pixels, bool srgb) {
     ImageSpec spec(width, height, channels, TypeDesc::UINT8);

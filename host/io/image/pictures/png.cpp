@@ -1,5 +1,4 @@
-// PNG files by libpng: what builds without OpenImageIO read and write of pictures (PELLUCID_PICTURES=PNG).
-// Labels are left out.
+// PNG files by libpng, for builds without OpenImageIO (PELLUCID_PICTURES=PNG). Labels are not drawn.
 #include <png.h>
 
 #include <csetjmp>
@@ -19,8 +18,7 @@ struct Source {
     size_t left;
 };
 
-// libpng leaves a function at an error by longjmp, to which destructors are unknown: what has one lives in
-// the callers.
+// libpng reports errors by longjmp, which skips destructors. So objects with destructors live in the callers.
 struct Reader {
     png_structp png = nullptr;
     png_infop info = nullptr;
