@@ -59,31 +59,13 @@ Reader gltfScenes(const Folder& folder) {
             io::parseScene("scene.toml", io::sceneText(made.scene));
         },
         {},
-        {"\"bufferView\":",
-         "\"byteOffset\":",
-         "\"byteStride\":",
-         "\"count\":",
-         "\"sparse\":",
-         "\"children\":[0]",
-         "\"componentType\":5125",
-         "5121",
-         "5126",
-         "VEC4",
-         "\"uri\":\"a\"",
-         "null",
-         "{}",
-         "[]",
-         "-1",
-         "1e308",
-         "9007199254740992",
-         "4294967295",
-         "\"mode\":6",
-         "true"},
+        wordsOf(R"("bufferView": "byteOffset": "byteStride": "count": "sparse": "children":[0] "uri":"a")"
+                R"( "componentType":5125 5121 5126 VEC4 null {} [] -1 1e308 9007199254740992 4294967295)"
+                R"( "mode":6 true)"),
         [json = nlohmann::json::parse(gltf::squareJson(",\"material\":0,\"mode\":5", nodes, more))](Random& random) {
-            static const std::vector<std::string> words = {
-                "SCALAR",      "VEC2", "VEC3",     "VEC4",        "MAT4",     "orthographic",
-                "perspective", "spot", "point",    "directional", "POSITION", "data:;base64,AAAA",
-                "a.bin",       "",     "image/png"};
+            static const std::vector<std::string> words = wordsOf(
+                "SCALAR VEC2 VEC3 VEC4 MAT4 orthographic perspective spot point directional POSITION a.bin "
+                "data:;base64,AAAA image/png");
             nlohmann::json document = json;
             mutateJson(random, document, words);
             std::string buffer = gltf::squareBuffer();

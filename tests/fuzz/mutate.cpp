@@ -10,28 +10,11 @@ namespace {
 
 constexpr size_t longest = 1 << 16;
 
-constexpr uint64_t special[] = {0,
-                                1,
-                                2,
-                                3,
-                                0x7f,
-                                0x80,
-                                0xff,
-                                0x100,
-                                0x3fff,
-                                0x7fff,
-                                0x8000,
-                                0xffff,
-                                0x10000,
-                                0x7fffffff,
-                                0x80000000,
-                                0xffffffff,
-                                0x7f800000,
-                                0x7fc00000,
-                                0x100000000,
-                                0x7fffffffffffffff,
-                                0x8000000000000000,
-                                0xffffffffffffffff};
+// Small numbers, and the ends of the integer types and of floats.
+constexpr uint64_t special[] = {0,           1,          2,          3,          0x7f,       0x80,
+                                0xff,        0x100,      0x3fff,     0x7fff,     0x8000,     0xffff,
+                                0x10000,     0x7fffffff, 0x80000000, UINT32_MAX, 0x7f800000, 0x7fc00000,
+                                0x100000000, INT64_MAX,  1ull << 63, UINT64_MAX};
 
 // A number in place of 1, 2, 4 or 8 bytes, in either order, or a little more or less than what is there.
 void number(Random& r, std::string& b) {

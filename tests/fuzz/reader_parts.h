@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <pellucid/pellucid.hpp>
 #include <sstream>
 
@@ -31,7 +32,13 @@ inline std::string bytesOf(const std::string& path) {
     return text.str();
 }
 
-// What OpenImageIO writes of a small picture of bytes.
+// The words of a text between blanks.
+inline std::vector<std::string> wordsOf(const std::string& text) {
+    std::istringstream words(text);
+    return {std::istream_iterator<std::string>(words), {}};
+}
+
+// A small 8-bit picture, written by OpenImageIO.
 std::string picture(const Folder& folder, const std::string& extension, int channels);
 
 void addMeshes(std::vector<Reader>& all, const Folder& folder);

@@ -15,33 +15,13 @@ namespace {
 
 using namespace pellucid;
 
-const std::vector<std::string> tomlWords = {"[[",
-                                            "]]",
-                                            "[",
-                                            "]",
-                                            "{",
-                                            "}",
-                                            "\"\"\"",
-                                            "'''",
-                                            " = ",
-                                            ".",
-                                            ",",
-                                            "\n",
-                                            "inf",
-                                            "nan",
-                                            "1e400",
-                                            "-1",
-                                            "9223372036854775807",
-                                            "0x7f",
-                                            "\\u0000",
-                                            "true",
-                                            "2020-01-01",
-                                            "a.b.c",
-                                            "\""};
+const std::string tomlWords =
+    R"([[ ]] [ ] { } """ ''' = . , inf nan 1e400 -1 9223372036854775807 0x7f \u0000 true 2020-01-01 a.b.c ")";
 
 Reader text(const std::string& name, std::vector<std::string> seeds,
             std::function<void(const std::string&)> read, const std::vector<std::string>& more) {
-    Reader r{name, std::move(seeds), std::move(read), {}, tomlWords};
+    Reader r{name, std::move(seeds), std::move(read), {}, wordsOf(tomlWords)};
+    r.words.emplace_back("\n");
     r.words.insert(r.words.end(), more.begin(), more.end());
     return r;
 }
