@@ -129,14 +129,10 @@ void materialKeys(Visitor& v, Material& m) {
 }
 
 template <class Visitor, class Scene>
-void optionKeys(Visitor& v, Scene& s) {
-    v.integer("blur_normals", s.options.blurNormals, {0, 1});
-    v.integer("rotate_taps", s.options.rotateTaps, {0, 1});
-    v.integer("every_pixel", s.options.everyPixel, {0, 1});
-    v.integer("frame_index", s.options.frameIndex, range::notNegative);
-    v.number("target_error", s.options.targetError, range::options::targetError);
-    v.number("unit_mm", s.options.millimetresPerUnit, range::options::millimetresPerUnit);
-    v.text("reflection_cube", s.reflectionCube);
+void optionKeys(Visitor& v, Scene& scene) {
+    auto& s = scene.options;
+    PEL_EACH_OPTION_FIELD(PELLUCID_FIELD_KEY)
+    v.text("reflection_cube", scene.reflectionCube);
 }
 
 template <class Visitor, class Eye>
