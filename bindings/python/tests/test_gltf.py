@@ -87,23 +87,6 @@ def test_a_scene_as_arrays_and_structures(glb):
     assert {m.profile.info.name for m in pel.load_gltf(glb, profiles="jade").materials.values()} == {"jade"}
 
 
-def test_what_was_read_can_be_shaded(glb):
-    # Each vertex as a pixel: light past the terminator on wax, none on plaster.
-    scene = pel.load_gltf(glb)
-    device = pel.Device()
-    mesh = scene.mesh
-    curvature = pel.MeshTopology(device, mesh.triangles, positions=mesh.positions, weld="exact").curvature(mesh.positions, mesh.normals)
-    radiance = np.zeros((1, len(mesh.positions), 3), np.float32)
-    shader = pel.Shader(device).set_image("radiance", radiance).set_image("normal_shading", mesh.normals[None])
-    shader.set_image("position", mesh.positions[None]).set_image("curvature", curvature[None]).set_image("material", mesh.ids[None])
-    for number, material in scene.materials.items():
-        shader.set_material(number, material)
-    shader.set_lights(scene.lights).set_ambient(scene.ambient).set_camera(pel.Camera(position=scene.cameras[0].position)).commit().execute()
-    past = (mesh.normals[:, 2] < -0.02) & (mesh.normals[:, 2] > -0.2)
-    wax, plaster = (radiance[0, past & (mesh.ids == number)].mean(0) for number in (1, 2))
-    assert wax[0] > 0.003 and wax[0] > 2 * wax[2] and (plaster == 0).all()
-
-
 def test_it_is_saved_as_the_command_does(glb, tmp_path):
     pel.load_gltf(glb, profiles={"Plaster": "marble"}).save(tmp_path / "mine")
     assert {p.name for p in (tmp_path / "mine").iterdir()} == {"scene.toml", "mesh.obj", "mesh.mtl", "Candle_wax.toml"}

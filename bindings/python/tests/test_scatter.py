@@ -31,33 +31,15 @@ def test_light_flows_over_the_terminator_and_nowhere_else(device):
     assert np.array_equal(irradiance, result)
 
 
-def test_scales_and_materials(device):
+def test_materials_controls_and_images(device):
     irradiance, positions, ids = ball()
     scatter = pel.Scatter(device)
     assert np.array_equal(scatter.execute(irradiance, positions, ids=ids), irradiance)
-    scatter.set_material(1, pel.Profile.skin(), 0.1)
-    narrow = np.abs(scatter.execute(irradiance, positions, ids=ids) - irradiance).max()
     scatter.set_material(1, pel.Profile.skin())
-    assert np.abs(scatter.execute(irradiance, positions, ids=ids) - irradiance).max() > 2 * narrow
-    scatter.set_material(1, None)
-    assert np.array_equal(scatter.execute(irradiance, positions, ids=ids), irradiance)
-    with pytest.raises(pel.PellucidError, match="1 to 255"):
-        scatter.set_material(300, pel.Profile.skin())
-    with pytest.raises(pel.PellucidError, match="targetError"):
-        scatter.execute(irradiance, positions, ids=ids, params=pel.ScatterParams(target_error=-1))
-
-
-def test_controls_and_further_images(device):
-    irradiance, positions, ids = ball()
-    scatter = pel.Scatter(device)
-    scatter.set_material(1, pel.Profile.skin())
-    whole = scatter.execute(irradiance, positions, ids=ids)
-    for method, taps in (("separable", 25), ("screen", 64)):
-        scatter.set_controls(1, scattering=method, scatter_taps=taps)
-        tapped = scatter.execute(irradiance, positions, ids=ids)
-        assert 0 < np.sqrt(np.mean((tapped - whole) ** 2)) < 0.01
-        stats = scatter.stats()
-        assert stats.tiles_by_scattering[int(pel.Scattering[method.upper()])] == stats.tiles_tapped > 0
+    scatter.set_controls(1, scattering="separable", scatter_taps=25)
+    tapped = scatter.execute(irradiance, positions, ids=ids)
+    stats = scatter.stats()
+    assert stats.tiles_by_scattering[int(pel.Scattering.SEPARABLE)] == stats.tiles_tapped > 0
     # Half of the scattered light, and times the albedo.
     scatter.set_image("scatter_weight", np.full(ids.shape, 0.5, np.float32))
     scatter.set_image("albedo", np.full((*ids.shape, 3), 0.25, np.float32))
@@ -66,15 +48,10 @@ def test_controls_and_further_images(device):
     out = np.ones_like(irradiance)
     scatter.execute(irradiance, positions, ids=ids, out=out, params=pel.ScatterParams(accumulate=1))
     assert np.allclose(out, 1 + half, atol=1e-6)
-    # Light from behind a sheet.
-    scatter.set_controls(1, thin_thickness=0.4)
-    scatter.set_image("scatter_weight", None)
-    scatter.set_image("irradiance_back", np.ones_like(irradiance))
-    through = pel.Profile.skin().transmission([0.4])[0]
-    front = scatter.execute(np.zeros_like(irradiance), positions, ids=ids)
-    assert np.allclose(front[40, 40], 0.25 * through, atol=1e-4)
-    scatter.set_controls(1)
+    scatter.set_material(1, None)
     with pytest.raises(pel.PellucidError, match="none that a PelScatter keeps"):
         scatter.set_image("curvature", np.ones(ids.shape, np.float32))
+    with pytest.raises(pel.PellucidError, match="1 to 255"):
+        scatter.set_material(300, pel.Profile.skin())
     with pytest.raises(pel.PellucidError, match="scatterTaps is 3"):
         scatter.set_controls(1, scatter_taps=3)

