@@ -3,8 +3,8 @@
     blender -b [FILE.blend] --python render_gbuffer.py -- [MESH] -o DIR [--size WxH] ...
     pellucid shade DIR/gbuffer.exr --scene DIR/scene.toml -o picture.exr
 
-`-- --help` lists the options; docs/guide/blender.md has the steps and the conventions. Debian's Blender 3.4 has no NumPy, so this
-uses none. The .blend file is never written.
+`-- --help` lists the options; docs/guide/blender.md has the steps and the conventions. Debian's Blender 3.4
+has no NumPy, so this uses none. The .blend file is never written.
 """
 
 import argparse
@@ -26,7 +26,8 @@ def size(text):
     except ValueError:
         width = height = 0
     if width < 1 or height < 1:
-        raise argparse.ArgumentTypeError(f"'{text}': two whole numbers from 1 on are needed, such as 1280x720")
+        raise argparse.ArgumentTypeError(f"'{text}': two whole numbers from 1 on are needed, such as "
+                                         f"1280x720")
     return width, height
 
 
@@ -44,7 +45,8 @@ def pellucid_command():
     if "PELLUCID_COMMAND" in os.environ:
         return os.environ["PELLUCID_COMMAND"]
     here = os.path.dirname(os.path.abspath(__file__))
-    beside = [os.path.abspath(os.path.join(here, *way, "bin", "pellucid")) for way in (("..", "..", "build", "release"), ("..", "..", ".."))]
+    beside = [os.path.abspath(os.path.join(here, *way, "bin", "pellucid"))
+              for way in (("..", "..", "build", "release"), ("..", "..", ".."))]
     return shutil.which("pellucid") or next(filter(os.path.exists, beside), "pellucid")
 
 
@@ -54,22 +56,32 @@ def arguments():
         prog="blender -b [FILE.blend] --python render_gbuffer.py --",
         description="Renders a G-buffer, shadow maps and a scene file for `pellucid shade`.",
     )
-    parser.add_argument("mesh", nargs="?", help="OBJ, PLY, STL or OFF to add; without FILE.blend the only thing there is")
-    parser.add_argument("-o", "--output", required=True, metavar="DIR", help="folder, made if it is not there")
-    parser.add_argument("--size", type=size, metavar="WxH", help="pixels (default: the .blend file's, else 1024x1024)")
+    parser.add_argument("mesh", nargs="?",
+                        help="OBJ, PLY, STL or OFF to add; without FILE.blend the only thing there is")
+    parser.add_argument("-o", "--output", required=True, metavar="DIR",
+                        help="folder, made if it is not there")
+    parser.add_argument("--size", type=size, metavar="WxH",
+                        help="pixels (default: the .blend file's, else 1024x1024)")
     parser.add_argument("--frame", type=int, help="frame of an animation (default: the current one)")
     parser.add_argument("--unit", type=positive, metavar="MM",
-                        help="millimetres per Blender unit (default: the .blend file's unit scale; 1 without one)")
+                        help="millimetres per Blender unit (default: the .blend file's unit scale; 1 without "
+                             "one)")
     parser.add_argument("--height", type=positive, metavar="MM", help="scales MESH to this height")
-    parser.add_argument("--up", choices=("y", "z"), default="z", help="MESH's up axis: z looks to -y, y looks to +z (default z)")
-    parser.add_argument("--shadow-size", type=int, default=1024, metavar="N", help="texels a side (default 1024)")
-    parser.add_argument("--smooth", type=int, default=4, metavar="N", help="smoothing passes of the curvature (default 4)")
-    parser.add_argument("--half", action="store_true", help="half floats in gbuffer.exr; positions then carry 11 bits")
+    parser.add_argument("--up", choices=("y", "z"), default="z",
+                        help="MESH's up axis: z looks to -y, y looks to +z (default z)")
+    parser.add_argument("--shadow-size", type=int, default=1024, metavar="N",
+                        help="texels a side (default 1024)")
+    parser.add_argument("--smooth", type=int, default=4, metavar="N",
+                        help="smoothing passes of the curvature (default 4)")
+    parser.add_argument("--half", action="store_true",
+                        help="half floats in gbuffer.exr; positions then carry 11 bits")
     parser.add_argument("--pellucid", default=pellucid_command(), metavar="COMMAND",
-                        help="the pellucid command, which measures curvature (default: $PELLUCID_COMMAND, else pellucid, else the "
+                        help="the pellucid command, which measures curvature (default: $PELLUCID_COMMAND, "
+                             "else pellucid, else the "
                              "one that was built or installed with this script)")
     parser.add_argument("--preset", metavar="NAME",
-                        help="of materials that name none: auto (what their shader says: no Subsurface, no scattering), plain, skin, or a "
+                        help="of materials that name none: auto (what their shader says: no Subsurface, no "
+                             "scattering), plain, skin, or a "
                              "material of the library (default: auto; skin for a mesh alone)")
     parser.add_argument("--verbose", action="store_true", help="let Blender print what it does")
     parser.add_argument("--no-curvature", action="store_true", help="no curvature, so no direct scattering")
@@ -121,7 +133,8 @@ def main():
     for lamp in lamps:
         lights.render_shadow_map(scene, lamp, bounds, options, taken)
     sky = lights.ambient(source, options.output)
-    scene_file.write(os.path.join(options.output, "scene.toml"), unit, camera, lamps, sky, materials, found, not options.no_curvature,
+    scene_file.write(os.path.join(options.output, "scene.toml"), unit, camera, lamps, sky, materials, found,
+                     not options.no_curvature,
                      fallback)
     print(f"pellucid: {options.output}/gbuffer.exr, {options.output}/scene.toml", flush=True)
 

@@ -1,11 +1,12 @@
-"""Writes what the binding needs to know about pellucid.h, so that each structure, value and comment stands there alone.
+"""Writes what the binding needs to know about pellucid.h, so that each structure, value and comment stands
+there alone.
 
     generate_types.py HEADER OUT_PY OUT_INC
 
 OUT_PY: the enumerations and plain structures as Python classes with the header's own documentation.
-OUT_INC: for the native module, the defaults and field offsets of the same structures as the compiler sees them.
-Structures that hold pointers or handles are left out: the native module has functions for those. A handle in HANDLES is an
-attribute that takes the Python object, or its name.
+OUT_INC: for the native module, the defaults and field offsets of the same structures as the compiler sees
+them. Structures that hold pointers or handles are left out: the native module has functions for those. A
+handle in HANDLES is an attribute that takes the Python object, or its name.
 """
 import re
 import sys
@@ -39,7 +40,8 @@ def comment_before(text, position):
 def parse_enums(text):
     enums = {}
     for match in re.finditer(r"typedef enum (\w+) \{(.*?)\} \1;", text, re.S):
-        entries = re.findall(r"(PEL_\w+) =\s*([^,/\n]+?)\s*,?[ ]*(?:/\*(.*?)\*/)?\s*(?=\n|PEL_|\Z)", match.group(2), re.S)
+        entries = re.findall(r"(PEL_\w+) =\s*([^,/\n]+?)\s*,?[ ]*(?:/\*(.*?)\*/)?\s*(?=\n|PEL_|\Z)",
+                             match.group(2), re.S)
         names = [name for name, _, _ in entries]
         if not entries or len(names) != len(re.findall(r"PEL_\w+ =", match.group(2))):
             raise SystemExit(f"{match.group(1)}: an enumerator was not understood")
@@ -62,12 +64,14 @@ def parse_structs(text, enums):
         if not body.strip().startswith("uint32_t structSize"):
             continue
         fields = []
-        for declaration, doc in re.findall(r"([\w][\w \*\[\],]*);[ ]*(?:/\*(.*?)\*/)?", COMMENT_ON_OWN_LINE.sub("", body), re.S):
+        for declaration, doc in re.findall(r"([\w][\w \*\[\],]*);[ ]*(?:/\*(.*?)\*/)?",
+                                           COMMENT_ON_OWN_LINE.sub("", body), re.S):
             pointer = re.match(r"(?:const )?(\w+)\s*(\*?)\s*(\w+)((?:\[\w+\])*)$", declaration.strip())
             if not pointer:
                 raise SystemExit(f"{name}: the field '{declaration}' was not understood")
             kind, star, field, dimensions = pointer.groups()
-            fields.append((field, kind + star, [int(d) for d in re.findall(r"\[(\d+)\]", dimensions)], tidy(doc)))
+            fields.append((field, kind + star, [int(d) for d in re.findall(r"\[(\d+)\]", dimensions)],
+                           tidy(doc)))
         known = all(kind in SCALARS or kind in enums or kind in structs or kind == "char" or kind in HANDLES
                     for _, kind, _, _ in fields)
         if known:
@@ -101,11 +105,13 @@ class Translator:
 
 
 def wrapped(text, indent, width=110):
-    return "\n".join(textwrap.wrap(text, width - len(indent), initial_indent=indent, subsequent_indent=indent))
+    return "\n".join(textwrap.wrap(text, width - len(indent), initial_indent=indent,
+                                   subsequent_indent=indent))
 
 
 def python_field(field, kind, shape, enums, structs):
-    """dtype entry, descriptor, type of the argument that sets it ("" for none), and the type as the documentation says."""
+    """dtype entry, descriptor, type of the argument that sets it ("" for none), and the type as the
+    documentation says."""
     p = snake(field)
     if kind == "char":
         return f'("{p}", "S{shape[0]}")', f'TextField("{p}")', "", "str"
@@ -121,7 +127,8 @@ def python_field(field, kind, shape, enums, structs):
     dtype, number = SCALARS[kind]
     if shape:
         size = " x ".join(map(str, shape))
-        return f'("{p}", {dtype}, {tuple(shape)})', f'ArrayField("{p}")', "ArrayLike", f"array of {size} {dtype[3:]}"
+        entry = f'("{p}", {dtype}, {tuple(shape)})'
+        return entry, f'ArrayField("{p}")', "ArrayLike", f"array of {size} {dtype[3:]}"
     return f'("{p}", {dtype})', f'{number.capitalize()}Field("{p}")', number, number
 
 
@@ -149,10 +156,12 @@ def python_struct(name, doc, fields, enums, structs, say):
 
 def python_module(enums, structs):
     say = Translator(enums, structs)
-    out = ['"""Enumerations and plain structures of pellucid.h. Written by generate_types.py: do not edit."""',
+    out = ['"""Enumerations and plain structures of pellucid.h. Written by generate_types.py: do not '
+           'edit."""',
            "from __future__ import annotations\n", "import numpy as np",
            "from numpy.typing import ArrayLike\n",
-           "from ._struct import (ArrayField, Enumeration, EnumField, Flags, FloatField, IntField, ProfileField, Struct,\n                      StructField, TextField)",
+           "from ._struct import (ArrayField, Enumeration, EnumField, Flags, FloatField, IntField, "
+           "ProfileField, Struct,\n                      StructField, TextField)",
            "from typing import TYPE_CHECKING\n", "if TYPE_CHECKING:\n    from .profile import Profile\n"]
     exported = []
     for name, (doc, members) in enums.items():

@@ -1,9 +1,9 @@
 """Shares the entries of a manifest out among the workers of a Dask cluster.
 
-Dask gives pieces of the list to workers, and the pieces of a worker that dies, or that the scheduler has not heard of for its
-`worker-ttl`, to others. What is added here: files are named by content and appear whole, so that doing an entry twice changes
-nothing; an entry counts once, when this process has read its file back; and what was not done is submitted again, in halves, to other
-workers than the one that failed.
+Dask gives pieces of the list to workers, and the pieces of a worker that dies, or that the scheduler has not
+heard of for its `worker-ttl`, to others. What is added here: files are named by content and appear whole, so
+that doing an entry twice changes nothing; an entry counts once, when this process has read its file back;
+and what was not done is submitted again, in halves, to other workers than the one that failed.
 """
 from __future__ import annotations
 
@@ -32,7 +32,8 @@ PIECES_PER_WORKER = 8  # of those that are there or were asked for, so that all 
 LARGEST_PIECE = 1024  # entries
 ATTEMPTS = 3  # of an entry by itself, before it is to blame for the workers that it costs
 LOOK_SECONDS = 0.5  # between two looks at who is there
-ASK_AGAIN_SECONDS = 20  # a cluster that was asked for workers is asked for those that it lost; above Dask's 15 to notice
+# a cluster that was asked for workers is asked for those that it lost; above Dask's 15 to notice
+ASK_AGAIN_SECONDS = 20
 
 
 def on_worker(*arguments: Any) -> tuple[str, str, Any]:
@@ -54,15 +55,18 @@ def on_worker(*arguments: Any) -> tuple[str, str, Any]:
         return address, "garbage", f"{type(e).__name__}: {e}"
 
 
-# It travels as code, so that a scheduler needs no package of ours and a worker without it can say what it lacks.
+# It travels as code, so that a scheduler needs no package of ours and a worker without it can say what it
+# lacks.
 on_worker.__module__ = "__main__"
 
 
 class Dispatcher:
     """One batch on one cluster; `run` does it."""
 
-    def __init__(self, client: Any, manifest: Manifest, store: Store, *, timeout: float, jobs: int, patience: float,
-                 read_back: bool, display: Display, ask: Optional[Callable[[], None]] = None, asked: int = 0) -> None:
+    def __init__(self, client: Any, manifest: Manifest, store: Store, *, timeout: float, jobs: int,
+                 patience: float,
+                 read_back: bool, display: Display, ask: Optional[Callable[[], None]] = None,
+                 asked: int = 0) -> None:
         self._client, self._manifest, self._store, self._display = client, manifest, store, display
         self._timeout, self._jobs, self._patience, self._read_back = timeout, jobs, patience, read_back
         self._ask, self._expected = ask, asked
@@ -84,7 +88,8 @@ class Dispatcher:
         Raises
         ------
         BatchError
-            The output is full or gone; NoWorker: the scheduler is gone, or no worker came for longer than `patience`.
+            The output is full or gone; NoWorker: the scheduler is gone, or no worker came for longer than
+            `patience`.
         """
         start = time.monotonic()
         for _, message in self._manifest.errors:
@@ -92,7 +97,8 @@ class Dispatcher:
         try:
             packed = pickle.dumps(self._manifest)
             self._name = f"pellucid-{hashlib.sha256(packed).hexdigest()}"
-            distributed.Variable(self._name, client=self._client).set(packed)  # the scheduler keeps it; each worker asks once
+            # the scheduler keeps it; each worker asks once
+            distributed.Variable(self._name, client=self._client).set(packed)
             self._look()
             count = len(self._manifest)
             size = count // max(PIECES, PIECES_PER_WORKER * max(len(self._present), self._expected))
@@ -123,7 +129,8 @@ class Dispatcher:
         return self.summary
 
     def _write_index(self) -> None:
-        """Also of a batch that did not come to its end, unless its output is what failed or no table is there."""
+        """Also of a batch that did not come to its end, unless its output is what failed or no table is
+        there."""
         if not any(self._there):
             return
         other = sys.exc_info()[1]  # what is on its way to the caller
@@ -140,7 +147,8 @@ class Dispatcher:
         try:
             present = set(self._client.nthreads())
         except (OSError, TimeoutError, asyncio.TimeoutError) as e:
-            raise NoWorker(f"the scheduler {self._client.scheduler.address} does not answer any more ({e}); what is made is kept, and the "
+            raise NoWorker(f"the scheduler {self._client.scheduler.address} does not answer any more ({e}); "
+                           f"what is made is kept, and the "
                            "same call goes on from there when a scheduler is back") from e
         now = self._looked = time.monotonic()
         for address in self._present - present - self._barred:
@@ -158,7 +166,8 @@ class Dispatcher:
             raise NoWorker(f"no worker for {self._patience:.0f} s{why}")
 
     def _bar(self, address: str, why: str, restart: bool = True) -> None:
-        """Gives it no more work; a nanny, where there is one, puts a fresh process in its place unless that would be no better."""
+        """Gives it no more work; a nanny, where there is one, puts a fresh process in its place unless that
+        would be no better."""
         if address in self._barred:
             return
         self._barred.add(address)
@@ -184,8 +193,10 @@ class Dispatcher:
     # --- work goes out ---
 
     def _submit(self, indices: list[int]) -> None:
-        usable = sorted(self._present - self._barred) if self._barred else None  # if all of them go, Dask asks others
-        future = self._client.submit(on_worker, self._name, __version__, indices, self._store.out, self._jobs, self._timeout,
+        # if all of them go, Dask asks others
+        usable = sorted(self._present - self._barred) if self._barred else None
+        future = self._client.submit(on_worker, self._name, __version__, indices, self._store.out, self._jobs,
+                                     self._timeout,
                                      workers=usable or None, allow_other_workers=bool(usable), pure=False)
         self._pieces[future] = indices
         future.add_done_callback(self._answered)
@@ -205,7 +216,9 @@ class Dispatcher:
         if self._attempts[index] < ATTEMPTS:
             self._submit(indices)
         else:
-            self._close_failed(index, f"given up after {ATTEMPTS} attempts; the last trouble was: {self._last_trouble}")
+            self._close_failed(index,
+                               f"given up after {ATTEMPTS} attempts; the last trouble was: "
+                               f"{self._last_trouble}")
 
     # --- answers come in ---
 
@@ -227,7 +240,8 @@ class Dispatcher:
             self._answers.put((future, e))
 
     def _check(self, answer: dict[str, Any], indices: Sequence[int]) -> bool:
-        """Whether an entry's file is there, whole, and what the worker says. Raises where the answer has no known form."""
+        """Whether an entry's file is there, whole, and what the worker says. Raises where the answer has no
+        known form."""
         index, what = answer["index"], answer["what"]
         if index not in indices or what not in work.KINDS:
             raise ValueError(what)
@@ -236,7 +250,8 @@ class Dispatcher:
         if not self._read_back:
             return True
         data = self._store.read(self._manifest.entries[index].file)
-        return data is not None and self._manifest.holds(index, data) and hashlib.sha256(data).hexdigest() == answer["sum"]
+        return (data is not None and self._manifest.holds(index, data) and
+                hashlib.sha256(data).hexdigest() == answer["sum"])
 
     def _handle(self, future: Any, result: Any) -> None:
         indices = self._pieces.pop(future, None)
@@ -244,7 +259,8 @@ class Dispatcher:
             return  # another future does it
         if isinstance(result, StoreError):
             raise BatchError(str(result)) from result
-        if isinstance(result, (CancelledError, asyncio.CancelledError, OSError)):  # the scheduler is gone, or was for a moment
+        # the scheduler is gone, or was for a moment
+        if isinstance(result, (CancelledError, asyncio.CancelledError, OSError)):
             self._look()
             self._submit(indices)
         elif isinstance(result, BaseException):  # KilledWorker, an answer that cannot be read, ...
@@ -275,7 +291,9 @@ class Dispatcher:
                 broken += what == work.DEVICE_FAILED
                 self._last_trouble = answer["message"]
         if lies := sum(not true for _, true in answers):
-            self._bar(address, f"worker {address} gave garbage for {lies} entries: files are not in {self._store.out}, or are not what it says "
+            self._bar(address,
+                      f"worker {address} gave garbage for {lies} entries: files are not in "
+                      f"{self._store.out}, or are not what it says "
                       "that it wrote (all machines must see one and the same folder)")
         elif broken and broken == len(answers):
             self._bar(address, f"worker {address}: its device fails: {self._last_trouble}")

@@ -9,7 +9,8 @@ from .. import _in_flight, _native
 from ..device import Device
 
 if not hasattr(_native, "Manifest"):
-    raise ImportError("this package was built without toml++, which manifests need: install libtomlplusplus-dev and pip "
+    raise ImportError("this package was built without toml++, which manifests need: install "
+                      "libtomlplusplus-dev and pip "
                       "install pellucid again")
 
 
@@ -52,9 +53,9 @@ class Manifest:
     def _fill(self, handle: _native.Manifest, path: str) -> None:
         self._handle, self.path = handle, path
         self.entries = [Entry(*handle.entry(i)) for i in range(len(handle))]
-        #: (line, message) of each entry that makes no sense.
+        #: (line, message) of each invalid entry.
         self.errors = handle.errors()
-        #: How many entries ask for what an earlier one asks for.
+        #: How many entries repeat an earlier one.
         self.duplicates = handle.duplicates()
 
     def __len__(self) -> int:
@@ -82,7 +83,8 @@ class Manifest:
     def index(self, there: Sequence[bool]) -> bytes:
         """The index, JSON: `there` says per entry whether its file is there (docs/guide/batch.md)."""
         if len(there) != len(self):
-            raise ValueError(f"there has {len(there)} values; one for each of the {len(self)} entries is needed")
+            raise ValueError(f"there has {len(there)} values; one for each of the {len(self)} entries is "
+                             f"needed")
         return str(self._handle.index(self.path, list(there))).encode()
 
     # A manifest travels as texts, so that workers need no file of it.

@@ -1,4 +1,4 @@
-"""What a batch came to, and how it is told on the way."""
+"""Results of a batch, and its progress on the terminal."""
 from __future__ import annotations
 
 import sys
@@ -72,7 +72,8 @@ class Display:
         left = f", {(self._total - done) / rate:.0f} s left" if rate > 0 and not last else ""
         if self._terminal:
             bar = ("#" * (30 * done // self._total)).ljust(30, ".")
-            self._stream.write(f"\r\033[K[{bar}] {done}/{self._total}, {rate:.1f}/s{left}" + ("\n" if last else ""))
+            self._stream.write(f"\r\033[K[{bar}] {done}/{self._total}, {rate:.1f}/s{left}" +
+                               ("\n" if last else ""))
             self._shown = not last
         else:
             self._stream.write(f"{done} of {self._total}, {rate:.1f} per second{left}\n")

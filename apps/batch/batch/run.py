@@ -34,15 +34,19 @@ def _local_client(count: Optional[int], selectors: Sequence[str], timeout: float
             raise NoWorker(str(e)) from None
     if not selectors and os.environ.get("PELLUCID_DEVICE"):
         chosen = [os.environ["PELLUCID_DEVICE"]]
-    with dask.config.set({"distributed.admin.system-monitor.interval": "10s", "distributed.scheduler.worker-ttl": f"{timeout:g}s"}):
+    with dask.config.set({"distributed.admin.system-monitor.interval": "10s",
+                          "distributed.scheduler.worker-ttl": f"{timeout:g}s"}):
         workers = {i: {"cls": distributed.Nanny,
-                       "options": {"host": "127.0.0.1", "nthreads": 1, "memory_limit": 0, "silence_logs": logging.CRITICAL,
+                       "options": {"host": "127.0.0.1", "nthreads": 1, "memory_limit": 0,
+                                   "silence_logs": logging.CRITICAL,
                                    "preload": ["pellucid.batch.interrupt"],
                                    "env": {"PELLUCID_DEVICE": chosen[i % len(chosen)]}}}
                    for i in range(count or len(chosen))}
-        scheduler = {"cls": distributed.Scheduler, "options": {"host": "127.0.0.1", "port": 0, "dashboard": False,
+        scheduler = {"cls": distributed.Scheduler,
+                     "options": {"host": "127.0.0.1", "port": 0, "dashboard": False,
                                                                "dashboard_address": "127.0.0.1:0"}}
-        with distributed.SpecCluster(workers=workers, scheduler=scheduler, silence_logs=logging.CRITICAL) as cluster:
+        with distributed.SpecCluster(workers=workers, scheduler=scheduler,
+                                     silence_logs=logging.CRITICAL) as cluster:
             with distributed.Client(cluster) as client:
                 yield client
 
@@ -54,8 +58,10 @@ def _connect(scheduler: Any) -> Any:
         return distributed.Client(scheduler)
     except Exception as e:  # of a wrong address, a host that is none, another protocol, ...
         reason = str(e) or type(e).__name__
-        raise NoWorker(f"no Dask scheduler at {name}: {reason} (an address looks like tcp://host:8786, and `dask scheduler` prints "
-                       f"its own when it starts; the scheduler's Dask must be this one's, {distributed.__version__})") from e
+        raise NoWorker(f"no Dask scheduler at {name}: {reason} (an address looks like tcp://host:8786, and "
+                       f"`dask scheduler` prints "
+                       f"its own when it starts; the scheduler's Dask must be this one's, "
+                       f"{distributed.__version__})") from e
 
 
 @contextlib.contextmanager
@@ -81,17 +87,19 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
     out : path or URL
         A folder that all workers see under this name, or what fsspec knows (s3://...).
     scheduler : address, Client, cluster or None
-        A Dask cluster whose workers have this package: the address of its scheduler, a distributed.Client, or a cluster
-        object as those of dask-jobqueue and dask-kubernetes. None: processes of this machine.
+        A Dask cluster whose workers have this package: the address of its scheduler, a distributed.Client,
+        or a cluster object as those of dask-jobqueue and dask-kubernetes. None: processes of this machine.
     workers : int, optional
-        Without a scheduler: how many processes; one per device without it. With a cluster object: how many it is asked for,
-        again when some were lost (their job's time was up, or their machine died). They may come late or never.
+        Without a scheduler: how many processes; one per device without it. With a cluster object: how many
+        it is asked for, again when some were lost (their job's time was up, or their machine died). They may
+        come late or never.
     device : selectors
-        Without a scheduler: devices that the processes take by turns; all without it. On a cluster every worker takes
-        its own, by its PELLUCID_DEVICE.
+        Without a scheduler: devices that the processes take by turns; all without it. On a cluster every
+        worker takes its own, by its PELLUCID_DEVICE.
     timeout : seconds
-        A worker whose device finishes nothing for that long is given up, and its work goes to another. Without a scheduler the same
-        holds for a process that answers nothing; a cluster's scheduler has its own limit, `distributed.scheduler.worker-ttl`.
+        A worker whose device finishes nothing for that long is given up, and its work goes to another.
+        Without a scheduler the same holds for a process that answers nothing; a cluster's scheduler has its
+        own limit, `distributed.scheduler.worker-ttl`.
     jobs : int
         Entries in flight per worker; 0: four per core.
     patience : seconds
@@ -110,13 +118,14 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
     ValueError
         It is no manifest, or workers are asked of a scheduler that cannot start any.
     BatchError
-        The output is full or gone; NoWorker, which is one: there is no scheduler, or no worker for too long. What is made is
-        kept: the same call goes on from there.
+        The output is full or gone; NoWorker, which is one: there is no scheduler, or no worker for too long.
+        What is made is kept: the same call goes on from there.
     """
     ask = None
     if scheduler is not None and workers is not None:
         if not callable(getattr(scheduler, "scale", None)):
-            raise ValueError("workers: an address or a Client cannot start any; give a cluster object (SLURMCluster, KubeCluster) or "
+            raise ValueError("workers: an address or a Client cannot start any; give a cluster object "
+                             "(SLURMCluster, KubeCluster) or "
                              "leave it out")
         ask = functools.partial(scheduler.scale, workers)
     if not isinstance(manifest, Manifest):
@@ -131,5 +140,7 @@ def run(manifest: str | os.PathLike[str] | Manifest, out: str | os.PathLike[str]
     with _client(scheduler, workers, device, timeout) as client:
         if ask:
             ask()
-        return Dispatcher(client, manifest, store, timeout=timeout, jobs=jobs, patience=patience, read_back=read_back,
-                          display=Display(len(manifest), quiet=not progress), ask=ask, asked=workers or 0).run()
+        return Dispatcher(client, manifest, store, timeout=timeout, jobs=jobs, patience=patience,
+                          read_back=read_back,
+                          display=Display(len(manifest), quiet=not progress), ask=ask,
+                          asked=workers or 0).run()

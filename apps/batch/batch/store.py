@@ -15,8 +15,8 @@ class StoreError(Exception):
 class Store:
     """A folder, or whatever fsspec knows by a URL ("s3://bucket/tables", "gs://...", "memory://tables").
 
-    Files appear complete or not at all: in a folder as the command writes them (a temporary name, a flush to the disk, a rename);
-    an object store's `put` is so by itself.
+    Files appear complete or not at all: in a folder as the command writes them (a temporary name, a flush to
+    the disk, a rename); an object store's `put` is so by itself.
     """
 
     def __init__(self, out: str | os.PathLike[str]) -> None:
@@ -42,7 +42,8 @@ class Store:
             else:
                 self._files.makedirs(self._root, exist_ok=True)
         except Exception as e:  # of an object store: whatever its library raises
-            raise StoreError(f"{self.out}: is not a folder and cannot be made one: {getattr(e, 'strerror', None) or e}") from e
+            raise StoreError(f"{self.out}: is not a folder and cannot be made one: "
+                             f"{getattr(e, 'strerror', None) or e}") from e
 
     def read(self, name: str) -> Optional[bytes]:
         """The file's bytes, None if there is none."""
@@ -63,4 +64,5 @@ class Store:
             else:
                 self._files.pipe_file(f"{self._root}/{name}", data)
         except OSError as e:
-            raise StoreError(str(e) if self._files is None else f"{self.out}/{name}: cannot be written: {e.strerror or e}") from e
+            raise StoreError(str(e) if self._files is None
+                             else f"{self.out}/{name}: cannot be written: {e.strerror or e}") from e

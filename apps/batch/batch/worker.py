@@ -44,7 +44,8 @@ def device_of(selector: str) -> Device:
 def manifest_of(name: str, version: str) -> Manifest:
     """The manifest that the scheduler keeps under this name, read once."""
     if version != __version__:  # every name of a file would differ
-        raise UnfitWorker(f"it has pellucid {__version__} where the batch was started with {version}: install that one there")
+        raise UnfitWorker(f"it has pellucid {__version__} where the batch was started with {version}: "
+                          f"install that one there")
     with _lock:
         if name not in _manifests:
             _manifests.clear()  # one batch at a time
@@ -61,16 +62,19 @@ def make_entry(manifest: Manifest, index: int, store: Store, device: Device) -> 
             return {"index": index, "what": KEPT, "sum": hashlib.sha256(old).hexdigest()}
         data = manifest.make(device, index)
         store.write(entry.file, data)
-        return {"index": index, "what": MADE if old is None else REDONE, "sum": hashlib.sha256(data).hexdigest()}
+        return {"index": index, "what": MADE if old is None else REDONE,
+                "sum": hashlib.sha256(data).hexdigest()}
     except StoreError as e:
         return {"index": index, "what": NO_STORE, "message": str(e)}
     except PellucidError as e:
-        what = {ErrorCode.DEVICE: DEVICE_FAILED, ErrorCode.NO_DEVICE: DEVICE_FAILED, ErrorCode.UNKNOWN: DEVICE_FAILED,
+        what = {ErrorCode.DEVICE: DEVICE_FAILED, ErrorCode.NO_DEVICE: DEVICE_FAILED,
+                ErrorCode.UNKNOWN: DEVICE_FAILED,
                 ErrorCode.OUT_OF_MEMORY: NO_ROOM}.get(e.code, BAD)
         return {"index": index, "what": what, "message": str(e)}
 
 
-def make_entries(name: str, version: str, indices: list[int], out: str, jobs: int, timeout: float) -> list[dict[str, Any]]:
+def make_entries(name: str, version: str, indices: list[int], out: str, jobs: int,
+                 timeout: float) -> list[dict[str, Any]]:
     """Makes entries, several at a time: one integrates while another waits for the disk or the store.
 
     Returns what happened to each.
@@ -91,6 +95,7 @@ def make_entries(name: str, version: str, indices: list[int], out: str, jobs: in
             answers.append(entry.result(patience))
         except NothingYet:
             patience = 0  # the others had that long as well
-            answers.append({"index": index, "what": DEVICE_FAILED, "message": f"it did nothing for {timeout:g} s"})
+            answers.append({"index": index, "what": DEVICE_FAILED,
+                            "message": f"it did nothing for {timeout:g} s"})
     pool.shutdown(wait=False, cancel_futures=True)
     return answers

@@ -13,7 +13,8 @@ import pytest
 
 import pellucid as pel
 
-distributed = pytest.importorskip("distributed", reason="distributed is not installed: pip install pellucid[batch]")
+distributed = pytest.importorskip("distributed",
+                                  reason="distributed is not installed: pip install pellucid[batch]")
 cloudpickle = pytest.importorskip("cloudpickle")
 batch = pytest.importorskip("pellucid.batch", reason="the package was built without toml++")
 
@@ -27,7 +28,8 @@ GRID = f'[[grid]]\nsize = [8, 12]\nencoding = ["half", "float"]\ndiffusion_radiu
 
 @pytest.fixture
 def client():
-    """Two fresh processes, so that what a test does to them ends with it. A process that is started in place of one is clean."""
+    """Two fresh processes, so that what a test does to them ends with it. A process that is started in place
+    of one is clean."""
     with _local_client(2, ()) as client:
         client.wait_for_workers(2, timeout=120)
         yield client
@@ -74,9 +76,11 @@ def test_the_same_bytes_as_one_process_and_resumed(client, manifest, device, tmp
     command = os.environ.get("PELLUCID_COMMAND")
     if not command:
         pytest.skip("PELLUCID_COMMAND does not name the built command")
-    report = subprocess.run([command, "batch", manifest.path, "-o", out, "--json"], check=True, capture_output=True)
+    report = subprocess.run([command, "batch", manifest.path, "-o", out, "--json"], check=True,
+                            capture_output=True)
     assert json.loads(report.stdout)["kept"] == 120, "the command takes the cluster's files for its own"
-    subprocess.run([command, "batch", manifest.path, "-o", tmp_path / "command"], check=True, capture_output=True)
+    subprocess.run([command, "batch", manifest.path, "-o", tmp_path / "command"], check=True,
+                   capture_output=True)
     assert files_of(tmp_path / "command") == files_of(out)
 
 
@@ -100,7 +104,8 @@ def misbehave(kind):
         if kind == "nonsense":
             return ["no", "such", "form"]
         if kind == "device":
-            return {"index": index, "file": manifest.entries[index].file, "what": module.DEVICE_FAILED, "message": "on fire"}
+            return {"index": index, "file": manifest.entries[index].file, "what": module.DEVICE_FAILED,
+                    "message": "on fire"}
         answer = make(manifest, index, store, device)
         file = manifest.entries[index].file
         data = bytearray(store.read(file))
@@ -148,7 +153,8 @@ def test_killed_workers_lose_nothing(client, manifest, device, tmp_path):
 
 @pytest.mark.parametrize("kind", ["hangs", "waits"])
 def test_a_worker_that_hangs_is_given_up(manifest, device, tmp_path, kind):
-    """A stopped process, which Dask notices, and a call that does not return, which the process itself does."""
+    """A stopped process, which Dask notices, and a call that does not return, which the process itself does.
+    """
     with _local_client(2, (), timeout=3) as client:
         client.wait_for_workers(2, timeout=120)
         client.run(misbehave, kind, workers=[min(client.nthreads())])
@@ -177,13 +183,18 @@ def test_every_file_is_read_back_unless_told_not_to(client, manifest, tmp_path, 
     assert sorted(names) == sorted(e.file for e in manifest.entries)
 
 
-@pytest.mark.parametrize("kind, message", [("older", f"it has pellucid 0.0.9 where the batch was started with {pel.__version__}"),
-                                           ("without", "install pellucid[batch] in the environment of the workers")])
-def test_an_unfit_worker_gets_no_work_and_costs_none(client, manifest, device, tmp_path, capsys, kind, message):
+@pytest.mark.parametrize("kind, message",
+                         [("older", f"it has pellucid 0.0.9 where the batch was started with "
+                                    f"{pel.__version__}"),
+                                           ("without", "install pellucid[batch] in the environment of the "
+                                                       "workers")])
+def test_an_unfit_worker_gets_no_work_and_costs_none(client, manifest, device, tmp_path, capsys, kind,
+                                                     message):
     unfit = min(client.nthreads())
     client.run(misbehave, kind, workers=[unfit])
     summary = batch.run(manifest, tmp_path / "out", scheduler=client, progress=True)
-    assert (summary.workers_dismissed, summary.retried, list(summary.made_by)) == (1, 0, [max(client.nthreads())])
+    assert (summary.workers_dismissed, summary.retried, list(
+        summary.made_by)) == (1, 0, [max(client.nthreads())])
     assert message in capsys.readouterr().err
     assert unfit in client.nthreads(), "a restart would not help"
     check_complete(summary, manifest, device, tmp_path / "out")
@@ -216,8 +227,10 @@ def test_a_cluster_that_adapts(manifest, device, tmp_path):
 
 def test_a_scheduler_that_dies(client, manifest, device, tmp_path):
     def start(*what):
-        return subprocess.Popen([sys.executable, "-m", *what, "--host", "127.0.0.1", "--no-dashboard", "--scheduler-file",
-                                 tmp_path / "scheduler.json"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        return subprocess.Popen([sys.executable, "-m", *what, "--host", "127.0.0.1", "--no-dashboard",
+                                 "--scheduler-file",
+                                 tmp_path / "scheduler.json"], stdout=subprocess.DEVNULL,
+                                stderr=subprocess.DEVNULL)
 
     scheduler = start("distributed.cli.dask_scheduler", "--port", "0")
     worker = start("distributed.cli.dask_worker", "--no-nanny", "--nthreads", "1", "--death-timeout", "120")
@@ -258,8 +271,10 @@ def kill_at_third_entry(pid):
 
 def test_ctrl_c_ends_it_quietly(tmp_path):
     radii = [round(1 + 0.001 * i, 3) for i in range(4000)]  # more than there is time for
-    (tmp_path / "m.toml").write_text(f'[[grid]]\nsize = [8, 12]\nencoding = ["half", "float"]\ndiffusion_radius = {radii}\n')
-    process = subprocess.Popen([sys.executable, "-m", "pellucid.batch", "m.toml", "--out", "out", "--workers", "2"], cwd=tmp_path,
+    (tmp_path / "m.toml").write_text(f'[[grid]]\nsize = [8, 12]\nencoding = ["half", '
+                                     f'"float"]\ndiffusion_radius = {radii}\n')
+    process = subprocess.Popen([sys.executable, "-m", "pellucid.batch", "m.toml", "--out", "out", "--workers",
+                                "2"], cwd=tmp_path,
                                stderr=subprocess.PIPE, text=True, start_new_session=True,
                                preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
     while not (tmp_path / "out").exists() or not any((tmp_path / "out").iterdir()):
@@ -272,8 +287,10 @@ def test_ctrl_c_ends_it_quietly(tmp_path):
 
 
 def test_bad_entries_are_reported_and_the_others_made(tmp_path):
-    (tmp_path / "m.toml").write_text('[[lut]]\nsize = 8\n\n[[lut]]\nsize = -3\n\n[[lut]]\nsize = 16384\n[[lut]]\nsize = 9\n')
-    result = subprocess.run([sys.executable, "-m", "pellucid.batch", tmp_path / "m.toml", "--out", tmp_path / "out", "--json"],
+    (tmp_path / "m.toml").write_text('[[lut]]\nsize = 8\n\n[[lut]]\nsize = -3\n\n[[lut]]\nsize = '
+                                     '16384\n[[lut]]\nsize = 9\n')
+    result = subprocess.run([sys.executable, "-m", "pellucid.batch", tmp_path / "m.toml", "--out",
+                             tmp_path / "out", "--json"],
                             capture_output=True, text=True, timeout=120,
                             env={**os.environ, "POCL_MEMORY_LIMIT": "1"})  # GiB: too little for the large one
     assert result.returncode == 3, result.stderr
@@ -289,11 +306,13 @@ def test_bad_entries_are_reported_and_the_others_made(tmp_path):
     (["m.toml"], 2, "--out"), (["m.toml", "--out", "o", "--timeout", "0"], 2, "--timeout"),
     (["m.toml", "--out", "o", "--device", "none"], 4, '"none" matches no OpenCL device'),
     (["m.toml", "--out", "o", "--scheduler", "here"], 4, "no Dask scheduler at here: missing port number"),
-    (["none.toml", "--out", "o"], 3, "none.toml: cannot be read"), (["m.toml", "--out", "m.toml"], 3, "m.toml: is not a folder"),
+    (["none.toml", "--out", "o"], 3, "none.toml: cannot be read"),
+    (["m.toml", "--out", "m.toml"], 3, "m.toml: is not a folder"),
 ])
 def test_wrong_use(tmp_path, arguments, code, message):
     (tmp_path / "m.toml").write_text(GRID)
-    result = subprocess.run([sys.executable, "-m", "pellucid.batch", *arguments], cwd=tmp_path, capture_output=True, text=True,
+    result = subprocess.run([sys.executable, "-m", "pellucid.batch", *arguments], cwd=tmp_path,
+                            capture_output=True, text=True,
                             timeout=60)
     assert result.returncode == code and message in result.stderr, result.stderr
     assert "Traceback" not in result.stderr
@@ -303,7 +322,8 @@ def test_urls(device, tmp_path):
     fsspec = pytest.importorskip("fsspec")
     (tmp_path / "m.toml").write_text('[[lut]]\nsize = 8\n[[lut]]\nkind = "specular"\nsize = 8\n')
     manifest = batch.Manifest(tmp_path / "m.toml")
-    with distributed.Client(processes=False, n_workers=1, threads_per_worker=1, dashboard_address=None) as client:
+    with distributed.Client(processes=False, n_workers=1, threads_per_worker=1,
+                            dashboard_address=None) as client:
         assert batch.run(manifest, "memory://tables/here", scheduler=client).made == 2
         assert batch.run(manifest, "memory://tables/here", scheduler=client).kept == 2
         assert batch.run(manifest, f"file://{tmp_path}/local", scheduler=client).made == 2
@@ -316,7 +336,8 @@ def test_urls(device, tmp_path):
 
 
 def test_a_manifest_travels_with_its_profiles(device, tmp_path):
-    (tmp_path / "own.toml").write_text('name = "own"\nkind = "gaussians"\nunit = "mm"\nsource = "test"\n[[gaussian]]\n'
+    (tmp_path / "own.toml").write_text('name = "own"\nkind = "gaussians"\nunit = "mm"\nsource = '
+                                       '"test"\n[[gaussian]]\n'
                                        'variance = 1.0\nweight = [1, 1, 1]\n')
     (tmp_path / "m.toml").write_text('[[lut]]\nsize = 8\nprofile = "own.toml"\n')
     manifest = batch.Manifest(tmp_path / "m.toml")

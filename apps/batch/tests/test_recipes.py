@@ -1,5 +1,5 @@
-"""The recipes of docs/guide/batch.md for Slurm and Kubernetes, as they stand there: with an `sbatch` that starts its jobs on this machine, and
-with pods that are processes of it."""
+"""The recipes of docs/guide/batch.md for Slurm and Kubernetes, as they stand there: with an `sbatch` that
+starts its jobs on this machine, and with pods that are processes of it."""
 import contextlib
 import os
 import re
@@ -24,7 +24,8 @@ echo "Submitted batch job $n"
 SCANCEL = """#!/bin/sh
 for n in "$@"; do kill -TERM -- -$(cat {0}/job$n.pid); done
 """
-# The custom resource is held against its definition, unknown keys included; then each pod is its container's command.
+# The custom resource is held against its definition, unknown keys included; then each pod is its container's
+# command.
 PODS = """
 import contextlib, json, os, subprocess, time
 from pathlib import Path
@@ -45,29 +46,34 @@ class Pods(contextlib.ExitStack):
 
     def __init__(self, namespace, custom_cluster_spec):
         super().__init__()
-        crds = Path(dask_kubernetes.__file__).parent / "operator/deployment/helm/dask-kubernetes-operator/crds"
+        helm = Path(dask_kubernetes.__file__).parent / "operator/deployment/helm"
+        crds = helm / "dask-kubernetes-operator/crds"
         version = yaml.safe_load((crds / "daskcluster.yaml").read_text())["spec"]["versions"][0]
         schema = version["schema"]["openAPIV3Schema"]
         strict(schema["properties"]["spec"])
         jsonschema.validate(json.loads(json.dumps(custom_cluster_spec)), schema)
         spec, file = custom_cluster_spec["spec"], Path("scheduler.json")
-        print("gpus", *("nvidia.com/gpu" in str(spec[part]["spec"]["containers"][0]["resources"]) for part in ("worker", "scheduler")))
-        self.start(spec["scheduler"], {}, "--port", "0", "--dashboard-address", ":0", "--scheduler-file", str(file))
+        containers = [spec[part]["spec"]["containers"][0] for part in ("worker", "scheduler")]
+        print("gpus", *("nvidia.com/gpu" in str(container["resources"]) for container in containers))
+        self.start(spec["scheduler"], {}, "--port", "0", "--dashboard-address", ":0",
+                   "--scheduler-file", str(file))
         while not file.exists():
             time.sleep(0.05)
         self.scheduler_address = json.loads(file.read_text())["address"]
         for i in range(min(2, spec["worker"]["replicas"])):
-            self.start(spec["worker"], {"DASK_WORKER_NAME": f"tables-{i}", "DASK_SCHEDULER_ADDRESS": self.scheduler_address},
-                       "--dashboard-address", ":0")
+            given = {"DASK_WORKER_NAME": f"tables-{i}", "DASK_SCHEDULER_ADDRESS": self.scheduler_address}
+            self.start(spec["worker"], given, "--dashboard-address", ":0")
 
     def start(self, part, given, *more):
         container = part["spec"]["containers"][0]
         env = {**os.environ, **{e["name"]: e["value"] for e in container["env"]}, **given}
-        args = [a.replace("$(DASK_WORKER_NAME)", given.get("DASK_WORKER_NAME", "")) for a in container["args"]]
-        args = ["127.0.0.1" if a == "0.0.0.0" else a for a in args]  # a pod has a network of its own; this machine's is not ours
+        name = given.get("DASK_WORKER_NAME", "")
+        args = [a.replace("$(DASK_WORKER_NAME)", name) for a in container["args"]]
+        args = ["127.0.0.1" if a == "0.0.0.0" else a for a in args]  # a pod has a network of its own
         if "--host" not in args:
             args += ["--host", "127.0.0.1"]
-        process = self.enter_context(subprocess.Popen([*args, *more], env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        process = self.enter_context(subprocess.Popen([*args, *more], env=env, **quiet))
         self.callback(process.terminate)
 
 operator.KubeCluster = Pods
@@ -76,7 +82,8 @@ operator.KubeCluster = Pods
 
 def recipe(heading, changes):
     """The block of code under a heading, with the places and sizes of this machine."""
-    code = (ROOT / "docs/guide/batch.md").read_text().split(f"### {heading}", 1)[1].split("```python\n", 1)[1].split("```", 1)[0]
+    code = (ROOT / "docs/guide/batch.md").read_text(
+        ).split(f"### {heading}", 1)[1].split("```python\n", 1)[1].split("```", 1)[0]
     for old, new in changes.items():
         assert old in code, f"the recipe has no {old}"
         code = code.replace(old, new)
@@ -86,12 +93,14 @@ def recipe(heading, changes):
 @pytest.fixture
 def run_recipe(tmp_path):
     """Runs a recipe's text on a small manifest and compares the tables with those made here."""
-    (tmp_path / "m.toml").write_text(f"[[grid]]\nsize = [8]\ndiffusion_radius = {[1 + i / 10 for i in range(ENTRIES)]}\n")
+    (tmp_path / "m.toml").write_text(f"[[grid]]\nsize = [8]\ndiffusion_radius = "
+                                     f"{[1 + i / 10 for i in range(ENTRIES)]}\n")
 
     def run(code, device):
         (tmp_path / "recipe.py").write_text(code)
         path = os.pathsep.join([str(tmp_path), str(Path(sys.executable).parent), os.environ["PATH"]])
-        process = subprocess.Popen([sys.executable, "recipe.py"], cwd=tmp_path, env={**os.environ, "PATH": path}, text=True,
+        process = subprocess.Popen([sys.executable, "recipe.py"], cwd=tmp_path,
+                                   env={**os.environ, "PATH": path}, text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
         groups.append(process.pid)
         out, err = process.communicate(timeout=300)
@@ -118,7 +127,8 @@ def test_slurm(run_recipe, tmp_path, device):
         (tmp_path / name).chmod(0o755)
     run_recipe(recipe("Slurm", {
         "/shared/manifest.toml": str(tmp_path / "m.toml"), "/shared/tables": str(tmp_path / "tables"),
-        "/shared/venv/bin/python": sys.executable, "/shared/home/me/dask": str(tmp_path), "DEVICE=gpu": "DEVICE=" + os.environ.get("PELLUCID_DEVICE", ""),
+        "/shared/venv/bin/python": sys.executable, "/shared/home/me/dask": str(tmp_path),
+        "DEVICE=gpu": "DEVICE=" + os.environ.get("PELLUCID_DEVICE", ""),
         "workers=100": "workers=2"}), device)
     script = (tmp_path / "job1.sh").read_text()
     subprocess.run(["bash", "-n"], input=script, text=True, check=True)
@@ -127,13 +137,16 @@ def test_slurm(run_recipe, tmp_path, device):
     assert any(a.startswith("--mem=") for a in asked)
     assert "--nthreads 1" in script and "Starting worker" not in script
     assert "tls://" in script and "--tls-key" in script, "whoever reaches a port without TLS can run anything"
-    assert re.search(r"Threads:\s+1\b", (tmp_path / "job1.log").read_text()), "a worker takes one piece at a time"
+    assert re.search(r"Threads:\s+1\b",
+                     (tmp_path / "job1.log").read_text()), "a worker takes one piece at a time"
 
 
 def test_kubernetes(run_recipe, tmp_path, device):
     for module in ("dask_kubernetes", "jsonschema"):
-        pytest.importorskip(module, reason=f"{module} is not installed: pip install dask-kubernetes jsonschema")
+        pytest.importorskip(module,
+                            reason=f"{module} is not installed: pip install dask-kubernetes jsonschema")
     said = run_recipe(PODS + recipe("Kubernetes", {
-        '"manifest.toml"': repr(str(tmp_path / "m.toml")), '"s3://bucket/tables"': repr(str(tmp_path / "tables")),
+        '"manifest.toml"': repr(str(tmp_path / "m.toml")),
+        '"s3://bucket/tables"': repr(str(tmp_path / "tables")),
         '"PELLUCID_DEVICE": "gpu"': f'"PELLUCID_DEVICE": "{os.environ.get("PELLUCID_DEVICE", "")}"'}), device)
     assert "gpus True False" in said, "a GPU for each worker, none for the scheduler"

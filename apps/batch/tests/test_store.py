@@ -1,4 +1,5 @@
-"""Where the files of a batch go. How a file becomes complete or stays away is the command's code and tested with it."""
+"""Where the files of a batch go. How a file becomes complete or stays away is the command's code and tested
+with it."""
 import os
 import resource
 

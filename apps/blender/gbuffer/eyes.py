@@ -8,11 +8,13 @@ from .principled import AUTO, EYE, PRESET
 PREFIX = "pellucid_eye_"  # custom properties of a Blender material that set a key of [[eye]]
 NAMED = re.compile(r"eye(ball)?s?([ ._-].*|\d*)$", re.IGNORECASE)
 ADULT = 12.0  # mm, radius of the sclera that the library's other lengths belong to
-LENGTHS = {"cornea_radius": 7.8, "limbus_radius": 6.0, "limbus_width": 1.0, "chamber_depth": 3.05, "pupil_radius": 2.0}  # mm
+LENGTHS = {"cornea_radius": 7.8, "limbus_radius": 6.0, "limbus_width": 1.0, "chamber_depth": 3.05,
+           "pupil_radius": 2.0}  # mm
 
 
 def is_eye(material):
-    """By the preset, else by the custom property pellucid_eye, 0 or 1; without both by name: Eye, eye_left, Eyeball.001."""
+    """By the preset, else by the custom property pellucid_eye, 0 or 1; without both by name: Eye, eye_left,
+    Eyeball.001."""
     preset = material.get(PRESET) or AUTO
     if preset != AUTO:
         return preset == EYE
@@ -22,7 +24,8 @@ def is_eye(material):
 
 
 def solve(rows, right):
-    """Gauss's elimination with the largest pivot; rows and right are changed. None if there is no one solution."""
+    """Gauss's elimination with the largest pivot; rows and right are changed. None if there is no one
+    solution."""
     n = len(rows)
     for i in range(n):
         pivot = max(range(i, n), key=lambda k: abs(rows[k][i]))
@@ -57,7 +60,8 @@ def fit_ball(points):
 
 
 def ball_of(points):
-    """Centre, radius and gaze. The cornea stands out of the ball: it is left out of the second fit, and shows the gaze."""
+    """Centre, radius and gaze. The cornea stands out of the ball: it is left out of the second fit, and
+    shows the gaze."""
     found = fit_ball(points)
     if found is None:
         return None
@@ -82,7 +86,8 @@ def distance(a, b):
 
 
 def find(things, unit):
-    """[(material, keys of [[eye]])]. A material that several eyeballs share is copied, for each eye has one of its own."""
+    """[(material, keys of [[eye]])]. A material that several eyeballs share is copied, for each eye has one
+    of its own."""
     eyes, taken = [], set()
     for thing in things:
         for slot, material in enumerate(thing.data.materials):
@@ -101,10 +106,12 @@ def find(things, unit):
             taken.add(material.name)
             centre, radius, gaze = ball
             if gaze is None:
-                warn(f"material '{material.name}': no cornea stands out of its ball; it looks to -y unless pellucid_eye_gaze says otherwise")
+                warn(f"material '{material.name}': no cornea stands out of its ball; it looks to -y unless "
+                     f"pellucid_eye_gaze says otherwise")
                 gaze = [0.0, -1.0, 0.0]
             scale = radius * unit / ADULT
-            keys = {"center": tuple(centre), "gaze": tuple(gaze), "up": (0.0, 0.0, 1.0), "sclera_radius": scale * ADULT}
+            keys = {"center": tuple(centre), "gaze": tuple(gaze), "up": (0.0, 0.0, 1.0),
+                    "sclera_radius": scale * ADULT}
             keys.update({key: scale * length for key, length in LENGTHS.items()})
             for name in material.keys():
                 if name.startswith(PREFIX):

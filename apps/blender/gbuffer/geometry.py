@@ -32,7 +32,8 @@ class Bounds:
 
 
 def load(options, unit):
-    """Adds options.mesh to the current scene: Z up, in Blender units; the file's own unit is taken to be one of them."""
+    """Adds options.mesh to the current scene: Z up, in Blender units; the file's own unit is taken to be one
+    of them."""
     path = options.mesh
     if not os.path.isfile(path):
         raise Fault(f"{path}: there is no such file")
@@ -40,13 +41,15 @@ def load(options, unit):
     extension = os.path.splitext(path)[1].lower()
     if extension == ".obj":  # by Blender, for its texture coordinates and materials
         forward, up = ("Y", "Z") if options.up == "z" else ("NEGATIVE_Z", "Y")
-        if "Y_FORWARD" in bpy.ops.wm.obj_import.get_rna_type().properties["forward_axis"].enum_items:  # Blender 3.3
+        # Blender 3.3
+        if "Y_FORWARD" in bpy.ops.wm.obj_import.get_rna_type().properties["forward_axis"].enum_items:
             forward, up = forward + "_FORWARD", up + "_UP"
         bpy.ops.wm.obj_import(filepath=path, forward_axis=forward, up_axis=up)
     elif extension in (".ply", ".stl", ".off"):
         load_ply(path, options.pellucid, options.up)
     else:
-        raise Fault(f"{path}: OBJ, PLY, STL or OFF is needed; open other formats in Blender and save a .blend file")
+        raise Fault(f"{path}: OBJ, PLY, STL or OFF is needed; open other formats in Blender and save a "
+                    f".blend file")
     things = [thing for thing in bpy.data.objects if thing not in before and thing.type == "MESH"]
     if not things or not any(len(thing.data.polygons) for thing in things):
         raise Fault(f"{path}: there are no faces in it")
@@ -68,22 +71,24 @@ def run(command, pellucid):
     try:
         done = subprocess.run([pellucid, *command], capture_output=True, text=True)
     except OSError as error:
-        raise Fault(f"cannot run '{pellucid}' ({error.strerror}): give its path with --pellucid or PELLUCID_COMMAND, "
+        raise Fault(f"cannot run '{pellucid}' ({error.strerror}): give its path with --pellucid or "
+                    f"PELLUCID_COMMAND, "
                     "or leave curvature out with --no-curvature") from None
     if done.returncode:
         raise Fault(f"{pellucid} {command[0]}: {done.stderr.strip()}")
 
 
 def load_ply(path, pellucid, up):
-    """By way of `pellucid curvature`, which reads every one of these formats and writes one PLY: fields of 4 bytes, a
-    colour, triangles."""
+    """By way of `pellucid curvature`, which reads every one of these formats and writes one PLY: fields of 4
+    bytes, a colour, triangles."""
     with tempfile.TemporaryDirectory() as folder:
         copy = os.path.join(folder, "mesh.ply")
         run(["curvature", path, "-o", copy], pellucid)
         with open(copy, "rb") as file:
             data = file.read()
     header, body = data.split(b"end_header\n", 1)
-    counts = {line.split()[1]: int(line.split()[2]) for line in header.decode().splitlines() if line.startswith("element")}
+    counts = {line.split()[1]: int(line.split()[2]) for line in header.decode().splitlines()
+              if line.startswith("element")}
     step = 0
     for line in header.decode().splitlines():
         if line.startswith("property list"):
@@ -168,6 +173,7 @@ def write_ply(path, mesh):
         file.write(b"ply\nformat binary_little_endian 1.0\n")
         file.write(f"element vertex {len(mesh.vertices)}\n".encode())
         file.write(b"property float x\nproperty float y\nproperty float z\n")
-        file.write(f"element face {len(mesh.loop_triangles)}\nproperty list uchar int vertex_indices\nend_header\n".encode())
+        file.write(f"element face {len(mesh.loop_triangles)}\nproperty list uchar int "
+                   f"vertex_indices\nend_header\n".encode())
         file.write(positions.tobytes())
         file.write(b"".join(b"\3" + faces[i : i + 12] for i in range(0, len(faces), 12)))

@@ -11,8 +11,9 @@ from .passes import look, render_exr
 
 
 class Lamp:
-    """A light, and what its shadow map says. Blender's watts spread over 4 pi: a point light of P watts gives irradiance
-    P / (4 pi d^2), so that irradiance / pi at distance 1 is P / (4 pi^2). A sun's strength is irradiance itself."""
+    """A light, and what its shadow map says. Blender's watts spread over 4 pi: a point light of P watts
+    gives irradiance P / (4 pi d^2), so that irradiance / pi at distance 1 is P / (4 pi^2). A sun's strength
+    is irradiance itself."""
 
     def __init__(self, name, data, matrix):
         self.name, self.kind = name, data.type
@@ -31,7 +32,8 @@ class Lamp:
 
 
 def gather(source, scene, bounds):
-    """The source scene's suns, points and spots; without any, a sun from the side. Copies without size go to `scene`."""
+    """The source scene's suns, points and spots; without any, a sun from the side. Copies without size go to
+    `scene`."""
     lamps = []
     for instance in bpy.context.evaluated_depsgraph_get().object_instances:
         thing = instance.object
@@ -75,7 +77,8 @@ def file_name(name, taken):
 
 
 def render_shadow_map(scene, lamp, bounds, options, taken):
-    """Depths seen from a sun or a spot, 0 near to 1 far and where nothing is. `taken`: files of other lights."""
+    """Depths seen from a sun or a spot, 0 near to 1 far and where nothing is. `taken`: files of other
+    lights."""
     if lamp.kind == "POINT":
         warn(f"light '{lamp.name}' is a point light: no shadow map is rendered for it")
         return
@@ -92,7 +95,8 @@ def render_shadow_map(scene, lamp, bounds, options, taken):
         near, far = min(along) - margin, max(along) + margin
         middle = (max(across) + min(across)) / 2, (max(upward) + min(upward)) / 2
         # Depth is measured from the camera, which therefore stands on the near plane.
-        camera.matrix_world = Matrix.Translation(right * middle[0] + up * middle[1] + lamp.forward * near) @ rotation.to_4x4()
+        camera.matrix_world = Matrix.Translation(right * middle[0] + up * middle[1] +
+                                                 lamp.forward * near) @ rotation.to_4x4()
         camera.data.type, camera.data.ortho_scale = "ORTHO", lamp.extent
         camera.data.clip_start, camera.data.clip_end = 0, far - near
         lamp.depth_range = far - near
@@ -116,7 +120,8 @@ def render_shadow_map(scene, lamp, bounds, options, taken):
 
         z = row(Vector((0, 0, 0)), -lamp.depth_b / lamp.depth_a)
         z[3] += 1 / lamp.depth_a
-        lamp.to_shadow = [row(right / lamp.extent, 0.5), row(up / -lamp.extent, 0.5), z, row(Vector((0, 0, 0)), 1)]
+        lamp.to_shadow = [row(right / lamp.extent, 0.5), row(up / -lamp.extent, 0.5), z,
+                          row(Vector((0, 0, 0)), 1)]
         encode = ("INVERSE", 1 / lamp.depth_a, -lamp.depth_b / lamp.depth_a)
     scene.camera = camera
     width, height = scene.render.resolution_x, scene.render.resolution_y
@@ -126,7 +131,8 @@ def render_shadow_map(scene, lamp, bounds, options, taken):
 
 
 def depth_material(kind, factor, offset):
-    """Emits depth * factor + offset, or factor / depth + offset, clamped to [0, 1]. Depth is along the camera's axis."""
+    """Emits depth * factor + offset, or factor / depth + offset, clamped to [0, 1]. Depth is along the
+    camera's axis."""
     material = bpy.data.materials.new("pellucid depth")
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
@@ -159,7 +165,8 @@ def white_world():
 
 
 def write_depth(scene, path, kind, factor, offset):
-    """Renders depth as light that surfaces emit, for Blender 5 has another compositor than its predecessors."""
+    """Renders depth as light that surfaces emit, for Blender 5 has another compositor than its predecessors.
+    """
     layer, world = scene.view_layers[0], scene.world
     layer.material_override, scene.world = depth_material(kind, factor, offset), white_world()
     render_exr(scene, path)
@@ -167,7 +174,8 @@ def write_depth(scene, path, kind, factor, offset):
 
 
 def ambient(source, folder):
-    """The nine spherical harmonics of irradiance / pi that the world sends, as the scene file has them; None without."""
+    """The nine spherical harmonics of irradiance / pi that the world sends, as the scene file has them; None
+    without."""
     if source.world is None:
         return None
     width, height = 64, 32
@@ -207,5 +215,6 @@ def ambient(source, folder):
 def harmonics(x, y, z):
     """Orthonormal, real, orders 0 to 2, in the order of PelAmbient."""
     a, b, c = math.sqrt(1 / (4 * math.pi)), math.sqrt(3 / (4 * math.pi)), math.sqrt(15 / (4 * math.pi))
-    return [a, b * y, b * z, b * x, c * x * y, c * y * z, math.sqrt(5 / (16 * math.pi)) * (3 * z * z - 1), c * x * z,
+    return [a, b * y, b * z, b * x, c * x * y, c * y * z, math.sqrt(5 / (16 * math.pi)) * (3 * z * z - 1),
+            c * x * z,
             0.5 * c * (x * x - y * y)]

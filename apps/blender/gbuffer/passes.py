@@ -31,7 +31,8 @@ def add_camera(source, scene, bounds, size):
     """A copy of the source scene's camera, or one that frames everything from half left in front."""
     if source.camera:
         camera = bpy.data.objects.new("pellucid camera", source.camera.data.copy())
-        camera.matrix_world = source.camera.evaluated_get(bpy.context.evaluated_depsgraph_get()).matrix_world.copy()
+        evaluated = source.camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        camera.matrix_world = evaluated.matrix_world.copy()
     else:
         camera = bpy.data.objects.new("pellucid camera", bpy.data.cameras.new("pellucid camera"))
         camera.data.angle = math.radians(25)
@@ -55,15 +56,17 @@ def add_camera(source, scene, bounds, size):
 
 
 def warn_if_out_of_view(scene, camera, things):
-    """An empty picture is seldom what is wanted, and says nothing of why."""
+    """An empty picture is seldom wanted, and does not show its reason."""
     for thing in things:
-        corners = [world_to_camera_view(scene, camera, thing.matrix_world @ Vector(c)) for c in thing.bound_box]
+        corners = [world_to_camera_view(scene, camera, thing.matrix_world @ Vector(c))
+                   for c in thing.bound_box]
         ahead = [p.z > 0 for p in corners]
         beside = all(ahead) and (max(p.x for p in corners) < 0 or min(p.x for p in corners) > 1 or
                                  max(p.y for p in corners) < 0 or min(p.y for p in corners) > 1)
         if any(ahead) and not beside:
             return
-    warn(f"the camera sees none of the {len(things)} objects, so the picture will be empty: turn it to them, or remove it, and "
+    warn(f"the camera sees none of the {len(things)} objects, so the picture will be empty: turn it to them, "
+         f"or remove it, and "
          "one that frames everything is made")
 
 

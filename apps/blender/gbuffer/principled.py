@@ -5,7 +5,8 @@ import re
 
 from .fault import Fault, warn
 
-PRESET = "pellucid_preset"  # custom property of a Blender material: one of FIXED, or a material of the library
+# custom property of a Blender material: one of FIXED, or a material of the library
+PRESET = "pellucid_preset"
 AUTO, PLAIN, SKIN, EYE = FIXED = ("auto", "plain", "skin", "eye")
 
 
@@ -13,7 +14,8 @@ class Scattering:
     """How far light goes under a surface. `radius`: Blender units, red, green, blue; `weight`: 0 to 1."""
 
     def __init__(self, radius, weight, tint=None):
-        self.radius, self.weight, self.tint = radius, weight, tint  # tint: (colour, share) mixed into the albedo
+        # tint: (colour, share) mixed into the albedo
+        self.radius, self.weight, self.tint = radius, weight, tint
 
 
 class Surface:
@@ -22,7 +24,8 @@ class Surface:
     def __init__(self, material, shader):
         self.preset = material.get(PRESET, "") or AUTO
         if not isinstance(self.preset, str):
-            raise Fault(f"material '{material.name}': {PRESET} is {self.preset!r}; a text is needed: {', '.join(FIXED)}, or a material of the library")
+            raise Fault(f"material '{material.name}': {PRESET} is {self.preset!r}; a text is needed: "
+                        f"{', '.join(FIXED)}, or a material of the library")
         self.name = material.name
         self.keys = {}  # how it shines
         self.scattering = None
@@ -31,8 +34,11 @@ class Surface:
             self.read(shader)
 
     def read(self, shader):
-        value = lambda *names: next((shader.inputs[n].default_value for n in names if n in shader.inputs), None)  # noqa: E731
-        linked = lambda *names: next((shader.inputs[n].links[0].from_socket for n in names if n in shader.inputs and shader.inputs[n].is_linked), None)  # noqa: E731
+        value = lambda *names: next((shader.inputs[n].default_value for n in names if n in shader.inputs),
+                                    None)  # noqa: E731
+        linked = lambda *names: next((shader.inputs[n].links[0].from_socket for n in names
+                                      if n in shader.inputs and shader.inputs[n].is_linked),
+                                     None)  # noqa: E731
         if shader.type == "SUBSURFACE_SCATTERING":
             self.scattering = Scattering([value("Scale") * r for r in value("Radius")], 1.0)
         if shader.type != "BSDF_PRINCIPLED":
@@ -61,14 +67,16 @@ class Surface:
                 self.scattering = Scattering([scale * r for r in radius], 1.0 if self.weight else weight)
             else:  # Blender 3: it multiplies the radius, and mixes the colours
                 scale = 1.0 if self.weight else weight
-                self.scattering = Scattering([scale * r for r in radius], 1.0, (tuple(value("Subsurface Color")), scale))
+                self.scattering = Scattering([scale * r for r in radius], 1.0,
+                                             (tuple(value("Subsurface Color")), scale))
                 self.weight = None
             for name in ("Subsurface Radius", "Subsurface Scale", "Subsurface Color"):
                 if linked(name):
                     warn(f"material '{self.name}': what feeds {name} is left out; its value counts")
 
     def chosen(self, eyes, fallback):
-        """The preset by name: one of FIXED but auto, "own" for the shader's scattering, or a material of the library."""
+        """The preset by name: one of FIXED but auto, "own" for the shader's scattering, or a material of the
+        library."""
         preset = fallback if self.preset == AUTO else self.preset
         if self.name in eyes:
             return EYE
@@ -85,8 +93,10 @@ def file_name(name):
 
 
 def profile_text(surface, unit):
-    """A profile file: Blender's radius is 4 pi times the d of Burley's profile; in Blender units of `unit` mm."""
+    """A profile file: Blender's radius is 4 pi times the d of Burley's profile; in Blender units of `unit`
+    mm."""
     distance = [max(r * unit / (4 * math.pi), 1e-4) for r in surface.scattering.radius]
     name = "".join(c for c in surface.name if c.isprintable() and c not in '"\\')[:40] or "material"
-    return (f'version = 1\nname = "{name}"\nkind = "burley"\nunit = "mm"\nsource = "Blender: subsurface radius, by render_gbuffer.py"\n'
+    return (f'version = 1\nname = "{name}"\nkind = "burley"\nunit = "mm"\nsource = "Blender: subsurface '
+            f'radius, by render_gbuffer.py"\n'
             f"distance = [{', '.join(f'{d:.9g}' for d in distance)}]\n")

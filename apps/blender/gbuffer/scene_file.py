@@ -7,7 +7,8 @@ from .fault import warn
 from .passes import MATERIAL_CHANNEL
 
 # The library's skin by its tables. Lengths in millimetres; those of the tables follow from the profile.
-SKIN = {"profile": "skin", "scattering": "preintegrated", "deep_scatter_color": (0.7, 0.16, 0.05), "specular": 0.35}
+SKIN = {"profile": "skin", "scattering": "preintegrated", "deep_scatter_color": (0.7, 0.16, 0.05),
+        "specular": 0.35}
 SKIN_LENGTHS = {"deep_scatter_radius": 6.0, "deep_scatter_normal_offset": 0.2}
 EYES = {"scattering": "none", "thickness_taps": 0}  # the sclera; its gloss is that of the film of tears
 PLAIN = {"scattering": "none", "thickness_taps": 0}
@@ -49,18 +50,22 @@ def keys_of(surface, preset, unit, folder, extents):
             name = principled.file_name(surface.name)
             with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
                 file.write(principled.profile_text(surface, unit))
-        keys = {"profile": name, "scattering": "auto", "deep_scatter_normal_offset": SKIN_LENGTHS["deep_scatter_normal_offset"] / unit, **surface.keys}
+        keys = {"profile": name, "scattering": "auto",
+                "deep_scatter_normal_offset": SKIN_LENGTHS["deep_scatter_normal_offset"] / unit,
+                **surface.keys}
     if extents and preset not in (principled.EYE, principled.PLAIN):
         keys["thickness_filter_radius"] = 3 / unit / max(extents)  # 3 mm
     return keys
 
 
 def write(path, unit, camera, lamps, sky, materials, eyes, curvature, fallback):
-    """unit: millimetres per Blender unit. materials: (id, Blender material, Surface). eyes: (Blender material, keys). fallback: the preset of materials that have none."""
+    """unit: millimetres per Blender unit. materials: (id, Blender material, Surface). eyes: (Blender
+    material, keys). fallback: the preset of materials that have none."""
     of_eyes = {material.name: keys for material, keys in eyes}
     chosen = {id_: surface.chosen(of_eyes, fallback) for id_, _, surface in materials}
     if not any(preset not in (principled.PLAIN, principled.EYE) for preset in chosen.values()):
-        warn("nothing scatters: no material has Subsurface above 0; give it one, or the custom property pellucid_preset = \"skin\", or pass --preset skin")
+        warn("nothing scatters: no material has Subsurface above 0; give it one, or the custom property "
+             "pellucid_preset = \"skin\", or pass --preset skin")
     surfaces = [surface for _, _, surface in materials]
     lines = [
         "# Written by apps/blender/render_gbuffer.py. Axes: Blender's world, Z up. Lengths: Blender units,",
@@ -92,7 +97,8 @@ def write(path, unit, camera, lamps, sky, materials, eyes, curvature, fallback):
         else:
             lines += [f'type = "{lamp.kind.lower()}"', "position = " + value(tuple(lamp.position))]
         if lamp.kind == "SPOT":
-            lines += ["spot_direction = " + value(tuple(lamp.forward)), "spot_cos_inner = " + number(lamp.cos_inner),
+            lines += ["spot_direction = " + value(tuple(lamp.forward)),
+                      "spot_cos_inner = " + number(lamp.cos_inner),
                       "spot_cos_outer = " + number(lamp.cos_outer)]
         lines += ["color = " + value(lamp.color)]
         if lamp.map_file:
@@ -102,11 +108,13 @@ def write(path, unit, camera, lamps, sky, materials, eyes, curvature, fallback):
             if lamp.kind == "SUN":
                 lines += ['projection = "parallel"', "depth_range = " + number(lamp.depth_range)]
             else:
-                lines += ['projection = "perspective"', "depth_a = " + number(lamp.depth_a), "depth_b = " + number(lamp.depth_b)]
+                lines += ['projection = "perspective"', "depth_a = " + number(lamp.depth_a),
+                          "depth_b = " + number(lamp.depth_b)]
     extents = [lamp.extent for lamp in lamps if lamp.map_file and lamp.kind == "SUN"]
     for id_, material, surface in materials:
         if material.name in of_eyes:
-            lines += ["", "[[eye]]", f"material = {id_}", *(f"{key} = {value(v)}" for key, v in of_eyes[material.name].items())]
+            lines += ["", "[[eye]]", f"material = {id_}",
+                      *(f"{key} = {value(v)}" for key, v in of_eyes[material.name].items())]
         keys = keys_of(surface, chosen[id_], unit, os.path.dirname(path), extents)
         for name in material.keys():
             if name.startswith(PREFIX) and not name.startswith("pellucid_eye") and name != principled.PRESET:

@@ -1,4 +1,5 @@
-"""Materials: ids, albedo and normals as passes of their own, and a diffuse surface while the G-buffer renders."""
+"""Materials: ids, albedo and normals as passes of their own, and a diffuse surface while the G-buffer
+renders."""
 
 import bpy
 
@@ -7,19 +8,21 @@ from .geometry import CURVATURE
 from .principled import PRESET, Surface
 
 # Passes of materials ("AOVs") by name, and whether they are colours or single values.
-AOVS = (("NShading", "COLOR"), ("NGeom", "COLOR"), ("Albedo", "COLOR"), ("Curvature", "VALUE"), ("Roughness", "VALUE"),
+AOVS = (("NShading", "COLOR"), ("NGeom", "COLOR"), ("Albedo", "COLOR"), ("Curvature", "VALUE"),
+        ("Roughness", "VALUE"),
         ("ScatterWeight", "VALUE"))
 
 # Shaders whose colour is the albedo, and the name of that input.
 COLOURS = {"BSDF_PRINCIPLED": "Base Color", "BSDF_DIFFUSE": "Color", "SUBSURFACE_SCATTERING": "Color",
-           "BSDF_GLOSSY": "Color", "BSDF_TOON": "Color", "BSDF_VELVET": "Color", "EEVEE_SPECULAR": "Base Color"}
+           "BSDF_GLOSSY": "Color", "BSDF_TOON": "Color", "BSDF_VELVET": "Color",
+           "EEVEE_SPECULAR": "Base Color"}
 
 
 def prepare(things):
     """Gives each material its passes. Returns (id, material, Surface) for each that is to be shaded.
 
-    Ids are the materials' own pass indices; if none has one, they are numbered from 1 in the order of their names. A
-    material whose index is 0 while others have one is left alone, as background is."""
+    Ids are the materials' own pass indices; if none has one, they are numbered from 1 in the order of their
+    names. A material whose index is 0 while others have one is left alone, as background is."""
     skin = None
     for thing in things:
         if not thing.data.materials:
@@ -38,7 +41,8 @@ def prepare(things):
     chosen, surfaces = {}, {}
     for material in used:
         if material.pass_index > 255:
-            raise Fault(f"material '{material.name}': pass index {material.pass_index}; 1 to 255 are possible, 0 leaves it alone")
+            raise Fault(f"material '{material.name}': pass index {material.pass_index}; 1 to 255 are "
+                        f"possible, 0 leaves it alone")
         if material.pass_index:
             chosen.setdefault(material.pass_index, material)
         surfaces[material] = add_passes(material)
@@ -80,7 +84,8 @@ def add_passes(material):
         colour, flat = source(socket), tuple(socket.default_value)
         normal = source(shader.inputs.get("Normal"))
     elif output.inputs["Surface"].is_linked:
-        warn(f"material '{material.name}': no shader with a colour was found in it; its viewport colour is taken as albedo")
+        warn(f"material '{material.name}': no shader with a colour was found in it; its viewport colour is "
+             f"taken as albedo")
     tint = surface.scattering and surface.scattering.tint
     if tint:
         mix = tree.nodes.new("ShaderNodeMixRGB")
@@ -110,9 +115,11 @@ def add_passes(material):
         power.inputs[1].default_value = 2
         tree.links.new(surface.roughness, power.inputs[0])
         width = power.outputs[0]
-    feeds = {"NShading": normal or geometry.outputs["Normal"], "NGeom": geometry.outputs["Normal"], "Albedo": colour,
+    feeds = {"NShading": normal or geometry.outputs["Normal"], "NGeom": geometry.outputs["Normal"],
+             "Albedo": colour,
              "Curvature": curvature.outputs["Fac"], "Roughness": width, "ScatterWeight": surface.weight}
-    values = {"Albedo": flat, "Roughness": 1.0, "ScatterWeight": surface.scattering.weight if surface.scattering else 1.0}
+    values = {"Albedo": flat, "Roughness": 1.0,
+              "ScatterWeight": surface.scattering.weight if surface.scattering else 1.0}
     for name, kind in AOVS:
         node = tree.nodes.new("ShaderNodeOutputAOV")
         node.name = name

@@ -1,6 +1,8 @@
-"""Pellucid in Blender: a panel in the sidebar of the 3D view that renders the scene with scattering under skin, eyes, jade and the like.
+"""Pellucid in Blender: a panel in the sidebar of the 3D view that renders the scene with scattering under
+skin, eyes, jade and the like.
 
-The zip that `./run blender-addon` builds is installed by Preferences, Add-ons, Install. docs/guide/blender.md says how it is used.
+The zip that `./run blender-addon` builds is installed by Preferences, Add-ons, Install.
+docs/guide/blender.md says how it is used.
 """
 
 bl_info = {

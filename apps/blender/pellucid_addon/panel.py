@@ -26,8 +26,10 @@ class PELLUCID_PT_materials(bpy.types.Panel):
     bl_space_type, bl_region_type, bl_category = "VIEW_3D", "UI", "Pellucid"
 
     def draw(self, context):
-        things = [t for t in context.selected_objects if t.type == "MESH"] or [t for t in context.scene.objects if t.type == "MESH"]
-        materials = sorted({slot.material for t in things for slot in t.material_slots if slot.material}, key=lambda m: m.name)
+        things = [t for t in context.selected_objects
+                  if t.type == "MESH"] or [t for t in context.scene.objects if t.type == "MESH"]
+        materials = sorted({slot.material for t in things for slot in t.material_slots if slot.material},
+                           key=lambda m: m.name)
         for material in materials:
             row = self.layout.row(align=True)
             row.label(text=material.name, icon_value=material.preview.icon_id if material.preview else 0)

@@ -1,4 +1,5 @@
-"""What the panel sets. A material's preset is the custom property pellucid_preset, which the script reads in a saved file too."""
+"""What the panel sets. A material's preset is the custom property pellucid_preset, which the script reads in
+a saved file too."""
 
 import json
 import os
@@ -19,14 +20,17 @@ def command():
     """The pellucid command: the preferences', $PELLUCID_COMMAND, or the one that is found."""
     addon = bpy.context.preferences.addons.get(__package__)
     given = addon.preferences.command if addon and addon.preferences else ""
-    return bpy.path.abspath(given) if given else os.environ.get("PELLUCID_COMMAND") or shutil.which("pellucid") or "pellucid"
+    if given:
+        return bpy.path.abspath(given)
+    return os.environ.get("PELLUCID_COMMAND") or shutil.which("pellucid") or "pellucid"
 
 
 def library():
     """Names of the library's materials, asked for once; none where the command is not found."""
     if not _library:
         try:
-            said = subprocess.run([command(), "profile", "list", "--json"], capture_output=True, text=True, timeout=60)
+            said = subprocess.run([command(), "profile", "list", "--json"], capture_output=True, text=True,
+                                  timeout=60)
             _library.extend(p["name"] for p in json.loads(said.stdout)["profiles"])
         except (OSError, ValueError, KeyError, TypeError, subprocess.TimeoutExpired):
             pass
@@ -37,7 +41,8 @@ _items = []  # Blender keeps no texts of items that a function returns
 
 
 def items(self, context):
-    _items[:] = FIXED + [(name, name.replace("-", " ").replace("_", " ").capitalize(), f"The library's {name}") for name in library() if name != "skin"]
+    _items[:] = FIXED + [(name, name.replace("-", " ").replace("_", " ").capitalize(),
+                          f"The library's {name}") for name in library() if name != "skin"]
     return _items
 
 
@@ -52,31 +57,45 @@ def write(material, index):
 
 
 class Settings(bpy.types.PropertyGroup):
-    samples: bpy.props.EnumProperty(name="Anti-aliasing", description="The G-buffer is rendered larger on each side, and the picture made smaller",
-                                    items=[("1", "Off", "One sample a pixel"), ("2", "2 x 2", "Four samples a pixel")], default="1")
-    shadow_size: bpy.props.IntProperty(name="Shadow maps", description="Texels on a side", default=1024, min=64, max=16384)
-    exposure: bpy.props.FloatProperty(name="Exposure", description="Multiplies the picture", default=1.0, min=0.001, max=1000.0)
-    unit: bpy.props.FloatProperty(name="Unit (mm)", description="Millimetres per Blender unit; 0: the scene's unit scale", default=0.0, min=0.0)
+    samples: bpy.props.EnumProperty(name="Anti-aliasing",
+                                    description="The G-buffer is rendered larger on each side, and the "
+                                                "picture made smaller",
+                                    items=[("1", "Off", "One sample a pixel"),
+                                           ("2", "2 x 2", "Four samples a pixel")], default="1")
+    shadow_size: bpy.props.IntProperty(name="Shadow maps", description="Texels on a side", default=1024,
+                                       min=64, max=16384)
+    exposure: bpy.props.FloatProperty(name="Exposure", description="Multiplies the picture", default=1.0,
+                                      min=0.001, max=1000.0)
+    unit: bpy.props.FloatProperty(name="Unit (mm)",
+                                  description="Millimetres per Blender unit; 0: the scene's unit scale",
+                                  default=0.0, min=0.0)
     status: bpy.props.StringProperty(default="", options={"SKIP_SAVE"})
 
 
 class Preferences(bpy.types.AddonPreferences):
     bl_idname = __package__
-    command: bpy.props.StringProperty(name="Pellucid command", description="Empty: $PELLUCID_COMMAND, else the one on the PATH", subtype="FILE_PATH")
-    device: bpy.props.StringProperty(name="OpenCL device", description="A number, cpu, gpu or a part of a name; empty: the standard one")
+    command: bpy.props.StringProperty(name="Pellucid command",
+                                      description="Empty: $PELLUCID_COMMAND, else the one on the PATH",
+                                      subtype="FILE_PATH")
+    device: bpy.props.StringProperty(name="OpenCL device",
+                                     description="A number, cpu, gpu or a part of a name; empty: the "
+                                                 "standard one")
 
     def draw(self, context):
         self.layout.prop(self, "command")
         self.layout.prop(self, "device")
         if not library():
-            self.layout.label(text=f"'{command()}' does not answer: pip install pellucid brings it", icon="ERROR")
+            self.layout.label(text=f"'{command()}' does not answer: pip install pellucid brings it",
+                              icon="ERROR")
 
 
 def register():
     bpy.utils.register_class(Settings)
     bpy.utils.register_class(Preferences)
     bpy.types.Scene.pellucid = bpy.props.PointerProperty(type=Settings)
-    bpy.types.Material.pellucid = bpy.props.EnumProperty(name="Pellucid", description="How light scatters in this material", items=items, get=read, set=write)
+    bpy.types.Material.pellucid = bpy.props.EnumProperty(name="Pellucid",
+                                                         description="How light scatters in this material",
+                                                         items=items, get=read, set=write)
 
 
 def unregister():

@@ -1,4 +1,5 @@
-"""The button: a copy of the file is rendered by another Blender to a G-buffer, which `pellucid shade` makes a picture of.
+"""The button: a copy of the file is rendered by another Blender to a G-buffer, which `pellucid shade` makes
+a picture of.
 
 Nothing of the open file changes: no material, no setting, no path.
 """
@@ -26,19 +27,25 @@ def steps(scene, folder):
     factor, share = int(settings.samples), render.resolution_percentage / 100
     size = [max(1, int(n * share)) * factor for n in (render.resolution_x, render.resolution_y)]
     addon = bpy.context.preferences.addons.get(__package__)
-    device = ["--device", addon.preferences.device] if addon and addon.preferences and addon.preferences.device else []
+    device = ["--device",
+              addon.preferences.device] if addon and addon.preferences and addon.preferences.device else []
     unit = ["--unit", str(settings.unit)] if settings.unit > 0 else []
-    yield "G-buffer", [bpy.app.binary_path, "--factory-startup", "-b", os.path.join(folder, "scene.blend"), "--python", SCRIPT, "--", "-o", folder,
-                       "--size", f"{size[0]}x{size[1]}", "--frame", str(scene.frame_current), "--shadow-size", str(settings.shadow_size),
+    yield "G-buffer", [bpy.app.binary_path, "--factory-startup", "-b", os.path.join(folder, "scene.blend"),
+                       "--python", SCRIPT, "--", "-o", folder,
+                       "--size", f"{size[0]}x{size[1]}", "--frame", str(scene.frame_current), "--shadow-size",
+                       str(settings.shadow_size),
                        "--pellucid", properties.command(), *unit]
-    yield "shading", [properties.command(), "shade", os.path.join(folder, "gbuffer.exr"), "--scene", os.path.join(folder, "scene.toml"),
-                      "-o", os.path.join(folder, "picture.exr"), "--picture", os.path.join(folder, "picture.png"), "--exposure", str(settings.exposure), *device]
+    yield "shading", [properties.command(), "shade", os.path.join(folder, "gbuffer.exr"), "--scene",
+                      os.path.join(folder, "scene.toml"),
+                      "-o", os.path.join(folder, "picture.exr"), "--picture",
+                      os.path.join(folder, "picture.png"), "--exposure", str(settings.exposure), *device]
 
 
 def said(log):
     """The last words of a failed step that tell why."""
     lines = [line for line in log.splitlines() if line.strip()]
-    told = [line for line in lines if line.startswith(("render_gbuffer.py:", "pellucid:")) and "warning" not in line]
+    told = [line for line in lines if line.startswith(("render_gbuffer.py:", "pellucid:"))
+            and "warning" not in line]
     return (told or lines or ["it said nothing"])[-1]
 
 
@@ -79,15 +86,20 @@ class PELLUCID_OT_render(bpy.types.Operator):
     bl_idname = "pellucid.render"
     bl_label = "Render with Pellucid"
 
-    filepath: bpy.props.StringProperty(name="PNG", description="Where the picture goes beside the image; empty: nowhere", subtype="FILE_PATH", options={"SKIP_SAVE"})
-    keep: bpy.props.StringProperty(name="Folder", description="Where G-buffer, shadow maps and scene.toml are kept; empty: nowhere", subtype="DIR_PATH", options={"SKIP_SAVE"})
+    filepath: bpy.props.StringProperty(name="PNG",
+                                       description="Where the picture goes beside the image; empty: nowhere",
+                                       subtype="FILE_PATH", options={"SKIP_SAVE"})
+    keep: bpy.props.StringProperty(name="Folder",
+                                   description="Where G-buffer, shadow maps and scene.toml are kept; empty: "
+                                               "nowhere", subtype="DIR_PATH", options={"SKIP_SAVE"})
 
     def begin(self, context):
         scene = context.scene
         self.factor = int(scene.pellucid.samples)
         self.folder = tempfile.mkdtemp(prefix="pellucid-")
         self.log = ""
-        bpy.ops.wm.save_as_mainfile(filepath=os.path.join(self.folder, "scene.blend"), copy=True, compress=False)
+        bpy.ops.wm.save_as_mainfile(filepath=os.path.join(self.folder, "scene.blend"), copy=True,
+                                    compress=False)
         self.steps = steps(scene, self.folder)
         self.process = None
 
@@ -100,9 +112,11 @@ class PELLUCID_OT_render(bpy.types.Operator):
         scene.pellucid.status = self.what + "..."
         self.output = open(os.path.join(self.folder, "log.txt"), "w+", encoding="utf-8", errors="replace")
         try:
-            self.process = subprocess.Popen(command, stdout=self.output, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL)
+            self.process = subprocess.Popen(command, stdout=self.output, stderr=subprocess.STDOUT,
+                                            stdin=subprocess.DEVNULL)
         except OSError as error:
-            raise Failure(f"cannot run '{command[0]}' ({error.strerror}): set the command in the add-on's preferences; pip install pellucid brings it") from None
+            raise Failure(f"cannot run '{command[0]}' ({error.strerror}): set the command in the add-on's "
+                          f"preferences; pip install pellucid brings it") from None
         return True
 
     def done(self):
@@ -124,7 +138,8 @@ class PELLUCID_OT_render(bpy.types.Operator):
             if failure is None:
                 show(self.folder, self.factor, bpy.path.abspath(self.filepath) if self.filepath else "")
                 if self.keep:
-                    shutil.copytree(self.folder, bpy.path.abspath(self.keep), dirs_exist_ok=True, ignore=shutil.ignore_patterns("scene.blend", "log.txt"))
+                    shutil.copytree(self.folder, bpy.path.abspath(self.keep), dirs_exist_ok=True,
+                                    ignore=shutil.ignore_patterns("scene.blend", "log.txt"))
         except (OSError, RuntimeError) as error:
             failure = Failure(str(error))
         save_log(self.log)

@@ -1,4 +1,5 @@
-// Blender for the tests: the installed `blender`, or what PELLUCID_BLENDER names, such as blender_module with bpy of PyPI.
+// Blender for the tests: the installed `blender`, or what PELLUCID_BLENDER names, such as blender_module
+// with bpy of PyPI.
 #pragma once
 #include <cstdlib>
 #include <string>

@@ -1,4 +1,5 @@
-"""Installs the add-on's zip in the Blender that runs this, builds a scene with skin, an eye, teeth and wax, and presses the button.
+"""Installs the add-on's zip in the Blender that runs this, builds a scene with skin, an eye, teeth and wax,
+and presses the button.
 
     blender --factory-startup -b --python blender_addon.py -- ADDON.zip OUTPUT_FOLDER [WIDTH]
 
@@ -50,7 +51,8 @@ def ball(x, radius, made, z=0.0):
 
 
 # Blender 3 scales the radius by Subsurface, Blender 4 by Subsurface Scale.
-skin = material("Face", (0.8, 0.5, 0.4), Subsurface=0.5, Subsurface_Scale=0.5, Subsurface_Radius=(0.4, 0.1, 0.05),
+skin = material("Face", (0.8, 0.5, 0.4), Subsurface=0.5, Subsurface_Scale=0.5,
+                Subsurface_Radius=(0.4, 0.1, 0.05),
                 Subsurface_Color=(0.8, 0.5, 0.4, 1), Roughness=0.4, Specular=0.5)
 teeth = material("Teeth", (0.85, 0.82, 0.7), Roughness=0.2, Specular=0.4)
 eye = material("Eye.L", (0.8, 0.75, 0.7), Roughness=0.1)
@@ -81,11 +83,14 @@ before = {m.name: [n.name for n in m.node_tree.nodes] for m in bpy.data.material
 engine, scenes = scene.render.engine, len(bpy.data.scenes)
 scene.pellucid.samples = "2"
 scene.pellucid.shadow_size = 512
-report["result"] = list(bpy.ops.pellucid.render(filepath=os.path.join(out, "picture.png"), keep=os.path.join(out, "kept")))
+report["result"] = list(bpy.ops.pellucid.render(filepath=os.path.join(out, "picture.png"),
+                                                keep=os.path.join(out, "kept")))
 image = bpy.data.images["Pellucid"]
 report["size"], report["packed"] = list(image.size), image.packed_file is not None
-report["untouched"] = (before == {m.name: [n.name for n in m.node_tree.nodes] for m in bpy.data.materials if m.use_nodes}
-                       and scene.render.engine == engine and len(bpy.data.scenes) == scenes and not bpy.data.filepath)
+report["untouched"] = (before == {m.name: [n.name for n in m.node_tree.nodes] for m in bpy.data.materials
+                                  if m.use_nodes}
+                       and scene.render.engine == engine and len(bpy.data.scenes) == scenes
+                       and not bpy.data.filepath)
 report["log"] = bpy.data.texts["Pellucid log"].as_string()
 scene.pellucid.samples = "1"
 bpy.ops.pellucid.render(filepath=os.path.join(out, "plain.png"))

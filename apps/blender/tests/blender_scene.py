@@ -1,8 +1,10 @@
-"""Makes the scene of test_cli_blender_script.cpp and saves it: blender -b --python THIS --python render_gbuffer.py -- ...
+"""Makes the scene of test_cli_blender_script.cpp and saves it: blender -b --python THIS --python
+render_gbuffer.py -- ...
 
-What a .blend file may hold and a converter may get wrong: modifiers that differ on screen and in a render, materials on the
-object and on the mesh, a mirrored and unevenly scaled object, an instanced collection, a bumped and textured surface, things
-that are not rendered. PELLUCID_SCENE: "FILE.blend LIGHT", a light's type.
+What a .blend file may hold and a converter may get wrong: modifiers that differ on screen and in a render,
+materials on the object and on the mesh, a mirrored and unevenly scaled object, an instanced collection, a
+bumped and textured surface, things that are not rendered. PELLUCID_SCENE: "FILE.blend LIGHT", a light's
+type.
 """
 
 import math
@@ -63,7 +65,8 @@ cube = bpy.context.object
 cube.data.materials.append(skin)
 group = bpy.data.collections.new("group")
 group.objects.link(cube)
-scene.collection.objects.unlink(cube) if cube.name in scene.collection.objects else bpy.context.collection.objects.unlink(cube)
+inside = scene.collection if cube.name in scene.collection.objects else bpy.context.collection
+inside.objects.unlink(cube)
 empty = bpy.data.objects.new("instance", None)
 empty.instance_type, empty.instance_collection = "COLLECTION", group
 empty.location, empty.rotation_euler = (1.7, 0.3, -0.5), (0.3, 0.2, 0.5)
@@ -95,7 +98,8 @@ scene.camera = camera
 world = bpy.data.worlds.new("world")
 world.use_nodes = True
 tree = world.node_tree
-direction, dot, sum_ = (tree.nodes.new(n) for n in ("ShaderNodeNewGeometry", "ShaderNodeVectorMath", "ShaderNodeMath"))
+direction, dot, sum_ = (tree.nodes.new(n)
+                        for n in ("ShaderNodeNewGeometry", "ShaderNodeVectorMath", "ShaderNodeMath"))
 flip = tree.nodes.new("ShaderNodeVectorMath")
 dot.operation, sum_.operation = "DOT_PRODUCT", "MULTIPLY_ADD"
 dot.inputs[1].default_value = (-0.6, 0, -0.8)  # Incoming points back to the camera

@@ -1,5 +1,6 @@
-// G-buffers as Blender's Cycles writes them, through `pellucid shade` (docs/guide/blender.md): with scattering off the picture is
-// Blender's Lambert picture; with it on it is nearer to the path-traced one. Pictures: PELLUCID_GBUFFER_DIR.
+// G-buffers as Blender's Cycles writes them, through `pellucid shade` (docs/guide/blender.md): with
+// scattering off the picture is Blender's Lambert picture; with it on it is nearer to the path-traced one.
+// Pictures: PELLUCID_GBUFFER_DIR.
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
@@ -53,7 +54,8 @@ Difference compare(const std::vector<float>& a, const std::vector<float>& b, con
     return e;
 }
 
-// The same of the means over pixels of equal N.L: a sphere lit by a sun has one value there, and its mean has little noise.
+// The same of the means over pixels of equal N.L: a sphere lit by a sun has one value there, and its mean
+// has little noise.
 Difference compareCurves(const std::vector<float>& a, const std::vector<float>& b,
                          const std::vector<float>& mask, const std::vector<double>& cosines) {
     constexpr size_t bins = 100;
@@ -128,7 +130,8 @@ TEST_F(BlenderReference, ScatteringComesCloserToThePathTracedSphere) {
     gbuffer.channels.push_back({"ViewLayer.Curvature.X", io::ChannelType::Float, mask});
     io::writeExr(path("gbuffer.exr"), gbuffer);
 
-    // Blender's Burley "radius" is 4 pi d of R(d) = (exp(-r/d) + exp(-r/3d)) / (8 pi d r); s = 1.1 at albedo 0.8.
+    // Blender's Burley "radius" is 4 pi d of R(d) = (exp(-r/d) + exp(-r/3d)) / (8 pi d r); s = 1.1 at albedo
+    // 0.8.
     const float radius[3] = {0.367f, 0.137f, 0.068f};
     float meanFreePath[3];
     for (int c = 0; c < 3; ++c) meanFreePath[c] = 1.1f * radius[c] / (4 * std::numbers::pi_v<float>);
@@ -148,7 +151,8 @@ TEST_F(BlenderReference, ScatteringComesCloserToThePathTracedSphere) {
     const std::string material = "[[material]]\nid = 1\ncurvature_lut = \"burley\"\ndiffusion_radius = " +
                                  std::to_string(lut.info().curvature.diffusionRadius) +
                                  "\n[[curvature_lut]]\nname = \"burley\"\nfile = \"burley.exr\"\n";
-    // No shadow: a sphere casts none on itself, and Blender's is black past the terminator, where scattered light is.
+    // No shadow: a sphere casts none on itself, and Blender's is black past the terminator, where scattered
+    // light is.
     const std::vector<float> out =
         shade(path("gbuffer.exr"), std::string(names) + "curvature = \"Curvature.X\"\n" + light + material);
     ASSERT_FALSE(out.empty());
@@ -180,8 +184,9 @@ TEST_F(BlenderReference, ScatteringComesCloserToThePathTracedSphere) {
     // Where it matters most: red light near the terminator.
     EXPECT_LT(nearBurley.rms[0], tolerance::blenderTerminator * nearBurleyLambert.rms[0]);
 
-    // Blender's random walk reflects more than the albedo it was given, by one factor per channel wherever the light is. With the
-    // albedo as it is measured, in the light and in every other pixel, the others come closer over the whole sphere too.
+    // Blender's random walk reflects more than the albedo it was given, by one factor per channel wherever
+    // the light is. With the albedo as it is measured, in the light and in every other pixel, the others
+    // come closer over the whole sphere too.
     std::vector<float> measured = mask, others = mask;
     for (size_t i = 0; i < mask.size(); ++i) {
         if (i % 2 || cosines[i] < 0.5) measured[i] = 0;
@@ -228,7 +233,8 @@ TEST_F(BlenderReference, ScatteringComesCloserToThePathTracedSphere) {
     }
 }
 
-// The same names and habits in a file made here: layers, half and float mixed, depth of 1e10 and zeros behind, z up.
+// The same names and habits in a file made here: layers, half and float mixed, depth of 1e10 and zeros
+// behind, z up.
 TEST_F(BlenderGBuffer, ConventionsOnAFileOfOurOwn) {
     const int size = 48;
     io::Image image;

@@ -1,4 +1,5 @@
-// The add-on's zip in the installed Blender, without a window: a scene with skin, teeth, an eye and jade, and the button (blender_addon.py).
+// The add-on's zip in the installed Blender, without a window: a scene with skin, teeth, an eye and jade,
+// and the button (blender_addon.py).
 #include <cmath>
 
 #include "blender.h"

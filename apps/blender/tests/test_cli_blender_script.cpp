@@ -1,6 +1,6 @@
 // apps/blender/render_gbuffer.py in the installed Blender, then `pellucid shade` on what it wrote,
-// unchanged. A scene with what a .blend file may hold (apps/blender/tests/blender_scene.py) must give Blender's own
-// Lambert picture wherever its light arrives.
+// unchanged. A scene with what a .blend file may hold (apps/blender/tests/blender_scene.py) must give
+// Blender's own Lambert picture wherever its light arrives.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -24,7 +24,8 @@ class BlenderScript : public CommandTest {
         if (!blender::installed()) GTEST_SKIP() << "blender is not installed";
     }
 
-    // Runs render_gbuffer.py after the script `scene`, if one is named. Returns the exit code; Blender's output is in said.txt.
+    // Runs render_gbuffer.py after the script `scene`, if one is named. Returns the exit code; Blender's
+    // output is in said.txt.
     int render(const std::string& before, const std::string& arguments, const std::string& scene = "") const {
         const std::string folder = PELLUCID_SOURCE_DIR "/apps/blender/";
         return run("PELLUCID_COMMAND='" PELLUCID_COMMAND "' " + before + " '" + blender::command() +

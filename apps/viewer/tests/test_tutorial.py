@@ -13,7 +13,8 @@ pytest.importorskip("moderngl", reason="moderngl is not installed")
 
 
 def run(*arguments):
-    made = subprocess.run([sys.executable, TUTORIAL, *arguments], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300)
+    made = subprocess.run([sys.executable, TUTORIAL, *arguments], stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, timeout=300)
     if made.returncode and "OpenGL" in made.stdout:
         pytest.skip("no OpenGL")
     assert made.returncode == 0, made.stdout
@@ -41,11 +42,13 @@ def test_its_picture(tmp_path):
 def test_up(tmp_path):
     """A long box that stands: as tall in the picture along its up axis, whichever that is."""
     z = np.array([[x, y, z] for z in (0, 4) for y in (0, 1) for x in (0, 1)], float)
-    faces = ["0 3 1", "0 2 3", "4 5 7", "4 7 6", "0 1 5", "0 5 4", "2 7 3", "2 6 7", "0 4 6", "0 6 2", "1 3 7", "1 7 5"]
+    faces = ["0 3 1", "0 2 3", "4 5 7", "4 7 6", "0 1 5", "0 5 4", "2 7 3", "2 6 7", "0 4 6", "0 6 2",
+             "1 3 7", "1 7 5"]
     shapes = {}
     for up, points in (("z", z), ("y", z[:, [0, 2, 1]] * [1, 1, -1])):
         path = tmp_path / f"box_{up}.off"
-        path.write_text("OFF\n8 12 0\n" + "\n".join(" ".join(map(str, p)) for p in points) + "\n" + "\n".join("3 " + f for f in faces) + "\n")
+        path.write_text("OFF\n8 12 0\n" + "\n".join(" ".join(map(str, p)) for p in points) + "\n" +
+                        "\n".join("3 " + f for f in faces) + "\n")
         picture = run(tmp_path / f"box_{up}.png", path, "--up", up)[:, :480].max(-1) > 0.02
         rows, columns = picture.any(1).sum(), picture.any(0).sum()
         assert rows > 2 * columns

@@ -43,13 +43,15 @@ def test_the_shadow_map_agrees_with_the_positions(session):
     seen = g.position[g.material > 0].astype(float)
     lamp = session.look.lamps[0]
     map = session.shadow_map(lamp, 1024)
-    assert np.allclose(map.light.to_light, direction((0, 1, 0), (0, 0, 1), lamp.azimuth, lamp.elevation), atol=1e-6)
+    assert np.allclose(map.light.to_light, direction((0, 1, 0), (0, 0, 1), lamp.azimuth, lamp.elevation),
+                       atol=1e-6)
     m = map.light.world_to_shadow.reshape(4, 4).astype(float)
     q = seen @ m[:3, :3].T + m[:3, 3]
     assert q.min() > 0 and q.max() < 1
-    behind = (q[:, 2] - map.depth[(q[:, 1] * 1024).astype(int), (q[:, 0] * 1024).astype(int)]) * map.light.shadow_depth_range
-    # Nothing stands before the first surface but by a texel's slope, and where a texel looks past an edge; most of a lit face is
-    # that surface.
+    behind = (q[:, 2] - map.depth[(q[:, 1] * 1024).astype(int),
+                                  (q[:, 0] * 1024).astype(int)]) * map.light.shadow_depth_range
+    # Nothing stands before the first surface but by a texel's slope, and where a texel looks past an edge;
+    # most of a lit face is that surface.
     assert np.percentile(behind, 5) > -1.0 and np.percentile(np.abs(behind), 30) < 0.3  # mm
 
 
@@ -64,22 +66,28 @@ def test_every_picture_shows_something_of_its_own(session):
         seen[mode] = frame.pixels.tobytes()
         if mode not in ("deep_scatter", "thickness"):  # nothing where nothing thin is lit from behind
             assert frame.pixels.std() > 0, mode
-    pictures = [seen[m] for m in ("final", "lambert", "difference", "error", "specular", "irradiance", "normals", "albedo")]
+    pictures = [seen[m]
+                for m in ("final", "lambert", "difference", "error", "specular", "irradiance", "normals",
+                          "albedo")]
     assert len(set(pictures)) == len(pictures)
 
 
 def test_every_setting_changes_the_picture(session):
     reset(session)
     before = session.radiance(None, 160, 90)
-    changes = {"profile": "jade", "radius_scale": 3.0, "method": "none", "albedo": (0.5, 1, 1), "specular": 0.9, "roughness": 0.6,
-               "f0": 0.1, "ggx": True, "pores": 0.4, "ambient": 0.5, "pupil": 3.5, "iris_color": (0.1, 0.2, 0.5), "iris_seed": 7,
-               "iris_concavity": 0.6, "iris_profile": "skin", "limbus_width": 2.0, "limbus_darkening": 0.1, "cornea_radius": 9.0,
+    changes = {"profile": "jade", "radius_scale": 3.0, "method": "none", "albedo": (0.5, 1, 1),
+               "specular": 0.9, "roughness": 0.6,
+               "f0": 0.1, "ggx": True, "pores": 0.4, "ambient": 0.5, "pupil": 3.5,
+               "iris_color": (0.1, 0.2, 0.5), "iris_seed": 7,
+               "iris_concavity": 0.6, "iris_profile": "skin", "limbus_width": 2.0, "limbus_darkening": 0.1,
+               "cornea_radius": 9.0,
                "chamber_depth": 4.0, "tear_roughness": 0.2, "gaze": (20.0, 10.0)}
     for name, value in changes.items():
         reset(session)
         setattr(session.look, name, value)
         assert not np.array_equal(session.radiance(None, 160, 90), before), name
-    for name, value in {"azimuth": 0.0, "elevation": 60.0, "color": (1, 0, 0), "intensity": 2.0, "shadow": False, "on": False}.items():
+    for name, value in {"azimuth": 0.0, "elevation": 60.0, "color": (1, 0, 0), "intensity": 2.0,
+                        "shadow": False, "on": False}.items():
         reset(session)
         setattr(session.look.lamps[0], name, value)
         assert not np.array_equal(session.radiance(None, 160, 90), before), name
@@ -89,7 +97,8 @@ def test_every_setting_changes_the_picture(session):
     session.look.distance = (0.1, 0.1, 0.1)
     assert not np.array_equal(session.radiance(None, 160, 90), custom)
     reset(session)
-    session.look.chamber_depth, session.look.cornea_radius = 0.5, 7.0  # no such eye: the iris goes as deep as it must
+    # no such eye: the iris goes as deep as it must
+    session.look.chamber_depth, session.look.cornea_radius = 0.5, 7.0
     assert np.isfinite(session.radiance(None, 160, 90)).all()
     reset(session)
     assert np.array_equal(session.radiance(None, 160, 90), before)  # same input, same bits
@@ -110,17 +119,21 @@ def test_no_slider_builds_a_program_once_the_picture_is_at_rest(session):
     session.frame(160, 90)
     session.prepare(160, 90)
     built = session.device.stats().programs_built
-    for name, value in {"albedo": (0.5, 1.0, 1.0), "deep_scatter": (1.0, 0.2, 0.1), "transmission": 0.0, "ambient": 0.0, "specular": 0.0,
+    for name, value in {"albedo": (0.5, 1.0, 1.0), "deep_scatter": (1.0, 0.2, 0.1), "transmission": 0.0,
+                        "ambient": 0.0, "specular": 0.0,
                         "roughness": 0.9, "f0": 0.0, "pores": 0.0, "pupil": 1.0, "radius_scale": 5.0,
-                        "iris_color": (0.1, 0.2, 0.5), "iris_seed": 7, "iris_concavity": 0.6, "iris_profile": "skin", "limbus_width": 2.0,
-                        "cornea_radius": 9.0, "chamber_depth": 4.0, "tear_roughness": 0.2, "gaze": (20.0, 10.0)}.items():
+                        "iris_color": (0.1, 0.2, 0.5), "iris_seed": 7, "iris_concavity": 0.6,
+                        "iris_profile": "skin", "limbus_width": 2.0,
+                        "cornea_radius": 9.0, "chamber_depth": 4.0, "tear_roughness": 0.2,
+                        "gaze": (20.0, 10.0)}.items():
         reset(session)
         setattr(session.look, name, value)
         for small in (True, False):
             session.frame(80 if small else 160, 45 if small else 90, small)
         assert session.device.stats().programs_built == built, name
     reset(session)
-    session.look.ambient, session.look.transmission, session.look.deep_scatter, session.look.albedo = 0.0, 0.0, (1.0, 1.0, 1.0), (0.5, 1.0, 1.0)
+    session.look.ambient = session.look.transmission = 0.0
+    session.look.deep_scatter, session.look.albedo = (1.0, 1.0, 1.0), (0.5, 1.0, 1.0)
     session.frame(160, 90)
     assert session.device.stats().programs_built == built
 
@@ -162,7 +175,8 @@ def test_an_iris_is_a_square_of_a_picture(session, tmp_path):
 def test_moving_pictures_look_like_those_at_rest(session):
     whole = Session(session.device)
     whole.load(files.standard_head())
-    rest, moving = whole.frame(240, 136).pixels.astype(int), whole.frame(240, 136, small=True).pixels.astype(int)
+    rest, moving = whole.frame(
+        240, 136).pixels.astype(int), whole.frame(240, 136, small=True).pixels.astype(int)
     assert whole.renderer.level(1e9) >= 1 and whole._level(True) > 0  # a coarser mesh is in use
     off = np.abs(rest - moving).max(2)
     assert np.median(off) <= 2 and (off > 40).mean() < 0.03
@@ -193,7 +207,8 @@ def test_edges_become_smooth(session):
     assert background.any() and not rough[background].any() and 50 < between.sum() < 1500
     inside = np.abs(smooth.astype(int) - rough).max(2)[~background]
     assert np.median(inside) < 6
-    assert np.array_equal(session.frame(160, 90).pixels, rough) and np.array_equal(session.smooth(160, 90), smooth)
+    assert np.array_equal(session.frame(160, 90).pixels, rough)
+    assert np.array_equal(session.smooth(160, 90), smooth)
 
 
 def test_tiles_are_those_that_the_shader_counts(session):
@@ -214,8 +229,10 @@ def test_tiles_are_those_that_the_shader_counts(session):
         session.count = True
         counted = p.shader.stats()
         session.count = False
-        by = dict(zip(("none", "preintegrated", "separable", "screen", "light", "texture"), counted.tiles_by_scattering))
-        # Where shadows end, the picture without scattering has an edge of a millimetre and the other a sharp one: a few tiles more.
+        by = dict(zip(("none", "preintegrated", "separable", "screen", "light", "texture"),
+                      counted.tiles_by_scattering))
+        # Where shadows end, the picture without scattering has an edge of a millimetre and the other a sharp
+        # one: a few tiles more.
         assert abs(int(by[name]) - int(tapped)) <= 0.15 * tapped + 2, (method, tapped, by)
 
 
@@ -279,7 +296,8 @@ def test_the_method_in_the_texture(session, tmp_path):
     export(own, tmp_path / "look", 160, 90)
     command = os.environ.get("PELLUCID_COMMAND")
     if command:
-        subprocess.run([command, "shade", "gbuffer.exr", "--scene", "scene.toml", "-o", "again.exr"], cwd=tmp_path / "look", check=True,
+        subprocess.run([command, "shade", "gbuffer.exr", "--scene", "scene.toml", "-o", "again.exr"],
+                       cwd=tmp_path / "look", check=True,
                        stdout=subprocess.DEVNULL)
         one, two = (files.read_image(tmp_path / "look" / name) for name in ("picture.exr", "again.exr"))
         assert all(np.array_equal(one[c], two[c]) for c in "RGB")
@@ -314,9 +332,11 @@ def test_pictures_are_as_small_as_the_time_asks():
 
 
 def test_the_mouse_takes_the_object_along():
-    """A drag over a part of the picture's height: the point under the mouse follows it, seen from the front and from the side."""
+    """A drag over a part of the picture's height: the point under the mouse follows it, seen from the front
+    and from the side."""
     look = Look()
-    shown = types.SimpleNamespace(orbit=Orbit(distance=30), look=look, other=None, renderer=types.SimpleNamespace(radius=10.0))
+    shown = types.SimpleNamespace(orbit=Orbit(distance=30), look=look, other=None,
+                                  renderer=types.SimpleNamespace(radius=10.0))
     state = Viewer(lambda: types.SimpleNamespace(set_progress=lambda report: None), lambda device: shown)
 
     def place(point=(0, 0, 0)):
@@ -339,7 +359,8 @@ def test_the_mouse_takes_the_object_along():
     assert place()[1] < 0.95 * before
     azimuth, elevation = look.lamps[0].azimuth, look.lamps[0].elevation
     state.apply({"kind": "light", "dx": 0.1, "dy": -0.1})
-    assert look.lamps[0].azimuth - azimuth == pytest.approx(12) and look.lamps[0].elevation - elevation == pytest.approx(12)
+    turned = look.lamps[0].azimuth - azimuth, look.lamps[0].elevation - elevation
+    assert turned == pytest.approx((12, 12))
 
 
 def test_presets_and_looks():

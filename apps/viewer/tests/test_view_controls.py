@@ -76,7 +76,9 @@ def test_every_control_sets_the_value_that_it_names(session):
                     return getattr(look.lamps[int(lamp[1])], lamp[2])
                 if name == "slider-wipe":
                     return session.wipe
-                return getattr(look, channel[1])[int(channel[2])] if channel else getattr(look, name[len("slider-"):])
+                if channel:
+                    return getattr(look, channel[1])[int(channel[2])]
+                return getattr(look, name[len("slider-"):])
 
             low, high = e.props["min"], e.props["max"]
             assert low <= value() <= high and low < high, name

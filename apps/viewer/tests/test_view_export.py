@@ -27,11 +27,15 @@ def test_what_is_exported_renders_to_the_same_bits(session, tmp_path, profile):
     session.look.gaze, session.look.iris_seed, session.look.limbus_width = (12.0, -5.0), 3, 1.5
     if profile == "custom":
         across = np.linspace(0, 255, 64, dtype=np.uint8)
-        files.write_image(tmp_path / "iris.png", np.stack(np.broadcast_arrays(across[:, None], across, np.uint8(40)), 2))
-        session.look.iris_texture, session.look.iris_color, session.look.iris_profile = str(tmp_path / "iris.png"), (1.0, 1.0, 1.0), "skin"
+        files.write_image(tmp_path / "iris.png",
+                          np.stack(np.broadcast_arrays(across[:, None], across, np.uint8(40)), 2))
+        session.look.iris_texture, session.look.iris_color = str(tmp_path / "iris.png"), (1.0, 1.0, 1.0)
+        session.look.iris_profile = "skin"
     written = {p.name for p in export(session, tmp_path / "look", 192, 108)}
-    assert {"scene.toml", "gbuffer.exr", "picture.exr", "picture.png", "look.json", "look.cpp", "shadow_0.exr"} <= written
-    subprocess.run([command, "shade", "gbuffer.exr", "--scene", "scene.toml", "-o", "again.exr"], cwd=tmp_path / "look", check=True,
+    assert {"scene.toml", "gbuffer.exr", "picture.exr", "picture.png", "look.json", "look.cpp",
+            "shadow_0.exr"} <= written
+    subprocess.run([command, "shade", "gbuffer.exr", "--scene", "scene.toml", "-o", "again.exr"],
+                   cwd=tmp_path / "look", check=True,
                    stdout=subprocess.DEVNULL)
     one, two = (files.read_image(tmp_path / "look" / name) for name in ("picture.exr", "again.exr"))
     assert all(np.array_equal(one[c], two[c]) for c in "RGB") and one["R"].max() > 0.2
@@ -42,8 +46,11 @@ def test_what_is_exported_renders_to_the_same_bits(session, tmp_path, profile):
     assert Look.from_dict(json.loads((tmp_path / "look/look.json").read_text())) == known
 
 
-@pytest.mark.parametrize("values", [{}, {"profile": "custom", "method": "screen"}, {"method": "none", "transmission": 0.0, "ggx": True},
-                                    {"deep_scatter": (0.5, 0.1, 0.0), "radius_scale": 2.0}, {"iris_profile": "skin", "iris_seed": 4}])
+@pytest.mark.parametrize("values",
+                         [{}, {"profile": "custom", "method": "screen"},
+                          {"method": "none", "transmission": 0.0, "ggx": True},
+                                    {"deep_scatter": (0.5, 0.1, 0.0), "radius_scale": 2.0},
+                          {"iris_profile": "skin", "iris_seed": 4}])
 def test_the_exported_cpp_compiles(session, tmp_path, values):
     compiler = shutil.which("c++") or shutil.which("g++") or shutil.which("clang++")
     include = Path(__file__).parents[3] / "host/include"
@@ -54,11 +61,13 @@ def test_the_exported_cpp_compiles(session, tmp_path, values):
         setattr(session.look, name, value)
     source = tmp_path / "look.cpp"
     source.write_text(snippet(session, session.look))
-    done = subprocess.run([compiler, "-std=c++17", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I", str(include), str(source)],
+    done = subprocess.run([compiler, "-std=c++17", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I",
+                           str(include), str(source)],
                           capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     # Every number of the look is in it.
-    for number in (session.look.roughness, session.look.f0, session.look.roughness2, session.look.lobe_mix, session.look.ambient):
+    for number in (session.look.roughness, session.look.f0, session.look.roughness2, session.look.lobe_mix,
+                   session.look.ambient):
         assert cpp_float(number) in source.read_text()
 
 
@@ -82,8 +91,10 @@ def test_a_scene_file_is_shown_as_it_was_exported(session, tmp_path):
     shown.look.mode = "final"
     assert shown.frame().pixels.tobytes() == seen["final"]  # nothing sticks
     built = shown.device.stats().programs_built
-    for change in (lambda: setattr(shown.scene.materials[1], "roughness", 0.7), lambda: shown.scene.profiles.update({1: "marble"}),
-                   lambda: shown.look.lights.__setitem__(0, 0.5), lambda: setattr(shown.look, "ambient", 2.0)):
+    for change in (lambda: setattr(shown.scene.materials[1], "roughness", 0.7),
+                   lambda: shown.scene.profiles.update({1: "marble"}),
+                   lambda: shown.look.lights.__setitem__(0, 0.5),
+                   lambda: setattr(shown.look, "ambient", 2.0)):
         before = shown.frame().pixels
         change()
         assert not np.array_equal(shown.frame().pixels, before)

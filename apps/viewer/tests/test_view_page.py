@@ -43,7 +43,8 @@ def wait_for(condition, what, seconds=PATIENCE):
     raise AssertionError(f"waited {seconds} s for {what}")
 
 
-# The viewer, with a device that is gone once the file LOST is there, and without the pictures that make edges smooth at rest.
+# The viewer, with a device that is gone once the file LOST is there, and without the pictures that make
+# edges smooth at rest.
 PROGRAM = """
 import os, sys
 import pellucid as pel
@@ -81,10 +82,13 @@ def served(lost, folder, *arguments):
     log = folder / "log"
     # As a program of its own: pytest's variable would make NiceGUI wait for a test client.
     environment = {k: v for k, v in os.environ.items() if not k.startswith(("PYTEST", "NICEGUI"))}
-    process = subprocess.Popen([sys.executable, "-c", PROGRAM, str(lost), "--no-browser", "--port", str(port), *arguments],
-                               stdout=log.open("w"), stderr=subprocess.STDOUT, env=environment, cwd=log.parent)
+    process = subprocess.Popen([sys.executable, "-c", PROGRAM, str(lost), "--no-browser", "--port", str(port),
+                                *arguments],
+                               stdout=log.open("w"), stderr=subprocess.STDOUT, env=environment,
+                               cwd=log.parent)
     try:
-        found = wait_for(lambda: process.poll() is not None or re.search(r"http://\S+token=\S+", log.read_text()), "the address")
+        found = wait_for(lambda: process.poll() is not None
+                         or re.search(r"http://\S+token=\S+", log.read_text()), "the address")
         if process.poll() is not None and "OpenGL" in log.read_text():
             pytest.skip("no OpenGL")
         assert process.poll() is None, log.read_text()
@@ -191,8 +195,10 @@ def test_dragging_turns_moves_and_lights(page, key):
 
 
 def test_the_wheel_zooms(page):
-    before, after = act_and_compare(page, lambda: ActionChains(page).scroll_from_origin(
-        webdriver.common.actions.wheel_input.ScrollOrigin.from_element(page.find_element(By.ID, "pel-canvas")), 0, -300).perform())
+    canvas = page.find_element(By.ID, "pel-canvas")
+    origin = webdriver.common.actions.wheel_input.ScrollOrigin.from_element(canvas)
+    before, after = act_and_compare(page,
+                                    lambda: ActionChains(page).scroll_from_origin(origin, 0, -300).perform())
     assert differ(before, after)
 
 
@@ -212,11 +218,13 @@ def sliders(page):
 def click_slider(page, name, share):
     slider = page.find_element(By.CSS_SELECTOR, f"[data-pel='{name}']")
     page.execute_script("arguments[0].scrollIntoView({block: 'center'})", slider)
-    ActionChains(page, duration=0).move_to_element_with_offset(slider, int((share - 0.5) * slider.size["width"]), 0).click().perform()
+    ActionChains(page, duration=0).move_to_element_with_offset(
+        slider, int((share - 0.5) * slider.size["width"]), 0).click().perform()
 
 
 def upload(page, label, path):
-    entry = page.find_element(By.XPATH, f"//*[contains(@class,'q-uploader')][.//*[contains(text(),'{label}')]]//input[@type='file']")
+    box = f"//*[contains(@class,'q-uploader')][.//*[contains(text(),'{label}')]]"
+    entry = page.find_element(By.XPATH, box + "//input[@type='file']")
     entry.send_keys(str(path))
 
 
@@ -227,7 +235,8 @@ def changes_by(page, name):
         count = page.execute_script("return window.pelFrames")
         click_slider(page, name, share)
         with contextlib.suppress(AssertionError):  # it may have been there already
-            wait_for(lambda: page.execute_script("return window.pelFrames") > count, f"a picture by {name}", 30)
+            wait_for(lambda: page.execute_script("return window.pelFrames") > count, f"a picture by {name}",
+                     30)
         seen.append(picture(page))
     return not np.array_equal(*seen)
 
@@ -236,12 +245,15 @@ def test_every_slider_changes_the_picture(page, tmp_path):
     for heading in ("Material", "Eyes", "Lights", "Profile", "Compare"):
         unfold(page, heading)
     kernels = page.execute_script("return window.pelKernels")
-    # These need a light behind and tables, or lobes of two roughnesses, which the second look has, or a second setting to compare with.
-    later = [n for n in sliders(page) if n.startswith("slider-deep_scatter") or n in ("slider-wipe", "slider-transmission", "slider-lobe_mix")]
+    # These need a light behind and tables, or lobes of two roughnesses, which the second look has, or a
+    # second setting to compare with.
+    later = [n for n in sliders(page) if n.startswith("slider-deep_scatter")
+             or n in ("slider-wipe", "slider-transmission", "slider-lobe_mix")]
     assert len(later) == 6 and len(sliders(page)) > 33
     idle = [n for n in sliders(page) if n not in later and not changes_by(page, n)]
     assert not idle
-    # Those that the page builds while it rests may be counted now; test_view.py sees that sliders build none after that.
+    # Those that the page builds while it rests may be counted now; test_view.py sees that sliders build none
+    # after that.
     assert page.execute_script("return window.pelKernels") <= kernels + 4
     unfold(page, "Export")
     second = tmp_path / "look.json"
@@ -273,7 +285,8 @@ def test_a_lost_device_is_told_and_opened_again(page, lost):
 
 def test_export_renders_again(page, tmp_path):
     unfold(page, "Export")
-    pack = wait_for(lambda: [b for b in page.find_elements(By.CSS_SELECTOR, "[data-pel='export']") if b.is_displayed()], "the button", 10)[0]
+    pack = wait_for(lambda: [b for b in page.find_elements(By.CSS_SELECTOR, "[data-pel='export']")
+                             if b.is_displayed()], "the button", 10)[0]
     page.execute_script("arguments[0].scrollIntoView({block: 'center'})", pack)
     pack.click()
     archive = wait_for(lambda: list(page.downloads.glob("*.zip")), "the download", 60)[0]
@@ -284,7 +297,8 @@ def test_export_renders_again(page, tmp_path):
     command = os.environ.get("PELLUCID_COMMAND")
     if not command:
         pytest.skip("the pellucid command is not built")
-    subprocess.run([command, "shade", "gbuffer.exr", "--scene", "scene.toml", "-o", "again.exr"], cwd=folder, check=True,
+    subprocess.run([command, "shade", "gbuffer.exr", "--scene", "scene.toml", "-o", "again.exr"], cwd=folder,
+                   check=True,
                    stdout=subprocess.DEVNULL)
     one, two = (files.read_image(folder / name) for name in ("picture.exr", "again.exr"))
     assert all(np.array_equal(one[c], two[c]) for c in "RGB")
@@ -304,7 +318,8 @@ def test_a_scene_file_is_shown_and_tuned(page, address, lost, tmp_path):
             first = picture(page)
             known = np.asarray(Image.open(scene.with_name("picture.png")).convert("RGB")).astype(int)
             assert first.shape == known.shape
-            ActionChains(page, duration=0).drag_and_drop_by_offset(page.find_element(By.ID, "pel-canvas"), 60, 0).perform()
+            ActionChains(page, duration=0).drag_and_drop_by_offset(
+                page.find_element(By.ID, "pel-canvas"), 60, 0).perform()
             time.sleep(0.5)
             assert np.array_equal(picture(page), first)  # the camera of a scene stays
             assert all(changes_by(page, f"slider-{name}-1") for name in ("specular", "roughness"))
@@ -318,6 +333,7 @@ def test_a_bad_mesh_is_shown_and_the_old_one_stays(page, tmp_path):
     bad.write_text("v 0 0 0\nf 1 2 3\n")
     before = picture(page)
     upload(page, "Drop an OFF", bad)
-    told = wait_for(lambda: [e.text for e in page.find_elements(By.CSS_SELECTOR, ".q-notification") if "obj" in e.text], "a message", 20)
+    told = wait_for(lambda: [e.text for e in page.find_elements(By.CSS_SELECTOR, ".q-notification")
+                             if "obj" in e.text], "a message", 20)
     assert "3" in told[0] or "vertex" in told[0]
     assert not differ(before, picture(page))

@@ -1,4 +1,5 @@
-"""What goes on beside the viewer's pictures: the reference on its own thread, units of meshes, files for pages that are closed."""
+"""What goes on beside the viewer's pictures: the reference on its own thread, units of meshes, files for
+pages that are closed."""
 import asyncio
 import threading
 import time
@@ -95,7 +96,8 @@ def test_a_mesh_of_another_unit_is_noticed(session, tmp_path, scale, better):
     corners = 240 * scale * np.array([[0, 0, 0], [0.7, 0, 0], [0, 1, 0], [0, 0, 0.8]])
     faces = ["3 0 2 1", "3 0 1 3", "3 0 3 2", "3 1 2 3"]
     mesh = tmp_path / "mesh.off"
-    mesh.write_text("OFF\n4 4 0\n" + "\n".join(" ".join(map(repr, map(float, c))) for c in corners) + "\n" + "\n".join(faces) + "\n")
+    mesh.write_text("OFF\n4 4 0\n" + "\n".join(" ".join(map(repr, map(float, c))) for c in corners) + "\n" +
+                    "\n".join(faces) + "\n")
     own = Session(session.device)
     own.load(mesh)
     if scale == 100.0:  # of a tenth of a millimetre: no unit in use
@@ -104,12 +106,14 @@ def test_a_mesh_of_another_unit_is_noticed(session, tmp_path, scale, better):
     if better is not None:
         before = own.orbit
         own.set_unit(better)
-        assert own.better_unit() is None and own.size() == pytest.approx(240, rel=1e-3) and own.orbit is before
+        assert own.better_unit() is None and own.size() == pytest.approx(240, rel=1e-3)
+        assert own.orbit is before
         assert own.renderer._mm == better
 
 
 def test_a_file_for_a_closed_page_is_dropped(monkeypatch):
-    """The export of a page that was closed meanwhile ends without a traceback; one that fails says so on its page."""
+    """The export of a page that was closed meanwhile ends without a traceback; one that fails says so on its
+    page."""
     from nicegui import Client, core, ui
     from nicegui.page import page
 

@@ -11,7 +11,8 @@ from typing import Any
 
 
 def free_port(host: str, port: int) -> int:
-    """This port, or the next one that no program listens at. Raises OSError where there is none, or no such host."""
+    """This port, or the next one that no program listens at. Raises OSError where there is none, or no such
+    host."""
     family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
     for offset in range(50):
         with socket.socket(family, kind, protocol) as probe:
@@ -28,17 +29,22 @@ def free_port(host: str, port: int) -> int:
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="pellucid view", description="A look-dev viewer in the browser.")
-    parser.add_argument("mesh", nargs="?", metavar="MESH|SCENE", help="OFF, OBJ, PLY or STL file, or a scene (.toml) with its G-buffer "
+    parser.add_argument("mesh", nargs="?", metavar="MESH|SCENE",
+                        help="OFF, OBJ, PLY or STL file, or a scene (.toml) with its G-buffer "
                         "(default: a head that comes with pellucid)")
     parser.add_argument("--gbuffer", help="of a scene (default: SCENE_gbuffer.exr or gbuffer.exr beside it)")
-    parser.add_argument("--up", choices=("auto", "y", "z"), default="auto", help="which way is up in the mesh (auto: y in OBJ files)")
+    parser.add_argument("--up", choices=("auto", "y", "z"), default="auto",
+                        help="which way is up in the mesh (auto: y in OBJ files)")
     parser.add_argument("--unit-mm", type=float, default=1.0, help="millimetres per unit of the mesh (1)")
     parser.add_argument("--subdivide", type=int, help="levels of subdivision (2 for the heads, 0 for others)")
     parser.add_argument("--look", help="a look.json that the viewer wrote")
     parser.add_argument("--device", default="", help="OpenCL device, as `pellucid devices` lists them")
-    parser.add_argument("--host", default="127.0.0.1", help="address to listen at; others than 127.0.0.1 let the network in, over plain HTTP")
+    parser.add_argument("--host", default="127.0.0.1",
+                        help="address to listen at; others than 127.0.0.1 let the network in, over plain "
+                             "HTTP")
     parser.add_argument("--port", type=int, default=8350, help="or the next one that is free (8350)")
-    parser.add_argument("--token", default="", help="one that stays valid, in place of random ones that are valid once")
+    parser.add_argument("--token", default="",
+                        help="one that stays valid, in place of random ones that are valid once")
     parser.add_argument("--no-browser", action="store_true", help="only print the address")
     a = parser.parse_args()
     if not a.unit_mm > 0:
@@ -50,7 +56,8 @@ def main() -> int:
         from .page import serve
         from .server import Viewer
     except ImportError as error:
-        print(f"pellucid view: {error}; pip install 'pellucid[view]' brings what the viewer needs", file=sys.stderr)
+        print(f"pellucid view: {error}; pip install 'pellucid[view]' brings what the viewer needs",
+              file=sys.stderr)
         return 1
     import json
 
@@ -86,7 +93,8 @@ def main() -> int:
     except ValueError:
         local = a.host == "localhost"
     if not local:
-        print("pellucid view: the network can reach this page; its token travels unencrypted", file=sys.stderr)
+        print("pellucid view: the network can reach this page; its token travels unencrypted",
+              file=sys.stderr)
 
     def address(key: str) -> str:
         return f"http://{shown}:{port}/?token={key}"
@@ -96,7 +104,8 @@ def main() -> int:
     serve(viewer)
     better = viewer.session.better_unit() if isinstance(viewer.session, Session) else None
     if better is not None:
-        print(f"pellucid view: {viewer.session.size_text()} If its lengths are in {UNITS[better]}: --unit-mm {better:g}",
+        print(f"pellucid view: {viewer.session.size_text()} If its lengths are in {UNITS[better]}: --unit-mm "
+              f"{better:g}",
               file=sys.stderr)
     print(address(keys.key), flush=True)
     if not a.no_browser:

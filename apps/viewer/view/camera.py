@@ -13,7 +13,8 @@ def unit(v: ArrayLike) -> NDArray[np.float64]:
 
 
 def direction(up: ArrayLike, front: ArrayLike, azimuth: float, elevation: float) -> NDArray[np.float64]:
-    """Unit vector away from a head: azimuth 0 is its front, 90 its left ear, elevation 90 straight up. Degrees."""
+    """Unit vector away from a head: azimuth 0 is its front, 90 its left ear, elevation 90 straight up.
+    Degrees."""
     a, e = np.radians(azimuth), np.radians(elevation)
     u, f = unit(up), unit(front)
     return unit((f * np.cos(a) + np.cross(u, f) * np.sin(a)) * np.cos(e) + u * np.sin(e))
@@ -35,12 +36,14 @@ def look_at(eye: ArrayLike, target: ArrayLike, up: ArrayLike) -> NDArray[np.floa
 def perspective(fov: float, aspect: float, near: float, far: float) -> NDArray[np.float64]:
     """OpenGL's: z from -1 at the near plane to 1 at the far one. `fov`: degrees from bottom to top."""
     h = 1 / np.tan(np.radians(fov) / 2)
-    return np.array([[h / aspect, 0, 0, 0], [0, h, 0, 0], [0, 0, (near + far) / (near - far), 2 * near * far / (near - far)], [0, 0, -1, 0]])
+    return np.array([[h / aspect, 0, 0, 0], [0, h, 0, 0],
+                     [0, 0, (near + far) / (near - far), 2 * near * far / (near - far)], [0, 0, -1, 0]])
 
 
 def parallel(half: float, near: float, far: float) -> NDArray[np.float64]:
     """OpenGL's, of a square `2 half` wide."""
-    return np.array([[1 / half, 0, 0, 0], [0, 1 / half, 0, 0], [0, 0, 2 / (near - far), (near + far) / (near - far)], [0, 0, 0, 1]])
+    return np.array([[1 / half, 0, 0, 0], [0, 1 / half, 0, 0],
+                     [0, 0, 2 / (near - far), (near + far) / (near - far)], [0, 0, 0, 1]])
 
 
 @dataclass

@@ -1,7 +1,9 @@
-"""``python -m pellucid.view.gallery OUT``: pictures of materials, methods, lights and mistakes, each with the scene that makes it.
+"""``python -m pellucid.view.gallery OUT``: pictures of materials, methods, lights and mistakes, each with
+the scene that makes it.
 
-Every picture has a folder with what the viewer exports: ``pellucid shade gbuffer.exr --scene scene.toml -o again.exr`` there makes it again.
-`--pictures-only` leaves out the G-buffers and shadow maps, which are large, as in the repository's docs/gallery.
+Every picture has a folder with what the viewer exports: ``pellucid shade gbuffer.exr --scene scene.toml -o
+again.exr`` there makes it again. `--pictures-only` leaves out the G-buffers and shadow maps, which are
+large, as in the repository's docs/gallery.
 """
 from __future__ import annotations
 
@@ -63,30 +65,49 @@ GALLERY: dict[str, list[Entry]] = {
         _material("skin-pale", "Pale skin.", profile="skin-pale", albedo=(1.1, 1.15, 1.15)),
         _material("skin-dark", "Dark skin.", profile="skin-dark", albedo=(0.45, 0.4, 0.38)),
         _material("marble", "Marble.", profile="marble", albedo=(1.05, 1.4, 1.6), pores=0.0, roughness=0.15),
-        _material("jade", "Jade.", profile="jade", albedo=(0.35, 1.2, 0.75), pores=0.0, roughness=0.12, specular=0.6),
-        _material("paraffin", "Paraffin wax: light goes far.", profile="paraffin", albedo=(1.15, 1.35, 1.1), pores=0.0, roughness=0.35),
+        _material("jade", "Jade.", profile="jade", albedo=(0.35, 1.2, 0.75), pores=0.0, roughness=0.12,
+                  specular=0.6),
+        _material("paraffin", "Paraffin wax: light goes far.", profile="paraffin", albedo=(1.15, 1.35, 1.1),
+                  pores=0.0, roughness=0.35),
     ],
     "Methods": [
-        Entry("method-none", "None: Lambert. Shadows are hard and grey.", _at(25, _set(method="none", transmission=0.0, lamps=SIDE, ambient=0.02), 0.5)),
-        Entry("method-preintegrated", "Pre-integrated: tables, no neighbours.", _at(25, _set(method="preintegrated", lamps=SIDE, ambient=0.02), 0.5)),
-        Entry("method-separable", "Separable: two filters across the screen.", _at(25, _set(method="separable", lamps=SIDE, ambient=0.02), 0.5)),
-        Entry("method-screen", "Screen: the whole profile over the picture.", _at(25, _set(method="screen", lamps=SIDE, ambient=0.02), 0.5)),
-        Entry("method-light", "Light: the sum over the light's own map.", _at(25, _set(method="light", lamps=SIDE, ambient=0.02), 0.5)),
-        Entry("method-texture", "Texture: the head's texture, lit and scattered.", _at(25, _set(method="texture", lamps=SIDE, ambient=0.02), 0.5)),
-        Entry("method-auto", "Auto, the default.", _at(25, _set(method="auto", lamps=SIDE, ambient=0.02), 0.5)),
+        Entry("method-none", "None: Lambert. Shadows are hard and grey.",
+              _at(25, _set(method="none", transmission=0.0, lamps=SIDE, ambient=0.02), 0.5)),
+        Entry("method-preintegrated", "Pre-integrated: tables, no neighbours.",
+              _at(25, _set(method="preintegrated", lamps=SIDE, ambient=0.02), 0.5)),
+        Entry("method-separable", "Separable: two filters across the screen.",
+              _at(25, _set(method="separable", lamps=SIDE, ambient=0.02), 0.5)),
+        Entry("method-screen", "Screen: the whole profile over the picture.",
+              _at(25, _set(method="screen", lamps=SIDE, ambient=0.02), 0.5)),
+        Entry("method-light", "Light: the sum over the light's own map.",
+              _at(25, _set(method="light", lamps=SIDE, ambient=0.02), 0.5)),
+        Entry("method-texture", "Texture: the head's texture, lit and scattered.",
+              _at(25, _set(method="texture", lamps=SIDE, ambient=0.02), 0.5)),
+        Entry("method-auto", "Auto, the default.",
+              _at(25, _set(method="auto", lamps=SIDE, ambient=0.02), 0.5)),
     ],
     "Lights": [
-        Entry("light-front", "From the front: hardly anything to scatter, and hardly any work.", _set(lamps=FRONT)),
+        Entry("light-front", "From the front: hardly anything to scatter, and hardly any work.",
+              _set(lamps=FRONT)),
         Entry("light-side", "From the side: the terminator turns red.", _set(lamps=SIDE)),
-        Entry("light-back", "From behind: ears let light through.", _at(10, _set(lamps=BACK, ambient=0.1, pores=0.0, specular=0.1), 0.4, to=(0.22, -0.03))),
+        Entry("light-back", "From behind: ears let light through.",
+              _at(10, _set(lamps=BACK, ambient=0.1, pores=0.0, specular=0.1), 0.4, to=(0.22, -0.03))),
     ],
     "Mistakes": [
-        Entry("wrong-unit", "The mesh is in mm, and unit_mm said 10: light reaches a tenth as far as it should, and the picture is nearly "
+        Entry("wrong-unit",
+              "The mesh is in mm, and unit_mm said 10: light reaches a tenth as far as it should, and the "
+              "picture is nearly "
               "Lambert's. The shader warns of it.", _at(25, _set(lamps=SIDE, ambient=0.02), 0.5, mm=10.0)),
-        Entry("too-soft", "unit_mm said 0.1: skin turns to wax.", _at(25, _set(lamps=SIDE, ambient=0.02), 0.5, mm=0.1)),
-        Entry("orange-rim", "deep_scatter_color (FaceWorks' term) with a strong colour: a rim along nose, lips and ears that light has not.",
-              _at(25, _set(method="preintegrated", lamps=SIDE, ambient=0.02, deep_scatter=(2.0, 0.6, 0.2)), 0.5)),
-        Entry("coarse-shadow-map", "A shadow map of 128 texels: its texels are wider than the profile reaches, and edges of shadows are steps.",
+        Entry("too-soft", "unit_mm said 0.1: skin turns to wax.",
+              _at(25, _set(lamps=SIDE, ambient=0.02), 0.5, mm=0.1)),
+        Entry("orange-rim",
+              "deep_scatter_color (FaceWorks' term) with a strong colour: a rim along nose, lips and ears "
+              "that light has not.",
+              _at(25, _set(method="preintegrated", lamps=SIDE, ambient=0.02, deep_scatter=(2.0, 0.6, 0.2)),
+                  0.5)),
+        Entry("coarse-shadow-map",
+              "A shadow map of 128 texels: its texels are wider than the profile reaches, and edges of "
+              "shadows are steps.",
               _at(25, _set(lamps=SIDE, ambient=0.02, shadow_size=128), 0.5)),
     ],
 }
@@ -95,8 +116,11 @@ GALLERY: dict[str, list[Entry]] = {
 def make(out: Path, pictures_only: bool, sections: Iterable[str], size: int = 480) -> None:
     session = Session()
     session.load(files.standard_head())
-    lines = ["# Gallery", "", "Made by `python -m pellucid.view.gallery`. Each picture has a folder with its scene file; without `--pictures-only` the G-buffer and",
-             "shadow maps are written too, and `pellucid shade gbuffer.exr --scene scene.toml -o again.exr` there gives the same picture.", ""]
+    lines = ["# Gallery", "",
+             "Made by `python -m pellucid.view.gallery`. Each picture has a folder with its scene file; "
+             "without `--pictures-only` the G-buffer and",
+             "shadow maps are written too, and `pellucid shade gbuffer.exr --scene scene.toml -o again.exr` "
+             "there gives the same picture.", ""]
     for section in sections:
         lines += [f"## {section}", ""]
         for entry in GALLERY[section]:
@@ -112,12 +136,14 @@ def make(out: Path, pictures_only: bool, sections: Iterable[str], size: int = 48
                     (out / entry.name).mkdir(parents=True, exist_ok=True)
                     for name in ("picture.png", "scene.toml", "look.json"):
                         (out / entry.name / name).write_bytes((folder / name).read_bytes())
-            lines += [f"![{entry.words}]({entry.name}/picture.png)", "", f"{entry.words} [scene]({entry.name}/scene.toml)", ""]
+            lines += [f"![{entry.words}]({entry.name}/picture.png)", "",
+                      f"{entry.words} [scene]({entry.name}/scene.toml)", ""]
     (out / "README.md").write_text("\n".join(lines).rstrip() + "\n", encoding="utf-8")
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="python -m pellucid.view.gallery", description="Pictures of materials, methods, lights and mistakes.")
+    parser = argparse.ArgumentParser(prog="python -m pellucid.view.gallery",
+                                     description="Pictures of materials, methods, lights and mistakes.")
     parser.add_argument("out", type=Path, help="folder")
     parser.add_argument("--pictures-only", action="store_true", help="leave out G-buffers and shadow maps")
     parser.add_argument("--section", choices=list(GALLERY), action="append", help="only these")

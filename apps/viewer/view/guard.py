@@ -1,6 +1,7 @@
 """Who may see the page: an address with a key that is valid once, and a cookie from then on.
 
-The key of an address shows in lists of processes and in histories of browsers; the cookie's value shows nowhere.
+The key of an address shows in lists of processes and in histories of browsers; the cookie's value shows
+nowhere.
 """
 from __future__ import annotations
 
@@ -11,7 +12,8 @@ from urllib.parse import parse_qs
 
 
 def cookie_values(header: str, name: str) -> list[str]:
-    """The values of the cookie `name`. Other programs on this host set cookies too, in any form: those are skipped."""
+    """The values of the cookie `name`. Other programs on this host set cookies too, in any form: those are
+    skipped."""
     found = []
     for part in header.split(";"):
         key, equals, value = part.partition("=")
@@ -86,6 +88,8 @@ class Guard:
                 (b"location", scope["path"].encode("latin-1", "replace")), (b"set-cookie", cookie.encode())]})
             await send({"type": "http.response.body", "body": b""})
         else:
-            await send({"type": "http.response.start", "status": 403, "headers": [(b"content-type", b"text/plain")]})
+            await send({"type": "http.response.start", "status": 403,
+                        "headers": [(b"content-type", b"text/plain")]})
             await send({"type": "http.response.body",
-                        "body": b"This address needs its token, which is valid once: take the last address from the terminal.\n"})
+                        "body": b"This address needs its token, which is valid once: take the last address "
+                                b"from the terminal.\n"})

@@ -37,6 +37,10 @@ METHODS = {
 SKIN, EYES, TEETH, TONGUE, CUT, RIGHT_EYE = MATERIALS = 1, 2, 3, 4, 5, 6  # EYES: the left one
 
 
+def skin_triangles(mesh: Any) -> Any:
+    return mesh.triangles if mesh.ids is None else mesh.triangles[mesh.ids[mesh.triangles[:, 0]] == SKIN]
+
+
 @dataclass
 class Lamp:
     """A distant light round the object: azimuth 0 is its front, 90 its left. Degrees."""
@@ -51,7 +55,8 @@ class Lamp:
 
 
 def _lamps() -> list[Lamp]:
-    return [Lamp("Key", 55.0, 30.0, (1.0, 0.95, 0.88), 1.0), Lamp("Fill", -50.0, 10.0, (0.8, 0.9, 1.0), 0.15, shadow=False),
+    return [Lamp("Key", 55.0, 30.0, (1.0, 0.95, 0.88), 1.0),
+            Lamp("Fill", -50.0, 10.0, (0.8, 0.9, 1.0), 0.15, shadow=False),
             Lamp("Rim", 160.0, 15.0, (1.0, 0.97, 0.92), 0.2)]
 
 
@@ -65,7 +70,8 @@ class Look:
     method: str = "auto"
     target_error: float = 0.002      # of white, what `auto` may be off
     transmission: float = 1.0
-    deep_scatter: tuple[float, float, float] = (0.0, 0.0, 0.0)  # colour of FaceWorks' own term, in place of transmission
+    # colour of FaceWorks' own term, in place of transmission
+    deep_scatter: tuple[float, float, float] = (0.0, 0.0, 0.0)
     albedo: tuple[float, float, float] = (1.0, 1.0, 1.0)  # times the mesh's
     specular: float = 0.35
     roughness: float = 0.3
@@ -76,7 +82,8 @@ class Look:
     pores: float = 0.06              # slope of the relief that the renderer adds
     # Of eyes; mm of an eye of an adult's size.
     pupil: float = 2.0               # radius
-    iris_color: tuple[float, float, float] = (0.22, 0.12, 0.06)  # linear: colours fibres, or multiplies the texture, by which it is 1
+    # linear: colours fibres, or multiplies the texture, by which it is 1
+    iris_color: tuple[float, float, float] = (0.22, 0.12, 0.06)
     iris_seed: int = 0               # pattern of the fibres
     iris_texture: str = ""           # file of a square image; "": fibres are drawn
     iris_concavity: float = 0.0
@@ -108,9 +115,11 @@ class Look:
         for key in values:
             if key not in known:
                 raise ValueError(f"a look has no {key!r}; it has {', '.join(sorted(known))}")
-        look = cls(**{k: tuple(v) if k in ("albedo", "deep_scatter", "distance", "iris_color", "gaze") else v for k, v in values.items() if k != "lamps"})
+        look = cls(**{k: tuple(v) if k in ("albedo", "deep_scatter", "distance", "iris_color", "gaze") else v
+                      for k, v in values.items() if k != "lamps"})
         if "lamps" in values:
-            look.lamps = [Lamp(**{k: tuple(v) if k == "color" else v for k, v in lamp.items()}) for lamp in values["lamps"]]
+            look.lamps = [Lamp(**{k: tuple(v) if k == "color" else v for k, v in lamp.items()})
+                          for lamp in values["lamps"]]
         return look
 
 
@@ -122,9 +131,13 @@ PRESETS: dict[str, dict[str, Any]] = {
     "Skin": {},
     "Skin, softer": {"radius_scale": 2.0},
     "Skin, oily": {"specular": 0.6, "roughness": 0.2, "ggx": True},
-    "Marble": {"profile": "marble", "albedo": (1.05, 1.4, 1.6), "specular": 0.3, "roughness": 0.15, "pores": 0.0},
-    "Jade": {"profile": "jade", "albedo": (0.35, 1.2, 0.75), "specular": 0.6, "roughness": 0.12, "pores": 0.0},
-    "Wax": {"profile": "paraffin", "albedo": (1.15, 1.35, 1.1), "specular": 0.25, "roughness": 0.35, "pores": 0.0},
-    "Leaf": {"profile": "custom", "distance": (0.25, 0.5, 0.12), "albedo": (0.3, 1.1, 0.25), "specular": 0.3, "roughness": 0.35, "pores": 0.1, "transmission": 1.0},
+    "Marble": {"profile": "marble", "albedo": (1.05, 1.4, 1.6), "specular": 0.3, "roughness": 0.15,
+               "pores": 0.0},
+    "Jade": {"profile": "jade", "albedo": (0.35, 1.2, 0.75), "specular": 0.6, "roughness": 0.12,
+             "pores": 0.0},
+    "Wax": {"profile": "paraffin", "albedo": (1.15, 1.35, 1.1), "specular": 0.25, "roughness": 0.35,
+            "pores": 0.0},
+    "Leaf": {"profile": "custom", "distance": (0.25, 0.5, 0.12), "albedo": (0.3, 1.1, 0.25), "specular": 0.3,
+             "roughness": 0.35, "pores": 0.1, "transmission": 1.0},
     "Plain (Lambert)": {"method": "none", "transmission": 0.0},
 }

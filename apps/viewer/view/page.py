@@ -12,7 +12,6 @@ from fastapi import WebSocket
 from nicegui import app, events, ui
 
 from .. import files
-from .client import PICTURE, SCRIPT
 from .export import export
 from .look import Look
 from .panels import ComparePanel, EyesPanel, LightsPanel, MaterialPanel, PicturePanel, ProfilePanel
@@ -21,6 +20,8 @@ from .scene_session import SceneSession
 from .server import Viewer
 from .session import UNITS
 from .widgets import Panel, fail
+
+HERE = Path(__file__).parent
 
 
 class StatisticsPanel(Panel):
@@ -51,7 +52,8 @@ class StatisticsPanel(Panel):
                  f"launches {c['launches']}, scratch {c['scratch_bytes'] / 2**20:.1f} MiB"]
         if self.viewer.session.count:
             lines += [f"{name.replace('_', ' ')} {value}" for name, value in c.items()
-                      if name.startswith(("pixels_", "tiles_by", "taps")) and name not in ("pixels_total", "pixels_shaded")]
+                      if name.startswith(("pixels_", "tiles_by", "taps"))
+                      and name not in ("pixels_total", "pixels_shaded")]
         lines.append(f"kernels compiled {frame.kernels}, {frame.compiled} of them for the last picture")
         lines += ["warning: " + w for w in frame.warnings]
         self.counts.set_text("\n".join(lines))
@@ -148,7 +150,8 @@ class ExportPanel(Panel):
 
         for label, make, name, marker in (
                 ("Scene, G-buffer, pictures, C++ (.zip)", pack, "pellucid-look.zip", "export"),
-                ("Picture (.png, 1920 x 1080)", draw, "pellucid.png", "picture"), ("Look (.json)", look, "look.json", "look")):
+                ("Picture (.png, 1920 x 1080)", draw, "pellucid.png", "picture"),
+                ("Look (.json)", look, "look.json", "look")):
             async def give(make: Callable[[], bytes] = make, name: str = name) -> None:
                 await self.deliver(make, name)
 
@@ -170,21 +173,25 @@ class Page:
 
     def __init__(self, viewer: Viewer) -> None:
         self.viewer = viewer
-        ui.add_body_html(SCRIPT)
+        ui.add_body_html(f"<script>\n{HERE.joinpath('client.js').read_text()}</script>")
+        style, picture = HERE.joinpath("client.html").read_text().split("</style>")
+        ui.add_head_html(style + "</style>")
         ui.query("body").style("margin:0;overflow:hidden")
         ui.query(".nicegui-content").classes("p-0 gap-0")
         ui.dark_mode(True)
         with ui.row().classes("w-full no-wrap gap-0").style("height:100vh"):
-            ui.html(PICTURE, sanitize=False).style("flex:1;min-width:0;height:100%")
+            ui.html(picture, sanitize=False).style("flex:1;min-width:0;height:100%")
             self.column = ui.column().classes("p-3 gap-1").style("width:23rem;height:100%;overflow-y:auto")
         self.statistics = StatisticsPanel(self)
         self.panels: list[Panel]
         if isinstance(viewer.session, SceneSession):
-            self.panels = [ScenePanel(self), SceneMaterialsPanel(self), SceneLightsPanel(self), self.statistics,
+            self.panels = [ScenePanel(self), SceneMaterialsPanel(self), SceneLightsPanel(self),
+                           self.statistics,
                            SceneExportPanel(self)]
         else:
             mesh = MeshPanel(self)
-            self.panels = [PicturePanel(self), MaterialPanel(self), EyesPanel(self), LightsPanel(self), ProfilePanel(self),
+            self.panels = [PicturePanel(self), MaterialPanel(self), EyesPanel(self), LightsPanel(self),
+                           ProfilePanel(self),
                            ComparePanel(self), self.statistics, mesh, ExportPanel(self)]
             mesh.question()
         self.build()

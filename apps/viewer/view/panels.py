@@ -54,8 +54,10 @@ class MaterialPanel(Panel):
         self.field("roughness2")
         self.field("lobe_mix")
         self.slider("Pores", self.look, "pores", 0, 0.5, 0.01)
-        self.channels(("Albedo scale, red", "Albedo scale, green", "Albedo scale, blue"), "albedo", 0.0, 2.0, 0.01)
-        self.channels(("Deep scatter, red", "Deep scatter, green", "Deep scatter, blue"), "deep_scatter", 0.0, 3.0, 0.05)
+        self.channels(("Albedo scale, red", "Albedo scale, green", "Albedo scale, blue"), "albedo", 0.0, 2.0,
+                      0.01)
+        self.channels(("Deep scatter, red", "Deep scatter, green", "Deep scatter, blue"), "deep_scatter", 0.0,
+                      3.0, 0.05)
 
 
 class EyesPanel(Panel):
@@ -117,7 +119,8 @@ class ProfilePanel(Panel):
 
     def build(self) -> None:
         self.select("Profile", [*Profile.library_names(), "custom"], "profile", self.draw_profile)
-        self.channels(("Custom d, red, mm", "Custom d, green, mm", "Custom d, blue, mm"), "distance", 0.01, 5.0, 0.01,
+        self.channels(("Custom d, red, mm", "Custom d, green, mm", "Custom d, blue, mm"), "distance", 0.01,
+                      5.0, 0.01,
                       self.draw_profile)
         text = {"color": "#ccc"}
         lines = [{"type": "line", "showSymbol": False, "data": [], "lineStyle": {"color": color}}

@@ -16,12 +16,14 @@ if TYPE_CHECKING:
     from .renderer import GBuffer
     from .session import Session
 
-OUTPUTS = {"diffuse": "out_diffuse", "specular": "out_specular", "deep_scatter": "out_deep_scatter", "thickness": "out_thickness"}
+OUTPUTS = {"diffuse": "out_diffuse", "specular": "out_specular", "deep_scatter": "out_deep_scatter",
+           "thickness": "out_thickness"}
 
 
 def tinted(g: GBuffer, look: Look) -> NDArray[np.float32]:
     """The albedo with the look's tint on skin, (h, w, 3)."""
-    return np.where(g.material[..., None] == SKIN, np.minimum(g.albedo * np.asarray(look.albedo, np.float32), 1.0), g.albedo)
+    return np.where(g.material[..., None] == SKIN,
+                    np.minimum(g.albedo * np.asarray(look.albedo, np.float32), 1.0), g.albedo)
 
 
 class Pass:
@@ -40,7 +42,8 @@ class Pass:
             self._told[what] = value
             self._told["committed"] = False
 
-    def shade(self, session: Session, g: GBuffer, look: Look, outputs: tuple[str, ...], small: bool, albedo: bool) -> Pass:
+    def shade(self, session: Session, g: GBuffer, look: Look, outputs: tuple[str, ...], small: bool,
+              albedo: bool) -> Pass:
         """`albedo` False: irradiance alone."""
         self._images(g, look, albedo)
         height, width = g.material.shape
@@ -50,7 +53,8 @@ class Pass:
             for slot in OUTPUTS.values():
                 wanted = slot in outputs
                 if wanted:
-                    self.outputs[slot] = np.zeros((height, width) + (() if slot == "out_thickness" else (3,)), np.float32)
+                    self.outputs[slot] = np.zeros((height, width) + (() if slot == "out_thickness" else (3,)),
+                                                  np.float32)
                 self.shader.set_image(slot, self.outputs[slot] if wanted else None)
 
         self._tell("parts", (memory, outputs), parts)
@@ -72,7 +76,9 @@ class Pass:
             self._told.pop("texture", None)  # which went with its material
 
         told = {k: (m._data.tobytes(), id(m._profile)) for k, m in materials.items()}
-        self._tell("materials", (told, {k: (e._data.tobytes(), look.iris_profile) for k, e in eyes.items()}, id(iris)), set_materials)
+        self._tell("materials",
+                   (told, {k: (e._data.tobytes(), look.iris_profile) for k, e in eyes.items()}, id(iris)),
+                   set_materials)
         lights = session.lights(look, small)
 
         def set_lights() -> None:
@@ -89,7 +95,8 @@ class Pass:
             target_error=look.target_error, millimetres_per_unit=session.mm, count_pixels=int(session.count)))
         self._scattered_texture(session, g, look, small)
         if not self._told.get("committed"):
-            structure = (outputs, albedo, len(eyes), look.method, look.ggx, len(lights), [m.specular > 0 for m in materials.values()],
+            structure = (outputs, albedo, len(eyes), look.method, look.ggx, len(lights),
+                         [m.specular > 0 for m in materials.values()],
                          any(look.deep_scatter), look.transmission > 0)
             if structure != self._structure:  # only then may kernels have to be compiled: with progress
                 warm_up_programs(self.device, shaders=[self.shader])
@@ -115,7 +122,8 @@ class Pass:
         if tints:  # host work: only where a tint is set
             if self.outputs.get("albedo") is None or self.outputs["albedo"].shape != g.albedo.shape:
                 # As far apart as the renderer's own: kernels belong to a layout.
-                self.outputs["albedo"] = np.zeros((height, width, g.albedo.strides[1] // 4), np.float32)[..., :3]
+                self.outputs["albedo"] = np.zeros(
+                    (height, width, g.albedo.strides[1] // 4), np.float32)[..., :3]
                 self._told.pop("albedo", None)
             self.outputs["albedo"][...] = tinted(g, look)
         self._tell("albedo", (memory, albedo, tints), lambda: self.shader.set_image(

@@ -17,12 +17,16 @@ if TYPE_CHECKING:
     from .session import Session
 
 _BYTES = np.arange(256) / 255
-LINEAR = np.where(_BYTES <= 0.04045, _BYTES / 12.92, ((_BYTES + 0.055) / 1.055) ** 2.4).astype(np.float32)  # of sRGB bytes
+# of sRGB bytes
+LINEAR = np.where(_BYTES <= 0.04045, _BYTES / 12.92, ((_BYTES + 0.055) / 1.055) ** 2.4).astype(np.float32)
 _X = np.arange(4096) / 4095
-_ENCODED = np.rint(255 * np.where(_X <= 0.0031308, 12.92 * _X, 1.055 * _X ** (1 / 2.4) - 0.055)).astype(np.uint8)
+_ENCODED = np.rint(255 * np.where(_X <= 0.0031308, 12.92 * _X,
+                                  1.055 * _X ** (1 / 2.4) - 0.055)).astype(np.uint8)
 
-_LINEAR_MODES = ("final", "lambert", "diffuse", "specular", "deep_scatter", "irradiance", "reference", "albedo")
-_ID_COLORS = np.array([[0, 0, 0], [.8, .4, .3], [.2, .5, .9], [.9, .9, .5], [.9, .2, .4], [.2, .2, .2], [.2, .8, .9]], np.float32)
+_LINEAR_MODES = ("final", "lambert", "diffuse", "specular", "deep_scatter", "irradiance", "reference",
+                 "albedo")
+_ID_COLORS = np.array([[0, 0, 0], [.8, .4, .3], [.2, .5, .9], [.9, .9, .5], [.9, .2, .4], [.2, .2, .2],
+                       [.2, .8, .9]], np.float32)
 _TILE = 16  # pixels a side
 # By method, in the order of METHODS without auto.
 TILE_COLORS = {m: c for m, c in zip([m for m in METHODS if m != "auto"], (
@@ -50,8 +54,10 @@ def chosen_method(p: Pass, look: Look) -> str:
     return Scattering(int(np.argmax(counts))).name.lower() if counts.any() else "none"
 
 
-def tiles(session: Session, look: Look, width: int, height: int, small: bool) -> tuple[NDArray[np.float32], Pass]:
-    """Tiles of 16 x 16 pixels: bright in the colour of the method where it changed the light, dark where all of it was kept."""
+def tiles(session: Session, look: Look, width: int, height: int,
+          small: bool) -> tuple[NDArray[np.float32], Pass]:
+    """Tiles of 16 x 16 pixels: bright in the colour of the method where it changed the light, dark where all
+    of it was kept."""
     scattered, bare = look.copy(), plain(look)
     scattered.transmission = 0.0
     counting, session.count = session.count, True
@@ -71,7 +77,8 @@ def tiles(session: Session, look: Look, width: int, height: int, small: bool) ->
         any_in = whole.reshape(rows, _TILE, columns, _TILE).any((1, 3))
         return any_in.repeat(_TILE, 0).repeat(_TILE, 1)[:height, :width]
 
-    seen, has_skin, tapped = spread(session.gbuffer(width, height, small).material > 0), spread(skin), spread(changed)
+    seen, has_skin, tapped = spread(session.gbuffer(width, height,
+                                                    small).material > 0), spread(skin), spread(changed)
     color = np.asarray(TILE_COLORS[method], np.float32)
     shown = np.zeros((height, width, 3), np.float32)
     shown[seen] = 0.08
@@ -94,7 +101,8 @@ def _of_gbuffer(mode: str, g: GBuffer, mm: float) -> NDArray[Any]:
     return _ID_COLORS[np.minimum(g.material.astype(int), len(_ID_COLORS) - 1)]
 
 
-def picture(session: Session, name: str, look: Look, width: int, height: int, small: bool) -> tuple[NDArray[np.uint8], Pass]:
+def picture(session: Session, name: str, look: Look, width: int, height: int,
+            small: bool) -> tuple[NDArray[np.uint8], Pass]:
     """sRGB, (height, width, 3), of the look's mode, and the pass that made it. `name`: of its pass."""
     mode = look.mode
     if mode not in MODES:

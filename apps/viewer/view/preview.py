@@ -5,11 +5,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 
-def clustered(vertices: NDArray[np.float32], triangles: NDArray[np.uint32], cell: float) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+def clustered(vertices: NDArray[np.float32], triangles: NDArray[np.uint32],
+              cell: float) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
     """Vertices that share a cell of a grid become one, their mean [Rossignac and Borrel 1993].
 
-    Lips that touch and the two sides of a thin sheet stay apart: only vertices of one material whose normals point into the
-    same octant are joined.
+    Lips that touch and the two sides of a thin sheet stay apart: only vertices of one material whose normals
+    point into the same octant are joined.
 
     Parameters
     ----------
@@ -22,7 +23,8 @@ def clustered(vertices: NDArray[np.float32], triangles: NDArray[np.uint32], cell
     used = np.unique(triangles)
     v = vertices[used].astype(np.float64)
     place = np.floor((v[:, 0:3] - v[:, 0:3].min(0)) / cell).astype(np.int64)
-    # Vertices that lie at one point stay together, or cracks would open between faces with normals of their own.
+    # Vertices that lie at one point stay together, or cracks would open between faces with normals of their
+    # own.
     _, point = np.unique(v[:, 0:3], axis=0, return_inverse=True)
     point = point.reshape(-1)
     normal = np.stack([np.bincount(point, v[:, c]) for c in (3, 4, 5)], 1)[point]
@@ -39,7 +41,8 @@ def clustered(vertices: NDArray[np.float32], triangles: NDArray[np.uint32], cell
     joined = joined[(a != b) & (b != c) & (c != a)]
     # Triangles that fell together are drawn once.
     first = np.sort(joined, axis=1)
-    return mean.astype(np.float32), joined[np.unique(first, axis=0, return_index=True)[1]] if len(joined) else joined
+    return mean.astype(np.float32), joined[np.unique(first, axis=0,
+                                                     return_index=True)[1]] if len(joined) else joined
 
 
 def spacing(vertices: NDArray[np.float32], triangles: NDArray[np.uint32]) -> float:
@@ -50,8 +53,10 @@ def spacing(vertices: NDArray[np.float32], triangles: NDArray[np.uint32]) -> flo
 
 
 def levels(vertices: NDArray[np.float32], triangles: NDArray[np.uint32],
-           most: tuple[int, ...] = (50000, 20000)) -> list[tuple[float, NDArray[np.float32], NDArray[np.uint32]]]:
-    """The mesh itself, and coarser ones of about `most` triangles: (spacing, vertices, triangles) each, finest first."""
+           most: tuple[int, ...] = (50000, 20000)) -> list[tuple[float, NDArray[np.float32],
+                                                                 NDArray[np.uint32]]]:
+    """The mesh itself, and coarser ones of about `most` triangles: (spacing, vertices, triangles) each,
+    finest first."""
     whole = spacing(vertices, triangles)
     made = [(whole, vertices, triangles)]
     for wanted in most:

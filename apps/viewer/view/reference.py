@@ -1,7 +1,8 @@
 """The picture that every diffusion method approximates, for what the viewer shows.
 
-Irradiance is made at the vertices, with the shadows of the lights' maps there; the surface integral then spreads it. Edges of
-shadows are therefore as sharp as the mesh is fine: `pellucid reference` traces them exactly.
+Irradiance is made at the vertices, with the shadow maps there; the surface integral then
+spreads it. Edges of shadows are therefore as sharp as the mesh is fine: `pellucid reference` traces them
+exactly.
 """
 from __future__ import annotations
 
@@ -13,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..reference import surface_integral
-from .look import SKIN, Look
+from .look import SKIN, Look, skin_triangles
 from .passes import tinted
 
 if TYPE_CHECKING:
@@ -50,7 +51,8 @@ def vertex_irradiance(session: Session, look: Look) -> NDArray[np.float32]:
 
 
 class Reference:
-    """The reference of one picture, on a thread of its own or at once. Every eighth pixel of every eighth row comes first."""
+    """The reference of one picture, on a thread of its own or at once. Every eighth pixel of every eighth
+    row comes first."""
 
     STEPS = (8, 4, 2, 1)
     SECONDS = 0.5  # that one piece of the work may take; between two of them it can be cancelled
@@ -66,11 +68,13 @@ class Reference:
         self.fraction = 0.0
 
     def start(self, report: Optional[Callable[[], None]]) -> None:
-        """Computes on a thread and calls `report` there after each piece of the work; without `report` computes at once."""
+        """Computes on a thread and calls `report` there after each piece of the work; without `report`
+        computes at once."""
         if report is None:
             self._run(lambda: None, int(self._seen.sum()))
         else:
-            threading.Thread(target=self._run, args=(report, 1024), name="pellucid-reference", daemon=True).start()
+            threading.Thread(target=self._run, args=(report, 1024), name="pellucid-reference",
+                             daemon=True).start()
 
     def _run(self, report: Callable[[], None], size: int) -> None:
         total, made, before = int(self._seen.sum()), 0, np.zeros_like(self._seen)
@@ -83,11 +87,13 @@ class Reference:
                 while len(pixels) and not self._cancelled.is_set():
                     (rows, columns), pixels = pixels[:size].T, pixels[size:]
                     started = time.monotonic()
-                    self._values[rows, columns] = self._compute(np.ascontiguousarray(self._points[rows, columns]))
+                    self._values[rows,
+                                 columns] = self._compute(np.ascontiguousarray(self._points[rows, columns]))
                     self._known[rows, columns] = True
                     made += len(rows)
                     self.fraction = made / total
-                    size = max(256, int(size * min(2.0, self.SECONDS / max(time.monotonic() - started, 1e-3))))
+                    size = max(256,
+                               int(size * min(2.0, self.SECONDS / max(time.monotonic() - started, 1e-3))))
                     report()
         except Exception as error:
             self._error = error
@@ -112,20 +118,24 @@ class Reference:
         return values
 
 
-def reference(session: Session, name: str, look: Look, width: int, height: int, small: bool = False) -> NDArray[np.float32]:
+def reference(session: Session, name: str, look: Look, width: int, height: int,
+              small: bool = False) -> NDArray[np.float32]:
     """Diffuse radiance of the skin that is seen, (height, width, 3); 0 elsewhere.
 
-    Kept by `name` until light, camera or profile change. Where the session has somebody to report to, this is what is known so far.
+    Kept by `name` until light, camera or profile change. Where the session has somebody to report to, this
+    is what is known so far.
     """
     g = session.gbuffer(width, height, small)
-    lights = [(lamp.azimuth, lamp.elevation, lamp.color, lamp.intensity, lamp.shadow, lamp.on) for lamp in look.lamps]
-    key = (session.drawn_state(width, height, small), lights, look.ambient, look.profile, look.distance, look.radius_scale, look.shadow_size)
+    lights = [(lamp.azimuth, lamp.elevation, lamp.color, lamp.intensity, lamp.shadow, lamp.on)
+              for lamp in look.lamps]
+    key = (session.drawn_state(width, height, small), lights, look.ambient, look.profile, look.distance,
+           look.radius_scale, look.shadow_size)
     made = session.references.get(name)
     if made is None or made.key != key:
         session.cancel_reference(name)
         mesh, profile = session.mesh, session.profile(look)
         radius = profile.info.radius * look.radius_scale
-        triangles = mesh.triangles if mesh.ids is None else mesh.triangles[mesh.ids[mesh.triangles[:, 0]] == SKIN]
+        triangles = skin_triangles(mesh)
         irradiance, device, mm = vertex_irradiance(session, look), session.device, session.mm
 
         def compute(points: Any) -> NDArray[np.float32]:

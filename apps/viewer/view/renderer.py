@@ -92,12 +92,14 @@ class Renderer:
         vertices[:, 10] = curvature
         if mesh.uvs is not None:
             vertices[:, 11:13] = mesh.uvs
-        fresh = [self._upload(*level) for level in levels(vertices, np.ascontiguousarray(mesh.triangles, np.uint32))]
+        fresh = [self._upload(*level)
+                 for level in levels(vertices, np.ascontiguousarray(mesh.triangles, np.uint32))]
         for old in self._levels:
             old.release()
         self._levels = fresh
         self.mesh = mesh
-        used = mesh.positions[np.unique(mesh.triangles)] if len(mesh.triangles) else np.zeros((1, 3), np.float32)
+        used = mesh.positions[np.unique(
+            mesh.triangles)] if len(mesh.triangles) else np.zeros((1, 3), np.float32)
         low, high = used.min(0).astype(float), used.max(0).astype(float)
         self.centre, self.radius = (low + high) / 2, max(float(np.linalg.norm(high - low)) / 2, 1e-6)
         self._mm = millimetres_per_unit
@@ -105,12 +107,17 @@ class Renderer:
     def _upload(self, spacing: float, vertices: NDArray[np.float32], triangles: NDArray[np.uint32]) -> _Level:
         buffer, indices = self.context.buffer(vertices.tobytes()), self.context.buffer(triangles.tobytes())
         draw = self.context.vertex_array(
-            self._gbuffer_program, [(buffer, "3f 3f 3f 2f 2f", "in_position", "in_normal", "in_albedo", "in_material", "in_uv")], indices)
-        return _Level(spacing, draw, self.context.vertex_array(self._shadow_program, [(buffer, "3f 40x", "in_position")], indices),
+            self._gbuffer_program,
+            [(buffer, "3f 3f 3f 2f 2f", "in_position", "in_normal", "in_albedo", "in_material", "in_uv")],
+            indices)
+        return _Level(spacing, draw,
+                      self.context.vertex_array(self._shadow_program, [(buffer, "3f 40x", "in_position")],
+                                                indices),
                       (buffer, indices))
 
     def level(self, length: float) -> int:
-        """The coarsest version of the mesh whose edges are at most about `length` long: 0 is the mesh itself."""
+        """The coarsest version of the mesh whose edges are at most about `length` long: 0 is the mesh
+        itself."""
         return max((i for i, level in enumerate(self._levels) if level.spacing <= length), default=0)
 
     def _target(self, width: int, height: int) -> _Target:
@@ -159,18 +166,22 @@ class Renderer:
         for attachment, memory in enumerate(target.memory):
             frame.read_into(memory, components=4, attachment=attachment, dtype="f4")
         position, geometric, shading, albedo = target.memory
-        return GBuffer(position[..., :3], position[..., 3], geometric[..., :3], geometric[..., 3], shading[..., :3], albedo[..., :3],
+        return GBuffer(position[..., :3], position[..., 3], geometric[..., :3], geometric[..., 3],
+                       shading[..., :3], albedo[..., :3],
                        shading[..., 3], albedo[..., 3])
 
-    def shadow_map(self, to_light: ArrayLike, size: int, up: ArrayLike = (0.0, 1.0, 0.0), level: int = 0) -> tuple[NDArray[np.float32], Any]:
-        """Depth seen from a distant light, (size, size), and the Light that describes it. The map encloses the whole mesh."""
+    def shadow_map(self, to_light: ArrayLike, size: int, up: ArrayLike = (0.0, 1.0, 0.0),
+                   level: int = 0) -> tuple[NDArray[np.float32], Any]:
+        """Depth seen from a distant light, (size, size), and the Light that describes it. The map encloses
+        the whole mesh."""
         assert self.mesh is not None
         self.context.__enter__()
         direction, r = unit(to_light), 1.02 * self.radius
         matrix = parallel(r, 0.0, 2 * r) @ look_at(self.centre + direction * r, self.centre, up)
         if size not in self._shadow_targets:
             texture = self.context.texture((size, size), 1, dtype="f4")
-            self._shadow_targets[size] = self.context.framebuffer([texture], self.context.depth_renderbuffer((size, size)))
+            self._shadow_targets[size] = self.context.framebuffer(
+                [texture], self.context.depth_renderbuffer((size, size)))
         frame = self._shadow_targets[size]
         frame.use()
         frame.clear(1.0, 1.0, 1.0, 1.0)

@@ -1,4 +1,5 @@
-"""A scene file in the viewer: its G-buffer is drawn already, so that the camera stays; materials and lights can be tuned."""
+"""A scene file in the viewer: its G-buffer is drawn already, so that the camera stays; materials and lights
+can be tuned."""
 from __future__ import annotations
 
 import time
@@ -71,7 +72,8 @@ class SceneSession:
     @staticmethod
     def _plain(material: Material) -> Material:
         copy = material.copy()
-        copy.scattering, copy.profile, copy.transmission, copy.deep_scatter_color = Scattering.NONE, None, 0.0, (0, 0, 0)
+        copy.scattering, copy.profile = Scattering.NONE, None
+        copy.transmission, copy.deep_scatter_color = 0.0, (0, 0, 0)
         return copy
 
     def _picture(self, small: bool) -> tuple[NDArray[np.uint8], Shaded]:
@@ -87,11 +89,13 @@ class SceneSession:
         return files.tonemap(shown, look.exposure, look.shoulder, look.curve), made
 
     def frame(self, width: int = 0, height: int = 0, small: bool = False, sample: int = 0) -> Frame:
-        """The picture of now, in the size of the G-buffer, or half of it on each side while something moves."""
+        """The picture of now, in the size of the G-buffer, or half of it on each side while something moves.
+        """
         built, started = self.device.stats().programs_built, time.perf_counter()
         pixels, made = self._picture(small)
         assert made.stats is not None
-        times = {"Pellucid": 1e3 * (time.perf_counter() - started), "on the device": made.stats.device_milliseconds}
+        times = {"Pellucid": 1e3 * (time.perf_counter() - started),
+                 "on the device": made.stats.device_milliseconds}
         after = self.device.stats().programs_built
         return Frame(pixels, times, made.stats.to_dict(), made.warnings, after, after - built)
 

@@ -69,7 +69,8 @@ class Viewer:
         self.changes = 0
         self._preparing: Optional[int] = None  # kernels, after that many changes: the next one ends it
         self._thread = ThreadPoolExecutor(1, "pellucid-view")  # OpenGL contexts belong to a thread
-        self.session: Any = self._thread.submit(lambda: make(self._device())).result()  # a Session or a SceneSession
+        # a Session or a SceneSession
+        self.session: Any = self._thread.submit(lambda: make(self._device())).result()
         self._folder, self._kept = tempfile.TemporaryDirectory(), 0
         self.error = ""
         self.last: Optional[Frame] = None
@@ -128,13 +129,15 @@ class Viewer:
         self.error = ""
         self.changed()
 
-    async def frame(self, width: int, height: int, small: bool, sample: int = 0) -> Optional[tuple[Frame, bytes]]:
+    async def frame(self, width: int, height: int, small: bool,
+                    sample: int = 0) -> Optional[tuple[Frame, bytes]]:
         """The next picture and its JPEG file, or None and `error`."""
         def make() -> tuple[Frame, bytes]:
             frame = self.session.frame(width, height, small, sample)
             started = time.perf_counter()
             data = io.BytesIO()
-            Image.fromarray(frame.pixels).save(data, "JPEG", quality=80 if small else 92, subsampling=2 if small else 0)
+            Image.fromarray(frame.pixels).save(data, "JPEG", quality=80 if small else 92,
+                                               subsampling=2 if small else 0)
             frame.milliseconds["JPEG"] = 1e3 * (time.perf_counter() - started)
             return frame, data.getvalue()
 
@@ -154,7 +157,8 @@ class Viewer:
         if kind != "size" and not hasattr(self.session, "orbit"):  # a scene's camera stays
             return
         orbit = getattr(self.session, "orbit", None)
-        dx, dy = (max(-1.0, min(1.0, float(message.get(k, 0)))) for k in ("dx", "dy"))  # parts of the picture's height
+        # parts of the picture's height
+        dx, dy = (max(-1.0, min(1.0, float(message.get(k, 0)))) for k in ("dx", "dy"))
         if kind == "orbit":
             orbit.azimuth = (orbit.azimuth - 120 * dx + 180) % 360 - 180
             orbit.elevation = max(-89.0, min(89.0, orbit.elevation + 120 * dy))
@@ -162,7 +166,8 @@ class Viewer:
             tall = 2 * orbit.distance * math.tan(math.radians(orbit.fov) / 2)
             orbit.pan = (orbit.pan[0] - dx * tall, orbit.pan[1] + dy * tall)
         elif kind == "zoom":
-            orbit.distance = max(0.24 * self.session.renderer.radius, min(50 * self.session.renderer.radius, orbit.distance * 1.2 ** (5 * dy)))
+            orbit.distance = max(0.24 * self.session.renderer.radius,
+                                 min(50 * self.session.renderer.radius, orbit.distance * 1.2 ** (5 * dy)))
         elif kind == "light":
             for look in filter(None, (self.session.look, self.session.other)):
                 lamp = look.lamps[0]
@@ -176,7 +181,8 @@ class Viewer:
         self.changed(moving=kind != "size")
 
     async def _prepare(self, width: int, height: int) -> None:
-        """Builds kernels while nobody wants a picture; the one that is being built is waited for, the rest comes at the next rest."""
+        """Builds kernels while nobody wants a picture; the one that is being built is waited for, the rest
+        comes at the next rest."""
         self._preparing = self.changes
         try:
             await self.on_thread(lambda: self.session.prepare(width, height))
@@ -186,7 +192,8 @@ class Viewer:
             self._preparing, self.busy = None, ""
 
     async def stream(self, socket: Any) -> None:
-        """Sends pictures to one page until it goes; at most one that the page has not taken yet, so that both work at the same time."""
+        """Sends pictures to one page until it goes; at most one that the page has not taken yet, so that
+        both work at the same time."""
         event, size, news = asyncio.Event(), [960, 540], asyncio.Event()
         sent = taken = 0
         self._loop = asyncio.get_running_loop()
@@ -210,7 +217,8 @@ class Viewer:
                         event.set()
                 else:
                     if kind == "size":
-                        size[:] = (max(16, min(4096, int(message["width"]))), max(16, min(4096, int(message["height"]))))
+                        size[:] = (max(16, min(4096, int(message["width"]))),
+                                   max(16, min(4096, int(message["height"]))))
                     self.apply(message)
 
         async def send() -> None:
@@ -228,10 +236,12 @@ class Viewer:
                 changes, stamp = self.changes, self.stamp
                 made = await self.frame(width, height, small, 0 if small else sample)
                 sample = 0 if small else sample + 1
-                head = {"error": self.error, "moving": small, "width": width, "height": height, "changes": changes, "at": stamp, "sample": sample}
+                head = {"error": self.error, "moving": small, "width": width, "height": height,
+                        "changes": changes, "at": stamp, "sample": sample}
                 if made is not None:
                     frame = made[0]
-                    head |= {"milliseconds": frame.milliseconds, "kernels": frame.kernels, "compiled": frame.compiled}
+                    head |= {"milliseconds": frame.milliseconds, "kernels": frame.kernels,
+                             "compiled": frame.compiled}
                 sent += 1
                 await socket.send_text(json.dumps(head))
                 if made is not None:

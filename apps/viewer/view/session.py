@@ -51,20 +51,25 @@ PLAUSIBLE = 30.0, 3000.0  # mm: size of an object on which scattering in skin sh
 
 
 def eyes_of(mesh: files.Mesh, look: Optional[Look] = None, mm: float = 1.0) -> dict[int, Eye]:
-    """The eyes of a head of the package by material id: an adult's, as large as its balls, with what the look says of them. `mm`: millimetres per unit."""
+    """The eyes of a head of the package by material id: an adult's, as large as its balls, with what the
+    look says of them. `mm`: millimetres per unit."""
     look = Look() if look is None else look
     found = {}
     for id, ball in zip((EYES, RIGHT_EYE), mesh.eyes):
-        eye = Eye(center=ball["centre"], gaze=direction(mesh.up, ball["gaze"], *look.gaze), up=mesh.up, pupil_radius=look.pupil,
-                  limbus_width=look.limbus_width, limbus_darkening=look.limbus_darkening, cornea_radius=look.cornea_radius,
-                  chamber_depth=look.chamber_depth, iris_concavity=look.iris_concavity, iris_color=look.iris_color,
+        eye = Eye(center=ball["centre"], gaze=direction(mesh.up, ball["gaze"], *look.gaze), up=mesh.up,
+                  pupil_radius=look.pupil,
+                  limbus_width=look.limbus_width, limbus_darkening=look.limbus_darkening,
+                  cornea_radius=look.cornea_radius,
+                  chamber_depth=look.chamber_depth, iris_concavity=look.iris_concavity,
+                  iris_color=look.iris_color,
                   iris_seed=look.iris_seed, tear_roughness=look.tear_roughness)
         # The iris lies below the cornea's rim, however steep that is.
         r2, cornea = eye.limbus_radius**2, eye.cornea_radius
         rim = r2 / (cornea + np.sqrt(max(cornea**2 - (1 + eye.cornea_conic) * r2, 0)))
         eye.chamber_depth = max(eye.chamber_depth, rim + 0.05)
         scale = ball["radius"] * mm / eye.sclera_radius
-        for length in ("sclera_radius", "cornea_radius", "limbus_radius", "limbus_width", "chamber_depth", "pupil_radius", "iris_concavity"):
+        for length in ("sclera_radius", "cornea_radius", "limbus_radius", "limbus_width", "chamber_depth",
+                       "pupil_radius", "iris_concavity"):
             setattr(eye, length, scale * getattr(eye, length))
         found[id] = eye
     return found
@@ -95,26 +100,31 @@ class Session:
         self._passes: dict[str, Pass] = {}
         self._maps: dict[Any, ShadowMap] = {}
         self._profiles: dict[str, Profile] = {}
-        self._gbuffers: dict[tuple[int, int], tuple[Any, GBuffer]] = {}  # by size: the state they were drawn in
+        # by size: the state they were drawn in
+        self._gbuffers: dict[tuple[int, int], tuple[Any, GBuffer]] = {}
         self._irises: dict[str, NDArray[np.float32]] = {}  # by file
         self._textures: dict[bool, Texture] = {}  # by whether something moves
         self._sum: Optional[tuple[int, NDArray[np.float32]]] = None  # of pictures shifted by parts of a pixel
         self.references: dict[str, Reference] = {}  # by pass
-        self.report: Optional[Callable[[], None]] = None  # called as references advance; None: pictures wait for them
+        # called as references advance; None: pictures wait for them
+        self.report: Optional[Callable[[], None]] = None
         self._shift = (0.0, 0.0)
         self._prepared: Any = None
 
-    # ---- What is shown -----------------------------------------------------------------------------------------------
+    # ---- What is shown
+    # -----------------------------------------------------------------------------------------------
 
     def load(self, path: Any, subdivide: Optional[int] = None, up: str = "auto") -> files.Mesh:
-        """Shows another mesh. Raises what files.load_mesh and MeshTopology raise; the mesh before it then stays."""
+        """Shows another mesh. Raises what files.load_mesh and MeshTopology raise; the mesh before it then
+        stays."""
         return self.show(files.load_mesh(path, subdivide, up))
 
     def show(self, mesh: files.Mesh) -> files.Mesh:
         """The same with a mesh in memory."""
         if len(mesh.triangles) == 0:
             raise ValueError(f"{mesh.source or 'the mesh'} has no triangles")
-        topology = MeshTopology(self.device, mesh.triangles, len(mesh.positions), weld="exact", positions=mesh.positions)
+        topology = MeshTopology(self.device, mesh.triangles, len(mesh.positions), weld="exact",
+                                positions=mesh.positions)
         curvature = topology.curvature(mesh.positions, mesh.normals, smoothing_passes=2)
         self.renderer.set_mesh(mesh, curvature, self.mm)
         self.mesh = mesh
@@ -134,7 +144,8 @@ class Session:
         return f"The mesh is {self.size():.3g} mm across."
 
     def better_unit(self) -> Optional[float]:
-        """Millimetres per unit with which the mesh is nearest to a head's size; None where its size is plausible."""
+        """Millimetres per unit with which the mesh is nearest to a head's size; None where its size is
+        plausible."""
         if PLAUSIBLE[0] <= self.size() <= PLAUSIBLE[1]:
             return None
         bare = self.size() / self.mm
@@ -174,17 +185,20 @@ class Session:
         return direction(self.mesh.up, self.mesh.front, lamp.azimuth, lamp.elevation)
 
     def shadow_map(self, lamp: Lamp, size: int, small: bool = False) -> ShadowMap:
-        """The map of a lamp; made once, until the lamp moves. `small`: of a coarser mesh, to go with such a picture."""
+        """The map of a lamp; made once, until the lamp moves. `small`: of a coarser mesh, to go with such a
+        picture."""
         level = self._level(small)
         key = (lamp.azimuth, lamp.elevation, size, level)
         if key not in self._maps:
             while len(self._maps) > 8:
                 self._maps.pop(next(iter(self._maps)))
-            self._maps[key] = ShadowMap(*self.renderer.shadow_map(self.to_light(lamp), size, self.mesh.up, level))
+            self._maps[key] = ShadowMap(
+                *self.renderer.shadow_map(self.to_light(lamp), size, self.mesh.up, level))
         return self._maps[key]
 
     def _level(self, small: bool) -> int:
-        """Which version of the mesh serves: while something moves, one whose edges are few pixels of a small picture long."""
+        """Which version of the mesh serves: while something moves, one whose edges are few pixels of a small
+        picture long."""
         # A texture has seams that a coarser mesh would tear apart.
         if not small or self.look.method == "texture":
             return 0
@@ -195,12 +209,15 @@ class Session:
         if key not in self._profiles:
             while len(self._profiles) > 32:
                 self._profiles.pop(next(iter(self._profiles)))
-            self._profiles[key] = Profile.burley_distance(look.distance, "custom") if look.profile == "custom" else Profile.named(key)
+            own = look.profile == "custom"
+            made = Profile.burley_distance(look.distance, "custom") if own else Profile.named(key)
+            self._profiles[key] = made
         return self._profiles[key]
 
     def camera(self, aspect: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Eye, and world to clip space in OpenGL's convention."""
-        return self.orbit.matrices(self.mesh.up, self.mesh.front, self.centre, self.renderer.radius + float(np.linalg.norm(
+        return self.orbit.matrices(self.mesh.up, self.mesh.front, self.centre,
+                                   self.renderer.radius + float(np.linalg.norm(
             self.renderer.centre - self.centre)), aspect)
 
     def gbuffer(self, width: int, height: int, small: bool = False) -> GBuffer:
@@ -221,11 +238,13 @@ class Session:
         pores = 0.0 if self.look.mode in ("error", "reference") else self.look.pores
         return (matrix.tobytes(), width, height, pores, self._level(small), self._shift)
 
-    # ---- Shading -----------------------------------------------------------------------------------------------------
+    # ---- Shading
+    # -----------------------------------------------------------------------------------------------------
 
     def materials(self, look: Look) -> dict[int, Material]:
         """What the ids of the mesh are made of."""
-        specular = {"specular": look.specular, "roughness": look.roughness, "f0": look.f0, "roughness2": look.roughness2,
+        specular = {"specular": look.specular, "roughness": look.roughness, "f0": look.f0,
+                    "roughness2": look.roughness2,
                     "lobe_mix": look.lobe_mix, "specular_model": "ggx" if look.ggx else "ksk"}
         skin = Material(scattering=look.method, **specular)
         sharp = 1.0 / self.mm  # of shadows where nothing scatters: 1 mm
@@ -239,7 +258,8 @@ class Session:
                 skin.diffusion_radius = skin.profile.info.radius * look.radius_scale / self.mm
         made = {SKIN: skin}
         for id, (amount, roughness) in _GLOSS.items():
-            made[id] = Material(scattering="none", thickness_taps=0, specular=amount, roughness=roughness, shadow_filter_width=sharp)
+            made[id] = Material(scattering="none", thickness_taps=0, specular=amount, roughness=roughness,
+                                shadow_filter_width=sharp)
         present = {1} if self.mesh.ids is None else set(np.unique(self.mesh.ids).tolist())
         return {id: m for id, m in made.items() if id in present}
 
@@ -251,7 +271,8 @@ class Session:
         return eyes
 
     def iris(self, look: Look) -> Optional[NDArray[np.float32]]:
-        """The texture of the irises, (n, n, 3), linear; None: fibres are drawn. Raises what files.read_image raises, and ValueError."""
+        """The texture of the irises, (n, n, 3), linear; None: fibres are drawn. Raises what files.read_image
+        raises, and ValueError."""
         if not look.iris_texture:
             return None
         if look.iris_texture not in self._irises:
@@ -264,7 +285,8 @@ class Session:
         for lamp in look.lamps:
             if not lamp.on or lamp.intensity <= 0:
                 continue
-            map = self.shadow_map(lamp, look.shadow_size // (2 if small else 1), small) if lamp.shadow else None
+            map = self.shadow_map(lamp, look.shadow_size // (2 if small else 1),
+                                  small) if lamp.shadow else None
             light = map.light.copy() if map else Light(to_light=self.to_light(lamp))
             light.color = np.multiply(lamp.color, lamp.intensity)
             if map:
@@ -274,7 +296,8 @@ class Session:
 
     @staticmethod
     def ambient(look: Look) -> float:
-        """Irradiance / pi from everywhere; at 0 so little that nobody sees it: a frame without any needs other kernels."""
+        """Irradiance / pi from everywhere; at 0 so little that nobody sees it: a frame without any needs
+        other kernels."""
         return max(look.ambient, 1e-6)
 
     def texture(self, look: Look, small: bool = False) -> Texture:
@@ -283,13 +306,16 @@ class Session:
             self._textures[small] = Texture(self, 512 if small else 1024)
         return self._textures[small].make(self, look, small)
 
-    def shade(self, name: str, look: Look, width: int, height: int, small: bool = False, outputs: tuple[str, ...] = (),
+    def shade(self, name: str, look: Look, width: int, height: int, small: bool = False,
+              outputs: tuple[str, ...] = (),
               albedo: bool = True) -> Pass:
-        """Shades what is seen. `name`: of a pass that keeps its settings and images from picture to picture."""
+        """Shades what is seen. `name`: of a pass that keeps its settings and images from picture to picture.
+        """
         kept = self._passes.setdefault(name + "/small" if small else name, Pass(self.device))
         return kept.shade(self, self.gbuffer(width, height, small), look, outputs, small, albedo)
 
-    def radiance(self, look: Optional[Look] = None, width: int = 960, height: int = 540) -> NDArray[np.float32]:
+    def radiance(self, look: Optional[Look] = None, width: int = 960,
+                 height: int = 540) -> NDArray[np.float32]:
         """Linear radiance, (height, width, 3), 0 on background."""
         return self.shade("radiance", look or self.look, width, height).outputs["radiance"].copy()
 
@@ -304,8 +330,8 @@ class Session:
         small : bool
             While something moves: meshes are coarser, and shadow maps have half the size.
         sample : int
-            0 for a picture by itself. After it 1, 2, .. `samples` - 1: the mean with one more that is shifted by a part of a pixel,
-            so that edges become smooth.
+            0 for a picture by itself. After it 1, 2, .. `samples` - 1: the mean with one more that is
+            shifted by a part of a pixel, so that edges become smooth.
         """
         built = self.device.stats().programs_built
         started = time.perf_counter()
@@ -325,17 +351,21 @@ class Session:
         if not small:
             pixels = self._mean(pixels, sample)
         shaded = time.perf_counter()
-        times = {"OpenGL": 1e3 * (drawn - started), "Pellucid": 1e3 * (shaded - drawn), "on the device": stats.device_milliseconds}
+        times = {"OpenGL": 1e3 * (drawn - started), "Pellucid": 1e3 * (shaded - drawn),
+                 "on the device": stats.device_milliseconds}
         after = self.device.stats().programs_built
-        return Frame(pixels, times, stats.to_dict(), p.shader.warnings() + list(self.mesh.warnings), after, after - built)
+        return Frame(pixels, times, stats.to_dict(), p.shader.warnings() + list(self.mesh.warnings), after,
+                     after - built)
 
     def prepare(self, width: int, height: int) -> None:
-        """Builds the kernels that a slider of material will want when it leaves 0 or comes to it, so that none has to wait for them."""
+        """Builds the kernels that a slider of material will want when it leaves 0 or comes to it, so that
+        none has to wait for them."""
         base = self.look
         structure = (base.mode, base.method, base.ggx, [(lamp.on, lamp.shadow) for lamp in base.lamps])
         if structure == self._prepared or base.mode in ("reference", "error", "tiles"):
             return
-        for change in ({"deep_scatter": (1.0, 1.0, 1.0)}, {"deep_scatter": (0.0, 0.0, 0.0), "transmission": 0.0}):
+        for change in ({"deep_scatter": (1.0, 1.0, 1.0)},
+                       {"deep_scatter": (0.0, 0.0, 0.0), "transmission": 0.0}):
             other = base.copy()
             for name, value in change.items():
                 setattr(other, name, value)

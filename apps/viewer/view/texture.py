@@ -1,4 +1,5 @@
-"""The method of scattering in texture space: light that falls on the skin, drawn into its texture and scattered there."""
+"""The method of scattering in texture space: light that falls on the skin, drawn into its texture and
+scattered there."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
@@ -9,30 +10,34 @@ from numpy.typing import NDArray
 from .._types import Ambient, Material, TextureScatterParams
 from ..shader import Shader
 from ..texture_scatter import TextureScatter
-from .look import SKIN, Look
+from .look import Look, skin_triangles
 
 if TYPE_CHECKING:
     from .session import Session
 
 
 class Texture:
-    """The scattered light of one mesh, made again when light or profile change. Raises ValueError for a mesh without texture coordinates."""
+    """The scattered light of one mesh, made again when light or profile change. Raises ValueError for a mesh
+    without texture coordinates."""
 
     def __init__(self, session: Session, size: int) -> None:
         mesh = session.mesh
         if mesh.uvs is None:
-            raise ValueError("this mesh has no texture coordinates, which scattering in a texture needs; choose another method")
-        triangles = mesh.triangles if mesh.ids is None else mesh.triangles[mesh.ids[mesh.triangles[:, 0]] == SKIN]
+            raise ValueError("this mesh has no texture coordinates, which scattering in a texture needs; "
+                             "choose another method")
+        triangles = skin_triangles(mesh)
         self._scatter = TextureScatter(session.device, size, size, triangles, mesh.uvs)
         self._scatter.set_positions(mesh.positions)
         position = self._scatter.draw(mesh.positions)
         normal = self._scatter.draw(mesh.normals, unit=True)
-        self._inputs = {"position": position, "normal_shading": normal, "material": np.float32(np.abs(normal).max(2) > 0)}
+        self._inputs = {"position": position, "normal_shading": normal,
+                        "material": np.float32(np.abs(normal).max(2) > 0)}
         self._irradiance = np.zeros((size, size, 3), np.float32)
         self._shader = Shader(session.device).set_image("radiance", self._irradiance)
         for slot, image in self._inputs.items():
             self._shader.set_image(slot, image)
-        self._shader.set_material(1, Material(scattering="none", thickness_taps=0, specular=0.0, albedo=(1.0, 1.0, 1.0),
+        self._shader.set_material(1, Material(scattering="none", thickness_taps=0, specular=0.0,
+                                              albedo=(1.0, 1.0, 1.0),
                                               shadow_filter_width=1.0 / session.mm))
         self._key: Any = None
         self.light: NDArray[np.float32] = np.zeros((size, size, 3), np.float32)
@@ -40,7 +45,8 @@ class Texture:
     def make(self, session: Session, look: Look, small: bool) -> Texture:
         lights = session.lights(look, small)
         profile = session.profile(look)
-        key = ([(light._data.tobytes(), id(map)) for light, map in lights], session.ambient(look), id(profile), look.radius_scale)
+        key = ([(light._data.tobytes(), id(map)) for light, map in lights], session.ambient(look),
+               id(profile), look.radius_scale)
         if key != self._key:
             self._shader.set_lights([light for light, _ in lights])
             for i, (_, map) in enumerate(lights):

@@ -24,7 +24,8 @@ def _hex(color: Any) -> str:
 
 def _linear(text: str) -> tuple[float, float, float]:
     c = np.array([int(text[i:i + 2], 16) for i in (1, 3, 5)]) / 255
-    return tuple(np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4).tolist())  # type: ignore[return-value]
+    return tuple(np.where(c <= 0.04045, c / 12.92,
+                          ((c + 0.055) / 1.055) ** 2.4).tolist())  # type: ignore[return-value]
 
 
 def fail(message: object) -> None:
@@ -58,7 +59,8 @@ class Panel:
         self.viewer.changed()
 
     async def deliver(self, make: Callable[[], bytes], name: str) -> None:
-        """Makes a file on the session's thread and has the browser download it, unless the page was closed meanwhile."""
+        """Makes a file on the session's thread and has the browser download it, unless the page was closed
+        meanwhile."""
         client = ui.context.client
         try:
             data = await self.viewer.on_thread(make)
@@ -70,7 +72,8 @@ class Panel:
                 fail(error)
         self.viewer.changed()
 
-    def slider(self, name: str, owner: Any, attribute: str, low: float, high: float, step: float, marker: str = "",
+    def slider(self, name: str, owner: Any, attribute: str, low: float, high: float, step: float,
+               marker: str = "",
                index: Optional[int] = None, then: Callable[[], None] = lambda: None) -> None:
         """A slider for a number, or for element `index` of several."""
         def value() -> Any:
@@ -119,8 +122,9 @@ class Panel:
             then()
             self.viewer.changed()
 
-        ui.select(options, value=value.name.lower() if isinstance(value, IntEnum) else value, label=name,
-                  on_change=change).props(f"dense options-dense data-pel={marker or attribute}").classes("w-full")
+        shown = value.name.lower() if isinstance(value, IntEnum) else value
+        ui.select(options, value=shown, label=name, on_change=change).props(
+            f"dense options-dense data-pel={marker or attribute}").classes("w-full")
 
     def switch(self, name: str, owner: Any, attribute: str, marker: str = "") -> None:
         def change(e: events.ValueChangeEventArguments) -> None:
@@ -140,7 +144,8 @@ class Panel:
             f"dense data-pel={marker or attribute}").classes("w-full")
 
     def button(self, name: str, act: Any, marker: str, flat: bool = False) -> None:
-        ui.button(name, on_click=act).props(f"dense {'flat ' if flat else ''}data-pel={marker}").classes("w-full")
+        ui.button(name,
+                  on_click=act).props(f"dense {'flat ' if flat else ''}data-pel={marker}").classes("w-full")
 
     def upload(self, name: str, act: Any, marker: str, largest: int = 1 << 30) -> None:
         ui.upload(label=name, auto_upload=True, on_upload=act, max_file_size=largest).props(

@@ -1,4 +1,5 @@
-// glTF scenes for Python: what `pellucid import` makes of a file, as arrays and structures. And profiles from files.
+// glTF scenes for Python: what `pellucid import` makes of a file, as arrays and structures. And profiles
+// from files.
 #include "gltf.h"
 
 #include <pybind11/stl.h>
@@ -44,7 +45,8 @@ class Gltf {
         d["warnings"] = mesh.warnings;
         return d;
     }
-    // (name, what it was taken for, structure, profile as a scene file names it, profile or None, picture or None)
+    // (name, what it was taken for, structure, profile as a scene file names it, profile or None, picture or
+    // None)
     py::list materials() const {
         py::list found;
         for (size_t i = 0; i < made_.looks.size(); ++i) {

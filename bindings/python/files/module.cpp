@@ -55,7 +55,8 @@ py::dict loadMesh(const std::string& path, int levels, bool normals) {
     return toDict(mesh);
 }
 
-// One of the project's heads, or None for a mesh without its parts. The albedo of a vertex holds its look and tints.
+// One of the project's heads, or None for a mesh without its parts. The albedo of a vertex holds its look
+// and tints.
 py::object loadHead(const std::string& path, int levels) {
     demo::DemoHead head;
     std::vector<float> albedo;
@@ -150,8 +151,9 @@ Bytes toneMapped(const Pixels& rgb, float exposure, float shoulder, const std::s
     return array(bytes, {rgb.shape(), rgb.shape() + rgb.ndim()});
 }
 
-// Where each module has a C++ library of its own, as in wheels, pybind11's translator knows the exceptions of the module alone that was
-// loaded first: this one's need another. Those that are registered later are asked first.
+// Where each module has a C++ library of its own, as in wheels, pybind11's translator knows the exceptions
+// of the module alone that was loaded first: this one's need another. Those that are registered later are
+// asked first.
 void translateExceptions(std::exception_ptr pending) {
     try {
         if (pending) std::rethrow_exception(pending);

@@ -28,9 +28,9 @@ bool interpreterGoes() {
 #endif
 }
 
-// Until version 3.14 CPython ends other threads that ask for the GIL while the interpreter goes, by pthread_exit, which unwinds C++
-// and stops the whole process at the first function that may not be left so. Nobody waits for such threads: they stay here, for the
-// end of the process.
+// Until version 3.14 CPython ends other threads that ask for the GIL while the interpreter goes, by
+// pthread_exit, which unwinds C++ and stops the whole process at the first function that may not be left so.
+// Nobody waits for such threads: they stay here, for the end of the process.
 [[noreturn]] void stayHere() {
     for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
@@ -41,7 +41,9 @@ auto takeGil(Take&& take) {
     if (gone && std::this_thread::get_id() != endingThread.load()) stayHere();
     try {
         return take();
-    } catch (...) {  // nothing else comes out of CPython; and who leaves this block without throwing on stops the process, too
+        // nothing else comes out of CPython; and who leaves this block without throwing on stops the process,
+        // too
+    } catch (...) {
         stayHere();
     }
 }

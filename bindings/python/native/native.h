@@ -1,5 +1,6 @@
-// What the files of the native module share: errors as Python exceptions, the GIL let go during calls, waiting that
-// Ctrl-C can end, and structures passed as their bytes. Arguments are Python's: whoever calls keeps them alive. Everything a user sees is in the Python files beside this.
+// What the files of the native module share: errors as Python exceptions, the GIL let go during calls,
+// waiting that Ctrl-C can end, and structures passed as their bytes. Arguments are Python's: whoever calls
+// keeps them alive. Everything a user sees is in the Python files beside this.
 #pragma once
 #include <pellucid/pellucid.h>
 #include <pybind11/pybind11.h>
@@ -52,20 +53,20 @@ class WithGil {
     PyGILState_STATE state_;
 };
 
-// To be called before OpenCL is first used: its threads do not come along into a process that is forked later, so that calls there
-// would wait for ever; they throw instead.
+// To be called before OpenCL is first used: its threads do not come along into a process that is forked
+// later, so that calls there would wait for ever; they throw instead.
 void opensDevices();
 void refuseForked();
 
-// Runs `body` without the GIL and throws its error. An exception that a progress callback raised comes first, KeyboardInterrupt
-// among them: the library tells its progress where work is long.
+// Runs `body` without the GIL and throws its error. An exception that a progress callback raised comes
+// first, KeyboardInterrupt among them: the library tells its progress where work is long.
 void call(const std::function<PelError()>& body);
 
 // Waits without the GIL, looking for Ctrl-C meanwhile; the work itself goes on when that comes.
 void waitInterruptibly(const pellucid::Event& event);
 
-// Whether a signal handler raised something, such as KeyboardInterrupt: the body of a `call` that takes long asks, ends early, and
-// py::error_already_set is thrown after it.
+// Whether a signal handler raised something, such as KeyboardInterrupt: the body of a `call` that takes long
+// asks, ends early, and py::error_already_set is thrown after it.
 bool signalled();
 
 // Done when everything is that was given to the device before.
@@ -97,8 +98,9 @@ inline uintptr_t address(void* p) {
     return reinterpret_cast<uintptr_t>(p);
 }
 
-// Owner of what a Python object holds of the library. The last reference to a device waits for its queue, where a host's own
-// callbacks and events may need the GIL to get on; so nothing of the library is let go with the GIL held.
+// Owner of what a Python object holds of the library. The last reference to a device waits for its queue,
+// where a host's own callbacks and events may need the GIL to get on; so nothing of the library is let go
+// with the GIL held.
 template <class T>
 struct DeletedWithoutGil {
     void operator()(T* object) const {

@@ -8,7 +8,8 @@
 namespace pel::python {
 
 namespace {
-// A shader, and a lock that lets calls from other threads wait, and later ones for a call that Ctrl-C left behind.
+// A shader, and a lock that lets calls from other threads wait, and later ones for a call that Ctrl-C left
+// behind.
 struct Shader {
     std::unique_ptr<std::recursive_mutex> busy = std::make_unique<std::recursive_mutex>();
     pellucid::Shader handle;
@@ -117,7 +118,7 @@ void bindShader(py::module_& module) {
                      return pelShaderExecute(s.get(), submit);
                  });
              })
-        // Blocking, so that the device's progress callback is told.
+        // Blocking, so that the device's progress callback runs.
         .def("execute_told",
              [](const Shader& s) { locked(s, [&] { return pelShaderExecute(s.get(), nullptr); }); })
         .def("material",
@@ -148,7 +149,8 @@ void bindShader(py::module_& module) {
         uint32_t built = 0;
         call([&] {
             std::vector<PelShader> handles;
-            // In one order for all threads, whatever the order of their lists: two would wait for each other otherwise.
+            // In one order for all threads, whatever the order of their lists: two would wait for each other
+            // otherwise.
             std::map<std::recursive_mutex*, std::unique_lock<std::recursive_mutex>, std::less<>> locks;
             for (const Shader* s : shaders) {
                 handles.push_back(s->get());

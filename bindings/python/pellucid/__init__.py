@@ -1,9 +1,10 @@
 """Pellucid: subsurface scattering for deferred renderers, on OpenCL.
 
-Lengths (positions, radii, widths, thickness) are in any one unit, the same for all, with defaults in millimetres;
-curvature is in 1/length; colours are linear RGB; matrices are row-major and multiply column vectors. NumPy arrays are used
-in place, with any positive strides; nothing is copied unless the documentation of a parameter says so. Work runs without the
-GIL, and arrays stay alive until the work that uses them is done. Failures raise `PellucidError`.
+Lengths (positions, radii, widths, thickness) are in any one unit, the same for all, with defaults in
+millimetres; curvature is in 1/length; colours are linear RGB; matrices are row-major and multiply column
+vectors. NumPy arrays are used in place, with any positive strides; nothing is copied unless the
+documentation of a parameter says so. Work runs without the GIL, and arrays stay alive until the work that
+uses them is done. Failures raise `PellucidError`.
 """
 from __future__ import annotations
 
@@ -43,7 +44,8 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted([*__all__, "__doc__", "__version__", "files", "load_gltf", "load_mesh", "load_profile", "read_image",
+    return sorted([*__all__, "__doc__", "__version__", "files", "load_gltf", "load_mesh", "load_profile",
+                   "read_image",
                    "tonemap", "write_image"])
 
 
@@ -51,7 +53,9 @@ _number = _native.version()
 __version__ = f"{_number // 10000}.{_number // 100 % 100}.{_number % 100}"
 
 __all__ = [  # noqa: PLE0604
-    "Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile", "Scatter",
-    "Scene", "Shaded", "Shader", "TextureScatter", "Vertices", "compare", "devices", "load_scene", "orient_mesh",
+    "Buffer", "Device", "Event", "Image", "LiveMesh", "Lut", "MeshTopology", "PellucidError", "Profile",
+    "Scatter",
+    "Scene", "Shaded", "Shader", "TextureScatter", "Vertices", "compare", "devices", "load_scene",
+    "orient_mesh",
     "shade", "warm_up_programs", "screen_curvature", "set_error_callback", "submit_screen_curvature",
     "submit_surface_integral", "surface_integral", *_type_names]

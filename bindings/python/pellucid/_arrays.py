@@ -11,7 +11,8 @@ from ._struct import to_enum
 from ._types import Format
 from .device import Buffer, Device, Event, _cl_address
 
-# Formats by type and number of components. One-component integers are ids in the material slot and fractions elsewhere.
+# Formats by type and number of components. One-component integers are ids in the material slot and fractions
+# elsewhere.
 _FORMATS = {
     ("float32", 1): Format.R32F, ("float32", 2): Format.RG32F, ("float32", 3): Format.RGB32F,
     ("float32", 4): Format.RGBA32F,
@@ -23,7 +24,8 @@ _FORMATS = {
 _ID_FORMATS = {"uint8": Format.R8_UINT, "uint16": Format.R16_UINT, "uint32": Format.R32_UINT}
 # What an explicitly named format is stored as: type and components.
 _STORAGE = {f: key for key, f in _FORMATS.items()} | {f: (t, 1) for t, f in _ID_FORMATS.items()} | {
-    Format.RGBA8_SRGB: ("uint8", 4), Format.A2B10G10R10_UNORM: ("uint32", 1), Format.PLANAR_RGB32F: ("float32", 3)}
+    Format.RGBA8_SRGB: ("uint8", 4), Format.A2B10G10R10_UNORM: ("uint32", 1),
+    Format.PLANAR_RGB32F: ("float32", 3)}
 
 
 def as_array(value: Any, what: str) -> NDArray[Any]:
@@ -34,28 +36,32 @@ def as_array(value: Any, what: str) -> NDArray[Any]:
         return np.from_dlpack(value)
     if hasattr(value, "__array_interface__") or isinstance(value, (memoryview, bytearray)):
         return np.asarray(value)
-    raise TypeError(f"{what} is a {type(value).__name__}; a NumPy array, or an object with the buffer or DLPack "
+    raise TypeError(f"{what} is a {type(value).__name__}; a NumPy array, or an object with the buffer or "
+                    f"DLPack "
                     "protocol, is needed")
 
 
 def _check_byte_order(dtype: np.dtype[Any], what: str) -> None:
     if not dtype.isnative:
-        raise ValueError(f"{what} has the byte order of another machine ({dtype}: {'big' if dtype.byteorder == '>' else 'little'}-endian); "
+        raise ValueError(f"{what} has the byte order of another machine ({dtype}: "
+                         f"{'big' if dtype.byteorder == '>' else 'little'}-endian); "
                          "pass array.astype(array.dtype.newbyteorder('='))")
 
 
 class Span:
     """The memory from an array's first to its last byte, as a buffer.
 
-    On a CPU device that buffer is the memory itself. Elsewhere it has a twin on the device, and the bytes move with each
-    submission: everything in before, the results out after.
+    On a CPU device that buffer is the memory itself. Elsewhere it has a twin on the device, and the bytes
+    move with each submission: everything in before, the results out after.
     """
 
     def __init__(self, device: Device, array: NDArray[Any], what: str, output: bool) -> None:
         if any(s < 0 for n, s in zip(array.shape, array.strides) if n > 1):
-            raise ValueError(f"{what} has a negative stride, which the device cannot follow; pass array.copy()")
+            raise ValueError(f"{what} has a negative stride, which the device cannot follow; pass "
+                             f"array.copy()")
         if any(s == 0 for n, s in zip(array.shape, array.strides) if n > 1):
-            raise ValueError(f"{what} is broadcast (a stride of 0), which the device cannot follow; pass array.copy()")
+            raise ValueError(f"{what} is broadcast (a stride of 0), which the device cannot follow; pass "
+                             f"array.copy()")
         if output and not array.flags.writeable:
             raise ValueError(f"{what} is read-only and the result goes there")
         _check_byte_order(array.dtype, what)
@@ -96,7 +102,8 @@ class View:
 def submit(device: Device, views: list[View], waits: list[_native.Event], enqueue: Any, *used: Any) -> Any:
     """Moves inputs, enqueues with `enqueue(waits)`, moves results; returns the event of the last step.
 
-    None where the work was done inside `enqueue` and nothing moves back. The views and `used` live until the work is done.
+    None where the work was done inside `enqueue` and nothing moves back. The views and `used` live until the
+    work is done.
     """
     spans = {id(v.span): v.span for v in views if isinstance(v.span, Span)}.values()
     # What is under way when something goes wrong, or Ctrl-C comes, still reads and writes the arrays.
@@ -111,7 +118,8 @@ def submit(device: Device, views: list[View], waits: list[_native.Event], enqueu
     return done
 
 
-def _pyopencl_array(device: Device, value: Any) -> Optional[tuple[Buffer, int, tuple[int, ...], tuple[int, ...], Any]]:
+def _pyopencl_array(device: Device,
+                    value: Any) -> Optional[tuple[Buffer, int, tuple[int, ...], tuple[int, ...], Any]]:
     """Buffer, byte offset, shape, strides and type of a pyopencl.array.Array, without importing PyOpenCL."""
     data = getattr(value, "base_data", None)
     if data is None or not hasattr(data, "int_ptr"):
@@ -136,7 +144,8 @@ class Vertices:
 
 
 def vertex_view(device: Device, value: Any, components: int, what: str, output: bool = False) -> View:
-    """An array of float32 vertices: shape (n, components), or (n,) for one component; any positive strides."""
+    """An array of float32 vertices: shape (n, components), or (n,) for one component; any positive strides.
+    """
     if isinstance(value, Vertices):
         return View(value.buffer, (value.byte_offset, value.byte_stride, value.count))
     wanted = f"(n, {components})" if components > 1 else "(n,)"
@@ -147,7 +156,8 @@ def vertex_view(device: Device, value: Any, components: int, what: str, output: 
         array = as_array(value, what)
         shape, strides, dtype = array.shape, array.strides, array.dtype
     if dtype != np.float32:
-        raise ValueError(f"{what} is {dtype}; float32 is needed (array.astype(numpy.float32) makes a copy that is)")
+        raise ValueError(f"{what} is {dtype}; float32 is needed (array.astype(numpy.float32) makes a copy "
+                         f"that is)")
     if len(shape) != (2 if components > 1 else 1) or (components > 1 and shape[1] != components):
         raise ValueError(f"{what} has the shape {tuple(shape)}; {wanted} is needed")
     if components > 1 and strides[1] != 4:
@@ -169,13 +179,13 @@ class Image:
     ----------
     device : Device
     data : array, pyopencl.array.Array or Buffer
-        An array of shape (height, width) or (height, width, components) with any positive strides is used in place, as
-        long as its rows lie one after another: crops, every other pixel, part of the components, and three planes of
-        float32. A Buffer needs `format`, `width` and `height`.
+        An array of shape (height, width) or (height, width, components) with any positive strides is used in
+        place, as long as its rows lie one after another: crops, every other pixel, part of the components,
+        and three planes of float32. A Buffer needs `format`, `width` and `height`.
     format : Format or str, optional
-        How the components are read. From the array without it: float32 and float16 with 1 to 4 components; uint8 with 1
-        or 4 as fractions of 255; uint16 with 1 as a fraction; int16 with 2 as an octahedral unit vector; one-component
-        unsigned integers in the material slot as ids, and bool as 0 and 1.
+        How the components are read. From the array without it: float32 and float16 with 1 to 4 components;
+        uint8 with 1 or 4 as fractions of 255; uint16 with 1 as a fraction; int16 with 2 as an octahedral
+        unit vector; one-component unsigned integers in the material slot as ids, and bool as 0 and 1.
     byte_offset, pixel_stride, row_stride, plane_stride : int
         Bytes, for a Buffer; strides of 0 are tightly packed.
 
@@ -185,7 +195,8 @@ class Image:
         No format fits; the message says what would.
     """
 
-    def __init__(self, device: Device, data: Any, format: Format | str | None = None, *, width: int = 0, height: int = 0,
+    def __init__(self, device: Device, data: Any, format: Format | str | None = None, *, width: int = 0,
+                 height: int = 0,
                  byte_offset: int = 0, pixel_stride: int = 0, row_stride: int = 0, plane_stride: int = 0,
                  _slot: str = "the image", _output: bool = False, _ids: bool = False) -> None:
         self.format = None if format is None else to_enum(Format, format, "format")
@@ -207,7 +218,8 @@ class Image:
             shape, strides, dtype = array.shape, array.strides, array.dtype
         _check_byte_order(dtype, _slot)
         if len(shape) not in (2, 3):
-            raise ValueError(f"{_slot} has the shape {tuple(shape)}; (height, width) or (height, width, components) is "
+            raise ValueError(f"{_slot} has the shape {tuple(shape)}; (height, width) or (height, width, "
+                             f"components) is "
                              "needed")
         components = shape[2] if len(shape) == 3 else 1
         between = strides[2] if len(shape) == 3 and components > 1 else dtype.itemsize
@@ -217,7 +229,8 @@ class Image:
         # Strides that NumPy leaves undefined for lengths of one.
         pixel = strides[1] if width > 1 else (dtype.itemsize if planar else components * dtype.itemsize)
         row = strides[0] if height > 1 else pixel * width
-        tail = (int(self.format), width, height, byte_offset if cl else 0, pixel, row, between if planar else 0)
+        tail = (int(self.format), width, height, byte_offset if cl else 0, pixel, row,
+                between if planar else 0)
         self._view = View(buffer if cl else Span(device, array, _slot, _output), tail)
 
     def _pick(self, dtype: np.dtype[Any], components: int, planar: bool, ids: bool, slot: str) -> Format:
@@ -225,7 +238,8 @@ class Image:
             stored = _STORAGE.get(self.format)
             if stored != (dtype.name, components):
                 raise ValueError(f"{slot}: the format {self.format.name.lower()} is stored as "
-                                 f"{stored and f'{stored[1]} x {stored[0]}'}, the array as {components} x {dtype}")
+                                 f"{stored and f'{stored[1]} x {stored[0]}'}, the array as {components} x "
+                                 f"{dtype}")
             if planar != (self.format == Format.PLANAR_RGB32F) and components > 1:
                 raise ValueError(f"{slot}: the components lie {'apart' if planar else 'together'}, which "
                                  f"{self.format.name.lower()} does not describe")
@@ -233,27 +247,32 @@ class Image:
         if planar:
             if (dtype.name, components) == ("float32", 3):
                 return Format.PLANAR_RGB32F
-            raise ValueError(f"{slot} has components that lie apart; that works for three of float32 only, else pass "
+            raise ValueError(f"{slot} has components that lie apart; that works for three of float32 only, "
+                             f"else pass "
                              "numpy.ascontiguousarray(array)")
         if ids and components == 1 and dtype.name in _ID_FORMATS:
             return _ID_FORMATS[dtype.name]
         if ids and dtype.kind in "iub":
-            raise ValueError(f"{slot} has {components} components of {dtype}; ids are one of uint8, uint16 or uint32 "
+            raise ValueError(f"{slot} has {components} components of {dtype}; ids are one of uint8, uint16 "
+                             f"or uint32 "
                              "(array.astype(numpy.uint8) makes a copy that is)")
         found = _FORMATS.get((dtype.name, components))
         if found is None:
-            raise ValueError(f"{slot} has {components} components of {dtype}, which no format stores; float32 or float16 "
+            raise ValueError(f"{slot} has {components} components of {dtype}, which no format stores; "
+                             f"float32 or float16 "
                              "with 1 to 4, uint8 with 1 or 4, uint16 with 1 or int16 with 2 would do "
                              "(array.astype(numpy.float32) makes a copy that is)")
         return found
 
 
-def output_array(out: Optional[NDArray[Any]], shape: tuple[int, ...], dtype: DTypeLike, what: str) -> NDArray[Any]:
+def output_array(out: Optional[NDArray[Any]], shape: tuple[int, ...], dtype: DTypeLike,
+                 what: str) -> NDArray[Any]:
     """`out`, checked, or a new array."""
     if out is None:
         return np.empty(shape, dtype)
     if out.shape != shape or out.dtype != np.dtype(dtype):
-        raise ValueError(f"{what} is {out.dtype} of shape {out.shape}; {np.dtype(dtype)} of shape {shape} is needed")
+        raise ValueError(f"{what} is {out.dtype} of shape {out.shape}; {np.dtype(dtype)} of shape {shape} is "
+                         f"needed")
     return out
 
 

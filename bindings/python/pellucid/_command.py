@@ -24,8 +24,10 @@ def main() -> int:
         return run()
     if program().exists():
         os.execv(program(), ["pellucid", *sys.argv[1:]])  # does not come back
-    print("pellucid: this package was built without the program, which needs CLI11 and nlohmann-json (Debian: libcli11-dev "
-          f"nlohmann-json3-dev, beside what pellucid.files needs); there are {' and '.join(_OWN)}", file=sys.stderr)
+    print("pellucid: this package was built without the program, which needs CLI11 and nlohmann-json "
+          "(Debian: libcli11-dev "
+          f"nlohmann-json3-dev, beside what pellucid.files needs); there are {' and '.join(_OWN)}",
+          file=sys.stderr)
     return 2
 
 

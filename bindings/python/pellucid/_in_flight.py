@@ -1,6 +1,8 @@
-"""What is still used after Ctrl-C, or while submitted work is under way: Python's memory must outlive it, whoever lets go of it.
+"""What is still used after Ctrl-C, or while submitted work is under way: Python's memory must outlive it,
+whoever lets go of it.
 
-Ctrl-C is noticed where a call tells its progress and where an event is waited for. What does neither runs `aside`.
+Ctrl-C is noticed where a call tells its progress and where an event is waited for. What does neither runs
+`aside`.
 """
 from __future__ import annotations
 
@@ -14,8 +16,8 @@ from typing import Any, Callable, Optional, Union
 
 from . import _native
 
-# By the order of submission. No lock: finalizers and signal handlers submit work, too, and may come in the middle of any line here;
-# each operation on the dictionary is one step.
+# By the order of submission. No lock: finalizers and signal handlers submit work, too, and may come in the
+# middle of any line here; each operation on the dictionary is one step.
 _flying: dict[int, tuple[Union[_native.Event, _Aside], tuple[Any, ...]]] = {}
 _numbers = itertools.count()
 
@@ -53,7 +55,8 @@ class _Aside:
 def aside(call: Callable[[], Any], *used: Any) -> Any:
     """Returns call(), which Ctrl-C can leave behind: it then goes on, and `used` lives until it is done.
 
-    For calls of the library that may take long without telling their progress. No signal reaches other threads than Python's main one.
+    For calls of the library that may take long without telling their progress. No signal reaches other
+    threads than Python's main one.
     """
     if threading.current_thread() is not threading.main_thread():
         return call()
@@ -111,7 +114,8 @@ def _land() -> None:
     for event, _ in _flying.copy().values():
         try:
             event.wait()
-        except KeyboardInterrupt:  # asked twice: no more waiting, nor an end that frees what kernels still write to
+        # asked twice: no more waiting, nor an end that frees what kernels still write to
+        except KeyboardInterrupt:
             os._exit(130)
         except Exception:
             pass

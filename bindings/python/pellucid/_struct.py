@@ -64,7 +64,8 @@ class OfThisProcess:
     _instead: ClassVar[str]
 
     def __reduce__(self) -> NoReturn:
-        raise TypeError(f"a {type(self).__name__} belongs to this process and cannot be pickled: {self._instead}")
+        raise TypeError(f"a {type(self).__name__} belongs to this process and cannot be pickled: "
+                        f"{self._instead}")
 
 
 class Struct(metaclass=_PublicNames):

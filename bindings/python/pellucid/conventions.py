@@ -1,9 +1,10 @@
 """Matrices of renderers: from what OpenGL, Vulkan and Direct3D hand to a shader, to what Pellucid takes.
 
-Matrices are row-major and multiply column vectors. `depth` says what clip space has between near and far plane: "-1..1"
-(OpenGL), "0..1" (Vulkan, Direct3D, OpenGL with glClipControl) or "1..0" (reversed; the far plane may be infinitely far).
-`y_up`: whether clip space has y upwards, as OpenGL and Direct3D have, or downwards, as Vulkan has. `first_row`: whether
-the first row of the image in memory is its "top" or its "bottom", as glReadPixels gives it.
+Matrices are row-major and multiply column vectors. `depth` says what clip space has between near and far
+plane: "-1..1" (OpenGL), "0..1" (Vulkan, Direct3D, OpenGL with glClipControl) or "1..0" (reversed; the far
+plane may be infinitely far). `y_up`: whether clip space has y upwards, as OpenGL and Direct3D have, or
+downwards, as Vulkan has. `first_row`: whether the first row of the image in memory is its "top" or its
+"bottom", as glReadPixels gives it.
 """
 from __future__ import annotations
 
@@ -32,17 +33,22 @@ def _check(depth: str, first_row: str) -> None:
 
 
 def clip_to_image(depth: str = "-1..1", y_up: bool = True, first_row: str = "top") -> NDArray[np.float64]:
-    """Homogeneous clip space to (u, v, z) of an image: u, v from 0 to 1 over it, v = 0 at its first row, z as the depth buffer has it."""
+    """Homogeneous clip space to (u, v, z) of an image: u, v from 0 to 1 over it, v = 0 at its first row, z
+    as the depth buffer has it."""
     _check(depth, first_row)
     down = y_up == (first_row == "top")  # v grows against y
     half = depth == "-1..1"
-    return np.array([[0.5, 0, 0, 0.5], [0, -0.5 if down else 0.5, 0, 0.5], [0, 0, 0.5 if half else 1, 0.5 if half else 0], [0, 0, 0, 1.0]])
+    return np.array([[0.5, 0, 0, 0.5], [0, -0.5 if down else 0.5, 0, 0.5],
+                     [0, 0, 0.5 if half else 1, 0.5 if half else 0], [0, 0, 0, 1.0]])
 
 
-def camera_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1", y_up: bool = True, **fields: Any) -> Camera:
-    """The camera of a G-buffer whose depth image is what the depth buffer holds and whose first row is the top one.
+def camera_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1", y_up: bool = True,
+                                **fields: Any) -> Camera:
+    """The camera of a G-buffer whose depth image is what the depth buffer holds and whose first row is the
+    top one.
 
-    The position is where the projection puts it: on the line through the middle of the picture for a parallel one.
+    The position is where the projection puts it: on the line through the middle of the picture for a
+    parallel one.
     """
     m = _matrix(view_projection, "view_projection")
     _check(depth, "top")
@@ -57,15 +63,19 @@ def camera_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1"
         raise ValueError("view_projection has no inverse") from None
     # The eye is what x = y = w = 0 holds.
     eye = np.linalg.svd(clip[[0, 1, 3]])[2][3]
-    place = eye[:3] / eye[3] if abs(eye[3]) > 1e-12 * np.abs(eye[:3]).max() else -1e6 * eye[:3] / np.linalg.norm(eye[:3])
+    near = abs(eye[3]) > 1e-12 * np.abs(eye[:3]).max()
+    place = eye[:3] / eye[3] if near else -1e6 * eye[:3] / np.linalg.norm(eye[:3])
     return Camera(position=place, inverse_view_projection=inverse, **fields)
 
 
-def light_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1", y_up: bool = True, first_row: str = "top",
+def light_from_view_projection(view_projection: ArrayLike, depth: str = "-1..1", y_up: bool = True,
+                               first_row: str = "top",
                                **fields: Any) -> Light:
-    """A light whose shadow map was drawn with this matrix: directional for a parallel projection, a spot for a perspective one.
+    """A light whose shadow map was drawn with this matrix: directional for a parallel projection, a spot for
+    a perspective one.
 
-    `fields` are others of Light, such as `color`. For a spot, `spot_cos_inner` and `spot_cos_outer` are left to the caller.
+    `fields` are others of Light, such as `color`. For a spot, `spot_cos_inner` and `spot_cos_outer` are left
+    to the caller.
     """
     m = _matrix(view_projection, "view_projection")
     matrix = clip_to_image(depth, y_up, first_row) @ m

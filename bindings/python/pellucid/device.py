@@ -36,7 +36,8 @@ def devices() -> list[DeviceInfo]:
 
 
 def set_error_callback(callback: Optional[Callable[[int, str], object]]) -> None:
-    """Calls `callback(code, message)` with every error as it is raised, on the failing thread. None removes it."""
+    """Calls `callback(code, message)` with every error as it is raised, on the failing thread. None removes
+    it."""
     _native.set_error_callback(callback)
 
 
@@ -46,8 +47,8 @@ class Device(OfThisProcess):
     Parameters
     ----------
     selector : str or int
-        A number in `devices()`; "gpu", "cpu" or "accelerator"; or a part of the name or platform. "": the environment
-        variable PELLUCID_DEVICE, and without it the best GPU, else the best CPU.
+        A number in `devices()`; "gpu", "cpu" or "accelerator"; or a part of the name or platform. "": the
+        environment variable PELLUCID_DEVICE, and without it the best GPU, else the best CPU.
 
     Raises
     ------
@@ -109,10 +110,11 @@ class Device(OfThisProcess):
         Parameters
         ----------
         callback : callable, True or None
-            Called with a fraction in [0, 1] and what is being done; returning False cancels: the call then raises
-            PellucidError with the code CANCELLED. An exception cancels too and is passed on. True: a `tqdm` bar, or
-            plain lines on stderr where tqdm is not installed. None: nothing. It runs on the thread of the call; where that waits for
-            a compiler or for counts (Shader.commit, warm_up_programs, curvature with a report), on a thread of its own.
+            Called with a fraction in [0, 1] and what is being done; returning False cancels: the call then
+            raises PellucidError with the code CANCELLED. An exception cancels too and is passed on. True: a
+            `tqdm` bar, or plain lines on stderr where tqdm is not installed. None: nothing. It runs on the
+            thread of the call; where that waits for a compiler or for counts (Shader.commit,
+            warm_up_programs, curvature with a report), on a thread of its own.
         """
         self._handle.progress = progress_bar() if callback is True else (callback or None)
 

@@ -1,7 +1,7 @@
 """Meshes and images from files, and pictures to look at.
 
-A module of its own: it needs the package built where OpenMesh, OpenEXR and OpenImageIO are installed (Debian: libopenmesh-dev,
-libopenexr-dev, libopenimageio-dev).
+A module of its own: it needs the package built where OpenMesh, OpenEXR and OpenImageIO are installed
+(Debian: libopenmesh-dev, libopenexr-dev, libopenimageio-dev).
 """
 from __future__ import annotations
 
@@ -22,7 +22,8 @@ from .profile import Profile
 try:
     from . import _files
 except ImportError as error:
-    raise ImportError("this build of pellucid reads no files: install libopenmesh-dev, libopenexr-dev, libopenimageio-dev and libtomlplusplus-dev "
+    raise ImportError("this build of pellucid reads no files: install libopenmesh-dev, libopenexr-dev, "
+                      "libopenimageio-dev and libtomlplusplus-dev "
                       f"(or their equivalents) and build the package again ({error})") from error
 
 FileError = _files.FileError
@@ -52,14 +53,15 @@ def standard_head(which: str = "female") -> Path:
     for folder in (Path(__file__).parent / "heads", *(p / "data/heads" for p in Path(__file__).parents)):
         if (folder / f"head_{which}.obj").exists():
             return folder / f"head_{which}.obj"
-    raise FileNotFoundError(f"the head {which!r} did not come with the package; name an OFF, OBJ, PLY or STL file")
+    raise FileNotFoundError(f"the head {which!r} did not come with the package; name an OFF, OBJ, PLY or STL "
+                            f"file")
 
 
 def load_mesh(path: Any, subdivide: Optional[int] = None, up: str = "auto") -> Mesh:
     """Reads an OFF, OBJ, PLY or STL file.
 
-    Where texture coordinates of an OBJ file have a seam, its vertices are there once for each side. A mesh that Loop's scheme subdivides has no
-    texture coordinates then; the heads of the package keep theirs.
+    Where texture coordinates of an OBJ file have a seam, its vertices are there once for each side. A mesh
+    that Loop's scheme subdivides has no texture coordinates then; the heads of the package keep theirs.
 
     Parameters
     ----------
@@ -77,14 +79,17 @@ def load_mesh(path: Any, subdivide: Optional[int] = None, up: str = "auto") -> M
     if up not in ("auto", "y", "z"):
         raise ValueError(f"up is {up!r}; it must be 'auto', 'y' or 'z'")
     name = str(path)
-    head = _files.load_head(name, 2 if subdivide is None else subdivide) if name.lower().endswith(".obj") else None
+    head = _files.load_head(name,
+                            2 if subdivide is None else subdivide) if name.lower().endswith(".obj") else None
     if head is not None:
-        return Mesh(**{k: tuple(v) if k in ("up", "front", "low", "high") else v for k, v in head.items()}, source=name)
+        return Mesh(**{k: tuple(v) if k in ("up", "front", "low", "high") else v for k, v in head.items()},
+                    source=name)
     d = _files.load_mesh(name, subdivide or 0, True)
     y = up == "y" or (up == "auto" and name.lower().endswith(".obj"))
     used = d["positions"][np.unique(d["triangles"])]
     return Mesh(d["positions"], d["normals"], d["triangles"], d["uvs"], source=name, warnings=d["warnings"],
-                up=(0.0, 1.0, 0.0) if y else (0.0, 0.0, 1.0), front=(0.0, 0.0, 1.0) if y else (0.0, -1.0, 0.0),
+                up=(0.0, 1.0, 0.0) if y else (0.0, 0.0, 1.0),
+                front=(0.0, 0.0, 1.0) if y else (0.0, -1.0, 0.0),
                 low=tuple(map(float, used.min(0))), high=tuple(map(float, used.max(0))))
 
 
@@ -93,7 +98,8 @@ def _profile(of_files: Any) -> Profile:
 
 
 def load_profile(path: Any) -> Profile:
-    """Reads a profile file (TOML), as docs/guide/profiles.md describes it; lengths become mm. Also a name of the library.
+    """Reads a profile file (TOML), as docs/guide/profiles.md describes it; lengths become mm. Also a name of
+    the library.
 
     Raises
     ------
@@ -104,14 +110,18 @@ def load_profile(path: Any) -> Profile:
 
 
 def read_image(path: Any) -> dict[str, NDArray[np.float32]]:
-    """The channels of an EXR, PNG, JPEG, TGA or BMP file by their full names, (height, width) each; integers come as 0 to 1."""
+    """The channels of an EXR, PNG, JPEG, TGA or BMP file by their full names, (height, width) each; integers
+    come as 0 to 1."""
     return dict(_files.read_image(str(path))[0])
 
 
-def reference(mesh: Any, scene: Any, gbuffer: Any, *, walk: bool = False, samples: int = 64, noise: Optional[float] = None, seed: int = 1,
-              reflectance: Optional[Sequence[float]] = None, boundary: str = "index-matched", profile: Any = None,
+def reference(mesh: Any, scene: Any, gbuffer: Any, *, walk: bool = False, samples: int = 64,
+              noise: Optional[float] = None, seed: int = 1,
+              reflectance: Optional[Sequence[float]] = None, boundary: str = "index-matched",
+              profile: Any = None,
               subdivide: int = 0, parts: Sequence[str] = ()) -> dict[str, NDArray[np.float32]]:
-    """What a picture should be, by the command `pellucid reference` (docs/guide/reference.md). Ctrl-C cancels it.
+    """What a picture should be, by the command `pellucid reference` (docs/guide/reference.md). Ctrl-C
+    cancels it.
 
     Parameters
     ----------
@@ -129,8 +139,8 @@ def reference(mesh: Any, scene: Any, gbuffer: Any, *, walk: bool = False, sample
     Returns
     -------
     dict
-        Layers by name, (height, width) each: "R", "Surface.R", "Irradiance.R", and of a walk "First.R", "Second.R",
-        "MeanFreePath.R", "MeanCurvature", "Thickness".
+        Layers by name, (height, width) each: "R", "Surface.R", "Irradiance.R", and of a walk "First.R",
+        "Second.R", "MeanFreePath.R", "MeanCurvature", "Thickness".
 
     Raises
     ------
@@ -143,7 +153,8 @@ def reference(mesh: Any, scene: Any, gbuffer: Any, *, walk: bool = False, sample
         raise FileNotFoundError(f"{program()}: the package was built without the command")
     with tempfile.TemporaryDirectory() as folder:
         out = str(Path(folder) / "reference.exr")
-        command = [str(program()), "reference", str(mesh), "--scene", str(scene), "--gbuffer", str(gbuffer), "-o", out,
+        command = [str(program()), "reference", str(mesh), "--scene", str(scene), "--gbuffer", str(gbuffer),
+                   "-o", out,
                    "--subdivide", str(subdivide)]
         if profile is not None:
             command += ["--profile", str(profile)]
@@ -160,7 +171,8 @@ def reference(mesh: Any, scene: Any, gbuffer: Any, *, walk: bool = False, sample
         return read_image(out)
 
 
-def write_image(path: Any, image: ArrayLike, *, exposure: float = 1.0, shoulder: float = 0.8, curve: str = "soft",
+def write_image(path: Any, image: ArrayLike, *, exposure: float = 1.0, shoulder: float = 0.8,
+                curve: str = "soft",
                 half: bool = False, channels: Optional[list[str]] = None) -> None:
     """Writes linear radiance, complete or not at all.
 
@@ -184,14 +196,16 @@ def write_image(path: Any, image: ArrayLike, *, exposure: float = 1.0, shoulder:
             raise ValueError(f"{pixels.shape[2]} channels need as many names")
         _files.write_exr(name, names, pixels, half)
     else:
-        _files.write_bytes(name, np.ascontiguousarray(pixels if pixels.dtype == np.uint8 else tonemap(pixels, exposure, shoulder, curve)), True)
+        _files.write_bytes(name, np.ascontiguousarray(pixels if pixels.dtype == np.uint8
+                                                      else tonemap(pixels, exposure, shoulder, curve)), True)
 
 
-def tonemap(radiance: ArrayLike, exposure: float = 1.0, shoulder: float = 0.8, curve: str = "soft") -> NDArray[np.uint8]:
+def tonemap(radiance: ArrayLike, exposure: float = 1.0, shoulder: float = 0.8,
+            curve: str = "soft") -> NDArray[np.uint8]:
     """Linear RGB, (..., 3), to sRGB bytes.
 
     curve : str
-        "soft": proportional to radiance up to `shoulder`, then towards white; "none": cut at 1; "filmic" [Hable 2010];
-        "agx-like" [after Sobotka 2022]. NaN is black.
+        "soft": proportional to radiance up to `shoulder`, then towards white; "none": cut at 1; "filmic"
+        [Hable 2010]; "agx-like" [after Sobotka 2022]. NaN is black.
     """
     return np.asarray(_files.tone_mapped(np.asarray(radiance, np.float32), exposure, shoulder, curve))

@@ -24,17 +24,20 @@ class GltfCamera:
 
 @dataclass
 class Gltf:
-    """A glTF scene; made by `load_gltf`. Materials are numbered from 1 on, in the file's order; lengths are mm.
+    """A glTF scene; made by `load_gltf`. Materials are numbered from 1 on, in the file's order; lengths are
+    mm.
 
-    `materials` go to `Shader.set_material` as they are, `lights` to `set_lights` and `ambient` to `set_ambient`; curvature comes from
-    `MeshTopology.curvature` of the mesh, and `mesh.ids` are the materials of vertices.
+    `materials` go to `Shader.set_material` as they are, `lights` to `set_lights` and `ambient` to
+    `set_ambient`; curvature comes from `MeshTopology.curvature` of the mesh, and `mesh.ids` are the
+    materials of vertices.
     """
 
     mesh: Mesh                              # in the world; y up, front z
     names: dict[int, str]                   # of materials in the file
     taken_for: dict[int, str]               # "volume", "thin sheet", "profile", "clear", "metal" or "plain"
     materials: dict[int, Material]          # with their profiles
-    textures: dict[int, bytes]              # PNG or JPEG files: sRGB pictures that multiply `albedo`; row 0 is at v = 0, repeated
+    # PNG or JPEG files: sRGB pictures that multiply `albedo`; row 0 is at v = 0, repeated
+    textures: dict[int, bytes]
     lights: list[Light]                     # of the file, or one lamp where it has none
     ambient: Ambient                        # black, or a little sky beside that lamp
     cameras: list[GltfCamera] = field(default_factory=list)
@@ -44,7 +47,8 @@ class Gltf:
     def save(self, folder: Any) -> None:
         """Writes scene.toml, mesh.obj and the profiles as `pellucid import` does, without a G-buffer.
 
-        The folder is made if need be. Changes of the structures here are not in the files: change the scene that `load_scene` reads from there.
+        The folder is made if need be. Changes of the structures here are not in the files: change the scene
+        that `load_scene` reads from there.
 
         Raises
         ------
@@ -63,11 +67,13 @@ def load_gltf(path: Any, *, profiles: Union[str, Mapping[str, Any], None] = None
     path : str or path
         .glb, or .gltf with its files beside it.
     profiles : str, or dict of str to str or path, optional
-        In place of what the file says: a profile of the library or a .toml file for all materials, or by the names of materials.
+        In place of what the file says: a profile of the library or a .toml file for all materials, or by the
+        names of materials.
     unit_mm : float
         Millimetres per unit; glTF's unit is the metre.
     lights : float, optional
-        Factor of the lights' brightness in lux and candela. Without it a factor is chosen that exposes the scene well.
+        Factor of the lights' brightness in lux and candela. Without it a factor is chosen that exposes the
+        scene well.
 
     Raises
     ------
@@ -79,7 +85,8 @@ def load_gltf(path: Any, *, profiles: Union[str, Mapping[str, Any], None] = None
     for name, value in (("unit_mm", unit_mm), ("lights", lights)):
         if value is not None and not 1e-9 <= value <= 1e9:
             raise ValueError(f"{name} is {value!r}; it must be from 1e-9 to 1e9")
-    words = [profiles] if isinstance(profiles, str) else [f"{material}={os.fspath(profile)}" for material, profile in (profiles or {}).items()]
+    words = [profiles] if isinstance(profiles, str) else [f"{material}={os.fspath(profile)}" for material,
+                                                          profile in (profiles or {}).items()]
     native = _files.Gltf(str(path), words, unit_mm, lights)
     mesh = native.mesh()
     used = mesh["positions"][mesh["ids"] > 0]
@@ -91,7 +98,9 @@ def load_gltf(path: Any, *, profiles: Union[str, Mapping[str, Any], None] = None
             materials[number].profile = _profile(profile)
         if picture is not None:
             textures[number] = picture
-    return Gltf(Mesh(**mesh, up=(0.0, 1.0, 0.0), front=(0.0, 0.0, 1.0), low=tuple(map(float, used.min(0))), high=tuple(map(float, used.max(0))),
+    return Gltf(Mesh(**mesh, up=(0.0, 1.0, 0.0), front=(0.0, 0.0, 1.0), low=tuple(map(float, used.min(0))),
+                     high=tuple(map(float, used.max(0))),
                      source=str(path)),
-                names, taken_for, materials, textures, [_filled(Light, data) for data in native.lights()], _filled(Ambient, native.ambient()),
+                names, taken_for, materials, textures, [_filled(Light, data) for data in native.lights()],
+                _filled(Ambient, native.ambient()),
                 [GltfCamera(*camera) for camera in native.cameras()], str(path), native)

@@ -33,7 +33,8 @@ class LiveMesh(OfThisProcess):
         self._handle = _native.LiveMesh.create(topology._handle, self.params._data)
         self._out: Optional[tuple[Any, View]] = None
 
-    def update(self, positions: Any, normals: Any, out: Any, changed: Optional[Iterable[tuple[int, int]]] = None) -> None:
+    def update(self, positions: Any, normals: Any, out: Any,
+               changed: Optional[Iterable[tuple[int, int]]] = None) -> None:
         """Writes to `out` what the change asks for, and waits; the same bits as measuring everything anew.
 
         Parameters
@@ -43,10 +44,11 @@ class LiveMesh(OfThisProcess):
         normals : (n, 3) float32 or None
             Likewise; None: they are made from the positions.
         out : (n,) float32
-            1/length; (n, 2) for the quantity "principal", (n, 8) for "frame". Rows that the change does not reach are left
-            alone, so pass the same one each time.
+            1/length; (n, 2) for the quantity "principal", (n, 8) for "frame". Rows that the change does not
+            reach are left alone, so pass the same one each time.
         changed : iterable of (first, count), optional
-            Ranges of vertices that moved or turned since the update before; empty: none did, and nothing is done; None: all.
+            Ranges of vertices that moved or turned since the update before; empty: none did, and nothing is
+            done; None: all.
 
         Raises
         ------
@@ -55,7 +57,8 @@ class LiveMesh(OfThisProcess):
         """
         self.submit_update(positions, normals, out, changed).wait()
 
-    def submit_update(self, positions: Any, normals: Any, out: Any, changed: Optional[Iterable[tuple[int, int]]] = None, *,
+    def submit_update(self, positions: Any, normals: Any, out: Any,
+                      changed: Optional[Iterable[tuple[int, int]]] = None, *,
                       waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
         device = self.topology.device
@@ -72,7 +75,8 @@ class LiveMesh(OfThisProcess):
         key = (out.ctypes.data, out.shape, out.strides, out.dtype) if isinstance(out, np.ndarray) else None
         if key is not None and self._out is not None and self._out[0] == key:
             return self._out[1]
-        view = vertex_view(self.topology.device, out, _COMPONENTS.get(self.params.quantity, 1), "out", output=True)
+        view = vertex_view(self.topology.device, out, _COMPONENTS.get(self.params.quantity, 1), "out",
+                           output=True)
         self._out = None if key is None else (key, view)
         return view
 
@@ -81,10 +85,12 @@ class LiveMesh(OfThisProcess):
         return _filled(LiveMeshStats, self._handle.stats())
 
 
-def screen_curvature(device: Device, normals: Any, positions: Any = None, *, depth: Any = None, ids: Any = None,
+def screen_curvature(device: Device, normals: Any, positions: Any = None, *, depth: Any = None,
+                     ids: Any = None,
                      out: Optional[NDArray[np.float32]] = None,
                      params: Optional[ScreenCurvatureParams] = None) -> NDArray[np.float32]:
-    """Curvature per pixel of a G-buffer, |fwidth N| / |fwidth P|, in 1/length, finite; see pelScreenCurvature.
+    """Curvature per pixel of a G-buffer, |fwidth N| / |fwidth P|, in 1/length, finite; see
+    pelScreenCurvature.
 
     Parameters
     ----------
@@ -103,8 +109,10 @@ def screen_curvature(device: Device, normals: Any, positions: Any = None, *, dep
     return result
 
 
-def submit_screen_curvature(device: Device, normals: Any, positions: Any, out: Any, *, depth: Any = None, ids: Any = None,
-                            params: Optional[ScreenCurvatureParams] = None, waits: Iterable[Event] = ()) -> Event:
+def submit_screen_curvature(device: Device, normals: Any, positions: Any, out: Any, *, depth: Any = None,
+                            ids: Any = None,
+                            params: Optional[ScreenCurvatureParams] = None,
+                            waits: Iterable[Event] = ()) -> Event:
     """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
     def image(value: Any, what: str, output: bool = False, ids: bool = False) -> Optional[Image]:
         if value is None or isinstance(value, Image):
@@ -112,7 +120,8 @@ def submit_screen_curvature(device: Device, normals: Any, positions: Any, out: A
         return Image(device, value, _slot=what, _output=output, _ids=ids)
 
     settings = ScreenCurvatureParams() if params is None else params
-    images = [image(normals, "normals"), image(positions, "positions"), image(depth, "depth"), image(ids, "ids", ids=True),
+    images = [image(normals, "normals"), image(positions, "positions"), image(depth, "depth"),
+              image(ids, "ids", ids=True),
               image(out, "out", output=True)]
     natives: list[Any] = [None if x is None else x._view.native for x in images]
     n, p, d, i, c = natives

@@ -10,11 +10,20 @@ from numpy.typing import NDArray
 from . import _in_flight, _native, _show
 from ._arrays import output_array
 from ._struct import OfThisProcess, to_enum
-from ._types import CurvatureLutDesc, EyeLutDesc, LutAxis, LutEncoding, LutInfo, ShadowLutDesc, SpecularLutDesc
+from ._types import (
+    CurvatureLutDesc,
+    EyeLutDesc,
+    LutAxis,
+    LutEncoding,
+    LutInfo,
+    ShadowLutDesc,
+    SpecularLutDesc,
+)
 from .device import Device, Event, _filled, _handles
 from .profile import Profile
 
-_TEXELS = {LutEncoding.FLOAT: (np.float32, 3), LutEncoding.HALF: (np.float16, 3), LutEncoding.FACEWORKS8: (np.uint8, 4)}
+_TEXELS = {LutEncoding.FLOAT: (np.float32, 3), LutEncoding.HALF: (np.float16, 3),
+           LutEncoding.FACEWORKS8: (np.uint8, 4)}
 
 
 class Lut(OfThisProcess):
@@ -46,8 +55,10 @@ class Lut(OfThisProcess):
         return self
 
     @classmethod
-    def curvature(cls, device: Device, desc: Optional[CurvatureLutDesc] = None, *, profile: Profile | str | None = None,
-                  preset: Optional[str] = None, wait: bool = True, waits: Iterable[Event] = (), **fields: Any) -> Lut:
+    def curvature(cls, device: Device, desc: Optional[CurvatureLutDesc] = None, *,
+                  profile: Profile | str | None = None,
+                  preset: Optional[str] = None, wait: bool = True, waits: Iterable[Event] = (),
+                  **fields: Any) -> Lut:
         """Integrates a curvature table: texel (x, y) is D(N.L, r) per channel, row 0 the smallest curvature.
 
         Parameters
@@ -57,39 +68,49 @@ class Lut(OfThisProcess):
         profile : Profile or name of one of the library, optional
             Skin without it.
         preset : "material" or "faceworks", optional
-            What a table without `desc` begins with: as a material makes it of its profile, or as FaceWorks does.
+            What a table without `desc` begins with: as a material makes it of its profile, or as FaceWorks
+            does.
         wait : bool
             False: return once it is submitted; `ready` says when it is done.
         """
-        return cls._integrated(device, _native.Lut.curvature, CurvatureLutDesc, desc, fields, profile, wait, waits, preset)
+        return cls._integrated(device, _native.Lut.curvature, CurvatureLutDesc, desc, fields, profile, wait,
+                               waits, preset)
 
     @classmethod
-    def shadow(cls, device: Device, desc: Optional[ShadowLutDesc] = None, *, profile: Profile | str | None = None,
-               preset: Optional[str] = None, wait: bool = True, waits: Iterable[Event] = (), **fields: Any) -> Lut:
-        """Integrates a shadow table: texel (x, y) is the light transmitted per channel, row 0 the widest penumbra.
+    def shadow(cls, device: Device, desc: Optional[ShadowLutDesc] = None, *,
+               profile: Profile | str | None = None,
+               preset: Optional[str] = None, wait: bool = True, waits: Iterable[Event] = (),
+               **fields: Any) -> Lut:
+        """Integrates a shadow table: texel (x, y) is the light transmitted per channel, row 0 the widest
+        penumbra.
 
         The parameters are as for `curvature`, with ShadowLutDesc.
         """
-        return cls._integrated(device, _native.Lut.shadow, ShadowLutDesc, desc, fields, profile, wait, waits, preset)
+        return cls._integrated(device, _native.Lut.shadow, ShadowLutDesc, desc, fields, profile, wait, waits,
+                               preset)
 
     @classmethod
     def specular(cls, device: Device, desc: Optional[SpecularLutDesc] = None, *, wait: bool = True,
                  waits: Iterable[Event] = (), **fields: Any) -> Lut:
-        """Tabulates Beckmann's distribution P(n.h, m) as P^0.1 / 2, row 0 the smallest m; see SpecularLutDesc."""
+        """Tabulates Beckmann's distribution P(n.h, m) as P^0.1 / 2, row 0 the smallest m; see
+        SpecularLutDesc."""
         return cls._integrated(device, _native.Lut.specular, SpecularLutDesc, desc, fields, None, wait, waits)
 
     @classmethod
     def eye(cls, device: Device, desc: Optional[EyeLutDesc] = None, *, profile: Profile | str | None = None,
             wait: bool = True, waits: Iterable[Event] = (), **fields: Any) -> Lut:
-        """Integrates the caustic of a cornea: irradiance on the iris, slice below slice from light along the gaze on.
+        """Integrates the caustic of a cornea: irradiance on the iris, slice below slice from light along the
+        gaze on.
 
-        The parameters are as for `curvature`, with EyeLutDesc; `profile` is that of the iris, none without it.
+        The parameters are as for `curvature`, with EyeLutDesc; `profile` is that of the iris, none without
+        it.
         """
         return cls._integrated(device, _native.Lut.eye, EyeLutDesc, desc, fields, profile, wait, waits)
 
     @classmethod
     def _integrated(cls, device: Device, create: Any, kind: Any, desc: Any, fields: dict[str, Any],
-                    profile: Profile | str | None, wait: bool, waits: Iterable[Event], preset: Optional[str] = None) -> Lut:
+                    profile: Profile | str | None, wait: bool, waits: Iterable[Event],
+                    preset: Optional[str] = None) -> Lut:
         if preset not in (None, "material", "faceworks"):
             raise ValueError(f"preset is {preset!r}; it must be one of material, faceworks")
         if preset is not None and desc is not None:
@@ -105,11 +126,14 @@ class Lut(OfThisProcess):
 
     @classmethod
     def from_texels(cls, device: Device, info: LutInfo, texels: NDArray[np.float32]) -> Lut:
-        """A table from texels that were integrated before: (height, width, 3) float32, described by `info`."""
+        """A table from texels that were integrated before: (height, width, 3) float32, described by `info`.
+        """
         if texels.dtype != np.float32:
             raise ValueError(f"texels are {texels.dtype}; float32 is needed")
         packed = np.ascontiguousarray(texels)
-        handle = _in_flight.aside(lambda: _native.Lut.from_texels(device._handle, info._data, packed.ctypes.data, packed.nbytes), packed, info)
+        handle = _in_flight.aside(
+            lambda: _native.Lut.from_texels(device._handle, info._data, packed.ctypes.data, packed.nbytes),
+            packed, info)
         return cls._made(device, handle, None)
 
     def _waited(self, wait: bool) -> Lut:
@@ -122,24 +146,28 @@ class Lut(OfThisProcess):
     def info(self) -> LutInfo:
         """What the table holds."""
         info = _filled(LutInfo, self._handle.info())
-        # The library's copy points to the table's profile, which this structure would outlive; its name stays.
+        # The library's copy points to the table's profile, which this structure would outlive; its name
+        # stays.
         for part in ("curvature", "shadow", "eye"):
             info._data[part]["profile"] = 0
         return info
 
     def clipped_texels(self) -> int:
-        """Texels of a curvature table that "faceworks8" clips: D - max(N.L, 0) lies beyond +-1/4 in some channel.
+        """Texels of a curvature table that "faceworks8" clips: D - max(N.L, 0) lies beyond +-1/4 in some
+        channel.
 
         0 for other kinds. Waits for the table.
         """
         return _in_flight.aside(self._handle.clipped)
 
-    def read(self, encoding: LutEncoding | str = LutEncoding.FLOAT, out: Optional[NDArray[Any]] = None) -> NDArray[Any]:
+    def read(self, encoding: LutEncoding | str = LutEncoding.FLOAT,
+             out: Optional[NDArray[Any]] = None) -> NDArray[Any]:
         """The texels, top row first.
 
         Returns
         -------
-        (height, width, 3) float32 or float16 for "float" and "half", (height, width, 4) uint8 for "faceworks8".
+        (height, width, 3) float32 or float16 for "float" and "half", (height, width, 4) uint8 for
+        "faceworks8".
         """
         result, event = self._submit_read(encoding, out, ())
         event.wait()
@@ -160,17 +188,20 @@ class Lut(OfThisProcess):
         return _show.png(_show.srgb(self.read()))
 
     def plot(self, ax: Optional[Any] = None) -> Any:
-        """Shows the table with its axes; returns matplotlib's axes (new ones without `ax`). Lengths in mm, as the library's."""
+        """Shows the table with its axes; returns matplotlib's axes (new ones without `ax`). Lengths in mm,
+        as the library's."""
         info, ax = self.info, _show.axes(ax)
         kind, quarters = info.kind.name, np.linspace(0, 1, 5)
         labels = {"CURVATURE": ("N.L", "curvature, 1/mm"), "SHADOW": ("shadow", "1 / penumbra width, 1/mm"),
-                  "SPECULAR": ("N.H", "roughness"), "EYE": ("position on the iris", "slice by the light's angle")}
+                  "SPECULAR": ("N.H", "roughness"),
+                  "EYE": ("position on the iris", "slice by the light's angle")}
         ax.imshow(_show.srgb(self.read()), aspect="auto", extent=(0, 1, 1, 0))
         desc = getattr(info, kind.lower())
         across, at, down = quarters, quarters, quarters
         if kind in ("CURVATURE", "SHADOW"):
             root = desc.axis == LutAxis.ROOT
-            high, low = (desc.radius_min, desc.radius_max) if kind == "CURVATURE" else (desc.width_min, desc.width_max)
+            high, low = (desc.radius_min, desc.radius_max) if kind == "CURVATURE" else (
+                desc.width_min, desc.width_max)
             power = 2 if root else 1
             down = ((1 - quarters) * low ** (-1 / power) + quarters * high ** (-1 / power)) ** power
             if kind == "CURVATURE":
@@ -202,7 +233,8 @@ class Lut(OfThisProcess):
         blocks = np.frombuffer(data, np.uint8).reshape(-(-height // 4), -(-width // 4), 16).copy()
         return blocks, error_max, error_rms
 
-    def submit_read(self, encoding: LutEncoding | str, out: NDArray[Any], waits: Iterable[Event] = ()) -> Event:
+    def submit_read(self, encoding: LutEncoding | str, out: NDArray[Any],
+                    waits: Iterable[Event] = ()) -> Event:
         """The same into `out` after `waits`, without waiting."""
         return self._submit_read(encoding, out, waits)[1]
 

@@ -10,7 +10,15 @@ from numpy.typing import ArrayLike, NDArray
 from . import _in_flight, _native
 from ._arrays import Vertices, output_array, submit, vertex_view
 from ._struct import OfThisProcess, to_enum
-from ._types import CurvatureEstimator, CurvatureParams, CurvatureQuantity, MeshOrientation, MeshReport, SmoothingWeights, Weld
+from ._types import (
+    CurvatureEstimator,
+    CurvatureParams,
+    CurvatureQuantity,
+    MeshOrientation,
+    MeshReport,
+    SmoothingWeights,
+    Weld,
+)
 from .device import Device, Event, _handles
 
 
@@ -50,8 +58,10 @@ class MeshTopology(OfThisProcess):
         packed, held, stride, self.num_vertices = _triangles(indices, num_vertices, positions)
         self.device = device
         self.report = MeshReport()
-        self._handle = _native.MeshTopology.create(device._handle, self.num_vertices, packed.ctypes.data, packed.size,
-                                                   int(to_enum(Weld, weld, "weld")), weld_tolerance, _address(held), stride,
+        self._handle = _native.MeshTopology.create(device._handle, self.num_vertices, packed.ctypes.data,
+                                                   packed.size,
+                                                   int(to_enum(Weld, weld, "weld")), weld_tolerance,
+                                                   _address(held), stride,
                                                    self.report._data)
 
     @classmethod
@@ -86,57 +96,70 @@ class MeshTopology(OfThisProcess):
         out : (n, 3) float32, optional
             Where the result goes; a new array without it.
         """
-        result = out if isinstance(out, Vertices) else output_array(out, (self.num_vertices, 3), np.float32, "out")
+        shape = (self.num_vertices, 3)
+        result = out if isinstance(out, Vertices) else output_array(out, shape, np.float32, "out")
         self.submit_normals(positions, result).wait()
         return result
 
     def submit_normals(self, positions: Any, out: Any, *, waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
-        views = [vertex_view(self.device, positions, 3, "positions"), vertex_view(self.device, out, 3, "out", output=True)]
+        views = [vertex_view(self.device, positions, 3, "positions"),
+                 vertex_view(self.device, out, 3, "out", output=True)]
         p, n = (v.native for v in views)
-        return Event(submit(self.device, views, _handles(waits), lambda w: self._handle.normals(p, n, w), self))
+        return Event(submit(self.device, views, _handles(waits), lambda w: self._handle.normals(p, n, w),
+                            self))
 
     def curvature(self, positions: Any, normals: Any = None, out: Optional[NDArray[np.float32]] = None, *,
                   params: Optional[CurvatureParams] = None, estimator: CurvatureEstimator | str | None = None,
                   quantity: CurvatureQuantity | str | None = None, smoothing_passes: Optional[int] = None,
-                  smoothing_radius: Optional[float] = None, smoothing_weights: SmoothingWeights | str | None = None,
+                  smoothing_radius: Optional[float] = None,
+                  smoothing_weights: SmoothingWeights | str | None = None,
                   scale: Optional[float] = None, report: bool = False) -> NDArray[np.float32]:
         """Curvature at each vertex, in 1/length, finite; 0 where nothing could be measured.
 
         Parameters
         ----------
         positions, normals : (n, 3) float32
-            Any positive row stride, in place; or Vertices of a Buffer. Normals are of unit length; None: they are made from the
-            positions.
+            Any positive row stride, in place; or Vertices of a Buffer. Normals are of unit length; None:
+            they are made from the positions.
         out : (n,) float32, optional
-            Where the result goes, any positive stride; a new array without it. (n, 2) for the quantity "principal", (n, 8)
-            for "frame".
+            Where the result goes, any positive stride; a new array without it. (n, 2) for the quantity
+            "principal", (n, 8) for "frame".
         params : CurvatureParams, optional
         estimator, quantity, smoothing_passes, smoothing_radius, smoothing_weights, scale
             Fields of it by themselves.
         report : bool
             Also count in `self.report` what these positions and normals made it skip.
         """
-        settings = _settings(params, estimator=estimator, quantity=quantity, smoothing_passes=smoothing_passes,
-                             smoothing_radius=smoothing_radius, smoothing_weights=smoothing_weights, scale=scale)
-        result = out if isinstance(out, Vertices) else output_array(out, _shape(self.num_vertices, settings), np.float32, "out")
+        settings = _settings(params, estimator=estimator, quantity=quantity,
+                             smoothing_passes=smoothing_passes,
+                             smoothing_radius=smoothing_radius, smoothing_weights=smoothing_weights,
+                             scale=scale)
+        result = out if isinstance(
+            out, Vertices) else output_array(out, _shape(self.num_vertices, settings), np.float32, "out")
         found = MeshReport() if report else None
         self._submit(positions, normals, result, settings, found, ()).wait()
         if found is not None:
             self.report = found
         return result
 
-    def submit_curvature(self, positions: Any, normals: Any, out: Any, *, params: Optional[CurvatureParams] = None,
+    def submit_curvature(self, positions: Any, normals: Any, out: Any, *,
+                         params: Optional[CurvatureParams] = None,
                          estimator: CurvatureEstimator | str | None = None,
-                         quantity: CurvatureQuantity | str | None = None, smoothing_passes: Optional[int] = None,
-                         smoothing_radius: Optional[float] = None, smoothing_weights: SmoothingWeights | str | None = None,
+                         quantity: CurvatureQuantity | str | None = None,
+                         smoothing_passes: Optional[int] = None,
+                         smoothing_radius: Optional[float] = None,
+                         smoothing_weights: SmoothingWeights | str | None = None,
                          scale: Optional[float] = None, waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
-        settings = _settings(params, estimator=estimator, quantity=quantity, smoothing_passes=smoothing_passes,
-                             smoothing_radius=smoothing_radius, smoothing_weights=smoothing_weights, scale=scale)
+        settings = _settings(params, estimator=estimator, quantity=quantity,
+                             smoothing_passes=smoothing_passes,
+                             smoothing_radius=smoothing_radius, smoothing_weights=smoothing_weights,
+                             scale=scale)
         return self._submit(positions, normals, out, settings, None, waits)
 
-    def _submit(self, positions: Any, normals: Any, out: Any, params: CurvatureParams, report: Optional[MeshReport],
+    def _submit(self, positions: Any, normals: Any, out: Any, params: CurvatureParams,
+                report: Optional[MeshReport],
                 waits: Iterable[Event]) -> Event:
         views = [vertex_view(self.device, positions, 3, "positions"),
                  vertex_view(self.device, out, _COMPONENTS.get(params.quantity, 1), "out", output=True)]
@@ -150,7 +173,8 @@ class MeshTopology(OfThisProcess):
                 return self._handle.curvature(params._data, p, n, c, None, w)
         else:
             def enqueue(w: list[_native.Event]) -> Any:  # waits for the counts
-                return _in_flight.aside(lambda: self._handle.curvature(params._data, p, n, c, report._data, w), views, report)
+                return _in_flight.aside(
+                    lambda: self._handle.curvature(params._data, p, n, c, report._data, w), views, report)
         return Event(submit(self.device, views, _handles(waits), enqueue, self))
 
     def uv_scale(self, positions: Any, uvs: Any) -> float:
@@ -169,18 +193,20 @@ class MeshTopology(OfThisProcess):
         views = [vertex_view(self.device, positions, 3, "positions"), vertex_view(self.device, uvs, 2, "uvs")]
         p, u = (v.native for v in views)
         scale: list[float] = []
-        submit(self.device, views, [], lambda waits: scale.append(_in_flight.aside(lambda: self._handle.uv_scale(p, u), views)))
+        submit(self.device, views, [],
+               lambda waits: scale.append(_in_flight.aside(lambda: self._handle.uv_scale(p, u), views)))
         return scale[0]
 
 
-def orient_mesh(indices: ArrayLike, num_vertices: Optional[int] = None, *, positions: Optional[NDArray[np.float32]] = None,
+def orient_mesh(indices: ArrayLike, num_vertices: Optional[int] = None, *,
+                positions: Optional[NDArray[np.float32]] = None,
                 normals: Optional[NDArray[np.float32]] = None, weld: Weld | str = Weld.NONE,
                 weld_tolerance: float = 0.0) -> tuple[NDArray[np.uint32], MeshOrientation]:
     """Triangles turned so that the two of every edge run along it opposite ways.
 
-    Parts whose triangles agree already stay as they are. Of the others the outward side is the one that `normals` look to; where
-    they do not tell, and the part is closed and there are positions, the side away from its inside; else that of most of its
-    triangles. Nothing else in this package turns triangles.
+    Parts whose triangles agree already stay as they are. Of the others the outward side is the one that
+    `normals` look to; where they do not tell, and the part is closed and there are positions, the side away
+    from its inside; else that of most of its triangles. Nothing else in this package turns triangles.
 
     Parameters
     ----------
@@ -205,7 +231,8 @@ def orient_mesh(indices: ArrayLike, num_vertices: Optional[int] = None, *, posit
     oriented = packed.copy()
     given, normal_stride = (None, 0) if normals is None else _rows(normals, "normals", count)
     found = MeshOrientation()
-    _native.orient_mesh(count, oriented.ctypes.data, oriented.size, int(to_enum(Weld, weld, "weld")), weld_tolerance,
+    _native.orient_mesh(count, oriented.ctypes.data, oriented.size, int(to_enum(Weld, weld, "weld")),
+                        weld_tolerance,
                         _address(held), stride, _address(given), normal_stride, found._data)
     return oriented, found
 
@@ -217,7 +244,8 @@ def _address(array: Optional[NDArray[Any]]) -> int:
 def _rows(array: NDArray[np.float32], name: str, count: Optional[int]) -> tuple[NDArray[np.float32], int]:
     """(n, 3) float32 whose components follow one another, and the bytes from row to row."""
     if array.dtype != np.float32 or array.ndim != 2 or array.shape[1] != 3:
-        raise ValueError(f"{name} are {array.dtype} of shape {array.shape}; float32 of shape (n, 3) is needed")
+        raise ValueError(f"{name} are {array.dtype} of shape {array.shape}; float32 of shape (n, 3) is "
+                         f"needed")
     if count is not None and count != len(array):
         raise ValueError(f"there are {count} vertices and {name} has {len(array)} rows")
     if len(array) > 1 and (array.strides[1] != 4 or array.strides[0] <= 0):
@@ -230,8 +258,10 @@ def _triangles(indices: ArrayLike, num_vertices: Optional[int], positions: Optio
     """Packed indices, positions in place with the bytes from row to row, and the number of vertices."""
     triangles = np.asarray(indices)
     if triangles.size and (triangles.dtype.kind not in "ui" or
-                           (triangles.dtype != np.uint32 and not 0 <= triangles.min() <= triangles.max() < 2**32)):
-        raise ValueError(f"indices are {triangles.dtype} from {triangles.min()} to {triangles.max()}; integers from 0 "
+                           (triangles.dtype != np.uint32
+                            and not 0 <= triangles.min() <= triangles.max() < 2**32)):
+        raise ValueError(f"indices are {triangles.dtype} from {triangles.min()} to {triangles.max()}; "
+                         f"integers from 0 "
                          "are needed")
     stride = 0
     if positions is not None:

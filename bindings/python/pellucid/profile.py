@@ -17,15 +17,17 @@ from .device import _filled
 def _triple(value: ArrayLike, what: str) -> list[float]:
     numbers = np.asarray(value, np.float64)
     if numbers.shape not in ((), (3,)):
-        raise ValueError(f"{what} has the shape {numbers.shape}; one number, or three for red, green and blue, are needed")
+        raise ValueError(f"{what} has the shape {numbers.shape}; one number, or three for red, green and "
+                         f"blue, are needed")
     return [float(x) for x in np.broadcast_to(numbers, 3)]
 
 
 class Profile(OfThisProcess):
     """How much of the light that enters at one point leaves at a distance, per RGB channel.
 
-    Made by `named`, `skin`, `gaussians`, `burley`, `burley_distance`, `dipole` or `table`; belongs to no device and never
-    changes. Lengths are in any one unit. Each channel is normalised. `name` is what tables and their files carry, up to 63 bytes.
+    Made by `named`, `skin`, `gaussians`, `burley`, `burley_distance`, `dipole` or `table`; belongs to no
+    device and never changes. Lengths are in any one unit. Each channel is normalised. `name` is what tables
+    and their files carry, up to 63 bytes.
     """
 
     _instead = "make one there"
@@ -49,13 +51,16 @@ class Profile(OfThisProcess):
     @classmethod
     def gaussians(cls, terms: Sequence[tuple[float, ArrayLike]], name: str = "") -> Profile:
         """1 to 256 pairs of a variance (length², > 0) and a weight (one number or RGB, >= 0)."""
-        return cls._made(_native.Profile.gaussians([(float(v), _triple(w, "a weight")) for v, w in terms], name))
+        return cls._made(_native.Profile.gaussians([(float(v), _triple(w, "a weight")) for v, w in terms],
+                                                   name))
 
     @classmethod
-    def burley(cls, mean_free_path: ArrayLike, albedo: ArrayLike, fit: BurleyFit | str = BurleyFit.DIFFUSE_TRANSMISSION,
+    def burley(cls, mean_free_path: ArrayLike, albedo: ArrayLike,
+               fit: BurleyFit | str = BurleyFit.DIFFUSE_TRANSMISSION,
                name: str = "") -> Profile:
         """From mean free paths (length, > 0) and albedos in [0, 1] [Christensen and Burley 2015]."""
-        return cls._made(_native.Profile.burley(_triple(mean_free_path, "mean_free_path"), _triple(albedo, "albedo"),
+        return cls._made(_native.Profile.burley(_triple(mean_free_path, "mean_free_path"),
+                                                _triple(albedo, "albedo"),
                                                 int(to_enum(BurleyFit, fit, "fit")), name))
 
     @classmethod
@@ -80,8 +85,10 @@ class Profile(OfThisProcess):
         return list(_native.Profile.library_names())
 
     @classmethod
-    def dipole(cls, absorption: ArrayLike, reduced_scattering: ArrayLike, eta: float = 1.3, name: str = "") -> Profile:
-        """The classical dipole from coefficients in 1/length (> 0) and a relative index > 1 [Jensen et al. 2001]."""
+    def dipole(cls, absorption: ArrayLike, reduced_scattering: ArrayLike, eta: float = 1.3,
+               name: str = "") -> Profile:
+        """The classical dipole from coefficients in 1/length (> 0) and a relative index > 1 [Jensen et al.
+        2001]."""
         return cls._made(_native.Profile.dipole(_triple(absorption, "absorption"),
                                                 _triple(reduced_scattering, "reduced_scattering"), eta, name))
 
@@ -91,7 +98,8 @@ class Profile(OfThisProcess):
         d = np.ascontiguousarray(distances, np.float32)
         r = np.ascontiguousarray(values, np.float32)
         if d.ndim != 1 or r.shape != (len(d), 3):
-            raise ValueError(f"distances have the shape {d.shape} and values {r.shape}; (n,) and (n, 3) are needed")
+            raise ValueError(f"distances have the shape {d.shape} and values {r.shape}; (n,) and (n, 3) are "
+                             f"needed")
         return cls._made(_native.Profile.table(d.ctypes.data, r.ctypes.data, len(d), name))
 
     @property
@@ -115,10 +123,12 @@ class Profile(OfThisProcess):
 
     def __repr__(self) -> str:
         info = self.info
-        return f"<pellucid.Profile {info.name or 'unnamed'}: {info.kind.name.lower()}, radius {info.radius:.4g}>"
+        kind = info.kind.name.lower()
+        return f"<pellucid.Profile {info.name or 'unnamed'}: {kind}, radius {info.radius:.4g}>"
 
     def plot(self, ax: Optional[Any] = None) -> Any:
-        """Shows how much light leaves at each distance, 2 pi r R(r), per channel; returns matplotlib's axes (new ones without `ax`)."""
+        """Shows how much light leaves at each distance, 2 pi r R(r), per channel; returns matplotlib's axes
+        (new ones without `ax`)."""
         ax = _show.axes(ax)
         distances = np.linspace(1e-3, 0.6, 300) * self.info.reach
         radial, _ = self.evaluate(distances)

@@ -16,8 +16,8 @@ from .profile import Profile, as_profile
 
 
 class Scatter(OfThisProcess):
-    """Takes the irradiance of a picture and returns it scattered under the surface; see pelScatterExecute. Keeps memory between
-    frames."""
+    """Takes the irradiance of a picture and returns it scattered under the surface; see pelScatterExecute.
+    Keeps memory between frames."""
 
     _instead = "make one there"
 
@@ -27,20 +27,22 @@ class Scatter(OfThisProcess):
         self._images: dict[ImageSlot, Image] = {}
 
     def set_material(self, id: int, profile: Profile | str | None, scale: float = 1.0) -> None:
-        """Pixels of `id`, 1 to 255, scatter by `profile` (or the material of the library of that name), whose lengths count `scale` units of positions each; None: not at all."""
+        """Pixels of `id`, 1 to 255, scatter by `profile` (or the material of the library of that name),
+        whose lengths count `scale` units of positions each; None: not at all."""
         known = as_profile(profile)
         self._handle.set_material(id, None if known is None else known._handle, scale)
 
     def set_controls(self, id: int, controls: Optional[ScatterControls] = None, **fields: Any) -> None:
-        """How pixels of `id`, whose material is set, scatter: the controls, or the defaults with some `fields` of them changed."""
+        """How pixels of `id`, whose material is set, scatter: the controls, or the defaults with some
+        `fields` of them changed."""
         settings = ScatterControls() if controls is None else controls.copy()
         for name, value in fields.items():
             setattr(settings, name, value)
         self._handle.set_controls(id, settings._data)
 
     def set_image(self, slot: ImageSlot | str, image: Any) -> None:
-        """An image that executions read beside those they are given: "scatter_weight", "irradiance_back" or "albedo"; None
-        clears it. It stays the caller's, and is read at each execution."""
+        """An image that executions read beside those they are given: "scatter_weight", "irradiance_back" or
+        "albedo"; None clears it. It stays the caller's, and is read at each execution."""
         s = to_enum(ImageSlot, slot, "slot")
         if image is not None and not isinstance(image, Image):
             image = Image(self.device, image, _slot=s.name.lower())
@@ -51,7 +53,8 @@ class Scatter(OfThisProcess):
             self._images[s] = image
 
     def execute(self, irradiance: Any, positions: Any = None, *, depth: Any = None, ids: Any = None,
-                out: Optional[NDArray[np.float32]] = None, params: Optional[ScatterParams] = None) -> NDArray[np.float32]:
+                out: Optional[NDArray[np.float32]] = None,
+                params: Optional[ScatterParams] = None) -> NDArray[np.float32]:
         """Scattered irradiance.
 
         Parameters
@@ -83,7 +86,8 @@ class Scatter(OfThisProcess):
         settings = ScatterParams() if params is None else params
         in_place = out is irradiance
         target = image(out, "out", output=True)
-        images = [target if in_place else image(irradiance, "irradiance"), image(positions, "positions"), image(depth, "depth"),
+        images = [target if in_place else image(irradiance, "irradiance"), image(positions, "positions"),
+                  image(depth, "depth"),
                   image(ids, "ids", ids=True), target]
         natives: list[Any] = [None if x is None else x._view.native for x in images]
         e, p, d, i, o = natives

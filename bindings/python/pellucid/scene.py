@@ -22,7 +22,8 @@ class Shaded:
     """What `shade` made."""
 
     radiance: NDArray[np.float32]                       # (h, w, 3), linear, 0 where there is no material
-    outputs: dict[str, NDArray[np.float32]] = field(default_factory=dict)  # (h, w, 3); "thickness": (h, w), length
+    # (h, w, 3); "thickness": (h, w), length
+    outputs: dict[str, NDArray[np.float32]] = field(default_factory=dict)
     stats: Optional[ShaderStats] = None
     warnings: list[str] = field(default_factory=list)
 
@@ -32,7 +33,8 @@ class Shaded:
         return f"<pellucid.Shaded {width} x {height}{parts}>"
 
     def save(self, path: Any, **tone: Any) -> None:
-        """Writes the radiance to an .exr, or a picture of it to a .png, .jpg, .tga or .bmp; see `files.write_image`."""
+        """Writes the radiance to an .exr, or a picture of it to a .png, .jpg, .tga or .bmp; see
+        `files.write_image`."""
         from .files import write_image
 
         write_image(path, self.radiance, **tone)
@@ -83,9 +85,11 @@ class Scene(OfThisProcess):
         return f"<pellucid.Scene {self.source}: {len(self.materials)} materials, {len(self.lights)} lights>"
 
     def set_gbuffer(self, gbuffer: Union[str, Path, Mapping[str, ArrayLike]]) -> Scene:
-        """The G-buffer: a multi-layer EXR file, or channels by name, (height, width) each. They are copied."""
+        """The G-buffer: a multi-layer EXR file, or channels by name, (height, width) each. They are copied.
+        """
         if isinstance(gbuffer, Mapping):
-            self._native.set_gbuffer({name: np.asarray(pixels, np.float32) for name, pixels in gbuffer.items()})
+            self._native.set_gbuffer({name: np.asarray(pixels, np.float32) for name,
+                                      pixels in gbuffer.items()})
         else:
             self._native.read_gbuffer(str(gbuffer))
         return self
@@ -104,11 +108,13 @@ class Scene(OfThisProcess):
 
     def _state(self) -> tuple[Any, ...]:
         return ([(id, m._data.tobytes(), self.profiles.get(id, "")) for id, m in self.materials.items()],
-                [light._data.tobytes() for light in self.lights], self.ambient._data.tobytes(), self.camera._data.tobytes(),
+                [light._data.tobytes() for light in self.lights], self.ambient._data.tobytes(),
+                self.camera._data.tobytes(),
                 self.options._data.tobytes())
 
     def gbuffer_file(self) -> Optional[Path]:
-        """The G-buffer beside the scene as the viewer and the demo write it: gbuffer.exr or SCENE_gbuffer.exr, if there is one."""
+        """The G-buffer beside the scene as the viewer and the demo write it: gbuffer.exr or
+        SCENE_gbuffer.exr, if there is one."""
         here = Path(self.source)
         for candidate in (here.with_name(here.stem + "_gbuffer.exr"), here.with_name("gbuffer.exr")):
             if candidate.exists():
@@ -123,7 +129,8 @@ def load_scene(path: Any, gbuffer: Union[str, Path, Mapping[str, ArrayLike], Non
     ----------
     path : str or path
     gbuffer : str, path or dict, optional
-        As for `Scene.set_gbuffer`. Without it: SCENE_gbuffer.exr or gbuffer.exr beside the scene, if there is one.
+        As for `Scene.set_gbuffer`. Without it: SCENE_gbuffer.exr or gbuffer.exr beside the scene, if there
+        is one.
 
     Raises
     ------
@@ -137,11 +144,12 @@ def load_scene(path: Any, gbuffer: Union[str, Path, Mapping[str, ArrayLike], Non
     return scene
 
 
-def shade(scene: Scene, device: Optional[Device] = None, outputs: Iterable[str] = (), count: bool = False) -> Shaded:
+def shade(scene: Scene, device: Optional[Device] = None, outputs: Iterable[str] = (),
+          count: bool = False) -> Shaded:
     """Shades a scene to the same bits as ``pellucid shade``.
 
-    Called again after changes of materials, lights or options, it sets only these: images stay on the device, and nothing is
-    compiled again unless other features are in use.
+    Called again after changes of materials, lights or options, it sets only these: images stay on the
+    device, and nothing is compiled again unless other features are in use.
 
     Parameters
     ----------
@@ -167,7 +175,8 @@ def shade(scene: Scene, device: Optional[Device] = None, outputs: Iterable[str] 
         if name not in _OUTPUTS:
             raise ValueError(f"there is no output {name!r}; there are {', '.join(_OUTPUTS)}")
     if not scene._native.has_gbuffer():
-        raise ValueError(f"{scene.source} has no G-buffer beside it: name one, as in load_scene(path, gbuffer='frame.exr')")
+        raise ValueError(f"{scene.source} has no G-buffer beside it: name one, as in load_scene(path, "
+                         f"gbuffer='frame.exr')")
     if device is not None:
         scene._device = device
     elif scene._device is None:

@@ -10,7 +10,19 @@ from numpy.typing import NDArray
 from . import _in_flight, _native
 from ._arrays import Image, submit
 from ._struct import OfThisProcess, to_enum
-from ._types import Ambient, Camera, Eye, Format, ImageSlot, Light, LightSlot, Material, ProgramGroup, ShaderOptions, ShaderStats
+from ._types import (
+    Ambient,
+    Camera,
+    Eye,
+    Format,
+    ImageSlot,
+    Light,
+    LightSlot,
+    Material,
+    ProgramGroup,
+    ShaderOptions,
+    ShaderStats,
+)
 from .device import Buffer, Device, Event, _filled, _handles
 from .lut import Lut
 
@@ -18,8 +30,8 @@ from .lut import Lut
 class Shader(OfThisProcess):
     """Set images, materials and lights, commit, execute. A slot that is not set is a feature that is off.
 
-    Images stay the caller's: the shader reads and writes them where they are at each execution, so changing an array
-    in place and executing again shades the new values. One thread at a time uses a shader.
+    Images stay the caller's: the shader reads and writes them where they are at each execution, so changing
+    an array in place and executing again shades the new values. One thread at a time uses a shader.
     """
 
     _instead = "make one there"
@@ -40,15 +52,17 @@ class Shader(OfThisProcess):
             (height, width[, components]), see Image; None clears the slot.
         """
         s = to_enum(ImageSlot, slot, "slot")
-        self._keep(s, image, s.name.lower(), s == ImageSlot.RADIANCE or s.name.startswith("OUT_"), s == ImageSlot.MATERIAL,
+        self._keep(s, image, s.name.lower(), s == ImageSlot.RADIANCE or s.name.startswith("OUT_"),
+                   s == ImageSlot.MATERIAL,
                    lambda native: self._handle.set_image(int(s), native))
         return self
 
     def set_light_image(self, light: int, slot: LightSlot | str, image: Any) -> Shader:
-        """Sets the "wide_shadow" (the size of the G-buffer) or the "shadow_map" (any size) of a light, or clears it.
+        """Sets the "wide_shadow" (the size of the G-buffer) or the "shadow_map" (any size) of a light, or
+        clears it.
 
-        "cascade_1" to "cascade_3" are further maps of a light with `shadow_cascades`. A cube map has six faces below one
-        another, (6 n, n); maps of moments have two components, (height, width, 2).
+        "cascade_1" to "cascade_3" are further maps of a light with `shadow_cascades`. A cube map has six
+        faces below one another, (6 n, n); maps of moments have two components, (height, width, 2).
         """
         s = to_enum(LightSlot, slot, "slot")
         self._keep((light, s), image, f"{s.name.lower()} of light {light}", False, False,
@@ -68,7 +82,8 @@ class Shader(OfThisProcess):
 
     def set_material(self, id: int, material: Optional[Material], curvature_lut: Optional[Lut] = None,
                      shadow_lut: Optional[Lut] = None) -> Shader:
-        """Sets material `id`, 1 to 255; None removes it. Without a table: no direct scattering, a plain shadow."""
+        """Sets material `id`, 1 to 255; None removes it. Without a table: no direct scattering, a plain
+        shadow."""
         self._handle.set_material(id, None if material is None else Material._bytes_of(material),
                                   None if curvature_lut is None else curvature_lut._handle,
                                   None if shadow_lut is None else shadow_lut._handle)
@@ -80,22 +95,27 @@ class Shader(OfThisProcess):
         Parameters
         ----------
         id : int
-            A material that was set. The slots "uv" and "tangent" are needed too, "uv_gradient" if there is one.
+            A material that was set. The slots "uv" and "tangent" are needed too, "uv_gradient" if there is
+            one.
         levels : array, list of arrays or None
-            (height, width, 3) of float32 from -1 to 1, or (height, width, 4) of uint8. One array: the smaller levels are
-            made here, by means over 2 x 2 texels. A list: all levels, each half the size of the one before. The texels are
-            copied. None removes the map.
+            (height, width, 3) of float32 from -1 to 1, or (height, width, 4) of uint8. One array: the
+            smaller levels are made here, by means over 2 x 2 texels. A list: all levels, each half the size
+            of the one before. The texels are copied. None removes the map.
         """
-        chain = [] if levels is None else _mip_chain(levels) if isinstance(levels, np.ndarray) else list(levels)
-        if any(a.ndim != 3 or (a.dtype.name, a.shape[2]) != (chain[0].dtype.name, chain[0].shape[2]) for a in chain):
-            raise ValueError("a normal map needs arrays of shape (height, width, 3 or 4), all of one type; it has "
+        chain = [] if levels is None else _mip_chain(
+            levels) if isinstance(levels, np.ndarray) else list(levels)
+        if any(a.ndim != 3 or (a.dtype.name, a.shape[2]) != (chain[0].dtype.name, chain[0].shape[2])
+               for a in chain):
+            raise ValueError("a normal map needs arrays of shape (height, width, 3 or 4), all of one type; "
+                             "it has "
                              + ", ".join(f"{a.shape} of {a.dtype}" for a in chain))
         if not chain:
             self._handle.set_normal_map(id, [])
             return self
         key = (chain[0].dtype.name, chain[0].shape[2])
         if key not in (("float32", 3), ("uint8", 4)):
-            raise ValueError(f"the normal map has {key[1]} components of {key[0]}; 3 of float32 or 4 of uint8 are needed")
+            raise ValueError(f"the normal map has {key[1]} components of {key[0]}; 3 of float32 or 4 of "
+                             f"uint8 are needed")
         buffer = Buffer(self.device, np.concatenate([np.ascontiguousarray(a).reshape(-1) for a in chain]))
         images, offset = [], 0
         for a in chain:
@@ -106,22 +126,24 @@ class Shader(OfThisProcess):
         return self
 
     def set_scattered_texture(self, id: int, texture: Any) -> Shader:
-        """Sets the light that was scattered in the texture of material `id` (TextureScatter.execute), which materials of
-        scattering "texture" take in the place of their irradiance.
+        """Sets the light that was scattered in the texture of material `id` (TextureScatter.execute), which
+        materials of scattering "texture" take in the place of their irradiance.
 
         Parameters
         ----------
         id : int
             A material that was set. The slot "uv" is needed too.
         texture : array, Image or None
-            (height, width, 3 or 4), row 0 at v = 0; repeated beyond [0, 1]. Read at each execution; None removes it.
+            (height, width, 3 or 4), row 0 at v = 0; repeated beyond [0, 1]. Read at each execution; None
+            removes it.
         """
         self._keep(("scattered_texture", id), texture, f"scattered texture of material {id}", False, False,
                    lambda native: self._handle.set_scattered_texture(id, native))
         return self
 
     def set_eye(self, id: int, eye: Optional[Eye], caustics: Optional[Lut] = None) -> Shader:
-        """Makes material `id`, which must be set, an eye around the material, which is its sclera; None: no eye any longer.
+        """Makes material `id`, which must be set, an eye around the material, which is its sclera; None: no
+        eye any longer.
 
         Parameters
         ----------
@@ -131,7 +153,8 @@ class Shader(OfThisProcess):
         caustics : Lut, optional
             Lut.eye; without it the table is made for this eye.
         """
-        self._handle.set_eye(id, None if eye is None else Eye._bytes_of(eye), None if caustics is None else caustics._handle)
+        self._handle.set_eye(id, None if eye is None else Eye._bytes_of(eye),
+                             None if caustics is None else caustics._handle)
         return self
 
     def set_iris_texture(self, id: int, texture: Any) -> Shader:
@@ -142,18 +165,21 @@ class Shader(OfThisProcess):
         id : int
             A material that is an eye.
         texture : array, Image or None
-            (n, n, 3 or 4), whose inscribed circle is the iris' rim, row 0 at Eye.up, as one sees it who faces the eye. Read by
-            the first execution after a commit; None removes it: fibres are drawn by Eye.iris_seed.
+            (n, n, 3 or 4), whose inscribed circle is the iris' rim, row 0 at Eye.up, as one sees it who
+            faces the eye. Read by the first execution after a commit; None removes it: fibres are drawn by
+            Eye.iris_seed.
         """
         self._keep(("iris_texture", id), texture, f"iris texture of material {id}", False, False,
                    lambda native: self._handle.set_iris_texture(id, native))
         return self
 
     def set_lights(self, lights: Light | Sequence[Light]) -> Shader:
-        """Replaces all lights, 0 to 64, or sets a single one; images of lights beyond the count are cleared."""
+        """Replaces all lights, 0 to 64, or sets a single one; images of lights beyond the count are cleared.
+        """
         lights = [lights] if isinstance(lights, Light) else list(lights)
         self._handle.set_lights([Light._bytes_of(light) for light in lights])
-        for key in [k for k in self._images if isinstance(k, tuple) and isinstance(k[0], int) and k[0] >= len(lights)]:
+        for key in [k for k in self._images if isinstance(k, tuple) and isinstance(k[0], int)
+                    and k[0] >= len(lights)]:
             del self._images[key]
         return self
 
@@ -168,17 +194,19 @@ class Shader(OfThisProcess):
         Parameters
         ----------
         faces : array, Image or None
-            Irradiance / pi: (6, n, n, 3 or 4), or those faces one below the other, (6 n, n, 3 or 4), or side by side,
-            (n, 6 n, 3 or 4); float16, float32, or uint8 with 4 components. +x, -x, +y, -y, +z, -z, oriented as in OpenGL and
-            Direct3D: to the right and down, +x runs along -z and -y, -x along z and -y, +y along x and z, -y along x and -z,
-            +z along x and -y, -z along -x and -y. Read at each execution. None removes it.
+            Irradiance / pi: (6, n, n, 3 or 4), or those faces one below the other, (6 n, n, 3 or 4), or side
+            by side, (n, 6 n, 3 or 4); float16, float32, or uint8 with 4 components. +x, -x, +y, -y, +z, -z,
+            oriented as in OpenGL and Direct3D: to the right and down, +x runs along -z and -y, -x along z
+            and -y, +y along x and z, -y along x and -z, +z along x and -y, -z along -x and -y. Read at each
+            execution. None removes it.
         """
-        self._keep("ambient_cube", _below(faces, "ambient"), "ambient_cube", False, False, self._handle.set_ambient_cube)
+        self._keep("ambient_cube", _below(faces, "ambient"), "ambient_cube", False, False,
+                   self._handle.set_ambient_cube)
         return self
 
     def set_reflection_cube(self, faces: Any) -> Shader:
-        """Sets the surroundings that eyes reflect: radiance / pi, six faces as for `set_ambient_cube`, as sharp as the film of
-        tears should show them. Read at each execution. None removes it."""
+        """Sets the surroundings that eyes reflect: radiance / pi, six faces as for `set_ambient_cube`, as
+        sharp as the film of tears should show them. Read at each execution. None removes it."""
         self._keep("reflection_cube", _below(faces, "reflection"), "reflection_cube", False, False,
                    self._handle.set_reflection_cube)
         return self
@@ -212,8 +240,8 @@ class Shader(OfThisProcess):
     def execute(self) -> None:
         """Shades, and waits for the result.
 
-        A progress callback of the device (Device.set_progress) is told how far it is, about every million pixels; cancelled
-        by it, some pixels are shaded and others not.
+        A progress callback of the device (Device.set_progress) is called about every million
+        pixels; cancelled by it, some pixels are shaded and others not.
 
         Raises
         ------
@@ -224,17 +252,20 @@ class Shader(OfThisProcess):
             self.submit().wait()
             return
         images = list(self._images.values())
-        event = submit(self.device, [i._view for i in images], [], lambda waits: self._handle.execute_told(), self, images)
+        event = submit(self.device, [i._view for i in images], [], lambda waits: self._handle.execute_told(),
+                       self, images)
         if event is not None:  # results are on their way back to the arrays
             Event(event).wait()
 
     def submit(self, waits: Iterable[Event] = ()) -> Event:
         """Shades after `waits`, without waiting: leave the images alone until the event is done."""
         images = list(self._images.values())
-        return Event(submit(self.device, [i._view for i in images], _handles(waits), self._handle.execute, self, images))
+        return Event(submit(self.device, [i._view for i in images], _handles(waits), self._handle.execute,
+                            self, images))
 
     def material(self, id: int) -> Material:
-        """Material `id` as it is shaded: what was left to defaults has its value, after a commit also AUTO. Its profile is left out."""
+        """Material `id` as it is shaded: what was left to defaults has its value, after a commit also AUTO.
+        Its profile is left out."""
         return _filled(Material, self._handle.material(id))
 
     def warnings(self) -> list[str]:
@@ -247,11 +278,14 @@ class Shader(OfThisProcess):
         return _filled(ShaderStats, self._handle.stats())
 
 
-def warm_up_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Sequence[Shader] = (), threads: int = 0) -> int:
-    """Builds OpenCL programs before they are needed, so that no first commit or execution waits for a compiler.
+def warm_up_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Sequence[Shader] = (),
+                     threads: int = 0) -> int:
+    """Builds OpenCL programs before they are needed, so that no first commit or execution waits for a
+    compiler.
 
-    The driver's own cache on disk, where it has one, keeps the result for later processes. A progress callback of the device
-    (Device.set_progress) is told how far it is; cancelled by it, what was built so far stays.
+    The driver's own cache on disk, where it has one, keeps the result for later processes. A progress
+    callback of the device (Device.set_progress) is called on the way; cancelled by it, what was built so
+    far stays.
 
     Parameters
     ----------
@@ -260,8 +294,8 @@ def warm_up_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Se
     groups : ProgramGroup
         Programs that do not depend on a G-buffer, such as ``ProgramGroup.LUTS | ProgramGroup.CURVATURE``.
     shaders : sequence of Shader
-        With images, materials and lights set as for a commit. Nothing of theirs is written, and only the formats and packing
-        of images matter: 16 x 1 pixels stand for a frame.
+        With images, materials and lights set as for a commit. Nothing of theirs is written, and only the
+        formats and packing of images matter: 16 x 1 pixels stand for a frame.
     threads : int
         That build at a time; 0: one per core. PoCL builds one by one.
 
@@ -276,7 +310,8 @@ def warm_up_programs(device: Device, groups: ProgramGroup | int = 0, shaders: Se
         What a shader's commit would raise; CANCELLED.
     """
     handles = [s._handle for s in shaders]
-    return int(_in_flight.aside(lambda: _native.warm_up_programs(device._handle, int(groups), handles, threads)))
+    return int(_in_flight.aside(
+        lambda: _native.warm_up_programs(device._handle, int(groups), handles, threads)))
 
 
 def _below(faces: Any, which: str) -> Any:
@@ -284,12 +319,14 @@ def _below(faces: Any, which: str) -> Any:
     if getattr(faces, "ndim", 0) != 4:
         return faces
     if faces.shape[0] != 6:
-        raise ValueError(f"the {which} cube has the shape {faces.shape}; six faces, (6, n, n, 3 or 4), would be right")
+        raise ValueError(f"the {which} cube has the shape {faces.shape}; six faces, (6, n, n, 3 or 4), would "
+                         f"be right")
     faces = faces.view()
     try:
         faces.shape = (6 * faces.shape[1], *faces.shape[2:])
     except AttributeError:
-        raise ValueError(f"the {which} cube's faces lie apart in memory; numpy.ascontiguousarray puts them together") from None
+        raise ValueError(f"the {which} cube's faces lie apart in memory; numpy.ascontiguousarray puts them "
+                         f"together") from None
     return faces
 
 
@@ -304,5 +341,6 @@ def _mip_chain(image: NDArray[Any]) -> list[NDArray[Any]]:
                 starts = np.arange(0, size - 1, 2)
                 counts = np.diff(np.append(starts, size)).reshape([-1 if a == axis else 1 for a in range(3)])
                 level = np.add.reduceat(level, starts, axis) / counts
-        chain.append(np.rint(level).astype(image.dtype) if image.dtype.kind == "u" else level.astype(image.dtype))
+        chain.append(np.rint(level).astype(image.dtype) if image.dtype.kind == "u"
+                     else level.astype(image.dtype))
     return chain

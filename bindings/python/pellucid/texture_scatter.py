@@ -15,7 +15,8 @@ from .device import Device, Event, _filled, _handles
 
 
 class TextureScatter(OfThisProcess):
-    """Irradiance of a mesh, drawn into its texture and scattered there; see pelTextureScatterExecute. Keeps memory between calls.
+    """Irradiance of a mesh, drawn into its texture and scattered there; see pelTextureScatterExecute. Keeps
+    memory between calls.
 
     Parameters
     ----------
@@ -38,14 +39,16 @@ class TextureScatter(OfThisProcess):
     def __init__(self, device: Device, width: int, height: int, indices: ArrayLike, uvs: ArrayLike) -> None:
         triangles, coordinates = np.asarray(indices), np.ascontiguousarray(uvs, np.float32)
         if triangles.ndim != 2 or triangles.shape[1] != 3 or triangles.dtype.kind not in "iu":
-            raise ValueError(f"indices are {triangles.dtype} of shape {triangles.shape}; integers of shape (t, 3) are needed")
+            raise ValueError(f"indices are {triangles.dtype} of shape {triangles.shape}; integers of shape "
+                             f"(t, 3) are needed")
         if triangles.size and not 0 <= triangles.min() <= triangles.max() < 2**32:
             raise ValueError("indices hold numbers that no vertex has")
         if coordinates.ndim != 2 or coordinates.shape[1] != 2:
             raise ValueError(f"uvs have the shape {coordinates.shape}; (n, 2) is needed")
         packed = np.ascontiguousarray(triangles, np.uint32)
         self.device, self.width, self.height = device, width, height
-        self._handle = _native.TextureScatter.create(device._handle, width, height, len(coordinates), packed.ctypes.data,
+        self._handle = _native.TextureScatter.create(device._handle, width, height, len(coordinates),
+                                                     packed.ctypes.data,
                                                      packed.size, coordinates.ctypes.data)
 
     def set_positions(self, positions: Any) -> None:
@@ -55,10 +58,13 @@ class TextureScatter(OfThisProcess):
     def submit_set_positions(self, positions: Any, *, waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting."""
         view = vertex_view(self.device, positions, 3, "positions")
-        return Event(submit(self.device, [view], _handles(waits), lambda w: self._handle.set_positions(view.native, w), self))
+        return Event(submit(self.device, [view], _handles(waits),
+                            lambda w: self._handle.set_positions(view.native, w), self))
 
-    def draw(self, values: Any, out: Optional[NDArray[np.float32]] = None, *, unit: bool = False) -> NDArray[np.float32]:
-        """Values per vertex, (n, 3) float32, drawn into the texture, (height, width, 3); `unit`: they are normals."""
+    def draw(self, values: Any, out: Optional[NDArray[np.float32]] = None, *,
+             unit: bool = False) -> NDArray[np.float32]:
+        """Values per vertex, (n, 3) float32, drawn into the texture, (height, width, 3); `unit`: they are
+        normals."""
         result = np.empty((self.height, self.width, 3), np.float32) if out is None else out
         self.submit_draw(values, result, unit=unit).wait()
         return result
@@ -68,7 +74,8 @@ class TextureScatter(OfThisProcess):
         view = vertex_view(self.device, values, 3, "values")
         image = self._image(out, "out", output=True)
         return Event(submit(self.device, [view, image._view], _handles(waits),
-                            lambda w: self._handle.draw(view.native, unit, image._view.native, w), self, image))
+                            lambda w: self._handle.draw(view.native, unit, image._view.native, w), self,
+                            image))
 
     def execute(self, irradiance: Any, albedo: Any = None, *, out: Optional[NDArray[np.float32]] = None,
                 params: Optional[TextureScatterParams] = None) -> NDArray[np.float32]:
@@ -88,7 +95,8 @@ class TextureScatter(OfThisProcess):
         self.submit_execute(irradiance, albedo, result, params=params).wait()
         return result
 
-    def submit_execute(self, irradiance: Any, albedo: Any, out: Any, *, params: Optional[TextureScatterParams] = None,
+    def submit_execute(self, irradiance: Any, albedo: Any, out: Any, *,
+                       params: Optional[TextureScatterParams] = None,
                        waits: Iterable[Event] = ()) -> Event:
         """The same after `waits`, without waiting: leave the arrays alone until the event is done."""
         settings = TextureScatterParams() if params is None else params
@@ -97,7 +105,8 @@ class TextureScatter(OfThisProcess):
         target = self._image(out, "out", output=True)
         source = target if in_place else self._image(irradiance, "irradiance")
         colors = None if albedo is None else self._image(albedo, "albedo")
-        views = [x._view for x in ([] if in_place else [source]) + ([] if colors is None else [colors]) + [target]]
+        views = [x._view
+                 for x in ([] if in_place else [source]) + ([] if colors is None else [colors]) + [target]]
         e, a, o = source._view.native, None if colors is None else colors._view.native, target._view.native
         return Event(submit(self.device, views, _handles(waits),
                             lambda w: self._handle.execute(settings._data, profile, e, a, o, w), self))

@@ -1,4 +1,5 @@
-"""What the tests share: a device, a mesh and a G-buffer whose answers are known, and the project's table of tolerances."""
+"""What the tests share: a device, a mesh and a G-buffer whose answers are known, and the project's table of
+tolerances."""
 import re
 from pathlib import Path
 
@@ -9,7 +10,7 @@ from shader_view import View
 
 import pellucid as pel
 
-assert ROOT / "bindings/python/pellucid" not in Path(pel.__file__).parents, "the tests are for the installed package"
+assert ROOT / "bindings/python/pellucid" not in Path(pel.__file__).parents  # the built package is tested
 
 
 @pytest.fixture(scope="session")

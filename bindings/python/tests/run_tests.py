@@ -3,9 +3,9 @@
     run_tests.py PACKAGE_FOLDER ENVIRONMENT [PYTEST_ARGUMENT ...]
     run_tests.py --prepare ENVIRONMENT
 
---prepare makes the environment, once: pip downloads for minutes, so it has a step and a time limit of its own. PELLUCID_SANITIZE set:
-the tests run with the sanitizer's library loaded first. Ends with 77 where nothing failed and something was skipped, so that CTest
-says so.
+--prepare makes the environment, once: pip downloads for minutes, so it has a step and a time limit of its
+own. PELLUCID_SANITIZE set: the tests run with the sanitizer's library loaded first. Ends with 77 where
+nothing failed and something was skipped, so that CTest says so.
 """
 import os
 import subprocess
@@ -16,7 +16,8 @@ from xml.etree import ElementTree
 
 ROOT = Path(__file__).resolve().parents[3]
 FOLDERS = ["bindings/python/tests", "apps/viewer/tests", "apps/batch/tests", "apps/blender/tests"]
-NEEDS = ["numpy", "pytest>=7", "tqdm", "pyopencl", "pillow", "distributed", "fsspec", "matplotlib", "nicegui", "moderngl",
+NEEDS = ["numpy", "pytest>=7", "tqdm", "pyopencl", "pillow", "distributed", "fsspec", "matplotlib", "nicegui",
+         "moderngl",
          "selenium", "dask-jobqueue", "cryptography", "dask-kubernetes", "jsonschema"]
 
 
@@ -27,7 +28,8 @@ def prepare(environment):
         return True
     venv.create(environment, clear=True, with_pip=True)
     # Most modules of most packages are never imported; compiling them all takes longer than installing them.
-    pip = subprocess.run([environment / "bin/python", "-m", "pip", "--disable-pip-version-check", "install", "-q", "--no-compile", *NEEDS],
+    pip = subprocess.run([environment / "bin/python", "-m", "pip", "--disable-pip-version-check", "install",
+                          "-q", "--no-compile", *NEEDS],
                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     if pip.returncode == 0:
         complete.write_text("\n".join(NEEDS))
@@ -44,10 +46,11 @@ def sanitized():
         return {}
     compiler = os.environ.get("CXX", "c++")
     # The C++ library too, for the sanitizer looks for its __cxa_throw when it is loaded.
-    first = [subprocess.run([compiler, f"-print-file-name={name}"], stdout=subprocess.PIPE, text=True, check=True).stdout.strip()
+    first = [subprocess.run([compiler, f"-print-file-name={name}"], stdout=subprocess.PIPE, text=True,
+                            check=True).stdout.strip()
              for name in ("libasan.so", "libstdc++.so.6")]
-    # CPython keeps what it allocates until the end, which the leak check would report; and LLVM's signal stacks, which compilers of
-    # kernels set up, collide with the sanitizer's own.
+    # CPython keeps what it allocates until the end, which the leak check would report; and LLVM's signal
+    # stacks, which compilers of kernels set up, collide with the sanitizer's own.
     options = os.environ.get("ASAN_OPTIONS", "")
     return {"LD_PRELOAD": " ".join(first), "ASAN_OPTIONS": f"{options}:detect_leaks=0:use_sigaltstack=0"}
 
@@ -60,8 +63,10 @@ def main(package, environment, *arguments):
     report = environment / "report.xml"
     variables = {**os.environ, **sanitized(), "PYTHONPATH": str(package), "PYTHONDONTWRITEBYTECODE": "1"}
     folders = [ROOT / f for f in FOLDERS] if not any(Path(a).exists() for a in arguments) else []
-    status = subprocess.run([environment / "bin/python", "-m", "pytest", "-v", "-rs", "-p", "no:cacheprovider", "--tb=short",
-                             f"--junitxml={report}", "--rootdir", ROOT, *folders, *arguments], cwd=environment, env=variables).returncode
+    status = subprocess.run([environment / "bin/python", "-m", "pytest", "-v", "-rs", "-p",
+                             "no:cacheprovider", "--tb=short",
+                             f"--junitxml={report}", "--rootdir", ROOT, *folders, *arguments],
+                            cwd=environment, env=variables).returncode
     skipped = int(ElementTree.parse(report).find("testsuite").get("skipped")) if status == 0 else 0
     raise SystemExit(77 if skipped else status)
 

@@ -17,7 +17,8 @@ class View:
         self.position = (np.stack([px, py, pz], -1) * inside[..., None]).astype(np.float32)
         self.normal = self.position / 10
         self.material = inside.astype(np.uint8)
-        self.albedo = np.random.default_rng(1).uniform(0.2, 0.9, (HEIGHT, WIDTH, 3)).astype(np.float32) * inside[..., None]
+        albedo = np.random.default_rng(1).uniform(0.2, 0.9, (HEIGHT, WIDTH, 3))
+        self.albedo = albedo.astype(np.float32) * inside[..., None]
         self.inside = inside
         self.to_light = np.float32([0.6, 0.0, 0.8])
         self.lambert = self.albedo * np.maximum(self.normal @ self.to_light, 0)[..., None]

@@ -9,7 +9,8 @@ from pellucid import _command
 
 
 def run(*arguments):
-    return subprocess.run([sys.executable, "-m", "pellucid._command", *arguments], capture_output=True, text=True, timeout=120)
+    return subprocess.run([sys.executable, "-m", "pellucid._command", *arguments], capture_output=True,
+                          text=True, timeout=120)
 
 
 def test_the_compiled_program_answers():

@@ -48,7 +48,8 @@ def test_arrays_live_until_their_work_is_done(device, make_sphere):
     for _ in range(3):
         positions, out = mesh.positions.copy(), np.empty(len(mesh.positions), np.float32)
         weakref.finalize(positions, gone.append, 1)
-        event = topology.submit_curvature(positions, mesh.normals, out, estimator="edge", smoothing_passes=200)
+        event = topology.submit_curvature(positions, mesh.normals, out, estimator="edge",
+                                          smoothing_passes=200)
         del positions
         gc.collect()
         if not event.done:
@@ -145,8 +146,11 @@ def test_progress_bar_ends_with_its_work(monkeypatch):
     assert [(bar.n, bar.closed) for bar in bars] == [(1.0, 1), (0.5, 0), (1.0, 1)]
 
 
-# Seconds until Ctrl-C is noticed; code under sanitizers is several times as slow.
-AT_ONCE = 10 if os.environ.get("PELLUCID_SANITIZE") else 1
+def at_once():
+    """Seconds until Ctrl-C is noticed: longer under sanitizers, and where other programs share the processors."""
+    share = max(1.0, 2 * os.getloadavg()[0] / (os.cpu_count() or 1))
+    return share * (10 if os.environ.get("PELLUCID_SANITIZE") else 1)
+
 
 CTRL_C = textwrap.dedent("""
     import sys, time
@@ -155,7 +159,8 @@ CTRL_C = textwrap.dedent("""
     device = pel.Device()
     n = 1 << 20
     grid = np.arange(n, dtype=np.uint32).reshape(1024, 1024)
-    quads = np.stack([grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:], grid[:-1, 1:], grid[1:, :-1], grid[1:, 1:]], -1)
+    low, right, up, both = grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:], grid[1:, 1:]
+    quads = np.stack([low, right, up, up, right, both], -1)
     positions = np.random.default_rng(1).normal(size=(n, 3)).astype(np.float32)
     topology = pel.MeshTopology(device, quads.ravel(), n)
     print("go", flush=True)
@@ -184,7 +189,7 @@ def test_ctrl_c_within_a_second(what):
         sent = time.time()
         child.send_signal(signal.SIGINT)
         word, when = child.stdout.readline().split()
-        assert word == "interrupted" and float(when) - sent < AT_ONCE
+        assert word == "interrupted" and float(when) - sent < at_once()
     finally:
         child.kill()
         child.wait()
@@ -196,27 +201,31 @@ EVERY_CALL = textwrap.dedent("""
     import pellucid as pel
     n = 700
     grid = np.arange(n * n, dtype=np.uint32).reshape(n, n)
-    quads = np.stack([grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:], grid[:-1, 1:], grid[1:, :-1], grid[1:, 1:]], -1).ravel()
+    low, right, up, both = grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:], grid[1:, 1:]
+    quads = np.stack([low, right, up, up, right, both], -1).ravel()
     y, x = np.mgrid[:n, :n].astype(np.float32)
     points = np.stack([x, y, 20 * np.sin(x / 50)], -1).reshape(-1, 3)
     device = pel.Device()
     topology = pel.MeshTopology(device, quads, len(points))
     expected = topology.curvature(points)
-    uvs, saved, distances = np.ascontiguousarray(points[:, :2]), topology.save(), np.linspace(0.01, 9, 1000000)
+    uvs, saved = np.ascontiguousarray(points[:, :2]), topology.save()
+    distances = np.linspace(0.01, 9, 1000000)
     burley = pel.Profile.burley((1, 2, 3), (0.8, 0.8, 0.8))
     table = pel.Lut.curvature(device, width=1024, height=1024)
     image = np.ones((1024, 1024, 3), np.float32)
-    shader = pel.Shader(device).set_image("radiance", image.copy()).set_image("normal_shading", image).set_material(1, pel.Material())
-    shader.set_lights([pel.Light()] * 32).commit()
+    shader = pel.Shader(device).set_image("radiance", image.copy()).set_image("normal_shading", image)
+    shader.set_material(1, pel.Material()).set_lights([pel.Light()] * 32).commit()
     work = {
-        "weld": lambda: pel.MeshTopology(device, quads, positions=points, weld="tolerance", weld_tolerance=1e-3),
+        "weld": lambda: pel.MeshTopology(device, quads, positions=points, weld="tolerance",
+                                         weld_tolerance=1e-3),
         "save": topology.save, "load": lambda: pel.MeshTopology.load(device, saved),
         "curvature": lambda: topology.curvature(points.copy(), smoothing_passes=20),
         "submit": lambda: topology.submit_curvature(points.copy(), None, np.empty(len(points), np.float32)),
         "report": lambda: topology.curvature(points.copy(), report=True, smoothing_passes=20),
         "uv_scale": lambda: topology.uv_scale(points.copy(), uvs.copy()),
         "table": lambda: pel.Lut.curvature(device, width=512, height=512, form="sphere", profile=burley),
-        "read": lambda: table.read("faceworks8"), "bc6h": table.read_bc6h, "evaluate": lambda: burley.evaluate(distances),
+        "read": lambda: table.read("faceworks8"), "bc6h": table.read_bc6h,
+        "evaluate": lambda: burley.evaluate(distances),
         "shade": shader.execute, "screen": lambda: pel.screen_curvature(device, image.copy(), image.copy()),
         "buffer": lambda: pel.Buffer(device, np.zeros(1 << 26, np.uint8)), "finish": device.finish,
     }
@@ -246,7 +255,7 @@ def test_ctrl_c_reaches_every_long_call():
     assert child.returncode == 0
     seen = {name: float(value) for name, value in (line.split() for line in child.stdout.splitlines())}
     assert seen.pop("same") == 1 and len(seen) == 15
-    assert not {name: seconds for name, seconds in seen.items() if seconds > 1}
+    assert not {name: seconds for name, seconds in seen.items() if seconds > at_once()}
 
 
 COMPILE = textwrap.dedent("""
@@ -257,8 +266,9 @@ COMPILE = textwrap.dedent("""
     image = np.ones((8, 8, 3), np.float32)
     shader = pel.Shader(device).set_image("radiance", np.empty_like(image)).set_image("normal_shading", image)
     shader.set_image("position", image).set_camera(pel.Camera()).set_ambient(pel.Ambient(constant=(1, 1, 1)))
-    shader.set_material(1, pel.Material(specular=1, deep_scatter_color=(1, 1, 1), thickness_taps=32), pel.Lut.curvature(
-        device, width=8, height=8)).set_lights([pel.Light(shadow_filter_texels=48, shadow_depth_range=1)])
+    lut = pel.Lut.curvature(device, width=8, height=8)
+    shader.set_material(1, pel.Material(specular=1, deep_scatter_color=(1, 1, 1), thickness_taps=32), lut)
+    shader.set_lights([pel.Light(shadow_filter_texels=48, shadow_depth_range=1)])
     shader.set_light_image(0, "shadow_map", image[..., 0]).set_image("curvature", image[..., 1])
     print("go", flush=True)
     try:
@@ -272,14 +282,16 @@ COMPILE = textwrap.dedent("""
 
 
 def test_ctrl_c_while_a_compiler_works(tmp_path):
-    fresh = {**os.environ, "POCL_CACHE_DIR": str(tmp_path), "CUDA_CACHE_DISABLE": "1", "NEO_CACHE_PERSISTENT": "0"}
-    child = subprocess.Popen([sys.executable, "-c", COMPILE], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, env=fresh)
+    fresh = {**os.environ, "POCL_CACHE_DIR": str(tmp_path), "CUDA_CACHE_DISABLE": "1",
+             "NEO_CACHE_PERSISTENT": "0"}
+    child = subprocess.Popen([sys.executable, "-c", COMPILE], stdout=subprocess.PIPE,
+                             stderr=subprocess.DEVNULL, text=True, env=fresh)
     try:
         assert child.stdout.readline() == "go\n"
         time.sleep(0.1)
         sent = time.time()
         child.send_signal(signal.SIGINT)
-        assert float(child.stdout.readline()) - sent < AT_ONCE
+        assert float(child.stdout.readline()) - sent < at_once()
         assert float(child.stdout.readline()) > 0.01, "the compiler had finished before Ctrl-C was noticed"
         assert child.wait(60) == 0
     finally:
@@ -297,7 +309,8 @@ FORK = textwrap.dedent("""
     live, lut = pel.LiveMesh(mesh), pel.Lut.specular(device, width=8, height=8)
     event = buffer.submit_read(np.empty(64, np.uint8))
     if os.fork() == 0:
-        uses = (pel.Device, pel.devices, device.finish, lambda: pel.Buffer(device, 64), lambda: buffer.read(np.empty(64, np.uint8)),
+        uses = (pel.Device, pel.devices, device.finish, lambda: pel.Buffer(device, 64),
+                lambda: buffer.read(np.empty(64, np.uint8)),
                 shader.commit, lambda: profile.info, mesh.save, live.stats, lut.read, event.wait,
                 lambda: pel.orient_mesh(np.arange(3), 3))
         for use in uses:
@@ -316,7 +329,8 @@ FORK = textwrap.dedent("""
 
 def test_a_forked_process_is_told_so():
     done = subprocess.run([sys.executable, "-c", FORK], stdout=subprocess.PIPE, text=True, timeout=60)
-    assert done.returncode == 0 and done.stdout.split("\n")[:14] == ["INVALID_STATE True"] * 12 + ["3", "True"]
+    assert done.returncode == 0
+    assert done.stdout.split("\n")[:14] == ["INVALID_STATE True"] * 12 + ["3", "True"]
 
 
 def test_events_are_awaited(device):

@@ -1,4 +1,5 @@
-"""Matrices of each convention: a shadow map and a depth buffer drawn by the book are read back to the places they came from."""
+"""Matrices of each convention: a shadow map and a depth buffer drawn by the book are read back to the places
+they came from."""
 import numpy as np
 import pytest
 
@@ -54,7 +55,8 @@ def test_a_light_measures_the_distances_of_its_map(depth, y_up, first_row, persp
     m = light.world_to_shadow.reshape(4, 4).astype(float)
     q = np.c_[POINTS, np.ones(len(POINTS))] @ m.T
     u, v, z = (q[:, k] / q[:, 3] for k in range(3))
-    # The map's texels by the book: which column and row the point falls on, and what the depth buffer holds there.
+    # The map's texels by the book: which column and row the point falls on, and what the depth buffer holds
+    # there.
     clip = np.c_[POINTS, np.ones(len(POINTS))] @ matrix.T
     x, y, c = (clip[:, k] / clip[:, 3] for k in range(3))
     from_top = 0.5 - 0.5 * y if y_up else 0.5 + 0.5 * y

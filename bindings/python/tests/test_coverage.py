@@ -1,5 +1,5 @@
-"""Everything that the C interface does can be reached from Python: each function of pellucid.h is called by the native module,
-and each part of the native module by a Python file."""
+"""Everything that the C interface does can be reached from Python: each function of pellucid.h is called by
+the native module, and each part of the native module by a Python file."""
 import ast
 import inspect
 import re
@@ -9,7 +9,8 @@ from places import ROOT
 import pellucid as pel
 from pellucid import _native
 
-# Functions that the native module does not name, beside those that count references, and what stands for them.
+# Functions that the native module does not name, beside those that count references, and what stands for
+# them.
 OTHERWISE = {"pelDeviceCreate": "pellucid::Device(", "pelDeviceCreateFromCl": "pellucid::Device::fromCl(",
              "pelEventWait": "pelEventIsDone(", "pelLutGetSize": "pelLutRead("}
 
@@ -29,19 +30,24 @@ def test_every_function_of_the_header_is_called():
     native = sources("bindings/python/native", "*.cpp")
     assert all(call in native for call in OTHERWISE.values())
     missing = [f for f in functions
-               if not (re.search(rf"\b{f}\b", native) or f in OTHERWISE or re.fullmatch(r"pel\w+(Retain|Release)", f))]
+               if not (re.search(rf"\b{f}\b", native) or f in OTHERWISE
+                       or re.fullmatch(r"pel\w+(Retain|Release)", f))]
     assert not missing, f"no way from Python to {', '.join(missing)}"
 
 
 def test_every_enumeration_and_structure_is_there():
     text = (ROOT / "host/include/pellucid/pellucid.h").read_text()
     # Structures of pointers and handles, and what stands for them.
-    arrays = {"PelImageDesc": pel.Image, "PelVertexView": pel.Vertices, "PelMeshTopologyDesc": pel.MeshTopology,
-              "PelSubmit": pel.Event, "PelGaussian": pel.Profile.gaussians, "PelVertexRange": pel.LiveMesh.update,
-              "PelWarmUp": pel.warm_up_programs, "PelTextureScatterDesc": pel.TextureScatter, "PelSurfaceIntegralDesc": pel.surface_integral}
+    arrays = {"PelImageDesc": pel.Image, "PelVertexView": pel.Vertices,
+              "PelMeshTopologyDesc": pel.MeshTopology,
+              "PelSubmit": pel.Event, "PelGaussian": pel.Profile.gaussians,
+              "PelVertexRange": pel.LiveMesh.update,
+              "PelWarmUp": pel.warm_up_programs, "PelTextureScatterDesc": pel.TextureScatter,
+              "PelSurfaceIntegralDesc": pel.surface_integral}
     names = re.findall(r"typedef (?:enum|struct) (Pel\w+) \{", text)
     assert len(names) > 35
-    missing = [n for n in names if n not in arrays and not hasattr(pel, "ErrorCode" if n == "PelError" else n[3:])]
+    missing = [n for n in names if n not in arrays
+               and not hasattr(pel, "ErrorCode" if n == "PelError" else n[3:])]
     assert not missing
 
 
@@ -59,7 +65,8 @@ def test_every_native_function_is_used_and_described():
     stubs = sources("bindings/python/pellucid", "_native.pyi")
     parts = sorted(native_parts())
     assert len(parts) > 60
-    unused = [p for p, member in parts if not re.search(rf"\.{member}\b", python) and member != "struct_offsets"]
+    unused = [p for p,
+              member in parts if not re.search(rf"\.{member}\b", python) and member != "struct_offsets"]
     assert not unused, "of use to the tests alone"
     assert not [p for p, member in parts if not re.search(rf"^\s*(def )?{member}[(:]", stubs, re.M)]
 
@@ -78,9 +85,12 @@ def test_every_native_function_that_is_described_is_there():
 
 
 def test_every_call_that_does_work_can_be_submitted():
-    for owner, name in [(pel.MeshTopology, "curvature"), (pel.MeshTopology, "normals"), (pel.LiveMesh, "update"),
-                        (pel.Buffer, "read"), (pel.Buffer, "write"), (pel.Lut, "read"), (pel, "screen_curvature"),
-                        (pel, "surface_integral"), (pel.Scatter, "execute"), (pel.TextureScatter, "set_positions"),
+    for owner, name in [(pel.MeshTopology, "curvature"), (pel.MeshTopology, "normals"),
+                        (pel.LiveMesh, "update"),
+                        (pel.Buffer, "read"), (pel.Buffer, "write"), (pel.Lut, "read"),
+                        (pel, "screen_curvature"),
+                        (pel, "surface_integral"), (pel.Scatter, "execute"),
+                        (pel.TextureScatter, "set_positions"),
                         (pel.TextureScatter, "draw"), (pel.TextureScatter, "execute")]:
         submit = getattr(owner, f"submit_{name}")
         known = inspect.signature(submit).parameters

@@ -11,14 +11,16 @@ def ball(n=96, radius=12.0):
     inside = x**2 + y**2 < radius**2
     z = np.sqrt(np.where(inside, radius**2 - x**2 - y**2, 1.0))
     position = np.stack([x, y, z], -1).astype(np.float32)
-    return position, (position / np.linalg.norm(position, axis=-1, keepdims=True)).astype(np.float32), inside.astype(np.uint8)
+    return position, (position / np.linalg.norm(position, axis=-1,
+                                                keepdims=True)).astype(np.float32), inside.astype(np.uint8)
 
 
 def shaded(device, prepare, n=96):
     position, normal, ids = ball(n)
     out = np.zeros((n, n, 3), np.float32)
     shader = pel.Shader(device)
-    for slot, image in (("position", position), ("normal_shading", normal), ("material", ids), ("radiance", out)):
+    for slot, image in (("position", position), ("normal_shading", normal), ("material", ids),
+                        ("radiance", out)):
         shader.set_image(slot, image)
     shader.set_material(1, pel.Material(scattering="none", albedo=(0.8, 0.8, 0.8)))
     shader.set_camera(pel.Camera(position=(0, 0, 400)))

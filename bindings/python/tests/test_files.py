@@ -46,7 +46,8 @@ def test_images_come_back(tmp_path):
     files.write_image(tmp_path / "z.exr", image[..., 0], channels=["Z"])
     assert np.array_equal(files.read_image(tmp_path / "z.exr")["Z"], image[..., 0])
     files.write_image(tmp_path / "h.exr", image, half=True)
-    assert np.array_equal(files.read_image(tmp_path / "h.exr")["R"], image[..., 0].astype(np.float16).astype(np.float32))
+    assert np.array_equal(files.read_image(tmp_path / "h.exr")["R"],
+                          image[..., 0].astype(np.float16).astype(np.float32))
     files.write_image(tmp_path / "a.png", image, exposure=0.25)
     bytes_ = files.tonemap(image, 0.25)
     assert bytes_.dtype == np.uint8 and bytes_.shape == image.shape

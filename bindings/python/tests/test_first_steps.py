@@ -8,7 +8,8 @@ import pellucid as pel
 
 def test_one_light_and_a_sequence_of_one_are_the_same(device, view):
     pictures = []
-    for lights in (pel.Light(to_light=(0, 0, 1)), (pel.Light(to_light=(0, 0, 1)),), iter([pel.Light(to_light=(0, 0, 1))])):
+    for lights in (pel.Light(to_light=(0, 0, 1)), (pel.Light(to_light=(0, 0, 1)),),
+                   iter([pel.Light(to_light=(0, 0, 1))])):
         radiance = np.zeros((HEIGHT, WIDTH, 3), np.float32)
         shader_for(device, view, radiance).set_lights(lights).commit().execute()
         pictures.append(radiance)
@@ -23,9 +24,13 @@ def test_a_mask_is_a_material_image(device, view):
     assert expected.max() > 0.1 and np.array_equal(radiance, expected)
 
 
-@pytest.mark.parametrize("ids", [np.ones((4, 4), np.int64), np.ones((4, 4), np.int32), np.ones((4, 4), np.uint64), np.ones((4, 4, 2), np.uint8)])
+@pytest.mark.parametrize("ids",
+                         [np.ones((4, 4), np.int64), np.ones((4, 4), np.int32), np.ones((4, 4), np.uint64),
+                          np.ones((4, 4, 2), np.uint8)])
 def test_ids_of_another_type_say_which_would_do(device, ids):
-    with pytest.raises(ValueError, match=rf"material has . components of {ids.dtype}; .* uint8, uint16 or uint32 .*astype\(numpy.uint8\)"):
+    with pytest.raises(ValueError,
+                       match=rf"material has . components of {ids.dtype}; .* uint8, uint16 or uint32 "
+                             rf".*astype\(numpy.uint8\)"):
         pel.Shader(device).set_image("material", ids)
     picture = np.ones((4, 4, 3), np.float32)
     with pytest.raises(ValueError, match="ids has .*uint8"):
@@ -52,7 +57,8 @@ def test_something_else_in_place_of_a_structure(device, call, wanted):
 def test_profiles_go_by_name_everywhere(device, view):
     jade = pel.Profile.named("jade")
     for make in (pel.Lut.curvature, pel.Lut.shadow):
-        assert np.array_equal(make(device, width=8, height=8, profile="jade").read(), make(device, width=8, height=8, profile=jade).read())
+        assert np.array_equal(make(device, width=8, height=8, profile="jade").read(),
+                              make(device, width=8, height=8, profile=jade).read())
     pictures = []
     for profile in (jade, "jade"):
         scatter = pel.Scatter(device)
@@ -60,10 +66,12 @@ def test_profiles_go_by_name_everywhere(device, view):
         pictures.append(scatter.execute(view.lambert.copy(), view.position, ids=view.material))
     assert np.array_equal(*pictures) and not np.array_equal(pictures[0], view.lambert)
     triangle, points = np.float32([[0, 0, 0], [9, 0, 0], [0, 9, 0]]), np.float32([[1, 1, 0]])
-    light = [pel.surface_integral(device, triangle, [[0, 1, 2]], np.ones((3, 3), np.float32), points, profile=p) for p in (jade, "jade", None)]
+    light = [pel.surface_integral(device, triangle, [[0, 1, 2]], np.ones((3, 3), np.float32), points,
+                                  profile=p) for p in (jade, "jade", None)]
     assert np.array_equal(light[0], light[1]) and not np.array_equal(light[0], light[2])
     for call in (lambda: pel.Scatter(device).set_material(1, 3), lambda: pel.Lut.curvature(device, profile=3),
-                 lambda: pel.surface_integral(device, triangle, [[0, 1, 2]], np.ones((3, 3), np.float32), points, profile=3)):
+                 lambda: pel.surface_integral(device, triangle, [[0, 1, 2]], np.ones((3, 3), np.float32),
+                                              points, profile=3)):
         with pytest.raises(ValueError, match="it must be a Profile or the name of one of the library"):
             call()
     with pytest.raises(pel.PellucidError, match="jade"):  # lists the names that there are

@@ -12,22 +12,27 @@ from pellucid import _command
 
 files = pytest.importorskip("pellucid.files", reason="this build reads no files")
 
-WAX = {"name": "Candle wax", "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.8, 0.7, 1], "metallicFactor": 0, "roughnessFactor": 0.6,
+WAX = {"name": "Candle wax",
+       "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.8, 0.7, 1], "metallicFactor": 0,
+                                "roughnessFactor": 0.6,
                                                       "baseColorTexture": {"index": 0}},
        "extensions": {"KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 1},
-                      "KHR_materials_volume": {"thicknessFactor": 0.02, "attenuationDistance": 0.0015, "attenuationColor": [0.4, 0.3, 0.1]},
+                      "KHR_materials_volume": {"thicknessFactor": 0.02, "attenuationDistance": 0.0015,
+                                               "attenuationColor": [0.4, 0.3, 0.1]},
                       "KHR_materials_volume_scatter": {"multiscatterColor": [0.95, 0.8, 0.5]}}}
 PLASTER = {"name": "Plaster", "pbrMetallicRoughness": {"metallicFactor": 0}}
 RADIUS = 0.02  # m
 
 
 def ball(rings=24, segments=48):
-    a, b = np.meshgrid(np.linspace(0, math.pi, rings + 1), np.linspace(0, 2 * math.pi, segments + 1), indexing="ij")
+    a, b = np.meshgrid(np.linspace(0, math.pi, rings + 1), np.linspace(0, 2 * math.pi, segments + 1),
+                       indexing="ij")
     points = RADIUS * np.stack([np.sin(a) * np.sin(b), np.cos(a), np.sin(a) * np.cos(b)], -1).reshape(-1, 3)
     uvs = np.stack([b / (2 * math.pi), a / math.pi], -1).reshape(-1, 2)
     at = (np.arange(rings)[:, None] * (segments + 1) + np.arange(segments)).ravel()
     below = at + segments + 1
-    return points.astype("<f4"), uvs.astype("<f4"), np.stack([at, below, at + 1, at + 1, below, below + 1], -1).astype("<u4")
+    return points.astype(
+        "<f4"), uvs.astype("<f4"), np.stack([at, below, at + 1, at + 1, below, below + 1], -1).astype("<u4")
 
 
 def png():
@@ -44,15 +49,19 @@ def glb(tmp_path):
     starts = np.cumsum([0] + [len(p) for p in parts]).tolist()
     points = len(ball()[0])
     document = {
-        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1, 2, 3]}], "materials": [WAX, PLASTER], "textures": [{"source": 0}],
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0, 1, 2, 3]}], "materials": [WAX, PLASTER],
+        "textures": [{"source": 0}],
         "images": [{"bufferView": 3, "mimeType": "image/png"}],
-        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 2, "material": m}]} for m in (0, 1)],
-        "nodes": [{"mesh": 0}, {"mesh": 1, "translation": [0.05, 0, 0]}, {"camera": 0, "translation": [0, 0, 0.12]},
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "indices": 2,
+                                    "material": m}]} for m in (0, 1)],
+        "nodes": [{"mesh": 0}, {"mesh": 1, "translation": [0.05, 0, 0]},
+                  {"camera": 0, "translation": [0, 0, 0.12]},
                   {"extensions": {"KHR_lights_punctual": {"light": 0}}}],
         "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.01, "aspectRatio": 1.5}}],
         "extensions": {"KHR_lights_punctual": {"lights": [{"type": "directional", "intensity": math.pi}]}},
         "buffers": [{"byteLength": starts[-1]}],
-        "bufferViews": [{"buffer": 0, "byteOffset": start, "byteLength": len(p)} for start, p in zip(starts, parts)],
+        "bufferViews": [{"buffer": 0, "byteOffset": start, "byteLength": len(p)} for start,
+                        p in zip(starts, parts)],
         "accessors": [{"bufferView": 0, "componentType": 5126, "count": points, "type": "VEC3"},
                       {"bufferView": 1, "componentType": 5126, "count": points, "type": "VEC2"},
                       {"bufferView": 2, "componentType": 5125, "count": ball()[2].size, "type": "SCALAR"}]}
@@ -61,7 +70,8 @@ def glb(tmp_path):
     binary = b"".join(parts)
     binary += b"\0" * (-len(binary) % 4)
     path = tmp_path / "balls.glb"
-    path.write_bytes(struct.pack("<III", 0x46546C67, 2, 28 + len(text) + len(binary)) + struct.pack("<II", len(text), 0x4E4F534A) + text
+    path.write_bytes(struct.pack("<III", 0x46546C67, 2, 28 + len(text) + len(binary)) +
+                     struct.pack("<II", len(text), 0x4E4F534A) + text
                      + struct.pack("<II", len(binary), 0x004E4942) + binary)
     return path
 
@@ -69,7 +79,8 @@ def glb(tmp_path):
 def test_a_scene_as_arrays_and_structures(glb):
     scene = pel.load_gltf(glb)
     assert scene.names == {1: "Candle wax", 2: "Plaster"} and scene.taken_for == {1: "volume", 2: "plain"}
-    assert scene.mesh.low == pytest.approx((-20, -20, -20), abs=0.1) and scene.mesh.high == pytest.approx((70, 20, 20), abs=0.1)  # mm
+    assert scene.mesh.low == pytest.approx((-20, -20, -20), abs=0.1)  # mm
+    assert scene.mesh.high == pytest.approx((70, 20, 20), abs=0.1)
     assert set(scene.mesh.ids) == {1, 2} and (scene.mesh.positions[scene.mesh.ids == 2, 0] > 29).all()
     assert scene.mesh.uvs.shape == (len(scene.mesh.positions), 2)
     wax, plaster = scene.materials[1], scene.materials[2]
@@ -77,11 +88,14 @@ def test_a_scene_as_arrays_and_structures(glb):
     assert wax.profile.info.width[0] > 1.5 * wax.profile.info.width[2] > 0  # red light goes farther
     assert plaster.f0 == pytest.approx(0.04) and wax.roughness == pytest.approx(0.36)
     assert list(scene.textures) == [1] and scene.textures[1] == png()
-    assert len(scene.lights) == 1 and scene.lights[0].color == pytest.approx((1, 1, 1)) and scene.lights[0].to_light == pytest.approx((0, 0, 1))
+    (light,) = scene.lights
+    assert light.color == pytest.approx((1, 1, 1)) and light.to_light == pytest.approx((0, 0, 1))
     camera, = scene.cameras
-    assert camera.position == pytest.approx((0, 0, 120)) and camera.forward == pytest.approx((0, 0, -1)) and camera.vertical_fov == 0.5
+    assert camera.position == pytest.approx((0, 0, 120)) and camera.forward == pytest.approx((0, 0, -1))
+    assert camera.vertical_fov == 0.5
     centimetres = pel.load_gltf(glb, unit_mm=10, lights=0.5, profiles={"Plaster": "marble"})
-    assert np.allclose(centimetres.mesh.positions, scene.mesh.positions / 100, atol=1e-6) and centimetres.cameras[0].position[2] == pytest.approx(1.2)
+    assert np.allclose(centimetres.mesh.positions, scene.mesh.positions / 100,
+                       atol=1e-6) and centimetres.cameras[0].position[2] == pytest.approx(1.2)
     assert centimetres.lights[0].color[0] == pytest.approx(0.5) and centimetres.taken_for[2] == "profile"
     assert centimetres.materials[2].profile.info.name == "marble"
     assert {m.profile.info.name for m in pel.load_gltf(glb, profiles="jade").materials.values()} == {"jade"}
@@ -89,13 +103,16 @@ def test_a_scene_as_arrays_and_structures(glb):
 
 def test_it_is_saved_as_the_command_does(glb, tmp_path):
     pel.load_gltf(glb, profiles={"Plaster": "marble"}).save(tmp_path / "mine")
-    assert {p.name for p in (tmp_path / "mine").iterdir()} == {"scene.toml", "mesh.obj", "mesh.mtl", "Candle_wax.toml"}
+    assert {p.name for p in (tmp_path / "mine").iterdir()} == {"scene.toml", "mesh.obj", "mesh.mtl",
+                                                               "Candle_wax.toml"}
     again = pel.load_scene(tmp_path / "mine/scene.toml")
     assert again.profiles[2] == "marble" and again.camera.position[2] == pytest.approx(120)
-    assert pel.files.load_profile(again.profiles[1]).info.width == pytest.approx(pel.load_gltf(glb).materials[1].profile.info.width)
+    wax = pel.load_gltf(glb).materials[1].profile
+    assert pel.files.load_profile(again.profiles[1]).info.width == pytest.approx(wax.info.width)
     if not _command.program().exists():
         pytest.skip("this build has no command")
-    subprocess.run([_command.program(), "import", glb, "-o", tmp_path / "its", "--profile", "Plaster=marble"], check=True, stdout=subprocess.PIPE)
+    subprocess.run([_command.program(), "import", glb, "-o", tmp_path / "its", "--profile", "Plaster=marble"],
+                   check=True, stdout=subprocess.PIPE)
     for name in ("mesh.obj", "mesh.mtl", "Candle_wax.toml"):
         assert (tmp_path / "its" / name).read_bytes() == (tmp_path / "mine" / name).read_bytes(), name
 

@@ -43,7 +43,8 @@ def test_screen_curvature_of_a_sphere(device, tolerance):
     assert np.abs(c[c > 0] * radius - 1).max() < tolerance["screenSphere"]
     assert (c > 0).sum() > 0.95 * inside.sum()
     out = np.zeros((60, 160), np.float32)
-    assert pel.screen_curvature(device, normals, positions, ids=inside.astype(np.uint8), out=out[:, ::2]).base is out
+    assert pel.screen_curvature(device, normals, positions, ids=inside.astype(np.uint8),
+                                out=out[:, ::2]).base is out
     assert np.array_equal(out[:, ::2], c) and not out[:, 1::2].any()
     later = np.zeros((60, 80), np.float32)
     pel.submit_screen_curvature(device, normals, positions, later, ids=inside.astype(np.uint8)).wait()
@@ -57,6 +58,8 @@ def test_arrays_outlive_what_a_later_error_left_under_way(moving_device, sphere,
     held = []
     monkeypatch.setattr(_in_flight, "hold", lambda event, *used: (event.wait(), held.append(used)))
     with pytest.raises(pel.PellucidError, match="range 0"):
-        live.update(sphere.positions, None, np.empty(len(sphere.positions), np.float32), [(len(sphere.positions), 1)])
+        live.update(sphere.positions, None, np.empty(len(sphere.positions), np.float32),
+                    [(len(sphere.positions), 1)])
     arrays = [view.span.array for views, _ in held for view in views]
-    assert any(np.shares_memory(a, sphere.positions) for a in arrays), "its copy to the device may still be read"
+    assert any(np.shares_memory(a, sphere.positions)
+               for a in arrays), "its copy to the device may still be read"

@@ -6,7 +6,8 @@ import pellucid as pel
 
 
 def curvature_of(device, mesh, **settings):
-    return pel.MeshTopology(device, mesh.triangles, len(mesh.positions)).curvature(mesh.positions, mesh.normals, **settings)
+    return pel.MeshTopology(
+        device, mesh.triangles, len(mesh.positions)).curvature(mesh.positions, mesh.normals, **settings)
 
 
 def test_scale_and_params(device, sphere):
@@ -25,11 +26,13 @@ def test_quantities_have_their_shapes(device, make_sphere):
     assert np.array_equal(principal, frame[:, :2]) and np.abs(principal * 5 - 1).max() < 1e-2
     assert np.abs(np.linalg.norm(frame[1:-1, 2:5], axis=1) - 1).max() < 1e-5
     with pytest.raises(ValueError, match="shape .*8"):
-        curvature_of(device, mesh, estimator="tensor", quantity="frame", out=np.empty(len(mesh.positions), np.float32))
+        curvature_of(device, mesh, estimator="tensor", quantity="frame",
+                     out=np.empty(len(mesh.positions), np.float32))
 
 
 def interleaved(mesh):
-    vertex = np.zeros(len(mesh.positions), [("p", "f4", 3), ("pad", "f4"), ("n", "f4", 3), ("c", "f4"), ("uv", "f4", 2)])
+    vertex = np.zeros(len(mesh.positions),
+                      [("p", "f4", 3), ("pad", "f4"), ("n", "f4", 3), ("c", "f4"), ("uv", "f4", 2)])
     vertex["p"], vertex["n"], vertex["c"] = mesh.positions, mesh.normals, -1
     return vertex
 
@@ -56,7 +59,8 @@ def test_nothing_is_copied_on_a_cpu(device, sphere):
         pytest.skip("the default device has memory of its own")
     topology = pel.MeshTopology(device, sphere.triangles, len(sphere.positions))
     before = device.stats()
-    topology.submit_curvature(sphere.positions, sphere.normals, np.empty(len(sphere.positions), np.float32)).wait()
+    topology.submit_curvature(sphere.positions, sphere.normals,
+                              np.empty(len(sphere.positions), np.float32)).wait()
     after = device.stats()
     assert after.launches > before.launches
     assert (after.bytes_to_device, after.bytes_to_host) == (before.bytes_to_device, before.bytes_to_host)
@@ -68,7 +72,8 @@ def test_buffers_and_dlpack(device, sphere):
     data = pel.Buffer(device, np.hstack([sphere.positions, sphere.normals]))
     result = pel.Buffer(device, 4 * n)
     topology = pel.MeshTopology(device, sphere.triangles, n)
-    topology.submit_curvature(pel.Vertices(data, n, 0, 24), pel.Vertices(data, n, 12, 24), pel.Vertices(result, n)).wait()
+    topology.submit_curvature(pel.Vertices(data, n, 0, 24), pel.Vertices(data, n, 12, 24),
+                              pel.Vertices(result, n)).wait()
     assert np.array_equal(result.read(np.empty(n, np.float32)), expected)
 
     class Tensor:  # another library's array
@@ -89,7 +94,8 @@ def test_a_topology_is_saved_and_loaded(device, sphere):
     data = topology.save()
     again = pel.MeshTopology.load(device, data)
     assert again.num_vertices == len(sphere.positions) and again.report.triangles == len(sphere.triangles)
-    assert np.array_equal(again.curvature(sphere.positions, sphere.normals), topology.curvature(sphere.positions, sphere.normals))
+    assert np.array_equal(again.curvature(sphere.positions, sphere.normals),
+                          topology.curvature(sphere.positions, sphere.normals))
     with pytest.raises(pel.PellucidError):
         pel.MeshTopology.load(device, data[:-4])
 
@@ -106,9 +112,11 @@ def test_uv_scale(device, tolerance):
 
 @pytest.mark.parametrize("change, message", [
     (lambda m: dict(positions=m.positions.astype(np.float64)), "positions is float64; float32 is needed"),
-    (lambda m: dict(positions=m.positions[:, :2]), r"positions has the shape \(1106, 2\); \(n, 3\) is needed"),
+    (lambda m: dict(positions=m.positions[:, :2]),
+     r"positions has the shape \(1106, 2\); \(n, 3\) is needed"),
     (lambda m: dict(positions=m.positions[::-1]), "positions has a negative stride"),
-    (lambda m: dict(normals=np.broadcast_to(np.float32([0, 0, 1]), m.positions.shape)), "normals is broadcast"),
+    (lambda m: dict(normals=np.broadcast_to(np.float32([0, 0, 1]), m.positions.shape)),
+     "normals is broadcast"),
     (lambda m: dict(normals=m.normals.astype(">f4")), "normals is >f4; float32 is needed"),
     (lambda m: dict(normals=m.normals.tolist()), "normals is a list"),
     (lambda m: dict(out=np.zeros(5, np.float32)), "out is float32 of shape"),
@@ -129,7 +137,8 @@ def test_read_only_results_are_refused(device, sphere):
 
 
 @pytest.mark.parametrize("indices, error", [
-    ([[0, 1, 9]], pel.PellucidError), ([0, 1], pel.PellucidError), ([[0, 1, -1]], ValueError), ([[0.0, 1, 2]], ValueError)])
+    ([[0, 1, 9]], pel.PellucidError), ([0, 1], pel.PellucidError), ([[0, 1, -1]], ValueError),
+    ([[0.0, 1, 2]], ValueError)])
 def test_bad_indices(device, indices, error):
     with pytest.raises(error):
         pel.MeshTopology(device, indices, 3)
@@ -150,7 +159,8 @@ def test_normals_are_written_in_place(device, moving_device, sphere, moving):
 def test_orient_mesh_turns_what_disagrees(device, sphere):
     turned = sphere.triangles.copy()
     turned[::2] = turned[::2][:, [0, 2, 1]]
-    oriented, found = pel.orient_mesh(turned, positions=sphere.positions, normals=sphere.normals, weld="exact")
+    oriented, found = pel.orient_mesh(turned, positions=sphere.positions, normals=sphere.normals,
+                                      weld="exact")
     assert np.array_equal(oriented, sphere.triangles) and oriented.dtype == np.uint32
     assert found.triangles_turned == len(turned[::2]) and found.inconsistent_edges == 0
     flat, _ = pel.orient_mesh(turned.ravel(), len(sphere.positions))

@@ -16,7 +16,8 @@ print(np.asarray(pel.Lut.curvature(pel.Device(), width=4, height=4).read()).toby
 
 
 def python(code, **variables):
-    return subprocess.run([sys.executable, "-c", code], env={**os.environ, **variables}, capture_output=True, text=True, timeout=120)
+    return subprocess.run([sys.executable, "-c", code], env={**os.environ, **variables}, capture_output=True,
+                          text=True, timeout=120)
 
 
 def driver_of(platform):
@@ -28,9 +29,11 @@ def driver_of(platform):
 
 
 def test_without_a_library_the_package_loads_and_says_what_to_install():
-    told = python("import pellucid; print(pellucid.devices()); pellucid.Device()", PELLUCID_OPENCL="/nowhere/libOpenCL.so.1")
+    told = python("import pellucid; print(pellucid.devices()); pellucid.Device()",
+                  PELLUCID_OPENCL="/nowhere/libOpenCL.so.1")
     assert told.stdout.strip() == "[]"
-    for word in ("/nowhere/libOpenCL.so.1", "apt-get install ocl-icd-libopencl1", "pellucid[cpu]", "PELLUCID_OPENCL"):
+    for word in ("/nowhere/libOpenCL.so.1", "apt-get install ocl-icd-libopencl1", "pellucid[cpu]",
+                 "PELLUCID_OPENCL"):
         assert word in told.stderr
 
 

@@ -10,7 +10,8 @@ import pellucid as pel
 
 
 def test_version_is_the_projects():
-    version = re.search(r"project\(pellucid VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
+    version = re.search(r"project\(pellucid VERSION ([0-9.]+)",
+                        (ROOT / "CMakeLists.txt").read_text()).group(1)
     assert pel.__version__ == version
 
 

@@ -39,7 +39,8 @@ def test_curvature_between_buffers(queue, sphere):
     expected = topology.curvature(sphere.positions, sphere.normals)
     assert np.array_equal(result.read(np.empty(n, np.float32)), expected)
     mem = cl.Buffer(queue.context, cl.mem_flags.READ_WRITE, 4 * n)
-    topology.submit_curvature(positions, sphere.normals, pel.Vertices(pel.Buffer.from_cl(device, mem), n)).wait()
+    topology.submit_curvature(positions, sphere.normals,
+                              pel.Vertices(pel.Buffer.from_cl(device, mem), n)).wait()
     host = np.empty(n, np.float32)
     cl.enqueue_copy(queue, host, mem)
     assert np.array_equal(host, expected)
@@ -79,7 +80,8 @@ def test_what_waiting_work_uses_is_kept_until_it_is_done(queue, sphere, kind):
     event = {"buffer read": lambda: buffer.submit_read(array, waits=waits),  # noqa: F821
              "buffer write": lambda: buffer.submit_write(array, waits=waits),  # noqa: F821
              "table read": lambda: table.submit_read("float", array, waits=waits),  # noqa: F821
-             "curvature": lambda: topology.submit_curvature(sphere.positions, sphere.normals, array, waits=waits)}[kind]()  # noqa: F821
+             "curvature": lambda: topology.submit_curvature(sphere.positions, sphere.normals,
+                                                            array, waits=waits)}[kind]()  # noqa: F821
     del array  # noqa: F821
     gc.collect()
     assert not gone and not event.done
@@ -103,12 +105,16 @@ def test_nothing_of_the_hosts_is_kept(queue, sphere):
     def work():
         device = pel.Device.from_cl(queue)
         topology = pel.MeshTopology(device, sphere.triangles, positions=sphere.positions, weld="exact")
-        topology.submit_curvature(sphere.positions, sphere.normals, np.empty(len(sphere.positions), np.float32))
-        pel.LiveMesh(topology).update(sphere.positions, sphere.normals, np.empty(len(sphere.positions), np.float32))
+        topology.submit_curvature(sphere.positions, sphere.normals,
+                                  np.empty(len(sphere.positions), np.float32))
+        pel.LiveMesh(topology).update(sphere.positions, sphere.normals,
+                                      np.empty(len(sphere.positions), np.float32))
         lut = pel.Lut.curvature(device, width=8, height=8)
         image = np.ones((4, 16, 3), np.float32)
-        shader = pel.Shader(device).set_image("radiance", np.empty_like(image)).set_image("normal_shading", image)
-        shader.set_image("curvature", image[..., 0]).set_material(1, pel.Material(), lut).set_ambient(pel.Ambient(constant=(1, 1, 1)))
+        shader = pel.Shader(
+            device).set_image("radiance", np.empty_like(image)).set_image("normal_shading", image)
+        shader.set_image("curvature", image[..., 0]).set_material(
+            1, pel.Material(), lut).set_ambient(pel.Ambient(constant=(1, 1, 1)))
         shader.commit().submit()
         shader.execute()
         with pytest.raises(pel.PellucidError):

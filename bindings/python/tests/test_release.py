@@ -1,4 +1,5 @@
-"""Letting go of objects whose device still has work: others must get on meanwhile, for that work may wait for them."""
+"""Letting go of objects whose device still has work: others must get on meanwhile, for that work may wait
+for them."""
 import subprocess
 import sys
 import textwrap
@@ -10,8 +11,8 @@ import pytest
 import pellucid as pel
 from pellucid import _in_flight
 
-# The last reference to a device waits for its queue. Here the queue waits for an event that another Python thread sets, which it can
-# only with the GIL.
+# The last reference to a device waits for its queue. Here the queue waits for an event that another Python
+# thread sets, which it can only with the GIL.
 GATED = textwrap.dedent("""
     import gc, sys, threading, time
     import numpy as np
@@ -61,7 +62,8 @@ def test_the_gil_is_free_while_a_device_goes(tmp_path):
     pytest.importorskip("pyopencl")
     kinds = ["Device", "Buffer", "Event", "MeshTopology", "LiveMesh", "Lut", "Shader"]
     try:
-        done = subprocess.run([sys.executable, "-c", GATED, *kinds], stdout=subprocess.PIPE, text=True, timeout=100)
+        done = subprocess.run([sys.executable, "-c", GATED, *kinds], stdout=subprocess.PIPE, text=True,
+                              timeout=100)
     except subprocess.TimeoutExpired as stuck:
         pytest.fail(f"stuck after {(stuck.stdout or b'').decode().split()} of {kinds}")
     assert done.returncode == 0 and done.stdout.split() == kinds
@@ -79,7 +81,8 @@ def test_everything_dropped_while_work_is_in_flight(make_sphere):
                 topology = pel.MeshTopology(device, mesh.triangles, len(mesh.positions))
                 for _ in range(3):
                     out = np.empty(len(mesh.positions), np.float32)
-                    topology.submit_curvature(mesh.positions.copy(), mesh.normals, out, estimator="edge", smoothing_passes=50)
+                    topology.submit_curvature(mesh.positions.copy(), mesh.normals, out, estimator="edge",
+                                              smoothing_passes=50)
                 pel.Buffer(device, 1 << 16).submit_read(np.empty(1 << 16, np.uint8))
         except Exception as error:
             failed.append(error)
@@ -120,8 +123,9 @@ def test_work_may_be_submitted_from_finalizers(device):
 def test_two_threads_warm_up_the_same_shaders(device):
     """In opposite order; each keeps both from other threads meanwhile."""
     image = np.zeros((2, 16, 3), np.float32)
-    shaders = [pel.Shader(device).set_image("radiance", np.empty_like(image)).set_image("normal_shading", image) for _ in range(2)]
+    shaders = [pel.Shader(device) for _ in range(2)]
     for shader in shaders:
+        shader.set_image("radiance", np.empty_like(image)).set_image("normal_shading", image)
         shader.set_material(1, pel.Material()).set_ambient(pel.Ambient(constant=(1, 1, 1)))
     pel.warm_up_programs(device, shaders=shaders)
 
@@ -129,7 +133,8 @@ def test_two_threads_warm_up_the_same_shaders(device):
         for _ in range(25):
             pel.warm_up_programs(device, shaders=order)
 
-    threads = [threading.Thread(target=warm_up, args=(order,), daemon=True) for order in (shaders, shaders[::-1])]
+    threads = [threading.Thread(target=warm_up, args=(order,), daemon=True)
+               for order in (shaders, shaders[::-1])]
     for thread in threads:
         thread.start()
     for thread in threads:
@@ -160,5 +165,6 @@ AT_WORK = textwrap.dedent("""
 
 @pytest.mark.parametrize("progress", ["told", "untold"])
 def test_the_process_ends_while_daemon_threads_are_at_work(progress):
-    done = subprocess.run([sys.executable, "-c", AT_WORK, progress], stderr=subprocess.PIPE, text=True, timeout=100)
+    done = subprocess.run([sys.executable, "-c", AT_WORK, progress], stderr=subprocess.PIPE, text=True,
+                          timeout=100)
     assert (done.returncode, done.stderr) == (0, "")

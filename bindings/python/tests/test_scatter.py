@@ -10,7 +10,8 @@ def ball(radius=10.0, size=0.25):
     inside = x**2 + y**2 < radius**2
     z = np.sqrt(np.where(inside, radius**2 - x**2 - y**2, 0))
     positions = np.stack([x, y, z], -1).astype(np.float32)
-    irradiance = np.repeat(np.clip(positions[..., :1] / radius, 0, 1) * inside[..., None], 3, -1).astype(np.float32)
+    irradiance = np.repeat(np.clip(positions[..., :1] / radius, 0, 1) * inside[..., None], 3,
+                           -1).astype(np.float32)
     return irradiance, positions, inside.astype(np.uint8)
 
 
@@ -21,7 +22,8 @@ def test_light_flows_over_the_terminator_and_nowhere_else(device):
     result = scatter.execute(irradiance, positions, ids=ids)
     assert np.array_equal(result[ids == 0], irradiance[ids == 0])
     dark = (ids == 1) & (positions[..., 0] > -1) & (positions[..., 0] < 0)
-    assert (result[dark, 0] > result[dark, 2]).all() and irradiance[dark].max() == 0 < result[dark, 0].min()  # red reaches furthest
+    # red reaches furthest
+    assert (result[dark, 0] > result[dark, 2]).all() and irradiance[dark].max() == 0 < result[dark, 0].min()
     stats = scatter.stats()
     assert 0 < stats.pixels_tapped <= stats.pixels_covered == ids.sum()
     later = np.empty_like(irradiance)

@@ -13,7 +13,7 @@ def test_lambert(device, moving_device, view, tolerance, moving):
     shader.execute()
     assert np.abs(radiance - view.lambert)[view.inside].max() < tolerance["shadeTerm"]
     assert (radiance[~view.inside] == -1).all()  # pixels without a material are left alone
-    assert shader.stats().features == 0  # no curvature, no shadow, no ambient: nothing but Lambert
+    assert shader.stats().features == 0  # no curvature, no shadow, no ambient: only Lambert
 
 
 def test_changed_arrays_are_seen_without_a_commit(device, view, tolerance):
@@ -69,8 +69,10 @@ def test_progress_of_a_large_frame(moving):
     normal = np.zeros((1500, 2000, 3), np.float32)
     normal[..., 2] = 1
     images = [np.zeros_like(normal) for _ in range(3)]
-    shaders = [pel.Shader(device).set_image("radiance", i).set_image("normal_shading", normal).set_material(1, pel.Material())
-               .set_lights([pel.Light()]).commit() for i in images]
+    shaders = [pel.Shader(device).set_image("radiance", image) for image in images]
+    for shader in shaders:
+        shader.set_image("normal_shading",
+                         normal).set_material(1, pel.Material()).set_lights([pel.Light()]).commit()
     shaders[0].execute()
     told = Fractions()
     device.set_progress(told)
@@ -99,7 +101,8 @@ def test_a_material_may_name_its_profile(device, view):
         shader.commit().execute()
         pictures.append(radiance)
         resolved, info = shader.material(1), pel.Profile.named("marble").info
-        assert resolved.diffusion_radius == info.radius and np.array_equal(resolved.normal_blend, info.normal_blend)
+        assert resolved.diffusion_radius == info.radius
+        assert np.array_equal(resolved.normal_blend, info.normal_blend)
     assert np.array_equal(*pictures) and np.abs(pictures[0] - view.lambert).max() > 0.01
     with pytest.raises(ValueError, match="Profile"):
         pel.Material(profile=3)
@@ -117,7 +120,8 @@ def test_warnings_say_what_has_no_effect(device, view):
 def test_programs_are_built_ahead(device, view):
     shaders = [shader_for(device, view, np.zeros((HEIGHT, WIDTH, 3), np.float32)) for _ in range(2)]
     for shader in shaders:
-        shader.set_image("position", view.position).set_material(1, pel.Material(specular=1, shadow_filter_width=2))
+        shader.set_image("position",
+                         view.position).set_material(1, pel.Material(specular=1, shadow_filter_width=2))
     told = []
     device.set_progress(lambda fraction, what: told.append((fraction, what)))
     try:

@@ -54,7 +54,8 @@ def test_half_and_bytes(device, view):
     ("albedo", np.broadcast_to(np.float32(1), (4, 4, 3)), "albedo is broadcast"),
     ("albedo", np.zeros((3, 4, 4), np.float16).transpose(1, 2, 0), "components that lie apart"),
     ("albdo", np.zeros((4, 4, 3), np.float32), "slot is 'albdo'; it must be one of radiance"),
-    ("normal_shading", np.zeros((4, 4, 3), ">f4"), "normal_shading has the byte order of another machine .*big-endian"),
+    ("normal_shading", np.zeros((4, 4, 3), ">f4"),
+     "normal_shading has the byte order of another machine .*big-endian"),
     ("albedo", np.zeros((4, 4, 3), ">f2"), "albedo has the byte order of another machine"),
     ("albedo", np.zeros((3, 4, 4), ">f4").transpose(1, 2, 0), "albedo has the byte order of another machine"),
     ("material", np.ones((4, 4), ">u2"), "material has the byte order of another machine"),
@@ -82,7 +83,8 @@ def test_formats_by_name(device):
 def test_a_named_format_does_not_hide_the_byte_order(device):
     with pytest.raises(ValueError, match="byte order of another machine"):
         pel.Image(device, np.zeros((4, 4), ">u2"), "r16_uint")
-    pel.Image(device, np.zeros((4, 4, 3), "<f4" if np.dtype("<f4").isnative else ">f4"))  # named, and this machine's own
+    # named, and this machine's own
+    pel.Image(device, np.zeros((4, 4, 3), "<f4" if np.dtype("<f4").isnative else ">f4"))
     pel.Image(device, np.zeros((4, 4, 4), ">u1"))  # bytes have no order
 
 

@@ -11,7 +11,8 @@ def plate(columns=9):
     uvs = np.stack([u, v], -1).reshape(-1, 2)
     positions = np.concatenate([20 * uvs, np.zeros((len(uvs), 1), np.float32)], 1).astype(np.float32)
     a = (np.arange(columns - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
-    return positions, uvs, np.concatenate([np.stack([a, a + 1, a + columns + 1], 1), np.stack([a, a + columns + 1, a + columns], 1)])
+    return positions, uvs, np.concatenate([np.stack([a, a + 1, a + columns + 1], 1),
+                                           np.stack([a, a + columns + 1, a + columns], 1)])
 
 
 def test_draws_scatters_and_is_sampled(device):
@@ -33,7 +34,8 @@ def test_draws_scatters_and_is_sampled(device):
     few = texture.execute(edge, params=pel.TextureScatterParams(profile="marble", gaussians=4))
     assert few.shape == edge.shape and texture.stats().gaussians == 4 and texture.stats().profile_error < 0.1
     colors = np.full_like(edge, 0.5)
-    assert np.allclose(texture.execute(edge, colors, params=pel.TextureScatterParams(albedo_after=1)), 0.5 * soft, atol=1e-6)
+    assert np.allclose(texture.execute(edge, colors, params=pel.TextureScatterParams(albedo_after=1)),
+                       0.5 * soft, atol=1e-6)
     texture.execute(edge, out=edge)
     assert np.array_equal(edge, soft)
     # A shader samples it.
@@ -41,7 +43,8 @@ def test_draws_scatters_and_is_sampled(device):
     uv = np.stack(np.meshgrid(np.linspace(0.1, 0.9, 8), np.full(8, 0.5)), -1).astype(np.float32)
     shader.set_image("radiance", radiance).set_image("uv", uv)
     shader.set_image("normal_shading", np.tile(np.float32([0, 0, 1]), (8, 8, 1)))
-    shader.set_material(1, pel.Material(scattering="texture", albedo=[1, 1, 1])).set_scattered_texture(1, soft)
+    shader.set_material(
+        1, pel.Material(scattering="texture", albedo=[1, 1, 1])).set_scattered_texture(1, soft)
     shader.commit().execute()
     assert radiance[0, 0, 0] < 0.1 < 0.9 < radiance[0, 7, 0]
     shader.set_scattered_texture(1, None)

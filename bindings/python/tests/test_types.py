@@ -10,7 +10,8 @@ import pellucid as pel
 from pellucid import _native, _types
 from pellucid._struct import Struct
 
-STRUCTS = [t for t in vars(_types).values() if isinstance(t, type) and issubclass(t, Struct) and t is not Struct]
+STRUCTS = [t for t in vars(_types).values() if isinstance(t, type) and issubclass(t, Struct)
+           and t is not Struct]
 
 
 @pytest.mark.parametrize("struct", STRUCTS, ids=lambda t: t.__name__)
@@ -83,9 +84,10 @@ def test_array_fields_come_back_read_only():
 
 
 def test_documentation_has_units_and_python_names():
-    assert "share of the light that the profile lets through thin parts" in " ".join(pel.Material.__doc__.split())
-    assert "Material.shadow_filter_width" in pel.LightSlot.__dict__.get("__doc__", "") + _types.__loader__.get_data(
-        _types.__file__).decode()
+    words = " ".join(pel.Material.__doc__.split())
+    assert "share of the light that the profile lets through thin parts" in words
+    source = _types.__loader__.get_data(_types.__file__).decode()
+    assert "Material.shadow_filter_width" in (pel.LightSlot.__doc__ or "") + source
     for name in pel.__all__:
         assert getattr(pel, name).__doc__, name
 
@@ -95,9 +97,12 @@ def public_members():
         value = getattr(pel, name)
         yield name, value
         if isinstance(value, type) and not issubclass(value, (Struct, enum.Enum)):
-            members = {k: v for base in value.__mro__ if base.__module__.startswith("pellucid") for k, v in vars(base).items()}
+            members = {k: v for base in value.__mro__ if base.__module__.startswith("pellucid") for k,
+                       v in vars(base).items()}
             for member, part in members.items():
-                if not member.startswith("_") and (callable(part) or isinstance(part, (property, classmethod, staticmethod))):
+                if not member.startswith("_") and (callable(part)
+                                                   or isinstance(part,
+                                                                 (property, classmethod, staticmethod))):
                     yield f"{name}.{member}", part
 
 
@@ -108,8 +113,10 @@ def test_every_public_name_is_documented():
 
 
 @pytest.mark.parametrize("made, instead", [
-    (lambda d: d, "pellucid.Device"), (lambda d: pel.Buffer(d, 8), "Buffer.read"), (lambda d: pel.Profile.skin(), "make one there"),
-    (lambda d: pel.Lut.specular(d, width=4, height=4), "Lut.from_texels"), (lambda d: pel.Shader(d), "make one"),
+    (lambda d: d, "pellucid.Device"), (lambda d: pel.Buffer(d, 8), "Buffer.read"),
+    (lambda d: pel.Profile.skin(), "make one there"),
+    (lambda d: pel.Lut.specular(d, width=4, height=4), "Lut.from_texels"),
+    (lambda d: pel.Shader(d), "make one"),
     (lambda d: pel.MeshTopology(d, [[0, 1, 2]], 3), "MeshTopology.load")])
 def test_what_a_device_holds_is_not_pickled(device, made, instead):
     with pytest.raises(TypeError, match=f"belongs to this process.*{instead}"):

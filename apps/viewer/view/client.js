@@ -1,24 +1,15 @@
-"""The picture on the page, and the script that draws it and sends motions of the mouse."""
-
-PICTURE = """
-<div id="pel-view" style="position:relative;width:100%;height:100%;background:#111;overflow:hidden">
-<canvas id="pel-canvas" style="width:100%;height:100%;display:block;cursor:grab;touch-action:none"></canvas>
-<div id="pel-error" style="display:none;position:absolute;left:1rem;right:1rem;top:1rem;padding:.6rem 1rem;background:#7f1d1d;color:#fff;border-radius:.4rem;white-space:pre-wrap"><span id="pel-message"></span> <button id="pel-again" style="margin-left:1rem;padding:.2rem .6rem;background:#fff;color:#7f1d1d;border-radius:.3rem">Reopen device</button></div>
-<div id="pel-busy" style="display:none;pointer-events:none;position:absolute;left:50%;top:45%;transform:translateX(-50%);padding:.5rem 1rem;background:#222c;color:#ddd;border-radius:.4rem"></div>
-<div id="pel-help" style="position:absolute;left:1rem;bottom:.6rem;color:#bbb;font-size:.8rem">drag: orbit &middot; shift or right button: pan &middot; wheel: zoom &middot; ctrl: key light</div>
-<div id="pel-rate" style="position:absolute;right:1rem;bottom:.6rem;color:#bbb;font-size:.8rem"></div>
-</div>"""
-
-SCRIPT = """
-<script>
+// Draws the pictures that come over the socket, and sends the motions of the mouse.
 (function () {
-  let socket, canvas, pending = null, last = null, times = [], shown = -1, touched = null, delays = [], wrote = 0, stamp = 0;
+  let socket, canvas, pending = null, last = null, times = [];
+  let shown = -1, touched = null, delays = [], wrote = 0, stamp = 0;
   window.pelFrames = 0;
   window.pelDelays = [];
   // The first touch after the picture that shows all touches before it.
   function touch() { if (touched === null) touched = performance.now(); }
   document.addEventListener('pointerdown', (e) => { if (e.target.closest('.q-slider')) touch(); }, true);
-  document.addEventListener('pointermove', (e) => { if (e.buttons && e.target.closest('.q-slider')) touch(); }, true);
+  document.addEventListener('pointermove', (e) => {
+    if (e.buttons && e.target.closest('.q-slider')) touch();
+  }, true);
   function say(message) { if (socket && socket.readyState === 1) socket.send(JSON.stringify(message)); }
   function size() {
     if (!canvas) return;
@@ -46,8 +37,11 @@ SCRIPT = """
         return;
       }
       const head = pending, picture = await createImageBitmap(new Blob([event.data], {type: 'image/jpeg'}));
-      // As large as the picture: the browser's compositor makes it fit, which costs less than drawing it large.
-      if (canvas.width !== picture.width || canvas.height !== picture.height) { canvas.width = picture.width; canvas.height = picture.height; }
+      // As large as the picture: scaling by the browser's compositor costs less than drawing at full size.
+      if (canvas.width !== picture.width || canvas.height !== picture.height) {
+        canvas.width = picture.width;
+        canvas.height = picture.height;
+      }
       canvas.getContext('2d', {alpha: false}).drawImage(picture, 0, 0);
       picture.close();
       const now = performance.now();
@@ -67,10 +61,12 @@ SCRIPT = """
       window.pelKernels = head.kernels;
       if (now - wrote > 250 || !head.moving) {
         wrote = now;
-        const delay = delays.length ? ', ' + [...delays].sort((a, b) => a - b)[delays.length >> 1].toFixed(0) + ' ms latency' : '';
+        const median = [...delays].sort((a, b) => a - b)[delays.length >> 1];
+        const delay = delays.length ? ', ' + median.toFixed(0) + ' ms latency' : '';
         document.getElementById('pel-rate').textContent = head.width + ' x ' + head.height + ', ' +
           Object.entries(head.milliseconds).map(([k, v]) => k + ' ' + v.toFixed(0) + ' ms').join(', ') +
-          (head.moving ? ', ' + times.length + ' frames/s' : '') + delay + ', ' + head.kernels + ' kernels compiled (' + head.compiled + ' now)';
+          (head.moving ? ', ' + times.length + ' frames/s' : '') + delay + ', ' +
+          head.kernels + ' kernels compiled (' + head.compiled + ' now)';
       }
       say({kind: 'taken'});
     };
@@ -92,14 +88,17 @@ SCRIPT = """
     canvas.addEventListener('pointermove', (e) => {
       if (!last) return;
       const h = canvas.clientHeight, dx = (e.clientX - last.clientX) / h, dy = (e.clientY - last.clientY) / h;
-      const kind = e.ctrlKey || e.metaKey ? 'light' : e.shiftKey || (e.buttons & 2) ? 'pan' : e.altKey ? 'wipe' : 'orbit';
+      const pan = e.shiftKey || (e.buttons & 2);
+      const kind = e.ctrlKey || e.metaKey ? 'light' : pan ? 'pan' : e.altKey ? 'wipe' : 'orbit';
       last = e;
       if (kind === 'wipe') say({kind: 'wipe', x: e.offsetX / canvas.clientWidth}); else move(kind, dx, dy);
     });
-    canvas.addEventListener('wheel', (e) => { e.preventDefault(); move('zoom', 0, Math.sign(e.deltaY) * 0.1); }, {passive: false});
+    canvas.addEventListener('wheel', (e) => {
+      e.preventDefault();
+      move('zoom', 0, Math.sign(e.deltaY) * 0.1);
+    }, {passive: false});
     document.getElementById('pel-again').addEventListener('click', () => say({kind: 'restart'}));
     connect();
   }
   start();
 })();
-</script>"""
