@@ -100,7 +100,7 @@ void bindGltf(py::module_& module) {
     module.def("load_profile",
                [](const std::string& nameOrPath) { return io::findProfile(nameOrPath).profile; });
     py::class_<Gltf>(module, "Gltf")
-        .def(py::init<const std::string&, const std::vector<std::string>&, double, double>())
+        .def(py::init<const std::string&, const std::vector<std::string>&, double, std::optional<double>>())
         .def("mesh", &Gltf::mesh)
         .def("materials", &Gltf::materials)
         .def("lights", &Gltf::lights)

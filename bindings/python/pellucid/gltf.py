@@ -85,8 +85,10 @@ def load_gltf(path: Any, *, profiles: Union[str, Mapping[str, Any], None] = None
     for name, value in (("unit_mm", unit_mm), ("lights", lights)):
         if value is not None and not 1e-9 <= value <= 1e9:
             raise ValueError(f"{name} is {value!r}; it must be from 1e-9 to 1e9")
-    words = [profiles] if isinstance(profiles, str) else [f"{material}={os.fspath(profile)}" for material,
-                                                          profile in (profiles or {}).items()]
+    if isinstance(profiles, str):
+        words = [profiles]
+    else:
+        words = [f"{material}={os.fspath(profile)}" for material, profile in (profiles or {}).items()]
     native = _files.Gltf(str(path), words, unit_mm, lights)
     mesh = native.mesh()
     used = mesh["positions"][mesh["ids"] > 0]
