@@ -32,9 +32,6 @@ inline constexpr Tolerance faceWorksBytes{"faceWorksBytes", 2,
 inline constexpr Tolerance profileEvaluation{
     "profileEvaluation", 3e-6,
     "relative; the mixtures of Gaussians that stand for burley and dipole leave 1e-6"};
-inline constexpr Tolerance lineIntegral{
-    "lineIntegral", 2e-5,
-    "of P near the centre: panels over a table's corners, and what lies beyond 20 radii"};
 inline constexpr Tolerance normalBlend{"normalBlend", 0.05,
                                        "of the factors 1, 0.3, 0 that were chosen by eye for skin"};
 inline constexpr Tolerance sampledEnergy{
@@ -50,8 +47,6 @@ inline constexpr Tolerance unitRoundTrip{"unitRoundTrip", 1e-5,
                                          "floats in one unit and another; the steepest row of a table"};
 inline constexpr Tolerance closedEnds{"closedEnds", 1e-5,
                                       "a difference of texels over what lies between a row's ends"};
-inline constexpr Tolerance cylinderOfSteps{
-    "cylinderOfSteps", 2e-6, "4096 steps round a cylinder, the corner of max(cos, 0) between two of them"};
 inline constexpr Tolerance floatWeights{"floatWeights", 1e-6, "weights and variances are written as floats"};
 inline constexpr Tolerance fittedAgain{
     "fittedAgain", 1e-4, "a fit that has reached its optimum, by floats: weights of neighbours trade places"};

@@ -9,8 +9,9 @@ namespace {
 
 // Steps of the integral over directions from one point of the iris: its error is below 1e-3.
 constexpr int tiltSteps = 48, turnSteps = 64;
-constexpr float softRim = 0.02f, softPupil = 0.1f;  // widest edge of the pupil, of the iris' and of its own radius
-constexpr double mostDepth = 7;                     // optical, of a rim that darkens entirely
+// Max width of the edge of the pupil, relative to the radii of iris and pupil.
+constexpr float softRim = 0.02f, softPupil = 0.1f;
+constexpr double maxDepth = 7;  // optical depth of a rim that darkens entirely
 
 // 1 - reflectance (section 13 of the mathematics).
 double transmitted(double cosine, double from, double to) {
@@ -22,26 +23,27 @@ double transmitted(double cosine, double from, double to) {
     return 1 - 0.5 * (s * s + p * p);
 }
 
-// Light at a distance from the axis: the share of radiance from each direction that comes through the cornea, times the square
-// of the index, over a hemisphere weighed by the cosine.
+// Ambient light at distance r from the axis: the transmittance of the cornea times the square of the index,
+// averaged over the cosine-weighted hemisphere.
 double ambientAt(const EyeShape& shape, const PelEyeLutDesc& desc, double r) {
-    const double bend = shape.concavity / (shape.iris * shape.iris), slope = 2 * bend * r,
+    const double parabola = shape.concavity / (shape.iris * shape.iris), slope = 2 * parabola * r,
                  upright = 1 / std::hypot(1, slope);
-    const double z = shape.irisZ - shape.concavity + bend * r * r, conic1 = 1 + shape.conic;
+    const double z = shape.irisZ - shape.concavity + parabola * r * r, conic1 = 1 + shape.conic;
     const double nc = desc.corneaIndex, na = desc.aqueousIndex;
     double sum = 0;
     for (int i = 0; i < tiltSteps; ++i)
         for (int j = 0; j < turnSteps; ++j) {
-            // The disc under the hemisphere, in the iris' own plane: x away from the axis.
-            const double s = std::sqrt((i + 0.5) / tiltSteps), turn = std::numbers::pi * (j + 0.5) / turnSteps;
+            // Cosine-weighted direction in the plane of the iris; x points away from the axis.
+            const double s = std::sqrt((i + 0.5) / tiltSteps);
+            const double turn = std::numbers::pi * (j + 0.5) / turnSteps;
             const double lx = s * std::cos(turn), ly = s * std::sin(turn), lz = std::sqrt(1 - s * s);
             const double dx = upright * (lx - slope * lz), dy = ly, dz = upright * (slope * lx + lz);
-            // The cornea from inside.
+            // Intersection with the cornea, from inside.
             const double w = shape.apexZ - z, a = dx * dx + dy * dy + conic1 * dz * dz;
             const double b = r * dx + (shape.cornea - conic1 * w) * dz,
                          c = r * r + conic1 * w * w - 2 * shape.cornea * w;
             const double root = std::sqrt(std::max(0.0, b * b - a * c));
-            // c is below 0: one root lies ahead.
+            // One root is positive, since c < 0.
             const double t = b > 0 ? -c / (b + root) : (root - b) / a;
             const double x = r + t * dx, y = t * dy, height = z + t * dz;
             if (!(t > 0) || std::hypot(x, y) > shape.limbus || height < shape.limbusZ) continue;
@@ -115,7 +117,7 @@ PelShadeEye describeEye(const PelEye& eye, const AmbientNodes& ambient, double m
     }
     to.mmPerUnit = float(millimetresPerUnit);
     to.limbusPerWidth = 1 / std::max(eye.limbusWidth, 1e-6f * eye.limbusRadius);
-    to.limbusDepth = float(std::min(-std::log(std::max(1.0 - eye.limbusDarkening, 1e-30)), mostDepth));
+    to.limbusDepth = float(std::min(-std::log(std::max(1.0 - eye.limbusDarkening, 1e-30)), maxDepth));
     to.pupil = eye.pupilRadius;
     if (eye.pupilRadius > 0)
         to.pupilPerWidth = 1 / std::min(softRim * eye.irisRadius, softPupil * eye.pupilRadius);

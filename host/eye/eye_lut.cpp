@@ -45,8 +45,8 @@ PelEyeLutGrid gridOf(const PelEyeLutDesc& desc, const EyeShape& shape) {
     return grid;
 }
 
-// Share of the light entering at the centre of texel (0, 0) that leaves from texel (i, j), whose sides are dx and dy.
-// The profile is sampled more finely where it is steep within a texel.
+// Share of the light entering at the centre of texel (0, 0) that leaves from texel (i, j), whose sides are dx
+// and dy. The profile is sampled more finely where it is steep within a texel.
 Rgb texelWeight(const ProfileShape& profile, int i, int j, double dx, double dy) {
     const int n = std::max(i, j) <= fineReach ? fineSubTexels : coarseSubTexels;
     Rgb share{};
@@ -162,7 +162,8 @@ Ref<Lut> integrateEyeLut(Ref<Device> device, const PelEyeLutDesc& desc, bool int
     cl::Launch spread(program, "plain_eye_lut");
     spread.arg(unit).arg(grid).arg(stride).arg(border).arg(sums).arg(plain);
     device->launch(spread, {{stride, lut->height(), 1}, {group, 1, 1}});
-    inSteps(*device, rows, weights->products / productsPerStep, interruptible, [&](uint32_t first, uint32_t count) {
+    const double steps = weights->products / productsPerStep;
+    inSteps(*device, rows, steps, interruptible, [&](uint32_t first, uint32_t count) {
         cl::Launch scatter(program, "scatter_eye_lut");
         scatter.arg(grid).arg(lut->layout()).arg(plain).arg(stride).arg(shares);
         scatter.arg(cl_int(weights->reachX)).arg(cl_int(weights->reachY)).arg(first).arg(lut->texels());

@@ -24,7 +24,7 @@ EyeShape::EyeShape(const PelEyeLutDesc& d, const char* structure)
       iris(d.irisRadius > 0 ? d.irisRadius : d.limbusRadius),
       concavity(d.irisConcavity) {
     if (limbus >= sclera)
-        invalidArgument(structure, ".limbusRadius is ", limbus, "; it must be less than scleraRadius, ", sclera);
+        invalidArgument(structure, ".limbusRadius is ", limbus, "; it must be below scleraRadius, ", sclera);
     // Keeps the slope finite at the edge of the cornea.
     if ((1 + conic) * limbus * limbus > 0.98 * cornea * cornea)
         invalidArgument(structure, ".limbusRadius is ", limbus, "; a cornea of corneaRadius ", cornea,

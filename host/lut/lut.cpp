@@ -18,7 +18,8 @@ PelProfile profileHandle(const PelLutInfo& info) {
                                           : nullptr;
 }
 
-// Fills in the defaults of a description: the profile, its name, the diffusion radius and lengths that follow from these.
+// Fills in the defaults of a description: the profile, its name, the diffusion radius and lengths that follow
+// from these.
 PelLutInfo resolved(PelLutInfo info, const Profile& profile) {
     if (profileHandle(info)) {
         std::memset(info.profile, 0, sizeof info.profile);
@@ -80,8 +81,8 @@ Lut::Lut(Ref<Device> device, const PelLutInfo& info)
       device_(std::move(device)),
       profile_(profileOf(info)),
       info_(resolved(info, *profile_)),
-      ownRadius_((info.kind == PEL_LUT_SHADOW ? info.shadow.diffusionRadius : info.curvature.diffusionRadius) ==
-                 0),
+      ownRadius_(info.kind == PEL_LUT_SHADOW ? info.shadow.diffusionRadius == 0
+                                             : info.curvature.diffusionRadius == 0),
       layout_(layoutOf(info_)),
       texels_(device_->allocate(size_t(layout_.rowTexels) * (layout_.height + 1) * sizeof(cl_float4))) {}
 

@@ -35,7 +35,8 @@ Encoding encodingOf(const Lut& lut, PelLutEncoding encoding) {
                     " is unknown; PEL_LUT_FLOAT (0), PEL_LUT_HALF (1) or PEL_LUT_FACEWORKS8 (2) is needed");
 }
 
-// Nothing is computed for this encoding: copying here spares a program, which takes a CPU longer to compile than a table to make.
+// Nothing is computed for this encoding: copying here spares a program, which takes a CPU longer to compile
+// than a table to make.
 void readFloats(const Lut& lut, float* destination) {
     const size_t rowTexels = lut.layout().rowTexels, width = lut.width(), height = lut.height();
     std::vector<cl_float4> texels(rowTexels * height);

@@ -52,7 +52,8 @@ std::vector<LutColumn> curvatureColumns(uint32_t width, PelLutAxis axis, int nod
         const double angle = std::asin(elevation);
         int j = std::min(nodes - 1, int(nodes * std::pow(angle / (std::numbers::pi / 2), 0.25)));
         while (j > 0 && nodeAngle(j, nodes) > angle) --j;
-        const double low = nodeAngle(j, nodes), step = nodeAngle(j + 1, nodes) - low, t = (angle - low) / step;
+        const double low = nodeAngle(j, nodes), step = nodeAngle(j + 1, nodes) - low;
+        const double t = (angle - low) / step;
         columns.push_back({float((1 + 2 * t) * (1 - t) * (1 - t)), float(-step * t * (1 - t) * (1 - t)),
                            float(t * t * (3 - 2 * t)), float(step * t * t * (1 - t)), float(elevation), j});
     }

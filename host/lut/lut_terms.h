@@ -28,9 +28,10 @@ double columnElevation(uint32_t x, uint32_t width, PelLutAxis axis);
 // Where the columns of the unlit half read the nodes of that mesh: cubic Hermite interpolation.
 std::vector<LutColumn> curvatureColumns(uint32_t width, PelLutAxis axis, int nodes);
 
-// The rows of a table: `min`, upper edge of the first row, and `step`, of the row value (1/length, in any unit of length) or of its
-// square root; `scale`, texels per row value, 0 if all rows are one. On the linear axis values are in the middle of texels, as in
-// FaceWorks. On the square-root axis they reach the ends of the axis, so that no look-up within the range is clamped.
+// The rows of a table: `min`, upper edge of the first row, and `step`, of the row value (1/length, in any
+// unit of length) or of its square root; `scale`, texels per row value, 0 if all rows are one. On the linear
+// axis values are in the middle of texels, as in FaceWorks. On the square-root axis they reach the ends of
+// the axis, so that no look-up within the range is clamped.
 struct RowAxis {
     double min, step, scale;
 };

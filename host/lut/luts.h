@@ -17,8 +17,8 @@ Ref<Lut> integrateCurvatureLut(Ref<Device> device, const PelCurvatureLutDesc& de
                                const CurvatureQuality& quality = {});
 Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc);
 Ref<Lut> tabulateSpecularLut(Ref<Device> device, const PelSpecularLutDesc& desc);
-// From texels that were packed as PEL_LUT_FLOAT; `bytes` is checked against the size in `info`, whose description must
-// be valid.
+// From texels that were packed as PEL_LUT_FLOAT; `bytes` is checked against the size in `info`, whose
+// description must be valid.
 Ref<Lut> uploadLut(Ref<Device> device, const PelLutInfo& info, const float* texels, size_t bytes);
 
 size_t packedBytes(const Lut& lut, PelLutEncoding encoding);

@@ -14,7 +14,6 @@ constexpr double pi = std::numbers::pi;
 #define KEY(name, number, key) key,
 constexpr const char* kindNames[] = {PEL_EACH_PROFILE_KIND(KEY)};
 #undef KEY
-constexpr const char* channelNames[] = {"red", "green", "blue"};
 
 }  // namespace
 
@@ -31,40 +30,33 @@ GaussianShape::GaussianShape(std::vector<GaussianTerm> terms) : terms_(std::move
     }
 }
 
-Rgb GaussianShape::radial(double distance) const {
+// Sum of weight times f(variance).
+template <class F>
+Rgb GaussianShape::sum(F&& f) const {
     Rgb sum{};
     for (const GaussianTerm& term : terms_) {
-        const double density = std::exp(-distance * distance / (2 * term.variance)) / (2 * pi * term.variance);
-        for (int c = 0; c < 3; ++c) sum[c] += term.weight[c] * density;
+        const double value = f(term.variance);
+        for (int c = 0; c < 3; ++c) sum[c] += term.weight[c] * value;
     }
     return sum;
 }
 
-Rgb GaussianShape::lineSpread(double distance) const {
-    Rgb sum{};
-    for (const GaussianTerm& term : terms_) {
-        const double density =
-            std::exp(-distance * distance / (2 * term.variance)) / std::sqrt(2 * pi * term.variance);
-        for (int c = 0; c < 3; ++c) sum[c] += term.weight[c] * density;
-    }
-    return sum;
+Rgb GaussianShape::radial(double d) const {
+    return sum([=](double v) { return std::exp(-d * d / (2 * v)) / (2 * pi * v); });
+}
+
+Rgb GaussianShape::lineSpread(double s) const {
+    return sum([=](double v) { return std::exp(-s * s / (2 * v)) / std::sqrt(2 * pi * v); });
 }
 
 Rgb GaussianShape::width() const {
-    Rgb width{};
-    for (const GaussianTerm& term : terms_)
-        for (int c = 0; c < 3; ++c) width[c] += term.weight[c] * term.variance;
+    Rgb width = sum([](double v) { return v; });
     for (double& w : width) w = std::sqrt(w);
     return width;
 }
 
-Rgb GaussianShape::transmission(double distance) const {
-    Rgb sum{};
-    for (const GaussianTerm& term : terms_) {
-        const double beyond = std::exp(-distance * distance / (2 * term.variance));
-        for (int c = 0; c < 3; ++c) sum[c] += term.weight[c] * beyond;
-    }
-    return sum;
+Rgb GaussianShape::transmission(double d) const {
+    return sum([=](double v) { return std::exp(-d * d / (2 * v)); });
 }
 
 Profile::Profile(PelProfileKind profileKind, double radius, std::unique_ptr<ProfileShape> shape)
@@ -76,10 +68,9 @@ Profile::Profile(PelProfileKind profileKind, double radius, std::unique_ptr<Prof
       name_(kindNames[profileKind]) {}
 
 Ref<Profile> Profile::skin() {
-    // d'Eon and Luebke, GPU Gems 3, chapter 14: the six-Gaussian fit to a three-layer skin model, by its
-    // sigmas in mm as FaceWorks has them. (The variances printed beside them are their rounded squares, which
-    // makes a difference of 3e-5 in a table.) FaceWorks uses 2.7 mm for the profile's radius, not the widest
-    // sigma of 2.722 mm; so do all tables made with it.
+    // d'Eon and Luebke, GPU Gems 3, chapter 14: the six-Gaussian fit to a three-layer skin model, with the
+    // sigmas of FaceWorks in mm. (The published variances are the rounded squares, which changes tables by
+    // 3e-5.) As in FaceWorks, the radius of the profile is 2.7 mm, not the widest sigma of 2.722 mm.
     std::vector<GaussianTerm> terms{
         {0.080 * 0.080, {0.233, 0.455, 0.649}}, {0.220 * 0.220, {0.100, 0.336, 0.344}},
         {0.432 * 0.432, {0.118, 0.198, 0.0}},   {0.753 * 0.753, {0.113, 0.007, 0.007}},

@@ -10,6 +10,7 @@
 namespace pel {
 
 using Rgb = std::array<double, 3>;
+inline constexpr const char* channelNames[] = {"red", "green", "blue"};
 
 // weight * exp(-d^2 / 2 variance) / (2 pi variance) as energy per area, and with the same weight
 // exp(-s^2 / 2 variance) / sqrt(2 pi variance) as line spread.
@@ -57,7 +58,7 @@ class Profile final : public Object {
     }
     void setName(const char* name);
     void setSource(const char* source) { source_ = source; }  // static storage; before the profile is used
-    // Length within which all but a thousandth of the light of each channel leaves.
+    // Distance within which 99.9 % of the light of each channel leaves.
     double reach() const;
 
     Profile(PelProfileKind profileKind, double radius, std::unique_ptr<ProfileShape> shape);
@@ -83,7 +84,9 @@ class GaussianShape : public ProfileShape {
     Rgb transmission(double distance) const override;
     std::vector<GaussianTerm> gaussians() const override { return terms_; }
 
-  protected:
+  private:
+    template <class F>
+    Rgb sum(F&& f) const;
     std::vector<GaussianTerm> terms_;
 };
 

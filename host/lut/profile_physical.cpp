@@ -10,8 +10,9 @@
 namespace pel {
 namespace {
 
-// The modified Bessel function K0 as the integral of exp(-x cosh t) over t from 0 on [DLMF 10.32.9], by the trapezoidal rule: with
-// these steps its error is below that of double precision. (Not every C++ library has std::cyl_bessel_k.)
+// The modified Bessel function K0 as the integral of exp(-x cosh t) over t from 0 on [DLMF 10.32.9], by the
+// trapezoidal rule: with these steps its error is below that of double precision. (Not every C++ library has
+// std::cyl_bessel_k.)
 double besselK0(double x) {
     if (x > 700) return 0;
     if (x <= 0) return INFINITY;
@@ -27,7 +28,6 @@ double besselK0(double x) {
 constexpr double pi = std::numbers::pi;
 // Step of the trapezoid rule in log t: the error is of the order of exp(-pi^2 / 2 step) = 3e-9.
 constexpr double mixtureStep = 0.25;
-constexpr const char* channelNames[] = {"red", "green", "blue"};
 
 void checkPositive(const float* values, const char* what) {
     if (!values) invalidArgument("three values are needed for ", what, ", not NULL");

@@ -9,7 +9,6 @@ namespace pel {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr const char* channelNames[] = {"red", "green", "blue"};
 
 // R = offset + slope d on [begin, end].
 struct Piece {
@@ -40,8 +39,7 @@ class TableShape final : public ProfileShape {
         }
     }
     Rgb radial(double d) const override {
-        const auto piece =
-            std::find_if(pieces_.begin(), pieces_.end(), [&](const Piece& p) { return d <= p.end; });
+        const auto piece = std::ranges::lower_bound(pieces_, d, {}, &Piece::end);
         if (piece == pieces_.end()) return {};
         Rgb value;
         for (int c = 0; c < 3; ++c) value[c] = std::max(0.0, piece->offset[c] + piece->slope[c] * d);
@@ -67,8 +65,9 @@ class TableShape final : public ProfileShape {
         for (const Piece& p : pieces_) {
             if (p.end <= s) continue;
             const double a = std::max(p.begin, s), b = p.end;
+            const double linear = (a * a + a * b + b * b) * 2 / 3;
             for (int c = 0; c < 3; ++c)
-                sum[c] += pi * (b - a) * (p.offset[c] * (a + b) + p.slope[c] * (a * a + a * b + b * b) * 2 / 3);
+                sum[c] += pi * (b - a) * (p.offset[c] * (a + b) + p.slope[c] * linear);
         }
         for (double& value : sum) value = std::max(0.0, value);
         return sum;

@@ -30,11 +30,11 @@ Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
                            float(axis.step),    desc.sharpening, float(profileCut),      {},
                            uint32_t(desc.axis), desc.closedEnds};
     for (int channel = 0; channel < 3; ++channel) {
-        double mass = 0;
+        double total = 0;
         for (const GaussianTerm& term : profile.terms())
-            mass +=
+            total +=
                 term.weight[channel] * std::erf(profileCut * profile.radius() / std::sqrt(2 * term.variance));
-        params.mass[channel] = float(mass);
+        params.total[channel] = float(total);
     }
 
     const size_t group = launchPolicy(*device).group, columnsPerItem = launchPolicy(*device).columns;
@@ -44,8 +44,8 @@ Ref<Lut> integrateShadowLut(Ref<Device> device, const PelShadowLutDesc& desc) {
     const cl::Memory gaussians = upload(*device, terms);
     cl::Launch launch(program, "shadow_texels");
     launch.arg(params).arg(gaussians).arg(lut->texels());
-    const size_t lit = desc.width - desc.width / 2;
-    device->launch(launch, {{(lit + columnsPerItem - 1) / columnsPerItem, desc.height + 1, 1}, {group, 1, 1}});
+    const size_t lit = desc.width - desc.width / 2, items = (lit + columnsPerItem - 1) / columnsPerItem;
+    device->launch(launch, {{items, desc.height + 1, 1}, {group, 1, 1}});
     return lut;
 }
 

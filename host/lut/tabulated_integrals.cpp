@@ -9,12 +9,13 @@ namespace pel {
 namespace {
 
 // Gauss-Legendre on [-1, 1], 4 points.
-constexpr double gaussAt[4] = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526};
-constexpr double gaussWeight[4] = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
-                                   0.3478548451374538};
-// Below these angles chords are too near to the diameter for differences of moments, and of masses, in float.
+constexpr double inner = 0.3399810435848563, outer = 0.8611363115940526;
+constexpr double gaussAt[4] = {-outer, -inner, inner, outer};
+constexpr double innerWeight = 0.6521451548625461, outerWeight = 0.3478548451374538;
+constexpr double gaussWeight[4] = {outerWeight, innerWeight, innerWeight, outerWeight};
+// Below these angles chords are too near to the diameter for differences of moments, and of total, in float.
 constexpr double nearAntipode = 0.8, antipodalAngle = 0.02;
-constexpr size_t knotsWorthCells = 128;  // a table with more is finer than the meshes here
+constexpr size_t maxKnots = 128;  // a table with more distances is finer than the meshes here
 
 cl_float4 float4Of(const Rgb& v, double w) {
     return {{float(v[0]), float(v[1]), float(v[2]), float(w)}};
@@ -22,7 +23,7 @@ cl_float4 float4Of(const Rgb& v, double w) {
 
 // Ascending borders of cells, together with the knots between them.
 std::vector<double> withKnots(std::vector<double> borders, const std::vector<cl_float4>& knots) {
-    if (knots.size() > knotsWorthCells) return borders;
+    if (knots.size() > maxKnots) return borders;
     const double end = borders.back();
     for (const cl_float4& knot : knots)
         if (knot.s[3] < end) borders.push_back(knot.s[3]);
@@ -43,8 +44,9 @@ Rgb lineSpread(const Profile& profile, double distance) {
     return P;
 }
 
-// visit(distance from a, mass) for the points that stand for P from a to b. P behaves like the root of the distance before each
-// distance where R bends or ends, so a and b are such distances or have none between them, and points are even over that root.
+// visit(distance from a, total) for the points that stand for P from a to b. P behaves like the root of the
+// distance before each distance where R bends or ends, so a and b are such distances or have none between
+// them, and points are even over that root.
 void eachPoint(const Profile& profile, double a, double b, auto&& visit) {
     const double h = b - a;
     for (int q = 0; q < 4; ++q) {
@@ -78,24 +80,25 @@ double tableReach(const Profile& profile) {
     return profile.shape().knots().back() / profile.radius();
 }
 
-// From the end inwards, cell by cell: each tail is the tail of the next cell plus what P adds within the cell.
+// From the end inwards, cell by cell: each tail is the tail of the next cell plus what P adds within the
+// cell.
 std::vector<cl_float4> tableTails(const Profile& profile, double end) {
     const std::vector<double> mesh = meshOfCells(end, PEL_TAIL_CELLS),
                               borders = withKnots(mesh, tableKnots(profile));
     std::vector<cl_float4> tails(size_t(PEL_TAIL_CELLS + 1) * PEL_TAIL_VALUES);
-    Rgb mass{}, first{}, second{}, third{};
+    Rgb total{}, first{}, second{}, third{};
     size_t border = borders.size() - 1;
     for (int i = PEL_TAIL_CELLS; i >= 0; --i) {
         while (borders[border] > mesh[i]) {
             const double b = borders[border], a = borders[--border], h = b - a;
             for (int c = 0; c < 3; ++c) {
-                third[c] += h * (second[c] + h * (first[c] / 2 + h * mass[c] / 6));
-                second[c] += h * (first[c] + h * mass[c] / 2);
-                first[c] += h * mass[c];
+                third[c] += h * (second[c] + h * (first[c] / 2 + h * total[c] / 6));
+                second[c] += h * (first[c] + h * total[c] / 2);
+                first[c] += h * total[c];
             }
             eachPoint(profile, a, b, [&](double t, const Rgb& m) {
                 for (int c = 0; c < 3; ++c) {
-                    mass[c] += m[c];
+                    total[c] += m[c];
                     first[c] += m[c] * t;
                     second[c] += m[c] * t * t / 2;
                     third[c] += m[c] * t * t * t / 6;
@@ -104,7 +107,7 @@ std::vector<cl_float4> tableTails(const Profile& profile, double end) {
         }
         cl_float4* out = tails.data() + size_t(i) * PEL_TAIL_VALUES;
         out[PEL_TAIL_SPREAD] = float4Of(lineSpread(profile, mesh[i]), 0);
-        out[PEL_TAIL_MASS] = float4Of(mass, 0);
+        out[PEL_TAIL_TOTAL] = float4Of(total, 0);
         out[PEL_TAIL_FIRST] = float4Of(first, 0);
         out[PEL_TAIL_SECOND] = float4Of(second, 0);
         out[PEL_TAIL_THIRD] = float4Of(third, 0);
@@ -115,21 +118,21 @@ std::vector<cl_float4> tableTails(const Profile& profile, double end) {
 std::vector<cl_float4> lineSums(const Profile& profile, double end, int cells) {
     const std::vector<double> mesh = meshOfCells(end, cells), borders = withKnots(mesh, tableKnots(profile));
     std::vector<cl_float4> sums;
-    Rgb mass{}, moment{};
+    Rgb total{}, moment{};
     size_t border = 0;
     for (double distance : mesh) {
         while (borders[border] < distance) {
             const double a = borders[border], b = borders[++border];
-            for (int c = 0; c < 3; ++c) moment[c] += (b - a) * mass[c];
+            for (int c = 0; c < 3; ++c) moment[c] += (b - a) * total[c];
             eachPoint(profile, a, b, [&](double t, const Rgb& m) {
                 for (int c = 0; c < 3; ++c) {
-                    mass[c] += m[c];
+                    total[c] += m[c];
                     moment[c] += m[c] * (b - a - t);
                 }
             });
         }
         sums.insert(sums.end(),
-                    {float4Of(lineSpread(profile, distance), 0), float4Of(mass, 0), float4Of(moment, 0)});
+                    {float4Of(lineSpread(profile, distance), 0), float4Of(total, 0), float4Of(moment, 0)});
     }
     return sums;
 }
@@ -137,7 +140,7 @@ std::vector<cl_float4> lineSums(const Profile& profile, double end, int cells) {
 std::vector<cl_float4> radialSums(const Profile& profile, double end, int cells) {
     const std::vector<cl_float4> knots = tableKnots(profile);
     std::vector<cl_float4> sums;
-    Rgb mass{}, moment{};
+    Rgb total{}, moment{};
     size_t piece = 0;
     double at = 0;
     const auto radial = [&](double distance, int c) {
@@ -152,15 +155,15 @@ std::vector<cl_float4> radialSums(const Profile& profile, double end, int cells)
                          h = next - at;
             for (int c = 0; c < 3; ++c) {
                 const double low = radial(at, c), high = radial(next, c);
-                moment[c] += h * mass[c] + h * h * (2 * low + high) / 6;
-                mass[c] += h * (low + high) / 2;
+                moment[c] += h * total[c] + h * h * (2 * low + high) / 6;
+                total[c] += h * (low + high) / 2;
             }
             at = next;
             if (next < distance) ++piece;
         }
         Rgb R;
         for (int c = 0; c < 3; ++c) R[c] = std::max(radial(distance, c), 0.0);
-        sums.insert(sums.end(), {float4Of(R, 0), float4Of(mass, 0), float4Of(moment, 0)});
+        sums.insert(sums.end(), {float4Of(R, 0), float4Of(total, 0), float4Of(moment, 0)});
     }
     return sums;
 }

@@ -15,7 +15,8 @@ std::vector<cl_float4> tableKnots(const Profile& profile);
 double tableEnd(const Profile& profile);
 // Where the table ends.
 double tableReach(const Profile& profile);
-// Within `end`, PEL_TAIL_VALUES float4 at each of PEL_TAIL_CELLS + 1 distances, as shared/lut_integral.h describes.
+// Within `end`, PEL_TAIL_VALUES float4 at each of PEL_TAIL_CELLS + 1 distances, as shared/lut_integral.h
+// describes.
 std::vector<cl_float4> tableTails(const Profile& profile, double end);
 
 // Within `end`, PEL_SUM_VALUES float4 at each of cells + 1 distances: of P, or of R.
@@ -28,7 +29,8 @@ std::vector<cl_float4> antipodes(const Profile& profile, bool radial, const std:
 // The intervals of the mesh of curvature tables (lut_terms.h). `chord`: distances are chords, not arcs.
 std::vector<TableInterval> tableMesh(int nodes, bool chord);
 
-// Of samples PEL_RAMP_PARTS to a half width of the ramp 3/4 (1 - y^2), -1 <= y <= 1, of a function that is cubic between them.
+// Of samples PEL_RAMP_PARTS to a half width of the ramp 3/4 (1 - y^2), -1 <= y <= 1, of a function that is
+// cubic between them.
 std::vector<RampWeight> rampWeights();
 
 // Points (weight R, G, B; distance) that represent the table with those knots on a sphere of that diameter,

@@ -115,7 +115,8 @@ void integrateTabulatedShadow(Lut& lut, double reciprocalMin, double reciprocalM
     const PelShadowLutDesc& desc = lut.info().shadow;
     const double end = tableEnd(*lut.profile());
     const RowAxis axis = rowAxis(desc.axis, desc.height, reciprocalMin, reciprocalMax);
-    // Nodes reach to the ends of rows: PEL_RAMP_PARTS to a half width, of which `sharpening` are in half a row.
+    // Nodes reach to the ends of rows: PEL_RAMP_PARTS to a half width, of which `sharpening` are in half a
+    // row.
     const double wanted = std::ceil(PEL_RAMP_PARTS * double(desc.sharpening) * (1 + 1e-6));
     const uint32_t nodes = wanted <= nodesPerTexel * desc.width ? uint32_t(wanted) : 0;
     const TabulatedShadowLutParams params{desc.width,          desc.height,     float(axis.min),

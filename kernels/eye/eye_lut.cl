@@ -1,10 +1,11 @@
-// Caustic table: irradiance on the iris behind a refracting cornea, for light from several angles (section 13 of the
-// mathematics). The disk of the limbus is divided into cells. Each cell's light is refracted to the iris, and its flux is
-// distributed over the texels that the refracted cell covers, in proportion to area, so that no flux is lost between
-// texels. Sums are integers, so that the result does not depend on the order of additions.
+// Caustic table: irradiance on the iris behind a refracting cornea, for light from several angles (section 13
+// of the mathematics). The disk of the limbus is divided into cells. Each cell's light is refracted to the
+// iris, and its flux is distributed over the texels that the refracted cell covers, in proportion to area, so
+// that no flux is lost between texels. Sums are integers, so that the result does not depend on the order of
+// additions.
 //
-// Inputs: PelEyeShape in units of the iris radius; PelEyeLutGrid. The rows of cells are y = limbus sin a with even angles
-// a; within a row x = limbus u cos a, u from -1 to 1, so that cells end at the limbus exactly.
+// Inputs: PelEyeShape in units of the iris radius; PelEyeLutGrid. The rows of cells are y = limbus sin a with
+// even angles a; within a row x = limbus u cos a, u from -1 to 1, so that cells end at the limbus exactly.
 //
 // eye_lut: one work-item computes PEL_WIDTH cells of a row.
 // finish_eye_lut: one work-item converts one texel of lut->layout, the copied column and row included.
@@ -38,8 +39,8 @@ static inline Landing refractToIris(const PelEyeShape s, floatw x, floatw y, flo
     Vec3w d = refracted(vec3((floatw)(-sine), (floatw)(0.0f), (floatw)(-cosine)), n, c, behind,
                         1.0f / s.aqueousIndex);
     floatw length = toIris(s, p, d);
-    // Light at a grazing angle may meet the cornea a second time, from inside, and be reflected. The chord between the
-    // two points follows from both lying on the conic.
+    // Light at a grazing angle may meet the cornea a second time, from inside, and be reflected. The chord
+    // between the two points follows from both lying on the conic.
     const floatw a = fma(d.x, d.x, fma(d.y, d.y, s.conic1 * d.z * d.z));
     const floatw b = fma(p.x, d.x, fma(p.y, d.y, corneaUpright(s, fma(p.x, p.x, p.y * p.y)) * d.z));
     const floatw chord = -2.0f * b / fmax(a, (floatw)(1e-6f));
@@ -68,8 +69,8 @@ static inline Landing refractToIris(const PelEyeShape s, floatw x, floatw y, flo
     return landing;
 }
 
-// Adds a cell's flux to the texels that a box covers; the edges of the box are in texels. Rows below 0 are mirror images
-// of those above.
+// Adds a cell's flux to the texels that a box covers; the edges of the box are in texels. Rows below 0 are
+// mirror images of those above.
 static inline void spread(__global uint* sums, const PelEyeLutGrid grid, float x0, float x1, float y0,
                           float y1, float amount) {
     const float perX = 1.0f / (x1 - x0), perY = 1.0f / (y1 - y0);
@@ -88,7 +89,7 @@ static inline void spread(__global uint* sums, const PelEyeLutGrid grid, float x
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void eye_lut(const PelEyeShape shape,
                                                                              const PelEyeLutGrid grid,
-                                                                             __global uint* sums) {
+                                                                             __global uint* restrict sums) {
     const uint first = get_global_id(0) * PEL_WIDTH, row = get_global_id(1),
                slice = grid.firstSlice + get_global_id(2);
     const float turn = HALF_PI / (float)grid.rows, a = ((float)row + 0.5f) * turn;
@@ -149,8 +150,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void finish_eye_
     texels[(size_t)j * lut.rowTexels + i] = (float4)(value, value, value, 0.0f);
 }
 
-// Texels of all slices as single floats in rows of `stride`, with `border` texels of 0 before each row and at least as many
-// behind it. Light beyond the rim of the iris does not scatter: it is 0 too. One work-item: one float.
+// Texels of all slices as single floats in rows of `stride`, with `border` texels of 0 before each row and at
+// least as many behind it. Light beyond the rim of the iris does not scatter: it is 0 too. One work-item: one
+// float.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void plain_eye_lut(
     const PelEyeShape shape, const PelEyeLutGrid grid, uint stride, uint border,
     __global const uint* restrict sums, __global float* restrict plain) {
@@ -166,8 +168,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void plain_eye_l
         lit ? irradianceOf(shape, grid, sums, row * grid.width + (uint)column) : 0.0f;
 }
 
-// Convolves the plain texels with a profile. `weights`: the profile over (2 reachY + 1) x (2 reachX + 1) texels.
-// `plain` has a border of reachX. One work-item: PEL_WIDTH texels of a row of the padded image, from `firstRow` on.
+// Convolves the plain texels with a profile. `weights`: the profile over (2 reachY + 1) x (2 reachX + 1)
+// texels. `plain` has a border of reachX. One work-item: PEL_WIDTH texels of a row of the padded image, from
+// `firstRow` on.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void scatter_eye_lut(
     const PelEyeLutGrid grid, const LutLayout lut, __global const float* restrict plain, uint stride,
     __global const float4* restrict weights, int reachX, int reachY, uint firstRow,

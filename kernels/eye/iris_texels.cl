@@ -1,9 +1,9 @@
-// The albedo of an iris in the form that shading samples: float4 texels with a copied column and row (shared/lut.h), from the
-// host's square image or drawn as fibres, and smaller levels for eyes far away. The fourth component is the share of a texel inside the
-// rim: what is outside does not darken smaller levels.
+// Albedo of an iris in the layout that shading samples: float4 texels with a copied column and row
+// (shared/lut.h), from the caller's square image or drawn as fibres, with smaller levels for distant eyes.
+// The fourth component is 1 inside the rim, so that texels outside do not darken smaller levels.
 //
-// One work-item: one texel of the padded square, or of a level. Variants: PEL_FORMAT_IRIS, the image's format or 0: drawn by `seed`.
-// PEL_WIDTH is 1.
+// One work-item: one texel of the padded square, or of a level. Variants: PEL_FORMAT_IRIS, the format of the
+// image; 0: the iris is drawn from `seed`. PEL_WIDTH is 1.
 #include "lib/image/image.clh"
 #include "shared/eye.h"
 
@@ -27,7 +27,8 @@ static inline float noiseRound(float turn, uint count, uint seed) {
     return mix(noiseAt(i, seed), noiseAt((i + 1) % count, seed), t);
 }
 
-// Brightness about 1: fibres from pupil to rim, a bright wavy ring a third of the way out (the collarette), and a dark rim.
+// Brightness about 1: fibres from pupil to rim, a bright wavy ring a third of the way out (the collarette),
+// and a dark rim.
 static inline float drawn(float x, float y, uint seed) {
     const float r = fmin(hypot(x, y), 1.0f), turn = clamp(atan2(y, x) * 0.159154943f + 0.5f, 0.0f, 1.0f);
     const float bent = turn + 0.004f * (noiseRound(turn, 40, seed + 7u) - 0.5f) * sin(9.0f * r);
@@ -42,8 +43,8 @@ static inline float drawn(float x, float y, uint seed) {
 #endif
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void iris_texels(
-    __global const uchar* image, ulong offset, ulong row, ulong plane, uint pixel, uint size, uint seed,
-    uint first, __global float4* texels) {
+    __global const uchar* restrict image, ulong offset, ulong row, ulong plane, uint pixel, uint size,
+    uint seed, uint first, __global float4* restrict texels) {
     const uint i = get_global_id(0), j = get_global_id(1);
     if (i > size) return;
     const uint x = min(i, size - 1), y = min(j, size - 1);
@@ -63,9 +64,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void iris_texels
     texels[first + (size_t)j * irisRowTexels(size) + i] = texel;
 }
 
-// A level from the one before it: means over the area of each texel.
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void iris_level(uint size, uint level, uint first,
-                                                                                __global float4* texels) {
+// A level from the next finer one: means over the area of each texel.
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void iris_level(
+    const uint size, const uint level, const uint first, __global float4* restrict texels) {
     const uint i = get_global_id(0), j = get_global_id(1);
     const uint side = size >> level, finer = size >> (level - 1);
     if (i > side) return;

@@ -1,4 +1,5 @@
-// Curvature LUT of a sum of Gaussians, forms arc, ring, half-ring, sphere and penner-ring (section 2 of the mathematics).
+// Curvature LUT of a sum of Gaussians, forms arc, ring, half-ring, sphere and penner-ring (section 2 of the
+// mathematics).
 //
 // Every form is a convolution on the circle of max0(cos) with an even kernel K(t), |t| <= X:
 //   arc        K = r P(r t), X = min(pi, cut/r), not normalised
@@ -13,14 +14,15 @@
 // terms are positive:
 //   unlit side   D(-u) = E + back u        back  = 2 int_0^{pi/2} K(pi - t) cos t dt
 //   lit side     D(+u) = E + front u       front = 2 int_0^{pi/2} K(t) cos t dt
-// front is close to the kernel's mass, which has a closed form (or is 1), minus 2 int K (1 - cos t): no
+// front is close to the integral of K, which has a closed form (or is 1), minus 2 int K (1 - cos t): no
 // cancellation. For the sphere front - back is the mean of cos t, coth k - 1/k for a Gaussian. E and its
 // slope are kept at N + 1 nodes (pi/2) (j/N)^4, and E is cubic between them. The error of such an
 // interpolation, about 1e-3 sigma (h/sigma)^4, is about the same for every width sigma of K, so one mesh
 // serves all rows and profiles.
 //
-// Variants: PEL_WIDTH; PEL_FORM, one of PEL_FORM_ARC ... (PelCurvatureForm); PEL_GROUP, work-items in a group; PEL_NODES, N;
-// PEL_POINTS, Gauss points per mesh interval (1 to 3); PEL_COLUMNS (curvature_texels.clh).
+// Variants: PEL_WIDTH; PEL_FORM, one of PEL_FORM_ARC ... (PelCurvatureForm); PEL_GROUP, work-items in a
+// group; PEL_NODES, N; PEL_POINTS, Gauss points per mesh interval (1 to 3); PEL_COLUMNS
+// (curvature_texels.clh).
 #include "lib/lut/normal.clh"
 #include "lib/width.clh"
 #include "lut/curvature_texels.clh"
@@ -47,13 +49,13 @@ typedef struct Rgb {
     floatw r, g, b;
 } Rgb;
 
-inline Rgb rgbFma(const Rgb a, const floatw s, const Rgb b) {
+static inline Rgb rgbFma(const Rgb a, const floatw s, const Rgb b) {
     return (Rgb){fma(a.r, s, b.r), fma(a.g, s, b.g), fma(a.b, s, b.b)};
 }
 
 // Writes value of PEL_WIDTH rows to slot `slot` of each row's record.
-inline void storeRows(__global float4* rows, const uint firstRow, const uint height, const uint slot,
-                      const Rgb value) {
+static inline void storeRows(__global float4* rows, const uint firstRow, const uint height, const uint slot,
+                             const Rgb value) {
 #if PEL_WIDTH == 1
     rows[(size_t)firstRow * ROW_STRIDE + slot] = (float4)(value.r, value.g, value.b, 0.0f);
 #else
@@ -69,7 +71,7 @@ inline void storeRows(__global float4* rows, const uint firstRow, const uint hei
 #if PEL_FORM == PEL_FORM_SPHERE
 // exp(-z) int cos^2(h) exp(z cos h) dh over the half circle, z >= 0. Minimax fits made for this file, 7e-8
 // and 2e-8 relative.
-inline floatw latitudeFront(const floatw z) {
+static inline floatw latitudeFront(const floatw z) {
     floatw low = fma(z, (floatw)(1.33625866e-8f), (floatw)(-4.85755379e-7f));
     low = fma(z, low, (floatw)(8.44782153e-6f));
     low = fma(z, low, (floatw)(-9.71177501e-5f));
@@ -90,7 +92,7 @@ inline floatw latitudeFront(const floatw z) {
 
 // int cos^2(h) exp(-z cos h) dh over the half circle, 0 <= z <= 18, to 1e-6 of exp(z)/z, because it is
 // multiplied by k exp(-k), k >= z.
-inline floatw latitudeBack(const floatw z) {
+static inline floatw latitudeBack(const floatw z) {
     const floatw x = fmin(z, 18.0f);
     floatw sum = fma(x, (floatw)(-1.38030712e-10f), (floatw)(1.08690017e-8f));
     sum = fma(x, sum, (floatw)(-3.76110108e-7f));
@@ -108,8 +110,8 @@ inline floatw latitudeBack(const floatw z) {
 
 // K of the Gaussians first <= g < end at angle t, versine 1 - cos t, on a circle of that radius: for arc and
 // sphere as above, for the rings up to the factor that normalises them.
-inline Rgb kernelAt(__global const LutGaussian* gaussians, const uint first, const uint end,
-                    const floatw radius, const floatw t, const floatw versine, const int behind) {
+static inline Rgb kernelAt(__global const LutGaussian* gaussians, const uint first, const uint end,
+                           const floatw radius, const floatw t, const floatw versine, const int behind) {
     Rgb sum = {0.0f, 0.0f, 0.0f};
     for (uint g = first; g < end; ++g) {
         const LutGaussian G = gaussians[g];
@@ -140,8 +142,8 @@ inline Rgb kernelAt(__global const LutGaussian* gaussians, const uint first, con
 
 // One work-item: PEL_WIDTH rows, one per lane.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_rows(
-    const CurvatureLutParams params, __global const LutGaussian* gaussians, __constant LutNode* nodes,
-    __global float4* rows) {
+    const CurvatureLutParams params, __global const LutGaussian* restrict gaussians,
+    __constant LutNode* restrict nodes, __global float4* restrict rows) {
     const uint firstRow = get_global_id(0) * PEL_WIDTH;
     if (firstRow >= params.height) return;
     const floatw row = convert_floatw((intw)((int)firstRow) + lanesw());
@@ -158,7 +160,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
     const floatw frontEnd = fmin(end, (floatw)(M_PI_2_F));
     const int hasBack = anyw(end > M_PI_2_F);
 
-    Rgb E = {0.0f, 0.0f, 0.0f}, F = E, missing = E, back = E, mass = E;
+    Rgb E = {0.0f, 0.0f, 0.0f}, F = E, missing = E, back = E, total = E;
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES, E);
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES + 1, F);
     uint front = params.gaussians, behind = 0;
@@ -194,11 +196,12 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
                 const floatw weight = frontHalf * gaussWeight[q];
                 // versine of the sum of two angles
                 const floatw versine = node.versine + node.cosine * vd + node.sine * sd;
-                const Rgb k = kernelAt(gaussians, front, params.gaussians, radius, node.angle + d, versine, 0);
+                const floatw t = node.angle + d;
+                const Rgb k = kernelAt(gaussians, front, params.gaussians, radius, t, versine, 0);
                 E = rgbFma(k, weight * sd, E);
                 F = rgbFma(k, weight * (1.0f - vd), F);
                 missing = rgbFma(k, weight * versine, missing);
-                mass = rgbFma(k, weight, mass);
+                total = rgbFma(k, weight, total);
             }
             if (hasBack && behind < params.gaussians) {
                 const floatw d = backStart + fma(backHalf, (floatw)(gaussAt[q]), backHalf);
@@ -212,7 +215,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
                 E = rgbFma(k, weight * sd, E);
                 F = rgbFma(k, weight * cd, F);
                 back = rgbFma(k, weight * cosine, back);
-                mass = rgbFma(k, weight, mass);
+                total = rgbFma(k, weight, total);
 #if PEL_FORM != PEL_FORM_ARC
                 // front is 1 minus the light that does not arrive there, which includes all of back
                 missing = rgbFma(k, weight, missing);
@@ -226,7 +229,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
     const Rgb none = {0.0f, 0.0f, 0.0f};
     Rgb frontTotal, scale = {1.0f, 1.0f, 1.0f};
 #if PEL_FORM == PEL_FORM_ARC
-    // Mass within the cut and the half circle.
+    // Integral of K within the cut and the half circle.
     frontTotal = none;
     for (uint g = 0; g < params.gaussians; ++g) {
         const LutGaussian G = gaussians[g];
@@ -254,10 +257,12 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void curvature_r
     }
     scale = (Rgb){1.0f / all.r, 1.0f / all.g, 1.0f / all.b};
     back = (Rgb){2.0f * back.r * scale.r, 2.0f * back.g * scale.g, 2.0f * back.b * scale.b};
-    frontTotal = (Rgb){fma(mean.r, scale.r, back.r), fma(mean.g, scale.g, back.g), fma(mean.b, scale.b, back.b)};
+    frontTotal.r = fma(mean.r, scale.r, back.r);
+    frontTotal.g = fma(mean.g, scale.g, back.g);
+    frontTotal.b = fma(mean.b, scale.b, back.b);
 #else
-    // A kernel narrower than the mesh has no mass on it: it is a point, and E is 0.
-    scale = (Rgb){0.5f / fmax(mass.r, 1e-30f), 0.5f / fmax(mass.g, 1e-30f), 0.5f / fmax(mass.b, 1e-30f)};
+    // A kernel narrower than the mesh adds nothing to the sum: it is a point, and E is 0.
+    scale = (Rgb){0.5f / fmax(total.r, 1e-30f), 0.5f / fmax(total.g, 1e-30f), 0.5f / fmax(total.b, 1e-30f)};
     back = (Rgb){2.0f * back.r * scale.r, 2.0f * back.g * scale.g, 2.0f * back.b * scale.b};
     frontTotal = (Rgb){1.0f - 2.0f * missing.r * scale.r, 1.0f - 2.0f * missing.g * scale.g,
                        1.0f - 2.0f * missing.b * scale.b};

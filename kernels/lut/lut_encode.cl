@@ -5,17 +5,15 @@
 // Variants: PEL_GROUP, work-items in a group.
 #include "lib/lut/lut_lookup.clh"
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_float(const LutLayout lut,
-                                                                                  __global const float4* texels,
-                                                                                  __global float* packed) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_float(
+    const LutLayout lut, __global const float4* restrict texels, __global float* restrict packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x >= lut.width) return;
     vstore3(texels[(size_t)y * lut.rowTexels + x].xyz, (size_t)y * lut.width + x, packed);
 }
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_half(const LutLayout lut,
-                                                                                 __global const float4* texels,
-                                                                                 __global half* packed) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_half(
+    const LutLayout lut, __global const float4* restrict texels, __global half* restrict packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x >= lut.width) return;
     vstore_half3_rte(texels[(size_t)y * lut.rowTexels + x].xyz, (size_t)y * lut.width + x, packed);
@@ -23,7 +21,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_half
 
 // sat(2 (D - max0(u)) + 1/2): the change by scattering, doubled, around middle grey. Linear.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_curvature_bytes(
-    const LutLayout lut, __global const float4* texels, __global uchar* packed) {
+    const LutLayout lut, __global const float4* restrict texels, __global uchar* restrict packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x >= lut.width) return;
     float4 residual = texels[(size_t)y * lut.rowTexels + x] - fmax(lutColumnCentre(lut, x), 0.0f);
@@ -33,9 +31,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_curv
 }
 
 // One work-item: one row. Counts texels that the encoding above clips in some channel.
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void count_clipped(const LutLayout lut,
-                                                                                   __global const float4* texels,
-                                                                                   __global uint* clipped) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void count_clipped(
+    const LutLayout lut, __global const float4* restrict texels, __global uint* restrict clipped) {
     const uint y = get_global_id(0);
     if (y >= lut.height) return;
     uint found = 0;
@@ -49,7 +46,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void count_clipp
 
 // FaceWorks fades the first twenty-fifth of the columns to black, then stores sRGB.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_shadow_bytes(
-    const LutLayout lut, __global const float4* texels, __global uchar* packed) {
+    const LutLayout lut, __global const float4* restrict texels, __global uchar* restrict packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x >= lut.width) return;
     const float fade = 25 * x < lut.width ? (float)(25 * x) / (float)lut.width : 1.0f;
@@ -61,9 +58,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_shad
 }
 
 // Specular tables are stored unchanged, like those of d'Eon and Luebke.
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_bytes(const LutLayout lut,
-                                                                                  __global const float4* texels,
-                                                                                  __global uchar* packed) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void encode_bytes(
+    const LutLayout lut, __global const float4* restrict texels, __global uchar* restrict packed) {
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x >= lut.width) return;
     float4 value = texels[(size_t)y * lut.rowTexels + x];

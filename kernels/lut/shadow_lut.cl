@@ -2,7 +2,7 @@
 //
 // Lengths are in diffusion radii. At distance z = zeta q from the middle of the edge (z = p - 1/2) the
 // sharpened shadow is a smoothstep of half width b = 1/(2 k q) about -zeta. The table is odd about the
-// middle, T(z) + T(-z) = mass. So only the far side z >= 0 is integrated: U = mass - T, a sum of positive
+// middle, T(z) + T(-z) = total. So only the far side z >= 0 is integrated: U = total - T, a sum of positive
 // terms. For
 // one Gaussian, with beta = b/sigma, e1 = (zeta - b)/sigma, e2 = (zeta + b)/sigma and the repeated integrals
 // i_n of the normal tail,
@@ -32,17 +32,18 @@ __constant float gaussWeight[6] = {0.1713244924f, 0.3607615730f, 0.4679139346f,
                                    0.4679139346f, 0.3607615730f, 0.1713244924f};
 
 // i2 and i3: integrals of (t - x)^n / n! times the normal density over t > x.
-inline floatw secondTail(const floatw x, const floatw Q, const floatw density) {
+static inline floatw secondTail(const floatw x, const floatw Q, const floatw density) {
     return 0.5f * fma(fma(x, x, (floatw)(1.0f)), Q, -x * density);
 }
-inline floatw thirdTail(const floatw x, const floatw Q, const floatw density) {
+static inline floatw thirdTail(const floatw x, const floatw Q, const floatw density) {
     return (1.0f / 6.0f) * (fma(x, x, (floatw)(2.0f)) * density - x * fma(x, x, (floatw)(3.0f)) * Q);
 }
 
 // Integral of smoothstep((x + beta - xi) / 2 beta) over the normal density beyond x = cut: the part that a
 // cut profile does not have.
-inline floatw beyondCut(const floatw xi, const float beta, const float cut, const floatw e1, const floatw e2,
-                        const floatw i2e1, const floatw i3e1, const floatw i2e2, const floatw i3e2) {
+static inline floatw beyondCut(const floatw xi, const float beta, const float cut, const floatw e1,
+                               const floatw e2, const floatw i2e1, const floatw i3e1, const floatw i2e2,
+                               const floatw i3e2) {
     floatw density;
     const floatw Q = normalTail((floatw)(cut), &density);
     const floatw i1 = density - cut * Q;
@@ -58,7 +59,7 @@ inline floatw beyondCut(const floatw xi, const float beta, const float cut, cons
 }
 
 // normalTail, without its exponential where all lanes are far out on one side.
-inline floatw tailBeyond(const floatw x, floatw* density) {
+static inline floatw tailBeyond(const floatw x, floatw* density) {
     if (anyw(fabs(x) < REACH)) return normalTail(x, density);
     *density = 0.0f;
     return selectw((floatw)(0.0f), (floatw)(1.0f), x < 0.0f);
@@ -66,7 +67,7 @@ inline floatw tailBeyond(const floatw x, floatw* density) {
 
 // beta < 1, the cut outside of the ramp: the Taylor series of Q about xi against the moments of 3/4 (1 -
 // y^2).
-inline floatw bluntSide(const floatw xi, const float beta) {
+static inline floatw bluntSide(const floatw xi, const float beta) {
     floatw density;
     const floatw Q = tailBeyond(xi, &density);
     // Q^(2n) = He_{2n-1}(xi) density, by the recurrence of the Hermite polynomials.
@@ -84,8 +85,8 @@ inline floatw bluntSide(const floatw xi, const float beta) {
 }
 
 // beta < 1 with the cut within the ramp for some lane: quadrature of the cut profile's tail, which is 0
-// beyond the cut and all of its mass before the cut at the other end.
-inline floatw bluntCutSide(const floatw xi, const float beta, const float cut, const floatw cutTail) {
+// beyond the cut at one end and the whole integral at the other.
+static inline floatw bluntCutSide(const floatw xi, const float beta, const float cut, const floatw cutTail) {
     const floatw low = clamp((-cut - xi) / beta, -1.0f, 1.0f), high = clamp((cut - xi) / beta, -1.0f, 1.0f);
     const floatw centre = 0.5f * (low + high), halfLength = 0.5f * (high - low);
     floatw sum = (0.5f + low * (0.75f - 0.25f * low * low)) * (1.0f - 2.0f * cutTail);
@@ -97,7 +98,7 @@ inline floatw bluntCutSide(const floatw xi, const float beta, const float cut, c
     return sum;
 }
 
-inline floatw farSide(const floatw zeta, const float b, const LutGaussian G, const float cutLength) {
+static inline floatw farSide(const floatw zeta, const float b, const LutGaussian G, const float cutLength) {
     const float sigma = fmax(G.sigma, 1e-6f * b);  // narrower ones are points to the smoothstep
     const float beta = b / sigma;
     const float cut = cutLength / sigma;
@@ -132,8 +133,8 @@ typedef struct Far {
 } Far;
 
 // U of the whole profile at the distance zeta behind the middle of the edge.
-inline Far farSideOfAll(__global const LutGaussian* gaussians, const uint count, const floatw zeta,
-                        const float b, const float cut) {
+static inline Far farSideOfAll(__global const LutGaussian* gaussians, const uint count, const floatw zeta,
+                               const float b, const float cut) {
     Far U = {0.0f, 0.0f, 0.0f};
     for (uint g = 0; g < count; ++g) {
         const LutGaussian G = gaussians[g];
@@ -148,11 +149,12 @@ inline Far farSideOfAll(__global const LutGaussian* gaussians, const uint count,
 
 // `end`: U where the filter ends. It is subtracted from every texel (closed ends); 0: nothing is subtracted.
 // A profile so wide that almost nothing is left between the ends is straight there: 1/2 - z.
-inline void storeTexels(__global float4* line, const uint width, const uint x, const floatw r, const floatw g,
-                        const floatw b, const floatw z, const float3 mass, const float3 end, const int closed) {
+static inline void storeTexels(__global float4* line, const uint width, const uint x, const floatw r,
+                               const floatw g, const floatw b, const floatw z, const float3 total,
+                               const float3 end, const int closed) {
     float across[PEL_WIDTH];
     storew(z, 0, across);
-    const float3 between = mass - 2.0f * end;
+    const float3 between = total - 2.0f * end;
     float red[PEL_WIDTH], green[PEL_WIDTH], blue[PEL_WIDTH];
     storew(r, 0, red);
     storew(g, 0, green);
@@ -160,10 +162,10 @@ inline void storeTexels(__global float4* line, const uint width, const uint x, c
     for (uint lane = 0; lane < PEL_WIDTH && x + lane < width; ++lane) {
         // A tail that is nearly 0 may come out negative by rounding. No texel may be negative, on either
         // side.
-        float3 U = clamp((float3)(red[lane], green[lane], blue[lane]), (float3)(0.0f), mass);
-        float3 lit = mass - U;
+        float3 U = clamp((float3)(red[lane], green[lane], blue[lane]), (float3)(0.0f), total);
+        float3 lit = total - U;
         if (closed) {
-            U = select((float3)(0.5f - across[lane]), (U - end) / between, between > 1e-3f * mass);
+            U = select((float3)(0.5f - across[lane]), (U - end) / between, between > 1e-3f * total);
             U = clamp(U, (float3)(0.0f), (float3)(1.0f));
             lit = 1.0f - U;
         }
@@ -176,7 +178,8 @@ inline void storeTexels(__global float4* line, const uint width, const uint x, c
 // One work-item: PEL_COLUMNS columns of the lit half of one row, and their mirror images. A copy of the last
 // row and of the last column follows (shared/lut.h).
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadow_texels(
-    const ShadowLutParams params, __global const LutGaussian* gaussians, __global float4* texels) {
+    const ShadowLutParams params, __global const LutGaussian* restrict gaussians,
+    __global float4* restrict texels) {
     const uint begin = params.width / 2 + get_global_id(0) * PEL_COLUMNS;
     const uint y = get_global_id(1);
     const float row = (float)min(y, params.height - 1);
@@ -184,7 +187,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadow_texe
     const float q = params.axis == PEL_LUT_AXIS_ROOT ? rowValue * rowValue : rowValue;
     const float b = 0.5f / (params.sharpening * q);
     const uint end = min(begin + PEL_COLUMNS, params.width);
-    const float3 mass = (float3)(params.mass[0], params.mass[1], params.mass[2]);
+    const float3 total = (float3)(params.total[0], params.total[1], params.total[2]);
     float3 endU = 0.0f;
     if (params.closedEnds && begin < end) {
         const Far U = farSideOfAll(gaussians, params.gaussians, (floatw)(0.5f / q), b, params.cut);
@@ -192,7 +195,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadow_texe
         storew(U.r, 0, r);
         storew(U.g, 0, g);
         storew(U.b, 0, b_);
-        endU = clamp((float3)(r[0], g[0], b_[0]), (float3)(0.0f), 0.5f * mass);
+        endU = clamp((float3)(r[0], g[0], b_[0]), (float3)(0.0f), 0.5f * total);
     }
     for (uint x = begin; x < end; x += PEL_WIDTH) {
         const floatw column = convert_floatw((intw)((int)x) + lanesw()) + 0.5f;
@@ -203,7 +206,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void shadow_texe
             z = (column - 0.5f * (float)params.width) / (float)(max(params.width, 2u) - 1);
         z = fmin(z, 0.5f);
         const Far U = farSideOfAll(gaussians, params.gaussians, z / q, b, params.cut);
-        storeTexels(texels + (size_t)y * (params.width + 1), params.width, x, U.r, U.g, U.b, z, mass, endU,
+        storeTexels(texels + (size_t)y * (params.width + 1), params.width, x, U.r, U.g, U.b, z, total, endU,
                     params.closedEnds);
     }
 }

@@ -5,8 +5,8 @@
 // PEL_GROUP, work-items in a group.
 #include "shared/lut.h"
 
-__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void specular_texels(const LutLayout lut,
-                                                                                     __global float4* texels) {
+__kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void specular_texels(
+    const LutLayout lut, __global float4* restrict texels) {
     const uint x = get_global_id(0), y = get_global_id(1);
     if (x > lut.width) return;
     const float cosine = ((float)min(x, lut.width - 1) + 0.5f) / (float)lut.width;

@@ -1,22 +1,25 @@
 // Curvature LUT of a tabulated profile, R linear between distances: every form of curvature_lut.cl (section 2
-// of the mathematics). As there, each row becomes E and F = -E' at the nodes of one mesh of angles phi behind the terminator, with
+// of the mathematics). As there, each row becomes E and F = -E' at the nodes of one mesh of angles phi behind
+// the terminator, with
 //   unlit side D(-u) = E + back u,   lit side D(+u) = E + front u,   u = sin phi.
-//   tabulated_rows         E'' + E = K(phi) + K(pi - phi), swept from pi/2 to 0. K is the density P or R of the profile at the
-//                          distance: the arc r t, or the chord 2r sin(t/2). It may have corners and steps, but its integrals from
-//                          0 on are smooth, and each interval of the mesh takes its mass and the moment of that mass from two of
-//                          them. What an interval does with its mass is nearly linear in the distance (TableInterval).
-//   tabulated_sphere_rows  the circle of points at chord d receives the mean m(phi, d), a closed form: a sum over the
-//                          points and weights that represent the profile.
 //
-// One work-item: tabulated_rows PEL_ROWS rows, each in four lanes (red, green, blue, one unused); tabulated_sphere_rows PEL_WIDTH nodes of
-// a row; curvature_texels.clh.
-// Variants: PEL_WIDTH; PEL_GROUP, work-items in a group; PEL_NODES, intervals of the mesh; PEL_COLUMNS; PEL_HALF: the half ring,
-// nothing beyond pi/2.
+// tabulated_rows solves E'' + E = K(phi) + K(pi - phi), swept from pi/2 to 0. K is the density P or R of the
+// profile at the distance: the arc r t, or the chord 2r sin(t/2). K may have corners and steps, but its
+// integrals from 0 on are smooth. Each interval of the mesh takes the integral of K and the moment of that
+// integral from two of these. The weights of an interval are nearly linear in the distance (TableInterval).
+// One work-item: PEL_ROWS rows, each in four lanes (red, green, blue, one unused).
+//
+// tabulated_sphere_rows: the circle of points at chord d receives the mean m(phi, d), which has a closed
+// form. A row is a sum over the points and weights that represent the profile. One work-item: PEL_WIDTH nodes
+// of a row.
+//
+// Variants: PEL_WIDTH; PEL_GROUP, work-items in a group; PEL_NODES, intervals of the mesh; PEL_COLUMNS
+// (curvature_texels.clh); PEL_HALF: the half ring, without angles beyond pi/2.
 #include "lib/width.clh"
 #include "lut/curvature_texels.clh"
 
 // Row value to radius of the circle, in diffusion radii.
-inline float rowRadius(const TabulatedCurvatureLutParams params, const uint row) {
+static inline float rowRadius(const TabulatedCurvatureLutParams params, const uint row) {
     const float value = fma((float)row + 0.5f, params.rowStep, params.rowMin);
     return 1.0f / (params.axis == PEL_LUT_AXIS_ROOT ? value * value : value);
 }
@@ -42,20 +45,21 @@ typedef float4 rowsw;
 #define LAST_ROW(v) ((v).s0)
 #endif
 
-inline void storeRows(__global float4* rows, const uint firstRow, const uint height, const uint slot,
-                      const rowsw value) {
+static inline void storeRows(__global float4* rows, const uint firstRow, const uint height, const uint slot,
+                             const rowsw value) {
 #define PUT(k, s) \
     if (firstRow + k < height) rows[(size_t)(firstRow + k) * ROW_STRIDE + slot] = (float4)(value.s.xyz, 0.0f);
     PUT_ROWS(PUT)
 #undef PUT
 }
 
-// The sum plus a term. Kahan's: many terms of about the same size, which plain float would round in the same direction each time.
+// The sum plus a term. Kahan's: many terms of about the same size, which plain float would round in the same
+// direction each time.
 typedef struct Sum {
     rowsw value, lost;
 } Sum;
 
-inline void add(Sum* sum, const rowsw term) {
+static inline void add(Sum* sum, const rowsw term) {
     const rowsw due = term - sum->lost, next = sum->value + due;
     sum->lost = (next - sum->value) - due;
     sum->value = next;
@@ -63,14 +67,14 @@ inline void add(Sum* sum, const rowsw term) {
 
 // The integrals of the density up to a distance.
 typedef struct Integrals {
-    rowsw distance, density, mass, moment;
+    rowsw distance, density, total, moment;
 } Integrals;
 
-// Cubic between the distances of the list, which holds values and slopes. Distances beyond the end count as at it.
-// Inlined: a call would pass everything in memory.
-__attribute__((always_inline)) inline Integrals integralsTo(__global const float* sums,
-                                                            const TabulatedCurvatureLutParams params,
-                                                            rowsw distance) {
+// Cubic between the distances of the list, which holds values and slopes. Distances beyond the end count as
+// at it. Inlined: a call would pass everything in memory.
+static inline __attribute__((always_inline)) Integrals integralsTo(__global const float* sums,
+                                                                   const TabulatedCurvatureLutParams params,
+                                                                   rowsw distance) {
     const float end = params.end, cells = (float)params.cells;
     Integrals found;
     found.distance = distance = fmin(distance, (rowsw)(end));
@@ -84,8 +88,8 @@ __attribute__((always_inline)) inline Integrals integralsTo(__global const float
 #define VALUE PEL_SUM_DENSITY
     const rowsw density0 = OF_ROWS(CELL);
 #undef VALUE
-#define VALUE PEL_SUM_MASS
-    const rowsw mass0 = OF_ROWS(CELL);
+#define VALUE PEL_SUM_TOTAL
+    const rowsw total0 = OF_ROWS(CELL);
 #undef VALUE
 #define VALUE PEL_SUM_MOMENT
     const rowsw moment0 = OF_ROWS(CELL);
@@ -93,43 +97,45 @@ __attribute__((always_inline)) inline Integrals integralsTo(__global const float
 #define VALUE (PEL_SUM_VALUES + PEL_SUM_DENSITY)
     const rowsw density1 = OF_ROWS(CELL);
 #undef VALUE
-#define VALUE (PEL_SUM_VALUES + PEL_SUM_MASS)
-    const rowsw mass1 = OF_ROWS(CELL);
+#define VALUE (PEL_SUM_VALUES + PEL_SUM_TOTAL)
+    const rowsw total1 = OF_ROWS(CELL);
 #undef VALUE
 #define VALUE (PEL_SUM_VALUES + PEL_SUM_MOMENT)
     const rowsw moment1 = OF_ROWS(CELL);
 #undef VALUE
 #undef CELL
-    found.density = (6.0f * t * u * perLength) * (mass1 - mass0) + density0 * u * (1.0f - 3.0f * t) +
+    found.density = (6.0f * t * u * perLength) * (total1 - total0) + density0 * u * (1.0f - 3.0f * t) +
                     density1 * t * (1.0f - 3.0f * u);
-    found.mass = mass0 * value0 + density0 * slope0 + mass1 * value1 - density1 * slope1;
-    found.moment = moment0 * value0 + mass0 * slope0 + moment1 * value1 - mass1 * slope1;
+    found.total = total0 * value0 + density0 * slope0 + total1 * value1 - density1 * slope1;
+    found.moment = moment0 * value0 + total0 * slope0 + moment1 * value1 - total1 * slope1;
     return found;
 }
 
-// What E, F, the light and the mass gain from the density between two distances.
+// Contribution of the density between two distances to E, F, the light and the total.
 typedef struct Gain {
-    rowsw toE, toF, light, mass;
+    rowsw toE, toF, light, total;
 } Gain;
 
-inline void gain(Gain* sum, const TableSide side, const Integrals* nearer, const Integrals* further,
-                 const rowsw perRadius) {
+static inline void gain(Gain* sum, const TableSide side, const Integrals* nearer, const Integrals* further,
+                        const rowsw perRadius) {
     const rowsw length = further->distance - nearer->distance;
-    const rowsw mass =
-        further->mass - nearer->mass;  // rounding may make it negative, and the next interval's greater
-    rowsw moment = length * further->mass - (further->moment - nearer->moment);
+    const rowsw total =
+        further->total - nearer->total;  // rounding may make it negative, and the next interval's greater
+    rowsw moment = length * further->total - (further->moment - nearer->moment);
     if (side.antipodal)
-        moment = length * (0.5f * mass + (further->density - nearer->density) * length * (1.0f / 12.0f));
-    moment = clamp(moment, fmin(length * mass, (rowsw)(0.0f)), fmax(length * mass, (rowsw)(0.0f))) * perRadius;
-    sum->toE += mass * side.toE.at + moment * side.toE.slope;
-    sum->toF += mass * side.toF.at + moment * side.toF.slope;
-    sum->light += mass * side.light.at + moment * side.light.slope;
-    sum->mass += mass * side.mass.at + moment * side.mass.slope;
+        moment = length * (0.5f * total + (further->density - nearer->density) * length * (1.0f / 12.0f));
+    const rowsw max = length * total;
+    moment = clamp(moment, fmin(max, (rowsw)(0.0f)), fmax(max, (rowsw)(0.0f))) * perRadius;
+    sum->toE += total * side.toE.at + moment * side.toE.slope;
+    sum->toF += total * side.toF.at + moment * side.toF.slope;
+    sum->light += total * side.light.at + moment * side.light.slope;
+    sum->total += total * side.total.at + moment * side.total.slope;
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_rows(
-    const TabulatedCurvatureLutParams params, __global const TableInterval* mesh, __global const float* sums,
-    __global const float4* antipodes, __global float4* rows) {
+    const TabulatedCurvatureLutParams params, __global const TableInterval* restrict mesh,
+    __global const float* restrict sums, __global const float4* restrict antipodes,
+    __global float4* restrict rows) {
     const uint firstRow = get_global_id(0) * PEL_ROWS;
     if (firstRow >= params.height) return;
 #define RADIUS(k, s) (float4)(rowRadius(params, min(firstRow + k, params.height - 1)))
@@ -140,14 +146,15 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_r
 #undef ANTIPODE
     const rowsw zero = 0.0f;
     Sum E = {zero, zero}, F = E;
-    rowsw front = zero, back = zero, mass = zero;
+    rowsw front = zero, back = zero, total = zero;
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES, zero);
     storeRows(rows, firstRow, params.height, 2 * PEL_NODES + 1, zero);
     Integrals ahead = integralsTo(sums, params, r * params.frontReach), behind = ahead;
     for (int j = PEL_NODES - 1; j >= 0; --j) {
         const TableInterval interval = mesh[j];
         Gain inFront = {zero, zero, zero, zero}, inBack = inFront;
-        // The last row is the smallest circle, where distances are shortest. Of most rows nothing reaches far.
+        // The last row is the smallest circle, where distances are shortest. Of most rows nothing reaches
+        // far.
         if (LAST_ROW(r) * interval.front.distance < params.end) {
             const Integrals nearer = integralsTo(sums, params, r * interval.front.distance);
             gain(&inFront, interval.front, &nearer, &ahead, perRadius);
@@ -156,7 +163,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_r
 #ifndef PEL_HALF
         if (interval.back.antipodal > 1.0f) {
             inBack.toE = antipode * interval.back.toE.at, inBack.toF = antipode * interval.back.toF.at;
-            inBack.light = antipode * interval.back.light.at, inBack.mass = antipode * interval.back.mass.at;
+            inBack.light = antipode * interval.back.light.at;
+            inBack.total = antipode * interval.back.total.at;
         } else if (LAST_ROW(behind.distance) < params.end) {
             const Integrals further = integralsTo(sums, params, r * interval.back.distance);
             gain(&inBack, interval.back, &behind, &further, perRadius);
@@ -168,7 +176,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_r
         add(&E, f * interval.sine - e * interval.versine + (inFront.toE + inBack.toE));
         add(&F, (inFront.toF + inBack.toF) - e * interval.sine - f * interval.versine);
         front += inFront.light, back += inBack.light;
-        mass += inFront.mass + inBack.mass;
+        total += inFront.total + inBack.total;
         storeRows(rows, firstRow, params.height, 2 * j, E.value);
         storeRows(rows, firstRow, params.height, 2 * j + 1, F.value);
     }
@@ -176,8 +184,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_r
     front *= 2.0f, back *= 2.0f;
     if (params.normalised) {
         // If a channel has no energy within the circle, nothing scatters: E is 0 and front 1.
-        scale = 0.5f / fmax(mass, (rowsw)(1e-30f));
-        front = select((rowsw)(1.0f), front * scale, mass > 0.0f);
+        scale = 0.5f / fmax(total, (rowsw)(1e-30f));
+        front = select((rowsw)(1.0f), front * scale, total > 0.0f);
         back *= scale;
     }
     // Values that are nearly 0 may come out negative by rounding.
@@ -187,7 +195,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_r
 }
 
 // acos to 2e-8 (Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.46), over pi.
-inline floatw acosOverPi(const floatw x) {
+static inline floatw acosOverPi(const floatw x) {
     const floatw a = fabs(x);
     floatw sum = fma(a, (floatw)(-0.0012624911f), (floatw)(0.0066700901f));
     sum = fma(a, sum, (floatw)(-0.0170881256f));
@@ -200,12 +208,13 @@ inline floatw acosOverPi(const floatw x) {
     return selectw(angle, 1.0f - angle, x < 0.0f);
 }
 
-// With a = cos theta cos psi, b = sin theta sin psi and theta = pi/2 + phi, the mean over the circle at colatitude psi is
-// (a acos(-a/b) + sqrt(b^2 - a^2)) / pi, 0 from a = -b and a from b on; its derivatives by a and b are acos(-a/b) / pi
-// and sqrt(1 - a^2/b^2) / pi.
+// With a = cos theta cos psi, b = sin theta sin psi and theta = pi/2 + phi, the mean over the circle at
+// colatitude psi is (a acos(-a/b) + sqrt(b^2 - a^2)) / pi, 0 from a = -b and a from b on; its derivatives by
+// a and b are acos(-a/b) / pi and sqrt(1 - a^2/b^2) / pi.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_sphere_rows(
-    const TabulatedCurvatureLutParams params, __global const LutNode* nodes,
-    __global const TablePoints* pointsOfRow, __global const float4* points, __global float4* rows) {
+    const TabulatedCurvatureLutParams params, __global const LutNode* restrict nodes,
+    __global const TablePoints* restrict pointsOfRow, __global const float4* restrict points,
+    __global float4* restrict rows) {
     const uint firstNode = get_global_id(0) * PEL_WIDTH;
     if (firstNode > PEL_NODES) return;
     const uint row = get_global_id(1);
@@ -249,8 +258,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_s
     storew(Fg, 0, values[4]);
     storew(Fb, 0, values[5]);
     for (uint lane = 0; lane < PEL_WIDTH && firstNode + lane <= PEL_NODES; ++lane) {
-        record[2 * (firstNode + lane)] = (float4)(values[0][lane], values[1][lane], values[2][lane], 0.0f);
-        record[2 * (firstNode + lane) + 1] = (float4)(values[3][lane], values[4][lane], values[5][lane], 0.0f);
+        __global float4* node = record + 2 * (firstNode + lane);
+        node[0] = (float4)(values[0][lane], values[1][lane], values[2][lane], 0.0f);
+        node[1] = (float4)(values[3][lane], values[4][lane], values[5][lane], 0.0f);
     }
     if (firstNode == 0) {
         // max0(x) - max0(-x) is x, whose mean is that of cos psi.

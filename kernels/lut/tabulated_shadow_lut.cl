@@ -1,12 +1,13 @@
 // Shadow LUT of a tabulated profile (section 3 of the mathematics), lengths in diffusion radii. As in
-// shadow_lut.cl the far side U = mass - T is integrated: with the ramp of half width b about -zeta and the
-// mass M1(x) of P beyond x,
+// shadow_lut.cl the far side U = total - T is integrated: with the ramp of half width b about -zeta and the
+// tail M1(x), the integral of P beyond x,
 //   U = int_{-1}^{1} 3/4 (1 - y^2) M1(zeta + b y) dy
 //     = 3/(2 b^2) (M2(e1) + M2(e2)) - 3/(2 b^3) (M3(e1) - M3(e2)),   e1 = zeta - b, e2 = zeta + b
-// with the further tails of shared/lut_integral.h. The second form is used where b is at least PEL_WIDE_RAMP radii; its
-// rounding error is 2e-6. Below, where it would cancel, the first form is used: on nodes b / PEL_RAMP_PARTS apart, from samples of
-// M1 at the same distances and constant weights; near zeta = 0, where P may be sharper than that, by quadrature over parts of the list
-// of tails. U is cubic between nodes. Where ramps are so sharp that nodes would outnumber texels, quadrature does it all.
+// with the further tails of shared/lut_integral.h. The second form is used where b is at least PEL_WIDE_RAMP
+// radii; its rounding error is 2e-6. Below, where it would cancel, the first form is used: on nodes b /
+// PEL_RAMP_PARTS apart, from samples of M1 at the same distances and constant weights; near zeta = 0, where P
+// may be sharper than that, by quadrature over parts of the list of tails. U is cubic between nodes. Where
+// ramps are so sharp that nodes would outnumber texels, all of it is by quadrature.
 //
 //   tabulated_shadow_rows   nodes of a row: U and b dU/dzeta at zeta = 0, b / PEL_RAMP_PARTS, ...
 //   tabulated_shadow_texels texels, followed by a copy of the last row and column (shared/lut.h)
@@ -16,10 +17,10 @@
 #include "lib/lut/profile_tails.clh"
 #include "shared/lut.h"
 
-// M2(x) + k M3(x) for any x. P is even, so a tail from x < 0 is the whole minus its mirror image. Both tails in one: the
-// value of one is the slope of the other, and their weights are the same.
-inline float4 tailsFrom(__global const float4* tails, const float x, const float k, const float4 mass,
-                        const float end) {
+// M2(x) + k M3(x) for any x. P is even, so a tail from x < 0 is the whole minus its mirror image. Both tails
+// in one: the value of one is the slope of the other, and their weights are the same.
+static inline float4 tailsFrom(__global const float4* tails, const float x, const float k, const float4 total,
+                               const float end) {
     const float s = fabs(x), sign = x < 0.0f ? -1.0f : 1.0f;
     float4 sum = 0.0f;
     if (s < end) {
@@ -37,13 +38,13 @@ inline float4 tailsFrom(__global const float4* tails, const float x, const float
     }
     if (x < 0.0f) {
         const float4 whole = 2.0f * tails[PEL_TAIL_SECOND];
-        sum += 0.5f * x * x * mass + whole - k * x * (x * x * (1.0f / 6.0f) * mass + whole);
+        sum += 0.5f * x * x * total + whole - k * x * (x * x * (1.0f / 6.0f) * total + whole);
     }
     return sum;
 }
 
 // Share of the ramp from -1 to y.
-inline float rampBefore(const float y) {
+static inline float rampBefore(const float y) {
     return 0.5f + y * (0.75f - 0.25f * y * y);
 }
 
@@ -55,9 +56,10 @@ typedef struct Far {
     float4 U, slope;  // slope: b dU/dzeta
 } Far;
 
-// The part of the ramp where sign (zeta + b y) > 0, of tails of |zeta + b y|. Quadrature goes over parts of PEL_RAMP_CELLS cells.
-inline Far rampOnSide(__global const float4* tails, const float zeta, const float b, const float sign,
-                      const float end) {
+// The part of the ramp where sign (zeta + b y) > 0, of tails of |zeta + b y|. Quadrature goes over parts of
+// PEL_RAMP_CELLS cells.
+static inline Far rampOnSide(__global const float4* tails, const float zeta, const float b, const float sign,
+                             const float end) {
     Far sum = {0.0f, 0.0f};
     // On this side x = sign (zeta + b y) runs from `from` to `to`.
     const float from = fmax(sign * zeta - b, 0.0f), to = fmin(sign * zeta + b, end);
@@ -78,7 +80,7 @@ inline Far rampOnSide(__global const float4* tails, const float zeta, const floa
             const float x = clamp(fma(b, at, sign * zeta), 0.0f, end);
             const int cell = tailCell(x, end);
             const TailPlace place = tailPlace(x, cell, end);
-            sum.U += weight * tailInCell(tails, PEL_TAIL_MASS, cell, place);
+            sum.U += weight * tailInCell(tails, PEL_TAIL_TOTAL, cell, place);
             sum.slope += weight * spreadInCell(tails, cell, place);
         }
         y = next;
@@ -86,11 +88,11 @@ inline Far rampOnSide(__global const float4* tails, const float zeta, const floa
     return sum;
 }
 
-inline Far farByQuadrature(__global const float4* tails, const float zeta, const float b, const float4 mass,
-                           const float end) {
+static inline Far farByQuadrature(__global const float4* tails, const float zeta, const float b,
+                                  const float4 total, const float end) {
     const float before = rampBefore(clamp(-zeta / b, -1.0f, 1.0f));  // the part at x < 0
     const Far ahead = rampOnSide(tails, zeta, b, 1.0f, end), behind = rampOnSide(tails, zeta, b, -1.0f, end);
-    const Far far_ = {mass * before + ahead.U - behind.U, -b * (ahead.slope + behind.slope)};
+    const Far far_ = {total * before + ahead.U - behind.U, -b * (ahead.slope + behind.slope)};
     return far_;
 }
 
@@ -101,7 +103,7 @@ typedef struct ShadowRow {
     int nodes;                  // intervals between them; 0: none
 } ShadowRow;
 
-inline ShadowRow shadowRow(const TabulatedShadowLutParams params, const uint y) {
+static inline ShadowRow shadowRow(const TabulatedShadowLutParams params, const uint y) {
     ShadowRow row;
     const float value = fma((float)y + 0.5f, params.reciprocalStep, params.reciprocalMin);
     row.q = params.axis == PEL_LUT_AXIS_ROOT ? value * value : value;
@@ -112,8 +114,8 @@ inline ShadowRow shadowRow(const TabulatedShadowLutParams params, const uint y) 
 }
 
 // At zeta >= 0. `nodes`: of the row.
-inline float4 farSide(__global const float4* tails, __global const float4* nodes, const ShadowRow row,
-                      const float zeta, const float4 mass, const float end) {
+static inline float4 farSide(__global const float4* tails, __global const float4* nodes, const ShadowRow row,
+                             const float zeta, const float4 total, const float end) {
     if (zeta - row.b >= end) return (float4)(0.0f);
     if (row.nodes > 0) {
         const float at = zeta * row.perSpacing;
@@ -123,20 +125,21 @@ inline float4 farSide(__global const float4* tails, __global const float4* nodes
         return u * u * ((1.0f + 2.0f * t) * node[0] + step * t * node[1]) +
                t * t * ((3.0f - 2.0f * t) * node[2] - step * u * node[3]);
     }
-    if (row.b < PEL_WIDE_RAMP) return farByQuadrature(tails, zeta, row.b, mass, end).U;
+    if (row.b < PEL_WIDE_RAMP) return farByQuadrature(tails, zeta, row.b, total, end).U;
     const float r = 1.0f / row.b, e1 = zeta - row.b, e2 = zeta + row.b;
-    return 1.5f * r * r * (tailsFrom(tails, e1, -r, mass, end) + tailsFrom(tails, e2, r, mass, end));
+    return 1.5f * r * r * (tailsFrom(tails, e1, -r, total, end) + tailsFrom(tails, e2, r, total, end));
 }
 
 // samples: room for nodes + 2 PEL_RAMP_PARTS + PEL_RAMP_TOGETHER values, and as many slopes, of each row.
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_shadow_rows(
-    const TabulatedShadowLutParams params, __global const float4* tails, __global const RampWeight* weights,
-    __global float4* samples, __global float4* nodes) {
+    const TabulatedShadowLutParams params, __global const float4* restrict tails,
+    __global const RampWeight* restrict weights, __global float4* restrict samples,
+    __global float4* restrict nodes) {
     const uint y = get_global_id(0);
     if (y >= params.height) return;
     const ShadowRow row = shadowRow(params, y);
     if (row.nodes == 0) return;
-    const float4 mass = 2.0f * tails[PEL_TAIL_MASS];
+    const float4 total = 2.0f * tails[PEL_TAIL_TOTAL];
     const int count = PEL_RAMP_SAMPLES(row.nodes);
     __global float4 *values = samples + (size_t)y * 2 * count, *slopes = values + count;
     nodes += (size_t)y * PEL_RAMP_RECORD(row.nodes);
@@ -149,10 +152,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_s
         if (s < params.end) {
             const int cell = tailCell(s, params.end);
             const TailPlace place = tailPlace(s, cell, params.end);
-            tail = tailInCell(tails, PEL_TAIL_MASS, cell, place);
+            tail = tailInCell(tails, PEL_TAIL_TOTAL, cell, place);
             spread = spreadInCell(tails, cell, place);
         }
-        values[held] = x < 0.0f ? mass - tail : tail;
+        values[held] = x < 0.0f ? total - tail : tail;
         slopes[held] = -row.spacing * spread;
     }
     for (int k = held; k < count; ++k) values[k] = slopes[k] = 0.0f;
@@ -164,7 +167,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_s
         }
         if (i < PEL_RAMP_PARTS + PEL_RAMP_SHARP) {
             for (int k = i; k < min(i + PEL_RAMP_TOGETHER, row.nodes + 1); ++k) {
-                const Far far_ = farByQuadrature(tails, (float)k * row.spacing, row.b, mass, params.end);
+                const Far far_ = farByQuadrature(tails, (float)k * row.spacing, row.b, total, params.end);
                 nodes[2 * k] = far_.U, nodes[2 * k + 1] = far_.slope;
             }
             continue;
@@ -188,19 +191,19 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_s
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_shadow_texels(
-    const TabulatedShadowLutParams params, __global const float4* tails, __global const float4* nodes,
-    __global float4* texels) {
+    const TabulatedShadowLutParams params, __global const float4* restrict tails,
+    __global const float4* restrict nodes, __global float4* restrict texels) {
     const uint begin = params.width / 2 + get_global_id(0) * PEL_COLUMNS;
     const uint y = get_global_id(1);
     const ShadowRow row = shadowRow(params, min(y, params.height - 1));
     nodes += (size_t)min(y, params.height - 1) * PEL_RAMP_RECORD(row.nodes);
     const float perQ = 1.0f / row.q;
-    const float4 mass = 2.0f * tails[PEL_TAIL_MASS];
+    const float4 total = 2.0f * tails[PEL_TAIL_TOTAL];
     // The light that is left where the filter ends.
     float4 end = 0.0f;
     if (params.closedEnds && begin < params.width)
-        end = clamp(farSide(tails, nodes, row, 0.5f * perQ, mass, params.end), 0.0f, 0.5f * mass);
-    const float4 between = mass - 2.0f * end;
+        end = clamp(farSide(tails, nodes, row, 0.5f * perQ, total, params.end), 0.0f, 0.5f * total);
+    const float4 between = total - 2.0f * end;
     __global float4* line = texels + (size_t)y * (params.width + 1);
     for (uint x = begin; x < min(begin + PEL_COLUMNS, params.width); ++x) {
         const float column = (float)x + 0.5f, w = fmin(column / (float)params.width, 1.0f);
@@ -209,10 +212,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void tabulated_s
         if (params.axis == PEL_LUT_AXIS_ROOT)
             z = (column - 0.5f * (float)params.width) / (float)(max(params.width, 2u) - 1);
         z = fmin(z, 0.5f);
-        float4 U = clamp(farSide(tails, nodes, row, z * perQ, mass, params.end), 0.0f, mass);
-        float4 lit = mass - U;
+        float4 U = clamp(farSide(tails, nodes, row, z * perQ, total, params.end), 0.0f, total);
+        float4 lit = total - U;
         if (params.closedEnds) {
-            U = clamp(select((float4)(0.5f - z), (U - end) / between, between > 1e-3f * mass), 0.0f, 1.0f);
+            U = clamp(select((float4)(0.5f - z), (U - end) / between, between > 1e-3f * total), 0.0f, 1.0f);
             lit = 1.0f - U;
         }
         U.w = 0.0f;

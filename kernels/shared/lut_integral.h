@@ -53,7 +53,7 @@ typedef struct ShadowLutParams {
     float reciprocalStep;  // per row
     float sharpening;
     float cut;                // half length of the integral, diffusion radii
-    float mass[3];            // of the cut profile, per channel
+    float total[3];           // of the cut profile, per channel
     unsigned int axis;        // LUT_AXIS_...
     unsigned int closedEnds;  // rows are rescaled to run from 0 to 1
 } ShadowLutParams;
@@ -64,7 +64,7 @@ typedef struct ShadowLutParams {
 // 0 ... PEL_TAIL_CELLS: PEL_TAIL_VALUES float4 (R, G, B, 0) each.
 #define PEL_TAIL_CELLS 512
 #define PEL_TAIL_SPREAD 0  // P
-#define PEL_TAIL_MASS 1    // integral of P beyond
+#define PEL_TAIL_TOTAL 1   // integral of P beyond
 #define PEL_TAIL_FIRST 2   // integral of (t - s) P beyond
 #define PEL_TAIL_SECOND 3  // ... of (t - s)^2 / 2 P
 #define PEL_TAIL_THIRD 4   // ... of (t - s)^3 / 6 P
@@ -73,7 +73,7 @@ typedef struct ShadowLutParams {
 // A profile's density along the surface (P, or R for the rings) and its integrals from 0 on, at `cells` + 1
 // distances that are spread in the same way: PEL_SUM_VALUES float4 (R, G, B, 0) each.
 #define PEL_SUM_DENSITY 0
-#define PEL_SUM_MASS 1    // integral of the density
+#define PEL_SUM_TOTAL 1   // integral of the density
 #define PEL_SUM_MOMENT 2  // integral of that
 #define PEL_SUM_VALUES 3
 
@@ -87,14 +87,13 @@ typedef struct TableWeight {
 // What an interval of the mesh does with the density on one side of the shaded point.
 typedef struct TableSide {
     float distance;  // of the node at the interval's smaller angle, in radii
-    // 1: the moment of the mass comes from the density at both ends, for the ends are too near to one another
-    // for
+    // 1: the moment is computed from the density at both ends, which are so near to one another that differences
+    // of sums cancel in float. 2: the total is too, and the weights are for the angle instead.
     float antipodal;
-    // differences of sums in float; 2: the mass, too, and weights are for the angle instead
     TableWeight toE;    // sin of the angle from that node on
     TableWeight toF;    // its cos
     TableWeight light;  // cos of the angle from the shaded point on
-    TableWeight mass;   // 1
+    TableWeight total;  // 1
 } TableSide;
 
 // An interval of the mesh, with the turn of E and F over it.
@@ -113,7 +112,7 @@ typedef struct TabulatedCurvatureLutParams {
     float end;                // where the sums end, diffusion radii
     unsigned int cells;       // of the sums
     float frontReach;         // distance of pi/2, in radii
-    unsigned int normalised;  // rows are divided by their mass
+    unsigned int normalised;  // rows are divided by their total
 } TabulatedCurvatureLutParams;
 
 // Which points represent the profile on the sphere of a row.

@@ -68,7 +68,8 @@ class EyeFrame {
         return execute(shader);
     }
     bool isEye(size_t at) const {
-        const float px = pixel_ * (float(at % width) - centerX_), py = pixel_ * (centerY_ - float(at / width));
+        const float px = pixel_ * (float(at % width) - centerX_);
+        const float py = pixel_ * (centerY_ - float(at / width));
         return px * px + py * py < rimRadius * rimRadius;
     }
     size_t pixels() const { return size_t(width) * height; }

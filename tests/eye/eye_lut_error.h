@@ -41,7 +41,8 @@ inline void addSlice(const PelEyeLutDesc& desc, const reference::Eye& eye, const
         for (uint32_t i = 0; i < desc.width; ++i) {
             const double is = texels[3 * ((size_t(z) * desc.height + j) * desc.width + i)],
                          should = truth.texels[size_t(j) * desc.width + i];
-            const double x = ((i + 0.5) / desc.width * 2 - 1) * eye.iris, y = (j + 0.5) / desc.height * eye.iris;
+            const double x = ((i + 0.5) / desc.width * 2 - 1) * eye.iris;
+            const double y = (j + 0.5) / desc.height * eye.iris;
             const double slope = 2 * eye.concavity * std::hypot(x, y) / (eye.iris * eye.iris);
             error->sum2 += (is - should) * (is - should);
             error->sum += should;

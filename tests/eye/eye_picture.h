@@ -45,8 +45,10 @@ struct EyeScene {
             for (int i = 0; i < n; ++i) {
                 const double x = (i + 0.5) / n * 2 - 1, y = (j + 0.5) / n * 2 - 1, r = std::hypot(x, y),
                              a = std::atan2(y, x);
-                for (int c = 0; c < 3; ++c)
-                    texture.push_back(float(0.5 + 0.3 * std::sin(12 * r + c) * std::cos((5 + c) * a) + 0.1 * x));
+                for (int c = 0; c < 3; ++c) {
+                    const double pattern = std::sin(12 * r + c) * std::cos((5 + c) * a);
+                    texture.push_back(float(0.5 + 0.3 * pattern + 0.1 * x));
+                }
             }
     }
 };
@@ -166,7 +168,8 @@ class EyePicture {
 
     Rgb textureAt(reference::Vec2 uv) const {
         const int n = s_.textureSize;
-        const double x = std::clamp(uv.x * n - 0.5, 0.0, n - 1.0), y = std::clamp(uv.y * n - 0.5, 0.0, n - 1.0);
+        const double x = std::clamp(uv.x * n - 0.5, 0.0, n - 1.0);
+        const double y = std::clamp(uv.y * n - 0.5, 0.0, n - 1.0);
         const int i = std::min(int(x), n - 2), j = std::min(int(y), n - 2);
         Rgb sum;
         for (int c = 0; c < 3; ++c) {
@@ -187,7 +190,7 @@ class EyePicture {
         const Vec3 corneal = truth_.corneaNormal(h.point.x, h.point.y);
         const Vec3 n = h.share > 0 ? normalized(mix(h.normal, corneal, h.share)) : h.normal;
         const double wet = s_.wetness.empty() ? 0 : s_.wetness[k];
-        const double roughness = truth_.tearRoughness + wet * (truth_.wetLineRoughness - truth_.tearRoughness);
+        const double roughness = std::lerp(truth_.tearRoughness, truth_.wetLineRoughness, wet);
         for (size_t i = 0; i < s_.lights.size(); ++i) {
             const double w = i == 0 && !s_.shadow.empty() ? s_.shadow[k] : 1;
             const Vec3 l = toEye(vec(s_.lights[i].toLight));
@@ -197,8 +200,8 @@ class EyePicture {
             if (h.share > 0) {
                 const double side = std::hypot(l.x, l.y), ex = side > 1e-9 ? l.x / side : 1,
                              ey = side > 1e-9 ? l.y / side : 0;
-                onIris =
-                    onIris + caustics[i].at(h.px * ex + h.py * ey, h.py * ex - h.px * ey, truth_.iris) * color;
+                const double x = h.px * ex + h.py * ey, y = h.py * ex - h.px * ey;
+                onIris = onIris + caustics[i].at(x, y, truth_.iris) * color;
             }
         }
         const Rgb everywhere = vec(s_.ambient.constant);

@@ -20,7 +20,8 @@ std::vector<float> tableOf(const PelEyeLutDesc& desc) {
     return Lut(Device(""), desc).read<float>(PEL_LUT_FLOAT);
 }
 
-// Some slices. 10^8 photons for a whole table leave noise of 1.2 % of its mean, so each slice takes more photons.
+// Some slices. 10^8 photons for a whole table leave noise of 1.2 % of its mean, so each slice takes more
+// photons.
 LutError errorOf(const PelEye& eye, std::initializer_list<uint32_t> slices, uint64_t photons) {
     const PelEyeLutDesc desc = descOf(eye);
     const std::vector<float> texels = tableOf(desc);
@@ -147,7 +148,8 @@ TEST(EyeLut, ScattersByTheProfile) {
     const Profile profile = Profile::gaussians(terms);
     desc.profile = profile.get();
     const std::vector<float> scattered = tableOf(desc);
-    // The sum over the plane, from the plain table by brute force; sub-texels stand for the profile's narrow part.
+    // The sum over the plane, from the plain table by brute force; sub-texels stand for the profile's narrow
+    // part.
     const double dx = 12.0 / 64, dy = 6.0 / 64;
     for (const auto& [z, j, i] :
          {std::array{8, 0, 40}, std::array{8, 13, 20}, std::array{16, 30, 33}, std::array{3, 5, 60}})

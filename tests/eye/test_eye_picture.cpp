@@ -36,7 +36,8 @@ TEST(EyePicture, RefractsAsTheTracer) {
     EXPECT_LT(errorOf(scene, "index 1").rms, tolerance::eyePictureRms);
 }
 
-// From afar a pixel shows the mean of many texels. A texture whose detail has no place in the picture must not flicker in it.
+// From afar a pixel shows the mean of many texels. A texture whose detail has no place in the picture must
+// not flicker in it.
 TEST(EyePicture, SmallEyesShowTheMeanOfTheirTexture) {
     EyeScene fine;
     fine.ambient.constant[0] = fine.ambient.constant[1] = fine.ambient.constant[2] = 1;

@@ -109,7 +109,8 @@ TEST(EyeSequence, EqualsNewShaders) {
     for (const State& state : states) {
         SCOPED_TRACE(state.name);
         Shader fresh(device);
-        const std::vector<float> wanted = sequence.shade(state, fresh), picture = sequence.shade(state, shader);
+        const std::vector<float> wanted = sequence.shade(state, fresh);
+        const std::vector<float> picture = sequence.shade(state, shader);
         EXPECT_GT(sequence.frames[state.frame]->stats.pixelsCaustic, 0u);
         EXPECT_TRUE(picture == wanted) << "the picture depends on what was shaded before";
         if (!pictures.empty()) {

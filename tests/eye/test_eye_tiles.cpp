@@ -158,8 +158,8 @@ TEST(EyeTiles, BadInputGivesFiniteValues) {
     }
 }
 
-// Pixels of an eye whose texture or surroundings are NaN or Inf show PelShaderOptions.invalidColor, wetness counts as the nearest of 0 and 1 (NaN
-// as 0), and no other pixels change.
+// Pixels of an eye whose texture or surroundings are NaN or Inf show PelShaderOptions.invalidColor, wetness
+// counts as the nearest of 0 and 1 (NaN as 0), and no other pixels change.
 TEST(EyeTiles, NanInImagesOfEyesStaysInItsPixels) {
     EyeFrame frame;
     const float bad[] = {std::nanf(""), INFINITY, -INFINITY};
@@ -215,7 +215,8 @@ TEST(EyeTiles, NanInImagesOfEyesStaysInItsPixels) {
     sameBeyond(reflecting(cube), mirrored, pixels / 4);
 }
 
-// Light of the lids does not reach the eye, nor the other way: by every method that gathers on the screen. Within the sclera it does scatter.
+// Light of the lids does not reach the eye, nor the other way: by every method that gathers on the screen.
+// Within the sclera it does scatter.
 TEST(EyeTiles, NothingBleedsBetweenEyeAndLid) {
     EyeFrame frame;
     const size_t pixels = frame.pixels();

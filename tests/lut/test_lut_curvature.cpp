@@ -1,7 +1,4 @@
-// The curvature LUT that the device integrates, against the oracle's adaptive quadrature and against data of
-// others.
-#include <random>
-
+// Curvature tables: limits, encodings, and the tables of FaceWorks.
 #include "lut_cases.h"
 #include "test_size.h"
 
@@ -29,49 +26,7 @@ reference::CurvatureLutSpec specOf(const PelCurvatureLutDesc& desc) {
     return spec;
 }
 
-// Compares up to `samples` texels, the corners always among them.
-void compareTexels(const Device& device, const PelCurvatureLutDesc& usual, int samples) {
-    const PelCurvatureLutDesc desc = sizedTable(usual);
-    const std::vector<float> texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
-    const auto profile = reference::profileForRadius(reference::skinProfile(),
-                                                     desc.diffusionRadius ? desc.diffusionRadius : 2.7);
-    const auto spec = specOf(desc);
-    std::mt19937 random(7);
-    for (int i = 0; i < samples; ++i) {
-        const int x = i < 4 ? (i & 1) * (spec.width - 1) : int(random() % desc.width);
-        const int y = i < 4 ? (i >> 1) * (spec.height - 1) : int(random() % desc.height);
-        const reference::Rgb truth = reference::curvatureTexel(spec, *profile, x, y);
-        for (int c = 0; c < 3; ++c)
-            ASSERT_NEAR(texels[(size_t(y) * desc.width + x) * 3 + c], truth[c], tolerance::lutTexelGaussians)
-                << "texel (" << x << ", " << y << ") channel " << c << ", r = " << spec.radius(y);
-    }
-}
-
 }  // namespace
-
-TEST(CurvatureLut, TexelsEqualTheIntegral) {
-    compareTexels(Device(""), pelCurvatureLutDescFaceWorks(), 600);
-}
-
-TEST(CurvatureLut, OtherSizesAndUnits) {
-    const Device device("");
-    compareTexels(device, describe(1, 1, 1, 100, 2.7f), 1);
-    compareTexels(device, describe(1, 9, 2, 50, 2.7f), 9);
-    compareTexels(device, describe(37, 3, 2, 50, 2.7f), 60);
-    compareTexels(device, describe(64, 64, 5, 5, 2.7f), 60);
-    compareTexels(device, describe(32, 33, 0.001f, 0.1f, 0.0027f), 60);  // metres
-}
-
-TEST(CurvatureLut, SharpAndFlatSurfaces) {
-    const Device device("");
-    // 0.05 to 10,000 times the widest sigma
-    compareTexels(device, describe(64, 16, 0.135f, 0.135f, 2.7f), 100);
-    compareTexels(device, describe(64, 16, 0.135f, 27000, 2.7f), 150);
-    compareTexels(device, describe(64, 16, 1000, 27000, 2.7f), 150);
-    compareTexels(device, describe(1024, 4, 27000, 27000, 2.7f), 150);
-    compareTexels(device, describe(33, 7, 1, 100, 270), 60);
-    compareTexels(device, describe(33, 7, 1, 100, 0.01f), 60);
-}
 
 TEST(CurvatureLut, LimitsOfRadius) {
     const Device device("");

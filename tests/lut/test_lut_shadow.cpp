@@ -1,8 +1,6 @@
-// The shadow LUT that the device integrates, against the oracle's adaptive quadrature and against data of
-// others.
+// Shadow tables: limits, closed ends, encodings, and the tables of FaceWorks.
 #include <algorithm>
 #include <limits>
-#include <random>
 
 #include "lut_cases.h"
 #include "test_size.h"
@@ -36,44 +34,7 @@ reference::ShadowLutSpec specOf(const PelShadowLutDesc& desc) {
             desc.sharpening};
 }
 
-void compareTexels(const Device& device, const PelShadowLutDesc& usual, int samples) {
-    const PelShadowLutDesc desc = sizedTable(usual);
-    const std::vector<float> texels = Lut(device, desc).read<float>(PEL_LUT_FLOAT);
-    const auto profile = reference::skinProfile();
-    const auto spec = specOf(desc);
-    std::mt19937 random(11);
-    for (int i = 0; i < samples; ++i) {
-        const int x = i < 4 ? (i & 1) * (spec.width - 1) : int(random() % desc.width);
-        const int y = i < 4 ? (i >> 1) * (spec.height - 1) : int(random() % desc.height);
-        const reference::Rgb truth = reference::shadowTexel(spec, *profile, x, y);
-        for (int c = 0; c < 3; ++c)
-            ASSERT_NEAR(texels[(size_t(y) * desc.width + x) * 3 + c], truth[c], tolerance::lutTexelGaussians)
-                << "texel (" << x << ", " << y << ") channel " << c << ", sharpening " << desc.sharpening
-                << ", widths " << desc.widthMin << " to " << desc.widthMax;
-    }
-}
-
 }  // namespace
-
-TEST(ShadowLut, TexelsEqualTheIntegral) {
-    compareTexels(Device(""), pelShadowLutDescFaceWorks(), 1000);
-}
-
-TEST(ShadowLut, OtherSizesAndUnits) {
-    const Device device("");
-    for (const Case& c :
-         {Case{1, 1, 8, 100, 2.7f, 10}, Case{1, 5, 8, 100, 2.7f, 10}, Case{2, 2, 8, 100, 2.7f, 10},
-          Case{37, 3, 8, 100, 2.7f, 10}, Case{64, 64, 20, 20, 2.7f, 10},
-          Case{64, 64, 0.008f, 0.1f, 0.0027f, 10}, Case{64, 64, 3, 40, 1, 4}})
-        compareTexels(device, describe(c), 60);
-}
-
-TEST(ShadowLut, SharpBluntNarrowAndWide) {
-    const Device device("");
-    for (float sharpening : {1.0f, 3.0f, 100.0f, 1e6f})
-        for (auto [widthMin, widthMax] : {std::pair{8.0f, 100.0f}, {0.1f, 8.0f}, {100.0f, 30000.0f}})
-            compareTexels(device, describe({128, 16, widthMin, widthMax, 2.7f, sharpening}), 120);
-}
 
 TEST(ShadowLut, LimitsAreFiniteAndMonotone) {
     const Device device("");
@@ -91,8 +52,9 @@ TEST(ShadowLut, LimitsAreFiniteAndMonotone) {
     }
 }
 
-// Closed ends: (T - T(0)) / (T(1) - T(0)) per row of the oracle's T, 0 and 1 at the ends of the axis of roots, whose columns are even
-// in the position across the edge and whose rows are even in the root of 1/width.
+// Closed ends: (T - T(0)) / (T(1) - T(0)) per row of the oracle's T, 0 and 1 at the ends of the axis of
+// roots, whose columns are even in the position across the edge and whose rows are even in the root of
+// 1/width.
 TEST(ShadowLut, ClosedEndsRunFromNoneToAll) {
     const Device device("");
     const auto profile = reference::skinProfile();

@@ -34,7 +34,8 @@ struct Shaped {
     float meanFreePath[3], albedo[3];  // mm
 };
 constexpr Shaped shaped[] = {
-    // 1 / (absorption + reduced scattering) of skin1 above, to three digits, and its diffuse reflectance in the same table.
+    // 1 / (absorption + reduced scattering) of skin1 above, to three digits, and its diffuse reflectance in
+    // the same table.
     {"skin-burley", {1.295f, 0.952f, 0.671f}, {0.44f, 0.22f, 0.13f}},
     {"paraffin", {4.0f, 3.2f, 2.2f}, {0.92f, 0.89f, 0.80f}},
     {"jade", {1.2f, 2.6f, 1.5f}, {0.35f, 0.70f, 0.42f}},

@@ -20,11 +20,11 @@ constexpr double pi = std::numbers::pi;
 double closedForm(double sigma, double s0, double s1, double cut) {
     const double v = sigma * sigma;
     auto density = [&](double s) { return std::exp(-s * s / (2 * v)) / std::sqrt(2 * pi * v); };
-    auto mass = [&](double a, double b) {
+    auto share = [&](double a, double b) {
         return 0.5 * (std::erf(b / (sigma * std::numbers::sqrt2)) - std::erf(a / (sigma * std::numbers::sqrt2)));
     };
     const double a = std::clamp(s0, -cut, cut), b = std::clamp(s1, -cut, cut);
-    double moment[4] = {mass(a, b), -v * (density(b) - density(a))};
+    double moment[4] = {share(a, b), -v * (density(b) - density(a))};
     for (int n = 2; n < 4; ++n)
         moment[n] = (n - 1) * v * moment[n - 2] -
                     v * (std::pow(b, n - 1) * density(b) - std::pow(a, n - 1) * density(a));
@@ -33,7 +33,7 @@ double closedForm(double sigma, double s0, double s1, double cut) {
     const double ramp =
         3 / w2 * (moment[2] - 2 * s0 * moment[1] + s0 * s0 * moment[0]) -
         2 / w3 * (moment[3] - 3 * s0 * moment[2] + 3 * s0 * s0 * moment[1] - s0 * s0 * s0 * moment[0]);
-    return ramp + mass(b, cut);
+    return ramp + share(b, cut);
 }
 
 TEST(ReferenceShadowLut, OneGaussianHasAClosedForm) {
@@ -169,10 +169,10 @@ TEST(ReferenceEncoding, FaceWorksTablesAreOneStepFromExactAtMost) {
 TEST(ReferenceBeckmann, IsNormalisedOverTheHemisphereAndHasItsLimits) {
     for (double m : {0.1, 0.3, 0.8}) {
         // A distribution of slopes: the integral of P cos over the hemisphere is pi.
-        const double mass = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
+        const double share = boost::math::quadrature::gauss_kronrod<double, 61>::integrate(
             [&](double a) { return 2 * pi * beckmann(std::cos(a), m) * std::cos(a) * std::sin(a); }, 0,
             pi / 2, 12, 1e-12);
-        EXPECT_NEAR(mass, pi, tolerance::oracleClosedForm) << "m " << m;
+        EXPECT_NEAR(share, pi, tolerance::oracleClosedForm) << "m " << m;
         EXPECT_NEAR(beckmann(1, m), 1 / (m * m), tolerance::oracleClosedForm);
     }
     EXPECT_EQ(beckmann(0, 0.3), 0);

@@ -1,4 +1,5 @@
-// kernels/lib/shading/specular_table.clh as a renderer includes it: against the oracle, and against the same texels in double precision.
+// kernels/lib/shading/specular_table.clh as a renderer includes it: against the oracle, and against the same
+// texels in double precision.
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <gtest/gtest.h>

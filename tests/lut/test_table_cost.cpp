@@ -1,4 +1,5 @@
-// What a table costs beside its arithmetic: buffers, launches, transfers, waits, and pages that the system maps anew.
+// What a table costs beside its arithmetic: buffers, launches, transfers, waits, and pages that the system
+// maps anew.
 #include <gtest/gtest.h>
 
 #include <pellucid/pellucid.hpp>
