@@ -5,6 +5,7 @@
 #include <sstream>
 #include <thread>
 
+#include "build_helpers.h"
 #include "command.h"
 #include "io/atomic_file.h"
 #include "io/file_error.h"
@@ -50,14 +51,17 @@ struct Inputs {
 // Reads what the scene names into the device's memory. A second thread prepares the frame meanwhile. Its
 // errors are dropped: where there is no frame, the pictures are read again and it is made with them, and
 // reports them.
-Inputs frameOf(const std::string& gbuffer, const Device& device, const io::SceneFile& scene,
-               io::LutStore& luts, const PelShaderOptions& options, const std::vector<PelImageSlot>& outputs) {
+Inputs frameOf(const std::string& gbuffer, const Device& device, const std::string& selector,
+               const io::SceneFile& scene, io::LutStore& luts, const PelShaderOptions& options,
+               const std::vector<PelImageSlot>& outputs) {
     Inputs inputs;
     io::ShadowMaps maps;
+    BuildHelpers helpers(device, selector, scene.source);
     {
         const auto build = [&] {
             try {
                 inputs.frame.emplace(io::prepareFrame(device, scene, luts, options, outputs));
+                helpers.finish();
             } catch (const std::exception&) {
             }
         };
@@ -179,7 +183,7 @@ void run(const Arguments& a) {
     options.countPixels = a.stats;
     options.scratchBudget = a.scratchMib << 20;
     try {
-        Inputs inputs = frameOf(a.gbuffer, run.device(), scene, luts, options, outputs);
+        Inputs inputs = frameOf(a.gbuffer, run.device(), a.run.device, scene, luts, options, outputs);
         const io::Image& gbuffer = inputs.gbuffer;
         io::SceneFrame& frame = *inputs.frame;
         frame.shade();

@@ -19,7 +19,7 @@ struct Use {
 Use wanted(cl_device_id device) {
     const char* text = std::getenv("PELLUCID_CACHE");
     const std::string value = text ? text : "";
-    // PoCL compiles everything once more to make a binary, and is quicker to load one than to find a program in its own cache.
+    // PoCL compiles everything again to make a binary, but loads one faster than it finds a program in its cache.
     if (value.empty() || value == "auto")
         return {!keepsPrograms(device) || isPocl(device), !keepsPrograms(device)};
     if (value == "on" || value == "1") return {true, true};

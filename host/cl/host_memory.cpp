@@ -12,10 +12,12 @@ namespace pel::cl {
 namespace {
 
 constexpr size_t page = 4096, cacheLine = 128;
-constexpr size_t mapped =
-    32 << 20;  // from this size on memory has a mapping of its own: it is zero at first and returned to the system at once
-constexpr size_t mappedZeros = 2 << 20;  // the same for memory that has to be zero, as pages from the system are
-constexpr size_t unasked = 16 << 20;  // may be allocated without asking how much is left, which takes 100 us
+// From this size on memory has a mapping of its own: it is zero, and returns to the system when it is freed.
+constexpr size_t mapped = 32 << 20;
+// The same for memory that must be zero, as the system's pages are.
+constexpr size_t mappedZeros = 2 << 20;
+// May be allocated before the free memory is measured again, which takes 100 us.
+constexpr size_t unasked = 16 << 20;
 
 std::atomic<uint64_t> inUse{0};
 

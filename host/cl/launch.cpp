@@ -1,8 +1,10 @@
 #include "cl/launch.h"
 
+#include "cl/build_share.h"
+
 namespace pel::cl {
 
-Launch::Launch(const Program& program, const char* kernel) : name_(kernel) {
+Launch::Launch(const Program& program, const char* kernel) : program_(program.get()), name_(kernel) {
     cl_int code = CL_SUCCESS;
     kernel_ = Kernel(clCreateKernel(program.get(), kernel, &code));
     if (code != CL_SUCCESS) check(code, text("clCreateKernel(", kernel, ")").c_str());
@@ -21,6 +23,7 @@ Event Launch::enqueue(cl_command_queue queue, const Range& range) {
         if (range.items[d] == 0) return {};
         global[d] = (range.items[d] + range.group[d] - 1) / range.group[d] * range.group[d];
     }
+    if (!BuildScope::launches(program_, name_, queue)) return {};
     cl_event event = nullptr;
     const cl_int code = clEnqueueNDRangeKernel(queue, kernel_.get(), 3, nullptr, global.data(),
                                                range.group.data(), 0, nullptr, &event);

@@ -14,8 +14,8 @@ struct Range {
     std::array<size_t, 3> group{1, 1, 1};
 };
 
-// `items` work-items, and more up to whole rows, in two dimensions of less than 65,535 each (lib/diffusion/item.clh numbers them): PoCL compiles
-// a kernel once for ranges below, and once more for larger ones. Fewer work-items lie in one dimension.
+// `items` work-items in two dimensions of less than 65,535 each, rounded up to whole rows; few lie in one dimension.
+// (lib/diffusion/item.clh numbers them.) PoCL compiles a kernel once for ranges below that size, and again for larger.
 inline Range folded(size_t items, size_t group) {
     constexpr size_t most = 32768;
     if (items <= most) return {{items, 1, 1}, {group, 1, 1}};
@@ -35,13 +35,15 @@ class Launch {
         return raw(&value, sizeof value);
     }
 
-    // If a dimension has no items, nothing is launched and the event is empty.
+    // Nothing is launched, and the event is empty, if a dimension has no items or another process builds the
+    // kernel (BuildScope).
     Event enqueue(cl_command_queue queue, const Range& range);
 
   private:
     Launch& raw(const void* value, size_t bytes);
 
     Kernel kernel_;
+    cl_program program_;  // retained by the kernel
     const char* name_;
     cl_uint next_ = 0;
 };

@@ -1,6 +1,6 @@
-// In the place of libOpenCL: the functions of OpenCL that Pellucid calls. Only clGetPlatformIDs needs a library, the system's loader or a
-// driver itself. Every object of a driver begins with a pointer to the driver's table of functions (cl_khr_icd), and all other calls go
-// through it, as loaders do. So objects that a host made by another loader work, too.
+// Stands in for libOpenCL: the functions of OpenCL that Pellucid calls. Only clGetPlatformIDs needs a library, which
+// is the system's loader or a driver. Every OpenCL object begins with a pointer to its driver's table of functions
+// (cl_khr_icd), and all other calls use that table, as loaders do. So objects of a host's own loader work, too.
 #include "cl/opencl_loader.h"
 
 #define CL_USE_DEPRECATED_OPENCL_1_0_APIS  // the tables list them
@@ -94,12 +94,13 @@ Library find() {
 }
 
 const Library& library() {
-    static const Library& found = *new Library(find());  // never destroyed: devices are used while the process ends
+    // Never destroyed: devices may be used while the process ends.
+    static const Library& found = *new Library(find());
     return found;
 }
 
 #if defined(_WIN32) || defined(__APPLE__)
-// By name: objects of Wine's OpenCL.dll are those of the Linux driver, whose functions are called in another way, and objects of
+// By name: objects of Wine's OpenCL.dll belong to the Linux driver, whose calling convention differs, and objects of
 // Apple's framework have no table.
 template <class Function>
 Function* named(const char* name) {
@@ -144,51 +145,72 @@ cl_int CL_API_CALL clWaitForEvents(cl_uint a, const cl_event* b) {
     return PEL_FUNCTION(b[0], clWaitForEvents)(a, b);
 }
 
-// The compiler compares the parameters with those of CL/cl.h. The first one is the object.
-// clang-format off
+// The first parameter is the object. The compiler compares the others with the declarations of CL/cl.h.
 #define PEL_CALL(Result, name, parameters, arguments) \
-    Result CL_API_CALL name parameters { return PEL_FUNCTION(a, name) arguments; }
-PEL_CALL(cl_int, clGetPlatformInfo, (cl_platform_id a, cl_platform_info b, size_t c, void* d, size_t* e), (a, b, c, d, e))
-PEL_CALL(cl_int, clGetDeviceIDs, (cl_platform_id a, cl_device_type b, cl_uint c, cl_device_id* d, cl_uint* e), (a, b, c, d, e))
-PEL_CALL(cl_int, clGetDeviceInfo, (cl_device_id a, cl_device_info b, size_t c, void* d, size_t* e), (a, b, c, d, e))
-PEL_CALL(cl_int, clRetainContext, (cl_context a), (a))
-PEL_CALL(cl_int, clReleaseContext, (cl_context a), (a))
-PEL_CALL(cl_int, clRetainCommandQueue, (cl_command_queue a), (a))
-PEL_CALL(cl_int, clReleaseCommandQueue, (cl_command_queue a), (a))
-PEL_CALL(cl_int, clGetCommandQueueInfo, (cl_command_queue a, cl_command_queue_info b, size_t c, void* d, size_t* e), (a, b, c, d, e))
+    Result CL_API_CALL name parameters {              \
+        return PEL_FUNCTION(a, name) arguments;       \
+    }
+#define PEL_REFERENCES(Type, Object)                  \
+    PEL_CALL(cl_int, clRetain##Type, (Object a), (a)) \
+    PEL_CALL(cl_int, clRelease##Type, (Object a), (a))
+#define PEL_INFO(name, Object, What) \
+    PEL_CALL(cl_int, name, (Object a, What b, size_t c, void* d, size_t* e), (a, b, c, d, e))
+#define PEL_WAITS cl_uint waits, const cl_event *list, cl_event *event
+// clang-format off
+PEL_REFERENCES(Context, cl_context)
+PEL_REFERENCES(CommandQueue, cl_command_queue)
+PEL_REFERENCES(MemObject, cl_mem)
+PEL_REFERENCES(Program, cl_program)
+PEL_REFERENCES(Kernel, cl_kernel)
+PEL_REFERENCES(Event, cl_event)
+PEL_INFO(clGetPlatformInfo, cl_platform_id, cl_platform_info)
+PEL_INFO(clGetDeviceInfo, cl_device_id, cl_device_info)
+PEL_INFO(clGetCommandQueueInfo, cl_command_queue, cl_command_queue_info)
+PEL_INFO(clGetMemObjectInfo, cl_mem, cl_mem_info)
+PEL_INFO(clGetProgramInfo, cl_program, cl_program_info)
+PEL_INFO(clGetEventInfo, cl_event, cl_event_info)
+PEL_INFO(clGetEventProfilingInfo, cl_event, cl_profiling_info)
+PEL_CALL(cl_int, clGetDeviceIDs, (cl_platform_id a, cl_device_type b, cl_uint c, cl_device_id* d, cl_uint* e),
+         (a, b, c, d, e))
+PEL_CALL(cl_command_queue, clCreateCommandQueue,
+         (cl_context a, cl_device_id b, cl_command_queue_properties c, cl_int* d), (a, b, c, d))
 PEL_CALL(cl_mem, clCreateBuffer, (cl_context a, cl_mem_flags b, size_t c, void* d, cl_int* e), (a, b, c, d, e))
-PEL_CALL(cl_int, clRetainMemObject, (cl_mem a), (a))
-PEL_CALL(cl_int, clReleaseMemObject, (cl_mem a), (a))
-PEL_CALL(cl_int, clGetMemObjectInfo, (cl_mem a, cl_mem_info b, size_t c, void* d, size_t* e), (a, b, c, d, e))
-PEL_CALL(cl_int, clSetMemObjectDestructorCallback, (cl_mem a, void (CL_CALLBACK* b)(cl_mem memobj, void* user_data), void* c), (a, b, c))
-PEL_CALL(cl_program, clCreateProgramWithSource, (cl_context a, cl_uint b, const char** c, const size_t* d, cl_int* e), (a, b, c, d, e))
-PEL_CALL(cl_program, clCreateProgramWithBinary, (cl_context a, cl_uint b, const cl_device_id* c, const size_t* d, const unsigned char** e, cl_int* f, cl_int* g), (a, b, c, d, e, f, g))
-PEL_CALL(cl_int, clRetainProgram, (cl_program a), (a))
-PEL_CALL(cl_int, clReleaseProgram, (cl_program a), (a))
-PEL_CALL(cl_int, clBuildProgram, (cl_program a, cl_uint b, const cl_device_id* c, const char* d, void (CL_CALLBACK* e)(cl_program program, void* user_data), void* f), (a, b, c, d, e, f))
-PEL_CALL(cl_int, clGetProgramInfo, (cl_program a, cl_program_info b, size_t c, void* d, size_t* e), (a, b, c, d, e))
-PEL_CALL(cl_int, clGetProgramBuildInfo, (cl_program a, cl_device_id b, cl_program_build_info c, size_t d, void* e, size_t* f), (a, b, c, d, e, f))
+PEL_CALL(cl_int, clSetMemObjectDestructorCallback, (cl_mem a, void (CL_CALLBACK* b)(cl_mem, void*), void* c), (a, b, c))
+PEL_CALL(cl_program, clCreateProgramWithSource,
+         (cl_context a, cl_uint b, const char** c, const size_t* d, cl_int* e), (a, b, c, d, e))
+PEL_CALL(cl_program, clCreateProgramWithBinary,
+         (cl_context a, cl_uint b, const cl_device_id* c, const size_t* d, const unsigned char** e, cl_int* f, cl_int* g),
+         (a, b, c, d, e, f, g))
+PEL_CALL(cl_int, clBuildProgram,
+         (cl_program a, cl_uint b, const cl_device_id* c, const char* d, void (CL_CALLBACK* e)(cl_program, void*), void* f),
+         (a, b, c, d, e, f))
+PEL_CALL(cl_int, clGetProgramBuildInfo,
+         (cl_program a, cl_device_id b, cl_program_build_info c, size_t d, void* e, size_t* f), (a, b, c, d, e, f))
 PEL_CALL(cl_kernel, clCreateKernel, (cl_program a, const char* b, cl_int* c), (a, b, c))
-PEL_CALL(cl_int, clRetainKernel, (cl_kernel a), (a))
-PEL_CALL(cl_int, clReleaseKernel, (cl_kernel a), (a))
 PEL_CALL(cl_int, clSetKernelArg, (cl_kernel a, cl_uint b, size_t c, const void* d), (a, b, c, d))
-PEL_CALL(cl_int, clGetEventInfo, (cl_event a, cl_event_info b, size_t c, void* d, size_t* e), (a, b, c, d, e))
-PEL_CALL(cl_int, clRetainEvent, (cl_event a), (a))
-PEL_CALL(cl_int, clReleaseEvent, (cl_event a), (a))
-PEL_CALL(cl_int, clGetEventProfilingInfo, (cl_event a, cl_profiling_info b, size_t c, void* d, size_t* e), (a, b, c, d, e))
 PEL_CALL(cl_int, clFlush, (cl_command_queue a), (a))
 PEL_CALL(cl_int, clFinish, (cl_command_queue a), (a))
-PEL_CALL(cl_int, clEnqueueReadBuffer, (cl_command_queue a, cl_mem b, cl_bool c, size_t d, size_t e, void* f, cl_uint g, const cl_event* h, cl_event* i), (a, b, c, d, e, f, g, h, i))
-PEL_CALL(cl_int, clEnqueueWriteBuffer, (cl_command_queue a, cl_mem b, cl_bool c, size_t d, size_t e, const void* f, cl_uint g, const cl_event* h, cl_event* i), (a, b, c, d, e, f, g, h, i))
-PEL_CALL(cl_int, clEnqueueFillBuffer, (cl_command_queue a, cl_mem b, const void* c, size_t d, size_t e, size_t f, cl_uint g, const cl_event* h, cl_event* i), (a, b, c, d, e, f, g, h, i))
-PEL_CALL(cl_int, clEnqueueCopyBuffer, (cl_command_queue a, cl_mem b, cl_mem c, size_t d, size_t e, size_t f, cl_uint g, const cl_event* h, cl_event* i), (a, b, c, d, e, f, g, h, i))
-PEL_CALL(void*, clEnqueueMapBuffer, (cl_command_queue a, cl_mem b, cl_bool c, cl_map_flags d, size_t e, size_t f, cl_uint g, const cl_event* h, cl_event* i, cl_int* j), (a, b, c, d, e, f, g, h, i, j))
-PEL_CALL(cl_int, clEnqueueUnmapMemObject, (cl_command_queue a, cl_mem b, void* c, cl_uint d, const cl_event* e, cl_event* f), (a, b, c, d, e, f))
-PEL_CALL(cl_int, clEnqueueNDRangeKernel, (cl_command_queue a, cl_kernel b, cl_uint c, const size_t* d, const size_t* e, const size_t* f, cl_uint g, const cl_event* h, cl_event* i), (a, b, c, d, e, f, g, h, i))
-PEL_CALL(cl_int, clEnqueueMarkerWithWaitList, (cl_command_queue a, cl_uint b, const cl_event* c, cl_event* d), (a, b, c, d))
-PEL_CALL(cl_int, clEnqueueBarrierWithWaitList, (cl_command_queue a, cl_uint b, const cl_event* c, cl_event* d), (a, b, c, d))
-PEL_CALL(cl_command_queue, clCreateCommandQueue, (cl_context a, cl_device_id b, cl_command_queue_properties c, cl_int* d), (a, b, c, d))
-#undef PEL_CALL
+PEL_CALL(cl_int, clEnqueueReadBuffer,
+         (cl_command_queue a, cl_mem b, cl_bool c, size_t d, size_t e, void* f, PEL_WAITS),
+         (a, b, c, d, e, f, waits, list, event))
+PEL_CALL(cl_int, clEnqueueWriteBuffer,
+         (cl_command_queue a, cl_mem b, cl_bool c, size_t d, size_t e, const void* f, PEL_WAITS),
+         (a, b, c, d, e, f, waits, list, event))
+PEL_CALL(cl_int, clEnqueueFillBuffer,
+         (cl_command_queue a, cl_mem b, const void* c, size_t d, size_t e, size_t f, PEL_WAITS),
+         (a, b, c, d, e, f, waits, list, event))
+PEL_CALL(cl_int, clEnqueueCopyBuffer,
+         (cl_command_queue a, cl_mem b, cl_mem c, size_t d, size_t e, size_t f, PEL_WAITS),
+         (a, b, c, d, e, f, waits, list, event))
+PEL_CALL(void*, clEnqueueMapBuffer,
+         (cl_command_queue a, cl_mem b, cl_bool c, cl_map_flags d, size_t e, size_t f, PEL_WAITS, cl_int* g),
+         (a, b, c, d, e, f, waits, list, event, g))
+PEL_CALL(cl_int, clEnqueueUnmapMemObject, (cl_command_queue a, cl_mem b, void* c, PEL_WAITS), (a, b, c, waits, list, event))
+PEL_CALL(cl_int, clEnqueueNDRangeKernel,
+         (cl_command_queue a, cl_kernel b, cl_uint c, const size_t* d, const size_t* e, const size_t* f, PEL_WAITS),
+         (a, b, c, d, e, f, waits, list, event))
+PEL_CALL(cl_int, clEnqueueMarkerWithWaitList, (cl_command_queue a, PEL_WAITS), (a, waits, list, event))
+PEL_CALL(cl_int, clEnqueueBarrierWithWaitList, (cl_command_queue a, PEL_WAITS), (a, waits, list, event))
 // clang-format on
 
 }  // extern "C"

@@ -4,7 +4,8 @@
 
 namespace pel::cl {
 
-// Whole pages of zeros that are really there: systems promise more than they have, and end the process that touches the last page.
+// Whole pages of zeros, all committed: systems promise more memory than they have, and end the process that
+// touches the last page.
 // nullptr if there is not enough.
 void* mapPages(size_t bytes);
 // Zeros whose pages come when they are touched, by whichever thread does so.

@@ -76,20 +76,9 @@ std::optional<uint32_t> requestedMathWidth() {
 
 }  // namespace
 
-// What query(size, place, size needed) tells, asked for its size first.
-template <class Query>
-static std::string told(const char* function, const Query& query) {
-    size_t size = 0;
-    check(query(0, nullptr, &size), function);
-    std::string value(size, '\0');
-    check(query(size, value.data(), nullptr), function);
-    value.resize(std::strlen(value.c_str()));  // without the NUL
-    return value;
-}
-
 static std::string platformString(cl_device_id device, cl_platform_info what) {
     const auto platform = info<cl_platform_id>(device, CL_DEVICE_PLATFORM);
-    return told("clGetPlatformInfo", [&](size_t room, void* to, size_t* size) {
+    return queryString("clGetPlatformInfo", [&](size_t room, void* to, size_t* size) {
         return clGetPlatformInfo(platform, what, room, to, size);
     });
 }
@@ -114,7 +103,7 @@ bool keepsPrograms(cl_device_id device) {
 }
 
 std::string infoString(cl_device_id device, cl_device_info what) {
-    return told("clGetDeviceInfo", [&](size_t room, void* to, size_t* size) {
+    return queryString("clGetDeviceInfo", [&](size_t room, void* to, size_t* size) {
         return clGetDeviceInfo(device, what, room, to, size);
     });
 }

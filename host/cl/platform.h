@@ -1,5 +1,6 @@
-// Lists OpenCL devices, selects one, and knows the workarounds that each needs.
+// Lists and selects OpenCL devices, and names the workarounds that each needs.
 #pragma once
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,17 @@ PelDeviceInfo describe(cl_device_id device, uint32_t index);
 
 // The position in allDevices() that a selector means (see pelDeviceCreate).
 uint32_t selectDevice(const char* selector);
+
+// The string that query(size, destination, needed size) returns.
+template <class Query>
+std::string queryString(const char* function, const Query& query) {
+    size_t size = 0;
+    check(query(0, nullptr, &size), function);
+    std::string value(size, '\0');
+    check(query(size, value.data(), nullptr), function);
+    value.resize(std::strlen(value.c_str()));  // without the NUL
+    return value;
+}
 
 bool isPocl(cl_device_id device);
 

@@ -8,7 +8,8 @@
 
 namespace pel::cl {
 
-// The whole file, which now counts as just used. Empty if it is no such file, has more than `limit` bytes, or cannot be read.
+// The whole file, whose time of last use becomes now. Empty if it is no such file, larger than `limit` bytes, or
+// unreadable.
 std::optional<std::string> readPrivateFile(const std::filesystem::path& path, uint64_t limit);
 
 // Makes a new file for this user alone; nothing is left of it if that fails.

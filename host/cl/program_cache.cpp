@@ -12,16 +12,24 @@ namespace pel::cl {
 ProgramCache::ProgramCache(Context context, cl_device_id device, uint32_t mathWidth)
     : context_(std::move(context)), device_(device), mathWidth_(mathWidth), binaries_(context_.get(), device) {}
 
-Program ProgramCache::get(const ProgramKey& wanted) {
-    Defines all = wanted.defines;
+std::string ProgramCache::optionsOf(const ProgramKey& key) const {
+    Defines all = key.defines;
     all.emplace("PEL_WIDTH", std::to_string(mathWidth_));
-    std::string options = "-cl-std=CL1.2", key;
+    std::string options = "-cl-std=CL1.2";
     for (const auto& [name, value] : all) options += " -D" + name + "=" + value;
-    for (const std::string& file : wanted.files) key += file + " ";
-    key += options;
+    return options;
+}
 
+std::string ProgramCache::name(const ProgramKey& key) const {
+    std::string all;
+    for (const std::string& file : key.files) all += file + " ";
+    return all + optionsOf(key);
+}
+
+Program ProgramCache::get(const ProgramKey& wanted) {
+    const std::string options = optionsOf(wanted);
     std::unique_lock lock(mutex_);
-    std::shared_ptr<Entry>& slot = programs_[key];
+    std::shared_ptr<Entry>& slot = programs_[name(wanted)];
     if (!slot) slot = std::make_shared<Entry>();
     const std::shared_ptr<Entry> entry = slot;
     lock.unlock();

@@ -32,6 +32,9 @@ class ProgramCache {
     Program get(const ProgramKey& key);
     Program get(const std::string& file, const Defines& defines) { return get(ProgramKey{{file}, defines}); }
 
+    // The files and options of a program.
+    std::string name(const ProgramKey& key) const;
+
     struct Counts {
         uint32_t built = 0;   // includes loaded ones
         uint32_t loaded = 0;  // from binaries on disk
@@ -45,6 +48,7 @@ class ProgramCache {
         std::mutex building;
         Program program;
     };
+    std::string optionsOf(const ProgramKey& key) const;
     Program build(const std::vector<std::string>& files, const std::string& options, Counts& counts) const;
     Program compile(const std::string& source, const std::vector<std::string>& files,
                     const std::string& options) const;

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "cl/build_share.h"
 #include "cl/host_memory.h"
 #include "cl/platform.h"
 #include "cl/process.h"
@@ -81,7 +82,7 @@ cl::Event Device::launch(cl::Launch& launch, const cl::Range& range, cl_command_
 }
 
 cl::Memory Device::allocate(size_t bytes, const void* initial) {
-    return allocate(bytes, initial, false);
+    return allocate(bytes, initial, !initial && cl::BuildScope::zeroes());
 }
 
 cl::Memory Device::allocateZeros(size_t bytes) {

@@ -31,7 +31,7 @@ struct ImageView {
     bool tightlyPacked() const { return pixelStride == info().pixelBytes; }
 };
 
-// Checks the caller's structure, its format, alignment and strides, that all pixels are inside the buffer, and
+// Checks the caller's structure, format, alignment and strides, that all pixels are inside the buffer, and
 // that the buffer is of `device`. `what` names the image in every message.
 ImageView makeImageView(const PelImageDesc* given, Device& device, const char* what);
 

@@ -1,4 +1,4 @@
-// With PELLUCID_CHECK_LEFT set, a process that ends with handles that nobody released says so, and ends with 1.
+// With PELLUCID_CHECK_LEFT set, a process that leaves handles unreleased reports them and ends with 1.
 #include <cstdio>
 #include <cstdlib>
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <mutex>
 
+#include "cl/build_share.h"
 #include "shading/choose_method.h"
 #include "shading/features.h"
 #include "shading/image_slots.h"
@@ -174,7 +175,12 @@ void Shader::runBand(PassWork& work) {
 
 void Shader::addWarmUpJobs(std::vector<std::function<void()>>& jobs) {
     Ref<Shader> shader = make<Shader>(device_, passKinds_);
-    prepareEyes(device_, state_.materials);
+    {
+        // The other process makes the tables of eyes, which nothing here looks at.
+        const cl::BuildScope scope(cl::helpsToBuild() ? cl::BuildScope::none : cl::BuildScope::all);
+        prepareEyes(device_, state_.materials);
+    }
+    const cl::BuildScope zeroes(cl::BuildScope::all);
     shader->state_ = state_;
     shader->profileTables_ = profileTables_;
     shader->allocate(1);
@@ -185,7 +191,9 @@ void Shader::addWarmUpJobs(std::vector<std::function<void()>>& jobs) {
             if (std::ranges::find(keys, key) == keys.end()) keys.push_back(std::move(key));
     });
     for (const cl::ProgramKey& key : keys)
-        jobs.push_back([device = device_, key] { device->programs().get(key); });
+        jobs.push_back([device = device_, key] {
+            if (cl::claimBuild(device->programs().name(key))) device->programs().get(key);
+        });
     // A job for each pass, for drivers compile kernels when they are launched first. Whichever job comes next
     // launches the next pass: passes read what those before them made.
     struct Launches {
@@ -205,6 +213,7 @@ void Shader::addWarmUpJobs(std::vector<std::function<void()>>& jobs) {
 
 // A frame without tiles: an execution launches every kernel, and none does anything.
 void Shader::beginOnNothing() {
+    const cl::BuildScope scope(cl::BuildScope::claimed);
     finishPlan();
     PassWork work = beginWork(true);
     constants_.setBand(*device_, 0, 0, 0);
@@ -214,6 +223,7 @@ void Shader::beginOnNothing() {
 }
 
 void Shader::launchOnNothing(Pass& pass) {
+    const cl::BuildScope scope(cl::BuildScope::claimed);
     PassWork work{*device_, plan_, constants_, events_};
     work.rows = work.around = {0, 1};
     pass.enqueue(work);

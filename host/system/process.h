@@ -9,20 +9,34 @@ unsigned long processId();
 // "NAME=VALUE" of every variable.
 std::vector<std::string> environment();
 void setVariable(const char* name, const char* value);  // nullptr removes it
-// What tells apart processors whose names are the same; "" if the system does not say.
+// The processor's instruction set extensions, as the system lists them; "" if unknown.
 std::string instructionSet();
-// A new folder for this process only in `parent`, whose name begins with `prefix`; "" if none can be made. First
-// removes such folders of this user's processes that were killed (not on Windows).
+// A new folder for this process only in `parent`, whose name begins with `prefix`; "" if none can be made. Such
+// folders of this user's processes that were killed are removed first (not on Windows).
 std::string makeTemporaryFolder(const std::string& parent, const std::string& prefix);
 
 // The file of this program; "" if the system does not say.
 std::string programFile();
-// Whether a person looks at what is written to standard error.
+// Whether standard error is a terminal.
 bool errorsAreSeen();
-// Opens the standard streams that are closed, so that no file takes their place; false if that fails. A limit on file sizes becomes an
-// error like a full disk.
+// Opens the standard streams that are closed, so that no file takes their place; false if that fails. From now on
+// a limit on file sizes is an error, as a full disk is.
 bool prepareStreams();
-// Runs another program in the place of this one: comes back only if that fails, with the reason.
+
+// Another program that runs beside this one, with these variables ("NAME=VALUE") added to the environment and
+// without standard streams. Does nothing on Windows.
+class Child {
+  public:
+    Child(const std::vector<std::string>& words, const std::vector<std::string>& variables);
+    ~Child();  // ends it
+    Child(Child&& other) noexcept : process_(other.process_) { other.process_ = 0; }
+    void wait();
+
+  private:
+    long process_ = 0;  // 0: none
+};
+
+// Replaces this program by another one. Returns only if that fails, with the reason.
 std::string becomeProgram(const std::vector<std::string>& words);
 // How many files this process can still open.
 size_t filesLeft();

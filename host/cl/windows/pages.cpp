@@ -6,7 +6,7 @@
 namespace pel::cl {
 
 void* mapPages(size_t bytes) {
-    return ::VirtualAlloc(nullptr, bytes, MEM_RESERVE | MEM_COMMIT, PAGE_READWRITE);  // what Windows commits, it has
+    return ::VirtualAlloc(nullptr, bytes, MEM_RESERVE | MEM_COMMIT, PAGE_READWRITE);  // committed
 }
 
 void* mapZeros(size_t bytes) {

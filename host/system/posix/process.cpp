@@ -1,11 +1,14 @@
 #include "system/process.h"
 
 #include <fcntl.h>
+#include <spawn.h>
 #include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
@@ -108,6 +111,37 @@ std::string becomeProgram(const std::vector<std::string>& words) {
     argv.push_back(nullptr);
     ::execvp(argv[0], argv.data());
     return std::strerror(errno);
+}
+
+Child::Child(const std::vector<std::string>& words, const std::vector<std::string>& variables) {
+    std::vector<char*> argv, environment;
+    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+    for (const std::string& entry : variables) environment.push_back(const_cast<char*>(entry.c_str()));
+    for (char** entry = environ; entry && *entry; ++entry) {
+        const std::string name(*entry, std::strcspn(*entry, "=") + 1);
+        if (std::ranges::none_of(variables, [&](const std::string& v) { return v.starts_with(name); }))
+            environment.push_back(*entry);
+    }
+    argv.push_back(nullptr);
+    environment.push_back(nullptr);
+    posix_spawn_file_actions_t streams;
+    ::posix_spawn_file_actions_init(&streams);
+    for (int fd = 0; fd < 3; ++fd) ::posix_spawn_file_actions_addopen(&streams, fd, "/dev/null", O_RDWR, 0);
+    pid_t child = 0;
+    if (::posix_spawn(&child, argv[0], &streams, nullptr, argv.data(), environment.data()) == 0)
+        process_ = child;
+    ::posix_spawn_file_actions_destroy(&streams);
+}
+
+Child::~Child() {
+    if (process_) ::kill(pid_t(process_), SIGKILL);
+    wait();
+}
+
+void Child::wait() {
+    while (process_ && ::waitpid(pid_t(process_), nullptr, 0) < 0 && errno == EINTR) {
+    }
+    process_ = 0;
 }
 
 size_t filesLeft() {
