@@ -18,7 +18,7 @@ constexpr const char* variable = "PELLUCID_BUILD_SHARE";
 
 BuildHelpers::BuildHelpers(const Device& device, const std::string& selector, const std::string& scene) {
     const bool shared = std::string_view(device.info().platform) == "Portable Computing Language" &&
-                        std::thread::hardware_concurrency() > 1 && !std::getenv(variable);
+                        std::thread::hardware_concurrency() > 1 && !std::getenv(variable) && !scene.empty();
     std::error_code error;
     if (shared)
         folder_ =

@@ -16,6 +16,7 @@ namespace pellucid::cli {
 // on standard error says what takes the time.
 class BuildHelpers {
   public:
+    // Without a scene no other process helps.
     BuildHelpers(const Device& device, const std::string& selector, const std::string& scene);
     ~BuildHelpers();
     // Waits for what the others have begun.

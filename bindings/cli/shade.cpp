@@ -56,7 +56,8 @@ Inputs frameOf(const std::string& gbuffer, const Device& device, const std::stri
                const std::vector<PelImageSlot>& outputs) {
     Inputs inputs;
     io::ShadowMaps maps;
-    BuildHelpers helpers(device, selector, scene.source);
+    // The others build what the scene itself asks for, without further outputs or counters.
+    BuildHelpers helpers(device, selector, outputs.empty() && !options.countPixels ? scene.source : "");
     {
         const auto build = [&] {
             try {
