@@ -55,7 +55,7 @@ std::string settings() {
 
 std::string describeBuilder(cl_device_id device) {
     Digest all;
-    all.addPart(text(pelVersion()));
+    all.addPart("2").addPart(text(pelVersion()));  // the form of the files, and the version
     for (const cl_device_info what :
          {CL_DEVICE_NAME, CL_DEVICE_VENDOR, CL_DEVICE_VERSION, CL_DRIVER_VERSION, CL_DEVICE_EXTENSIONS})
         all.addPart(infoString(device, what));

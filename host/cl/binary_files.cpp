@@ -4,7 +4,6 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
-#include <cstring>
 #include <vector>
 
 #include "cl/error.h"
@@ -16,26 +15,12 @@ namespace pel::cl {
 namespace fs = std::filesystem;
 namespace {
 
-// Header before the binary, in the machine's byte order: a file of a machine with another order does not
-// match.
-struct Header {
-    char magic[8] = {'P', 'E', 'L', 'B', 'I', 'N', '0', '1'};
-    uint64_t name[2] = {};      // of the file: a renamed file is refused
-    uint64_t bytes = 0;         // of the binary
-    uint64_t checkSum[2] = {};  // of the binary
-    bool operator==(const Header&) const = default;
-};
-
-Header headerOf(const Digest& name, const std::string& binary) {
-    const Digest sum = Digest().add(binary);
-    Header header;
-    header.name[0] = name.high(), header.name[1] = name.low();
-    header.bytes = binary.size();
-    header.checkSum[0] = sum.high(), header.checkSum[1] = sum.low();
-    return header;
+// Stands before the binary: damaged, cut or renamed files do not match it.
+std::string checksum(const Digest& name, const std::string& binary) {
+    return Digest().addPart(name.text()).add(binary).text();
 }
 
-constexpr size_t nameLength = 36;  // 32 digits and ".bin"
+constexpr size_t nameLength = Digest::length + 4;  // and ".bin"
 
 bool isBinary(const std::string& name) {
     return name.size() == nameLength && name.ends_with(".bin");
@@ -43,7 +28,7 @@ bool isBinary(const std::string& name) {
 
 bool isTemporary(const std::string& name) {
     return name.size() > nameLength && name[0] == '.' && name.ends_with(".tmp") &&
-           name.compare(33, 5, ".bin.") == 0;
+           name.compare(Digest::length + 1, 5, ".bin.") == 0;
 }
 
 }  // namespace
@@ -59,12 +44,10 @@ fs::path binaryFolder() {
 
 std::optional<std::string> BinaryFiles::load(const Digest& name) const {
     if (!whyNotPrivate(folder_).empty()) return {};
-    Header header;
-    const std::optional<std::string> file = readPrivateFile(pathOf(name), sizeof header + limit_);
-    if (!file || file->size() < sizeof header) return {};
-    std::memcpy(&header, file->data(), sizeof header);
-    std::string binary = file->substr(sizeof header);
-    if (header.bytes != binary.size() || header != headerOf(name, binary)) return {};
+    const std::optional<std::string> file = readPrivateFile(pathOf(name), Digest::length + limit_);
+    if (!file || file->size() < Digest::length) return {};
+    std::string binary = file->substr(Digest::length);
+    if (!file->starts_with(checksum(name, binary))) return {};
     return binary;
 }
 
@@ -77,9 +60,7 @@ bool BinaryFiles::store(const Digest& name, const std::string& binary) const {
     const fs::path path = pathOf(name),
                    temporary = folder_ / text(".", path.filename().string(), ".", system::processId(), "-",
                                               counter++, ".tmp");
-    const Header header = headerOf(name, binary);
-    if (!writePrivateFile(temporary, {reinterpret_cast<const char*>(&header), sizeof header}, binary))
-        return false;
+    if (!writePrivateFile(temporary, checksum(name, binary), binary)) return false;
     std::error_code error;
     fs::rename(temporary, path, error);
     if (error) {

@@ -20,12 +20,12 @@ class Digest {
     // Includes the length, so that bytes cannot move between neighbouring values.
     Digest& addPart(std::string_view part) { return add(std::to_string(part.size()) + ":").add(part); }
 
-    uint64_t high() const { return XXH3_128bits_digest(&state_).high64; }
-    uint64_t low() const { return XXH3_128bits_digest(&state_).low64; }
-    std::string text() const {  // 32 hexadecimal digits
-        char digits[33];
-        std::snprintf(digits, sizeof digits, "%016llx%016llx", static_cast<unsigned long long>(high()),
-                      static_cast<unsigned long long>(low()));
+    static constexpr size_t length = 32;  // of text()
+    std::string text() const {            // hexadecimal digits
+        const XXH128_hash_t hash = XXH3_128bits_digest(&state_);
+        char digits[length + 1];
+        std::snprintf(digits, sizeof digits, "%016llx%016llx", static_cast<unsigned long long>(hash.high64),
+                      static_cast<unsigned long long>(hash.low64));
         return digits;
     }
 

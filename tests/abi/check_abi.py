@@ -4,7 +4,8 @@
     check_abi.py check HEADER_DIR LIBRARY     compares with promises.txt and with the library's exports, and runs one program
                                               whose two halves were compiled against this and against a longer header
 
-A function or value in promises.txt stays; a structure may only grow, at its end, and a ..._COUNT. CC and CFLAGS choose the compiler.
+A function or value in promises.txt stays; a structure may only grow, at its end, and a ..._COUNT. CC and
+CFLAGS choose the compiler.
 """
 import os
 import re
@@ -55,7 +56,8 @@ def broken_promises(then, now):
 
 
 def longer_header(include, to):
-    """The header of a later version: every structure that carries its size has four more fields at its end."""
+    """The header of a later version: every structure that carries its size has four more fields at its
+    end."""
     (to / "pellucid").mkdir()
     text = (include / "pellucid/pellucid.h").read_text(encoding="utf-8")
     text, count = re.subn(r"(typedef struct (Pel\w+) \{\s*uint32_t structSize;.*?\n)(\} \2;)",

@@ -1,5 +1,5 @@
-// Leaves one buffer and one event behind; named `profile`, one profile, which is no object of OpenCL's. The watches are to fail it: one that
-// sees nothing passes everything.
+// Leaves one buffer and one event behind; named `profile`, one profile, which is no object of OpenCL's. The
+// watches are to fail it: one that sees nothing passes everything.
 #include <cstring>
 #include <pellucid/pellucid.hpp>
 

@@ -1,4 +1,5 @@
-// The first use of OpenCL in a process, by many threads at once. A program of its own, for nothing may come before.
+// The first use of OpenCL in a process, by many threads at once. A program of its own, for nothing may come
+// before.
 #include <gtest/gtest.h>
 
 #include <barrier>

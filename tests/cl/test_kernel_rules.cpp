@@ -1,4 +1,5 @@
-// What OpenCL C allows and kernels must not do, because a driver compiles it wrongly; and the rules for names in kernels.
+// What OpenCL C allows and kernels must not do, because a driver compiles it wrongly; and the rules for
+// names in kernels.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -25,7 +26,8 @@ std::string body(const std::string& text, size_t begin) {
     return text.substr(begin, end - begin);
 }
 
-// The first place in a function's body where it changes its own structure, or hands its address to somebody who may.
+// The first place in a function's body where it changes its own structure, or hands its address to somebody
+// who may.
 std::string change(const std::string& code, const std::string& name) {
     const std::string member = "(\\.\\w+)*";
     for (const std::string& form :

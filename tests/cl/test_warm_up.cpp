@@ -1,4 +1,5 @@
-// Programs built ahead of their first use: nothing is left to build, nothing of the caller's is touched, and it can be stopped.
+// Programs built ahead of their first use: nothing is left to build, nothing of the caller's is touched,
+// and it can be stopped.
 //
 // This program defines clBuildProgram itself, which is linked before libOpenCL's, and counts the calls.
 #include <CL/cl.h>

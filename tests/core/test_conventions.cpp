@@ -1,5 +1,5 @@
-// Matrices of each convention, by the interfaces' own definitions: what a shadow map and a depth buffer hold is read back to the places that it
-// came from.
+// Matrices of each convention, by the interfaces' own definitions: what a shadow map and a depth buffer
+// hold is read back to the places that it came from.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,5 +1,5 @@
-// What pellucid.hpp adds to the C interface: what it keeps alive, what it does not compile, and short forms. That messages name
-// the image they are about.
+// What pellucid.hpp adds to the C interface: what it keeps alive, what it does not compile, and short
+// forms. That messages name the image they are about.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -59,7 +59,8 @@ TEST(HeldMemory, OfAShaderByMethod) {
             expectSaid(said, held, "method " + std::to_string(scattering));
             continue;
         }
-        // What the tables of the profile take by themselves, which other shaders may share, is not said: their copy side by side is.
+        // What the tables of the profile take by themselves, which other shaders may share, is not said:
+        // their copy side by side is.
         EXPECT_LE(said, held);
         EXPECT_GE(said, held / 2.05);
     }

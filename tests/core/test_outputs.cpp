@@ -1,5 +1,5 @@
-// What a call writes into memory of its caller: nothing that was not asked for, and nothing at all if the call is
-// refused.
+// What a call writes into memory of its caller: nothing that was not asked for, and nothing at all if the
+// call is refused.
 #include <gtest/gtest.h>
 
 #include <cstring>

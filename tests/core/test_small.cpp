@@ -1,5 +1,5 @@
-// Nearly every kernel once, at sizes that are no multiple of anything, against the oracle: the quickest look at another
-// device or tool.
+// Nearly every kernel once, at sizes that are no multiple of anything, against the oracle: the quickest
+// look at another device or tool.
 #include <gtest/gtest.h>
 
 #include "lut/lut_cases.h"

@@ -1,4 +1,5 @@
-"""Tables written by `pellucid lut`, read by NumPy, Pillow, OpenEXR, imagecodecs and pyktx2, compared with one another."""
+"""Tables written by `pellucid lut`, read by NumPy, Pillow, OpenEXR, imagecodecs and pyktx2, compared with
+one another."""
 import subprocess
 import sys
 import tempfile

@@ -2,8 +2,8 @@
 
     run.py PELLUCID WORK
 
-PELLUCID is the command, WORK a folder that keeps a virtual environment with the readers. A reader that cannot be installed
-is skipped with a message; then this ends with 77, as CTest knows it.
+PELLUCID is the command, WORK a folder that keeps a virtual environment with the readers. A reader that
+cannot be installed is skipped with a message; then this ends with 77, as CTest knows it.
 """
 import subprocess
 import sys

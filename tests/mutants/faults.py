@@ -1,6 +1,8 @@
-"""Small faults in C++, OpenCL C and Python text: one for each line with code, the same ones for the same text.
+"""Small faults in C++, OpenCL C and Python text: one for each line with code, the same ones for the same
+text.
 
-A fault is found in the text with comments, strings, preprocessor lines and messages blanked out, so that each one changes what runs.
+A fault is found in the text with comments, strings, preprocessor lines and messages blanked out, so that
+each one changes what runs.
 """
 import hashlib
 import io
@@ -13,11 +15,18 @@ import meanings
 from meanings import closing
 
 COMPARISON = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "=="}
-OPERATOR = {"+": "-", "-": "+", "*": "/", "/": "*", "%": "/", "&": "|", "|": "&", "<<": ">>", ">>": "<<",
-            "+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=", "|=": "&=", "&=": "|=", "&&": "||", "||": "&&", "and": "or", "or": "and"}
-WORD = {"true": "false", "false": "true", "True": "False", "False": "True", "min": "max", "max": "min", "fmin": "fmax",
-        "fmax": "fmin", "minw": "maxw", "maxw": "minw", "floor": "ceil", "ceil": "floor", "sin": "cos", "cos": "sin", "any": "all", "all": "any",
-        "front": "back", "back": "front", "any_of": "all_of", "all_of": "any_of", "continue": "break", "break": "continue"}
+
+
+def both_ways(pairs):
+    """{word: its other}, of "a/b c/d"."""
+    split = [pair.split("/") for pair in pairs.split()]
+    return {**{b: a for a, b in split}, **{a: b for a, b in split}}
+
+
+OPERATOR = {"*": "/", "/": "*", "%": "/", "*=": "/=", "/=": "*=",
+            **both_ways("+/- &/| <</>> +=/-= |=/&= &&/|| and/or")}
+WORD = both_ways("true/false True/False min/max fmin/fmax minw/maxw floor/ceil sin/cos any/all front/back "
+                 "any_of/all_of continue/break")
 MESSAGE = r"\b(?:fail|invalidArgument|badFile|warn|note|printf|fprintf|print|throw [\w:]+|raise [\w.]+)\("
 
 
@@ -40,7 +49,9 @@ def blank(text):
 
 
 def masked_c(text):
-    pattern = re.compile(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'|^[ \t]*#(?:\\\n|[^\n])*', re.S | re.M)
+    pattern = re.compile(
+        r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'|^[ \t]*#(?:\\\n|[^\n])*',
+        re.S | re.M)
 
     def keep(match):
         found = match[0]
@@ -79,7 +90,8 @@ def masked(path, text):
 
 
 def operand(text, at):
-    """The end of the operand that begins at `at`: signs and casts, a name, number or bracket, and what follows it without a space."""
+    """The end of the operand that begins at `at`: signs and casts, a name, number or bracket, and what
+    follows it without a space."""
     at = re.compile(r"[-+!~*&]*").match(text, at).end()
     start = at
     while at < len(text):
@@ -121,7 +133,8 @@ def term_end(m, at, sign):
 def candidates(path, text, m):
     """(start, end, new, kind) of every fault."""
     python = path.endswith(".py")
-    for match in re.finditer(r"(?<![\w.'])(?:0[xX][0-9a-fA-F]+|\d+\.\d*(?:[eE][-+]?\d+)?|\d+(?:[eE][-+]?\d+)?|\.\d+)[fFuUlL]*(?![\w.'])", m):
+    for match in re.finditer(r"(?<![\w.'])(?:0[xX][0-9a-fA-F]+|(?:\d+\.\d*|\d+)(?:[eE][-+]?\d+)?|\.\d+)"
+                             r"[fFuUlL]*(?![\w.'])", m):
         if changed := number(match[0]):
             yield *match.span(), changed, "constant"
     for match in re.finditer(r" (<=|>=|==|!=|<|>)(?= )", m):
@@ -162,8 +175,9 @@ def candidates(path, text, m):
             yield *match.span(), "", "dropped negation"
         for match in re.finditer(r"\bif ([^\n:]+):\s", m):
             yield *match.span(1), "False", "removed check"
-        for match in re.finditer(r"^ +((?!return|raise|yield|pass|import|from|assert|def|class|del|if|for|while|with|else)[\w.]+(?:\([^\n]*\)| [-+*|&/]?= [^\n(]+))$", m, re.M):
-            if '("' not in match[1][:3] and m[match.start(1):match.end(1)].count("(") == m[match.start(1):match.end(1)].count(")"):
+        for match in re.finditer(r"^ +((?!return|raise|yield|pass|import|from|assert|def|class|del|if|for|while|with|else)"
+                                 r"[\w.]+(?:\([^\n]*\)| [-+*|&/]?= [^\n(]+))$", m, re.M):
+            if '("' not in match[1][:3] and match[1].count("(") == match[1].count(")"):
                 yield *match.span(1), "pass", "dropped statement"
         return
     for match in re.finditer(r"(?<![\w)\]=!<>])!(?=[\w(:])", m):
@@ -173,9 +187,9 @@ def candidates(path, text, m):
         if end > 0 and ";" not in m[match.start():end]:
             yield match.end(), end, "false", "removed check"
             yield match.end(), end, "true", "forced branch"
-    for match in re.finditer(r"^ +(?!return|throw|if|for|while|else|case|using|static|const|delete|break|continue|fail|invalidArgument)"
-                             r"([A-Za-z_][\w.:>\[\]-]*(?:\([^\n]*\)| [-+*|&/]?= [^\n]+);)$", m, re.M):
-        if m[match.start(1):match.end(1)].count("(") == m[match.start(1):match.end(1)].count(")"):
+    for match in re.finditer(r"^ +(?!return|throw|if|for|while|else|case|using|static|const|delete|break|continue|fail"
+                             r"|invalidArgument)([A-Za-z_][\w.:>\[\]-]*(?:\([^\n]*\)| [-+*|&/]?= [^\n]+);)$", m, re.M):
+        if match[1].count("(") == match[1].count(")"):
             yield *match.span(1), ";", "dropped statement"
     for match in re.finditer(r"\b(?:cl::)?check\(", m):
         end = closing(m, match.end() - 1)
@@ -183,7 +197,8 @@ def candidates(path, text, m):
             yield match.start(), end + 1, f"(void)({text[match.end():comma]})", "unchecked return"
 
 
-NOTHING_CHANGES = re.compile(r"\breserve\(|static_assert|\btemplate\b|__attribute__|PEL_API|\boperator\b|^\s*(?:from|import)\b|\bassert\b|#pragma|noexcept")
+NOTHING_CHANGES = re.compile(r"\breserve\(|static_assert|\btemplate\b|__attribute__|PEL_API|\boperator\b"
+                             r"|^\s*(?:from|import)\b|\bassert\b|#pragma|noexcept")
 
 
 def faults(path, text, meaning=False):
@@ -205,10 +220,12 @@ def faults(path, text, meaning=False):
         shown[around] = shown.get(around, 0) + 1
 
         def digest(found):
-            what = f"{path.rpartition('/')[2]}\n{around}\n{shown[around]}\n{found[0] - starts[row]}\n{text[found[0]:found[1]]}\n{found[2]}"
-            return hashlib.sha256(what.encode()).hexdigest()[:12]
+            what = [path.rpartition("/")[2], around, shown[around], found[0] - starts[row], text[found[0]:found[1]], found[2]]
+            return hashlib.sha256("\n".join(map(str, what)).encode()).hexdigest()[:12]
 
-        # Kinds first, for a line may have many constants and one comparison. Nearly every line could be dropped as a whole.
-        kinds = sorted({f[3] for f in several if f[3] != "dropped statement"} or {"dropped statement"}, key=lambda kind: hashlib.sha256((around + kind).encode()).digest())
-        start, end, new, kind = min((f for f in several if f[3] == kinds[0]), key=digest)
+        # Kinds first, for a line may have many constants and one comparison. Nearly every line could be
+        # dropped as a whole.
+        kinds = {f[3] for f in several if f[3] != "dropped statement"} or {"dropped statement"}
+        first = min(kinds, key=lambda kind: hashlib.sha256((around + kind).encode()).digest())
+        start, end, new, kind = min((f for f in several if f[3] == first), key=digest)
         yield Fault(path, start, end, new, kind, row + 1, digest((start, end, new, kind)))

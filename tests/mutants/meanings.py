@@ -1,5 +1,5 @@
-"""Faults of a larger kind than an expression: a dropped clear or early return, a condition or key without one of its parts, a neighbour
-left out. Each is what somebody forgets, or deletes as superfluous."""
+"""Faults of a larger kind than an expression: a dropped clear or early return, a condition or key without
+one of its parts, a neighbour left out. Each is what somebody forgets, or deletes as superfluous."""
 import re
 
 

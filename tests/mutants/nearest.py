@@ -1,4 +1,5 @@
-"""Which tests could notice a fault: those that share most words with its file, and those that launch its kernels."""
+"""Which tests could notice a fault: those that share most words with its file, and those that launch its
+kernels."""
 import collections
 import contextlib
 import json
@@ -59,7 +60,8 @@ class Tests:
         self.rarity = {word: math.log(len(known) / sum(word in k for k in known)) for word in set().union(*known)}
 
     def measure(self, name):
-        """A test without any fault, once: whether it passes, its processor seconds, the kernels that it launches."""
+        """A test without any fault, once: whether it passes, its processor seconds, the kernels that it
+        launches."""
         if name not in self.measured:
             kernels, log = set(), WORK / "test.log"
             if self.place.python() if name.endswith(".py") else self.place.build(name):
@@ -100,7 +102,8 @@ class Tests:
         return sorted(self.scripts if fault.path.startswith("bindings/python") or fault.path.endswith(".py") else self.programs, key=distance)
 
     def weighed(self, words):
-        """{word: weight}, of length 1: rare words count most, and the tenth of a kind little more than the first."""
+        """{word: weight}, of length 1: rare words count most, and the tenth of a kind little more than the
+        first."""
         row = {word: (1 + math.log(n)) * self.rarity.get(word, 0) for word, n in collections.Counter(words).items()}
         length = math.sqrt(sum(w * w for w in row.values())) or 1
         return {word: w / length for word, w in row.items()}

@@ -3,16 +3,17 @@
 
     run.py [N] [SEED] [--meaning] [--only REGEX] [--nearest K] [--again] [--list] [--as-is]
 
-Takes N lines (50) of kernels, host, command and Python package by SEED (1), puts one fault into each (faults.py), one at a time,
-builds what changed, and runs the K tests (8) that are nearest to the file (nearest.py) until one fails. Prints killed or
-survived, the diff of each survivor, and the rate. Works in a copy of the tree in build/mutants; results stay there, so that a
-second run continues. A test that hangs has noticed; a fault that does not compile does not count, nor does one whose name
-stands in equivalent.txt.
+Takes N lines (50) of kernels, host, command and Python package by SEED (1), puts one fault into each
+(faults.py), one at a time, builds what changed, and runs the K tests (8) that are nearest to the file
+(nearest.py) until one fails. Prints killed or survived, the diff of each survivor, and the rate. Works in a
+copy of the tree in build/mutants; results stay there, so that a second run continues. A test that hangs has
+noticed; a fault that does not compile does not count, nor does one whose name stands in equivalent.txt.
 
---meaning: faults of a larger kind: a dropped clear or early return, a key or condition without one of its parts, a neighbour left out.
---only: faults in files whose path matches. --again: survivors of earlier runs once more, after tests were added.
---list: names only. --as-is: works with the copy as it is, while the tree changes.
-Ends with 1 when less than 92 % were noticed. build/mutants/tree may be a link to a folder that the compiler's cache covers.
+--meaning: faults of a larger kind: a dropped clear or early return, a key or condition without one of its
+parts, a neighbour left out. --only: faults in files whose path matches. --again: survivors of earlier runs
+once more, after tests were added. --list: names only. --as-is: works with the copy as it is, while the tree
+changes. Ends with 1 when less than 92 % were noticed. build/mutants/tree may be a link to a folder that the
+compiler's cache covers.
 """
 import argparse
 import difflib

@@ -20,7 +20,8 @@ def say(*words):
 
 
 def command(words, limit, log, **environment):
-    """(exit status, processor seconds) of a command whose output goes to `log`. One that takes too long counts as failed."""
+    """(exit status, processor seconds) of a command whose output goes to `log`. One that takes too long
+    counts as failed."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     with open(log, "wb") as out:
         process = subprocess.Popen([str(w) for w in words], cwd=BUILD, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT,

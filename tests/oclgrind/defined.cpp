@@ -1,9 +1,11 @@
-// A plugin of Oclgrind (oclgrind --plugins) that follows, byte by byte in memory and lane by lane in values, what nothing
-// has set, and reports where it decides something: a branch, an address, a lane picked by number, or a value stored in
-// global memory. It also writes down which kernels ran and every report, so that processes started by a test count as well.
+// A plugin of Oclgrind (oclgrind --plugins) that follows, byte by byte in memory and lane by lane in
+// values, what nothing has set, and reports where it decides something: a branch, an address, a lane picked
+// by number, or a value stored in global memory. It also writes down which kernels ran and every report, so
+// that processes started by a test count as well.
 //
-// Oclgrind 21.10 has --uninitialized for this, but that takes lanes 11 to 13 of a shuffle for undefined ones, crashes where
-// a shuffle leaves lanes open, and mixes up buffers that reuse the place of released ones.
+// Oclgrind 21.10 has --uninitialized for this, but that takes lanes 11 to 13 of a shuffle for undefined
+// ones, crashes where a shuffle leaves lanes open, and mixes up buffers that reuse the place of released
+// ones.
 //
 // PELLUCID_OCLGRIND_DIR: the folder for the files reports, kernels.
 #include <mutex>

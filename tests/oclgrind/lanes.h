@@ -44,8 +44,9 @@ void append(const char* file, const std::string& text) {
     close(to);
 }
 
-// What is released after main crashes in Oclgrind, whose thread-local stack of calls is gone by then. Handlers run in the reverse
-// order of their registration: the last of these, which comes after all that the test has made so far, before any release.
+// What is released after main crashes in Oclgrind, whose thread-local stack of calls is gone by then.
+// Handlers run in the reverse order of their registration: the last of these, which comes after all that
+// the test has made so far, before any release.
 void endWithoutReleasing() {
     on_exit(
         +[](int status, void*) { fflush(nullptr), _exit(status); }, nullptr);

@@ -1,6 +1,6 @@
-// Kernels with one mistake each, which Oclgrind or the plugin must report in the words above it, and one without any. run.py
-// runs them first: a check that finds nothing there would find nothing anywhere.
-// `out` holds 16 uints; a work-group has 4 work-items, a launch 16.
+// Kernels with one mistake each, which Oclgrind or the plugin must report in the words above it, and one
+// without any. run.py runs them first: a check that finds nothing there would find nothing anywhere. `out`
+// holds 16 uints; a work-group has 4 work-items, a launch 16.
 
 typedef struct Pair {
     uint first, second;
@@ -10,7 +10,8 @@ uint sum_of(Pair pair) {
     return pair.first + pair.second;
 }
 
-// What looks open for a while and is not: whole vectors made of lanes, lanes that nobody takes, structures by value.
+// What looks open for a while and is not: whole vectors made of lanes, lanes that nobody takes, structures
+// by value.
 __kernel void sound(__global uint* out, __local uint* shared) {
     const uint i = get_global_id(0), l = get_local_id(0);
     float16 a, b;

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Every test case of the device by itself in Oclgrind: accesses out of bounds, races, values that nothing has set.
+"""Every test case of the device by itself in Oclgrind: accesses out of bounds, races, values that nothing
+has set.
 
     run.py BUILD_DIR PROGRAM... [--widths 16] [--only REGEX] [--jobs N] [--seconds S]
 
-Fails when a case fails, when Oclgrind or its plugin (defined.cpp) reports anything, when a case takes more than S seconds
-of processor time, when a line of left_out.txt matches no case, and when a kernel of kernels/*.cl was never launched.
-test_small runs with 16, 8 and 1 lanes in any case.
+Fails when a case fails, when Oclgrind or its plugin (defined.cpp) reports anything, when a case takes more
+than S seconds of processor time, when a line of left_out.txt matches no case, and when a kernel of
+kernels/*.cl was never launched. test_small runs with 16, 8 and 1 lanes in any case.
 """
 import argparse
 import concurrent.futures

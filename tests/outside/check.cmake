@@ -1,5 +1,6 @@
-# Installs the build into a fresh prefix, whose name has a space, and uses it from a project that knows nothing else of it, by
-# find_package and by pkg-config; then the examples from there after the tree was moved. Arguments: BUILD, SOURCE, WORK, C_FLAGS.
+# Installs the build into a fresh prefix, whose name has a space, and uses it from a project that knows
+# nothing else of it, by find_package and by pkg-config; then the examples from there after the tree was
+# moved. Arguments: BUILD, SOURCE, WORK, C_FLAGS.
 cmake_minimum_required(VERSION 3.20)
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result)
@@ -74,7 +75,8 @@ run(${CMAKE_COMMAND} -G Ninja -S ${WORK}/moved/share/doc/pellucid/examples -B ${
 run(${CMAKE_COMMAND} --build ${WORK}/examples --target example_own_kernel example_progress)
 run(${WORK}/examples/example_own_kernel)
 
-# Pictures come from a module beside the library, in a moved tree too; without it the message names it, and EXR needs none.
+# Pictures come from a module beside the library, in a moved tree too; without it the message names it, and
+# EXR needs none.
 set(moved_command ${WORK}/moved/bin/pellucid)
 if(EXISTS ${moved_command})
   run(${moved_command} lut specular --size 8x8 -o ${WORK}/table.png)

@@ -1,4 +1,5 @@
-// What the files in folders named `windows` do in the place of those in `posix`: outputs, inputs, this process, libraries.
+// What the files in folders named `windows` do in the place of those in `posix`: outputs, inputs, this
+// process, libraries.
 #include "io/atomic_file.h"
 #include "io/file_error.h"
 #include "io/input_file.h"
