@@ -9,6 +9,7 @@
 #include <atomic>
 #include <thread>
 
+#include "cl/cl_spy.h"
 #include "shading/pass_scene.h"
 
 using namespace shade_test;
@@ -166,6 +167,35 @@ TEST(WarmUp, CanBeStoppedAndGoneOnWith) {
     pellucid::check(pelWarmUpPrograms(own.get(), &work, &built));
     EXPECT_LT(built, 7u) << "what was built before the stop is kept: all of it, where builders were faster "
                             "than the one who tells";
+}
+
+// Here two devices stand in for two processes.
+TEST(WarmUp, ProcessesThatShareAFolderLaunchEachKernelOnce) {
+    char folder[] = "/tmp/pellucid-share-XXXXXX";
+    ASSERT_NE(::mkdtemp(folder), nullptr);
+    std::vector<float> pictures[2];
+    for (const std::string prefix : {"", "helper:"}) {
+        const Device own("");
+        const Tables tables = makeTables(own, 32, 32);
+        Scene small(own, tables, 16, 2);
+        const PelShader handle = small.shader.get();
+        PelWarmUp work = workOf({});
+        work.shaders = &handle, work.numShaders = 1;
+        const uint64_t before = spy::launchesOf("shade") + spy::launchesOf("wide_shadow");
+        ::setenv("PELLUCID_BUILD_SHARE", (prefix + folder).c_str(), 1);
+        pellucid::check(pelWarmUpPrograms(own.get(), &work, nullptr));
+        ::unsetenv("PELLUCID_BUILD_SHARE");
+        const uint64_t launched = spy::launchesOf("shade") + spy::launchesOf("wide_shadow") - before;
+        if (prefix.empty())
+            EXPECT_GE(launched, 2u);
+        else
+            EXPECT_EQ(launched, 0u) << "another process has begun them";
+        small.shader.commit().execute();
+        pictures[!prefix.empty()] = small.target.readAll<float>();
+    }
+    EXPECT_EQ(pictures[0], pictures[1]);
+    EXPECT_GT(*std::max_element(pictures[0].begin(), pictures[0].end()), 0.01f);
+    std::filesystem::remove_all(folder);
 }
 
 TEST(WarmUp, SaysWhatIsWrong) {
