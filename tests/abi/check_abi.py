@@ -1,8 +1,8 @@
 """The promise that programs built against an older or newer pellucid.h keep working.
 
     check_abi.py list HEADER_DIR              prints what the header promises now: functions, values, sizes
-    check_abi.py check HEADER_DIR LIBRARY     compares with promises.txt and with the library's exports, and runs one program
-                                              whose two halves were compiled against this and against a longer header
+    check_abi.py check HEADER_DIR LIBRARY     compares with promises.txt and with the library's exports, and runs a
+                                              program with one half compiled against a longer header
 
 A function or value in promises.txt stays; a structure may only grow, at its end, and a ..._COUNT. CC and
 CFLAGS choose the compiler.
@@ -16,7 +16,8 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-CC = [*shlex.split(os.environ.get("CC", "cc")), *shlex.split(os.environ.get("CFLAGS", "")), "-std=c99", "-Wall", "-Werror"]
+CC = [*shlex.split(os.environ.get("CC", "cc")), *shlex.split(os.environ.get("CFLAGS", "")), "-std=c99",
+      "-Wall", "-Werror"]
 
 
 def run(*command):
@@ -31,12 +32,14 @@ def promises(include):
     values = re.findall(r"\b(PEL_[A-Z0-9_]+)\s*=", code)
     sizes = re.findall(r"typedef struct (Pel\w+) \{", code)
     if min(len(functions), len(values), len(sizes)) < 15:
-        raise SystemExit(f"only {len(functions)} functions, {len(values)} values, {len(sizes)} structures: broken")
+        found = f"{len(functions)} functions, {len(values)} values, {len(sizes)} structures"
+        raise SystemExit(f"only {found}: this script is broken")
     with tempfile.TemporaryDirectory() as work:
         lines = [f'printf("value {v} %lld\\n", (long long){v});' for v in values]
         lines += [f'printf("size {s} %lld\\n", (long long)sizeof({s}));' for s in sizes]
         source = Path(work, "list.c")
-        source.write_text("#include <pellucid/pellucid.h>\n#include <stdio.h>\nint main(void) {\n" + "\n".join(lines) +
+        source.write_text("#include <pellucid/pellucid.h>\n#include <stdio.h>\nint main(void) {\n"
+                          + "\n".join(lines) +
                           "\nreturn 0; }\n")
         run(*CC, "-I", include, source, "-o", Path(work, "list"))
         measured = [line.rsplit(" ", 1) for line in run(Path(work, "list")).splitlines()]
@@ -64,7 +67,8 @@ def longer_header(include, to):
                           r"\1    uint32_t later[4];\n\3", text, flags=re.S)
     if count < 10:
         raise SystemExit(f"{count} structures were made longer: broken")
-    (to / "pellucid/pellucid.h").write_text(text.replace("#define PEL_VERSION_MINOR 1", "#define PEL_VERSION_MINOR 2"))
+    (to / "pellucid/pellucid.h").write_text(text.replace("#define PEL_VERSION_MINOR 1",
+                                                          "#define PEL_VERSION_MINOR 2"))
     for name in ("pellucid_defaults.h", "pellucid_fields.h"):
         (to / "pellucid" / name).write_text((include / "pellucid" / name).read_text(encoding="utf-8"))
 
@@ -90,12 +94,14 @@ def main(what, include, library=None):
         print("\n".join(f"{name} {number}" if number or not name.startswith("function") else name
                         for name, number in now.items()))
         return
-    lines = [line.split() for line in (HERE / "promises.txt").read_text().splitlines() if not line.startswith("#")]
+    lines = [line.split() for line in (HERE / "promises.txt").read_text().splitlines()
+             if not line.startswith("#")]
     then = {" ".join(words[:2]): int(words[2]) if len(words) > 2 else 0 for words in lines}
     library = Path(library).resolve()
     exported = set(re.findall(r" T (pel\w+)$", run("nm", "-D", "--defined-only", library), re.M))
     wrong = list(broken_promises(then, now))
-    wrong += [f"{n} is promised and not exported" for n in then if n.startswith("function") and n.split()[1] not in exported]
+    wrong += [f"{n} is promised and not exported" for n in then if n.startswith("function")
+              and n.split()[1] not in exported]
     # The comparison itself must be able to fail.
     assert len(list(broken_promises({"size A": 8, "value B": 1, "function c": 0, "value D_COUNT": 3},
                                     {"size A": 4, "value B": 2, "value D_COUNT": 2}))) == 4

@@ -31,8 +31,9 @@ class Tables(unittest.TestCase):
     def table(self, name, encoding, size=f"{WIDTH}x{HEIGHT}"):
         path = Path(self.folder.name) / f"{size}-{name}"
         if not path.exists():
-            subprocess.run([COMMAND, "lut", "curvature", "-o", path, "--size", size, "--axis", "root", "--radius-min", "1",
-                            "--radius-max", "100", "--encoding", encoding], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run([COMMAND, "lut", "curvature", "-o", path, "--size", size, "--axis", "root",
+                            "--radius-min", "1", "--radius-max", "100", "--encoding", encoding],
+                           check=True, stdout=subprocess.DEVNULL)
         return str(path)
 
     def npy(self, encoding):
@@ -62,7 +63,8 @@ class Tables(unittest.TestCase):
         openexr = reader("OpenEXR")
         folder = Path(self.folder.name)
         (folder / "m.toml").write_text('version = 2\n[[lut]]\nsize = 13\nradius_min = 1\nradius_max = 100\n')
-        subprocess.run([COMMAND, "batch", folder / "m.toml", "-o", folder / "out"], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([COMMAND, "batch", folder / "m.toml", "-o", folder / "out"], check=True,
+                       stdout=subprocess.DEVNULL)
         (path,) = (folder / "out").glob("*.exr")
         expected = np.load(self.table("square.npy", "half", "13x13"))
         with openexr.File(str(path), separate_channels=True) as file:
@@ -86,7 +88,8 @@ class Tables(unittest.TestCase):
 
     def bc6h(self, blocks):
         codecs = reader("imagecodecs")
-        padded = codecs.bcn_decode(bytes(blocks), codecs.BCN.FORMAT.BC6HU, shape=(-(-HEIGHT // 4) * 4, -(-WIDTH // 4) * 4, 3))
+        padded = codecs.bcn_decode(bytes(blocks), codecs.BCN.FORMAT.BC6HU, shape=(-(-HEIGHT // 4) * 4,
+                                                                                  -(-WIDTH // 4) * 4, 3))
         return np.asarray(padded, np.float32)[:HEIGHT, :WIDTH, :3]
 
     def test_dds(self):
@@ -113,7 +116,8 @@ class Tables(unittest.TestCase):
         parser.ColorModel = int
         parser.get_stride = {97: 8, 143: 1}.__getitem__
         parser.VkFormat = int
-        for encoding, size, vulkan, model in (("half", f"{WIDTH}x{HEIGHT}", 97, 1), ("bc6h", "24x16", 143, 133)):
+        for encoding, size, vulkan, model in (("half", f"{WIDTH}x{HEIGHT}", 97, 1), ("bc6h", "24x16", 143,
+                                                                                     133)):
             ktx = parser.parse_path(Path(self.table(encoding + ".ktx2", encoding, size)))
             self.assertEqual(f"{ktx.pixelWidth}x{ktx.pixelHeight}", size)
             self.assertEqual((ktx.vkFormat, ktx.faceCount, ktx.levelCount), (vulkan, 1, 1))

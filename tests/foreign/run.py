@@ -19,8 +19,9 @@ def main(command, work):
     if not complete.exists():
         venv.create(environment, clear=True, with_pip=True)
         for reader in READERS:
-            found = subprocess.run([python, "-m", "pip", "--disable-pip-version-check", "install", "-q", "--only-binary",
-                                    ":all:", reader], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+            found = subprocess.run([python, "-m", "pip", "--disable-pip-version-check", "install", "-q",
+                                    "--only-binary", ":all:", reader], stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT, text=True)
             if found.returncode and reader == "numpy":
                 print("tests/foreign::packages_from_PyPI SKIPPED (pip cannot reach what the tests need)")
                 return 77

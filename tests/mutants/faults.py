@@ -50,7 +50,8 @@ def blank(text):
 
 def masked_c(text):
     pattern = re.compile(
-        r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'|^[ \t]*#(?:\\\n|[^\n])*',
+        r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\''
+        r"|^[ \t]*#(?:\\\n|[^\n])*",
         re.S | re.M)
 
     def keep(match):
@@ -175,8 +176,8 @@ def candidates(path, text, m):
             yield *match.span(), "", "dropped negation"
         for match in re.finditer(r"\bif ([^\n:]+):\s", m):
             yield *match.span(1), "False", "removed check"
-        for match in re.finditer(r"^ +((?!return|raise|yield|pass|import|from|assert|def|class|del|if|for|while|with|else)"
-                                 r"[\w.]+(?:\([^\n]*\)| [-+*|&/]?= [^\n(]+))$", m, re.M):
+        for match in re.finditer(r"^ +((?!return|raise|yield|pass|import|from|assert|def|class|del|if|for|while|with"
+                                 r"|else)[\w.]+(?:\([^\n]*\)| [-+*|&/]?= [^\n(]+))$", m, re.M):
             if '("' not in match[1][:3] and match[1].count("(") == match[1].count(")"):
                 yield *match.span(1), "pass", "dropped statement"
         return
@@ -187,8 +188,9 @@ def candidates(path, text, m):
         if end > 0 and ";" not in m[match.start():end]:
             yield match.end(), end, "false", "removed check"
             yield match.end(), end, "true", "forced branch"
-    for match in re.finditer(r"^ +(?!return|throw|if|for|while|else|case|using|static|const|delete|break|continue|fail"
-                             r"|invalidArgument)([A-Za-z_][\w.:>\[\]-]*(?:\([^\n]*\)| [-+*|&/]?= [^\n]+);)$", m, re.M):
+    for match in re.finditer(r"^ +(?!return|throw|if|for|while|else|case|using|static|const|delete|break|continue"
+                             r"|fail|invalidArgument)"
+                             r"([A-Za-z_][\w.:>\[\]-]*(?:\([^\n]*\)| [-+*|&/]?= [^\n]+);)$", m, re.M):
         if match[1].count("(") == match[1].count(")"):
             yield *match.span(1), ";", "dropped statement"
     for match in re.finditer(r"\b(?:cl::)?check\(", m):
@@ -220,7 +222,8 @@ def faults(path, text, meaning=False):
         shown[around] = shown.get(around, 0) + 1
 
         def digest(found):
-            what = [path.rpartition("/")[2], around, shown[around], found[0] - starts[row], text[found[0]:found[1]], found[2]]
+            what = [path.rpartition("/")[2], around, shown[around], found[0] - starts[row],
+                    text[found[0]:found[1]], found[2]]
             return hashlib.sha256("\n".join(map(str, what)).encode()).hexdigest()[:12]
 
         # Kinds first, for a line may have many constants and one comparison. Nearly every line could be

@@ -27,7 +27,8 @@ def begin_of_operand(m, at):
     depth = 0
     while at > 0:
         depth += (m[at - 1] in ")]}") - (m[at - 1] in "([{")
-        if depth < 0 or (depth == 0 and re.search(r"(?:&&|\|\||[;,?]|(?<![!<>=])=|\breturn) ?$", m[max(0, at - 8):at])):
+        if depth < 0 or (depth == 0 and re.search(r"(?:&&|\|\||[;,?]|(?<![!<>=])=|\breturn) ?$",
+                                                  m[max(0, at - 8):at])):
             return at
         at -= 1
     return -1

@@ -57,7 +57,8 @@ class Tests:
         self.words = {name: words_of(p.stem) * 5 + words_of(p.parent.name) * 5 + words_of(p.read_text())
                       for name, p in {**programs, **scripts}.items()}
         known = [set(words) for words in self.words.values()]
-        self.rarity = {word: math.log(len(known) / sum(word in k for k in known)) for word in set().union(*known)}
+        self.rarity = {word: math.log(len(known) / sum(word in k for k in known)) for word
+                       in set().union(*known)}
 
     def measure(self, name):
         """A test without any fault, once: whether it passes, its processor seconds, the kernels that it
@@ -66,7 +67,8 @@ class Tests:
             kernels, log = set(), WORK / "test.log"
             if self.place.python() if name.endswith(".py") else self.place.build(name):
                 with launched(kernels) as trace:
-                    status, seconds = self.place.test(name, 900, log, POCL_TRACING="text", POCL_TRACING_OPT=trace)
+                    status, seconds = self.place.test(name, 900, log, POCL_TRACING="text",
+                                                      POCL_TRACING_OPT=trace)
             else:
                 status, seconds = "does not build", 0
             self.measured[name] = {"good": status in PASSED, "seconds": seconds, "kernels": sorted(kernels)}
@@ -99,21 +101,25 @@ class Tests:
                 near *= SAME_SUBJECT
             return -near / (1 + self.measured.get(name, {}).get("seconds", 10) / 20) ** 0.5, name
 
-        return sorted(self.scripts if fault.path.startswith("bindings/python") or fault.path.endswith(".py") else self.programs, key=distance)
+        python = fault.path.startswith("bindings/python") or fault.path.endswith(".py")
+        return sorted(self.scripts if python else self.programs, key=distance)
 
     def weighed(self, words):
         """{word: weight}, of length 1: rare words count most, and the tenth of a kind little more than the
         first."""
-        row = {word: (1 + math.log(n)) * self.rarity.get(word, 0) for word, n in collections.Counter(words).items()}
+        row = {word: (1 + math.log(n)) * self.rarity.get(word, 0) for word, n
+               in collections.Counter(words).items()}
         length = math.sqrt(sum(w * w for w in row.values())) or 1
         return {word: w / length for word, w in row.items()}
 
 
 def kernels_with(path):
     """The kernels whose source includes this file."""
-    texts = {str(p.relative_to(TREE / "kernels")): p.read_text() for p in (TREE / "kernels").rglob("*") if p.is_file()}
+    texts = {str(p.relative_to(TREE / "kernels")): p.read_text() for p in (TREE / "kernels").rglob("*")
+             if p.is_file()}
     inside = {path[len("kernels/"):]}
-    while more := {name for name, text in texts.items() if any(f'#include "{i}"' in text for i in inside)} - inside:
+    while more := {name for name, text in texts.items() if any(f'#include "{i}"' in text for i
+                                                               in inside)} - inside:
         inside |= more
     return {kernel for name in inside
             for kernel in re.findall(r"__kernel\b[^{;]*?\bvoid\s+(\w+)\s*\(", texts.get(name, ""))}

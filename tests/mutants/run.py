@@ -30,9 +30,9 @@ from nearest import Tests
 from workplace import PASSED, TREE, WORK, Workplace, say
 
 EQUIVALENT = Path(__file__).with_name("equivalent.txt")
-SOURCES = ["kernels/**/*.cl", "kernels/**/*.clh", "kernels/**/*.h", "host/**/*.cpp", "host/**/*.h", "apps/*/*.cpp",
-           "bindings/cli/*.cpp", "bindings/python/pellucid/**/*.py", "apps/viewer/view/*.py", "apps/batch/batch/*.py",
-           "bindings/python/native/*.cpp"]
+SOURCES = ["kernels/**/*.cl", "kernels/**/*.clh", "kernels/**/*.h", "host/**/*.cpp", "host/**/*.h",
+           "apps/*/*.cpp", "bindings/cli/*.cpp", "bindings/python/pellucid/**/*.py", "apps/viewer/view/*.py",
+           "apps/batch/batch/*.py", "bindings/python/native/*.cpp"]
 # Declarations that every program is built from: tests/abi has their values.
 LEFT_OUT = {"host/include/pellucid/pellucid.h"}
 OTHER_SYSTEMS = re.compile("/windows/")  # not compiled here
@@ -89,7 +89,8 @@ def sample(seed, only, meaning):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("n", type=int, nargs="?", default=50)
     parser.add_argument("seed", nargs="?", default="1")
     parser.add_argument("--only", default="")
@@ -107,7 +108,8 @@ def main():
     if not place.build("pellucid"):
         sys.exit((WORK / "build.log").read_text()[-3000:])
     results = WORK / "results.jsonl"
-    known = {r["name"]: r for r in map(json.loads, results.read_text().splitlines())} if results.exists() else {}
+    known = {r["name"]: r for r in map(json.loads,
+                                       results.read_text().splitlines())} if results.exists() else {}
     counted, survived, broken, alike = 0, 0, 0, 0
     for fault in every:
         if counted == o.n:
@@ -132,7 +134,8 @@ def main():
             survived += 1
             say(diff(fault))
     killed = counted - survived
-    say(f"{killed} of {counted} faults were noticed ({100 * killed / max(counted, 1):.1f} %), {survived} survived; "
+    rate = 100 * killed / max(counted, 1)
+    say(f"{killed} of {counted} faults were noticed ({rate:.1f} %), {survived} survived; "
         f"{broken} did not compile, {alike} change nothing (equivalent.txt)")
     return 0 if killed >= GOAL * counted else 1
 

@@ -22,12 +22,15 @@ float mean(const float* v, int n) {
 
 class Faults(unittest.TestCase):
     def every(self, path, text):
-        return [text[:start] + new + text[end:] for start, end, new, kind in faults.candidates(path, text, faults.masked(path, text))]
+        return [text[:start] + new + text[end:]
+                for start, end, new, kind in faults.candidates(path, text, faults.masked(path, text))]
 
     def test_every_kind(self):
         made = self.every("a.cpp", CODE)
-        for wanted in ("if (n < 0) fail", "if (false) fail", "if (true) fail", "sum = 0.55f;", "i + 1 < n;", "sum -= v[i]", "v[i] / scale",
-                       "+= v[i];", "scale(v, n)", "= even(n)", "|| n > 3", "&& n >= 3", "(void)(launch(n));", "    ;\n    return",
+        for wanted in ("if (n < 0) fail", "if (false) fail", "if (true) fail", "sum = 0.55f;", "i + 1 < n;",
+                       "sum -= v[i]", "v[i] / scale",
+                       "+= v[i];", "scale(v, n)", "= even(n)", "|| n > 3", "&& n >= 3", "(void)(launch(n));",
+                       "    ;\n    return",
                        "std::min(", "max(n - sum,", "max(sum + n,", "max(sum,", "odd ? b : a", "* 3.0f;"):
             self.assertTrue(any(wanted in text for text in made), wanted)
         for text in made:
@@ -51,14 +54,18 @@ class Faults(unittest.TestCase):
 """
         made = [code[:start] + new + code[end:]
                 for start, end, new, _ in meanings.candidates("a.cpp", code, faults.masked("a.cpp", code))]
-        for wanted in ("if (false) return;", "    ;\n    sums_", "device_->allocate(bytes)", "if (bytes != bytes_)\n",
-                       "if (!std::equal(", "key.addPart(options);", "key.addPart(name);", '{{"PEL_A", text(1)}};',
-                       '{ {"PEL_B", f(x, 2)}};', "int j = 0; j <= 1", "j <= 0;", "low = size[0];", "low = min(left, at[x + 1]);",
+        for wanted in ("if (false) return;", "    ;\n    sums_", "device_->allocate(bytes)",
+                       "if (bytes != bytes_)\n",
+                       "if (!std::equal(", "key.addPart(options);", "key.addPart(name);",
+                       '{{"PEL_A", text(1)}};',
+                       '{ {"PEL_B", f(x, 2)}};', "int j = 0; j <= 1", "j <= 0;", "low = size[0];",
+                       "low = min(left, at[x + 1]);",
                        "min(size[0], left)", "min(size[0], at[x + 1])", "at[x]"):
             self.assertTrue(any(wanted in text for text in made), wanted)
 
     def test_python(self):
-        code = 'def f(a, b):\n    """1 + 2"""\n    if not a:  # 3 < 4\n        raise ValueError("5 + 6")\n    g(a, b)\n    return a and b is None\n'
+        code = ('def f(a, b):\n    """1 + 2"""\n    if not a:  # 3 < 4\n        raise ValueError("5 + 6")\n'
+                '    g(a, b)\n    return a and b is None\n')
         made = self.every("a.py", code)
         for wanted in ("if a:", "if False:", "    pass\n", "g(b, a)", "a or b"):
             self.assertTrue(any(wanted in text for text in made), wanted)
@@ -75,7 +82,8 @@ class Faults(unittest.TestCase):
 
     def test_the_tree(self):
         count = names = 0
-        for path in [*ROOT.glob("kernels/**/*.cl*"), *ROOT.glob("host/**/*.cpp"), *ROOT.glob("bindings/python/pellucid/**/*.py"), *ROOT.glob("apps/*/*/*.py")]:
+        for path in [*ROOT.glob("kernels/**/*.cl*"), *ROOT.glob("host/**/*.cpp"),
+                     *ROOT.glob("bindings/python/pellucid/**/*.py"), *ROOT.glob("apps/*/*/*.py")]:
             text = path.read_text()
             found = list(faults.faults(str(path.relative_to(ROOT)), text))
             for fault in faults.faults(str(path.relative_to(ROOT)), text, True):

@@ -24,8 +24,10 @@ def command(words, limit, log, **environment):
     counts as failed."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     with open(log, "wb") as out:
-        process = subprocess.Popen([str(w) for w in words], cwd=BUILD, stdin=subprocess.DEVNULL, stdout=out, stderr=subprocess.STDOUT,
-                                   start_new_session=True, env={**os.environ, **{k: str(v) for k, v in environment.items()}})
+        process = subprocess.Popen([str(w) for w in words], cwd=BUILD, stdin=subprocess.DEVNULL, stdout=out,
+                                   stderr=subprocess.STDOUT,
+                                   start_new_session=True, env={**os.environ, **{k: str(v) for k, v
+                                                                                 in environment.items()}})
         try:
             status = process.wait(limit)
         except subprocess.TimeoutExpired:
@@ -49,7 +51,8 @@ class Workplace:
             (WORK / folder).mkdir(parents=True, exist_ok=True)
         BUILD.mkdir(parents=True, exist_ok=True)
         self.scratch = WORK / "tmp"
-        self.environment = {"TMPDIR": self.scratch, "XDG_CACHE_HOME": WORK / "cache", "PELLUCID_COMMAND": BUILD / "bin/pellucid",
+        self.environment = {"TMPDIR": self.scratch, "XDG_CACHE_HOME": WORK / "cache",
+                            "PELLUCID_COMMAND": BUILD / "bin/pellucid",
                             "GTEST_COLOR": "no"}
         if self.applied.exists():  # a run was killed
             path, text = json.loads(self.applied.read_text())
@@ -69,7 +72,8 @@ class Workplace:
 
     def copy(self):
         """Makes the copy as the tree is; what did not change keeps its time."""
-        listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "-z"], cwd=ROOT, capture_output=True, check=True)
+        listed = subprocess.run(["git", "ls-files", "-co", "--exclude-standard", "-z"], cwd=ROOT,
+                                capture_output=True, check=True)
         wanted = {name for name in listed.stdout.decode().split("\0") if name and (ROOT / name).is_file()}
         for name in wanted:
             source, target = ROOT / name, TREE / name
@@ -82,8 +86,10 @@ class Workplace:
 
     def build(self, *targets):
         if not (BUILD / "build.ninja").exists():
-            launcher = ["-DCMAKE_C_COMPILER_LAUNCHER=ccache", "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
-            status, _ = command(["cmake", "-G", "Ninja", "-S", TREE, "-B", BUILD, "-DCMAKE_BUILD_TYPE=Release", *launcher],
+            launcher = ["-DCMAKE_C_COMPILER_LAUNCHER=ccache",
+                        "-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
+            status, _ = command(["cmake", "-G", "Ninja", "-S", TREE, "-B", BUILD,
+                                 "-DCMAKE_BUILD_TYPE=Release", *launcher],
                                 600, WORK / "build.log")
             if status:
                 sys.exit((WORK / "build.log").read_text())
@@ -94,7 +100,8 @@ class Workplace:
         environment = {"POCL_CACHE_DIR": WORK / "pocl", **self.environment, **extra}
         if name.endswith(".py"):
             environment["PYTHONPATH"] = BUILD / "python"
-            words = [WORK / "python-environment/bin/python", "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "--tb=short",
+            words = [WORK / "python-environment/bin/python", "-m", "pytest", "-x", "-q", "-p",
+                     "no:cacheprovider", "--tb=short",
                      "--rootdir", TREE, TREE / name]
         else:
             words = [BUILD / "bin" / name, "--gtest_fail_fast", "--gtest_brief=1"]
@@ -105,6 +112,7 @@ class Workplace:
 
     def python(self):
         """The package as the build lays it out, and the environment of its tests."""
-        status, _ = command([sys.executable, TREE / "bindings/python/tests/run_tests.py", "--prepare", WORK / "python-environment"],
+        status, _ = command([sys.executable, TREE / "bindings/python/tests/run_tests.py", "--prepare",
+                             WORK / "python-environment"],
                             3000, WORK / "build.log")
         return not status and self.build("python_package")

@@ -35,15 +35,18 @@ def fail(message):
 def plugin(build):
     """Compiles defined.cpp where it is newer than what was compiled."""
     source, target = HERE / "defined.cpp", build / "oclgrind" / "defined.so"
-    if target.exists() and target.stat().st_mtime > max(f.stat().st_mtime for f in (source, HERE / "lanes.h")):
+    newest = max(f.stat().st_mtime for f in (source, HERE / "lanes.h"))
+    if target.exists() and target.stat().st_mtime > newest:
         return target
-    libraries = subprocess.run(["ldd", "/usr/lib/oclgrind/liboclgrind-rt.so"], capture_output=True, text=True).stdout
+    libraries = subprocess.run(["ldd", "/usr/lib/oclgrind/liboclgrind-rt.so"], capture_output=True,
+                               text=True).stdout
     version = re.search(r"libLLVM-(\d+)", libraries)
     llvm = pathlib.Path(f"/usr/lib/llvm-{version[1] if version else 14}")
     if not pathlib.Path("/usr/include/oclgrind/Plugin.h").exists() or not (llvm / "include/llvm/IR").exists():
         fail(f"the plugin needs headers: apt-get install liboclgrind-dev {llvm.name}-dev")
     target.parent.mkdir(parents=True, exist_ok=True)
-    subprocess.run([os.environ.get("CXX", "c++"), "-std=c++17", "-O2", "-fno-rtti", "-fPIC", "-shared", "-w", "-Wl,-z,nodelete",
+    subprocess.run([os.environ.get("CXX", "c++"), "-std=c++17", "-O2", "-fno-rtti", "-fPIC", "-shared", "-w",
+                    "-Wl,-z,nodelete",
                     "-I/usr/include/oclgrind", f"-I{llvm}/include", source, "-o", target], check=True)
     return target
 
@@ -53,7 +56,8 @@ def cases_of(program):
     if program.name.startswith("example_"):
         yield "whole", []
         return
-    listing = subprocess.run([program, "--gtest_list_tests"], capture_output=True, text=True, check=True).stdout
+    listing = subprocess.run([program, "--gtest_list_tests"], capture_output=True, text=True,
+                             check=True).stdout
     suite = ""
     for line in listing.splitlines():
         name = line.split("#")[0].strip()
@@ -80,7 +84,8 @@ class Result:
             return "".join(p.read_text(errors="replace") for p in sorted(folder.glob(pattern)))
 
         self.name, self.seconds, self.status = name, seconds, status
-        self.reports, self.output, self.kernels = text("reports"), text("output"), set(text("kernels").split())
+        self.reports, self.output = text("reports"), text("output")
+        self.kernels = set(text("kernels").split())
         late = status in (-signal.SIGXCPU, -signal.SIGKILL) or seconds > limit
         self.verdict = ("reports" if self.reports else "too slow" if late else "failed" if status else
                         "skipped" if "[  SKIPPED ]" in self.output else "clean")
@@ -91,7 +96,8 @@ def run_case(name, command, environment, limit, scratch):
     folder = pathlib.Path(tempfile.mkdtemp(dir=scratch))
     with open(folder / "output", "w") as output:
         process = subprocess.Popen(
-            ["oclgrind", "--num-threads", "1", "--log", "/dev/null", *command], cwd=folder, stdin=subprocess.DEVNULL,
+            ["oclgrind", "--num-threads", "1", "--log", "/dev/null",
+             *command], cwd=folder, stdin=subprocess.DEVNULL,
             stdout=output, stderr=subprocess.STDOUT, env=dict(environment, PELLUCID_OCLGRIND_DIR=str(folder)),
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 2)))
         status, used = os.wait4(process.pid, 0)[1:]
@@ -109,14 +115,18 @@ def check_planted(defined, scratch):
     for expected, kernel in planted:
         folder = pathlib.Path(scratch) / kernel
         folder.mkdir()
-        (folder / "launch.sim").write_text(f"{source}\n{kernel}\n16 1 1\n4 1 1\n<size=64 fill=0>\n<size=16>\n")
-        subprocess.run(["oclgrind-kernel", "--num-threads", "1", "--data-races", "--build-options", "-cl-opt-disable",
-                        "--log", "/dev/null", "--plugins", str(defined), "launch.sim"], cwd=folder, check=True,
-                       stdout=subprocess.DEVNULL, env=dict(os.environ, PELLUCID_OCLGRIND_DIR=str(folder)))
+        launch = [source, kernel, "16 1 1", "4 1 1", "<size=64 fill=0>", "<size=16>", ""]
+        (folder / "launch.sim").write_text("\n".join(map(str, launch)))
+        subprocess.run(["oclgrind-kernel", "--num-threads", "1", "--data-races", "--build-options",
+                        "-cl-opt-disable",
+                        "--log", "/dev/null", "--plugins", str(defined), "launch.sim"],
+                       cwd=folder, check=True, stdout=subprocess.DEVNULL, env=dict(os.environ, PELLUCID_OCLGRIND_DIR=str(folder)))
         reports = (folder / "reports").read_text() if (folder / "reports").exists() else ""
         if expected not in reports or (not expected and reports):
-            wrong.append(f"planted.cl: {kernel} must report '{expected or 'nothing'}', not '{reports.strip()[:300]}'")
-    print(f"{len(planted) - len(wrong)} of {len(planted)} planted kernels are judged as they should be", flush=True)
+            wrong.append(f"planted.cl: {kernel} must report '{expected or 'nothing'}', "
+                         f"not '{reports.strip()[:300]}'")
+    print(f"{len(planted) - len(wrong)} of {len(planted)} planted kernels are judged as they should be",
+          flush=True)
     return wrong
 
 
@@ -130,18 +140,22 @@ def kernels_of_the_tree():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("programs", nargs="+", help="test programs in BUILD_DIR/bin")
-    parser.add_argument("--widths", default="16", help="lanes of the explicit vectors: 16 and 8 as on CPUs, 1 as on GPUs")
+    parser.add_argument("--widths", default="16",
+                        help="lanes of the explicit vectors: 16 and 8 as on CPUs, 1 as on GPUs")
     parser.add_argument("--only", default="", help="cases whose name matches this regular expression")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--seconds", type=int, default=60, help="processor time of a case (60)")
-    parser.add_argument("--times", type=pathlib.Path, help="writes verdict, seconds and name of each case here")
+    parser.add_argument("--times", type=pathlib.Path,
+                        help="writes verdict, seconds and name of each case here")
     o = parser.parse_args()
     if not shutil.which("oclgrind"):
         fail("oclgrind is not installed: apt-get install oclgrind liboclgrind-dev llvm-14-dev")
-    environment = dict(os.environ, PELLUCID_TEST_SMALL="1", OCLGRIND_BUILD_OPTIONS=OPTIONS, OCLGRIND_DATA_RACES="1",
+    environment = dict(os.environ, PELLUCID_TEST_SMALL="1", OCLGRIND_BUILD_OPTIONS=OPTIONS,
+                       OCLGRIND_DATA_RACES="1",
                        OCLGRIND_PLUGINS=str(plugin(o.build.resolve())))
 
     rules, skipped, work = list(left_out()), [], []
@@ -171,7 +185,8 @@ def main():
             if r.verdict not in ("clean", "skipped"):
                 print(r.reports[:6000] or f"{r.output[-3000:]}\nended with {r.status}", flush=True)
     if o.times:
-        o.times.write_text("".join(f"{r.verdict}\t{r.seconds:.1f}\t{r.name}\n" for r in sorted(done, key=lambda r: -r.seconds)))
+        slowest = sorted(done, key=lambda r: -r.seconds)
+        o.times.write_text("".join(f"{r.verdict}\t{r.seconds:.1f}\t{r.name}\n" for r in slowest))
 
     bad += [f"{r.verdict}: {r.name}" for r in done if r.verdict not in ("clean", "skipped")]
     every = kernels_of_the_tree()
@@ -179,9 +194,11 @@ def main():
         bad += [f"left_out.txt: {rules[i][1]} matches no case" for i in sorted(stale)]
         for width in o.widths.split(","):
             launched = set().union(*(r.kernels for r in done if r.name.endswith("@" + width)))
-            bad += [f"never launched with {width} lanes: {k} ({every[k]})" for k in every if k not in launched]
+            bad += [f"never launched with {width} lanes: {k} ({every[k]})"
+                    for k in every if k not in launched]
             print(f"{len(launched & set(every))} of {len(every)} kernels launched with {width} lanes")
-    print(", ".join(f"{sum(r.verdict == v for r in done)} {v}" for v in ("clean", "skipped", "reports", "failed", "too slow"))
+    verdicts = ("clean", "skipped", "reports", "failed", "too slow")
+    print(", ".join(f"{sum(r.verdict == v for r in done)} {v}" for v in verdicts)
           + f", {len(skipped)} left out (tests/oclgrind/left_out.txt)")
     print(f"{sum(r.seconds for r in done):.0f} s of processor time in {time.monotonic() - started:.0f} s")
     print("\n".join(bad))
