@@ -1,8 +1,8 @@
 """The promise that programs built against an older or newer pellucid.h keep working.
 
     check_abi.py list HEADER_DIR              prints what the header promises now: functions, values, sizes
-    check_abi.py check HEADER_DIR LIBRARY     compares with promises.txt and with the library's exports, and runs a
-                                              program with one half compiled against a longer header
+    check_abi.py check HEADER_DIR LIBRARY     compares with promises.txt and with the library's exports, and
+                                              runs a program with one half compiled against a longer header
 
 A function or value in promises.txt stays; a structure may only grow, at its end, and a ..._COUNT. CC and
 CFLAGS choose the compiler.

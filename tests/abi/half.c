@@ -1,4 +1,5 @@
-/* One half of a program, compiled against one version of the header: HALF is its name. Returns what went wrong, or NULL. */
+/* One half of a program, compiled against one version of the header: HALF is its name. Returns what went
+ * wrong, or NULL. */
 #include <math.h>
 #include <pellucid/pellucid.h>
 #include <string.h>

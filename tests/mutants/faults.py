@@ -176,8 +176,8 @@ def candidates(path, text, m):
             yield *match.span(), "", "dropped negation"
         for match in re.finditer(r"\bif ([^\n:]+):\s", m):
             yield *match.span(1), "False", "removed check"
-        for match in re.finditer(r"^ +((?!return|raise|yield|pass|import|from|assert|def|class|del|if|for|while|with"
-                                 r"|else)[\w.]+(?:\([^\n]*\)| [-+*|&/]?= [^\n(]+))$", m, re.M):
+        for match in re.finditer(r"^ +((?!return|raise|yield|pass|import|from|assert|def|class|del|if|for|while"
+                                 r"|with|else)[\w.]+(?:\([^\n]*\)| [-+*|&/]?= [^\n(]+))$", m, re.M):
             if '("' not in match[1][:3] and match[1].count("(") == match[1].count(")"):
                 yield *match.span(1), "pass", "dropped statement"
         return
@@ -188,8 +188,8 @@ def candidates(path, text, m):
         if end > 0 and ";" not in m[match.start():end]:
             yield match.end(), end, "false", "removed check"
             yield match.end(), end, "true", "forced branch"
-    for match in re.finditer(r"^ +(?!return|throw|if|for|while|else|case|using|static|const|delete|break|continue"
-                             r"|fail|invalidArgument)"
+    for match in re.finditer(r"^ +(?!return|throw|if|for|while|else|case|using|static|const|delete|break"
+                             r"|continue|fail|invalidArgument)"
                              r"([A-Za-z_][\w.:>\[\]-]*(?:\([^\n]*\)| [-+*|&/]?= [^\n]+);)$", m, re.M):
         if match[1].count("(") == match[1].count(")"):
             yield *match.span(1), ";", "dropped statement"

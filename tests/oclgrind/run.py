@@ -118,9 +118,9 @@ def check_planted(defined, scratch):
         launch = [source, kernel, "16 1 1", "4 1 1", "<size=64 fill=0>", "<size=16>", ""]
         (folder / "launch.sim").write_text("\n".join(map(str, launch)))
         subprocess.run(["oclgrind-kernel", "--num-threads", "1", "--data-races", "--build-options",
-                        "-cl-opt-disable",
-                        "--log", "/dev/null", "--plugins", str(defined), "launch.sim"],
-                       cwd=folder, check=True, stdout=subprocess.DEVNULL, env=dict(os.environ, PELLUCID_OCLGRIND_DIR=str(folder)))
+                        "-cl-opt-disable", "--log", "/dev/null", "--plugins", str(defined), "launch.sim"],
+                       cwd=folder, check=True, stdout=subprocess.DEVNULL,
+                       env=dict(os.environ, PELLUCID_OCLGRIND_DIR=str(folder)))
         reports = (folder / "reports").read_text() if (folder / "reports").exists() else ""
         if expected not in reports or (not expected and reports):
             wrong.append(f"planted.cl: {kernel} must report '{expected or 'nothing'}', "

@@ -29,8 +29,10 @@ execute_process(COMMAND pkg-config --cflags --libs pellucid OUTPUT_VARIABLE flag
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "pkg-config does not know pellucid")
 endif()
-execute_process(COMMAND pkg-config --variable=kernels pellucid OUTPUT_VARIABLE kernels OUTPUT_STRIP_TRAILING_WHITESPACE)
-execute_process(COMMAND pkg-config --variable=rpath pellucid OUTPUT_VARIABLE rpath OUTPUT_STRIP_TRAILING_WHITESPACE)
+execute_process(COMMAND pkg-config --variable=kernels pellucid
+                OUTPUT_VARIABLE kernels OUTPUT_STRIP_TRAILING_WHITESPACE)
+execute_process(COMMAND pkg-config --variable=rpath pellucid
+                OUTPUT_VARIABLE rpath OUTPUT_STRIP_TRAILING_WHITESPACE)
 string(REPLACE " " "\\ " rpath "${rpath}")  # as a shell would need it
 separate_arguments(flags UNIX_COMMAND "${flags} ${rpath} ${C_FLAGS}")
 list(APPEND flags "-DKERNELS=\"${kernels}\"")
@@ -51,7 +53,8 @@ foreach(page ${pages})
   string(REGEX MATCHALL "\\]\\([^):#]+" links "${text}")
   foreach(link ${links})
     string(SUBSTRING ${link} 2 -1 link)
-    if(NOT link MATCHES "^https?|^\\.\\./\\.\\./|^\\.\\./(bindings|bench|host|kernels|tests)/")  # of the repository alone
+    # Links into the repository are not installed.
+    if(NOT link MATCHES "^https?|^\\.\\./\\.\\./|^\\.\\./(bindings|bench|host|kernels|tests)/")
       expect(${folder}/${link})
     endif()
   endforeach()
@@ -83,7 +86,8 @@ if(EXISTS ${moved_command})
   file(GLOB_RECURSE module ${WORK}/moved/*/pellucid_pictures-*.so)
   expect("${module}")
   file(REMOVE ${module})
-  execute_process(COMMAND ${moved_command} lut specular --size 8x8 -o ${WORK}/none.png RESULT_VARIABLE result ERROR_VARIABLE said)
+  execute_process(COMMAND ${moved_command} lut specular --size 8x8 -o ${WORK}/none.png
+                  RESULT_VARIABLE result ERROR_VARIABLE said)
   if(NOT result EQUAL 3 OR NOT said MATCHES "none.png: needs pellucid_pictures-" OR EXISTS ${WORK}/none.png)
     message(FATAL_ERROR "without the module for pictures: ${result}, ${said}")
   endif()
