@@ -116,73 +116,58 @@ WarmUpJobs jobsOfGroups(const Ref<Device>& device, uint32_t groups) {
     return jobs;
 }
 
+// What `call` throws.
+template <class Call>
+static std::exception_ptr thrownBy(const Call& call) {
+    try {
+        call();
+    } catch (...) {
+        return std::current_exception();
+    }
+    return {};
+}
+
 void runJobs(Device& device, const WarmUpJobs& jobs, uint32_t threads) {
-    std::mutex mutex;
+    std::mutex mutex;  // of these
     std::condition_variable changed;
-    size_t next = 0, done = 0, running = 0;
+    size_t next = 0, done = 0;
     std::exception_ptr failure;
     const auto work = [&] {
         std::unique_lock lock(mutex);
         while (!failure && next < jobs.size()) {
             const auto& job = jobs[next++];
             lock.unlock();
-            std::exception_ptr thrown;
-            try {
-                job();
-            } catch (...) {
-                thrown = std::current_exception();
-            }
+            const std::exception_ptr thrown = thrownBy(job);
             lock.lock();
             ++done;
-            if (thrown && !failure) failure = thrown;
+            if (!failure) failure = thrown;
             changed.notify_one();
         }
-        --running;
-        changed.notify_one();
+    };
+    const auto report = [&](size_t ready) {
+        const std::string what = text("building kernels ", ready, "/", jobs.size());
+        device.progress(jobs.empty() ? 1 : double(ready) / double(jobs.size()), what.c_str());
     };
     if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
     if (std::string_view(device.info().platform) == "Oclgrind")
         threads = 1;  // it stops where kernels overlap
+    failure = thrownBy([&] { report(0); });
     std::vector<std::jthread> workers;
-    const auto tell = [&](size_t ready) {
-        const std::string what = "building kernels " + std::to_string(ready) + "/" + std::to_string(jobs.size());
-        device.progress(jobs.empty() ? 1 : double(ready) / double(jobs.size()), what.c_str());
-    };
-    tell(0);
-    try {
-        for (size_t i = 0; i < std::min<size_t>(threads, jobs.size()); ++i) {
-            {
-                std::lock_guard lock(mutex);
-                ++running;
-            }
-            try {
-                workers.emplace_back(work);
-            } catch (...) {  // fewer threads are enough
-                std::lock_guard lock(mutex);
-                --running;
-                if (workers.empty()) throw;
-                break;
-            }
-        }
-    } catch (...) {
-        std::lock_guard lock(mutex);
-        if (!failure) failure = std::current_exception();
+    while (workers.size() < std::min<size_t>(threads, jobs.size())) {
+        const std::exception_ptr none = thrownBy([&] { workers.emplace_back(work); });
+        if (none && workers.empty()) failure = none;
+        if (none) break;  // fewer threads are enough
     }
     // The callback is called on this thread only, and never while the lock is held.
     std::unique_lock lock(mutex);
-    for (size_t told = 0; running > 0;) {
-        changed.wait(lock, [&] { return running == 0 || (done > told && !failure); });
-        if (failure || done == told) continue;
-        told = done;
+    for (size_t reported = 0; reported < jobs.size();) {
+        changed.wait(lock, [&] { return failure || done > reported; });
+        if (failure) break;
+        reported = done;
         lock.unlock();
-        std::exception_ptr cancelled;
-        try {
-            tell(told);
-        } catch (...) {
-            cancelled = std::current_exception();
-        }
+        const std::exception_ptr cancelled = thrownBy([&] { report(reported); });
         lock.lock();
-        if (cancelled && !failure) failure = cancelled;
+        if (!failure) failure = cancelled;
     }
     lock.unlock();
     workers.clear();
