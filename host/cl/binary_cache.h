@@ -10,8 +10,8 @@ namespace pel::cl {
 
 class BinaryCache {
   public:
-    // If the driver keeps compiled programs itself, this cache loads only PoCL's, and stores none unless PELLUCID_CACHE
-    // is "on".
+    // If the driver keeps compiled programs itself, this cache loads only PoCL's, and stores none unless
+    // PELLUCID_CACHE is "on".
     BinaryCache(cl_context context, cl_device_id device);
 
     // Empty when there is none, or the driver refuses it.

@@ -14,8 +14,8 @@ struct Range {
     std::array<size_t, 3> group{1, 1, 1};
 };
 
-// `items` work-items in two dimensions of less than 65,535 each, rounded up to whole rows; few lie in one dimension.
-// (lib/diffusion/item.clh numbers them.) PoCL compiles a kernel once for ranges below that size, and again for larger.
+// `items` work-items in two dimensions below 65,535 each, for PoCL compiles a kernel again for longer ranges.
+// Rounded up to whole rows (lib/diffusion/item.clh numbers the items); few items lie in one dimension.
 inline Range folded(size_t items, size_t group) {
     constexpr size_t most = 32768;
     if (items <= most) return {{items, 1, 1}, {group, 1, 1}};

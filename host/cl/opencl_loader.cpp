@@ -1,6 +1,7 @@
-// Stands in for libOpenCL: the functions of OpenCL that Pellucid calls. Only clGetPlatformIDs needs a library, which
-// is the system's loader or a driver. Every OpenCL object begins with a pointer to its driver's table of functions
-// (cl_khr_icd), and all other calls use that table, as loaders do. So objects of a host's own loader work, too.
+// Stands in for libOpenCL: the functions of OpenCL that Pellucid calls. Only clGetPlatformIDs needs a library,
+// which is the system's loader or a driver. Every OpenCL object begins with a pointer to its driver's table of
+// functions (cl_khr_icd), and all other calls use that table, as loaders do. So objects of a host's own loader
+// work, too.
 #include "cl/opencl_loader.h"
 
 #define CL_USE_DEPRECATED_OPENCL_1_0_APIS  // the tables list them
@@ -100,8 +101,8 @@ const Library& library() {
 }
 
 #if defined(_WIN32) || defined(__APPLE__)
-// By name: objects of Wine's OpenCL.dll belong to the Linux driver, whose calling convention differs, and objects of
-// Apple's framework have no table.
+// By name: objects of Wine's OpenCL.dll belong to the Linux driver, whose calling convention differs, and
+// objects of Apple's framework have no table.
 template <class Function>
 Function* named(const char* name) {
     return reinterpret_cast<Function*>(system::symbolIn(library().handle, name));
@@ -175,15 +176,16 @@ PEL_CALL(cl_int, clGetDeviceIDs, (cl_platform_id a, cl_device_type b, cl_uint c,
 PEL_CALL(cl_command_queue, clCreateCommandQueue,
          (cl_context a, cl_device_id b, cl_command_queue_properties c, cl_int* d), (a, b, c, d))
 PEL_CALL(cl_mem, clCreateBuffer, (cl_context a, cl_mem_flags b, size_t c, void* d, cl_int* e), (a, b, c, d, e))
-PEL_CALL(cl_int, clSetMemObjectDestructorCallback, (cl_mem a, void (CL_CALLBACK* b)(cl_mem, void*), void* c), (a, b, c))
+PEL_CALL(cl_int, clSetMemObjectDestructorCallback,
+         (cl_mem a, void (CL_CALLBACK* b)(cl_mem, void*), void* c), (a, b, c))
 PEL_CALL(cl_program, clCreateProgramWithSource,
          (cl_context a, cl_uint b, const char** c, const size_t* d, cl_int* e), (a, b, c, d, e))
 PEL_CALL(cl_program, clCreateProgramWithBinary,
-         (cl_context a, cl_uint b, const cl_device_id* c, const size_t* d, const unsigned char** e, cl_int* f, cl_int* g),
-         (a, b, c, d, e, f, g))
+         (cl_context a, cl_uint b, const cl_device_id* c, const size_t* d, const unsigned char** e, cl_int* f,
+          cl_int* g), (a, b, c, d, e, f, g))
 PEL_CALL(cl_int, clBuildProgram,
-         (cl_program a, cl_uint b, const cl_device_id* c, const char* d, void (CL_CALLBACK* e)(cl_program, void*), void* f),
-         (a, b, c, d, e, f))
+         (cl_program a, cl_uint b, const cl_device_id* c, const char* d,
+          void (CL_CALLBACK* e)(cl_program, void*), void* f), (a, b, c, d, e, f))
 PEL_CALL(cl_int, clGetProgramBuildInfo,
          (cl_program a, cl_device_id b, cl_program_build_info c, size_t d, void* e, size_t* f), (a, b, c, d, e, f))
 PEL_CALL(cl_kernel, clCreateKernel, (cl_program a, const char* b, cl_int* c), (a, b, c))
@@ -205,10 +207,11 @@ PEL_CALL(cl_int, clEnqueueCopyBuffer,
 PEL_CALL(void*, clEnqueueMapBuffer,
          (cl_command_queue a, cl_mem b, cl_bool c, cl_map_flags d, size_t e, size_t f, PEL_WAITS, cl_int* g),
          (a, b, c, d, e, f, waits, list, event, g))
-PEL_CALL(cl_int, clEnqueueUnmapMemObject, (cl_command_queue a, cl_mem b, void* c, PEL_WAITS), (a, b, c, waits, list, event))
+PEL_CALL(cl_int, clEnqueueUnmapMemObject, (cl_command_queue a, cl_mem b, void* c, PEL_WAITS),
+         (a, b, c, waits, list, event))
 PEL_CALL(cl_int, clEnqueueNDRangeKernel,
-         (cl_command_queue a, cl_kernel b, cl_uint c, const size_t* d, const size_t* e, const size_t* f, PEL_WAITS),
-         (a, b, c, d, e, f, waits, list, event))
+         (cl_command_queue a, cl_kernel b, cl_uint c, const size_t* d, const size_t* e, const size_t* f,
+          PEL_WAITS), (a, b, c, d, e, f, waits, list, event))
 PEL_CALL(cl_int, clEnqueueMarkerWithWaitList, (cl_command_queue a, PEL_WAITS), (a, waits, list, event))
 PEL_CALL(cl_int, clEnqueueBarrierWithWaitList, (cl_command_queue a, PEL_WAITS), (a, waits, list, event))
 // clang-format on

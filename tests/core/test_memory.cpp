@@ -47,7 +47,7 @@ extern "C" __attribute__((visibility("default"))) cl_int clSetMemObjectDestructo
 
 namespace {
 
-// Where a failure of the child is told: expectations of Google Test are the child's own.
+// Reports a failure to the parent by the exit code, which expectations of Google Test in a child would not do.
 #define CHILD_EXPECT(condition)                                                                            \
     do {                                                                                                   \
         if (!(condition)) {                                                                                \
