@@ -2,6 +2,7 @@
 
 #include <condition_variable>
 #include <exception>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -15,28 +16,35 @@ namespace {
 
 constexpr uint32_t texels = 16;  // a side of the smallest table
 
-PelCurvatureLutDesc smallCurvatureLut(PelCurvatureForm form) {
-    PelCurvatureLutDesc desc = pelCurvatureLutDescDefaults();
+template <class Desc>
+Desc small(Desc desc) {
     desc.width = desc.height = texels;
-    desc.form = form;
     return desc;
 }
 
-PelShadowLutDesc smallShadowLut() {
-    PelShadowLutDesc desc = pelShadowLutDescDefaults();
-    desc.width = desc.height = texels;
-    return desc;
+// Curvature and shadow tables. Without a profile, of one that is a sum of Gaussians.
+void profileLutJobs(const Ref<Device>& device, const Ref<Profile>& profile, WarmUpJobs& jobs) {
+    const auto add = [&](auto desc, auto integrate) {
+        jobs.push_back([device, profile, desc, integrate]() mutable {
+            std::optional<LentHandle<PelProfile, Profile>> lent;
+            if (profile) desc.profile = lent.emplace(profile).get();
+            integrate(device, desc);
+        });
+    };
+    PelCurvatureLutDesc curvature = small(pelCurvatureLutDescDefaults());
+    for (const PelCurvatureForm form :
+         {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_PENNER_RING, PEL_FORM_ARC}) {
+        curvature.form = form;
+        add(curvature, [](const auto& on, const auto& desc) { integrateCurvatureLut(on, desc); });
+    }
+    add(small(pelShadowLutDescDefaults()),
+        [](const auto& on, const auto& desc) { integrateShadowLut(on, desc); });
 }
 
 void lutJobs(const Ref<Device>& device, WarmUpJobs& jobs) {
-    for (const PelCurvatureForm form :
-         {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_PENNER_RING, PEL_FORM_ARC})
-        jobs.push_back([device, form] { integrateCurvatureLut(device, smallCurvatureLut(form)); });
-    jobs.push_back([device] { integrateShadowLut(device, smallShadowLut()); });
+    profileLutJobs(device, {}, jobs);
     jobs.push_back([device] {
-        PelSpecularLutDesc desc = pelSpecularLutDescDefaults();
-        desc.width = desc.height = texels;
-        const Ref<Lut> lut = tabulateSpecularLut(device, desc);
+        const Ref<Lut> lut = tabulateSpecularLut(device, small(pelSpecularLutDescDefaults()));
         std::vector<char> packed(packedBytes(*lut, PEL_LUT_FLOAT));
         for (const PelLutEncoding encoding : {PEL_LUT_FLOAT, PEL_LUT_HALF, PEL_LUT_FACEWORKS8})
             readLut(*lut, encoding, packed.data(), true);
@@ -46,21 +54,7 @@ void lutJobs(const Ref<Device>& device, WarmUpJobs& jobs) {
 // A profile that is not a sum of Gaussians.
 void tableLutJobs(const Ref<Device>& device, WarmUpJobs& jobs) {
     const std::vector<float> radii{0, 1, 3}, values{1, 1, 1, 0.5, 0.4, 0.3, 0, 0, 0};
-    const Ref<Profile> profile = Profile::table(radii.data(), values.data(), uint32_t(radii.size()));
-    for (const PelCurvatureForm form :
-         {PEL_FORM_SPHERE, PEL_FORM_RING, PEL_FORM_HALF_RING, PEL_FORM_PENNER_RING, PEL_FORM_ARC})
-        jobs.push_back([device, profile, form] {
-            PelCurvatureLutDesc desc = smallCurvatureLut(form);
-            const LentHandle<PelProfile, Profile> lent(profile);
-            desc.profile = lent.get();
-            integrateCurvatureLut(device, desc);
-        });
-    jobs.push_back([device, profile] {
-        PelShadowLutDesc desc = smallShadowLut();
-        const LentHandle<PelProfile, Profile> lent(profile);
-        desc.profile = lent.get();
-        integrateShadowLut(device, desc);
-    });
+    profileLutJobs(device, Profile::table(radii.data(), values.data(), uint32_t(radii.size())), jobs);
 }
 
 // A tetrahedron.
