@@ -4,10 +4,10 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
 #include <vector>
 
 #include "cl/error.h"
-#include "cl/private_file.h"
 #include "cl/private_folder.h"
 #include "system/process.h"
 
@@ -18,6 +18,17 @@ namespace {
 // Stands before the binary: damaged, cut or renamed files do not match it.
 std::string checksum(const Digest& name, const std::string& binary) {
     return Digest().addPart(name.text()).add(binary).text();
+}
+
+// A whole file, which now counts as just used. Empty if it is none, larger than `limit` bytes, or unreadable.
+std::optional<std::string> readFile(const fs::path& path, uint64_t limit) {
+    std::error_code error;
+    if (!fs::is_regular_file(path, error) || fs::file_size(path, error) > limit || error) return {};
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes(size_t(fs::file_size(path, error)), '\0');
+    if (error || !file.read(bytes.data(), std::streamsize(bytes.size()))) return {};
+    fs::last_write_time(path, fs::file_time_type::clock::now(), error);
+    return bytes;
 }
 
 constexpr size_t nameLength = Digest::length + 4;  // and ".bin"
@@ -44,7 +55,7 @@ fs::path binaryFolder() {
 
 std::optional<std::string> BinaryFiles::load(const Digest& name) const {
     if (!whyNotPrivate(folder_).empty()) return {};
-    const std::optional<std::string> file = readPrivateFile(pathOf(name), Digest::length + limit_);
+    const std::optional<std::string> file = readFile(pathOf(name), Digest::length + limit_);
     if (!file || file->size() < Digest::length) return {};
     std::string binary = file->substr(Digest::length);
     if (!file->starts_with(checksum(name, binary))) return {};
@@ -60,10 +71,12 @@ bool BinaryFiles::store(const Digest& name, const std::string& binary) const {
     const fs::path path = pathOf(name),
                    temporary = folder_ / text(".", path.filename().string(), ".", system::processId(), "-",
                                               counter++, ".tmp");
-    if (!writePrivateFile(temporary, checksum(name, binary), binary)) return false;
+    std::ofstream file(temporary, std::ios::binary);
+    file << checksum(name, binary) << binary;
+    file.close();
     std::error_code error;
-    fs::rename(temporary, path, error);
-    if (error) {
+    if (file) fs::rename(temporary, path, error);
+    if (!file || error) {
         fs::remove(temporary, error);
         return false;
     }
