@@ -105,6 +105,47 @@ TEST(FieldRanges, LibraryAndSceneFileAgree) {
     EXPECT_GT(fields, 20);
 }
 
+// Lights and options, whose files have other keys and other conditions.
+TEST(FieldRanges, TheLibraryChecksLightsAndOptions) {
+    const Device device("");
+    fields = 0;
+    const auto expectLibrary = [](const std::string& name, const pel::FieldRange& range, auto field,
+                                  const std::function<bool(float)>& library) {
+        ++fields;
+        for (const float value : tried<decltype(field)>(range))
+            EXPECT_EQ(library(value), range.holds(value)) << name << " = " << value;
+    };
+#define CHECK_OF(type, name, ...) CHECK_##type(name)
+#define CHECK_UINT(name) CHECK_FLOAT(name)
+#define CHECK_COLOR(name) CHECK_FLOAT(name)
+#define CHECK_FREE(name)
+#define CHECK_FREE_UINT(name)
+#define CHECK_VECTOR(name)
+#define CHECK_MATRIX(name)
+#define CHECK_FLOAT(name)                                                                                \
+    expectLibrary(#name, pel::range::light::name, std::remove_all_extents_t<decltype(PelLight::name)>(), \
+                  [&](float value) {                                                                     \
+                      PelLight l = pelLightDefaults();                                                   \
+                      l.type = PEL_LIGHT_SPOT;                                                           \
+                      l.spotCosInner = 1, l.spotCosOuter = -1;                                           \
+                      fill(l.name, value);                                                               \
+                      return accepts([&] { Shader(device).set(std::vector<PelLight>{l}); });             \
+                  });
+    PEL_EACH_LIGHT_FIELD(CHECK_OF)
+    PEL_EACH_POSITIONAL_LIGHT_FIELD(CHECK_OF)
+    PEL_EACH_SPOT_LIGHT_FIELD(CHECK_OF)
+    PEL_EACH_SHADOW_MAP_FIELD(CHECK_OF)
+#undef CHECK_FLOAT
+#define CHECK_FLOAT(name)                                                                       \
+    expectLibrary(#name, pel::range::options::name, PelShaderOptions().name, [&](float value) { \
+        PelShaderOptions o = pelShaderOptionsDefaults();                                        \
+        fill(o.name, value);                                                                    \
+        return accepts([&] { Shader(device).set(o); });                                         \
+    });
+    PEL_EACH_OPTION_FIELD(CHECK_OF)
+    EXPECT_GE(fields, 13);
+}
+
 TEST(FieldRanges, EachRangeIsSaidInWords) {
     using pel::describe;
     EXPECT_EQ(describe(pel::range::material::f0), "from 0 to 1");

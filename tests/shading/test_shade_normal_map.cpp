@@ -69,14 +69,10 @@ std::vector<PelImageDesc> descriptions(const Mapped& m, const Buffer& buffer) {
 
 std::vector<float> shadeMapped(const Mapped& m, std::initializer_list<uint32_t> ids,
                                PelShaderStats* stats = nullptr) {
-    Shader shader(device());
-    setFrame(device(), shader, m.frame, tables());
-    const Buffer map(device(), m.texels), target(device(), m.frame.pixels() * 12);
-    for (uint32_t id : ids) shader.setNormalMap(id, descriptions(m, map));
-    shader.set(PEL_SLOT_RADIANCE, imageDesc(target, PEL_FORMAT_RGB32F, m.frame.width, m.frame.height));
-    shader.commit().execute();
-    if (stats) *stats = shader.stats();
-    return target.readAll<float>();
+    const Buffer map(device(), m.texels);
+    return shade(device(), m.frame, tables(), stats, [&](Shader& shader) {
+        for (uint32_t id : ids) shader.setNormalMap(id, descriptions(m, map));
+    });
 }
 
 Vec3 mappedTruth(const Mapped& m, size_t i) {
@@ -208,8 +204,6 @@ TEST(NormalMap, BadInput) {
             [](Mapped& b, Levels&, uint32_t&) { b.frame.slots[PEL_SLOT_UV] = {}; });
     refused(PEL_ERROR_INVALID_ARGUMENT, "tangent image",
             [](Mapped& b, Levels&, uint32_t&) { b.frame.slots[PEL_SLOT_TANGENT] = {}; });
-    refused(PEL_ERROR_INVALID_ARGUMENT, "uvScale",
-            [](Mapped& b, Levels&, uint32_t&) { b.frame.materials[1].uvScale = 0; });
 }
 
 TEST(NormalMap, ATexelThatIsNoNumberStaysWithThePixelsThatReadIt) {

@@ -11,19 +11,6 @@ using pellucid::Shader;
 
 namespace {
 
-TEST(ShadeThreads, EachWithItsOwnShader) {
-    const Frame f = randomFrame(5, 120, 60, 2);
-    const auto expected = shade(device(), f, tables());
-    std::vector<std::thread> threads;
-    std::vector<int> equal(4, 0);
-    for (int t = 0; t < 4; ++t)
-        threads.emplace_back([&, t] {
-            for (int k = 0; k < 5; ++k) equal[t] += shade(device(), f, tables()) == expected;
-        });
-    for (auto& thread : threads) thread.join();
-    EXPECT_EQ(equal, std::vector<int>(4, 5));
-}
-
 TEST(ShadeSubmit, EventsAndKeptObjects) {
     const Frame f = randomFrame(5, 120, 60, 1);
     const auto expected = shade(device(), f, tables());

@@ -208,9 +208,6 @@ TEST(WideShadow, WhatIsRefused) {
         expectError(code, {word}, [&] { shade(device(), f, tables()); });
     };
     const auto invalid = PEL_ERROR_INVALID_ARGUMENT;
-    refused(invalid, "shadowFilterTexels", [](Frame& f) { f.lights[0].params.shadowFilterTexels = 3; });
-    refused(invalid, "shadowSoftness", [](Frame& f) { f.lights[0].params.shadowSoftness = 0; });
-    refused(invalid, "shadowBias", [](Frame& f) { f.lights[0].params.shadowBias = nan; });
     refused(invalid, "position image", [](Frame& f) { f.slots[PEL_SLOT_POSITION] = {}; });
     refused(invalid, "singular", [](Frame& f) {
         std::copy_n(f.lights[0].params.worldToShadow, 4, f.lights[0].params.worldToShadow + 4);

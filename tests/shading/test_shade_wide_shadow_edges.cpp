@@ -208,13 +208,10 @@ TEST(WideShadowEdges, AMapOfIntegersIsTheMapOfItsFloats) {
     }
     const Frame f = sceneUnder(from, 1);
     const std::vector<float> expected = shade(device(), f, tables());
-    pellucid::Shader shader(device());
-    setFrame(device(), shader, f, tables());
-    const pellucid::Buffer target(device(), std::vector<float>(3 * f.pixels())), map(device(), integers);
-    shader.set(PEL_SLOT_RADIANCE, pellucid::imageDesc(target, PEL_FORMAT_RGB32F, f.width, f.height));
-    shader.set(0, PEL_LIGHT_SHADOW_MAP, pellucid::imageDesc(map, PEL_FORMAT_R16_UNORM, 200, 200));
-    shader.commit().execute();
-    const std::vector<float> shown = target.readAll<float>();
+    const std::vector<float> shown = shade(device(), f, tables(), nullptr, [&](pellucid::Shader& shader) {
+        const pellucid::Buffer map(device(), integers);
+        shader.set(0, PEL_LIGHT_SHADOW_MAP, pellucid::imageDesc(map, PEL_FORMAT_R16_UNORM, 200, 200));
+    });
     EXPECT_GT(*std::max_element(shown.begin(), shown.end()), 0.1f);
     for (size_t i = 0; i < shown.size(); ++i) ASSERT_NEAR(shown[i], expected[i], tolerance::wideShadow) << i;
 }

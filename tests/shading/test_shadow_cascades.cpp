@@ -108,7 +108,6 @@ TEST(ShadowCascades, WhatIsRefused) {
         expectError(code, {word}, [&] { shadeForms(formFrame(1, 9, 3), {from.light}); });
     };
     const auto invalid = PEL_ERROR_INVALID_ARGUMENT;
-    refused(invalid, "shadowCascades is 5", [](Light& l) { l.params.shadowCascades = 5; });
     refused(invalid, "cascade 2 is not set", [](Light& l) { l.params.shadowCascades = 3; });
     refused(invalid, "directional", [](Light& l) { l.params.type = PEL_LIGHT_SPOT; });
     refused(invalid, "directional", [](Light& l) { l.params.shadowProjection = PEL_SHADOW_PERSPECTIVE; });

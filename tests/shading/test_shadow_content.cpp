@@ -152,10 +152,6 @@ TEST(ShadowContent, WhatIsRefused) {
                 [c](Lights& l) { l[0].params.shadowExponent = c; });
     refused(invalid, PEL_SHADOW_CONTENT_EXPONENTIAL, "below 0",
             [](Lights& l) { l[0].params.shadowDepthRange *= -1; });
-    refused(invalid, PEL_SHADOW_CONTENT_MOMENTS, "shadowMinDeviation",
-            [](Lights& l) { l[0].params.shadowMinDeviation = -1; });
-    refused(invalid, PEL_SHADOW_CONTENT_MOMENTS, "shadowBleeding",
-            [](Lights& l) { l[0].params.shadowBleeding = 1; });
     refused(invalid, PEL_SHADOW_CONTENT_MOMENTS, "PelShadowContent",
             [](Lights& l) { l[0].params.shadowContent = PelShadowContent(3); });
     refused(PEL_ERROR_UNSUPPORTED, PEL_SHADOW_CONTENT_EXPONENTIAL, "shadowContent", [](Lights& l) {
