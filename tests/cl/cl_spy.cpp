@@ -56,7 +56,8 @@ void dumpProgram(const char* folder, cl_program program, const char* options) {
     if (info(program, CL_PROGRAM_SOURCE, size, source.data(), nullptr) != CL_SUCCESS) return;
     source.resize(size - 1);
     source = "// " + std::string(options ? options : "") + "\n" + source;
-    const std::string path = std::string(folder) + "/" + std::to_string(std::hash<std::string>()(source)) + ".cl";
+    const std::string path =
+        std::string(folder) + "/" + std::to_string(std::hash<std::string>()(source)) + ".cl";
     if (std::FILE* file = std::fopen(path.c_str(), "w")) {
         std::fwrite(source.data(), 1, source.size(), file);
         std::fclose(file);

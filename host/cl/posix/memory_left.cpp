@@ -12,7 +12,7 @@ namespace pel::cl {
 namespace {
 
 constexpr uint64_t unlimited = UINT64_MAX;
-constexpr uint64_t restOfMachine = 128 << 20;  // for drivers, the host and other programs
+constexpr uint64_t restOfMachine = 128 << 20;       // for drivers, the host and other programs
 constexpr uint64_t restOfAddressSpace = 256 << 20;  // LLVM needs up to 200 MB for the largest shading variant
 
 uint64_t number(const std::string& path, uint64_t otherwise) {
