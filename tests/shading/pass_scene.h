@@ -27,11 +27,11 @@ inline Frame reliefFrame(uint32_t seed, uint32_t width, uint32_t height, float p
             const float p[3] = {px, py, z};
             const float dx = 3 * fx * std::cos(fx * px) * std::cos(fy * py),
                         dy = -3 * fy * std::sin(fx * px) * std::sin(fy * py);
-            float bend[3], n[3], g = 1 / std::sqrt(1 + dx * dx + dy * dy);
-            random.unit(bend);
+            float tilt[3], n[3], g = 1 / std::sqrt(1 + dx * dx + dy * dy);
+            random.unit(tilt);
             const float geometric[3] = {-dx * g, -dy * g, g};
             float sum = 0;
-            for (int c = 0; c < 3; ++c) n[c] = geometric[c] + 0.4f * bend[c], sum += n[c] * n[c];
+            for (int c = 0; c < 3; ++c) n[c] = geometric[c] + 0.4f * tilt[c], sum += n[c] * n[c];
             for (int c = 0; c < 3; ++c) {
                 f.slots[PEL_SLOT_POSITION].values[3 * i + c] = p[c];
                 f.slots[PEL_SLOT_NORMAL_GEOMETRIC].values[3 * i + c] = geometric[c];

@@ -159,11 +159,11 @@ inline Frame randomFrame(uint32_t seed, uint32_t width, uint32_t height, uint32_
         if (facing < 0)
             for (float& b : base) b = -b;
         for (int slot : {PEL_SLOT_NORMAL_GEOMETRIC, PEL_SLOT_NORMAL_SHADING, PEL_SLOT_NORMAL_BLURRED}) {
-            float bend[3], sum = 0;
-            random.unit(bend);
+            float tilt[3], sum = 0;
+            random.unit(tilt);
             float* n = &s[slot].values[3 * i];
             for (int c = 0; c < 3; ++c) {
-                n[c] = base[c] + 0.4f * bend[c];
+                n[c] = base[c] + 0.4f * tilt[c];
                 sum += n[c] * n[c];
             }
             for (int c = 0; c < 3; ++c) n[c] /= std::sqrt(sum);

@@ -87,13 +87,13 @@ TEST(ShadeBadPixels, AccumulatingOntoNanGivesTheInvalidColor) {
         shader.commit().execute();
         const auto after = target.readAll<float>();
         for (size_t i = 0; i < f.pixels(); ++i) {
-            const bool material = f.slots[PEL_SLOT_MATERIAL].values[i] != 0, spoilt = i % 7 == 3;
+            const bool material = f.slots[PEL_SLOT_MATERIAL].values[i] != 0, corrupted = i % 7 == 3;
             for (size_t c = 0; c < 3; ++c) {
                 const float was = before[components * i + c], is = after[components * i + c];
                 if (!material)
                     EXPECT_EQ(std::memcmp(&was, &is, sizeof was), 0) << "background, pixel " << i;
                 else
-                    EXPECT_EQ(is, spoilt ? f.options.invalidColor[c] : clean[3 * i + c] + 0.25f)
+                    EXPECT_EQ(is, corrupted ? f.options.invalidColor[c] : clean[3 * i + c] + 0.25f)
                         << "pixel " << i;
             }
         }
@@ -108,14 +108,14 @@ TEST(ShadeBadPixels, AnythingGivesFiniteOutput) {
     for (uint32_t seed = 0; seed < 4; ++seed) {
         Frame f = randomFrame(40 + seed, 64, 64, 3);
         Random random(seed);
-        const auto spoil = [&](Image& image, uint32_t oneIn) {
+        const auto corrupt = [&](Image& image, uint32_t oneIn) {
             for (float& v : image.values)
                 if (random.below(oneIn) == 0) v = odd[random.below(std::size(odd))];
         };
-        for (Image& image : f.slots) spoil(image, 6);
+        for (Image& image : f.slots) corrupt(image, 6);
         for (Light& light : f.lights) {
-            spoil(light.wide, 6);
-            spoil(light.map, 3);
+            corrupt(light.wide, 6);
+            corrupt(light.map, 3);
             if (seed == 2)
                 for (float& m : light.params.worldToShadow) m = 0;  // singular
             if (seed == 3)

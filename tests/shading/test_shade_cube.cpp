@@ -38,7 +38,7 @@ CubeMap cubeOf(int size, Light&& light) {
     return cube;
 }
 
-// Nothing but ambient light on a white surface of these normals.
+// Only ambient light on a white surface of these normals.
 Frame ambientFrame(const std::vector<Vec3>& normals) {
     Frame f;
     f.width = uint32_t(normals.size());
@@ -59,7 +59,7 @@ std::vector<Vec3> randomNormals(uint32_t seed, size_t count) {
     return normals;
 }
 
-// All inputs of a pixel, but lit by nothing but ambient light.
+// All inputs of a pixel, but lit only by ambient light.
 Frame randomAmbient(uint32_t seed, int size) {
     Frame f = randomFrame(seed, 203, 40, 0);
     f.cube = randomCube(seed, size);

@@ -116,12 +116,12 @@ TEST(ShadeIrradiance, TheHostsIsUsedAsItIs) {
     e.values[3 * 1000 + 1] = std::numeric_limits<float>::quiet_NaN();
     f.slots[PEL_SLOT_MATERIAL].values[1000] = 2;
     f.options.invalidColor[1] = 7;
-    std::vector<float> spoiled = shade(device(), f, tables());
-    EXPECT_EQ(spoiled[3 * 1000 + 1], 7);
-    EXPECT_EQ(spoiled[3 * 999 + 1], result[3 * 999 + 1]);
+    std::vector<float> corrupted = shade(device(), f, tables());
+    EXPECT_EQ(corrupted[3 * 1000 + 1], 7);
+    EXPECT_EQ(corrupted[3 * 999 + 1], result[3 * 999 + 1]);
     f.materials[2].scattering = PEL_SCATTERING_PREINTEGRATED;
-    spoiled = shade(device(), f, tables());
-    EXPECT_NE(spoiled[3 * 1000 + 1], 7);
+    corrupted = shade(device(), f, tables());
+    EXPECT_NE(corrupted[3 * 1000 + 1], 7);
 }
 
 TEST(ShadeIrradiance, SaysWhatIsWrong) {

@@ -133,9 +133,9 @@ TEST(ShadeLayouts, PositionsFromDepth) {
             f.options.invalidColor[2] = -7;
             shader.set(f.options);
             shader.set(PEL_SLOT_DEPTH, imageDesc(upload(device(), depth), PEL_FORMAT_R32F, f.width, f.height));
-            const auto spoiled = shadeInto(shader, f);
+            const auto corrupted = shadeInto(shader, f);
             for (size_t i = 0; i < result.size(); ++i)
-                EXPECT_EQ(spoiled[i], i / 3 != at ? result[i] : i % 3 == 2 ? -7 : 0) << i;
+                EXPECT_EQ(corrupted[i], i / 3 != at ? result[i] : i % 3 == 2 ? -7 : 0) << i;
         }
     }
 }

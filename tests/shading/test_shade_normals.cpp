@@ -72,8 +72,8 @@ TEST(BlurNormals, DampsWavesAsItsKernelDoes) {
         for (size_t i = 0; i < f.pixels(); ++i) {
             f.slots[PEL_SLOT_MATERIAL].values[i] = 1;
             f.slots[PEL_SLOT_POSITION].values[3 * i + 2] = 0;
-            const double bend = 0.05 * std::sin(2 * 3.14159265358979 / wavelength * 0.1 * double(i % f.width));
-            const float n[3] = {float(bend), 0, float(std::sqrt(1 - bend * bend))};
+            const double tilt = 0.05 * std::sin(2 * 3.14159265358979 / wavelength * 0.1 * double(i % f.width));
+            const float n[3] = {float(tilt), 0, float(std::sqrt(1 - tilt * tilt))};
             std::copy_n(n, 3, &f.slots[PEL_SLOT_NORMAL_SHADING].values[3 * i]);
         }
         showBlurredNormal(f);

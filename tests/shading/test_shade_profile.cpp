@@ -128,7 +128,7 @@ TEST(ShadeProfile, WithoutAProfileNothingChanges) {
     for (int c = 0; c < 3; ++c) EXPECT_EQ(resolved.normalBlend[c], blend[c]);
 }
 
-// A table of another profile than skin, read by a material that says nothing of a radius, is not stretched.
+// A table of another profile than skin, read by a material that does not specify a radius, is not stretched.
 TEST(ShadeProfile, ARadiusOfZeroIsTheTablesOwn) {
     const Profile marble = Profile::named("marble");
     PelCurvatureLutDesc desc = pelCurvatureLutDescFaceWorks();
@@ -261,7 +261,7 @@ TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
         for (size_t c = 0; c < 3; ++c)
             EXPECT_NEAR(gained[3 * i + c], plain[3 * i + c] * (1 + 1.38 * path[c] * shading.scene.curvature[i]),
                         tolerance::unitRoundTrip);
-    // d alone says nothing of the mean free path.
+    // d alone does not specify the mean free path.
     const Profile kept = Profile::burleyDistance(distance);
     PelMaterial unknown = materialOf(kept);
     unknown.curvatureGain = 1;
