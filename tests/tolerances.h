@@ -458,6 +458,14 @@ inline constexpr Tolerance lightFour[3] = {
     {"lightFourRed", 106, "102 measured; Lambert 324, 123 without a map"},
     {"lightFourGreen", 67, "65 measured; Lambert 161, 68 without"},
     {"lightFourBlue", 52, "49 measured; Lambert 99"}};
+inline constexpr Tolerance gain{"gain", 6e-3, "curvature by differences of float positions over a window"};
+inline constexpr Tolerance walkHead[3] = {{"walkHeadRed", 60, "against random walks; 84 without the gain"},
+                                          {"walkHeadGreen", 45, "49 without the gain"},
+                                          {"walkHeadBlue", 50, "49 without the gain"}};
+inline constexpr Tolerance walkHeadTimesFour[3] = {
+    {"walkHeadTimesFourRed", 210, "against random walks; 212 without the gain"},
+    {"walkHeadTimesFourGreen", 95, "107 without the gain"},
+    {"walkHeadTimesFourBlue", 66, "69 without the gain"}};
 inline constexpr Tolerance lightEar[3] = {
     {"lightEarRed", 20, "lit from behind, its unlit side: 17.3 measured; Lambert 50"},
     {"lightEarGreen", 9.3, "8.8 measured; Lambert 12"},

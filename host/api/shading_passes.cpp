@@ -11,7 +11,7 @@ std::span<const PassKind> shadingPasses() {
         ambientCubePass,    reflectionCubePass, irisesPass,       classifyTilesPass, tapCellsPass,
         blurNormalsPass,    normalMapPass,      shadowBoundsPass, wideShadowPass,    irradiancePass,
         prepareScatterPass, diskPass,           separablePass,    texturePass,       scatterPass,
-        lightScatterPass,   weighScatterPass,   shadePass};
+        lightScatterPass,   weighScatterPass,   curvaturePass,    shadePass};
     return passes;
 }
 

@@ -17,12 +17,19 @@ constexpr float softness = 0.1f, coneSlope = 0.8f;
 // Without a profile, mm.
 constexpr double plainFilterWidth = 8, plainBias = 0.5;
 constexpr float plainSoftness = 0.25f, plainConeSlope = 0.5f;
-constexpr double reflectionGain = 1.38;  // of a ball, per mean free path times curvature (section 12)
+constexpr double pathOfBurley = 1.087;  // mean free path over Burley's d at a reflectance of 0.8 (section 12)
+constexpr double windowOfPath = 2.75;   // length over which curvature is measured, in mean free paths
 constexpr float noBlend[3] = {1, 0.3f, 0};
 constexpr uint32_t transmissionTexels = 256;
 
 double widest(const PelProfileInfo& profile) {
     return std::max({profile.width[0], profile.width[1], profile.width[2]});
+}
+
+// Of the medium, in the profile's unit; 0: the profile does not say.
+double meanFreePath(const PelProfileInfo& profile, int channel) {
+    if (profile.meanFreePath[channel] > 0) return profile.meanFreePath[channel];
+    return profile.kind == PEL_PROFILE_BURLEY ? pathOfBurley / std::sqrt(7.0) * profile.width[channel] : 0;
 }
 
 // In the scene's unit. A table whose description leaves it out has its profile's, in mm.
@@ -105,16 +112,14 @@ void resolveMaterial(ShaderMaterial& material, const Ref<Device>& device, const 
     for (int c = 0; c < 3; ++c)
         if (m.normalBlend[c] < 0) m.normalBlend[c] = profile ? info.normalBlend[c] : noBlend[c];
     if (!profile) m.transmission = 0;
-    for (int c = 0; c < 3; ++c) {
-        if (m.curvatureGain != 0 && !(info.meanFreePath[c] > 0))
-            invalidArgument(
-                "PelMaterial.curvatureGain is ", m.curvatureGain,
-                ", and ", profile ? "its profile has no mean free path; those of burley from mean free paths and of dipole have one" : "it has no profile, whose mean free path it needs",
-                "; 0 would be right");
-        material.gain[c] = float(m.curvatureGain * reflectionGain * info.meanFreePath[c] / unit);
-    }
     const double stretch =
         profile ? m.diffusionRadius / profile->radius() : 1;  // of its lengths, in the scene's unit
+    material.gainWindow = 0;
+    for (int c = 0; c < 3; ++c) {
+        const double path = profile ? meanFreePath(info, c) * stretch : 0;
+        material.gain[c] = m.scattering == PEL_SCATTERING_NONE ? 0 : float(m.curvatureGain * path);
+        material.gainWindow = std::max(material.gainWindow, float(windowOfPath * path));
+    }
     const Rgb through =
         profile && m.thinThickness > 0 ? profile->shape().transmission(m.thinThickness / stretch) : Rgb{};
     for (int c = 0; c < 3; ++c) material.through[c] = float(m.transmission * through[c]);

@@ -36,7 +36,8 @@ struct ShaderMaterial {
     PelMaterial params;
     Ref<Lut> curvatureLut, shadowLut, transmission;
     float through[3];  // share of the light on a sheet's other side
-    float gain[3];     // length: direct light times 1 + gain * curvature
+    float gain[3];     // length: mean free path times curvatureGain; 0: no gain
+    float gainWindow;  // length over which the mean curvature is measured
     // Of the wide shadow, where a light leaves them to the profile.
     float shadowBias, shadowSoftness, shadowConeSlope;
     std::vector<ImageView> normalMap;  // its levels, the finest first

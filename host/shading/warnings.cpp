@@ -52,7 +52,6 @@ std::string withoutEffect(const ShaderMaterial& material) {
     const bool stays = tables || m.scattering == PEL_SCATTERING_NONE;
     add(stays && !isBlackColor(m.borderColor), "borderColor");
     add(stays && m.albedoBefore > 0, "albedoBefore");
-    add(!tables && m.curvatureGain != 0, "curvatureGain");
     return names;
 }
 

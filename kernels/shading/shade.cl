@@ -50,15 +50,15 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
     parts->measured = PEL_FORMAT_THICKNESS != 0;
     if (PEL_FORMAT_THICKNESS && PEL_FORMAT_OUT_THICKNESS) parts->thickness = p->thickness;
     if (scattered) {
+        const Vec3w irradiance = withGain(material, p, p->irradiance);
         if (material->albedoAfter == 1.0f)
-            diffuse = p->irradiance;
+            diffuse = irradiance;
         else  // a part of the albedo is in it
-            before =
-                mul3(p->irradiance, albedoAfter(PEL_FORMAT_ALBEDO ? p->albedo : loadUniform3(material->albedo),
-                                                material->albedoAfter));
+            before = mul3(irradiance, albedoAfter(PEL_FORMAT_ALBEDO ? p->albedo : loadUniform3(material->albedo),
+                                                  material->albedoAfter));
         if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = diffuse;
     } else if (HAS(PEL_BIT_AMBIENT)) {
-        diffuse = ambientOfPixels(scene, vload3(0, material->normalBlend), p);
+        diffuse = withGain(material, p, ambientOfPixels(scene, vload3(0, material->normalBlend), p));
         if (PEL_FORMAT_AMBIENT_OCCLUSION) diffuse = scale3(diffuse, p->occlusion);
         if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = diffuse;
     }

@@ -46,7 +46,9 @@
     X(IRRADIANCE, 20, SHADE, COLOR, 3, "irradiance", "irradiance", PEL_BIT_IRRADIANCE) \
     X(SCATTER_WEIGHT, 21, PASS, SCALAR, 2, "scatter_weight", "scatter weight", 0) \
     X(IRRADIANCE_BACK, 22, PASS, COLOR, 3, "irradiance_back", "back irradiance", 0) \
-    X(WETNESS, 23, SHADE, SCALAR, 1, "wetness", "wetness", PEL_BIT_EYE)
+    X(WETNESS, 23, SHADE, SCALAR, 1, "wetness", "wetness", PEL_BIT_EYE) \
+    X(MEAN_CURVATURE, 24, SHADE, SCALAR, 1, "mean_curvature", "mean curvature", \
+      PEL_BIT_IRRADIANCE | PEL_BIT_DIRECT_SCATTER)
 // clang-format on
 
 // PEL_IMAGE_<NAME>, their count, and PEL_READ_<NAME>: the bits.

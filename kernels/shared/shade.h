@@ -95,7 +95,7 @@ typedef struct PelShadeMaterial {
     PelShadeLut transmission;     // one row over the root of thickness: layout.width 0: none
     float transmissionPerLength;  // 1 / the thickness at its end, 1/length
     float transmissionShare;
-    float gain[3];         // length: direct light times 1 + gain * curvature; all 0: none
+    float gain[3];         // length: mean free path for lib/shading/curvature_gain.clh; all 0: none
     PelUint32 needs;       // PEL_BIT_...: features of this material
     PelUint32 scattering;  // PelScattering, what auto came to in its place
     PelUint32 named;       // the same as the caller named it

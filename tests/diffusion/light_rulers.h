@@ -30,6 +30,7 @@ struct Ruler {
     std::vector<float> map;
     PelLight light = pelLightDefaults();
     float profileScale = 1;
+    float gain = 0;     // PelMaterial.curvatureGain; 0: as the surface integral, which has no volume
     float camera = 60;  // it stands at (0, -camera, 0) and looks along y
 };
 
@@ -162,6 +163,7 @@ inline Shown shade(const Device& device, const Ruler& r, PelScattering scatterin
     const Profile skin = profile();
     PelMaterial material = scatter_scene::whiteMaterial(skin, scattering);
     material.specular = 0;
+    material.curvatureGain = r.gain;
     if (r.profileScale != 1) material.diffusionRadius = float(skin.info().radius) * r.profileScale / 10;
     shown.shader.setMaterial(1, material);
     // Of clip = (x, z, y + camera - 1, y + camera): only where the camera stands matters.

@@ -223,6 +223,7 @@ inline std::vector<float> shade(const Device& device, const LitScene& s, const P
     material.profile = profile.get();
     material.scattering = request.scattering;
     material.scatterTaps = request.scatterTaps;
+    material.curvatureGain = 0;  // held to the surface integral, which has no volume
     if (profileScale != 1) material.diffusionRadius = radius;
     pellucid::Lut curvatureLut, shadowLut;
     if (tableSize) {

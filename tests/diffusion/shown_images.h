@@ -43,11 +43,12 @@ struct ShownImages {
     }
 };
 
-// Of an albedo of 1: what is shown is the scattered irradiance.
+// Of an albedo of 1 and without the gain of curved bodies: the result is the scattered irradiance.
 inline PelMaterial whiteMaterial(const pellucid::Profile& profile, PelScattering scattering) {
     PelMaterial material = pelMaterialDefaults();
     material.profile = profile.get();
     material.scattering = scattering;
+    material.curvatureGain = 0;
     std::fill_n(material.albedo, 3, 1.0f);
     return material;
 }

@@ -275,11 +275,6 @@ TEST(ScatterBlend, SaysWhatHasNoEffect) {
         EXPECT_EQ(said(method, before), "");
     }
     EXPECT_EQ(said(PEL_SCATTERING_SEPARABLE, border), "");
-    const float path[] = {1, 0.5f, 0.2f}, albedo[] = {0.8f, 0.8f, 0.8f};
-    const Profile burley = Profile::burley(path, albedo);
-    const auto gain = [&](PelMaterial& m) { m.profile = burley.get(), m.curvatureGain = 1; };
-    EXPECT_NE(said(PEL_SCATTERING_SCREEN, gain).find("curvatureGain"), std::string::npos);
-    EXPECT_EQ(said(PEL_SCATTERING_PREINTEGRATED, gain), "");
 }
 
 TEST(ScatterBlend, SaysWhatItCannot) {

@@ -20,7 +20,7 @@ constexpr uint32_t width = 64, height = 3;
 // Spheres of many sizes under a light from above, each pixel with a thickness, a shadow and a position of its
 // own; lengths in mm.
 struct Scene {
-    std::vector<float> normals, curvature, thickness, shadow, position;
+    std::vector<float> normals, curvature, meanCurvature, thickness, shadow, position;
     float toLight[3] = {0, 0, 1};
 
     Scene() {
@@ -32,6 +32,7 @@ struct Scene {
             const float n[3] = {q * std::cos(angle), q * std::sin(angle), z};
             normals.insert(normals.end(), n, n + 3);
             curvature.push_back(0.3f * even(random));
+            meanCurvature.push_back(0.4f * z);
             thickness.push_back(i % 5 == 0 ? 0 : 4 * even(random));
             shadow.push_back(i % 3 == 0 ? 1 : even(random));
             for (float c : n) position.push_back(20 * c);
@@ -40,7 +41,7 @@ struct Scene {
 };
 
 struct Inputs {
-    bool thickness = true, shadow = false;
+    bool thickness = true, shadow = false, meanCurvature = false;
     float perMillimetre = 1;  // units of the scene
     PelShaderOptions options = pelShaderOptionsDefaults();
 };
@@ -59,6 +60,8 @@ class Shading {
         shader.set(PEL_SLOT_RADIANCE, imageDesc(out, PEL_FORMAT_RGB32F, width, height));
         image(PEL_SLOT_NORMAL_SHADING, scene.normals, PEL_FORMAT_RGB32F, 1);
         image(PEL_SLOT_CURVATURE, scene.curvature, PEL_FORMAT_R32F, 1 / in.perMillimetre);
+        if (in.meanCurvature)
+            image(PEL_SLOT_MEAN_CURVATURE, scene.meanCurvature, PEL_FORMAT_R32F, 1 / in.perMillimetre);
         if (in.thickness) image(PEL_SLOT_THICKNESS, scene.thickness, PEL_FORMAT_R32F, in.perMillimetre);
         PelLight light = pelLightDefaults();
         std::copy(scene.toLight, scene.toLight + 3, light.toLight);
@@ -231,9 +234,8 @@ TEST(ShadeProfile, LitSkinLosesNothingToTheShadow) {
 TEST(ShadeProfile, UnitsOfTheSceneDoNotMatter) {
     const Profile profile = Profile::named("skin-burley");
     Inputs in;
-    in.shadow = true;
+    in.shadow = in.meanCurvature = true;
     PelMaterial material = materialOf(profile);
-    material.curvatureGain = 1;
     const auto expected = Shading(material, in).radiance();
     for (float unit : {10.0f, 1000.0f, 0.001f}) {
         in.perMillimetre = 1 / unit;
@@ -253,20 +255,33 @@ TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
     Inputs in;
     in.thickness = false;
     const auto plain = Shading(materialOf(profile), in).radiance();
+    in.meanCurvature = true;
     PelMaterial material = materialOf(profile);
-    material.curvatureGain = 1;
-    Shading shading(material, in);
-    const auto gained = shading.radiance();
-    for (size_t i = 0; i < width * height; ++i)
-        for (size_t c = 0; c < 3; ++c)
-            EXPECT_NEAR(gained[3 * i + c], plain[3 * i + c] * (1 + 1.38 * path[c] * shading.scene.curvature[i]),
-                        tolerance::unitRoundTrip);
-    // d alone does not specify the mean free path.
-    const Profile kept = Profile::burleyDistance(distance);
-    PelMaterial unknown = materialOf(kept);
-    unknown.curvatureGain = 1;
-    EXPECT_THROW(Shading(unknown, in), Error);
-    EXPECT_NE(std::string(pelGetErrorMessage()).find("mean free path"), std::string::npos);
+    const auto expectGain = [&](const Profile& of, const auto& pathOf, double strength) {
+        material.profile = of.get();
+        material.curvatureGain = float(strength);
+        Shading shading(material, in);
+        PelMaterial flat = material;
+        flat.curvatureGain = 0;
+        const auto gained = shading.radiance(), without = Shading(flat, in).radiance();
+        for (size_t i = 0; i < width * height; ++i)
+            for (size_t c = 0; c < 3; ++c) {
+                const double x = strength * pathOf(c) * shading.scene.meanCurvature[i],
+                             gain = std::max(0.0, 1 + 1.35 * x / (1 + 3 * std::abs(x)));
+                ASSERT_NEAR(gained[3 * i + c], without[3 * i + c] * gain, tolerance::unitRoundTrip);
+            }
+        return without;
+    };
+    EXPECT_EQ(expectGain(
+                  profile, [&](size_t c) { return path[c]; }, 1),
+              plain);
+    expectGain(
+        profile, [&](size_t c) { return path[c]; }, 0.5);
+    // Of Burley's distance d the path is 1.087 d. Sums of Gaussians say nothing of it.
+    expectGain(
+        Profile::burleyDistance(distance), [&](size_t c) { return 1.087 * distance[c]; }, 1);
+    expectGain(
+        Profile::skin(), [](size_t) { return 0.0; }, 1);
 }
 
 TEST(ShadeProfile, WhatHasNoEffectIsSaid) {

@@ -723,7 +723,10 @@ typedef enum PelImageSlot {
     PEL_SLOT_WETNESS =
         23, /* 0 to 1, one component: the wet line along the lids, where tears collect. Read by eyes: their gloss is there as wide as
                               PelEye.wetLineRoughness says. Clamped; NaN is 0. Not set: 0 */
-    PEL_SLOT_COUNT = 24
+    PEL_SLOT_MEAN_CURVATURE = 24, /* H, the mean of both principal curvatures, 1/unit of positions, one component: positive
+                                     where the surface is convex, negative in hollows. Read by PelMaterial.curvatureGain.
+                                     Not set: measured from positions or depth, and from normals */
+    PEL_SLOT_COUNT = 25
 } PelImageSlot;
 
 /* The images of one light. */
@@ -852,9 +855,11 @@ typedef struct PelMaterial {
                                       thickness along the light, times max(-Ng.L, 0)): the larger of this and the table's
                                       dark side is used. Needs a profile, and a thickness image or a shadow map with
                                       thicknessTaps; a deepScatterColor replaces it; 1 */
-    float curvatureGain; /* how much more a body of curvature c reflects than a half-space of the same medium: direct
-                                      light times 1 + curvatureGain * 1.38 * meanFreePath * c. Needs a profile that knows its
-                                      mean free path; 0 */
+    float curvatureGain; /* a curved body reflects more than a half-space of its medium, a hollow less: diffuse light is
+                            multiplied by max(0, 1 + 1.35 x / (1 + 3 |x|)), x = curvatureGain * mean free path * H, H
+                            the mean curvature (PEL_SLOT_MEAN_CURVATURE). All methods, where there are positions or
+                            depth, and the profile is burley or dipole: others do not say how far light travels
+                            between two scatterings, and get no gain. 0: no gain; 1 */
     uint32_t scatterTaps; /* 0, or 8 to 256. PEL_SCATTERING_SEPARABLE: taps of each of the two filters; 0: 25.
                                       PEL_SCATTERING_SCREEN: taps on a disk, placed by the profile; 0: the whole profile. Other
                                       methods ignore it; 0 */

@@ -34,8 +34,8 @@
     X(FLOAT, transmission, 1, 0, PEL_HUGE, PEL_NONE, "", "transmission", PEL_SLIDER("Transmission", 0, \
       2, 0.05), \
       "share of the light that the profile lets through thin parts; a `deep_scatter_color` replaces it") \
-    X(FLOAT, curvatureGain, 0, 0, PEL_HUGE, PEL_NONE, "", "curvature_gain", PEL_NO_SLIDER, \
-      "direct light times 1 + gain × 1.38 × mean free path × curvature") \
+    X(FLOAT, curvatureGain, 1, 0, PEL_HUGE, PEL_NONE, "", "curvature_gain", PEL_NO_SLIDER, \
+      "how much more curved bodies reflect, for Burley and dipole profiles; 0: no gain") \
     X(COLOR, deepScatterColor, 0, 0, PEL_HUGE, PEL_NONE, "", "deep_scatter_color", PEL_NO_SLIDER, \
       "RGB; 0: no deep scatter") \
     X(FLOAT, deepScatterRadius, 6, PEL_TINY, PEL_HUGE, PEL_NONE, "length", "deep_scatter_radius", \

@@ -1,0 +1,210 @@
+// The gain of curved bodies (docs/mathematics.md, section 12): the mean curvature that is measured on the screen, and
+// pictures against random walks.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "diffusion/light_rulers.h"
+#include "diffusion/scatter_scene.h"
+#include "npy.h"
+#include "test_size.h"
+#include "tolerances.h"
+
+using namespace light_rulers;
+using reference::Vec3;
+
+namespace {
+
+constexpr PelScattering methods[] = {PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_SEPARABLE,
+                                     PEL_SCATTERING_SCREEN, PEL_SCATTERING_LIGHT, PEL_SCATTERING_AUTO};
+
+// A surface z(x, y) seen in parallel, `size` to a pixel, with its normal, and its mean curvature in the middle.
+struct Surface {
+    const char* name;
+    std::function<double(double, double)> height;
+    double curvature;
+};
+const Surface surfaces[] = {
+    {"plane", [](double x, double y) { return 0.3 * x - 0.2 * y; }, 0},
+    {"ball", [](double x, double y) { return std::sqrt(400 - x * x - y * y); }, 0.05},
+    {"hollow", [](double x, double y) { return -std::sqrt(400 - x * x - y * y); }, -0.05},
+    {"cylinder", [](double x, double) { return std::sqrt(400 - x * x); }, 0.025},
+    {"saddle", [](double x, double y) { return 0.02 * (x * x - y * y); }, 0},
+    {"paraboloid", [](double x, double y) { return -0.02 * x * x - 0.01 * y * y; }, 0.03},
+};
+
+struct Gains {
+    std::vector<float> light;
+    std::string warnings;
+};
+
+// Under even light, which scattering leaves as it is.
+Gains gainsOf(const Surface& surface, uint32_t side, double size, PelScattering method, float strength,
+              uint64_t budget = 0, bool cut = false) {
+    std::vector<float> positions, normals;
+    std::vector<uint8_t> ids;
+    for (uint32_t row = 0; row < side; ++row)
+        for (uint32_t column = 0; column < side; ++column) {
+            const double x = (column + 0.5 - 0.5 * side) * size, y = (0.5 * side - row - 0.5) * size, h = 1e-4;
+            const double dx = (surface.height(x + h, y) - surface.height(x - h, y)) / (2 * h),
+                         dy = (surface.height(x, y + h) - surface.height(x, y - h)) / (2 * h),
+                         length = std::sqrt(1 + dx * dx + dy * dy);
+            for (double v : {x, y, surface.height(x, y)}) positions.push_back(float(v));
+            for (double v : {-dx / length, -dy / length, 1 / length}) normals.push_back(float(v));
+            ids.push_back(cut && column < side / 3 ? 0 : 1);
+        }
+    scatter_scene::ShownImages shown(Device(""), side, side);
+    PelShaderOptions options = pelShaderOptionsDefaults();
+    options.scratchBudget = budget;
+    shown.shader.set(options);
+    shown.set(PEL_SLOT_POSITION, positions);
+    shown.set(PEL_SLOT_NORMAL_SHADING, normals);
+    shown.set(PEL_SLOT_CURVATURE, std::vector<float>(ids.size(), 0));
+    shown.set(PEL_SLOT_MATERIAL, ids);
+    PelAmbient ambient = pelAmbientDefaults();
+    std::fill_n(ambient.constant, 3, 1.0f);
+    shown.shader.set(ambient);
+    const Profile skin = profile();
+    PelMaterial material = scatter_scene::whiteMaterial(skin, method);
+    material.specular = 0;
+    material.curvatureGain = strength;
+    shown.shader.setMaterial(1, material);
+    std::vector<float> light = shown.execute();
+    return {std::move(light), shown.shader.warnings()};
+}
+
+double gainAt(double curvature, int channel, double strength = 1) {
+    const double x = strength * meanFreePath[channel] * curvature;
+    return 1 + 1.35 * x / (1 + 3 * std::abs(x));
+}
+
+// Radiance of random walks at some pixels: of each channel two estimates.
+npy::Array<float> walk(const char* name) {
+    return npy::read<float>(std::filesystem::path(std::getenv("PELLUCID_RULER_DIR")) / name);
+}
+
+// RMSE in 1e-4 without the noise of the walk.
+std::array<double, 3> errorOfWalk(const Ruler& r, const std::vector<float>& light, const npy::Array<float>& walk) {
+    std::array<double, 3> sum{};
+    for (size_t k = 0; k < walk.shape[0]; ++k) {
+        const float* row = walk.row(k);
+        const size_t pixel = size_t(row[0]) * r.side + size_t(row[1]);
+        for (int c = 0; c < 3; ++c) {
+            const double v = albedo * light[3 * pixel + c];
+            sum[c] += (v - row[4 + 2 * c]) * (v - row[5 + 2 * c]) / double(walk.shape[0]);
+        }
+    }
+    for (double& s : sum) s = 1e4 * std::sqrt(std::max(s, 0.0));
+    return sum;
+}
+
+void print(const char* scene, int method, const std::array<double, 3>& own, const std::array<double, 3>& lambert) {
+    std::printf("%-12s method %d  1e-4: %5.0f %5.0f %5.0f   Lambert %5.0f %5.0f %5.0f\n", scene, method,
+                own[0], own[1], own[2], lambert[0], lambert[1], lambert[2]);
+}
+
+bool hasData() {
+    return std::getenv("PELLUCID_RULER_DIR") && std::getenv("PELLUCID_GBUFFER_DIR");
+}
+
+}  // namespace
+
+TEST(CurvatureGain, IsThatOfTheSurface) {
+    for (const Surface& surface : surfaces)
+        for (double size : {0.05, 0.2, 1.0})
+            for (PelScattering method : {PEL_SCATTERING_SCREEN, PEL_SCATTERING_SEPARABLE}) {
+                const uint32_t side = 20;
+                const std::vector<float> light = gainsOf(surface, side, size, method, 1).light;
+                const size_t middle = side / 2 * side + side / 2;
+                for (int c = 0; c < 3; ++c)
+                    EXPECT_NEAR(light[3 * middle + size_t(c)], gainAt(surface.curvature, c), tolerance::gain)
+                        << surface.name << ", pixels of " << size << ", channel " << c;
+            }
+}
+
+TEST(CurvatureGain, FollowsItsStrengthAndIsNothingOnPlanes) {
+    for (PelScattering method : methods) {
+        const std::vector<float> none = gainsOf(surfaces[1], 24, 0.3, method, 0).light,
+                                 half = gainsOf(surfaces[1], 24, 0.3, method, 0.5f).light,
+                                 plane = gainsOf(surfaces[0], 24, 0.3, method, 1).light,
+                                 without = gainsOf(surfaces[0], 24, 0.3, method, 0).light;
+        const size_t middle = 12 * 24 + 12;
+        for (size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(half[3 * middle + c] / none[3 * middle + c], gainAt(0.05, int(c), 0.5), tolerance::gain)
+                << int(method);
+        for (size_t i = 0; i < plane.size(); ++i) ASSERT_NEAR(plane[i], without[i], 1e-5) << int(method);
+    }
+}
+
+// Beside an edge of the material, and in bands of rows.
+TEST(CurvatureGain, NeedsNeitherAllNeighboursNorTheWholeFrame) {
+    const Gains whole = gainsOf(surfaces[1], 48, 0.3, PEL_SCATTERING_PREINTEGRATED, 1, 0, true),
+                bands = gainsOf(surfaces[1], 48, 0.3, PEL_SCATTERING_PREINTEGRATED, 1, 48 * 12 * 4, true);
+    EXPECT_EQ(whole.light, bands.light);
+    for (size_t x = 16; x < 48; ++x)
+        EXPECT_NEAR(whole.light[3 * (24 * 48 + x)], gainAt(0.05, 0), 2 * tolerance::gain) << x;
+}
+
+// No method is further from the random walk than Lambert, whatever the ball's radius.
+TEST(CurvatureGain, BallsAgainstRandomWalks) {
+    if (!hasData()) GTEST_SKIP() << "PELLUCID_RULER_DIR or PELLUCID_GBUFFER_DIR is not set: no reference";
+    const npy::Array<double> walks =
+        npy::read<double>(std::filesystem::path(std::getenv("PELLUCID_RULER_DIR")) / "ball_walks_f64.npy");
+    constexpr double radii[] = {3.47, 8.68, 11.57, 17.35, 28.92, 57.84};  // mean free paths
+    const Device device("");
+    Ruler r = ball(std::getenv("PELLUCID_GBUFFER_DIR"));
+    r.gain = 1;
+    for (size_t k = 0; k < 6; ++k) {
+        r.profileScale = float(10 / radii[k] / meanFreePath[0]);  // of a ball of 10 mm, in red
+        for (PelScattering method : methods) {
+            const Shown shown = shade(device, r, method, true);
+            double own = 0, lambert = 0;
+            size_t count = 0;
+            for (size_t i = 0; i < r.ids.size(); ++i) {
+                if (!r.ids[i]) continue;
+                double cosine = 0;
+                for (int c = 0; c < 3; ++c) cosine += double(r.positions[3 * i + c]) * r.light.toLight[c];
+                const double at = std::clamp((cosine + 1) * 50, 0.0, 99.999);
+                const auto node = [&](size_t n) { return walks.data[(101 * k + n) * 3 + 1]; };
+                const double truth =
+                    node(size_t(at)) + (at - std::floor(at)) * (node(size_t(at) + 1) - node(size_t(at)));
+                own += std::pow(albedo * shown.light[3 * i] - truth, 2);
+                lambert += std::pow(albedo * r.irradiance[3 * i] - truth, 2);
+                ++count;
+            }
+            const double rms = 1e4 * std::sqrt(own / double(count)),
+                         plain = 1e4 * std::sqrt(lambert / double(count));
+            std::printf("ball of %5.2f paths, method %d: %4.0f, Lambert %4.0f\n", radii[k], int(method), rms,
+                        plain);
+            EXPECT_LT(rms, plain) << "radius " << radii[k] << ", method " << int(method);
+        }
+    }
+}
+
+TEST(CurvatureGain, HeadsAgainstRandomWalks) {
+    if (!hasData()) GTEST_SKIP() << "PELLUCID_RULER_DIR or PELLUCID_GBUFFER_DIR is not set: no reference";
+    const Device device("");
+    const char *rulers = std::getenv("PELLUCID_RULER_DIR"), *gbuffers = std::getenv("PELLUCID_GBUFFER_DIR");
+    Ruler r = headTimesFour(rulers, gbuffers);
+    for (float scale : {1.0f, 4.0f}) {
+        const npy::Array<float> truth =
+            walk(scale == 1 ? "head_side_walk_f32.npy" : "head_side_x4_walk_f32.npy");
+        r.profileScale = scale;
+        const std::array<double, 3> lambert = errorOfWalk(r, r.irradiance, truth);
+        for (PelScattering method : methods) {
+            r.gain = 0;
+            const auto without = errorOfWalk(r, shade(device, r, method, false).light, truth);
+            r.gain = 1;
+            const auto own = errorOfWalk(r, shade(device, r, method, false).light, truth);
+            print(scale == 1 ? "head" : "head x 4", int(method), own, lambert);
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_LT(own[c], lambert[c]) << "scale " << scale << ", method " << int(method);
+                EXPECT_LT(own[c], without[c]) << "scale " << scale << ", method " << int(method);
+            }
+            if (method != PEL_SCATTERING_AUTO) continue;
+            for (int c = 0; c < 3; ++c)
+                EXPECT_LT(own[c], (scale == 1 ? tolerance::walkHead : tolerance::walkHeadTimesFour)[c]);
+        }
+    }
+}
