@@ -1,5 +1,5 @@
-// The shader's passes before and after the methods of scattering: they take irradiance from its slot of the plan, and put what they make
-// of it there.
+// The shader's passes before and after the scattering methods. They read irradiance from its slot of the
+// plan and replace it by their result.
 #include <algorithm>
 #include <optional>
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr size_t pixelBytes = 3 * sizeof(float);
 
-// Whether what the image of weights says is left to the pass after.
+// True if a later pass applies the per-pixel weights.
 bool weighsLater(const ShaderMaterial& material) {
     return scattersIrradiance(material) && !scattersByTaps(material);
 }
@@ -97,7 +97,7 @@ class WeighPass final : public Pass {
   public:
     static bool needed(const ShaderPlan& plan) { return weighsLater(plan); }
 
-    // Over what was scattered.
+    // Overwrites the scattered light.
     void allocate(const Ref<Device>& device, ShaderPlan& plan) override {
         const auto& images = plan.state.images;
         const ImageView& slot = images[PEL_SLOT_IRRADIANCE];

@@ -1,4 +1,4 @@
-// What lies before and after the methods of scattering (kernels/diffusion/blend_scatter.cl).
+// The steps before and after the scattering methods (kernels/diffusion/blend_scatter.cl).
 #pragma once
 #include <map>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace pel {
 
-// Images of one size; those that are not there are empty.
+// Images of one size; images that are not set are empty.
 struct BlendImages {
     ImageView irradiance, scattered, ids, back, weight, albedo, out;
 };
@@ -17,7 +17,7 @@ struct BlendImages {
 class BlendScatter {
   public:
     explicit BlendScatter(Ref<Device> device) : device_(std::move(device)) {}
-    // `other`: of ids that have none.
+    // `other`: for ids without a material.
     void prepare(const std::map<uint32_t, PelBlendMaterial>& materials, const PelBlendMaterial& other,
                  const BlendImages& images, bool accumulate);
     std::vector<cl::ProgramKey> programs(const BlendImages& images) const;
@@ -33,7 +33,7 @@ class BlendScatter {
     std::vector<PelBlendMaterial> sentMaterials_;
 };
 
-// What a sheet lets through; `thickness` in the unit of positions, `scale` of the profile in it.
+// The share of light that a sheet transmits; `thickness` in the unit of positions, `scale`: of the profile.
 Rgb throughSheet(const Profile& profile, double scale, double thickness);
 
 }  // namespace pel

@@ -1,5 +1,6 @@
-// The shader's passes of materials that scatter by taps: on a disk (PEL_SCATTERING_SCREEN with scatterTaps), and separably
-// (PEL_SCATTERING_SEPARABLE). They take irradiance from its slot of the plan, and put what is scattered there.
+// The shader's passes of materials that scatter by taps: on a disk (PEL_SCATTERING_SCREEN with
+// scatterTaps), and separably (PEL_SCATTERING_SEPARABLE). They read irradiance from its slot of the plan
+// and replace it by the scattered light.
 #include <algorithm>
 #include <optional>
 

@@ -32,7 +32,8 @@ class GatherScatter {
         }
     };
     using Ids = std::bitset<PEL_DIFFUSION_IDS>;
-    // Makes memory and sends constants where they changed. `sources`: ids whose light may flow over borders.
+    // Allocates memory, and sends constants that have changed. `sources`: ids whose light may flow over
+    // borders.
     void prepare(const std::map<uint32_t, Material>& materials, const Ids& sources,
                  const GatherImages& images, const ScatterView& view, uint32_t frameIndex);
     std::vector<cl::ProgramKey> programs(const GatherImages& images) const;
@@ -40,7 +41,7 @@ class GatherScatter {
     void enqueue(const GatherImages& images, std::vector<cl::Event>& events);
     ScatterCounts counts();
     size_t bytes() const { return pointBytes_ + tableBytes_ + tileBytes_; }
-    // That a picture takes, beside tables.
+    // Memory of a picture, beside tables.
     static uint64_t pixelBytes(Form form) {
         return (PEL_GATHER_FLOATS + (form == Form::lines ? 4 : 0)) * sizeof(float);
     }

@@ -20,8 +20,9 @@ class Shares {
         for (Rgb& s : shares_)
             for (int c = 0; c < 3; ++c) s[c] = all[c] > 0 ? s[c] / all[c] : 1;
     }
-    // Where `part` of the channel lies that scatters widest there: what it brings from afar is what few taps miss. On the head of the
-    // rulers, four times the radius, 32 taps are off by 134 in red, by 171 if channels count alike.
+    // The radius within which the channel that scatters widest there has `part` of its light: few taps miss
+    // mostly distant light. On the head of the reference scenes, at four times the radius, 32 taps are off
+    // by 134 in red, and by 171 if channels count alike.
     double place(double part) const {
         const auto least = [](const Rgb& s) { return std::min({s[0], s[1], s[2]}); };
         const auto after =

@@ -1,4 +1,4 @@
-// A few Gaussians that stand for a profile.
+// A few Gaussians that represent a profile.
 #pragma once
 #include <vector>
 
@@ -11,7 +11,8 @@ struct GaussianChain {
     double error;  // greatest difference of the light within any distance, over the channels
 };
 
-// The profile's own where it is a sum of at most `most`, else `most` of them, fitted to the light within distances.
+// The Gaussians of the profile itself if it is a sum of at most `most`, otherwise `most` Gaussians fitted
+// to the light within distances.
 GaussianChain gaussianChain(const Profile& profile, uint32_t most);
 
 }  // namespace pel

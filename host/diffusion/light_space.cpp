@@ -11,7 +11,7 @@
 namespace pel {
 namespace {
 
-// Texels are to be this much finer than a profile reaches.
+// Texels are combined up to this fraction of the reach of the profile.
 constexpr double texelsPerReach = 16;
 
 uint32_t pointsOf(uint32_t level) {
@@ -20,7 +20,7 @@ uint32_t pointsOf(uint32_t level) {
 
 }  // namespace
 
-// Returns the floats of all of them, and how many texels there are.
+// Returns the number of floats of all levels, and counts texels and cells.
 uint64_t LightSpace::layOutLevels(std::vector<LightMap>& maps, bool hidden, uint64_t& seen, uint64_t& cells) {
     uint64_t floats = 0;
     cells = 0;
@@ -122,7 +122,7 @@ void LightSpace::addFiles(cl::ProgramKey& program) const {
     program.defines["PEL_SHADOW_CONTENT"] = text(content_);
 }
 
-// Work-items of a vector of texels each.
+// Work-items, of a vector of texels each.
 cl::Range LightSpace::rows(const PelPyramidLevel& level) const {
     const uint32_t lanes = device_->info().mathWidth;
     return cl::folded(size_t((level.width + lanes - 1) / lanes) * level.height, PEL_DIFFUSION_GROUP);

@@ -6,7 +6,7 @@
 
 namespace pel {
 
-// What ScreenScatter has on the device.
+// Memory of ScreenScatter that the kernels read.
 struct ScreenMemory {
     cl::Program program;  // with the files of LightSpace::addFiles
     cl::Memory frame, pyramid, tables, nodes, tiles, sums;
@@ -22,21 +22,24 @@ class LightSpace {
   public:
     explicit LightSpace(Ref<Device> device) : device_(std::move(device)) {}
 
-    // What its program follows from. `hidden`: texels that the camera does not see fill what the screen misses; else all texels are
-    // the far part of the sum. The format and the content of all maps are one. Without a map nothing is done.
+    // Sets the variant of the program. `hidden`: occluded texels fill missing weight of the screen;
+    // otherwise all texels are the far part of the sum. All maps have one format and one content. Without a
+    // map nothing is done.
     void announce(const std::vector<ShaderLight>& lights, bool hidden);
-    // `narrowest`: reach of the profiles, length. `blocks`: floats that hold what is hidden from the screen's blocks.
+    // `narrowest`: smallest reach of the profiles, length. `blocks`: floats for the occluded light of the
+    // screen's blocks.
     void prepare(const std::vector<ShaderLight>& lights, const float origin[3], double narrowest,
                  size_t tileCount, size_t blocks);
     bool empty() const { return empty_; }
-    // Adds its kernels to a program that reads the same pictures: each program by itself takes drivers their time.
+    // Adds the kernels to a program that reads the same images: building separate programs takes drivers
+    // longer.
     void addFiles(cl::ProgramKey& program) const;
-    // After the screen's pyramid and its words are made: the lights' pyramids, and what they matter to.
+    // Builds the lights' pyramids and classifies tiles; after the screen's pyramid and its tile flags.
     void enqueuePyramids(const ScatterImages& images, const ScreenMemory& screen, std::vector<cl::Event>& events);
-    // After the screen's sums by levels: what the camera does not see, for the screen's last step.
+    // Sums occluded light; after the screen's sums by levels and before its last step.
     void enqueueHidden(const ScreenMemory& screen, std::vector<cl::Event>& events);
     const cl::Memory& hidden() const { return hiddenMemory_; }
-    // With the lights' texels alone, after the picture is copied.
+    // Sums over the texels only; after the irradiance has been copied to the output.
     void enqueueSums(const ScatterImages& images, const ScreenMemory& screen, std::vector<cl::Event>& events);
     LightCounts counts();
     static uint64_t bytesFor(const std::vector<ShaderLight>& lights, bool hidden);

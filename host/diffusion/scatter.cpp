@@ -89,7 +89,7 @@ void Scatter::setImage(PelImageSlot slot, const ImageView& view) {
     images_[slot] = view;
 }
 
-// The methods that materials take, and what lies before and after them.
+// The methods of the materials, and the steps before and after them.
 Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImages& images) const {
     Plan plan;
     plan.weight = image(PEL_SLOT_SCATTER_WEIGHT);
@@ -101,7 +101,7 @@ Scatter::Plan Scatter::planOf(const PelScatterParams& params, const ScatterImage
         const PelScatterControls c = found == controls_.end() ? pelScatterControlsDefaults() : found->second;
         plan.sources.set(id);
         const bool lines = c.scattering == PEL_SCATTERING_SEPARABLE;
-        // Sums over blocks know neither borders nor radii per pixel.
+        // Sums over blocks support neither borders nor radii per pixel.
         const bool perPixel = c.borderColor[0] > 0 || c.borderColor[1] > 0 || c.borderColor[2] > 0 ||
                               (plan.weight && plan.weight.info().components > 1);
         const uint32_t wanted = c.scatterTaps || lines || !perPixel ? c.scatterTaps : diskTapsForBlocks;
@@ -151,7 +151,7 @@ ImageView Scatter::image(PelImageSlot slot) const {
     return found == images_.end() ? ImageView() : found->second;
 }
 
-// A picture of the library's own.
+// A scratch image.
 ImageView Scatter::scratch(size_t index, const ImageView& like) {
     resize(scratch_[index], device_, size_t(like.width) * like.height * 3 * sizeof(float));
     return scratchImage(scratch_[index], like, PEL_FORMAT_PLANAR_RGB32F);
@@ -183,7 +183,7 @@ void Scatter::execute(const PelScatterParams& params, const ScatterImages& image
         now.irradiance = blend.out;
     }
     const ImageView arriving = now.irradiance;
-    // Each method takes the picture that the one before it left; the last one writes the output.
+    // Each method reads the result of the one before; the last one writes the output.
     int left = int(!plan.disk.empty()) + int(!plan.lines.empty()) + int(!plan.screen.empty());
     size_t next = 1;
     const auto target = [&] {

@@ -52,7 +52,7 @@ class Scatter final : public Object {
     std::array<Ref<Buffer>, 3> scratch_;
     std::map<uint32_t, ScreenScatter::Material> materials_;
     std::map<uint32_t, PelScatterControls> controls_;
-    std::map<PelImageSlot, ImageView> images_;  // that executions read beside theirs
+    std::map<PelImageSlot, ImageView> images_;  // further images, kept between executions
     std::vector<std::pair<PelScattering, std::function<ScatterCounts()>>> counts_;  // of the methods that ran
     std::vector<cl::Event> events_;
     bool executed_ = false;

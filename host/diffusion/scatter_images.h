@@ -4,7 +4,7 @@
 
 namespace pel {
 
-// Images of one size. Views that are not there are empty; either positions or depth is.
+// Images of one size. Images that are not set are empty; either positions or depth is set.
 struct ScatterImages {
     ImageView irradiance, positions, depth, ids, out;
 };

@@ -1,4 +1,4 @@
-// What methods that scatter irradiance ask of a material.
+// Properties of materials that the scattering methods share.
 #pragma once
 #include "diffusion/screen_scatter.h"
 #include "shading/features.h"
@@ -6,10 +6,10 @@
 
 namespace pel {
 
-// Its profile, that of its curvature table, or skin's, stretched to its diffusion radius.
+// The profile of the material, of its curvature table, or skin, scaled to the diffusion radius.
 ScreenScatter::Material profileOf(const ShaderMaterial& material);
 
-// Whether its irradiance is scattered, by whatever method.
+// Whether the irradiance of the material is scattered, by any method.
 inline bool scattersIrradiance(const ShaderMaterial& material) {
     return readsIrradiance(material) && material.params.scattering != PEL_SCATTERING_NONE;
 }
@@ -17,20 +17,20 @@ inline bool scattersIrradiance(const ShaderMaterial& material) {
 inline bool scattersOnDisk(const ShaderMaterial& material) {
     return material.params.scattering == PEL_SCATTERING_SCREEN && material.params.scatterTaps > 0;
 }
-// By taps at all.
+// By taps, on a disk or along lines.
 inline bool scattersByTaps(const ShaderMaterial& material) {
     return scattersOnDisk(material) || material.params.scattering == PEL_SCATTERING_SEPARABLE;
 }
-// What 0 stands for.
+// Replaces 0 by the default.
 inline uint32_t scatterTapsOf(PelScattering scattering, uint32_t taps) {
     return taps || scattering != PEL_SCATTERING_SEPARABLE ? taps : 25;
 }
 
-// The plan's images for a method that scatters into `out`, which from now on is the plan's irradiance.
+// The images of the plan for a method that scatters into `out`, which becomes the irradiance of the plan.
 ScatterImages takeIrradiance(ShaderPlan& plan, const Ref<Device>& device, Ref<Buffer>& out, bool inPlace = false);
 
 void addScatterCounts(const ScatterCounts& counts, PelScattering scattering, PelShaderStats& stats);
-// Of materials of PEL_SCATTERING_AUTO that scatter on the screen: those that kept their irradiance have chosen nothing.
+// Counts pixels of PEL_SCATTERING_AUTO that kept their irradiance as not scattered.
 void addKeptChoices(const ScatterCounts& counts, PelShaderStats& stats);
 
 }  // namespace pel

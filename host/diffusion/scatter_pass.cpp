@@ -1,5 +1,6 @@
-// The shader's passes of materials that scatter on the screen (PEL_SCATTERING_SCREEN and AUTO) or from the maps of their
-// lights (PEL_SCATTERING_LIGHT): each takes irradiance from its slot of the plan, and puts what is scattered there.
+// The shader's passes of materials that scatter on the screen (PEL_SCATTERING_SCREEN and AUTO) or from
+// shadow maps (PEL_SCATTERING_LIGHT). They read irradiance from its slot of the plan and replace it by the
+// scattered light.
 #include <algorithm>
 #include <optional>
 
@@ -15,19 +16,19 @@ namespace {
 constexpr uint32_t onScreen = 1u << PEL_SCATTERING_SCREEN | 1u << PEL_SCATTERING_AUTO,
                    inLight = 1u << PEL_SCATTERING_LIGHT;
 
-// Where maps do not hold all light, those of PEL_SCATTERING_LIGHT scatter on the screen.
+// Without maps for all light, materials of PEL_SCATTERING_LIGHT scatter on the screen.
 bool scatters(const ShaderState& state, const ShaderMaterial& material, bool alone) {
     const bool mapped = lightIsMapped(state);
     const uint32_t methods = alone ? (mapped ? inLight : 0) : mapped ? onScreen : onScreen | inLight;
     return methods >> material.params.scattering & 1 && !scattersOnDisk(material);
 }
 
-// Whether irradiance is the library's, and nobody asks for it once it is scattered: then it need not be copied.
+// Whether irradiance is a scratch image that is not read after scattering, so that it can be overwritten.
 bool isOwn(const ShaderPlan& plan) {
     return (plan.features & PEL_FEATURE_MAKE_IRRADIANCE) && !plan.state.images[PEL_SLOT_SCATTER_WEIGHT];
 }
 
-// `alone`: the lights' texels are all of the far part.
+// `alone`: texels are all of the far part.
 template <bool alone>
 class ScatterPass final : public Pass {
   public:
@@ -78,7 +79,7 @@ class ScatterPass final : public Pass {
         addScatterCounts(counts, alone ? PEL_SCATTERING_LIGHT : PEL_SCATTERING_SCREEN, stats);
         if constexpr (!alone) {
             stats.tilesByScattering[PEL_SCATTERING_LIGHT] += light.tiles;
-            // Whether auto's materials kept them is known where no other material scatters so.
+            // Pixels kept by auto can be told from others only if all materials of this pass are auto.
             if (std::ranges::any_of(plan.state.materials, [&](const auto& m) {
                     return scatters(plan.state, m.second, alone) &&
                            m.second.given.scattering != PEL_SCATTERING_AUTO;

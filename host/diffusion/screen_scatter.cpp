@@ -54,7 +54,7 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
     materials_ = materials;
 }
 
-// Returns the floats of all of them.
+// Returns the number of floats of all levels.
 static uint64_t layOutLevels(uint32_t width, uint32_t height, PelPyramidLevel (&levels)[PEL_PYRAMID_LEVELS]) {
     uint64_t floats = 0;
     for (PelPyramidLevel& level : levels) {
@@ -69,13 +69,13 @@ static uint64_t layOutLevels(uint32_t width, uint32_t height, PelPyramidLevel (&
     return floats + 2 * PEL_PYRAMID_GUARD;
 }
 
-// Of the sums of levels 1 and on.
+// Floats of the sums of level 1 and on.
 static uint64_t sumFloats(const PelPyramidLevel (&levels)[PEL_PYRAMID_LEVELS], uint64_t floats) {
     return (floats - 2 * PEL_PYRAMID_GUARD - levels[1].offset) / PEL_PYRAMID_PLANES * PEL_SUM_PLANES +
            2 * PEL_PYRAMID_GUARD;
 }
 
-// Of those of levels before `level`.
+// Floats of the sums of levels before `level`.
 static size_t sumFloatsBelow(const PelPyramidLevel (&levels)[PEL_PYRAMID_LEVELS], uint32_t level) {
     return size_t(levels[level].offset - levels[1].offset) / PEL_PYRAMID_PLANES * PEL_SUM_PLANES;
 }
@@ -157,7 +157,7 @@ std::vector<cl::ProgramKey> ScreenScatter::programs(const ScatterImages& images)
     return {std::move(pixels), {{"diffusion/classify_scatter.cl"}, {{"PEL_WIDTH", text(1)}}}};
 }
 
-// Work-items of a vector of pixels each.
+// Work-items, of a vector of pixels each.
 cl::Range ScreenScatter::rows(uint32_t width, uint32_t height) const {
     const uint32_t lanes = device_->info().mathWidth;
     return cl::folded(size_t((width + lanes - 1) / lanes) * height, PEL_DIFFUSION_GROUP);
@@ -193,13 +193,13 @@ void ScreenScatter::enqueue(const ScatterImages& images, std::vector<cl::Event>&
     classify.arg(constants_.memory()).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_).arg(counters_);
     launch(classify, {{tiles, 1, 1}, {PEL_DIFFUSION_GROUP, 1, 1}});
     if (!light_.empty()) light_.enqueuePyramids(images, screen, events);
-    // With the lights' texels alone the screen's sum only copies.
+    // With the texels only, the screen's last step just copies.
     const bool alone = !light_.empty() && lights_.alone;
     if (alone) device_->fill(tiles_.get(), 0, tileBytes_, 0);
-    // Blocks that no tile asks for are interpolated from as well: what another picture left there must not show. All tiles that scatter ask
-    // for PEL_LEAST_LEVELS.
-    const size_t asked = sumFloatsBelow(frame_.level, PEL_LEAST_LEVELS) * sizeof(float);
-    if (!alone) device_->fill(sums_.get(), asked, sumBytes_ - asked, 0);
+    // Interpolation also reads blocks that no tile needs, so sums of an earlier picture must not remain
+    // there. All tiles that scatter need PEL_MIN_LEVELS.
+    const size_t always = sumFloatsBelow(frame_.level, PEL_MIN_LEVELS) * sizeof(float);
+    if (!alone) device_->fill(sums_.get(), always, sumBytes_ - always, 0);
     for (uint32_t k = frame_.levels - 1; k > 0 && !alone; --k) {
         cl::Launch level(programs[PIXELS], "scatter_level");
         level.arg(constants_.memory()).arg(pyramid_).arg(tables_).arg(nodes_).arg(tiles_);

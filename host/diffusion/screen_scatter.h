@@ -16,15 +16,15 @@ struct ScatterView {
     bool everywhere = false;               // leave nothing out
 };
 
-// The point that a perspective matrix maps to infinite depth. Returns false for parallel views and where
-// there is no matrix.
+// The point that a perspective matrix maps to infinite depth. Returns false for parallel views and without
+// a matrix.
 bool eyeOf(const float inverse[16], float eye[3]);
 bool samePixels(const ImageView& a, const ImageView& b);
 
-// Lights whose shadow maps are lit surface too.
+// Lights whose shadow maps serve as lit surface.
 struct ScatterLights {
     std::vector<ShaderLight> lights;
-    bool alone = false;  // their texels are all of the far part; else those that the camera does not see are added
+    bool alone = false;  // true: texels are all of the far part; false: only occluded texels are added
 };
 
 struct ScatterCounts {
@@ -43,16 +43,16 @@ class ScreenScatter {
             return profile.get() == other.profile.get() && scale == other.scale;
         }
     };
-    // Before programs are asked for; none by default.
+    // Sets the lights, before `programs` is called; none by default.
     void announce(const ScatterLights& lights);
-    // Makes memory and sends constants where they changed.
+    // Allocates memory, and sends constants that have changed.
     void prepare(const std::map<uint32_t, Material>& materials, const ScatterImages& images,
                  const ScatterView& view);
     std::vector<cl::ProgramKey> programs(const ScatterImages& images) const;
     // Programs come from the device's cache.
     void enqueue(const ScatterImages& images, std::vector<cl::Event>& events);
     ScatterCounts counts();
-    // That a picture takes, beside tables.
+    // Memory of a picture, beside tables.
     static uint64_t bytesFor(uint32_t width, uint32_t height);
     size_t bytes() const { return pyramidBytes_ + sumBytes_ + nodeBytes_ + tileBytes_ + light_.bytes(); }
     LightCounts lightCounts() { return light_.counts(); }

@@ -1,4 +1,4 @@
-// A structure that kernels read, on the device; sent only where it changed.
+// A structure on the device that kernels read, sent only when it has changed.
 #pragma once
 #include "shading/cached_upload.h"
 

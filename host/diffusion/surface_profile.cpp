@@ -23,7 +23,7 @@ Rgb radial(const ProfileShape& shape, const std::vector<double>& knots, double s
     return shape.radial(knots.empty() ? s : std::min(s, knots.back()));
 }
 
-// Integral of R(s) s ds over [a, b], split where R bends.
+// Integral of R(s) s ds over [a, b], split where R has kinks.
 Rgb energyBetween(const ProfileShape& shape, const std::vector<double>& knots, double a, double b) {
     std::vector<double> borders{a};
     for (double k : knots)
@@ -97,10 +97,10 @@ SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
     table.firstLog2 = first + double(low) / PEL_SURFACE_ROWS + std::log2(scale);
     table.reach = at(high) * scale;
     for (int c = 0; c < 3; ++c) table.cut[c] = cut[c] * scale;
-    // Where R steps or bends, the rule along edges has an error proportional to the step of s^2 R and to the
+    // Where R steps or has kinks, the rule along edges has an error proportional to the step of s^2 R and to the
     // square of the interval.
-    constexpr double atOnce = 1.25, wanted = 1e-5, errorOfStep = 2.5e-3, bends = 0.2;
-    double step = knots.empty() ? 0 : bends;
+    constexpr double atOnce = 1.25, wanted = 1e-5, errorOfStep = 2.5e-3, kinks = 0.2;
+    double step = knots.empty() ? 0 : kinks;
     for (int c = 0; c < 3; ++c)
         if (cut[c] > 0)
             step = std::max(step, 2 * std::numbers::pi * cut[c] * cut[c] * radial(shape, knots, cut[c])[c] *
@@ -108,9 +108,9 @@ SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
     table.piece = atOnce / std::max(1.0, std::sqrt(step * errorOfStep / wanted));
     // sup from the end inwards, for this profile in units of positions: R scales with 1/length^2.
     const int rows = high - low + 1;
-    table.bend.resize(rows);
+    table.curving.resize(rows);
     table.fall.resize(rows);
-    double bend = 0, fall = 0;
+    double curving = 0, fall = 0;
     for (int i = rows - 1; i >= 0; --i) {
         const double s = at(low + i), step = s * 1e-3;
         const Rgb before = radial(shape, knots, s - step), here = radial(shape, knots, s),
@@ -120,10 +120,10 @@ SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
             const double norm = whole / all[c], first = norm * (behind[c] - before[c]) / (2 * step),
                          second = norm * (behind[c] - 2 * here[c] + before[c]) / (step * step);
             fall = std::max(fall, std::abs(first) / std::pow(scale, 3));
-            bend = std::max(
-                {bend, std::abs(first) / s / std::pow(scale, 4), std::abs(second) / std::pow(scale, 4)});
+            curving = std::max(
+                {curving, std::abs(first) / s / std::pow(scale, 4), std::abs(second) / std::pow(scale, 4)});
         }
-        table.bend[i] = bend;
+        table.curving[i] = curving;
         table.fall[i] = fall;
     }
     for (int i = low; i <= high; ++i) {

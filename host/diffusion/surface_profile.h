@@ -1,4 +1,4 @@
-// What the surface integral needs of a profile: energy within a distance, and how fast R bends. In units of
+// What the surface integral needs of a profile: energy within a distance, and how fast R curves. In units of
 // positions.
 #pragma once
 #include <array>
@@ -17,11 +17,11 @@ struct SurfaceProfile {
     std::array<double, 3> cut;    // length; 0: R does not end abruptly
     double piece;                 // of the parameter along an edge that one rule takes
     // sup over s >= the row's distance of the Hessian's norm (1/length^4) and of the gradient's (1/length^3).
-    std::vector<double> bend, fall;
+    std::vector<double> curving, fall;
 
     double distance(size_t row) const;
-    size_t count() const { return bend.size(); }
-    // Values of bend and fall at a distance: those of the row below it, which are the larger ones.
+    size_t count() const { return curving.size(); }
+    // Values of curving and fall at a distance: those of the row below it, which are the larger ones.
     size_t rowBelow(double distance) const;
 };
 

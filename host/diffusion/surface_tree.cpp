@@ -174,7 +174,7 @@ class Builder {
         size_t low = 0, high = profile_.count();  // rows of the distance to the set's nearest point
         const auto fits = [&](size_t row) {
             const double far = profile_.distance(row + 1) + 2 * radius;
-            return (0.5 * spread * profile_.bend[row] + offset * profile_.fall[row]) * far * far <= share_;
+            return (0.5 * spread * profile_.curving[row] + offset * profile_.fall[row]) * far * far <= share_;
         };
         while (low < high) {
             const size_t middle = (low + high) / 2;

@@ -1,5 +1,5 @@
-// The shader's pass of materials that take light which was scattered in texture space (PEL_SCATTERING_TEXTURE): it takes irradiance
-// from its slot of the plan, and puts that light there.
+// The shader's pass of materials that take light scattered in texture space (PEL_SCATTERING_TEXTURE). It
+// reads irradiance from its slot of the plan and replaces it by that light.
 #include <algorithm>
 
 #include "diffusion/passes.h"

@@ -1,8 +1,9 @@
-// What lies before and after the methods of scattering: light from the other side of thin sheets, albedo before and after, and the
-// weight of the scattered light per pixel (docs/mathematics.md, section 10, "Controls").
+// The steps before and after a scattering method: light from the other side of thin sheets, powers of
+// albedo, and the weight of the scattered light per pixel (docs/mathematics.md, section 10, "Controls").
 //
-// prepare_irradiance: (irradiance + through * back) * albedo^before. finish_scatter: irradiance + weight * (scattered - irradiance), times
-// albedo^after, written or added. One work-item is one pixel. Variants: PEL_FORMAT_... of the images, 0 where there is none.
+// prepare_irradiance: (irradiance + through * back) * albedo^before. finish_scatter: irradiance + weight *
+// (scattered - irradiance), times albedo^after, written or added. One work-item is one pixel. Variants:
+// PEL_FORMAT_... of the images, 0 for an image that is not set.
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 #include "shared/blend.h"

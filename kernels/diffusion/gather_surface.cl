@@ -1,17 +1,19 @@
-// The surface under each pixel for methods that gather by taps (shared/gather.h; docs/mathematics.md, section 10).
+// The surface under each pixel, for methods that gather by taps (shared/gather.h; docs/mathematics.md,
+// section 10).
 //
-// Inputs: images of irradiance, of positions (length) or depth, of ids (0 is background), of weights and radii. Output: PEL_GATHER_FLOATS floats a
-// pixel. Two launches: gather_points copies what the caller's images hold, gather_areas measures from pixel to pixel and says
-// which tiles have something to gather. One work-item is one pixel, or one tile. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH,
-// PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SCATTER_WEIGHT (0: all 1).
+// Inputs: images of irradiance, of positions (length) or depth, of ids (0 is background), of weights and
+// radii. Output: PEL_GATHER_FLOATS floats a pixel. gather_points copies the images; one work-item is a part
+// of a row. gather_areas measures pixels against their neighbours and flags tiles that have something to
+// gather; one work-item is one tile. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_POSITION or
+// PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SCATTER_WEIGHT (0: all 1).
 #include "lib/diffusion/gather.clh"
 #include "lib/diffusion/usable_light.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/position.clh"
 
-// Surface seen at a steeper angle than this cosine counts with the area it would have at it: what a pixel's normal says of its
-// whole area is wrong where the surface turns away inside of the pixel.
-#define LEAST_COSINE 0.25f
+// A surface seen at a smaller cosine counts with the area it would have at this one: where the surface
+// turns away inside a pixel, its normal does not hold for the whole area.
+#define MIN_COSINE 0.25f
 
 static inline float clampedShare(float v) {
     return v >= 0.0f ? fmin(v, 1.0f) : 0.0f;  // NaN: 0
@@ -114,7 +116,7 @@ static inline void measurePixel(__global const PelGatherFrame* frame, __global f
     if (noRight) wide = high, area = down.length2;  // a line of pixels counts as facing the camera
     if (noDown) high = wide, area = right.length2;
     if (frame->view == PEL_VIEW_UNKNOWN) wide = high = fmin(wide, high);
-    area = fmin(area, wide * high * (1.0f / LEAST_COSINE));
+    area = fmin(area, wide * high * (1.0f / MIN_COSINE));
     if (!isfinite(area) || !isfinite(wide) || !isfinite(high) || !(area > 0.0f)) return;
     __global float* to = points + PEL_GATHER_FLOATS * here;
     to[PEL_GATHER_POINT + 3] = area;

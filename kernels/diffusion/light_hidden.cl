@@ -1,40 +1,43 @@
-// What the texels of shadow maps that the camera does not see bring to blocks of 2 x 2 pixels, where the screen lacks mass
-// (docs/mathematics.md, section 10, "Light space").
+// Light that occluded shadow-map texels bring to blocks of 2 x 2 pixels (docs/mathematics.md, section 10,
+// "Light space").
 //
-// Input: the screen's pyramid, its tiles' words, the sums of level 1, what light_classify found, the lights' pyramids. Output: light and mass per block of tiles that they reach, 0 where
-// they matter to nothing, and 0 in the tiles beside these. One work-group takes tiles, one work-item blocks of them. Variants: PEL_HIDDEN is 1.
+// Input: the screen's pyramid, the packed flags of its tiles, the sums of level 1, the light that
+// light_classify has found per tile, the pyramids of the lights. Output: light, weight and far light per
+// block of flagged tiles, and zeros in the tiles beside them, which interpolation reads. One work-group
+// takes tiles, one work-item blocks of them. Variants: PEL_HIDDEN is 1.
 #include "lib/diffusion/levels.clh"
 #include "lib/diffusion/windowed.clh"
 
 #define WINDOW 1.5f
-// Light, and the greatest mass of a light's texels.
+// Adds the light of all lights, and takes the largest weight of any light.
 static inline void addHidden(__global const PelLightMap* maps, uint mapCount, __global const float* lights,
-                             __global const float* nodes, const PelProfileTable table, Place* place,
-                             float3* light, float3* mass, float3* far, uint* texels) {
+                             __global const float* nodes, const PelProfileTable table, Receiver* receiver,
+                             float3* light, float3* weight, float3* far, uint* texels) {
     for (uint k = 0; k < mapCount;) {
         Windowed sums;
         clearWindowed(&sums);
         const uint number = maps[k].light;
         const float3 color = vload3(0, maps[k].color);
         for (; k < mapCount && maps[k].light == number; ++k)
-            *texels += addMap(&sums, maps + k, lights, nodes, table, place);
+            *texels += addMap(&sums, maps + k, lights, nodes, table, receiver);
         const float3 all = sumOfLanes3(sums.farLight);
         *light += color * all;
         *far += color * (all - sumOfLanes3(sums.nearLight));
-        *mass = fmax(*mass, sumOfLanes3(sums.farMass));
+        *weight = fmax(*weight, sumOfLanes3(sums.farWeight));
     }
 }
 
 static inline float missingOf(__global const float* sums, uint stride) {
     float most = 0.0f;
     for (uint c = 0; c < 3; ++c)
-        most = fmax(most, 1.0f - sums[(PEL_SUM_CENTRE + c) * stride] - sums[(PEL_SUM_MASS + c) * stride]);
+        most = fmax(most, 1.0f - sums[(PEL_SUM_CENTRE + c) * stride] - sums[(PEL_SUM_WEIGHT + c) * stride]);
     return most;
 }
 
-// Whether light that comes in, `most` at the most, counts: for missing mass, or as most of the light in some channel.
+// Whether occluded light of up to `most` counts: because accumulated weight is missing, or because it is
+// most of the light in some channel.
 static inline bool lightCounts(__global const float* sums, __global const float* block, uint stride, float most) {
-    if (missingOf(sums, stride) > PEL_LEAST_MISSING) return true;
+    if (missingOf(sums, stride) > PEL_MIN_MISSING) return true;
     float least = FLT_MAX;
     for (uint c = 0; c < 3; ++c)
         least = fmin(least, fma(sums[(PEL_SUM_CENTRE + c) * stride], block[(PEL_PLANE_RED + c) * stride],
@@ -42,7 +45,7 @@ static inline bool lightCounts(__global const float* sums, __global const float*
     return most > PEL_HIDDEN_FROM * (most + least);
 }
 
-// Reached tiles interpolate between their blocks and the next ones of their neighbours.
+// Flagged tiles interpolate between their own blocks and those of their neighbours.
 static inline bool isBesideReached(__global const PelDiffusionFrame* frame, __global const uint* tiles,
                                    uint tile) {
     const int x = (int)(tile % frame->tilesX), y = (int)(tile / frame->tilesX);
@@ -69,24 +72,24 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
                        y = tile / frame->tilesX * side + item / side;
             if (x >= level->width || y >= level->height) continue;
             __global const float* block = pyramid + pyramidRow(level, (int)y) + x;
-            float3 light = (float3)(0.0f), mass = (float3)(0.0f), far = (float3)(0.0f);
+            float3 light = (float3)(0.0f), weight = (float3)(0.0f), far = (float3)(0.0f);
             const uint id = as_uint(block[PEL_PLANE_ID * stride]);
             if (reached && block[PEL_PLANE_AREA * stride] > 0.0f &&
                 lightCounts(sums + sumRow(frame, 1, (int)y) + x, block, stride, as_float(change[tile]))) {
-                Place place;
-                place.id = id;
-                place.slack = 0.0f;
+                Receiver receiver;
+                receiver.id = id;
+                receiver.margin = 0.0f;
                 const float step = sqrt(fmax(block[PEL_PLANE_SIZE * stride], FLT_MIN));
-                place.rho = WINDOW * fmax(block[PEL_PLANE_AREA * stride] / (4.0f * step), step);
-                place.p = (float3)(block[PEL_PLANE_X * stride], block[PEL_PLANE_Y * stride],
-                                   block[PEL_PLANE_Z * stride]);
-                addHidden(maps, mapCount, lights, nodes, tables[frame->tableOf[id] - 1], &place, &light,
-                          &mass, &far, &texels);
+                receiver.rho = WINDOW * fmax(block[PEL_PLANE_AREA * stride] / (4.0f * step), step);
+                receiver.p = (float3)(block[PEL_PLANE_X * stride], block[PEL_PLANE_Y * stride],
+                                      block[PEL_PLANE_Z * stride]);
+                addHidden(maps, mapCount, lights, nodes, tables[frame->tableOf[id] - 1], &receiver, &light,
+                          &weight, &far, &texels);
                 ++pixels;
             }
             __global float* to = hidden + hiddenRow(frame, (int)y) + x;
             to[0] = light.x, to[stride] = light.y, to[2 * stride] = light.z;
-            to[3 * stride] = mass.x, to[4 * stride] = mass.y, to[5 * stride] = mass.z;
+            to[3 * stride] = weight.x, to[4 * stride] = weight.y, to[5 * stride] = weight.z;
             to[6 * stride] = far.x, to[7 * stride] = far.y, to[8 * stride] = far.z;
         }
     }

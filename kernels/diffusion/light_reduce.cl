@@ -1,20 +1,21 @@
 // One level of a light's pyramid (shared/light_space.h) from the next finer one: blocks of 2 x 2.
 //
-// A block's flux stands at two points. The first is that of the brightest child; children far from it, or of another id, gather at the
-// second, which begins at the farthest of them. Input and output: the pyramid. One work-item: PEL_WIDTH blocks of a row. Variants: PEL_HIDDEN.
+// The flux of a block is stored in two clusters. The first begins at the brightest child. Children far from
+// it, or of another id, go to the second, which begins at the farthest of them. Input and output: the
+// pyramid. One work-item: PEL_WIDTH blocks of a row. Variants: PEL_HIDDEN.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/light_space.clh"
 #include "lib/diffusion/pyramid.clh"
 
-#define APART 1.5f  // widths of a block: what lies closer together is one point
+#define APART 1.5f  // widths of a block between two clusters
 
-typedef struct Spot {
+typedef struct Cluster {
     floatw flux, extent;
     uintw id;
     Vec3w p;
-} Spot;
+} Cluster;
 
-static inline void loadSpots(__global const float* at, uint stride, Spot* even, Spot* odd) {
+static inline void loadClusters(__global const float* at, uint stride, Cluster* even, Cluster* odd) {
     loadEvenOdd(at + PEL_LIGHT_FLUX * stride, &even->flux, &odd->flux);
     loadEvenOdd(at + PEL_LIGHT_EXTENT * stride, &even->extent, &odd->extent);
     even->id = odd->id = (uintw)(0);
@@ -28,17 +29,17 @@ static inline void loadSpots(__global const float* at, uint stride, Spot* even, 
     loadEvenOdd(at + PEL_LIGHT_Z * stride, &even->p.z, &odd->p.z);
 }
 
-static inline maskw sameId(Spot a, Spot b) {
+static inline maskw sameId(Cluster a, Cluster b) {
     return PEL_HIDDEN ? (maskw)(-1) : (maskw)(a.id == b.id);
 }
 
-static inline floatw apart2(Spot a, Spot b) {
+static inline floatw apart2(Cluster a, Cluster b) {
     const Vec3w d = sub3(a.p, b.p);
     return selectw((floatw)(FLT_MAX), dot3(d, d), sameId(a, b));
 }
 
-static inline Spot chooseSpot(Spot a, Spot b, maskw second) {
-    Spot s;
+static inline Cluster chooseCluster(Cluster a, Cluster b, maskw second) {
+    Cluster s;
     s.flux = selectw(a.flux, b.flux, second);
     s.extent = selectw(a.extent, b.extent, second);
     s.id = as_uintw(selectw(as_intw(a.id), as_intw(b.id), second));
@@ -46,15 +47,15 @@ static inline Spot chooseSpot(Spot a, Spot b, maskw second) {
     return s;
 }
 
-// Sums about the seed, so that nothing cancels.
-static inline void addSpot(Spot* sum, Spot seed, Spot s, maskw on) {
+// Sums are relative to the seed, so that nothing cancels.
+static inline void addToCluster(Cluster* sum, Cluster seed, Cluster s, maskw on) {
     const floatw flux = selectw((floatw)(0.0f), s.flux, on);
     sum->flux += flux;
     sum->extent += selectw((floatw)(0.0f), s.extent, on);
     sum->p = add3(sum->p, scale3(sub3(s.p, seed.p), flux));
 }
 
-static inline void storeSpot(Spot sum, Spot seed, size_t at, uint stride, __global float* pyramid) {
+static inline void storeCluster(Cluster sum, Cluster seed, size_t at, uint stride, __global float* pyramid) {
     const floatw share = 1.0f / selectw((floatw)(1.0f), sum.flux, sum.flux > 0.0f);
     const Vec3w p = add3(seed.p, scale3(sum.p, share));
     storew(sum.flux, at + PEL_LIGHT_FLUX * stride, pyramid);
@@ -65,7 +66,8 @@ static inline void storeSpot(Spot sum, Spot seed, size_t at, uint stride, __glob
     storew(p.z, at + PEL_LIGHT_Z * stride, pyramid);
 }
 
-// Whether some cell from texel (left, top) to (right, bottom) has flux, or had it.
+// Whether some cell between the texels (left, top) and (right, bottom) has flux, or had flux in the frame
+// before.
 static inline bool cellsMatter(__global const PelLightMap* map, __global const uchar* before,
                                __global const uchar* now, uint left, uint top, uint right, uint bottom) {
     const uint across = cellsAcross(map), width = map->level[0].width, height = map->level[0].height;
@@ -90,41 +92,41 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     __global const float* lower = pyramid + lightRow(fine, points, 2 * (int)y + 1) + 2 * x;
     const size_t at = lightRow(coarse, 2, (int)y) + x;
     const uint layer = lightPlanes(1) * stride;
-    Spot spots[8];
-    loadSpots(upper, stride, &spots[0], &spots[1]);
-    loadSpots(lower, stride, &spots[2], &spots[3]);
+    Cluster clusters[8];
+    loadClusters(upper, stride, &clusters[0], &clusters[1]);
+    loadClusters(lower, stride, &clusters[2], &clusters[3]);
     uint count = 4;
     if (points == 2) {
-        loadSpots(upper + layer, stride, &spots[4], &spots[5]);
-        loadSpots(lower + layer, stride, &spots[6], &spots[7]);
+        loadClusters(upper + layer, stride, &clusters[4], &clusters[5]);
+        loadClusters(lower + layer, stride, &clusters[6], &clusters[7]);
         count = 8;
     }
-    Spot first = spots[0];
-    for (uint k = 1; k < count; ++k) first = chooseSpot(first, spots[k], spots[k].flux > first.flux);
+    Cluster first = clusters[0];
+    for (uint k = 1; k < count; ++k) first = chooseCluster(first, clusters[k], clusters[k].flux > first.flux);
     if (!anyw(first.flux > 0.0f)) {
         storew((floatw)(0.0f), at + PEL_LIGHT_FLUX * coarse->stride, pyramid);
         storew((floatw)(0.0f), at + (lightPlanes(1) + PEL_LIGHT_FLUX) * coarse->stride, pyramid);
         return;
     }
-    Spot second = first;
+    Cluster second = first;
     floatw farthest = 0.0f;
     for (uint k = 0; k < count; ++k) {
-        const floatw distance2 = selectw((floatw)(0.0f), apart2(spots[k], first), spots[k].flux > 0.0f);
-        second = chooseSpot(second, spots[k], distance2 > farthest);
+        const floatw distance2 = selectw((floatw)(0.0f), apart2(clusters[k], first), clusters[k].flux > 0.0f);
+        second = chooseCluster(second, clusters[k], distance2 > farthest);
         farthest = fmax(farthest, distance2);
     }
     const floatw width = APART * map->texel * (float)(1u << to) * matrixRow(map->toMap, 3, first.p);
     const maskw two = farthest > width * width;
-    Spot a, b;
+    Cluster a, b;
     a.flux = a.extent = b.flux = b.extent = 0.0f;
     a.p = b.p = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
     for (uint k = 0; k < count; ++k) {
-        const maskw there = spots[k].flux > 0.0f;
-        const floatw toFirst = apart2(spots[k], first), toSecond = apart2(spots[k], second);
+        const maskw there = clusters[k].flux > 0.0f;
+        const floatw toFirst = apart2(clusters[k], first), toSecond = apart2(clusters[k], second);
         const maskw beyond = two & (toSecond < toFirst);
-        addSpot(&a, first, spots[k], there & notw(beyond) & sameId(spots[k], first));
-        addSpot(&b, second, spots[k], there & beyond & sameId(spots[k], second));
+        addToCluster(&a, first, clusters[k], there & notw(beyond) & sameId(clusters[k], first));
+        addToCluster(&b, second, clusters[k], there & beyond & sameId(clusters[k], second));
     }
-    storeSpot(a, first, at, coarse->stride, pyramid);
-    storeSpot(b, second, at + lightPlanes(1) * coarse->stride, coarse->stride, pyramid);
+    storeCluster(a, first, at, coarse->stride, pyramid);
+    storeCluster(b, second, at + lightPlanes(1) * coarse->stride, coarse->stride, pyramid);
 }

@@ -1,22 +1,25 @@
-// Which texels of a shadow map show surface that the camera sees too (docs/mathematics.md, section 10, "Light space").
+// Marks the shadow-map texels that show camera-visible surface (docs/mathematics.md, section 10, "Light
+// space").
 //
-// A pixel's patch of surface, a parallelogram of two of its steps to the neighbours, falls on some texels; those whose depth is that of
-// the patch there show the same surface. So one pixel of 2 x 2 is enough. Input: images of positions (length) or
-// depth, and of ids. Output: a byte per texel, set to 0 beforehand: the id of the pixel, or PEL_SEEN_OTHER where the
-// pixel does not scatter. Patches of several work-items meet at a texel, so bytes are merged atomically, and the result
-// does not depend on their order: with PEL_HIDDEN the bits of all ids, since only "not 0" matters, otherwise the
-// smallest id. One work-item: PEL_WIDTH pixels of every other row. Variants: PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH,
-// PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT, PEL_HIDDEN.
+// The surface of a pixel is taken for a parallelogram of two of its steps to the neighbours, so one pixel
+// of 2 x 2 is enough. This patch is projected into the map; texels whose depth is that of the patch there
+// show the same surface. Input: images of positions (length) or depth, and of ids. Output: a byte per
+// texel, set to 0 beforehand: the id of the pixel, or PEL_SEEN_OTHER where the pixel does not scatter.
+// Patches of several work-items meet at a texel, so bytes are merged atomically, and the result does not
+// depend on their order: with PEL_HIDDEN the bits of all ids, since only "not 0" matters, otherwise the
+// smallest id. One work-item: PEL_WIDTH pixels of every other row. Variants: PEL_FORMAT_POSITION or
+// PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT,
+// PEL_HIDDEN.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/light_space.clh"
 #include "lib/diffusion/pyramid.clh"
 #include "lib/shading/material_id.clh"
 #include "lib/shading/position.clh"
 
-#define FARTHEST_TEXEL \
-    6.0f         // of a patch, from the pixel's own; wider ones are grazing, and their neighbours cover them
-#define EVERY 2  // pixel, along a side, has a patch
-#define OFF_PLANE 0.75f  // texels' lengths that a surface may be off the patch's plane
+#define MAX_TEXELS \
+    6.0f  // half the width of a patch; wider patches are seen at a grazing angle, and neighbours cover them
+#define EVERY 2          // pixel, along a side, has a patch
+#define OFF_PLANE 0.75f  // largest distance of a texel from the plane of the patch, in lengths of a texel
 
 static inline Vec3w loadPositions(__global const PelDiffusionFrame* frame, __global uchar* position, uint x,
                                   uint y) {
@@ -38,7 +41,7 @@ static inline Vec3w loadPositions(__global const PelDiffusionFrame* frame, __glo
 #define AFTER(v) PEL_SHUFFLE16(v, v, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 14)
 #endif
 
-// The shorter of the ways to two neighbours; of `b` where that to `a` is not finite.
+// The shorter of the offsets to two neighbours; the second if the first is not finite.
 static inline Vec3w shorterOffset(Vec3w p, Vec3w a, Vec3w b) {
     const Vec3w toA = sub3(a, p), toB = sub3(b, p);
     const floatw lengthA = dot3(toA, toA), lengthB = dot3(toB, toB);
@@ -59,16 +62,16 @@ static inline maskw patchOf(__global const PelLightMap* map, Vec3w p, Vec3w righ
     patch->column = at.x, patch->row = at.y, patch->depth = at.z;
     patch->slopeX = (a.z * b.y - b.z * a.y) * inverse;
     patch->slopeY = (b.z * a.x - a.z * b.x) * inverse;
-    patch->acrossX = fmin(0.5f * (fabs(a.x) + fabs(b.x)) + 0.5f, (floatw)(FARTHEST_TEXEL));
-    patch->acrossY = fmin(0.5f * (fabs(a.y) + fabs(b.y)) + 0.5f, (floatw)(FARTHEST_TEXEL));
+    patch->acrossX = fmin(0.5f * (fabs(a.x) + fabs(b.x)) + 0.5f, (floatw)(MAX_TEXELS));
+    patch->acrossY = fmin(0.5f * (fabs(a.y) + fabs(b.y)) + 0.5f, (floatw)(MAX_TEXELS));
     // Depth along the light of a texel's length.
     const Vec3w slope = vec3(map->toMap[8] - at.z * map->toMap[12], map->toMap[9] - at.z * map->toMap[13],
                              map->toMap[10] - at.z * map->toMap[14]);
     const floatw perLength = sqrt(dot3(slope, slope)) / fabs(w);
     patch->most = OFF_PLANE * (fabs(patch->slopeX) + fabs(patch->slopeY) + perLength * fabs(w) * map->texel);
     const float width = (float)map->level[0].width, height = (float)map->level[0].height;
-    return (w > 0.0f) & finitew(inverse) & finitew(patch->most) & (at.x > -FARTHEST_TEXEL) &
-           (at.y > -FARTHEST_TEXEL) & (at.x < width + FARTHEST_TEXEL) & (at.y < height + FARTHEST_TEXEL);
+    return (w > 0.0f) & finitew(inverse) & finitew(patch->most) & (at.x > -MAX_TEXELS) &
+           (at.y > -MAX_TEXELS) & (at.x < width + MAX_TEXELS) & (at.y < height + MAX_TEXELS);
 }
 
 // Merges the bytes of up to four texels, those of `mask`, into a word of the output.
@@ -127,7 +130,8 @@ static inline void markPatch(__global const PelLightMap* map, __global const uch
     }
 }
 
-// Asks for the depths round a patch's middle: they lie far apart, and all lanes' may be on their way at once.
+// Prefetches the depths around the middle of a patch. They lie far apart in memory, and the requests of all
+// lanes can overlap.
 static inline void fetchDepths(__global const PelLightMap* map, __global const uchar* first, float column,
                                float row) {
     const uint x = imageTexel((int)column, map->step, map->width);
@@ -158,7 +162,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
                 after = x + PEL_WIDTH < frame->width ? loadPositions(frame, position, x + 1, y)
                                                      : vec3(AFTER(p.x), AFTER(p.y), AFTER(p.z));
 #endif
-    // Without a step to a neighbour there is no patch: most of a background is left here.
+    // A pixel without a step to a neighbour has no patch. Most of the background is skipped here.
     const Vec3w sideways = shorterOffset(p, before, after);
     const maskw steps = mine & finite3(p) & ((sideways.x != 0.0f) | (sideways.y != 0.0f) | (sideways.z != 0.0f));
     if (!anyw(steps)) return;
@@ -171,7 +175,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
 #if PEL_FORMAT_MATERIAL
     id = loadId(PEL_FORMAT_MATERIAL, imageSpan(ids, &frame->ids, x, y));
 #endif
-    // What scatters and is dark is not what a light sees.
+    // A scattering pixel without irradiance is not lit by any light, so its texel shows something else.
     __global const PelPyramidLevel* level = &frame->level[0];
     __global const float* own = pyramid + pyramidRow(level, (int)y) + x;
     const uint stride = level->stride;

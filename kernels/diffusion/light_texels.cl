@@ -1,20 +1,22 @@
-// The finest level of a light's pyramid (shared/light_space.h): of each texel of its shadow map where the surface is that it shows, and
-// the light that falls on it (docs/mathematics.md, section 10, "Light space").
+// The finest level of a light's pyramid (shared/light_space.h): the position of the surface that each
+// shadow-map texel shows, and the light that falls on it (docs/mathematics.md, section 10, "Light space").
 //
-// Input: the map, what the camera sees of it, and which cells of texels (PEL_LIGHT_CELL) had flux before. Output: level 0, and which cells have flux now. With PEL_HIDDEN only texels that it does not see have flux;
-// without, all but those of things that do not scatter, and their ids stand beside. One work-item:
-// PEL_WIDTH texels of a row. Variants: PEL_HIDDEN, PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT.
+// Input: the map, the marks of light_seen, and which cells of texels (PEL_LIGHT_CELL) had flux before.
+// Output: level 0, and which cells have flux now. With PEL_HIDDEN only occluded texels have flux. Without
+// it all texels have, except those of objects that do not scatter, and their ids are stored beside. One
+// work-item: PEL_WIDTH texels of a row. Variants: PEL_HIDDEN, PEL_FORMAT_SHADOW_MAP, PEL_SHADOW_CONTENT.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/light_space.clh"
 #include "lib/image/planes.clh"
 
-#define LONGEST_SLOPE \
-    10.0f  // surface of a texel, over its area across the light: beyond, the depths say little
-#define NEAREST_HIDDEN 4.0f  // texels' lengths to a neighbour that is seen
-#define ALIKE 2.0f           // one step over the other
+#define MAX_SLOPE \
+    10.0f  // largest area of a texel over its area across the light; steeper depths are not reliable
+#define MIN_DISTANCE 4.0f  // from an occluded texel to a camera-visible one, in lengths of a texel
+#define ALIKE 2.0f         // largest ratio of the steps to both sides
 
-// The step to the next texel: the mean of those on both sides where they are alike, as the shorter one alone is too short on surface
-// that bends; else the shorter, for the longer one may lead off the surface.
+// The step to the next texel: the mean of the steps to both sides where they are alike, since the shorter
+// one alone is too short on curved surface; otherwise the shorter, since the longer may lead off the
+// surface.
 static inline Vec3w stepOf(Vec3w p, Vec3w before, Vec3w after) {
     const Vec3w back = sub3(p, before), on = sub3(after, p);
     const floatw backLength = dot3(back, back), onLength = dot3(on, on);
@@ -24,7 +26,7 @@ static inline Vec3w stepOf(Vec3w p, Vec3w before, Vec3w after) {
     return select3(shorter, mean, alike);
 }
 
-// What a byte of each texel says (light_seen.cl); there are bytes before and after those of all maps.
+// The marks of light_seen.cl. The buffer has margins before the first and after the last map.
 static inline uintw idsOfTexels(__global const uchar* seen) {
 #if PEL_WIDTH == 1
     return *seen;
@@ -36,7 +38,7 @@ static inline uintw idsOfTexels(__global const uchar* seen) {
 }
 
 #if PEL_HIDDEN
-// Whether a texel is one that the camera sees.
+// Whether a texel shows camera-visible surface.
 static inline maskw isSeen(__global const uchar* seen, __global const PelPyramidLevel* level, int column,
                            int row) {
     if (row < 0 || row >= (int)level->height) return (maskw)(0);
@@ -45,7 +47,7 @@ static inline maskw isSeen(__global const uchar* seen, __global const PelPyramid
            (columns < (int)level->width);
 }
 
-// Whether the neighbour `q` is seen, and so near that `p` is a part of the same surface.
+// Whether the neighbour `q` is camera-visible, and so near that `p` is a part of the same surface.
 static inline maskw isBeside(Vec3w p, Vec3w q, floatw most, maskw seen) {
     const Vec3w d = sub3(q, p);
     return seen & (dot3(d, d) < most * most);
@@ -76,7 +78,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
     if (anyw(there)) {
         const floatw columns = convert_floatw(column), rows = (float)y;
         const Vec3w p = pointOfTexel(map, columns, rows, depth);
-        // At equal depth. Texels of radial maps lie on a ball: steps to one side would lean.
+        // The derivatives at constant depth. Texels of radial maps lie on a sphere, where one-sided steps
+        // would lean.
         Vec3w left = p, above = p;
         float back = 0.0f;
         if (map->radialRange > 0.0f) {
@@ -89,7 +92,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
         Vec3w toLight;
         const floatw strength = lightAt(map, p, &toLight);
         const floatw across = fabs(dot3(cross3(right, down), toLight));
-        // Surface that a finer cascade holds is its.
+        // Surface inside a finer cascade belongs to that cascade.
         for (uint k = 1; k <= map->finer; ++k) {
             floatw w;
             __global const PelLightMap* finer = map - k;
@@ -104,8 +107,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
                     over = pointOfTexel(map, columns, rows - 1.0f, texelDepths(map, first, (int)x, (int)y - 1)),
                     below = pointOfTexel(map, columns, rows + 1.0f, texelDepths(map, first, (int)x, (int)y + 1));
 #if PEL_HIDDEN
-        // Between two patches, and where light grazes, texels of surface that is seen are left over. They come and go while the light moves.
-        const floatw near = NEAREST_HIDDEN * map->texel * matrixRow(map->toMap, 3, p);
+        // Between two patches, and where light grazes, texels of camera-visible surface remain unmarked.
+        // They come and go while the light moves, so they are dropped.
+        const floatw near = MIN_DISTANCE * map->texel * matrixRow(map->toMap, 3, p);
         __global const uchar* all = seen + map->seen;
         const int i = (int)x, j = (int)y;
         there &= notw(isBeside(p, previous, near, isSeen(all, level, i - 1, j)) |
@@ -116,7 +120,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void l
         flux = selectw((floatw)(0.0f), strength * across, there);
         const Vec3w area = cross3(stepOf(p, previous, next), stepOf(p, over, below));
         floatw extent = sqrt(dot3(area, area));
-        extent = fmin(selectw(across, extent, finitew(extent)), LONGEST_SLOPE * across);
+        extent = fmin(selectw(across, extent, finitew(extent)), MAX_SLOPE * across);
         const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
         const Vec3w q = select3(none, p, there);
         storew(selectw((floatw)(0.0f), extent, there), at + PEL_LIGHT_EXTENT * stride, pyramid);

@@ -1,13 +1,13 @@
-// One level of the pyramid (shared/diffusion.h) from the next finer one: blocks of 2 x 2.
+// One level of the screen's pyramid (shared/diffusion.h) from the next finer one: blocks of 2 x 2.
 //
-// A block belongs to one object: to that of the child with the largest area, with those other children that
-// have its id and are near it. So no light bleeds from one object to another, or to a surface behind. Inputs:
-// the finer level. Output: the coarser one. One work-item: PEL_WIDTH blocks of a row.
+// A block belongs to one object, that of the child with the largest area, and takes in the other children
+// that have its id and lie near it. So no light bleeds from one object to another, or to a surface behind.
+// Inputs: the finer level. Output: the coarser one. One work-item: PEL_WIDTH blocks of a row.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/pyramid.clh"
 
 // Children further apart than this many times the width of the largest belong to another surface.
-#define FARTHEST_CHILD 5.0f
+#define MAX_DISTANCE 5.0f
 
 typedef struct Child {
     floatw area;
@@ -57,18 +57,20 @@ static inline Row loadRow(__global const float* at, uint stride) {
     return row;
 }
 
-// |before + after - 2 here|. At a limb, where one of them is missing, what is left is the difference from the other: nothing shows that light goes
-// on in a straight line there. At the picture's edge (`edge`) it is taken to.
-static inline floatw bendOf(floatw here, floatw before, maskw hasBefore, floatw after, maskw hasAfter,
-                            maskw edge) {
-    const floatw bend = fabs(selectw(here, before, hasBefore) + selectw(here, after, hasAfter) - 2.0f * here);
-    return selectw(bend, (floatw)(0.0f), edge & notw(hasBefore & hasAfter));
+// |before + after - 2 here|. At a silhouette, where one neighbour is missing, the first difference to the
+// other is returned: we cannot assume that irradiance is linear there. At the border of the picture
+// (`edge`) we do.
+static inline floatw difference2(floatw here, floatw before, maskw hasBefore, floatw after, maskw hasAfter,
+                                 maskw edge) {
+    const floatw largest2 =
+        fabs(selectw(here, before, hasBefore) + selectw(here, after, hasAfter) - 2.0f * here);
+    return selectw(largest2, (floatw)(0.0f), edge & notw(hasBefore & hasAfter));
 }
 
 // `first`: the column of row[1] in the picture.
-static inline floatw bendOfRows(const Row* up, const Row* row, const Row* down, intw first, uint width,
-                                bool edgeRow) {
-    floatw bend = 0.0f;
+static inline floatw difference2OfRows(const Row* up, const Row* row, const Row* down, intw first, uint width,
+                                       bool edgeRow) {
+    floatw largest2 = 0.0f;
     for (int k = 1; k <= 2; ++k) {
         const maskw there = row->area[k] > 0.0f;
         const intw column = first + (k - 1);
@@ -79,18 +81,18 @@ static inline floatw bendOfRows(const Row* up, const Row* row, const Row* down, 
 #undef THERE
         for (int c = 0; c < 3; ++c) {
             const floatw here = row->e[c][k];
-            const floatw sum = bendOf(here, row->e[c][k - 1], left, row->e[c][k + 1], right, edge) +
-                               bendOf(here, up->e[c][k], above, down->e[c][k], below, edgeDown);
-            bend = fmax(bend, selectw((floatw)(0.0f), sum, there));
+            const floatw sum = difference2(here, row->e[c][k - 1], left, row->e[c][k + 1], right, edge) +
+                               difference2(here, up->e[c][k], above, down->e[c][k], below, edgeDown);
+            largest2 = fmax(largest2, selectw((floatw)(0.0f), sum, there));
         }
     }
-    return bend;
+    return largest2;
 }
 
 static inline void addChild(Child* block, const Child* child, const Child* largest) {
     const Vec3w between = sub3(child->p, largest->p);
     const maskw near = (child->id == largest->id) & (child->area > 0.0f) &
-                       (dot3(between, between) <= FARTHEST_CHILD * FARTHEST_CHILD * largest->area);
+                       (dot3(between, between) <= MAX_DISTANCE * MAX_DISTANCE * largest->area);
     const floatw area = selectw((floatw)(0.0f), child->area, near);
     block->area += area;
     const Vec3w none = vec3((floatw)(0.0f), (floatw)(0.0f), (floatw)(0.0f));
@@ -118,13 +120,13 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void r
     const size_t rowValues = (size_t)stride * PEL_PYRAMID_PLANES;
     const size_t at = pyramidRow(coarse, (int)y) + x;
     const uint out = coarse->stride;
-    // Most of many pictures is empty.
+    // Large parts of many pictures are empty.
     floatw left, right, lowerLeft, lowerRight;
     loadEvenOdd(upper + PEL_PLANE_AREA * stride, &left, &right);
     loadEvenOdd(upper + rowValues + PEL_PLANE_AREA * stride, &lowerLeft, &lowerRight);
     if (!anyw((left > 0.0f) | (right > 0.0f) | (lowerLeft > 0.0f) | (lowerRight > 0.0f))) {
         storew((floatw)(0.0f), at + PEL_PLANE_AREA * out, pyramid);
-        storew((floatw)(0.0f), at + PEL_PLANE_BEND * out, pyramid);
+        storew((floatw)(0.0f), at + PEL_PLANE_DIFFERENCE2 * out, pyramid);
         return;
     }
     const Pair a = loadPair(upper, stride), b = loadPair(upper + rowValues, stride);
@@ -143,9 +145,9 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void r
     const Row before = loadRow(upper - rowValues, stride), first = loadRow(upper, stride),
               second = loadRow(upper + rowValues, stride), after = loadRow(upper + 2 * rowValues, stride);
     const intw column = (lanesw() + (int)x) * 2;
-    const floatw bend =
-        fmax(bendOfRows(&before, &first, &second, column, fine->width, y == 0),
-             bendOfRows(&first, &second, &after, column, fine->width, 2 * y + 2 >= fine->height));
+    const floatw largest2 =
+        fmax(difference2OfRows(&before, &first, &second, column, fine->width, y == 0),
+             difference2OfRows(&first, &second, &after, column, fine->width, 2 * y + 2 >= fine->height));
     storew(block.area, at + PEL_PLANE_AREA * out, pyramid);
     storew(as_floatw(largest.id), at + PEL_PLANE_ID * out, pyramid);
     storew(block.p.x, at + PEL_PLANE_X * out, pyramid);
@@ -154,6 +156,6 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void r
     storew(block.e.x, at + PEL_PLANE_RED * out, pyramid);
     storew(block.e.y, at + PEL_PLANE_GREEN * out, pyramid);
     storew(block.e.z, at + PEL_PLANE_BLUE * out, pyramid);
-    storew(bend, at + PEL_PLANE_BEND * out, pyramid);
+    storew(largest2, at + PEL_PLANE_DIFFERENCE2 * out, pyramid);
     storew(block.size * share, at + PEL_PLANE_SIZE * out, pyramid);
 }

@@ -1,6 +1,8 @@
-// Light that was scattered in texture space, in the place of irradiance, for the pixels of one material: bilinear, repeated beyond [0, 1].
+// Replaces the irradiance of one material by light that was scattered in texture space: bilinear, repeated
+// beyond [0, 1].
 //
-// Inputs: texture, texture coordinates, ids, irradiance. Output: an image like the irradiance's. One work-item takes tiles. Variants: PEL_FORMAT_....
+// Inputs: texture, texture coordinates, ids, irradiance. Output: an image like the irradiance. One
+// work-item takes tiles. Variants: PEL_FORMAT_....
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 #include "shared/diffusion.h"

@@ -1,10 +1,11 @@
-// Irradiance scattered under the surface, gathered by a few taps on a disk round each pixel (docs/mathematics.md, section 10,
-// "Screen space"). Taps lie where the profile has its light, on a disk across the view; a tap brings the share of the light of its
-// place on the disk, times what R is at its true distance to what it is on the disk, times the surface of its pixel to that of the disk.
+// Irradiance scattered under the surface, gathered by a few taps on a disk around each pixel
+// (docs/mathematics.md, section 10, "Screen space").
 //
-// Input: the surface (gather_surface.cl), taps and profiles. Output: an image like the irradiance's; pixels of the same value where
-// nothing was to be done. One work-group takes tiles, one work-item columns of their pixels. Variants: PEL_FORMAT_IRRADIANCE,
-// PEL_FORMAT_OUT.
+// Taps lie on a disk across the view, at radii that follow the profile. A tap brings its share of the
+// light, times R at its true distance over R on the disk, times the surface of its pixel over that of the
+// disk. Input: the surface (gather_surface.cl), taps and profiles. Output: an image like the irradiance;
+// pixels that nothing changes keep their value. One work-group takes tiles, one work-item columns of their
+// pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT.
 #include "lib/diffusion/gather.clh"
 #include "lib/image/image.clh"
 

@@ -1,13 +1,14 @@
-// What light flows in to the blocks of one level of the screen's pyramid, from it and from all coarser ones (docs/mathematics.md, section 10,
-// "Sums by levels").
+// Light that flows in to the blocks of one level of the screen's pyramid, from this level and from all
+// coarser ones (docs/mathematics.md, section 10, "Sums by levels").
 //
-// Blocks near tiles that classify_scatter has found take the sums of the next coarser level, interpolated, and add the band of their own. Others
-// are left as they are. Input: the pyramid, the words of classify_scatter, the sums of
-// the coarser level. Output: the level's. One work-item: PEL_WIDTH blocks of a row.
+// Blocks near tiles that need the level interpolate the sums of the next coarser level and add the ring of
+// their own. Other blocks are left as they are. Input: the pyramid, the packed flags of classify_scatter,
+// the sums of the coarser level. Output: the sums of the level. One work-item: PEL_WIDTH blocks of a row.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/levels.clh"
 
-// Whether some tile under blocks of the level from x to `end`, or as far round them as interpolation reaches, goes up to this level.
+// Whether a tile under the blocks from x to `end`, or as far around them as interpolation reaches, needs
+// this level.
 static inline bool levelMatters(__global const PelDiffusionFrame* frame, __global const uint* tiles,
                                 uint level, uint x, uint end, uint y) {
     const int reach = max(1 << level, PEL_DIFFUSION_TILE), tilesX = (int)frame->tilesX,
@@ -22,7 +23,7 @@ static inline bool levelMatters(__global const PelDiffusionFrame* frame, __globa
     return false;
 }
 
-// Asks for what the next vector of blocks will read: so many rows of planes are more than processors follow by themselves.
+// Prefetches the next vector of blocks: too many streams for the hardware prefetcher.
 static inline void fetchNextBlocks(__global const float* at, uint stride) {
     for (int y = -2; y <= 2; ++y) {
         __global const float* row = at + (long)y * (long)(stride * PEL_PYRAMID_PLANES) + 2 * PEL_WIDTH;
@@ -60,7 +61,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
         Sums more = result;
         addBand(at, stride, nodes, tables[t - 1], level, &here, &slope, mine, &more);
         result.light = select3(result.light, more.light, mine);
-        result.mass = select3(result.mass, more.mass, mine);
+        result.weight = select3(result.weight, more.weight, mine);
         result.centre = select3(result.centre,
                                 shareOfCentre(nodes, tables[t - 1], here.area,
                                               here.size * (float)(1u << 2 * level), PEL_BAND_INSIDE),
@@ -68,7 +69,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
     }
     __global float* to = sums + sumRow(frame, level, (int)y) + x;
     storePlanes3(result.light, to + PEL_SUM_LIGHT * stride, stride);
-    storePlanes3(result.mass, to + PEL_SUM_MASS * stride, stride);
+    storePlanes3(result.weight, to + PEL_SUM_WEIGHT * stride, stride);
     storePlanes3(result.centre, to + PEL_SUM_CENTRE * stride, stride);
     const uint taps = PEL_BAND_OF_BLOCKS * countw(on);
     if (taps) atomic_add(&counters[PEL_COUNT_TAPS], taps);

@@ -1,31 +1,35 @@
-// Irradiance scattered under the surface, with the texels of shadow maps as lit surface (docs/mathematics.md, sections 9 and 10, "Light space").
+// Irradiance scattered under the surface, with shadow-map texels as the lit surface (docs/mathematics.md,
+// sections 9 and 10, "Light space").
 //
-// The sum over the lights' texels, as it stands; near the point that over pixels, divided by its weights, where it knows more. At the
-// point itself irradiance is known.
-//
-// Input: both pyramids, the words of light_classify. Output: pixels of its parts in an image like the irradiance's; others stay. One
-// work-group takes tiles, one work-item parts of them, pixel by pixel. Variants: PEL_HIDDEN is 0, PEL_FORMAT_OUT.
+// Far light is the sum over the shadow-map texels. Near the receiver the sum over pixels, divided by its
+// weights, is blended in where it is the more reliable one. At the receiver itself irradiance is known.
+// Input: both pyramids, the flags of light_classify. Output: the flagged parts, in an image like the
+// irradiance; other pixels keep their value. One work-group takes tiles, one work-item parts of them, pixel
+// by pixel. Variants: PEL_HIDDEN is 0, PEL_FORMAT_OUT.
 #include "lib/diffusion/lit_surface.clh"
 #include "lib/diffusion/windowed.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 
 #define PART 4  // pixels along a side
-// Windows: of the pixel's own light, in points of a texel; of what pixels show, in texels. Both are lengths on the surface, of one that lies at no
-// smaller a cosine to the light: points lie closer along the slope, and the ring of texels that are points has an end.
+// Radii of two windows: of the irradiance of the pixel itself, in points of a texel, and of the camera's
+// samples, in texels. Both are lengths on a surface that faces the light at this cosine or a larger one:
+// points lie closer together along the slope, and the ring of texels that are summed as points ends
+// somewhere.
 #define OWN_WINDOW 2.0f
 #define OWN_COSINE 0.4f
 #define SHOWN_WINDOW 1.0f
 #define SHOWN_COSINE 0.35f
-#define LEAST_COSINE 0.1f
-// A map tells the place of an edge to a fifth of a texel, pixels to a step over the root of 12: how much more the square of a step counts.
+#define MIN_COSINE 0.1f
+// A map locates an edge to a fifth of a texel, pixels to a step over the root of 12: the factor of the
+// squared step.
 #define STEP_OVER_TEXEL 2.0f
-#define MASS_OFF \
-    0.1f  // of what pixels show, over that of a plane: nothing is missing; none of it counts from three times that on
+#define WEIGHT_OFF \
+    0.1f  // of the accumulated weight of pixels from that of a plane: fully trusted; not at all from three times that on
 #define AGREE \
-    0.02f  // of light that falls straight in: triangles of a mesh lean by so much from its smooth normals
-#define NEARLY_PLANE 0.03f  // of the mass
-#define MOST_PARTS 4.0f     // of a block
+    0.02f  // of light at normal incidence: triangles of a mesh lean by so much from its smooth normals
+#define NEARLY_PLANE 0.03f  // of the weight
+#define MAX_PARTS 4.0f      // of a block
 
 typedef struct Pixel {
     float3 p, e;
@@ -47,7 +51,7 @@ static inline Pixel pixelAt(__global const float* at, uint stride) {
     return pixel;
 }
 
-// The way to the nearer of two neighbours of the same object.
+// The offset to the nearer of two neighbours of the same object.
 static inline float3 shorterWay(__global const float* at, long to, uint stride, const Pixel* here) {
     float3 way = (float3)(0.0f);
     float least = FLT_MAX;
@@ -60,7 +64,7 @@ static inline float3 shorterWay(__global const float* at, long to, uint stride, 
     return way;
 }
 
-// A light's texel at a point: its width across the light, and the light's cosine.
+// A texel of a light at a point: its width across the light, and the cosine of the light.
 typedef struct Texel {
     float width, cosine;
     float3 toLight;
@@ -93,32 +97,33 @@ static inline float3 shareOfPixel(__global const float* nodes, const PelProfileT
 #endif
 }
 
-// Light over mass, `e` where there is none.
-static inline float3 meanLight(float3 light, float3 mass, float3 e) {
-    return (float3)(mass.x > 0.0f ? light.x / mass.x : e.x, mass.y > 0.0f ? light.y / mass.y : e.y,
-                    mass.z > 0.0f ? light.z / mass.z : e.z);
+// Light over accumulated weight; `e` where the weight is 0.
+static inline float3 meanLight(float3 light, float3 weight, float3 e) {
+    return (float3)(weight.x > 0.0f ? light.x / weight.x : e.x, weight.y > 0.0f ? light.y / weight.y : e.y,
+                    weight.z > 0.0f ? light.z / weight.z : e.z);
 }
 
-// Blocks add up to a mass that is a little off. Where it is nearly a plane's it is taken to be that. Returns by how much the light is to be
-// multiplied.
-static inline float asOfPlane(float mass, float plane) {
-    if (!(mass > 0.1f * plane)) return 1.0f;
-    const float off = mass / plane - 1.0f, trust = clamp(2.0f - fabs(off) * (1.0f / NEARLY_PLANE), 0.0f, 1.0f);
+// The weights of blocks add up to nearly that of a plane. Returns the factor that makes it exact where the
+// difference is small.
+static inline float asOfPlane(float weight, float plane) {
+    if (!(weight > 0.1f * plane)) return 1.0f;
+    const float off = weight / plane - 1.0f, trust = clamp(2.0f - fabs(off) * (1.0f / NEARLY_PLANE), 0.0f, 1.0f);
     return (1.0f + off * (1.0f - trust)) / (1.0f + off);
 }
 
-// How much what pixels show counts in place of what texels do: where both differ by no more than the normals of a surface and of its triangles
-// may, or where pixels are the finer and show all surface there is.
-static inline float3 trustInPixels(float3 byPixels, float3 byTexels, float3 mass, float3 window, float cosine,
-                                   float texel, float step) {
+// Blend weight between the camera's samples and the shadow map's. Pixels are trusted where both differ by
+// no more than the normals of a surface and of its triangles may, or where pixels are finer and show all of
+// the surface.
+static inline float3 trustInPixels(float3 byPixels, float3 byTexels, float3 weight, float3 window,
+                                   float cosine, float texel, float step) {
     const float finer = texel * texel / fma(STEP_OVER_TEXEL * step, step, texel * texel);
-    const float3 least = (float3)(FLT_MIN), off = fabs(mass / fmax(window, least) - 1.0f),
-                 whole = clamp(1.5f - off * (0.5f / MASS_OFF), 0.0f, 1.0f),
+    const float3 least = (float3)(FLT_MIN), off = fabs(weight / fmax(window, least) - 1.0f),
+                 whole = clamp(1.5f - off * (0.5f / WEIGHT_OFF), 0.0f, 1.0f),
                  apart = fabs(byPixels - byTexels) * cosine / fmax(fmax(byPixels, byTexels), least);
     return fmax(clamp(2.0f - apart * (1.0f / AGREE), 0.0f, 1.0f), finer * whole);
 }
 
-// A pixel's scattered light. Returns false where it stays as it is.
+// Scattered light of a pixel. Returns false if the pixel keeps its irradiance.
 static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __global const float* pyramid,
                                 __global const PelProfileTable* tables, __global const float* nodes,
                                 __global const PelLightMap* maps, uint mapCount, __global const float* lights,
@@ -130,26 +135,26 @@ static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __globa
                  down = shorterWay(at, (long)stride * PEL_PYRAMID_PLANES, stride, here),
                  across = cross(right, down);
     const float longest = sqrt(fmax(dot(right, right), dot(down, down))), shortest = sqrt(here->size);
-    Place place;
-    place.p = here->p;
-    place.id = here->id;
-    place.slack = 0.0f;
+    Receiver receiver;
+    receiver.p = here->p;
+    receiver.id = here->id;
+    receiver.margin = 0.0f;
     const float3 normal = across * rsqrt(fmax(dot(across, across), FLT_MIN));
     float texel = 0.0f, point = 0.0f, shown = 0.0f;  // the longest on the surface
     float steepest = 1.0f;                           // least cosine
     for (uint k = 0; k < mapCount; ++k) {
         const Texel t = texelAt(maps + k, here->p, normal);
         if (!(t.width > 0.0f && t.width < FLT_MAX)) continue;
-        steepest = fmin(steepest, fmax(t.cosine, LEAST_COSINE));
-        texel = fmax(texel, t.width / fmax(t.cosine, LEAST_COSINE));
+        steepest = fmin(steepest, fmax(t.cosine, MIN_COSINE));
+        texel = fmax(texel, t.width / fmax(t.cosine, MIN_COSINE));
         shown = fmax(shown, t.width / fmax(t.cosine, SHOWN_COSINE));
         point = fmax(point, t.width / fmax(t.cosine, OWN_COSINE));
     }
-    LitPlace lit;
+    LitReceiver lit;
     lit.p = here->p;
     lit.id = here->id;
     lit.own = OWN_WINDOW * point * (1.0f / PEL_TEXEL_ACROSS);
-    place.rho = lit.shown = fmax(SHOWN_WINDOW * shown, lit.own);
+    receiver.rho = lit.shown = fmax(SHOWN_WINDOW * shown, lit.own);
     if (!(lit.own > 0.0f)) return false;
     const float3 none = (float3)(0.0f);
     const float3 ownWindow = shareOfWindow(nodes, table, lit.own),
@@ -164,29 +169,29 @@ static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __globa
             const Texel t = texelAt(maps + k, here->p, normal);
             const float3 along = t.toLight - normal * dot(normal, t.toLight);
             lit.along = along * rsqrt(fmax(dot(along, along), 1e-12f));
-            lit.parts = (uint)(fmin(1.0f / fmax(t.cosine, 0.01f), MOST_PARTS) + 0.5f);
+            lit.parts = (uint)(fmin(1.0f / fmax(t.cosine, 0.01f), MAX_PARTS) + 0.5f);
             *texels += addLitSurface(&sums, maps + k, lights, nodes, table, &lit);
         }
         far += color * sumOfLanes3(sums.far);
-        const float3 light = color * sumOfLanes3(sums.between), mass = sumOfLanes3(sums.mass);
+        const float3 light = color * sumOfLanes3(sums.between), weight = sumOfLanes3(sums.weight);
         between += light;
-        asPlane += light * (float3)(asOfPlane(mass.x, window.x - ownWindow.x),
-                                    asOfPlane(mass.y, window.y - ownWindow.y),
-                                    asOfPlane(mass.z, window.z - ownWindow.z));
+        asPlane += light * (float3)(asOfPlane(weight.x, window.x - ownWindow.x),
+                                    asOfPlane(weight.y, window.y - ownWindow.y),
+                                    asOfPlane(weight.z, window.z - ownWindow.z));
     }
     Windowed screen;
     clearWindowed(&screen);
     PelProfileTable seen = table;
-    seen.reach = fmin(table.reach, 2.0f * place.rho);
+    seen.reach = fmin(table.reach, 2.0f * receiver.rho);
     uint levels = 1;
     while (levels < frame->levels && (float)(1u << levels) * shortest < seen.reach) ++levels;
-    *blocks += addScreen(&screen, frame, pyramid, nodes, seen, &place, x, y, levels);
+    *blocks += addScreen(&screen, frame, pyramid, nodes, seen, &receiver, x, y, levels);
     const float3 own = shareOfPixel(nodes, table, here->area);
-    const float3 nearMass = own + sumOfLanes3(screen.nearMass),
+    const float3 nearWeight = own + sumOfLanes3(screen.nearWeight),
                  nearLight = own * here->e + sumOfLanes3(screen.nearLight);
-    const float3 byPixels = window * meanLight(nearLight, nearMass, here->e),
+    const float3 byPixels = window * meanLight(nearLight, nearWeight, here->e),
                  byTexels = ownWindow * here->e + asPlane;
-    const float3 trust = trustInPixels(byPixels, byTexels, nearMass, window, steepest, texel, longest);
+    const float3 trust = trustInPixels(byPixels, byTexels, nearWeight, window, steepest, texel, longest);
     *result = far + ownWindow * here->e + between + trust * (byPixels - byTexels);
     return true;
 }
@@ -214,7 +219,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
                     continue;
                 s = fmax(s, (float3)(0.0f));
                 ++pixels;
-                // One lane of a vector, which begins at the pixel's place in its row.
+                // One lane of the vector that holds the pixel.
                 const uint start = vectorStart(x, frame->width);
                 const maskw mine = lanesw() + (int)start == (intw)((int)x);
                 storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, start, y),

@@ -1,66 +1,72 @@
 // Irradiance scattered under the surface, gathered on the screen (docs/mathematics.md, sections 9 and 10):
-// S(x) = sum over y of R(|x - y|) E(y) A(y), over the pixels near x and over ever larger blocks further away.
+// S(x) = sum over y of R(|x - y|) E(y) A(y), over the pixels near x and over larger blocks further away.
 //
-// Blocks are what scatter_level has summed; their sums are interpolated, and near pixels are added where a tile begins with them. The sum is divided by the
-// sum of weights: what the screen does not show is assumed to be like the rest, but for what the lights' maps show there (light_hidden).
-//
-// Inputs: the pyramid, the words of classify_scatter, the sums of level 1. Output: an image in the format of the irradiance;
-// pixels of other tiles keep their value. One work-group takes tiles, one work-item PEL_WIDTH pixels of a row
-// at a time. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT, PEL_HIDDEN (with the lights' maps).
+// scatter_level has summed the blocks; their sums are interpolated. Tiles flagged NEAR also sum individual
+// pixels. The sum is divided by the accumulated weight: surface that the screen does not show is assumed to
+// be lit like the rest, except where light_hidden has found occluded light. Inputs: the pyramid, the packed
+// flags of classify_scatter, the sums of level 1. Output: an image in the format of the irradiance; pixels
+// of other tiles keep their value. One work-group takes tiles, one work-item PEL_WIDTH pixels of a row at a
+// time. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT, PEL_HIDDEN (with shadow maps).
 #include "lib/diffusion/levels.clh"
 #include "lib/image/image.clh"
 #include "lib/shading/material_id.clh"
 
-// The light of the pixels in one channel. `known`: mass from level 1 on; `hidden`: light and mass that the camera does not see.
-static inline floatw lightOf(floatw light, floatw mass, floatw centre, floatw e, floatw known,
-                             floatw hiddenLight, floatw hiddenMass, floatw hiddenFar) {
-    const floatw found = mass + centre, any = selectw((floatw)(1.0f), found, found > 0.0f);
+// Scattered light in one channel. `known`: accumulated weight from level 1 on; `hidden...`: light and
+// weight of occluded texels.
+static inline floatw lightOf(floatw light, floatw weight, floatw centre, floatw e, floatw known,
+                             floatw hiddenLight, floatw hiddenWeight, floatw hiddenFar) {
+    const floatw found = weight + centre, any = selectw((floatw)(1.0f), found, found > 0.0f);
     const floatw shown = selectw(e, (light + centre * e) / any, found > 0.0f);
 #if PEL_HIDDEN
-    // It fills only what mass is missing. Mass of which nothing is known is as what is shown.
+    // Occluded light fills only missing weight. The remainder of the missing weight is taken to be lit like
+    // the surface that is shown.
     const floatw missing = max0w(1.0f - known),
-                 fills = clamp(2.0f * missing - 2.0f * PEL_LEAST_MISSING, (floatw)(0.0f), missing);
-    const floatw filled = fmin(hiddenMass, fills);
-    // Where it is most of the light, all of it counts: no light of what is shown can have been counted in its place.
+                 fills = clamp(2.0f * missing - 2.0f * PEL_MIN_MISSING, (floatw)(0.0f), missing);
+    const floatw filled = fmin(hiddenWeight, fills);
+    // Where occluded light is most of the light, all of it counts: visible light cannot have been counted
+    // in its place.
     const floatw most =
         satw(PEL_HIDDEN_SLOPE * (hiddenLight / fmax(hiddenLight + shown, (floatw)(FLT_MIN)) - PEL_HIDDEN_FROM));
-    const floatw part = filled / fmax(hiddenMass, (floatw)(FLT_MIN));
+    const floatw part = filled / fmax(hiddenWeight, (floatw)(FLT_MIN));
     return max0w(shown * (1.0f - filled) + hiddenLight * part + hiddenFar * (most * (1.0f - part)));
 #else
     return max0w(shown);  // a negative value is an error of the sums
 #endif
 }
 
-// Near pixels stand for no more than so many times their own mass: far less than all of it lies on other surface.
-#define MOST_PER_MASS 3.0f
+// Near pixels stand for no more than this multiple of their own weight: where they have far less than the
+// full weight, the rest lies on other surface.
+#define MAX_PER_WEIGHT 3.0f
 
-// The centre of level 1 taken apart: the pixel's own share of it, and the rest, whose light is the mean of the near pixels. They are too
-// few to add up to a mass. Without a centre (a strand that is in no block) they are all that is known.
-static inline void addNear(floatw* light, floatw* mass, floatw* centre, floatw nearLight, floatw nearMass,
+// Splits the central share of level 1 into the share of the pixel itself and the rest, whose light is the
+// mean of the near pixels. These are too few for their weights to add up to the share. A pixel without a
+// block, such as one of a thin strand, has only the near pixels.
+static inline void addNear(floatw* light, floatw* weight, floatw* centre, floatw nearLight, floatw nearWeight,
                            floatw own, maskw on) {
-    on &= nearMass > 0.0f;
-    const floatw rest = selectw(nearMass, fmin(max0w(*centre - own), MOST_PER_MASS * nearMass), *centre > 0.0f);
-    *light += selectw((floatw)(0.0f), nearLight * (rest / nearMass), on);
-    *mass += selectw((floatw)(0.0f), rest, on);
+    on &= nearWeight > 0.0f;
+    const floatw rest =
+        selectw(nearWeight, fmin(max0w(*centre - own), MAX_PER_WEIGHT * nearWeight), *centre > 0.0f);
+    *light += selectw((floatw)(0.0f), nearLight * (rest / nearWeight), on);
+    *weight += selectw((floatw)(0.0f), rest, on);
     *centre = selectw(*centre, selectw(own, *centre - rest, *centre > 0.0f), on);
 }
 
-// Whether irradiance bends so much from pixel to pixel round PEL_WIDTH of them that single pixels count.
-static inline bool pixelsBend(__global const PelDiffusionFrame* frame, __global const float* pyramid, uint x,
-                              uint y) {
+// Whether second differences around a vector of pixels are so large that single pixels have to be summed.
+static inline bool pixelsMatter(__global const PelDiffusionFrame* frame, __global const float* pyramid,
+                                uint x, uint y) {
     __global const PelPyramidLevel* level = &frame->level[1];
-    floatw bend = 0.0f;
+    floatw difference2 = 0.0f;
     for (int row = -1; row <= 1; ++row) {
         __global const float* at = pyramid + pyramidRow(level, (int)(y / 2) + row) + (int)(x / 2) - 1 +
-                                   PEL_PLANE_BEND * level->stride;
+                                   PEL_PLANE_DIFFERENCE2 * level->stride;
 #if PEL_WIDTH == 1
-        bend = fmax(bend, fmax(at[0], fmax(at[1], at[2])));
+        difference2 = fmax(difference2, fmax(at[0], fmax(at[1], at[2])));
 #else
-        bend = fmax(bend, loadw(0, at));
+        difference2 = fmax(difference2, loadw(0, at));
 #endif
     }
-    // Blocks beyond those of the pixels and one more on each side say nothing.
-    const maskw far = PEL_ERROR_PER_BEND * bend > PEL_LEFT_OF_PIXELS * frame->tolerance;
+    // Only the blocks of the pixels, and one more on each side, matter.
+    const maskw far = PEL_ERROR_PER_DIFFERENCE2 * difference2 > PEL_LEFT_OF_PIXELS * frame->tolerance;
     return frame->everyTile || anyw(far & (lanesw() < PEL_WIDTH / 2 + 2));
 }
 
@@ -75,8 +81,8 @@ static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __glo
     const Slope slope = slopeAt(at, stride, here, e, active);
     Interpolated all = interpolateSums(frame, pyramid, sums, hidden, 1, x, y, here, active);
     all.sums.light = movedLight(&all.sums, &slope, all.place, here);
-    // Pixels themselves are too coarse to add up to a mass: within the band of level 1 none is missing.
-    const Vec3w known = add3(all.sums.mass, all.sums.centre);
+    // Pixels are too coarse for their weights to add up: within the ring of level 1 no weight is missing.
+    const Vec3w known = add3(all.sums.weight, all.sums.centre);
     if (near) {
         const intw table = selectw((intw)(0), tablesOf(frame, here->id), active);
         for (uint t = 1; t <= frame->tables; ++t) {
@@ -85,35 +91,35 @@ static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __glo
             Sums more = noSums();
             addPixels(at, stride, nodes, tables[t - 1], here, &slope, mine, &more);
             const Vec3w own = shareOfPixelItself(nodes, tables[t - 1], here->area, here->size);
-            addNear(&all.sums.light.x, &all.sums.mass.x, &all.sums.centre.x, more.light.x, more.mass.x, own.x,
-                    mine);
-            addNear(&all.sums.light.y, &all.sums.mass.y, &all.sums.centre.y, more.light.y, more.mass.y, own.y,
-                    mine);
-            addNear(&all.sums.light.z, &all.sums.mass.z, &all.sums.centre.z, more.light.z, more.mass.z, own.z,
-                    mine);
+            addNear(&all.sums.light.x, &all.sums.weight.x, &all.sums.centre.x, more.light.x, more.weight.x,
+                    own.x, mine);
+            addNear(&all.sums.light.y, &all.sums.weight.y, &all.sums.centre.y, more.light.y, more.weight.y,
+                    own.y, mine);
+            addNear(&all.sums.light.z, &all.sums.weight.z, &all.sums.centre.z, more.light.z, more.weight.z,
+                    own.z, mine);
         }
     }
     const Sums* s = &all.sums;
-    const Vec3w found = vec3(lightOf(s->light.x, s->mass.x, s->centre.x, e.x, known.x, all.hiddenLight.x,
-                                     all.hiddenMass.x, all.hiddenFar.x),
-                             lightOf(s->light.y, s->mass.y, s->centre.y, e.y, known.y, all.hiddenLight.y,
-                                     all.hiddenMass.y, all.hiddenFar.y),
-                             lightOf(s->light.z, s->mass.z, s->centre.z, e.z, known.z, all.hiddenLight.z,
-                                     all.hiddenMass.z, all.hiddenFar.z));
+    const Vec3w found = vec3(lightOf(s->light.x, s->weight.x, s->centre.x, e.x, known.x, all.hiddenLight.x,
+                                     all.hiddenWeight.x, all.hiddenFar.x),
+                             lightOf(s->light.y, s->weight.y, s->centre.y, e.y, known.y, all.hiddenLight.y,
+                                     all.hiddenWeight.y, all.hiddenFar.y),
+                             lightOf(s->light.z, s->weight.z, s->centre.z, e.z, known.z, all.hiddenLight.z,
+                                     all.hiddenWeight.z, all.hiddenFar.z));
     return add3(e, scale3(sub3(found, e), (floatw)(weight)));
 }
 
-// Asks for what the tile on the right will read: the same rows there, and those beyond its ends.
+// Prefetches the same rows of the next tile, and the rows beyond its ends.
 static inline void fetchNextTile(__global const PelDiffusionFrame* frame, __global const float* pyramid,
                                  __global const float* sums, uint x, uint y) {
     const uint stride = frame->level[0].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[0], (int)y) + x + PEL_DIFFUSION_TILE;
     for (uint plane = 0; plane < PEL_PYRAMID_PLANES; ++plane)
-        if (plane != PEL_PLANE_BEND) PEL_PREFETCH(at + plane * stride);
+        if (plane != PEL_PLANE_DIFFERENCE2) PEL_PREFETCH(at + plane * stride);
     const uint inTile = y % PEL_DIFFUSION_TILE;
     if (inTile < 2 || inTile >= PEL_DIFFUSION_TILE - 2) {
         at += (inTile < 2 ? -2L : 2L) * (long)(stride * PEL_PYRAMID_PLANES);
-        for (uint plane = 0; plane < PEL_PLANE_BEND; ++plane) PEL_PREFETCH(at + plane * stride);
+        for (uint plane = 0; plane < PEL_PLANE_DIFFERENCE2; ++plane) PEL_PREFETCH(at + plane * stride);
     }
     if (inTile % 2 == 0) {
         const uint sumStride = frame->level[1].stride;
@@ -132,7 +138,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
     __global const PelProfileTable* tables, __global const float* nodes, __global const uint* tiles,
     __global const float* sums, __global const float* hidden, __global uchar* irradiance, __global uchar* out,
     __global uint* counters) {
-    // A run of tiles side by side, so that what one has read is near for the next.
+    // Each group takes a run of adjacent tiles, so that their data stay in the cache.
     const uint count = frame->tilesX * frame->tilesY, groups = get_num_groups(0), group = get_group_id(0);
     const uint end = (uint)((ulong)count * (group + 1) / groups);
     uint pixels = 0, taps = 0;
@@ -159,10 +165,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
                 loadBlocks(pyramid + pyramidRow(&frame->level[0], (int)y) + x, frame->level[0].stride);
             const maskw active = (column < (int)frame->width) & (here.area > 0.0f);
             if (!anyw(active)) continue;
-            const bool near = word & PEL_TILE_NEAR && pixelsBend(frame, pyramid, x, y);
+            const bool near = word & PEL_TILE_NEAR && pixelsMatter(frame, pyramid, x, y);
             const Vec3w s =
                 scatterPixels(frame, pyramid, tables, nodes, sums, word & PEL_TILE_HIDDEN ? hidden : NULL, x,
-                              y, near, weightOfWord(word), &here, active);
+                              y, near, unpackedWeight(word), &here, active);
             storeColor(PEL_FORMAT_OUT, imageSpan(out, &frame->out, x, y), s, active);
             const uint covered = countw(active);
             pixels += covered;

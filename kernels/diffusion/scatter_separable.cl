@@ -1,10 +1,12 @@
-// Irradiance scattered under the surface by two filters, along the rows of the picture and then along its columns, by the line spread
-// of the profile [Jimenez et al. 2015; docs/mathematics.md, section 10, "Separable"]. A tap stands for a piece of the line; where the
-// surface leaves the plane across the view, it counts by what the line spread is at its true distance.
+// Irradiance scattered under the surface by two filters, along the rows of the picture and then along its
+// columns, by the line spread of the profile [Jimenez et al. 2015; docs/mathematics.md, section 10,
+// "Separable"].
 //
-// Input: the surface (gather_surface.cl), pieces and line spreads. Output: filter_rows: irradiance and -, four floats a pixel;
-// filter_columns: an image like the irradiance's; pixels of the same value where nothing was to be done. One work-group takes tiles, one
-// work-item columns of their pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT.
+// A tap stands for a piece of the line. Where the surface leaves the plane across the view, the tap is
+// weighted by the line spread at its true distance. Input: the surface (gather_surface.cl), pieces and line
+// spreads. Output: filter_rows: irradiance and -, four floats a pixel; filter_columns: an image like the
+// irradiance, with pixels that nothing changes as they were. One work-group takes tiles, one work-item
+// columns of their pixels. Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_OUT.
 #include "lib/diffusion/gather.clh"
 #include "lib/image/image.clh"
 
@@ -28,7 +30,7 @@ typedef struct LineSums {
     float4 light, weight;
 } LineSums;
 
-// Adds what pixel `k` of the line brings for a share of the light. Returns 1 if it was looked at.
+// Adds the contribution of pixel `k` of the line to a share of the light. Returns 1 if the pixel was read.
 static inline uint addPixel(const Line* line, __global const PelGatherTap* tap, int k, float part,
                             LineSums* sums) {
     const float4 share = part * shareOf(tap);
@@ -51,7 +53,7 @@ static inline uint addPixel(const Line* line, __global const PelGatherTap* tap, 
         tapBrings(line->nodes, line->material->table, tap, dot(between, between) / (plane * plane));
     sums->light += brings * vload4(0, line->light + there * line->lightStride);
     sums->weight += brings;
-    // What does not flow is the pixel's own.
+    // Light that is held back at a border is replaced by the light of the pixel itself.
     const float4 kept = select((float4)(0.0f), share, flows <= 0.0f);
     sums->light += kept * line->own, sums->weight += kept;
     return 1;
@@ -62,7 +64,8 @@ static inline float4 filterLine(const Line* line, __global const PelGatherTap* t
     sums.light = sums.weight = (float4)(0.0f);
     const float perPixel = radius / line->size;
     for (uint i = line->material->firstTap, end = i + line->material->taps; i < end; ++i) {
-        // A piece narrower than a pixel lies in at most two; of a wider one its middle pixel's width is read.
+        // A piece narrower than a pixel covers at most two. Of a wider piece the pixels at its centre, one
+        // pixel wide, are read.
         const float a = taps[i].place[0] * perPixel, b = taps[i].place[1] * perPixel, middle = 0.5f * (a + b),
                     half_ = 0.5f * fmin(b - a, 1.0f);
         const int first = (int)floor(middle - half_ + 0.5f), last = (int)floor(middle + half_ + 0.5f);
@@ -109,7 +112,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void f
             float4 light = gathered(points, at, PEL_GATHER_LIGHT);
             const uint material = frame->materialOf[as_uint(light.w)];
             const float4 pixel = gathered(points, at, PEL_GATHER_PIXEL);
-            // Also of pixels that are not scattered themselves: others read them in the other filter.
+            // Pixels that do not scatter are written too, since the other filter reads them.
             if (material && pixel.x > 0.0f && pixel.z != 0.0f)
                 light = filterPixel(frame, points, points + PEL_GATHER_LIGHT, PEL_GATHER_FLOATS,
                                     &materials[material - 1], taps, nodes, x, y, false, &taken);

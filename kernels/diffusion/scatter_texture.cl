@@ -1,16 +1,17 @@
-// Scattering in texture space by a chain of Gaussians (docs/mathematics.md, section 7) [d'Eon, Luebke 2007].
+// Scattering in texture space by a chain of Gaussians (docs/mathematics.md, section 7) [d'Eon, Luebke
+// 2007].
 //
-// texture_light: irradiance * albedo^before, and 1 where there is any. texture_blur: one filter along u or v: Gaussian weights of lengths on the
-// surface, over texels of the same island; what is not covered does not count. texture_result: times albedo^after; texels within two of a
-// covered one take the nearest one's. One work-group takes tiles with something covered, or texels. Variants: PEL_FORMAT_....
+// texture_light: irradiance * albedo^before, with a coverage of 1. texture_blur: one filter along u or v,
+// with Gaussian weights of lengths on the surface, over covered texels of the same island. texture_result:
+// times albedo^after; texels within two of a covered one take the value of the nearest covered texel. One
+// work-group takes tiles with covered texels, or texels. Variants: PEL_FORMAT_....
 #include "lib/diffusion/texels.clh"
 #include "lib/diffusion/usable_light.clh"
 #include "lib/image/image.clh"
 
-#define LEAST_SIGMA \
-    0.8f               // texels; of narrower Gaussians three taps have the variance, of others their samples
-#define FARTHEST 3.0f  // sigmas
-#define PAD 2          // texels
+#define MIN_SIGMA 0.8f  // texels; of narrower Gaussians three taps have the variance, of others their samples
+#define FARTHEST 3.0f   // sigmas
+#define PAD 2           // texels
 
 static inline Vec3w power3(Vec3w a, float power) {
     if (power == 1.0f) return a;
@@ -44,16 +45,17 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void tex
     light[at] = result;
 }
 
-// `step`: texels from one to the next along the filter; `place` of `count`: of the texel along it.
+// `step`: texels from one sample to the next along the filter; `place` of `count`: index of the texel along
+// it.
 static inline float4 blurTexel(__global const float4* stretch, __global const float4* light, size_t at,
                                long step, int place, int count, bool down, float variance, float blurredBefore) {
     const float4 own = stretch[at], here = light[at];
     const float size = down ? own.y : own.x;
     if (!(here.w > 0.0f) || !(size > 0.0f)) return here;
     const float sigma2 = variance / (size * size);  // texels^2
-    const bool narrow = sigma2 < LEAST_SIGMA * LEAST_SIGMA;
+    const bool narrow = sigma2 < MIN_SIGMA * MIN_SIGMA;
     const float sigma = sqrt(sigma2);
-    // No further apart than half a sigma, nor than what was blurred before hides.
+    // Samples lie at most half a sigma apart, and no further than the blur before smooths over.
     const int stride = narrow ? 1 : max((int)fmin(0.5f * sigma, blurredBefore / size), 1);
     const int taps = narrow ? 1 : (int)fmin(FARTHEST * sigma / (float)stride + 0.5f, (float)(count / stride));
     const float centre = narrow ? 1.0f - sigma2 : 1.0f, perVariance = 0.5f / variance;

@@ -1,9 +1,11 @@
-// The finest level of the pyramid (shared/diffusion.h): position, irradiance and area of the surface under each pixel, for mathematics
-// sections 9 and 10. Two launches: surface_points copies what the caller's images hold, surface_areas measures from pixel to pixel.
+// The finest level of the screen's pyramid (shared/diffusion.h): position, irradiance and area of the
+// surface under each pixel (docs/mathematics.md, sections 9 and 10).
 //
-// Inputs: images of irradiance, of positions (length) or depth, of ids (0 is background). Output: level 0 of the pyramid. One
-// work-item: a part of a row (surface_points), PEL_WIDTH pixels of one (surface_areas). Variants: PEL_FORMAT_IRRADIANCE, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL
-// (0: everything is id 1).
+// Inputs: images of irradiance, of positions (length) or depth, of ids (0 is background). Output: level 0
+// of the pyramid. surface_points copies the images; one work-item is a part of a row. surface_areas
+// measures pixels against their neighbours; one work-item is PEL_WIDTH pixels of a row. Variants:
+// PEL_FORMAT_IRRADIANCE, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id
+// 1).
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/pyramid.clh"
 #include "lib/diffusion/usable_light.clh"
@@ -13,7 +15,7 @@
 
 // A surface seen at a steeper angle than this cosine counts with the area at this angle: the normal of a
 // pixel is wrong for its whole area if the surface turns away inside the pixel.
-#define LEAST_FACING 0.25f
+#define MIN_FACING 0.25f
 
 // PEL_WIDTH pixels from (`from`, y) on.
 static inline void copyPoints(__global const PelDiffusionFrame* frame, __global uchar* irradiance,
@@ -120,7 +122,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
         area = sqrt(dot3(cross, cross));
         if (frame->facing) {
             const floatw cosine = fabs(dot3(cross, p)) * inverseRootw(dot3(cross, cross) * dot3(p, p));
-            area *= fmin(cosine * (1.0f / LEAST_FACING), (floatw)(1.0f));
+            area *= fmin(cosine * (1.0f / MIN_FACING), (floatw)(1.0f));
         }
         // A line of pixels counts as facing the camera. A single pixel has no size.
         area = selectw(area, right.length2, noDown);

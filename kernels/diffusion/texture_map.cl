@@ -1,9 +1,9 @@
-// A mesh in its texture: which triangle lies on each texel, how long texels are on the surface, and values of vertices drawn there
-// (docs/mathematics.md, section 7).
+// Draws a mesh into its texture (docs/mathematics.md, section 7).
 //
-// texture_owner: 1 + the last triangle that holds the texel's centre, borders included; one work-item is one triangle. texture_tiles:
-// which tiles have such a texel; one work-item is one tile. texture_stretch: length of a texel along u and v, and the island; texture_draw:
-// an image; one work-item is one texel. Lengths are in the unit of positions.
+// texture_owner: 1 + the last triangle that holds the centre of each texel, borders included; one work-item
+// is one triangle. texture_tiles: flags of tiles with such a texel; one work-item is one tile.
+// texture_stretch: length of a texel along u and v, and its island; texture_draw: values of vertices; one
+// work-item is one texel. Lengths are in the unit of positions.
 #include "lib/diffusion/texels.clh"
 #include "lib/image/image.clh"
 #include "lib/mesh/mesh_vertex.clh"
@@ -70,7 +70,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void tex
 __constant int2 beside[8] = {(int2)(-1, 0),  (int2)(1, 0),  (int2)(0, -1), (int2)(0, 1),
                              (int2)(-1, -1), (int2)(1, -1), (int2)(-1, 1), (int2)(1, 1)};
 
-// A triangle on the texel, or on one beside it; 0: none.
+// The triangle on the texel, or on a neighbour; 0: none.
 static inline uint nearestOwner(__global const PelTextureFrame* frame, __global const uint* owners, int x, int y) {
     uint owner = owners[(size_t)y * frame->width + x];
     for (int k = 0; k < 8 && !owner; ++k) {

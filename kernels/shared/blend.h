@@ -1,14 +1,13 @@
-// Constants of what lies before and after the methods of scattering, laid out alike on host and device.
+// Constants of the steps before and after the scattering methods, laid out alike on host and device.
 #ifndef PEL_SHARED_BLEND
 #define PEL_SHARED_BLEND
 #include "shared/diffusion.h"
 
 typedef struct PelBlendMaterial {
-    float albedo[3];  // where there is no image of it
-    // powers of albedo that irradiance is multiplied by before it is scattered, and after
-    float before, after;
-    float through[3];  // share of the light on the other side
-    PelUint32 weighs;  // 1: the image of weights is not in the scattered light yet
+    float albedo[3];      // without an albedo image
+    float before, after;  // powers of albedo that irradiance is multiplied by before it is scattered, and after
+    float through[3];     // share of the light on the other side
+    PelUint32 weighs;     // 1: the weights per pixel are still to be applied
 } PelBlendMaterial;
 
 typedef struct PelBlendFrame {
@@ -17,7 +16,7 @@ typedef struct PelBlendFrame {
     PelUint32 accumulate;  // 1: add to what `out` holds
     PelUint32 pad;
     PelShadeImage irradiance, scattered, material, back, weight, albedo, out;
-    PelUint32 materialOf[PEL_DIFFUSION_IDS];  // of an id; that of 0 for those that do not scatter
+    PelUint32 materialOf[PEL_DIFFUSION_IDS];  // of an id; entry 0 is for ids that do not scatter
 } PelBlendFrame;
 
 #ifndef __OPENCL_VERSION__

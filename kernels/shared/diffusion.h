@@ -18,45 +18,44 @@
 #define PEL_PLANE_RED 5  // irradiance
 #define PEL_PLANE_GREEN 6
 #define PEL_PLANE_BLUE 7
-#define PEL_PLANE_BEND 8  // greatest second difference of irradiance, from block to block one level finer
-#define PEL_PLANE_SIZE 9  // length^2: the smaller of the squared steps to the next pixel; of a pixel
+#define PEL_PLANE_DIFFERENCE2 8  // largest second difference of irradiance between blocks one level finer
+#define PEL_PLANE_SIZE 9         // length^2: the smaller of the squared steps to the next pixel; of a pixel
 #define PEL_PYRAMID_PLANES 10
 
-// What light flows in to the blocks of a level from it and from all coarser ones: as the surface's pyramid,
+// Light that flows in to the blocks of a level from it and from all coarser ones: laid out as the pyramid,
 // from level 1 on.
-#define PEL_SUM_LIGHT 0   // three planes: irradiance times mass
-#define PEL_SUM_MASS 3    // three: the share of the profile that was found
-#define PEL_SUM_CENTRE 6  // three: the share of what lies nearer, and was not looked for
+#define PEL_SUM_LIGHT 0   // three planes: irradiance times weight
+#define PEL_SUM_WEIGHT 3  // three: accumulated weight, the share of the profile that was found
+#define PEL_SUM_CENTRE 6  // three: the share of the nearer surface, which is not summed
 #define PEL_SUM_PLANES 9
 
 #define PEL_HIDDEN_PLANES \
-    9  // three of light, three of mass, three of light from far away: what the camera does not see, for blocks of level 1
+    9  // occluded light for blocks of level 1: three planes of light, of weight, of light from far away
 
-// Words of tiles: these bits, levels << 8, weight of what is scattered << 24. 0: irradiance is right as it
-// is.
+// Packed tile flags: these bits, levels << 8, weight of the scattered light << 24. 0: nothing scatters.
 #define PEL_TILE_NEAR 1u            // single pixels are summed too, not only blocks
-#define PEL_LEAST_LEVELS 3u         // of tiles that scatter
-#define PEL_TILE_HIDDEN (1u << 16)  // light that the camera does not see may come in
+#define PEL_MIN_LEVELS 3u           // of a tile that scatters
+#define PEL_TILE_HIDDEN (1u << 16)  // occluded light may come in
 #define PEL_DIFFUSION_TILE 16       // pixels along a side: blocks of level 4
 #define PEL_TILE_LEVEL 4
 #define PEL_DIFFUSION_GROUP 16  // work-items
-#define PEL_ROW_PARTS 4         // that different work-items copy
+#define PEL_ROW_PARTS 4         // of a row; each is copied by one work-item
 #define PEL_DIFFUSION_IDS 256
 #define PEL_MAX_IRRADIANCE 1e15f  // larger values count as invalid: sums over areas would overflow
 
 // A profile as three tables over the squared distance, four floats a node: R (1/length^2), the share of the
 // light that stays within, and the mean of R over a block of a ring at that distance. Nodes are equally
-// spaced in the bits of a float, PEL_PROFILE_NODES to the octave. From the last node on R is 0 and the share
-// 1.
+// spaced in the bits of a float, PEL_PROFILE_NODES to the octave. From the last node on R is 0 and the
+// share 1.
 //
-// Behind the nodes R and the mean over a block stand once more, as sums of PEL_PROFILE_TERMS Gaussians, four
-// floats a term: term i is exp2(-widest 2^i d^2), so that each is the square of the one before it and a
-// vector of distances needs no look-up.
+// After the nodes follow R and the mean over a block as sums of PEL_PROFILE_TERMS Gaussians, four floats a
+// term. Term i is exp2(-widest 2^i d^2), so each is the square of the one before, and a vector of distances
+// needs no look-up.
 #define PEL_PROFILE_TERMS 16
 #define PEL_PROFILE_NODES 16
 #define PEL_PROFILE_NODE_BITS 19  // 23 bits of mantissa, less those of a node
-// Width of such blocks over their distance: the root of the mean square of all in a ring round a point,
-// weighed by R that falls as distance^-1.5.
+// Width of such blocks over their distance: the root of the mean square over a ring around a point,
+// weighted by an R that falls as distance^-1.5.
 #define PEL_BLOCK_WIDTH 0.431
 typedef struct PelProfileTable {
     PelUint32 offset;  // of the first node, nodes
@@ -79,16 +78,16 @@ typedef struct PelDiffusionFrame {
     PelUint32 tilesX;
     PelUint32 tilesY;
     PelUint32 levels;     // that the pyramid has, 0 included
-    PelUint32 everyTile;  // 1: no tile and no level is left out
+    PelUint32 everyTile;  // 1: all tiles and all levels are computed
     PelUint32 inPlace;    // 1: `out` is `irradiance`
     PelUint32 tables;
-    PelUint32 facing;  // 1: `origin` is the camera, so that surfaces seen at a grazing angle can be found
+    PelUint32 facing;  // 1: `origin` is the camera, so grazing angles are known
     float tolerance;   // of irradiance
     float origin[3];   // length, world; of the pyramid's positions
     float inverseViewProjection[16];
     PelShadeImage irradiance, position, ids, out;  // position: or depth
     PelPyramidLevel level[PEL_PYRAMID_LEVELS];
-    PelUint32 tableOf[PEL_DIFFUSION_IDS];  // 1 + the table of an id; 0: none, it does not scatter
+    PelUint32 tableOf[PEL_DIFFUSION_IDS];  // 1 + the table of an id; 0: the id does not scatter
 } PelDiffusionFrame;
 
 // Counters.

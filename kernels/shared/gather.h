@@ -12,10 +12,10 @@
 #define PEL_GATHER_FLOATS 12
 
 // Of tiles.
-#define PEL_TILE_GATHERS 1  // something is gathered
-#define PEL_TILE_LIT 2      // there is something that others may gather
+#define PEL_TILE_GATHERS 1  // some pixel gathers
+#define PEL_TILE_LIT 2      // some pixel has light that others may gather
 
-#define PEL_GATHER_TURNS 4  // sets of taps, at radii between each other's: pixels of 2 x 2 take one each
+#define PEL_GATHER_TURNS 4  // sets of taps at interleaved radii, one for each pixel of 2 x 2
 
 // One tap of a disk, or of a line.
 typedef struct PelGatherTap {
@@ -30,7 +30,7 @@ typedef struct PelGatherMaterial {
     PelProfileTable table;
     PelUint32 firstTap, taps;  // of one set
     float farthest;            // length, of a tap
-    float border[3];           // share of what flows in from other ids
+    float border[3];           // share of the light that flows in from other ids
     PelUint32 anyBorder;
     PelUint32 pad;
 } PelGatherMaterial;

@@ -4,10 +4,10 @@
 #define PEL_SHARED_LIGHT_SPACE
 #include "shared/diffusion.h"
 
-// The lit surface as a pyramid of blocks of 2^l x 2^l texels. A block of level 1 and on is two points: a map
-// that shows a near surface beside a far one has none in between. A level is rows of planes, as those of the
-// screen are: row y of plane p begins at offset + ((y + PEL_PYRAMID_ROWS) planes + p) stride +
-// PEL_PYRAMID_GUARD. Blocks without flux hold nothing else.
+// The lit surface as a pyramid of blocks of 2^l x 2^l texels. A block of level 1 or coarser holds two
+// clusters, since a map that shows a near surface beside a far one has none in between. A level is rows of
+// planes, as those of the screen: row y of plane p begins at offset + ((y + PEL_PYRAMID_ROWS) planes + p)
+// stride + PEL_PYRAMID_GUARD. The other planes of blocks without flux are undefined.
 #define PEL_LIGHT_LEVELS 12
 #define PEL_LIGHT_MAPS 24   // of all lights of a frame: cascades and faces of cubes one by one
 #define PEL_LIGHT_FLUX 0    // length^2: irradiance dA, over the light's colour
@@ -15,15 +15,15 @@
 #define PEL_LIGHT_X 2       // length: the middle of the flux
 #define PEL_LIGHT_Y 3
 #define PEL_LIGHT_Z 4
-#define PEL_LIGHT_ID 5  // the bits of an id, 0: not known; not where only hidden texels count
-// Planes of one point.
+#define PEL_LIGHT_ID 5  // the bits of an id, 0: unknown; absent with PEL_HIDDEN
+// Planes of one cluster.
 #define PEL_LIGHT_PLANES(hidden) ((hidden) ? 5u : 6u)
 
-// A byte tells of each cell of so many texels along a side whether some have flux. Where none had it the
-// frame before either, the pyramid below the cell's own level holds zeros, and nothing is done.
+// A byte per cell of this many texels along a side: whether some of them have flux. Where none has, and
+// none had in the frame before, the pyramid up to the level of the cell holds zeros, and nothing is done.
 #define PEL_LIGHT_CELL 16
 
-#define PEL_SEEN_OTHER 255u  // of a texel: the camera sees something there that does not scatter
+#define PEL_SEEN_OTHER 255u  // mark of a texel: a camera-visible object that does not scatter
 
 typedef struct PelLightMap {
     float toMap[16];         // to homogeneous (u, v, z)
