@@ -448,9 +448,9 @@ inline constexpr Tolerance throughSheet{
 inline constexpr Tolerance lightSeenTwice{"lightSeenTwice", 4e-3, "two ways to divide a sum by its weights"};
 
 // --- against the surface integral of a head, RMSE in 1e-4 of radiance, albedo 0.8 ---
-inline constexpr Tolerance rulerHeadRed{"rulerHeadRed", 40, "Lambert with ray-traced shadows: 85"};
-inline constexpr Tolerance rulerHeadGreen{"rulerHeadGreen", 14, "Lambert: 30"};
-inline constexpr Tolerance rulerHeadBlue{"rulerHeadBlue", 9, "Lambert: 14"};
+inline constexpr Tolerance headOnScreenRed{"headOnScreenRed", 40, "Lambert with ray-traced shadows: 85"};
+inline constexpr Tolerance headOnScreenGreen{"headOnScreenGreen", 14, "Lambert: 30"};
+inline constexpr Tolerance headOnScreenBlue{"headOnScreenBlue", 9, "Lambert: 14"};
 inline constexpr Tolerance lightHead[3] = {{"lightHeadRed", 28, "screen and maps; 25.0 measured, 31 without"},
                                            {"lightHeadGreen", 12.8, "11.4 measured"},
                                            {"lightHeadBlue", 9, "8.5 measured"}};
@@ -487,7 +487,7 @@ inline constexpr Tolerance lightFourOfLight[3] = {{"lightFourOfLightRed", 36, "3
 inline constexpr Tolerance lightEarOfLight[3] = {{"lightEarOfLightRed", 9.5, "8.2 measured"},
                                                  {"lightEarOfLightGreen", 6, "5.2 measured"},
                                                  {"lightEarOfLightBlue", 3.5, "3.0 measured"}};
-inline constexpr Tolerance rulerMapBlue{"rulerMapBlue", 23, "irradiance alone, from texels of 0.33 mm: 22"};
+inline constexpr Tolerance headByMapBlue{"headByMapBlue", 23, "irradiance alone, from texels of 0.33 mm: 22"};
 inline constexpr Tolerance scatterTapsRms{
     "scatterTapsRms", 2e-3,
     "taps that round to another pixel, where the profile's table ends a node further out"};

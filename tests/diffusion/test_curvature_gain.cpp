@@ -5,13 +5,13 @@
 #include <cmath>
 #include <cstdio>
 
-#include "diffusion/light_rulers.h"
+#include "diffusion/reference_scenes.h"
 #include "diffusion/scatter_scene.h"
 #include "npy.h"
 #include "test_size.h"
 #include "tolerances.h"
 
-using namespace light_rulers;
+using namespace reference_scenes;
 using reference::Vec3;
 
 namespace {
@@ -85,7 +85,8 @@ npy::Array<float> walk(const char* name) {
 }
 
 // RMSE in 1e-4 without the noise of the walk.
-std::array<double, 3> errorOfWalk(const Ruler& r, const std::vector<float>& light, const npy::Array<float>& walk) {
+std::array<double, 3> errorOfWalk(const ReferenceScene& r, const std::vector<float>& light,
+                                  const npy::Array<float>& walk) {
     std::array<double, 3> sum{};
     for (size_t k = 0; k < walk.shape[0]; ++k) {
         const float* row = walk.row(k);
@@ -153,7 +154,7 @@ TEST(CurvatureGain, BallsAgainstRandomWalks) {
         npy::read<double>(std::filesystem::path(std::getenv("PELLUCID_RULER_DIR")) / "ball_walks_f64.npy");
     constexpr double radii[] = {3.47, 8.68, 11.57, 17.35, 28.92, 57.84};  // mean free paths
     const Device device("");
-    Ruler r = ball(std::getenv("PELLUCID_GBUFFER_DIR"));
+    ReferenceScene r = ball(std::getenv("PELLUCID_GBUFFER_DIR"));
     r.gain = 1;
     for (size_t k = 0; k < 6; ++k) {
         r.profileScale = float(10 / radii[k] / meanFreePath[0]);  // of a ball of 10 mm, in red
@@ -185,8 +186,9 @@ TEST(CurvatureGain, BallsAgainstRandomWalks) {
 TEST(CurvatureGain, HeadsAgainstRandomWalks) {
     if (!hasData()) GTEST_SKIP() << "PELLUCID_RULER_DIR or PELLUCID_GBUFFER_DIR is not set: no reference";
     const Device device("");
-    const char *rulers = std::getenv("PELLUCID_RULER_DIR"), *gbuffers = std::getenv("PELLUCID_GBUFFER_DIR");
-    Ruler r = headTimesFour(rulers, gbuffers);
+    const char *references = std::getenv("PELLUCID_RULER_DIR"),
+               *gbuffers = std::getenv("PELLUCID_GBUFFER_DIR");
+    ReferenceScene r = headTimesFour(references, gbuffers);
     for (float scale : {1.0f, 4.0f}) {
         const npy::Array<float> truth =
             walk(scale == 1 ? "head_side_walk_f32.npy" : "head_side_x4_walk_f32.npy");

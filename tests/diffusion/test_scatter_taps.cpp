@@ -3,7 +3,6 @@
 
 #include <cstdio>
 
-#include "diffusion/ruler_scene.h"
 #include "diffusion/scatter_scene.h"
 #include "reference/diffusion_taps.h"
 #include "tolerances.h"
@@ -85,24 +84,6 @@ double rms(const std::vector<float>& a, const std::vector<float>& b) {
     double sum = 0;
     for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
     return std::sqrt(sum / double(a.size()));
-}
-
-struct Shaded {
-    std::vector<float> light;
-    PelShaderStats stats;
-};
-
-Shaded shadeHead(const ruler::Head& head, PelScattering scattering, uint32_t taps, float scale) {
-    const auto side = uint32_t(head.side);
-    ShownImages shown(device(), side, side);
-    ruler::setHead(shown, head);
-    shown.set(PEL_SLOT_IRRADIANCE, head.irradiance);
-    const Profile profile = ruler::profile(scale);
-    PelMaterial material = whiteMaterial(profile, scattering);
-    material.scatterTaps = taps;
-    shown.shader.setMaterial(1, material);
-    std::vector<float> light = shown.execute();
-    return {std::move(light), shown.shader.stats()};
 }
 
 }  // namespace
@@ -258,31 +239,5 @@ TEST(ScatterTaps, InvalidPixelsStayWhereTheyAre) {
         for (const auto& [method, taps] : methods)
             for (float v : scatterBy(p, Profile::skin(), 1e6f, controls(method, taps)).scattered)
                 ASSERT_TRUE(std::isfinite(v));
-    }
-}
-
-TEST(ScatterTaps, HeadLitFromTheSide) {
-    const char* rulers = std::getenv("PELLUCID_RULER_DIR");
-    if (!rulers) GTEST_SKIP() << "PELLUCID_RULER_DIR is not set: no surface integral to compare with";
-    const ruler::Head usual = ruler::load(rulers), wide = ruler::fourfold(usual, rulers);
-    struct Case {
-        PelScattering method;
-        uint32_t taps;
-        float scale;
-        std::array<double, 3> most;  // what the rulers' own prototypes reach
-    };
-    for (const Case& c : {Case{separable, 25, 1, {43, 16, 10}},
-                          {separable, 25, 4, {227, 92, 54}},
-                          {disk, 32, 1, {41, 14.5, 9.5}},
-                          {disk, 32, 4, {142, 78, 58}},
-                          {disk, 256, 4, {130, 75, 56}}}) {
-        const ruler::Head& head = c.scale == 1 ? usual : wide;
-        const Shaded shaded = shadeHead(head, c.method, c.taps, c.scale);
-        const auto e = ruler::error(head, shaded.light);
-        std::printf("x %g method %d taps %3u: %.1f %.1f %.1f   %.1f ms\n", double(c.scale), int(c.method),
-                    c.taps, e[0], e[1], e[2], shaded.stats.deviceMilliseconds);
-        for (int k = 0; k < 3; ++k) EXPECT_LT(e[k], c.most[k]) << "x " << c.scale << ", method " << c.method;
-        EXPECT_GT(shaded.stats.tilesByScattering[c.method], 0u);
-        EXPECT_GT(shaded.stats.scatterTaps, shaded.stats.pixelsScattered);
     }
 }

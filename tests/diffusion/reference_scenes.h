@@ -1,5 +1,5 @@
-// Pictures with the shadow map of their light, and what light does on them: made by brute force elsewhere (a head),
-// or in closed form (a ball).
+// Pictures with the shadow map of their light and the surface integral over them: computed by brute force elsewhere (a
+// head), or in closed form (a ball).
 #pragma once
 #include <algorithm>
 #include <cstdlib>
@@ -13,7 +13,7 @@
 #include "reference/lut.h"
 #include "reference/profile.h"
 
-namespace light_rulers {
+namespace reference_scenes {
 
 using pellucid::Buffer;
 using pellucid::Device;
@@ -22,8 +22,8 @@ using pellucid::Profile;
 constexpr double albedo = 0.8;  // of the pictures that errors are in
 
 // Lengths are in cm.
-struct Ruler {
-    uint32_t side = 0, samples = 1;  // pixels of the picture, of which samples^2 are one of the ruler
+struct ReferenceScene {
+    uint32_t side = 0, samples = 1;  // pixels of the picture, of which samples^2 are one of the reference
     std::vector<float> positions, normals, irradiance, truth;  // RGB
     std::vector<uint8_t> ids;
     uint32_t mapSide = 0;
@@ -47,7 +47,7 @@ inline nlohmann::json readJson(const std::string& path) {
 }
 
 // Depths are lengths along the light.
-inline void addMap(Ruler& r, const std::string& base) {
+inline void addMap(ReferenceScene& r, const std::string& base) {
     const nlohmann::json json = readJson(base + ".json");
     const pellucid::io::Image image = pellucid::io::readImage(base + "_shadowmap.exr");
     r.mapSide = uint32_t(image.width);
@@ -79,9 +79,9 @@ inline std::vector<float> readHalves(const std::string& path, size_t count) {
     return values;
 }
 
-inline Ruler head1536(const std::string& rulers, const std::string& gbuffers) {
-    const pellucid::io::Image image = pellucid::io::readImage(rulers + "/head_side_1536.exr");
-    Ruler r;
+inline ReferenceScene head1536(const std::string& references, const std::string& gbuffers) {
+    const pellucid::io::Image image = pellucid::io::readImage(references + "/head_side_1536.exr");
+    ReferenceScene r;
     r.side = 1536, r.samples = 3;
     const std::string position[] = {"Position.X", "Position.Y", "Position.Z"},
                       normal[] = {"NS.X", "NS.Y", "NS.Z"}, surface[] = {"Surface.R", "Surface.G", "Surface.B"},
@@ -95,7 +95,7 @@ inline Ruler head1536(const std::string& rulers, const std::string& gbuffers) {
     return r;
 }
 
-inline void readGbuffer(Ruler& r, const std::string& path) {
+inline void readGbuffer(ReferenceScene& r, const std::string& path) {
     const pellucid::io::Image image = pellucid::io::readImage(path);
     r.side = uint32_t(image.width);
     const std::string v = "ViewLayer.", position[] = {v + "Position.X", v + "Position.Y", v + "Position.Z"},
@@ -105,20 +105,20 @@ inline void readGbuffer(Ruler& r, const std::string& path) {
     for (float id : image.channel(v + "IndexOB.X").pixels) r.ids.push_back(id > 0);
 }
 
-inline Ruler headTimesFour(const std::string& rulers, const std::string& gbuffers) {
-    Ruler r;
+inline ReferenceScene headTimesFour(const std::string& references, const std::string& gbuffers) {
+    ReferenceScene r;
     readGbuffer(r, gbuffers + "/head_gbuf.exr");
-    const std::vector<float> e = readHalves(rulers + "/head_side_irradiance_f16.npy", r.ids.size());
+    const std::vector<float> e = readHalves(references + "/head_side_irradiance_f16.npy", r.ids.size());
     for (float v : e) r.irradiance.insert(r.irradiance.end(), 3, v);
-    r.truth = readHalves(rulers + "/head_side_x4_surface_integral_f16.npy", 3 * r.ids.size());
+    r.truth = readHalves(references + "/head_side_x4_surface_integral_f16.npy", 3 * r.ids.size());
     r.profileScale = 4;
     addMap(r, gbuffers + "/head_side");
     return r;
 }
 
 // A ball of 10 mm, in the closed form of section 2.
-inline Ruler ball(const std::string& gbuffers) {
-    Ruler r;
+inline ReferenceScene ball(const std::string& gbuffers) {
+    ReferenceScene r;
     readGbuffer(r, gbuffers + "/sphere10_gbuf.exr");
     r.camera = 10;
     addMap(r, gbuffers + "/sphere10_side");
@@ -147,14 +147,13 @@ struct Shown {
     double milliseconds;
 };
 
-// By the shader, at an albedo of 1. `given`: with the ruler's irradiance, else from the map's shadow.
-inline Shown shade(const Device& device, const Ruler& r, PelScattering scattering, bool given,
-                   bool withMap = true, float targetError = pelShaderOptionsDefaults().targetError) {
+// By the shader, at an albedo of 1. `given`: with the irradiance of the scene, else with shadows from the map. `taps`: PelMaterial.scatterTaps.
+inline Shown shade(const Device& device, const ReferenceScene& r, PelScattering scattering, bool given,
+                   bool withMap = true, uint32_t taps = 0) {
     scatter_scene::ShownImages shown(device, r.side, r.side);
     PelShaderOptions options = pelShaderOptionsDefaults();
     options.millimetresPerUnit = 10;
     options.countPixels = 1;
-    options.targetError = targetError;
     shown.shader.set(options);
     shown.set(PEL_SLOT_POSITION, r.positions);
     shown.set(PEL_SLOT_NORMAL_SHADING, r.normals);
@@ -164,6 +163,7 @@ inline Shown shade(const Device& device, const Ruler& r, PelScattering scatterin
     PelMaterial material = scatter_scene::whiteMaterial(skin, scattering);
     material.specular = 0;
     material.curvatureGain = r.gain;
+    material.scatterTaps = taps;
     if (r.profileScale != 1) material.diffusionRadius = float(skin.info().radius) * r.profileScale / 10;
     shown.shader.setMaterial(1, material);
     // Of clip = (x, z, y + camera - 1, y + camera): only where the camera stands matters.
@@ -183,8 +183,8 @@ inline Shown shade(const Device& device, const Ruler& r, PelScattering scatterin
     return {std::move(result), stats, stats.deviceMilliseconds};
 }
 
-// Root mean square per channel over the ruler's pixels that are wholly covered, in 1e-4 of radiance. `unlit`: of those without light.
-inline std::array<double, 3> error(const Ruler& r, const std::vector<float>& result, bool unlit = false) {
+// Root mean square per channel over pixels of the reference that are wholly covered, in 1e-4 of radiance. `unlit`: of those without light.
+inline std::array<double, 3> error(const ReferenceScene& r, const std::vector<float>& result, bool unlit = false) {
     std::array<double, 3> sum{};
     size_t count = 0;
     const size_t k = r.samples, coarse = r.side / k;
@@ -206,4 +206,4 @@ inline std::array<double, 3> error(const Ruler& r, const std::vector<float>& res
     return sum;
 }
 
-}  // namespace light_rulers
+}  // namespace reference_scenes

@@ -1,0 +1,145 @@
+// Methods against the surface integral of reference scenes (docs/mathematics.md, section 9).
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "diffusion/lit_scenes.h"
+#include "diffusion/reference_scenes.h"
+#include "test_size.h"
+#include "tolerances.h"
+
+using namespace reference_scenes;
+
+namespace {
+
+using Errors = std::array<double, 3>;
+
+void print(const char* what, const Errors& e, double milliseconds = 0) {
+    std::printf("%-28s 1e-4: %6.1f %6.1f %6.1f   %.1f ms\n", what, e[0], e[1], e[2], milliseconds);
+}
+
+const char* folder(const char* name) {
+    return std::getenv(name);
+}
+
+// A method on a scene, and its largest error.
+struct Case {
+    const char* name;
+    PelScattering method;
+    uint32_t taps;
+    bool given, map;  // ray-traced irradiance; a shadow map
+    Errors most;
+};
+
+Errors valuesOf(const tolerance::Tolerance (&of)[3]) {
+    return {of[0], of[1], of[2]};
+}
+
+// Returns the error of each case.
+std::vector<Errors> compare(const char* scene, const ReferenceScene& r, const std::vector<Case>& cases) {
+    const Device device("");
+    const Errors lambert = error(r, r.irradiance);
+    print(scene, lambert);
+    std::vector<Errors> all;
+    for (const Case& c : cases) {
+        const Shown shown = shade(device, r, c.method, c.given, c.map, c.taps);
+        all.push_back(error(r, shown.light));
+        print(c.name, all.back(), shown.milliseconds);
+        for (size_t k = 0; k < 3; ++k) EXPECT_LT(all.back()[k], c.most[k]) << scene << ", " << c.name;
+        if (!c.taps && c.given && c.method == PEL_SCATTERING_AUTO) {
+            for (size_t k = 0; k < 3; ++k) EXPECT_LT(all.back()[k], lambert[k]) << scene << ", " << c.name;
+        }
+    }
+    return all;
+}
+
+constexpr PelScattering byAuto = PEL_SCATTERING_AUTO, byLight = PEL_SCATTERING_LIGHT,
+                        byScreen = PEL_SCATTERING_SCREEN, separable = PEL_SCATTERING_SEPARABLE;
+
+}  // namespace
+
+// Taps are as near as those of other people's prototypes. Where shadows come from the map alone, blue, which scatters less
+// far than a texel is wide, is wrong at the map's edges.
+TEST(ReferenceScenes, Head) {
+    const char *references = folder("PELLUCID_RULER_DIR"), *gbuffers = folder("PELLUCID_GBUFFER_DIR");
+    if (!references || !gbuffers)
+        GTEST_SKIP() << "PELLUCID_RULER_DIR or PELLUCID_GBUFFER_DIR is not set: no data";
+    const ReferenceScene usual = head1536(references, gbuffers), wide = headTimesFour(references, gbuffers);
+    for (const auto& [scene, r] : {std::pair{"head", &usual}, {"head, radius x 4", &wide}}) {
+        const bool first = r == &usual;
+        const Errors lambert = error(*r, r->irradiance), traced = {1e4, 1e4, 1e4};
+        const std::vector<Errors> e = compare(
+            scene, *r,
+            {{"auto and map", byAuto, 0, true, true, valuesOf(first ? tolerance::lightHead : tolerance::lightFour)},
+             {"auto", byAuto, 0, true, false,
+              first ? Errors{tolerance::headOnScreenRed, tolerance::headOnScreenGreen, tolerance::headOnScreenBlue} : traced},
+             {"light", byLight, 0, true, true,
+              valuesOf(first ? tolerance::lightHeadOfLight : tolerance::lightFourOfLight)},
+             {"auto, shadows of the map",
+              byAuto,
+              0,
+              false,
+              true,
+              {lambert[0], lambert[1], std::max(lambert[2], double(tolerance::headByMapBlue))}},
+             {"separable, 25 taps", separable, 25, true, false, first ? Errors{43, 16, 10} : Errors{227, 92, 54}},
+             {"disk, 32 taps", byScreen, 32, true, false, first ? Errors{41, 14.5, 9.5} : Errors{142, 78, 58}},
+             {"disk, 256 taps", byScreen, 256, true, false, first ? traced : Errors{130, 75, 56}}});
+        EXPECT_LT(e[0][0], 0.95 * e[1][0]) << scene << ": much is seen by the light only";
+    }
+    const Shown shown = shade(Device(""), usual, byAuto, true, false);
+    EXPECT_LT(2 * shown.stats.pixelsScattered, shown.stats.pixelsScattered + shown.stats.pixelsKept);
+}
+
+TEST(ReferenceScenes, Ball) {
+    const char* gbuffers = folder("PELLUCID_GBUFFER_DIR");
+    if (!gbuffers) GTEST_SKIP() << "PELLUCID_GBUFFER_DIR is not set: no G-buffer";
+    compare("ball", ball(gbuffers),
+            {{"auto and map", byAuto, 0, true, true, valuesOf(tolerance::lightBall)},
+             {"light", byLight, 0, true, true, valuesOf(tolerance::lightBallOfLight)}});
+}
+
+// What comes through an ear that is lit from behind, against the library's own surface integral.
+TEST(ReferenceScenes, EarFromBehind) {
+    namespace lit = lit_scenes;
+    const Device device("");
+    const char* data = folder("PELLUCID_HEADS_DIR");
+    const std::string heads = data ? data : std::string(PELLUCID_SOURCE_DIR) + "/data/heads";
+    const lit::Body whole = lit::head(heads + "/head_male.obj", "male", sized(2, 0));
+    const lit::Body ear = lit::closeUp(
+        whole, "ear", [](lit::Vec3 p) { return p.x; }, 80);
+    lit::SceneRequest request;
+    request.azimuth = 70;
+    request.lightAzimuth = 200, request.lightElevation = 10;
+    request.size = sized(192, 16);
+    request.mapSize = sized(2048, 64);
+    const lit::LitScene s = lit::make(device, ear, request, profile());
+    const auto rms = [&](const std::vector<float>& picture) {
+        Errors sum{};
+        size_t count = 0;
+        for (size_t i = 0; i < s.covered.size(); ++i) {
+            if (!s.covered[i] || !(s.subsets[i] & lit::io::SUBSET_UNLIT)) continue;
+            ++count;
+            for (int c = 0; c < 3; ++c) sum[c] += std::pow(picture[3 * i + c] - s.truth[3 * i + c], 2);
+        }
+        for (double& v : sum) v = 1e4 * albedo * std::sqrt(v / double(std::max<size_t>(count, 1)));
+        return sum;
+    };
+    const Errors lambert = rms(s.irradiance);
+    print("Lambert", lambert);
+    for (PelScattering scattering : {PEL_SCATTERING_AUTO, PEL_SCATTERING_LIGHT}) {
+        lit::ShadeRequest way;
+        way.scattering = scattering;
+        way.traced = true;
+        const Errors e = rms(lit::shade(device, s, profile(), 1, nullptr, way));
+        print(scattering == PEL_SCATTERING_AUTO ? "auto and map" : "light", e);
+        if (testsAreSmall()) continue;
+        for (int c = 0; c < 3; ++c)
+            EXPECT_LT(e[c], scattering == PEL_SCATTERING_LIGHT ? tolerance::lightEarOfLight[c]
+                                                               : tolerance::lightEar[c]);
+        if (scattering != PEL_SCATTERING_AUTO) continue;
+        way.traced = false;
+        const Errors byMap = rms(lit::shade(device, s, profile(), 1, nullptr, way));
+        print("auto, irradiance of the map", byMap);
+        for (int c = 0; c < 3; ++c) EXPECT_LT(byMap[c], 1.25 * e[c] + 2);
+    }
+}
