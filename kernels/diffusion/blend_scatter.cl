@@ -30,8 +30,9 @@ static inline Vec3w albedoPower(__global const PelBlendFrame* frame, __global co
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void prepare_irradiance(
-    __global const PelBlendFrame* frame, __global const PelBlendMaterial* materials, __global uchar* irradiance,
-    __global uchar* ids, __global uchar* back, __global uchar* albedo, __global uchar* out) {
+    __global const PelBlendFrame* restrict frame, __global const PelBlendMaterial* restrict materials,
+    __global uchar* irradiance, __global uchar* ids, __global uchar* back, __global uchar* albedo,
+    __global uchar* out) {
     const uint x = get_global_id(0) % frame->width, y = get_global_id(0) / frame->width;
     if (y >= frame->height) return;
     __global const PelBlendMaterial* material = materialAt(frame, materials, ids, x, y);
@@ -47,7 +48,7 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void p
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void finish_scatter(
-    __global const PelBlendFrame* frame, __global const PelBlendMaterial* materials,
+    __global const PelBlendFrame* restrict frame, __global const PelBlendMaterial* restrict materials,
     __global uchar* irradiance, __global uchar* scattered, __global uchar* ids, __global uchar* weight,
     __global uchar* albedo, __global uchar* out) {
     const uint x = get_global_id(0) % frame->width, y = get_global_id(0) / frame->width;

@@ -52,9 +52,9 @@ static inline float minSize(__global const PelPyramidLevel* level, __global cons
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void classify_scatter(
-    __global const PelDiffusionFrame* frame, __global const float* pyramid,
-    __global const PelProfileTable* tables, __global const float* nodes, __global uint* tiles,
-    __global uint* counters) {
+    __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
+    __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
+    __global uint* tiles, __global uint* restrict counters) {
     const uint tile = get_global_id(0);
     if (tile >= frame->tilesX * frame->tilesY) return;
     const uint tileX = tile % frame->tilesX, tileY = tile / frame->tilesX;

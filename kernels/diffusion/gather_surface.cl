@@ -20,8 +20,8 @@ static inline float clampedShare(float v) {
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void gather_points(
-    __global const PelGatherFrame* frame, __global uchar* irradiance, __global uchar* position,
-    __global uchar* ids, __global uchar* weight, __global float* points, __global uint* counters) {
+    __global const PelGatherFrame* restrict frame, __global uchar* irradiance, __global uchar* position,
+    __global uchar* ids, __global uchar* weight, __global float* points, __global uint* restrict counters) {
     const uint y = get_global_id(0) / PEL_ROW_PARTS, part = get_global_id(0) % PEL_ROW_PARTS;
     if (y >= frame->height) return;
     uint covered = 0, invalid = 0;
@@ -125,8 +125,9 @@ static inline void measurePixel(__global const PelGatherFrame* frame, __global f
 
 // A tile: PEL_TILE_GATHERS, PEL_TILE_LIT.
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void gather_areas(
-    __global const PelGatherFrame* frame, __global float* points, __global const PelGatherMaterial* materials,
-    __global uint* tiles, __global uint* counters) {
+    __global const PelGatherFrame* restrict frame, __global float* points,
+    __global const PelGatherMaterial* restrict materials, __global uint* tiles,
+    __global uint* restrict counters) {
     const uint tile = get_global_id(0);
     if (tile >= frame->tilesX * frame->tilesY) return;
     const uint left = tile % frame->tilesX * PEL_DIFFUSION_TILE, top = tile / frame->tilesX * PEL_DIFFUSION_TILE;

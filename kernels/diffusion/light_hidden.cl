@@ -56,10 +56,11 @@ static inline bool isBesideReached(__global const PelDiffusionFrame* frame, __gl
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_hidden(
-    __global const PelDiffusionFrame* frame, __global const float* pyramid,
-    __global const PelProfileTable* tables, __global const float* nodes, __global const uint* tiles,
-    __global const float* sums, __global const uint* change, __global const PelLightMap* maps, uint mapCount,
-    __global const float* lights, __global float* hidden, __global uint* counters) {
+    __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
+    __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
+    __global const uint* restrict tiles, __global const float* sums, __global const uint* restrict change,
+    __global const PelLightMap* restrict maps, uint mapCount, __global const float* restrict lights,
+    __global float* hidden, __global uint* restrict counters) {
     const uint count = frame->tilesX * frame->tilesY, side = PEL_DIFFUSION_TILE / 2;
     __global const PelPyramidLevel* level = &frame->level[1];
     const uint stride = level->stride;

@@ -80,7 +80,7 @@ static inline bool cellsMatter(__global const PelLightMap* map, __global const u
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_reduce(
-    __global const PelLightMap* maps, uint index, uint to, __global const uchar* before,
+    __global const PelLightMap* restrict maps, uint index, uint to, __global const uchar* restrict before,
     __global const uchar* now, __global float* pyramid) {
     __global const PelLightMap* map = maps + index;
     __global const PelPyramidLevel *fine = &map->level[to - 1], *coarse = &map->level[to];

@@ -142,9 +142,9 @@ static inline void fetchDepths(__global const PelLightMap* map, __global const u
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_seen(
-    __global const PelDiffusionFrame* frame, __global uchar* position, __global uchar* ids,
-    __global const PelLightMap* maps, uint index, __global uchar* texels, __global const float* pyramid,
-    volatile __global uint* seen) {
+    __global const PelDiffusionFrame* restrict frame, __global uchar* position, __global uchar* ids,
+    __global const PelLightMap* restrict maps, uint index, __global uchar* texels,
+    __global const float* restrict pyramid, volatile __global uint* seen) {
     const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across * EVERY;
     if (y >= frame->height) return;
     __global const PelLightMap* map = maps + index;

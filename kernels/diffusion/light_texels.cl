@@ -55,8 +55,9 @@ static inline maskw isBeside(Vec3w p, Vec3w q, floatw most, maskw seen) {
 #endif
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void light_texels(
-    __global const PelLightMap* maps, uint index, __global uchar* texels, __global const uchar* seen,
-    __global const uchar* before, __global uchar* now, __global float* pyramid) {
+    __global const PelLightMap* restrict maps, uint index, __global uchar* texels,
+    __global const uchar* restrict seen, __global const uchar* restrict before, __global uchar* now,
+    __global float* pyramid) {
     __global const PelLightMap* map = maps + index;
     __global const PelPyramidLevel* level = &map->level[0];
     const uint across = (level->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;

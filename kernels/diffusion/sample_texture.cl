@@ -34,8 +34,8 @@ static inline Vec3w sampleAt(__global const PelTextureSample* s, __global uchar*
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void sample_texture(
-    __global const PelTextureSample* s, __global uchar* texture, __global uchar* uv, __global uchar* ids,
-    __global uchar* irradiance, __global uchar* out, __global uint* counters) {
+    __global const PelTextureSample* restrict s, __global uchar* texture, __global uchar* uv,
+    __global uchar* ids, __global uchar* irradiance, __global uchar* out, __global uint* restrict counters) {
     const uint tilesY = (s->height + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE;
     uint pixels = 0, tiles = 0;
     for (uint tile = get_global_id(0); tile < s->tilesX * tilesY; tile += get_global_size(0)) {

@@ -33,9 +33,9 @@ static inline void fetchNextBlocks(__global const float* at, uint stride) {
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_level(
-    __global const PelDiffusionFrame* frame, __global const float* pyramid,
-    __global const PelProfileTable* tables, __global const float* nodes, __global const uint* tiles,
-    uint level, __global float* sums, __global uint* counters) {
+    __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
+    __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
+    __global const uint* restrict tiles, uint level, __global float* sums, __global uint* restrict counters) {
     __global const PelPyramidLevel* blocks = &frame->level[level];
     const uint across = (blocks->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
     if (y >= blocks->height) return;

@@ -197,10 +197,10 @@ static inline bool scatterPixel(__global const PelDiffusionFrame* frame, __globa
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_light(
-    __global const PelDiffusionFrame* frame, __global const float* pyramid,
-    __global const PelProfileTable* tables, __global const float* nodes, __global const uint* parts,
-    __global const PelLightMap* maps, uint mapCount, __global const float* lights, __global uchar* out,
-    __global uint* counters) {
+    __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
+    __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
+    __global const uint* restrict parts, __global const PelLightMap* restrict maps, uint mapCount,
+    __global const float* restrict lights, __global uchar* out, __global uint* restrict counters) {
     const uint count = frame->tilesX * frame->tilesY;
     uint pixels = 0, blocks = 0, texels = 0;
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {

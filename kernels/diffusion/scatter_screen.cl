@@ -134,10 +134,10 @@ static inline void fetchNextTile(__global const PelDiffusionFrame* frame, __glob
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void scatter_screen(
-    __global const PelDiffusionFrame* frame, __global const float* pyramid,
-    __global const PelProfileTable* tables, __global const float* nodes, __global const uint* tiles,
-    __global const float* sums, __global const float* hidden, __global uchar* irradiance, __global uchar* out,
-    __global uint* counters) {
+    __global const PelDiffusionFrame* restrict frame, __global const float* restrict pyramid,
+    __global const PelProfileTable* restrict tables, __global const float* restrict nodes,
+    __global const uint* restrict tiles, __global const float* sums, __global const float* restrict hidden,
+    __global uchar* irradiance, __global uchar* out, __global uint* restrict counters) {
     // Each group takes a run of adjacent tiles, so that their data stay in the cache.
     const uint count = frame->tilesX * frame->tilesY, groups = get_num_groups(0), group = get_group_id(0);
     const uint end = (uint)((ulong)count * (group + 1) / groups);

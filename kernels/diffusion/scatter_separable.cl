@@ -98,9 +98,10 @@ static inline float4 filterPixel(__global const PelGatherFrame* frame, __global 
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void filter_rows(
-    __global const PelGatherFrame* frame, __global const float* points,
-    __global const PelGatherMaterial* materials, __global const PelGatherTap* taps,
-    __global const float* nodes, __global const uint* tiles, __global float* rows, __global uint* counters) {
+    __global const PelGatherFrame* restrict frame, __global const float* restrict points,
+    __global const PelGatherMaterial* restrict materials, __global const PelGatherTap* restrict taps,
+    __global const float* restrict nodes, __global const uint* restrict tiles, __global float* rows,
+    __global uint* restrict counters) {
     const uint count = frame->tilesX * frame->tilesY;
     uint taken = 0;
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {
@@ -123,10 +124,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void f
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void filter_columns(
-    __global const PelGatherFrame* frame, __global const float* points,
-    __global const PelGatherMaterial* materials, __global const PelGatherTap* taps,
-    __global const float* nodes, __global const uint* tiles, __global const float* rows,
-    __global uchar* irradiance, __global uchar* out, __global uint* counters) {
+    __global const PelGatherFrame* restrict frame, __global const float* restrict points,
+    __global const PelGatherMaterial* restrict materials, __global const PelGatherTap* restrict taps,
+    __global const float* restrict nodes, __global const uint* restrict tiles, __global const float* rows,
+    __global uchar* irradiance, __global uchar* out, __global uint* restrict counters) {
     const uint count = frame->tilesX * frame->tilesY;
     uint pixels = 0, taken = 0;
     for (uint tile = get_group_id(0); tile < count; tile += get_num_groups(0)) {

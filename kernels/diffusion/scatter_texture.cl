@@ -28,8 +28,9 @@ static inline Vec3w albedoAt(__global const PelTextureFrame* frame, __global uch
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_light(
-    __global const PelTextureFrame* frame, __global const float4* stretch, __global uchar* irradiance,
-    __global uchar* albedo, __global float4* light, __global uint* counters) {
+    __global const PelTextureFrame* restrict frame, __global const float4* restrict stretch,
+    __global uchar* irradiance, __global uchar* albedo, __global float4* light,
+    __global uint* restrict counters) {
     const uint x = get_global_id(0) % frame->width, y = get_global_id(0) / frame->width;
     if (y >= frame->height) return;
     const size_t at = (size_t)y * frame->width + x;
@@ -79,9 +80,9 @@ static inline float4 blurTexel(__global const float4* stretch, __global const fl
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_blur(
-    __global const PelTextureFrame* frame, __global const PelTextureBlur* blurs, uint which,
-    __global const float4* stretch, __global const uint* tiles, __global const float4* light,
-    __global float4* blurred, __global float4* result) {
+    __global const PelTextureFrame* restrict frame, __global const PelTextureBlur* restrict blurs, uint which,
+    __global const float4* restrict stretch, __global const uint* restrict tiles,
+    __global const float4* light, __global float4* blurred, __global float4* result) {
     __global const PelTextureBlur* blur = &blurs[which];
     const uint count = frame->tilesX * ((frame->height + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE);
     const bool down = blur->down != 0;
@@ -104,8 +105,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void tex
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_result(
-    __global const PelTextureFrame* frame, __global const float4* light, __global const float4* result,
-    __global uchar* albedo, __global uchar* out) {
+    __global const PelTextureFrame* restrict frame, __global const float4* light,
+    __global const float4* result, __global uchar* albedo, __global uchar* out) {
     const uint x = get_global_id(0) % frame->width, y = get_global_id(0) / frame->width;
     if (y >= frame->height) return;
     const size_t at = (size_t)y * frame->width + x;

@@ -62,8 +62,8 @@ static inline void copyPoints(__global const PelDiffusionFrame* frame, __global 
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void surface_points(
-    __global const PelDiffusionFrame* frame, __global uchar* irradiance, __global uchar* position,
-    __global uchar* ids, __global float* pyramid, __global uint* counters) {
+    __global const PelDiffusionFrame* restrict frame, __global uchar* irradiance, __global uchar* position,
+    __global uchar* ids, __global float* pyramid, __global uint* restrict counters) {
     const uint y = get_global_id(0) / PEL_ROW_PARTS, part = get_global_id(0) % PEL_ROW_PARTS;
     if (y >= frame->height) return;
     const uint vectors = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH;
@@ -101,7 +101,7 @@ static inline Step shorterStep(__global const float* pyramid, size_t here, long 
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void surface_areas(
-    __global const PelDiffusionFrame* frame, __global float* pyramid) {
+    __global const PelDiffusionFrame* restrict frame, __global float* pyramid) {
     const uint across = (frame->width + PEL_WIDTH - 1) / PEL_WIDTH, y = itemOfFolded() / across;
     if (y >= frame->height) return;
     const uint x = itemOfFolded() % across * PEL_WIDTH;  // beyond the last column lies the guard

@@ -204,7 +204,7 @@ static inline void surfaceAdd(Vec3w* total, Vec3w* lost, Vec3w term) {
 
 __kernel __attribute__((reqd_work_group_size(PEL_GROUP, 1, 1))) void surface_integral(
     SurfaceSum sum, __global const SurfaceNode* nodes, __global const SurfaceTriangle* triangles,
-    __global const float4* table, __global const float* points, VertexLayout pointLayout,
+    __global const float4* table, __global const float* restrict points, VertexLayout pointLayout,
     __global float* result, VertexLayout resultLayout, uint first, uint end) {
     const uint begin = first + get_global_id(0) * PEL_WIDTH;
     if (begin >= end) return;

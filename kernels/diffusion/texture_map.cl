@@ -11,8 +11,8 @@
 #define INSIDE -1e-5f  // share of a vertex at the border, with the rounding of its texture coordinates
 
 __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_owner(
-    __global const PelTextureFrame* frame, __global const uint* indices, __global const float* uvs,
-    __global uint* owners) {
+    __global const PelTextureFrame* restrict frame, __global const uint* restrict indices,
+    __global const float* restrict uvs, __global uint* owners) {
     const uint triangle = get_global_id(0);
     if (triangle >= frame->triangles) return;
     const UvTriangle t = uvTriangle(frame, indices, uvs, triangle);
@@ -29,8 +29,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void tex
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_tiles(
-    __global const PelTextureFrame* frame, __global const uint* owners, __global uint* tiles,
-    __global uint* counters) {
+    __global const PelTextureFrame* restrict frame, __global const uint* restrict owners,
+    __global uint* tiles, __global uint* restrict counters) {
     const uint tile = get_global_id(0), tilesY = (frame->height + PEL_TEXTURE_TILE - 1) / PEL_TEXTURE_TILE;
     if (tile >= frame->tilesX * tilesY) return;
     const uint left = tile % frame->tilesX * PEL_TEXTURE_TILE, top = tile / frame->tilesX * PEL_TEXTURE_TILE;
@@ -45,9 +45,10 @@ __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void tex
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_stretch(
-    __global const PelTextureFrame* frame, __global const uint* indices, __global const float* uvs,
-    __global const uint* islands, __global const float* positions, VertexLayout layout,
-    __global const uint* owners, __global float4* stretch) {
+    __global const PelTextureFrame* restrict frame, __global const uint* restrict indices,
+    __global const float* restrict uvs, __global const uint* restrict islands,
+    __global const float* restrict positions, VertexLayout layout, __global const uint* restrict owners,
+    __global float4* stretch) {
     const size_t texel = get_global_id(0);
     if (texel >= (size_t)frame->width * frame->height) return;
     float4 result = (float4)(0.0f);
@@ -82,9 +83,9 @@ static inline uint nearestOwner(__global const PelTextureFrame* frame, __global 
 }
 
 __kernel __attribute__((reqd_work_group_size(PEL_TEXTURE_GROUP, 1, 1))) void texture_draw(
-    __global const PelTextureFrame* frame, __global const uint* indices, __global const float* uvs,
-    __global const float* values, VertexLayout layout, __global const uint* owners, uint unit,
-    __global uchar* out) {
+    __global const PelTextureFrame* restrict frame, __global const uint* restrict indices,
+    __global const float* restrict uvs, __global const float* restrict values, VertexLayout layout,
+    __global const uint* restrict owners, uint unit, __global uchar* out) {
     const uint x = get_global_id(0) % frame->width, y = get_global_id(0) / frame->width;
     if (y >= frame->height) return;
     const uint owner = nearestOwner(frame, owners, (int)x, (int)y);
