@@ -1,5 +1,5 @@
-// The shader's pass that measures mean curvature for the gain of curved bodies (kernels/diffusion/mean_curvature.cl),
-// where the caller brings none.
+// The shader's pass that measures mean curvature for the gain of curved bodies
+// (kernels/diffusion/mean_curvature.cl), where the caller brings none.
 #include <algorithm>
 
 #include "diffusion/passes.h"

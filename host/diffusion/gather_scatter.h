@@ -1,5 +1,5 @@
-// Irradiance of a picture scattered by a few taps: on a disk (kernels/diffusion/scatter_disk.cl) or along two lines
-// (scatter_separable.cl).
+// Irradiance of a picture scattered by a few taps: on a disk (kernels/diffusion/scatter_disk.cl) or along
+// two lines (scatter_separable.cl).
 #pragma once
 #include <bitset>
 #include <map>

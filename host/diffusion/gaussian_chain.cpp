@@ -8,7 +8,8 @@ namespace {
 
 constexpr int samples = 96;
 
-// Weights of 0 and more that bring the sum of the columns nearest to `wanted`, one after the other until they settle.
+// Weights of 0 and more that bring the sum of the columns nearest to `wanted`, one after the other until
+// they settle.
 std::vector<double> fitWeights(const std::vector<std::vector<double>>& columns,
                                const std::vector<double>& wanted) {
     std::vector<double> weights(columns.size(), 1.0 / double(columns.size())), left = wanted;

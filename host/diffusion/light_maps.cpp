@@ -48,14 +48,16 @@ Vec rowOf(const Matrix& m, int r) {
     return {m[4 * r], m[4 * r + 1], m[4 * r + 2]};
 }
 
-// Of the length that u, or v, spans over the homogeneous coordinate: how much a step across the light changes it.
+// Of the length that u, or v, spans over the homogeneous coordinate: how much a step across the light
+// changes it.
 double perLength(const Matrix& m, int r) {
     const Vec row = rowOf(m, r), forward = rowOf(m, 3);
     const double along = forward.dot(forward) > 0 ? row.dot(forward) / forward.dot(forward) : 0;
     return Vec{row.x - along * forward.x, row.y - along * forward.y, row.z - along * forward.z}.length();
 }
 
-// A face of a cube as a perspective map: rows of components along u, v and the axis (kernels/lib/image/cube_map.clh).
+// A face of a cube as a perspective map: rows of components along u, v and the axis
+// (kernels/lib/image/cube_map.clh).
 Matrix faceMatrix(const float (&toCube)[16], int face, const PelLight& light) {
     const auto row = [&](int r, double sign) {
         std::array<double, 4> v;

@@ -12,10 +12,11 @@ struct LightMap {
     ImageView image;
 };
 
-// Maps of all lights that shine: cascades from the finest on, faces of cubes one by one. No more than PEL_LIGHT_MAPS; a
-// light of which one would be too many is left out. `origin`: of the kernels' positions.
+// Maps of all lights that shine: cascades from the finest on, faces of cubes one by one. No more than
+// PEL_LIGHT_MAPS; a light of which one would be too many is left out. `origin`: of the kernels' positions.
 //
-// Of parallel maps, `step` by `step` texels are taken together that are no wider than `coarsest`, a length; 0: one by one.
+// Of parallel maps, `step` by `step` texels are taken together that are no wider than `coarsest`, a length;
+// 0: one by one.
 std::vector<LightMap> lightMaps(const std::vector<ShaderLight>& lights, const float origin[3],
                                 double coarsest = 0);
 

@@ -25,8 +25,8 @@ Rgb lightBetween(const ProfileShape& shape, double begin, double end) {
     return sum;
 }
 
-// Mean of R over a square at a distance that is as wide as blocks of a ring are at theirs, by 3 x 3 points of Gauss
-// (PEL_BLOCK_WIDTH). R bends upwards: its value at the middle would lose 2 to 4 % of the light.
+// Mean of R over a square at a distance that is as wide as blocks of a ring are at theirs, by 3 x 3 points
+// of Gauss (PEL_BLOCK_WIDTH). R bends upwards: its value at the middle would lose 2 to 4 % of the light.
 Rgb densityOfBlock(const ProfileShape& shape, double distance) {
     constexpr double at[] = {-0.7745966692414834, 0, 0.7745966692414834},
                      weights[] = {5 / 18., 8 / 18., 5 / 18.};
@@ -45,7 +45,8 @@ double radiusOfNode(uint32_t bits) {
     return std::sqrt(double(std::bit_cast<float>(bits)));
 }
 
-// What a look-up between two nodes returns too much in the mean: lines between the values of a curve that bends upwards lie above it.
+// What a look-up between two nodes returns too much in the mean: lines between the values of a curve that
+// bends upwards lie above it.
 template <class Density>
 Rgb aboveCurve(const Density& density, uint32_t bits, uint32_t step) {
     const Rgb a = density(radiusOfNode(bits)), b = density(radiusOfNode(bits + step)),
@@ -86,8 +87,8 @@ void solve(std::vector<double>& a, std::vector<Rgb>& b) {
         }
 }
 
-// Least squares of the light in each part of an octave, from the reach down to a 2^8th of it. The terms are so alike that a small
-// multiple of the unit matrix keeps them apart.
+// Least squares of the light in each part of an octave, from the reach down to a 2^8th of it. The terms are
+// so alike that a small multiple of the unit matrix keeps them apart.
 template <class Density>
 std::vector<Rgb> gaussiansOf(const Density& density, double widest, double reach) {
     constexpr int perTerm = 16, n = PEL_PROFILE_TERMS;
@@ -100,7 +101,8 @@ std::vector<Rgb> gaussiansOf(const Density& density, double widest, double reach
         for (int i = 0; i < n; ++i)
             columns[i].push_back(lightPerLog * std::exp2(-widest * std::exp2(i) * r * r));
     }
-    // In between an error of the light and one relative to it: tails are little light, and all that comes through an ear.
+    // In between an error of the light and one relative to it: tails are little light, and all that comes
+    // through an ear.
     double most = 0;
     for (const Rgb& l : light) most = std::max({most, l[0], l[1], l[2]});
     for (size_t s = 0; s < light.size(); ++s) {
@@ -171,7 +173,7 @@ ProfileNodes profileNodes(const ProfileShape& shape, double scale) {
     ProfileNodes result;
     const double reach = radiusOfNode(firstBits + uint32_t(nodes - 1) * step);
     const double fall = 4 / (reach * reach);  // of the widest Gaussian, which is 1/16 at the reach
-    result.table = {0, uint32_t(nodes), firstBits, float(reach), float(fall)};
+    result.table = {0, uint32_t(nodes), firstBits, float(reach), float(fall), 0};
     result.values.resize(12 * nodes);
     const Rgb all = shares[nodes - 1];
     for (size_t k = 0; k < nodes; ++k) {

@@ -43,6 +43,7 @@ void ScreenScatter::sendTables(const std::map<uint32_t, Material>& materials) {
     for (const Material& material : distinct) {
         ProfileNodes nodes = profileNodes(material.profile->shape(), material.scale);
         nodes.table.offset = uint32_t(values.size() / 4);
+        nodes.table.volume = material.volume;
         tables.push_back(nodes.table);
         narrowest_ = narrowest_ > 0 ? std::min(narrowest_, double(nodes.table.reach)) : nodes.table.reach;
         values.insert(values.end(), nodes.values.begin(), nodes.values.end());

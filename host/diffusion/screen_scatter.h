@@ -39,8 +39,9 @@ class ScreenScatter {
     struct Material {
         Ref<Profile> profile;
         double scale;
+        bool volume = false;  // the medium is known: light that would cross air counts less
         bool operator==(const Material& other) const {
-            return profile.get() == other.profile.get() && scale == other.scale;
+            return profile.get() == other.profile.get() && scale == other.scale && volume == other.volume;
         }
     };
     // Sets the lights, before `programs` is called; none by default.

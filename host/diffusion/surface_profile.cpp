@@ -97,8 +97,8 @@ SurfaceProfile tabulateProfile(const ProfileShape& shape, double scale,
     table.firstLog2 = first + double(low) / PEL_SURFACE_ROWS + std::log2(scale);
     table.reach = at(high) * scale;
     for (int c = 0; c < 3; ++c) table.cut[c] = cut[c] * scale;
-    // Where R steps or has kinks, the rule along edges has an error proportional to the step of s^2 R and to the
-    // square of the interval.
+    // Where R steps or has kinks, the rule along edges has an error proportional to the step of s^2 R and
+    // to the square of the interval.
     constexpr double atOnce = 1.25, wanted = 1e-5, errorOfStep = 2.5e-3, kinks = 0.2;
     double step = knots.empty() ? 0 : kinks;
     for (int c = 0; c < 3; ++c)

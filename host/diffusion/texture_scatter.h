@@ -1,4 +1,5 @@
-// PelTextureScatter: scattering in the texture of a mesh (kernels/diffusion/texture_map.cl and scatter_texture.cl).
+// PelTextureScatter: scattering in the texture of a mesh (kernels/diffusion/texture_map.cl and
+// scatter_texture.cl).
 #pragma once
 #include <vector>
 

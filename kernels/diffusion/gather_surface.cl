@@ -79,7 +79,8 @@ static inline float3 pointOf(__global const float* points, size_t pixel) {
     return vload3(0, points + PEL_GATHER_FLOATS * pixel + PEL_GATHER_POINT);
 }
 
-// The shorter of the steps to the neighbours that are of the same object: the longer one may lead off the surface.
+// The shorter of the steps to the neighbours that are of the same object: the longer one may lead off the
+// surface.
 static inline Step shorterStep(__global const float* points, size_t here, long to, bool before, bool after,
                                float3 p, uint id) {
     Step step = {(float3)(0.0f), FLT_MAX};

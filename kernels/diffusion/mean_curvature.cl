@@ -1,14 +1,15 @@
-// Signed mean curvature of the surface under each pixel, from positions and normals (docs/mathematics.md, section 12).
+// Signed mean curvature of the surface under each pixel, from positions and normals (docs/mathematics.md,
+// section 12).
 //
-// Differences are taken between pixels that lie a window's length to both sides, along rows and along columns. With
-// P_u, P_v the differences of positions and N_u, N_v those of normals,
-// H = (N_u.P_u G - (N_u.P_v + N_v.P_u) F + N_v.P_v E) / 2 (E G - F^2), with E = P_u.P_u, F = P_u.P_v, G = P_v.P_v.
-// The pixel itself takes the place of a neighbour that is missing, of another material, or on another surface.
+// Differences are taken between pixels that lie a window's length to both sides, along rows and along
+// columns. With P_u, P_v the differences of positions and N_u, N_v those of normals, H = (N_u.P_u G -
+// (N_u.P_v + N_v.P_u) F + N_v.P_v E) / 2 (E G - F^2), with E = P_u.P_u, F = P_u.P_v, G = P_v.P_v. The pixel
+// itself takes the place of a neighbour that is missing, of another material, or on another surface.
 //
-// Inputs: images of unit normals, of positions (length) or depth, and of ids (0 is background). Output: an image of
-// 1/length, positive on convex surface; 0 where no difference can be taken. One work-item: PEL_WIDTH pixels of a row.
-// Variants: PEL_FORMAT_NORMAL, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH, PEL_FORMAT_MATERIAL (0: everything is id 1),
-// PEL_FORMAT_OUT.
+// Inputs: images of unit normals, of positions (length) or depth, and of ids (0 is background). Output: an
+// image of 1/length, positive on convex surface; 0 where no difference can be taken. One work-item:
+// PEL_WIDTH pixels of a row. Variants: PEL_FORMAT_NORMAL, PEL_FORMAT_POSITION or PEL_FORMAT_DEPTH,
+// PEL_FORMAT_MATERIAL (0: everything is id 1), PEL_FORMAT_OUT.
 #include "lib/diffusion/item.clh"
 #include "lib/diffusion/lanes.clh"
 #include "lib/image/image.clh"

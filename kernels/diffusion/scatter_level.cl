@@ -47,7 +47,8 @@ __kernel __attribute__((reqd_work_group_size(PEL_DIFFUSION_GROUP, 1, 1))) void s
     const Blocks here = loadBlocks(at, stride);
     const maskw on = here.area > 0.0f;
     if (!anyw(on)) return;
-    const Slope slope = slopeAt(at, stride, &here, loadPlanes3(at + PEL_PLANE_RED * stride, stride), on);
+    const Slope slope =
+        slopeAt(at, stride, &here, loadPlanes3(at + PEL_PLANE_RED * stride, stride), frame->facing, on);
     Sums result = noSums();
     if (level + 1 < frame->levels) {
         const Interpolated coarser = interpolateSums(frame, pyramid, sums, NULL, level + 1, x, y, &here, on);

@@ -78,7 +78,7 @@ static inline Vec3w scatterPixels(__global const PelDiffusionFrame* frame, __glo
     const uint stride = frame->level[0].stride;
     __global const float* at = pyramid + pyramidRow(&frame->level[0], (int)y) + x;
     const Vec3w e = loadPlanes3(at + PEL_PLANE_RED * stride, stride);
-    const Slope slope = slopeAt(at, stride, here, e, active);
+    const Slope slope = slopeAt(at, stride, here, e, frame->facing, active);
     Interpolated all = interpolateSums(frame, pyramid, sums, hidden, 1, x, y, here, active);
     all.sums.light = movedLight(&all.sums, &slope, all.place, here);
     // Pixels are too coarse for their weights to add up: within the ring of level 1 no weight is missing.

@@ -1,5 +1,5 @@
-// The surface integral (section 9 of the mathematics): S(x) = sum over triangles of the integral of R(|x - y|) E(y) dA, with E
-// linear on each triangle.
+// The surface integral (docs/mathematics.md, section 9): S(x) = sum over triangles of the integral of
+// R(|x - y|) E(y) dA, with E linear on each triangle.
 //
 // Far sets of triangles count as points, from the distance on that host/diffusion/surface_tree.cpp computed.
 // Near triangles are integrated over their borders. Let M(r) = integral of R(s) s ds, and let x be at height
@@ -9,7 +9,7 @@
 // for every profile and contain no 1/r. Along an edge whose line passes p at distance D, t = D sinh u makes
 // both integrands smooth at every scale.
 //
-// Inputs: a tree of triangles, a table of M, points (length). Output: RGB per point; 0 for a point that is not finite.
+// Inputs: a tree of triangles, a table of M, points (length). Output: RGB per point; 0 for points with NaN or Inf.
 // One work-item: PEL_WIDTH consecutive points, which walk the tree together.
 
 #include "lib/vector.clh"

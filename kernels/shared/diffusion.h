@@ -63,6 +63,7 @@ typedef struct PelProfileTable {
     PelUint32 firstBits;  // of the first node's squared distance
     float reach;          // length beyond which nothing is left
     float widest;         // 1/length^2: log2 of the widest Gaussian falls by so much
+    PelUint32 volume;     // 1: samples that light would reach through air count less
 } PelProfileTable;
 
 typedef struct PelPyramidLevel {
@@ -100,7 +101,7 @@ typedef struct PelDiffusionFrame {
 #define PEL_DIFFUSION_COUNTERS 6
 
 #ifndef __OPENCL_VERSION__
-static_assert(sizeof(PelProfileTable) == 20 && sizeof(PelPyramidLevel) == 16);
+static_assert(sizeof(PelProfileTable) == 24 && sizeof(PelPyramidLevel) == 16);
 static_assert(sizeof(PelDiffusionFrame) ==
               4 * (10 + 3 + 16 + PEL_DIFFUSION_IDS) + 4 * 32 + PEL_PYRAMID_LEVELS * 16);
 #endif

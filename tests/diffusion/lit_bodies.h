@@ -27,8 +27,8 @@ inline Body ball(double radius, int rings) {
     return {"ball", sample::makeSphere(radius, rings, 2 * rings), {}};
 }
 
-// Walls and a floor for a square of (cells + 1)^2 vertices: without them light from below would come through a
-// body that has no thickness.
+// Walls and a floor for a square of (cells + 1)^2 vertices: without them light from below would come
+// through a body that has no thickness.
 inline void closeBelow(sample::Mesh& mesh, int cells, float floor) {
     const auto top = [&](int k) {  // counter-clockwise round the square, seen from above
         const int side = k / cells % 4, i = k % cells, n = cells + 1;

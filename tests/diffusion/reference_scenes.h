@@ -1,5 +1,5 @@
-// Pictures with the shadow map of their light and the surface integral over them: computed by brute force elsewhere (a
-// head), or in closed form (a ball).
+// Pictures with the shadow map of their light and the surface integral over them: computed by brute force
+// elsewhere (a head), or in closed form (a ball).
 #pragma once
 #include <algorithm>
 #include <cstdlib>
@@ -34,7 +34,8 @@ struct ReferenceScene {
     float camera = 60;  // it stands at (0, -camera, 0) and looks along y
 };
 
-// Christensen and Burley's profile with d of 0.29205, 0.10902, 0.05411 mm: the mean free path is d s(A), s = 1.1 for an albedo of 0.8.
+// Christensen and Burley's profile with d of 0.29205, 0.10902, 0.05411 mm: the mean free path is d s(A), s
+// = 1.1 for an albedo of 0.8.
 inline const float meanFreePath[3] = {0.29205f * 1.1f, 0.10902f * 1.1f, 0.05411f * 1.1f};
 inline const float white[3] = {0.8f, 0.8f, 0.8f};
 inline Profile profile() {
@@ -147,7 +148,8 @@ struct Shown {
     double milliseconds;
 };
 
-// By the shader, at an albedo of 1. `given`: with the irradiance of the scene, else with shadows from the map. `taps`: PelMaterial.scatterTaps.
+// By the shader, at an albedo of 1. `given`: with the irradiance of the scene, else with shadows from the
+// map. `taps`: PelMaterial.scatterTaps.
 inline Shown shade(const Device& device, const ReferenceScene& r, PelScattering scattering, bool given,
                    bool withMap = true, uint32_t taps = 0) {
     scatter_scene::ShownImages shown(device, r.side, r.side);
@@ -183,7 +185,8 @@ inline Shown shade(const Device& device, const ReferenceScene& r, PelScattering 
     return {std::move(result), stats, stats.deviceMilliseconds};
 }
 
-// Root mean square per channel over pixels of the reference that are wholly covered, in 1e-4 of radiance. `unlit`: of those without light.
+// Root mean square per channel over pixels of the reference that are wholly covered, in 1e-4 of radiance.
+// `unlit`: of those without light.
 inline std::array<double, 3> error(const ReferenceScene& r, const std::vector<float>& result, bool unlit = false) {
     std::array<double, 3> sum{};
     size_t count = 0;

@@ -1,6 +1,7 @@
-// With default settings `auto` is no further from the surface integral than Lambert with a ray-traced shadow, in no
-// channel and no sub-set, with a few exceptions, which known_worse.h lists with their size. Errors of the methods that
-// read tables or do not scatter are printed beside it, but not tested: these are worse in places.
+// With default settings `auto` is no further from the surface integral than Lambert with a ray-traced
+// shadow, in no channel and no sub-set, with a few exceptions, which known_worse.h lists with their size.
+// Errors of the methods that read tables or do not scatter are printed beside it, but not tested: these are
+// worse in places.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -49,7 +50,8 @@ const Contender contenders[] = {
      true},
 };
 
-// Where a method is further from light than Lambert, measured, in 1e-4 of white: red, green, blue; 0: it is not.
+// Where a method is further from light than Lambert, measured, in 1e-4 of white: red, green, blue; 0: it is
+// not.
 struct Known {
     const char *method, *where, *part;
     double most[3];

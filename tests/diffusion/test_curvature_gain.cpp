@@ -1,5 +1,5 @@
-// The gain of curved bodies (docs/mathematics.md, section 12): the mean curvature that is measured on the screen, and
-// pictures against random walks.
+// The gain of curved bodies (docs/mathematics.md, section 12): the mean curvature that is measured on the
+// screen, and pictures against random walks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,8 @@ namespace {
 constexpr PelScattering methods[] = {PEL_SCATTERING_PREINTEGRATED, PEL_SCATTERING_SEPARABLE,
                                      PEL_SCATTERING_SCREEN, PEL_SCATTERING_LIGHT, PEL_SCATTERING_AUTO};
 
-// A surface z(x, y) seen in parallel, `size` to a pixel, with its normal, and its mean curvature in the middle.
+// A surface z(x, y) seen in parallel, `size` to a pixel, with its normal, and its mean curvature in the
+// middle.
 struct Surface {
     const char* name;
     std::function<double(double, double)> height;

@@ -1,5 +1,5 @@
-// Light scattered from shadow maps: the kernels' pyramids against the sum over every texel and every pixel, for every form of map, and
-// several lights at a time.
+// Light scattered from shadow maps: the kernels' pyramids against the sum over every texel and every pixel,
+// for every form of map, and several lights at a time.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -82,7 +82,8 @@ struct Case {
     reference::ProfilePtr exact;
     double most;  // relative, RMS
 };
-// Far wider than the ball, so that only flux counts; as wide as it, so that places count; and skin, whose narrow Gaussians have tails.
+// Far wider than the ball, so that only flux counts; as wide as it, so that places count; and skin, whose
+// narrow Gaussians have tails.
 std::vector<Case> cases() {
     return {{"flux", Profile::gaussians({{900, {1, 1, 1}}}), reference::gaussiansProfile({{900, {1, 1, 1}}}),
              tolerance::lightFlux},

@@ -1,4 +1,5 @@
-// A thin strip that is lit from behind, before something bright and far away: light comes through it, also where a tile of pixels is mostly what lies behind.
+// A thin strip that is lit from behind, before something bright and far away: light comes through it, also
+// where a tile of pixels is mostly what lies behind.
 #include <gtest/gtest.h>
 
 #include "diffusion/lit_ball.h"

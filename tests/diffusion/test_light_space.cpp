@@ -1,5 +1,5 @@
-// Light that comes through a small ball, from the shadow map of its light: against the surface integral, by quadrature over the ball, for every
-// form of map. And what must hold for any input.
+// Light that comes through a small ball, from the shadow map of its light: against the surface integral, by
+// quadrature over the ball, for every form of map. And what must hold for any input.
 #include <gtest/gtest.h>
 
 #include <cmath>

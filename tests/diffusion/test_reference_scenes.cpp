@@ -58,8 +58,8 @@ constexpr PelScattering byAuto = PEL_SCATTERING_AUTO, byLight = PEL_SCATTERING_L
 
 }  // namespace
 
-// Taps are as near as those of other people's prototypes. Where shadows come from the map alone, blue, which scatters less
-// far than a texel is wide, is wrong at the map's edges.
+// Taps are as near as those of other people's prototypes. Where shadows come from the map alone, blue,
+// which scatters less far than a texel is wide, is wrong at the map's edges.
 TEST(ReferenceScenes, Head) {
     const char *references = folder("PELLUCID_RULER_DIR"), *gbuffers = folder("PELLUCID_GBUFFER_DIR");
     if (!references || !gbuffers)
@@ -72,7 +72,8 @@ TEST(ReferenceScenes, Head) {
             scene, *r,
             {{"auto and map", byAuto, 0, true, true, valuesOf(first ? tolerance::lightHead : tolerance::lightFour)},
              {"auto", byAuto, 0, true, false,
-              first ? Errors{tolerance::headOnScreenRed, tolerance::headOnScreenGreen, tolerance::headOnScreenBlue} : traced},
+              first ? Errors{tolerance::headOnScreenRed, tolerance::headOnScreenGreen, tolerance::headOnScreenBlue}
+                    : traced},
              {"light", byLight, 0, true, true,
               valuesOf(first ? tolerance::lightHeadOfLight : tolerance::lightFourOfLight)},
              {"auto, shadows of the map",

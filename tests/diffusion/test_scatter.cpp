@@ -143,7 +143,8 @@ TEST(Scatter, NoLightIsLostOnAPlane) {
     EXPECT_GT(result.scattered[3 * p.at(uint32_t(middle / size) + 13, uint32_t(middle / size))], 0.1f);
 }
 
-// Its light comes from blocks of every level, the coarsest too. The sum over a picture of an edge has a closed form for a Gaussian.
+// Its light comes from blocks of every level, the coarsest too. The sum over a picture of an edge has a
+// closed form for a Gaussian.
 TEST(Scatter, AProfileAsWideAsThePicture) {
     const uint32_t width = sized(640u, 64u), height = sized(320u, 32u);
     const double edge = 0.4 * width, sigma = 0.15 * width;

@@ -1,4 +1,5 @@
-// Bad and extreme input, through the shader, for every method: a finite result that is documented, or an error that says what is wrong.
+// Bad and extreme input, through the shader, for every method: a finite result that is documented, or an
+// error that says what is wrong.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -99,7 +100,8 @@ void expectLight(const std::vector<float>& light, float most, const std::string&
 
 }  // namespace
 
-// A pixel without a number in its light or normal is counted and black; its neighbours miss its light, and beyond the profile's reach nothing changes.
+// A pixel without a number in its light or normal is counted and black; its neighbours miss its light, and
+// beyond the profile's reach nothing changes.
 TEST(ScatterBadInput, NoNumberSpreadsNoFurtherThanTheProfile) {
     const Frame clean(sized(64u, 24u));
     const Picture& p = clean.picture;
@@ -115,7 +117,7 @@ TEST(ScatterBadInput, NoNumberSpreadsNoFurtherThanTheProfile) {
                               : f.normals)[3 * bad + 1] = what[0] == 'p' ? infinity : notANumber;
             const Lit before = clean.shade(way), after = f.shade(way);
             const std::string where = std::string(way.name) + ", " + what;
-            // Where nothing but scattering reads its place a pixel keeps its irradiance.
+            // If only scattering reads the position, the pixel keeps its irradiance.
             const bool keeps = what[0] == 'p' && way.scattering != PEL_SCATTERING_PREINTEGRATED;
             EXPECT_EQ(after.stats.pixelsInvalid, keeps ? 0u : 1u) << where;
             if (keeps && way.gathers) {
@@ -222,8 +224,8 @@ TEST(ScatterBadInput, EveryPixelOfItsOwnId) {
     }
 }
 
-// Empty maps, maps of NaN, and maps that look elsewhere: as if there were none; `light`, which takes all that is further than some pixels from
-// its maps, only loses light.
+// Empty maps, maps of NaN, and maps that look elsewhere: as if there were none; `light`, which takes all
+// that is further than some pixels from its maps, only loses light.
 TEST(ScatterBadInput, MapsWithoutTheObject) {
     const Frame clean(sized(40u, 20u));
     Frame without = clean;

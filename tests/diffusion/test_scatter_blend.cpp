@@ -1,4 +1,5 @@
-// What lies before and after the methods of scattering: albedo before and after, light from behind thin sheets, weights, and adding.
+// What lies before and after the methods of scattering: albedo before and after, light from behind thin
+// sheets, weights, and adding.
 #include <gtest/gtest.h>
 
 #include <functional>

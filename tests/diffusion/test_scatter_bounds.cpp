@@ -1,5 +1,5 @@
-// What no sum over lit surface can bring: less than the darkest or more than the brightest irradiance of the picture, and, in a dark gap between lit
-// walls, less light of a channel that scatters farther.
+// What no sum over lit surface can bring: less than the darkest or more than the brightest irradiance of
+// the picture, and, in a dark gap between lit walls, less light of a channel that scatters farther.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,8 +11,8 @@ using namespace scatter_scene;
 
 namespace {
 
-// Two rods that touch, as lips do, seen along -z and lit from above, the upper one casting its shadow on the lower: below the middle of the upper one
-// lies a dark gap, which ends at a limb.
+// Two rods that touch, as lips do, seen along -z and lit from above, the upper one casting its shadow on
+// the lower: below the middle of the upper one lies a dark gap, which ends at a limb.
 Picture lips(uint32_t side, double size, double radius, double elevation, double turn) {
     Picture p(side, side);
     const Vec3 toLight{0, std::sin(elevation), std::cos(elevation)};
@@ -34,7 +34,8 @@ Picture lips(uint32_t side, double size, double radius, double elevation, double
     return p;
 }
 
-// What is wrong with a picture: by how much it is brighter than all irradiance, and a dark pixel's channel darker than one that scatters less far.
+// What is wrong with a picture: by how much it is brighter than all irradiance, and a dark pixel's channel
+// darker than one that scatters less far.
 struct Wrong {
     double brighter = 0, bluer = 0;
     size_t dark = 0;

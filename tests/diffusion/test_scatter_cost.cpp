@@ -128,7 +128,8 @@ TEST(ScatterCost, WhatIsNotCoveredCostsNothing) {
     }
 }
 
-// Nothing is lit: every kernel leaves every tile, and the picture stays. No light at all: no kernel of a method is launched.
+// Nothing is lit: every kernel leaves every tile, and the picture stays. No light at all: no kernel of a
+// method is launched.
 TEST(ScatterCost, WithoutLightNothingIsDone) {
     Picture p = stripes(sized(128u, 64u), 128);
     std::fill(p.irradiance.begin(), p.irradiance.end(), 0.0f);

@@ -1,5 +1,6 @@
-// Objects keep memory, tables and levels from one picture to the next. Each picture of a sequence must equal, to the
-// bit, what a new object makes of it. And the smallest pictures: single pixels, lines, two tiles.
+// Objects keep memory, tables and levels from one picture to the next. Each picture of a sequence must
+// equal, to the bit, what a new object makes of it. And the smallest pictures: single pixels, lines, two
+// tiles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -202,8 +203,9 @@ TEST(SmallPictures, ASinglePixelKeepsItsLight) {
     }
 }
 
-// Tiles are chosen alike from all sides: pixels lie close together in one tile of two and far apart in the other, and
-// the picture is mirrored and transposed. Contrasts pass the bound, so that tiles begin to scatter on the way.
+// Tiles are chosen alike from all sides: pixels lie close together in one tile of two and far apart in the
+// other, and the picture is mirrored and transposed. Contrasts pass the bound, so that tiles begin to
+// scatter on the way.
 TEST(SmallPictures, TwoTilesAreChosenAlikeFromEverySide) {
     uint64_t tapped[3] = {};
     const int contrasts = 60;
@@ -226,7 +228,8 @@ TEST(SmallPictures, TwoTilesAreChosenAlikeFromEverySide) {
     EXPECT_EQ(tapped[2], tapped[0]) << "transposed";
 }
 
-// Finite values whose sums overflow are treated as NaN and Inf are: the pixel keeps its value, and is counted.
+// Finite values whose sums overflow are treated as NaN and Inf are: the pixel keeps its value, and is
+// counted.
 TEST(SmallPictures, LightTooLargeToSumStaysWhereItIs) {
     for (const auto& [method, taps] : {std::pair{screen, 0u}, {screen, 16u}, {separable, 9u}}) {
         PelScatterControls controls = pelScatterControlsDefaults();

@@ -1,4 +1,5 @@
-// What a picture does while camera or light move slowly, and between tiles that took different ways: nothing that light does not do.
+// What a picture does while camera or light move slowly, and between tiles that took different ways:
+// nothing that light does not do.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -149,7 +150,8 @@ struct Steps {
     }
 };
 
-// 60 frames in steps of a tenth of a pixel of the camera, or of 0.2 degrees of the light. `light`: fills in Frame.light, if given.
+// 60 frames in steps of a tenth of a pixel of the camera, or of 0.2 degrees of the light. `light`: fills in
+// Frame.light, if given.
 Steps stepsOf(const Stage& stage, double azimuth, bool cameraMoves, const std::function<void(Frame&)>& light) {
     const Device device("");
     const Profile skin = Profile::skin();

@@ -176,7 +176,7 @@ TEST(SurfaceIntegral, UnitRadiusCutAndPlaceOfTheLight) {
     }
 }
 
-// The mesh's own size and place change nothing but the unit.
+// Size and position of the mesh change only the unit.
 TEST(SurfaceIntegral, AnyUnit) {
     const Mesh mesh = sheet(5, 1.0f);
     const std::vector<float> points = pointsOn(mesh, 40), base = integrate(mesh.desc(), points);
@@ -285,10 +285,10 @@ TEST(SurfaceIntegral, NothingLitNoPointsAndPointsThatAreNoNumbers) {
 }
 
 TEST(SurfaceIntegral, BadInputIsRefusedByName) {
-    const auto refused = [](const char* message, const auto& spoil) {
+    const auto refused = [](const char* message, const auto& corrupt) {
         Mesh mesh = sheet(2, 1);
         PelSurfaceIntegralDesc desc = mesh.desc();
-        spoil(mesh, desc);
+        corrupt(mesh, desc);
         try {
             integrate(desc, {0, 0, 0});
             ADD_FAILURE() << "accepted: " << message;

@@ -293,9 +293,9 @@ TEST(TextureScatter, BadInput) {
         EXPECT_THROW(t.scatter.execute(params, rgb(e), nullptr, rgb(out)), pellucid::Error);
     }
     // NaN stays where it is, and is counted; positions that are none leave light as it is.
-    std::vector<float> spoiled(3 * 256, 1.0f);
-    spoiled[3 * (16 * 8 + 8)] = NAN;
-    for (float v : t.run(spoiled, Profile::skin())) ASSERT_TRUE(std::isfinite(v));
+    std::vector<float> corrupted(3 * 256, 1.0f);
+    corrupted[3 * (16 * 8 + 8)] = NAN;
+    for (float v : t.run(corrupted, Profile::skin())) ASSERT_TRUE(std::isfinite(v));
     EXPECT_EQ(t.scatter.stats().texelsInvalid, 1u);
     for (float& p : m.positions) p = INFINITY;
     const Buffer nowhere(device(), m.positions);

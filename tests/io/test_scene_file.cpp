@@ -128,7 +128,7 @@ TEST_F(SceneFileTest, WrittenIsRead) {
     scene.materials[0].normalMap = path("normals.png");
     scene.materials[0].material.uvScale = 12.5f;
     scene.materials[0].material.transmission = 0.25f;
-    scene.materials[0].material.curvatureGain = 1;
+    scene.materials[0].material.curvatureGain = 0.5f;
     scene.materials[0].profile = path("of/mine.toml");
     scene.materials[0].preset = ScenePreset::faceworks;
     scene.options.millimetresPerUnit = 10;
