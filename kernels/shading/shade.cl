@@ -58,7 +58,7 @@ static inline Vec3w shadeMaterial(const Scene* scene, __global const PelShadeMat
                                                   material->albedoAfter));
         if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = diffuse;
     } else if (HAS(PEL_BIT_AMBIENT)) {
-        diffuse = withGain(material, p, ambientOfPixels(scene, vload3(0, material->normalBlend), p));
+        diffuse = ambientOfPixels(scene, vload3(0, material->normalBlend), p);
         if (PEL_FORMAT_AMBIENT_OCCLUSION) diffuse = scale3(diffuse, p->occlusion);
         if (PEL_FORMAT_OUT_DIFFUSE) parts->diffuse = diffuse;
     }

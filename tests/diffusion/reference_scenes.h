@@ -30,8 +30,9 @@ struct ReferenceScene {
     std::vector<float> map;
     PelLight light = pelLightDefaults();
     float profileScale = 1;
-    float gain = 0;     // PelMaterial.curvatureGain; 0: as the surface integral, which has no volume
-    float camera = 60;  // it stands at (0, -camera, 0) and looks along y
+    float curvature = 0;  // 1/cm, of the whole surface, for tables; 0: not known
+    float gain = 0;       // PelMaterial.curvatureGain; 0: as the surface integral, which has no volume
+    float camera = 60;    // it stands at (0, -camera, 0) and looks along y
 };
 
 // Christensen and Burley's profile with d of 0.29205, 0.10902, 0.05411 mm: the mean free path is d s(A), s
@@ -122,6 +123,7 @@ inline ReferenceScene ball(const std::string& gbuffers) {
     ReferenceScene r;
     readGbuffer(r, gbuffers + "/sphere10_gbuf.exr");
     r.camera = 10;
+    r.curvature = 1;
     addMap(r, gbuffers + "/sphere10_side");
     const auto exact =
         reference::burleyProfile({meanFreePath[0], meanFreePath[1], meanFreePath[2]}, {0.8, 0.8, 0.8});
@@ -159,6 +161,7 @@ inline Shown shade(const Device& device, const ReferenceScene& r, PelScattering 
     shown.shader.set(options);
     shown.set(PEL_SLOT_POSITION, r.positions);
     shown.set(PEL_SLOT_NORMAL_SHADING, r.normals);
+    if (r.curvature > 0) shown.set(PEL_SLOT_CURVATURE, std::vector<float>(r.ids.size(), r.curvature));
     if (given) shown.set(PEL_SLOT_IRRADIANCE, r.irradiance);
     shown.set(PEL_SLOT_MATERIAL, r.ids);
     const Profile skin = profile();

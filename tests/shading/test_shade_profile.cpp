@@ -268,7 +268,7 @@ TEST(ShadeProfile, GainFollowsTheMeanFreePath) {
             for (size_t c = 0; c < 3; ++c) {
                 const double x = strength * pathOf(c) * shading.scene.meanCurvature[i],
                              gain = std::max(0.0, 1 + 1.35 * x / (1 + 3 * std::abs(x)));
-                ASSERT_NEAR(gained[3 * i + c], without[3 * i + c] * gain, tolerance::unitRoundTrip);
+                EXPECT_NEAR(gained[3 * i + c], without[3 * i + c] * gain, tolerance::unitRoundTrip);
             }
         return without;
     };
