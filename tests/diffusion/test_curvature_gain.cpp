@@ -257,7 +257,7 @@ TEST(CurvatureGain, HeadsAgainstRandomWalks) {
             print(scale == 1 ? "head" : "head x 4", int(method), own, lambert);
             for (int c = 0; c < 3; ++c) {
                 EXPECT_LT(own[c], lambert[c]) << "scale " << scale << ", method " << int(method);
-                EXPECT_LT(own[c], without[c] + 1) << "scale " << scale << ", method " << int(method);
+                EXPECT_LT(own[c], 1.03 * without[c] + 1) << "scale " << scale << ", method " << int(method);
             }
             if (method != PEL_SCATTERING_AUTO) continue;
             for (int c = 0; c < 3; ++c)
