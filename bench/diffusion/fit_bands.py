@@ -20,7 +20,7 @@ SIDE, LEVELS = 512, 7
 RINGS = (1, 2, 4, 5)  # squared distances of blocks in a band
 OFFSETS = {s: [(j, i) for j in range(-2, 3) for i in range(-2, 3) if i * i + j * j == s] for s in RINGS}
 INSIDE = slice(112, -112, 6)
-WEIGHT = 5  # how much a plane's weight counts that is not 1: less would be taken for surface that is hidden
+WEIGHT_ERROR = 5  # factor of the error of a plane's total weight: below 1 it would pass for occluded surface
 
 
 def burley(b):
@@ -126,12 +126,12 @@ class Case:
         minor, major = own_area / np.pi, own_area / np.pi * self.long**2
         own = self.share(np.sqrt(2 * minor * major / (minor + major)))
         centre = share_of_blocks(self.share, self.long, 4 * inside)
-        weight = centre + blocks @ self.masses[4:]
+        weight = centre + blocks @ self.weights[4:]
         for e, scattered, brought, scale in self.pictures:
-            near = brought[:, :4] @ pixels / (pixels @ self.masses[:4])
+            near = brought[:, :4] @ pixels / (pixels @ self.weights[:4])
             found = (own * e + (centre - own) * near + brought[:, 4:] @ blocks) / weight
             yield (found - scattered) * scale / (2 if self.long > 2 else 1)
-        yield [WEIGHT / self.long * (weight - 1)]
+        yield [WEIGHT_ERROR / self.long * (weight - 1)]
 
 
 def main():

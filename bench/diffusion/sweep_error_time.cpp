@@ -1,15 +1,14 @@
-// Run time against error of whole methods: every way to scatter, over its settings, on one scene, against
-// the surface integral.
+// Run time against error of whole methods: every way to scatter, over its settings, on one scene, against the
+// surface integral.
 //
-// sweep_error_time make SCENE SCALE FILE [PIXELS] [HEAD.obj]   renders a scene and makes its references
-// sweep_error_time measure FILE [REPEATS] [PICTURES] [METHOD]  prints a line of JSON per measurement, of
-// all methods or of one
+//   sweep_error_time make SCENE SCALE FILE [PIXELS] [HEAD.obj]   renders a scene and makes its references
+//   sweep_error_time measure FILE [REPEATS] [PICTURES] [METHOD]  prints JSON lines of all methods, or of one
 //
-// SCENE is side, ear or sphere; SCALE multiplies the profile's radius; a picture has PIXELS a side, 512.
-// Into the folder PICTURES, if given, go pictures of one setting of each method, raw floats. Times are of
-// all kernels that a frame has beyond those of plain lighting (irradiance given, nothing scattered),
-// medians. Errors are RMSE of radiance with an albedo of 0.8 over the pixels of skin.
-// bench/diffusion/methods runs all of it.
+// SCENE is side, ear or sphere; SCALE multiplies the profile's radius; a picture has PIXELS a side, 512. Into
+// the folder PICTURES, if given, go pictures of one setting of each method, raw floats. Times are of all
+// kernels that a frame has beyond those of plain lighting (irradiance given, nothing scattered), medians.
+// Errors are RMSE of radiance with an albedo of 0.8 over the pixels of skin. bench/diffusion/methods runs all
+// of it.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>

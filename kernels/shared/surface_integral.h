@@ -3,9 +3,8 @@
 #define PEL_SHARED_SURFACE_INTEGRAL
 #include "shared/scalars.h"
 
-// The table of a profile has this many rows per doubling of the distance. A row holds M(r) = integral of
-// R(s) s ds from 0 to r as RGBX, then its slope per row; M ends at 1 / 2 pi, or goes on beyond it where R
-// is cut.
+// The table of a profile has this many rows per doubling of the distance. A row holds M(r) = integral of R(s)
+// s ds from 0 to r as RGBX, then its slope per row; M ends at 1 / 2 pi, or goes on beyond it where R is cut.
 #define PEL_SURFACE_ROWS 64
 
 // A set of triangles. Nodes stand in the order of a walk from the root, each before its children.
