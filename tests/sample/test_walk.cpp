@@ -194,6 +194,20 @@ TEST(WalkLight, BodiesOfTheirOwn) {
     EXPECT_THROW(sample::WalkBody(scene, 3), std::invalid_argument);
 }
 
+TEST(WalkLight, StartsInsideOfSharpCorners) {
+    sample::Mesh needle;
+    needle.positions = {0, 0, 0, 0, 1, 0, 0, 0, 1, 5, 0.3f, 0.3f};
+    needle.triangles = {0, 2, 1, 0, 1, 3, 1, 2, 3, 2, 0, 3};
+    const sample::Scene scene(needle.view());
+    std::vector<sample::SurfacePoint> corners;
+    for (uint32_t t = 0; t < 4; ++t)
+        for (int k = 0; k < 3; ++k) corners.push_back({t, {double(k == 0), double(k == 1), double(k == 2)}});
+    const sample::WalkedLight light =
+        walkLight(sample::WalkBody(scene, 0), fromEverywhere(), corners, medium(0.1), {64});
+    EXPECT_EQ(light.lost, 0u);
+    for (float v : light.first) EXPECT_GT(v, 0.5);
+}
+
 TEST(WalkLight, RefusesWhatHasNoResult) {
     const sample::Scene scene(sample::makeSphere(1, 8, 16).view());
     const sample::WalkBody body(scene, 0);
